@@ -1,0 +1,70 @@
+"""Damping ratio and restitution coefficient of a linear contact (Eq. 16).
+
+Half a period of a free damped oscillator, without gravity, returns the
+velocity multiplied by ``r = exp(-π ζ / √(1 - ζ²))`` (Nagurka and Huang).
+Everything here is dimensionless.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.errors import ModelError
+
+
+def damping_ratio(restitution: ArrayLike) -> np.ndarray:
+    """Damping ratio ζ that gives the restitution coefficient r (Eq. 16).
+
+    ``ζ = -ln r / √(π² + ln² r)``
+
+    Parameters
+    ----------
+    restitution : array_like
+        r in (0, 1].
+
+    Raises
+    ------
+    ModelError
+        If any r lies outside (0, 1]: no linear contact has r = 0, which is
+        the limit ζ → 1.
+
+    Examples
+    --------
+    >>> float(damping_ratio(1.0))
+    0.0
+    >>> round(float(damping_ratio(0.65)), 4)
+    0.1359
+    """
+    r = np.asarray(restitution, dtype=float)
+    if not np.all((r > 0) & (r <= 1)):
+        raise ModelError(f"restitution coefficient r = {restitution} is not in (0, 1]")
+    decrement = -np.log(r) + 0.0  # + 0.0 turns -0 into 0 at r = 1
+    return decrement / np.hypot(np.pi, decrement)
+
+
+def restitution_coefficient(damping: ArrayLike) -> np.ndarray:
+    """Restitution coefficient r of an underdamped linear contact.
+
+    Inverse of Eq. 16, ``r = exp(-π ζ / √(1 - ζ²))``.
+
+    Parameters
+    ----------
+    damping : array_like
+        ζ in [0, 1).
+
+    Raises
+    ------
+    ModelError
+        If any ζ lies outside [0, 1): at ζ ≥ 1 a free contact never returns.
+
+    Examples
+    --------
+    >>> float(restitution_coefficient(0.0))
+    1.0
+    """
+    zeta = np.asarray(damping, dtype=float)
+    if not np.all((zeta >= 0) & (zeta < 1)):
+        raise ModelError(
+            f"damping ratio ζ = {damping} is not in [0, 1): "
+            "an overdamped contact has no restitution coefficient"
+        )
+    return np.exp(-np.pi * zeta / np.sqrt((1 - zeta) * (1 + zeta)))

@@ -1,0 +1,108 @@
+r"""When the ball never leaves the table (Eq. 9 and Eqs. 28-36).
+
+A ball without contact stiffness stays down for Λ ≤ Λ_CR = 1. A ball on a
+spring-damper oscillates steadily, and stays down while its displacement
+relative to the table never becomes positive::
+
+    Λ ≤ Λ_SD(ϖ) = √γ/ϖ² = √((1 - x)² + 4ζ² x),     x = 1/ϖ²       (Eq. 33)
+
+All quantities are dimensionless.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.errors import ModelError
+from bouncing_ball.models.contact import check_contact
+
+RESTITUTION_THRESHOLD = 1.0
+"""Λ_CR: the table's acceleration reaches that of gravity (Eq. 9)."""
+
+
+class Minimum(NamedTuple):
+    """Lowest threshold over all frequency ratios, and where it is reached."""
+
+    threshold: np.ndarray
+    frequency_ratio: np.ndarray
+
+
+def permanent_contact_threshold(
+    frequency_ratio: ArrayLike, damping_ratio: ArrayLike
+) -> np.ndarray:
+    """Largest Λ of permanent contact, Λ_SD(ϖ) (Eq. 33).
+
+    Raises
+    ------
+    ModelError
+        If ϖ ≤ 0 or ζ < 0.
+
+    Examples
+    --------
+    >>> float(permanent_contact_threshold(1.0, 0.25))
+    0.5
+    """
+    check_contact(frequency_ratio, damping_ratio)
+    x = 1 / np.square(np.asarray(frequency_ratio, dtype=float))
+    return np.hypot(1 - x, 2 * np.asarray(damping_ratio) * np.sqrt(x))
+
+
+def permanent_contact_minimum(damping_ratio: ArrayLike) -> Minimum:
+    """Lowest Λ_SD over ϖ: 2ζ√(1 - ζ²) at ϖ = 1/√(1 - 2ζ²) (Eq. 36).
+
+    Raises
+    ------
+    ModelError
+        If ζ ≥ 1/√2: Λ_SD then falls towards 1 for all ϖ and has no minimum.
+
+    Examples
+    --------
+    >>> round(float(permanent_contact_minimum(0.6).threshold), 15)
+    0.96
+    """
+    zeta = np.asarray(damping_ratio, dtype=float)
+    if not np.all((zeta >= 0) & (2 * zeta * zeta < 1)):
+        raise ModelError(
+            f"damping ratio ζ = {damping_ratio} is not in [0, 1/√2): "
+            "the permanent-contact threshold has no minimum over ϖ there"
+        )
+    return Minimum(2 * zeta * np.sqrt((1 - zeta) * (1 + zeta)), 1 / np.sqrt(1 - 2 * zeta * zeta))
+
+
+def permanent_contact_frequency_ratios(
+    threshold: ArrayLike, damping_ratio: ArrayLike
+) -> tuple[np.ndarray, np.ndarray]:
+    """Frequency ratios (ϖ₋, ϖ₊) at which Λ_SD takes a value (Eqs. 34-35).
+
+    With x = 1/ϖ², ``x = 1 - 2ζ² ± √((1 - 2ζ²)² + Λ² - 1)``; the larger x is
+    the smaller ϖ. Where no such ϖ exists the entry is NaN, and infinite where
+    it is reached only in the limit ϖ → ∞.
+
+    The paper's form divides by 1 - Λ² and fails at Λ = 1; this one does not.
+
+    Examples
+    --------
+    Undamped, Λ_SD = 1 at ϖ = 1/√2 and in the limit:
+
+    >>> low, high = permanent_contact_frequency_ratios(1.0, 0.0)
+    >>> round(float(low) ** 2, 15), float(high)
+    (0.5, inf)
+    """
+    zeta = np.asarray(damping_ratio, dtype=float)
+    lam = np.asarray(threshold, dtype=float)
+    centre = 1 - 2 * zeta * zeta
+    inside = centre * centre + (lam - 1) * (lam + 1)
+    root = np.sqrt(np.where(inside >= 0, inside, np.nan))
+    outer = centre + root
+    # The smaller root through the product of both, 1 - Λ²: no cancellation.
+    product = (1 - lam) * (1 + lam)
+    inner = np.where(outer > 0, product / np.where(outer > 0, outer, 1.0), centre - root)
+
+    def frequency(x):
+        positive = x > 0
+        found = 1 / np.sqrt(np.where(positive, x, 1.0))
+        # x = 0 is ϖ = ∞; a negative or NaN x is no frequency at all.
+        return np.where(positive, found, np.where(x == 0, np.inf, np.nan))
+
+    return frequency(outer), frequency(inner)

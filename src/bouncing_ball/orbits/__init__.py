@@ -1,0 +1,1 @@
+"""n-T periodic orbits of both models: existence, stability, observables."""

@@ -1,0 +1,187 @@
+"""Saddle-node, period doubling and orbits at a given Λ, on the explicit branch.
+
+Scalar root finding along the branch of :mod:`bouncing_ball.orbits.closed_form`,
+for arrays of contacts at once: a scan brackets the first root next to the
+fold, Chandrupatla's method (:func:`scipy.optimize.elementwise.find_root`)
+closes the bracket to the last digit.
+
+The branch comes from Λ → ∞ at short contacts, where Λ falls with the contact
+duration until the saddle-node: that is the side which is stable next to the
+fold. Entries for which the quantity does not exist are NaN.
+"""
+
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize.elementwise import find_root
+
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.contact import Contact
+from bouncing_ball.orbits.closed_form import branch_point, free_release_angle
+from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.monodromy import monodromy
+from bouncing_ball.orbits.stability import period_doubling_function, trace_and_determinant
+
+# Points of the scan on each side of ε = 0, spaced geometrically from a small
+# part of 1/ϖ, the scale of the fold, to the ends of the admissible range.
+_SCAN = 60
+_SCAN_START = 1e-3
+
+
+class Side(StrEnum):
+    """Side of the saddle-node on which an orbit lies."""
+
+    STABLE = "stable"
+    """The side that is stable next to the fold: the shorter contact."""
+    UNSTABLE = "unstable"
+
+
+def _columns(contact: Contact, n: ArrayLike, *more: ArrayLike):
+    arrays = (contact.frequency_ratio, contact.damping_ratio, n, *more)
+    return np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in arrays))
+
+
+def _range(contact: Contact, n: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+    """ε at D → 0 and at D → 2πn, drawn in by a part in 10⁶."""
+    omega, zeta, n = _columns(contact, n)
+    start = free_release_angle(contact)
+    full = omega * np.sqrt((1 - zeta) * (1 + zeta)) * 2 * np.pi * n
+    margin = 1e-6
+    low = np.broadcast_to(-start * (1 - margin), full.shape)
+    return low, full * (1 - margin) - start
+
+
+def _unit_grid(trailing: int) -> np.ndarray:
+    return np.linspace(0, 1, _SCAN).reshape(-1, *(1,) * trailing)
+
+
+def _scan(low, high, scale):
+    """Geometric grid through 0 on (low, high), shape (points, ...)."""
+    small = np.minimum(_SCAN_START * scale, np.minimum(-low, np.abs(high)) / 2)
+    steps = _unit_grid(np.ndim(low))
+    down = -small * (-low / small) ** steps[::-1]
+    up = small * np.maximum(high / small, 1.0) ** steps
+    return np.concatenate([down, np.zeros((1, *np.shape(low))), up])
+
+
+def _first_root(function, grid, args):
+    """First sign change of a function along the grid's first axis, refined.
+
+    NaN where there is none.
+    """
+    values = function(grid, *args)
+    change = (values[:-1] < 0) != (values[1:] < 0)
+    found = np.any(change, axis=0)
+    first = np.argmax(change, axis=0)[np.newaxis]
+    left = np.take_along_axis(grid, first, axis=0)[0]
+    right = np.take_along_axis(grid, first + 1, axis=0)[0]
+    return _close(function, left, right, found, args)
+
+
+def _close(function, left, right, found, args):
+    result = np.full(np.shape(found), np.nan)
+    if np.any(found):
+        chosen = tuple(x[found] for x in args)
+        # The default tolerance is four units in the last place of the root.
+        result[found] = find_root(function, (left[found], right[found]), args=chosen).x
+    return result
+
+
+def saddle_node(contact: Contact, n: ArrayLike) -> np.ndarray:
+    """Excess angle ε of the saddle-node, dΛ/dε = 0.
+
+    Returns
+    -------
+    numpy.ndarray
+        To be given to :func:`~bouncing_ball.orbits.closed_form.branch_point`.
+        NaN where the branch has no fold.
+
+    Examples
+    --------
+    >>> contact = Contact(1e4, 0.05)
+    >>> bool(abs(branch_point(saddle_node(contact, 1), contact, 1).phase) < 1e-3)
+    True
+    """
+    omega, zeta, n = _columns(contact, n)
+    release = contact.release
+
+    def fold(excess, omega, zeta, n):
+        return branch_point(excess, Contact(omega, zeta, release), n).fold
+
+    low, high = _range(contact, n)
+    return _first_root(fold, _scan(low, high, 1 / omega), (omega, zeta, n))
+
+
+def period_doubling(contact: Contact, n: ArrayLike) -> np.ndarray:
+    """Excess angle ε of the period doubling nearest to the saddle-node.
+
+    NaN where the stable side has none.
+    """
+    omega, zeta, n = _columns(contact, n)
+    release = contact.release
+
+    def flip(excess, omega, zeta, n):
+        local = Contact(omega, zeta, release)
+        orbit = ContactOrbit.from_branch(branch_point(excess, local, n), local, n)
+        return period_doubling_function(*trace_and_determinant(monodromy(orbit)))
+
+    fold = saddle_node(contact, n)
+    low, _ = _range(contact, n)
+    scale = _SCAN_START * np.minimum(1 / omega, 1.0)
+    outward = fold - scale * ((fold - low) / scale) ** _unit_grid(fold.ndim)
+    return _first_root(flip, outward, (omega, zeta, n))
+
+
+def orbit_at(
+    contact: Contact, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE
+) -> ContactOrbit:
+    """The n-T orbits at given Λ; NaN entries where there is none.
+
+    Parameters
+    ----------
+    contact : Contact
+        ϖ and ζ, scalars or arrays, and the release rule.
+    n, amplitude : array_like
+        Index of the family and Λ.
+    side : Side
+        Side of the saddle-node.
+
+    Examples
+    --------
+    >>> orbit = orbit_at(Contact(1e4, 0.0517), 1, 1.0)
+    >>> abs(round(float(orbit.bounce_velocity) / np.pi, 3))
+    1.0
+    """
+    omega, zeta, n, lam = _columns(contact, n, amplitude)
+    release = contact.release
+    local = Contact(omega, zeta, release)
+    fold = saddle_node(local, n)
+
+    def surplus(excess, omega, zeta, n, lam):
+        return branch_point(excess, Contact(omega, zeta, release), n).amplitude - lam
+
+    low, high = _range(local, n)
+    if side is Side.STABLE:
+        # Without a fold Λ falls all the way, and the whole branch is this side.
+        end = np.where(np.isnan(fold), high, fold)
+        above, below = (surplus(x, omega, zeta, n, lam) for x in (low, end))
+        found = (above > 0) & (below <= 0)
+        excess = _close(surplus, low, end, found, (omega, zeta, n, lam))
+    else:
+        scale = _SCAN_START / omega
+        outward = fold + scale * ((high - fold) / scale) ** _unit_grid(fold.ndim)
+        outward = np.concatenate([fold[np.newaxis], outward])
+        excess = _first_root(surplus, outward, (omega, zeta, n, lam))
+    return ContactOrbit.from_branch(branch_point(excess, local, n), local, n)
+
+
+def require_orbit(orbit: ContactOrbit) -> ContactOrbit:
+    """The orbit itself, or :class:`NoOrbitError` if any entry does not exist."""
+    missing = np.isnan(orbit.duration)
+    if np.any(missing):
+        lam = np.asarray(orbit.amplitude)
+        raise NoOrbitError(
+            f"no {orbit.n}-T orbit for {int(np.sum(missing))} of {lam.size} parameter sets"
+        )
+    return orbit

@@ -1,0 +1,149 @@
+r"""n-T orbits of the restitution-coefficient model, in closed form (Eqs. 6-8).
+
+One impact every n table periods, v = nπ and Λ cos φ = nπ (1 - r)/(1 + r).
+Both maps have the same fixed points; they differ in stability:
+
+===============  =============================  ========
+map              trace                          det
+===============  =============================  ========
+exact (Eq. 5)    1 + r² - (1 + r)² Λ sin φ      r²
+Holmes'          1 + r - 2 (1 + r) Λ sin φ      r
+===============  =============================  ========
+
+so that the period doublings are at Λ sin φ = 2(1 + r²)/(1 + r)² and at
+Λ sin φ = 1. The paper's Eq. 8 is the second, though its Eq. 5 is the exact map.
+
+All quantities are dimensionless.
+"""
+
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.errors import ModelError, NoOrbitError
+
+
+class ImpactMap(StrEnum):
+    """Which map of the impact the stability refers to."""
+
+    EXACT = "exact"
+    """Eq. 5, with the table's displacement in the time of flight."""
+    HOLMES = "holmes"
+    """The high-bounce approximation, to which the printed Eq. 8 belongs."""
+
+
+def check_family(n: ArrayLike, restitution: ArrayLike) -> None:
+    """Raise :class:`ModelError` unless n is a positive integer and 0 < r ≤ 1."""
+    index = np.asarray(n)
+    if not np.all((index == np.floor(index)) & (index >= 1)):
+        raise ModelError(f"index of the family n = {n} is not a positive integer")
+    r = np.asarray(restitution, dtype=float)
+    if not np.all((r > 0) & (r <= 1)):
+        raise ModelError(f"restitution coefficient r = {restitution} is not in (0, 1]")
+
+
+def saddle_node(n: ArrayLike, restitution: ArrayLike) -> np.ndarray:
+    """Λ at which the n-T orbits appear, nπ(1 - r)/(1 + r) (Eq. 7).
+
+    Examples
+    --------
+    >>> bool(np.isclose(saddle_node(1, 0.5), np.pi / 3))
+    True
+    """
+    check_family(n, restitution)
+    r = np.asarray(restitution, dtype=float)
+    return np.asarray(n) * np.pi * (1 - r) / (1 + r)
+
+
+def period_doubling_lift(
+    restitution: ArrayLike, impact_map: ImpactMap = ImpactMap.EXACT
+) -> np.ndarray:
+    """Λ sin φ at the period doubling: 2(1 + r²)/(1 + r)², or 1 for Holmes' map.
+
+    Examples
+    --------
+    >>> float(period_doubling_lift(1.0)), float(period_doubling_lift(0.5, ImpactMap.HOLMES))
+    (1.0, 1.0)
+    """
+    check_family(1, restitution)
+    r = np.asarray(restitution, dtype=float)
+    if impact_map is ImpactMap.HOLMES:
+        return np.ones_like(r)
+    return 2 * (1 + r * r) / (1 + r) ** 2
+
+
+def period_doubling(
+    n: ArrayLike, restitution: ArrayLike, impact_map: ImpactMap = ImpactMap.EXACT
+) -> np.ndarray:
+    """Λ of the period doubling (Eq. 8 as printed is Holmes' map).
+
+    ``Λ² = [2(1 + r²)/(1 + r)²]² + [nπ(1 - r)/(1 + r)]²`` for the exact map,
+    with 1 in place of the first bracket for Holmes'.
+
+    Examples
+    --------
+    >>> round(float(period_doubling(1, 0.85)), 4)
+    1.0383
+    >>> round(float(period_doubling(1, 0.85, ImpactMap.HOLMES)), 4)
+    1.0319
+    """
+    return np.hypot(period_doubling_lift(restitution, impact_map), saddle_node(n, restitution))
+
+
+def phase(
+    n: ArrayLike, restitution: ArrayLike, amplitude: ArrayLike, stable_side: bool = True
+) -> np.ndarray:
+    """Phase φ of the impact (Eq. 6), positive on the side of the fold that is
+    stable next to it, negative on the other.
+
+    Raises
+    ------
+    NoOrbitError
+        If Λ lies below the saddle-node.
+
+    Examples
+    --------
+    >>> round(float(phase(1, 1.0, 0.5)) / np.pi, 15)
+    0.5
+    """
+    fold, lam = saddle_node(n, restitution), np.asarray(amplitude, dtype=float)
+    if not np.all(lam >= fold):
+        raise NoOrbitError(
+            f"no {n}-T orbit at Λ = {amplitude}: below the saddle-node at Λ = {fold:.6g}"
+        )
+    lift = np.sqrt((lam - fold) * (lam + fold))
+    return np.arctan2(lift if stable_side else -lift, fold)
+
+
+def trace_and_determinant(
+    restitution: ArrayLike,
+    amplitude: ArrayLike,
+    phase: ArrayLike,
+    impact_map: ImpactMap = ImpactMap.EXACT,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Trace and determinant of the linearised map at an n-T orbit.
+
+    Examples
+    --------
+    >>> trace, det = trace_and_determinant(0.5, 1.0, 0.0)
+    >>> float(trace), float(det)
+    (1.25, 0.25)
+    """
+    r = np.asarray(restitution, dtype=float)
+    lift = np.asarray(amplitude, dtype=float) * np.sin(phase)
+    if impact_map is ImpactMap.HOLMES:
+        return 1 + r - 2 * (1 + r) * lift, r + 0 * lift
+    return 1 + r * r - (1 + r) ** 2 * lift, r * r + 0 * lift
+
+
+def max_height(n: ArrayLike, amplitude: ArrayLike, phase: ArrayLike) -> np.ndarray:
+    """Greatest absolute height of the ball, Λ sin φ + (nπ)²/2.
+
+    Examples
+    --------
+    >>> bool(max_height(2, 0.0, 0.0) == 2 * np.pi**2)
+    True
+    """
+    launch = np.asarray(n) * np.pi
+    return np.asarray(amplitude) * np.sin(phase) + launch * launch / 2

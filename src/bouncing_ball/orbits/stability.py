@@ -1,0 +1,69 @@
+"""Linear stability of a fixed point of a planar map.
+
+An orbit is stable while its Floquet multipliers lie inside the unit circle.
+It loses stability at a saddle-node, where a multiplier is +1 and
+``1 - tr + det = 0``, or at a period doubling, -1 and ``1 + tr + det = 0``.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+
+def trace_and_determinant(monodromy: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+    """Trace and determinant of matrices of shape (..., 2, 2).
+
+    Examples
+    --------
+    >>> trace, det = trace_and_determinant([[2.0, 1.0], [1.0, 1.0]])
+    >>> float(trace), float(det)
+    (3.0, 1.0)
+    """
+    m = np.asarray(monodromy, dtype=float)
+    trace = m[..., 0, 0] + m[..., 1, 1]
+    return trace, m[..., 0, 0] * m[..., 1, 1] - m[..., 0, 1] * m[..., 1, 0]
+
+
+def multipliers(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
+    """Floquet multipliers, complex, shape (..., 2), the larger modulus first.
+
+    The second is the determinant over the first, which keeps its digits when
+    the two differ by orders of magnitude.
+
+    Examples
+    --------
+    >>> multipliers(3.0, 2.0).tolist()
+    [(2+0j), (1+0j)]
+    """
+    trace, det = np.broadcast_arrays(np.asarray(trace, float), np.asarray(determinant, float))
+    half = trace / 2
+    root = np.sqrt(half * half - det + 0j)
+    first = half + np.where(half < 0, -1, 1) * root
+    zero = first == 0
+    second = np.where(zero, 0, det / np.where(zero, 1, first))
+    return np.stack([first, second], axis=-1)
+
+
+def saddle_node_function(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
+    """``1 - tr + det``: zero at a saddle-node, positive on the stable side."""
+    return 1 - np.asarray(trace) + np.asarray(determinant)
+
+
+def period_doubling_function(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
+    """``1 + tr + det``: zero at a period doubling, positive on the stable side."""
+    return 1 + np.asarray(trace) + np.asarray(determinant)
+
+
+def is_stable(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
+    """Whether both multipliers lie inside the unit circle (Jury's conditions).
+
+    Examples
+    --------
+    >>> bool(is_stable(0.0, 0.5)), bool(is_stable(2.0, 0.5))
+    (True, False)
+    """
+    inside = np.abs(np.asarray(determinant)) < 1
+    return (
+        inside
+        & (saddle_node_function(trace, determinant) > 0)
+        & (period_doubling_function(trace, determinant) > 0)
+    )

@@ -1,0 +1,225 @@
+"""Predictor-corrector continuation of a branch, with events."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from bouncing_ball.continuation.corrector import (
+    NewtonSettings,
+    newton,
+    null_vector,
+    plane,
+    tangent,
+)
+from bouncing_ball.continuation.events import Event, SpecialPoint, locate
+from bouncing_ball.continuation.problem import Problem
+from bouncing_ball.continuation.step_control import StepControl
+
+
+class ContinuationError(RuntimeError):
+    """No point to start from."""
+
+
+@dataclass(frozen=True)
+class Branch:
+    """Points of a solution branch in order of arclength.
+
+    Parameters
+    ----------
+    points, tangents : ndarray, shape (m, N + 1)
+        y = (x, p) and the unit tangents.
+    special : tuple of SpecialPoint
+        Located events, in order.
+    start_reason, end_reason : str
+        Why the branch ends where it does, at either end.
+    """
+
+    points: np.ndarray
+    tangents: np.ndarray
+    special: tuple[SpecialPoint, ...]
+    start_reason: str
+    end_reason: str
+
+    @property
+    def arclength(self) -> np.ndarray:
+        """Chord length from the first point, shape (m,)."""
+        steps = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
+        return np.concatenate([[0.0], np.cumsum(steps)])
+
+    def reversed(self) -> "Branch":
+        """The same branch run through the other way."""
+        return Branch(
+            self.points[::-1],
+            -self.tangents[::-1],
+            self.special[::-1],
+            self.end_reason,
+            self.start_reason,
+        )
+
+    def named(self, name: str) -> list[np.ndarray]:
+        """The points of all located events of one name."""
+        return [special.point for special in self.special if special.name == name]
+
+
+def solve_at(
+    problem: Problem, guess: np.ndarray, settings: NewtonSettings = NewtonSettings()
+) -> np.ndarray:
+    """The solution at the guess's own parameter.
+
+    Raises
+    ------
+    ContinuationError
+        If Newton's method does not converge from the guess.
+    """
+    axis = np.zeros_like(guess)
+    axis[-1] = 1.0
+    found = newton(problem, guess, plane(axis, guess), settings)
+    if not found.converged:
+        raise ContinuationError(
+            f"no solution near the starting guess {np.array2string(guess, precision=4)}: "
+            f"residual {found.residual:.1e} after {found.iterations} Newton iterations"
+        )
+    return found.point
+
+
+def _changed(before, after):
+    return (before >= 0) != (after >= 0)
+
+
+def continue_branch(
+    problem: Problem,
+    start: np.ndarray,
+    *,
+    increasing: bool,
+    events: Sequence[Event] = (),
+    control: StepControl = StepControl(),
+    settings: NewtonSettings = NewtonSettings(),
+    max_points: int = 2000,
+) -> Branch:
+    """Follow the branch through ``start`` in one direction.
+
+    Parameters
+    ----------
+    problem : Problem
+    start : ndarray, shape (N + 1,)
+        A solution, or close to one: it is corrected at its own parameter.
+    increasing : bool
+        Whether the parameter increases at the start.
+    events : sequence of Event
+        Those to locate; terminal ones end the branch exactly on their zero.
+    control, settings : StepControl, NewtonSettings
+    max_points : int
+        The branch ends after so many points.
+
+    Returns
+    -------
+    Branch
+        With the reason why it ended.
+
+    Raises
+    ------
+    ContinuationError
+        If there is no solution near ``start``.
+    """
+    y = solve_at(problem, np.asarray(start, dtype=float), settings)
+    direction = null_vector(problem.jacobian(y)) * (1.0 if increasing else -1.0)
+    values = [float(event.function(y)) for event in events]
+    points, tangents, special = [y], [direction], []
+    step, reason = control.initial, f"reached the limit of {max_points} points"
+    while len(points) < max_points:
+        predicted = y + step * direction
+        found = newton(problem, predicted, plane(direction, predicted), settings)
+        accepted = found.converged
+        if accepted:
+            turned = tangent(problem.jacobian(found.point), direction)
+            angle = float(np.arccos(np.clip(turned @ direction, -1.0, 1.0)))
+            accepted = angle <= control.max_angle
+        if not accepted:
+            shorter = control.after_failure(step)
+            if shorter is None:
+                why = (
+                    f"the tangent turns by more than {control.max_angle} rad"
+                    if found.converged
+                    else f"the corrector fails with residual {found.residual:.1e}"
+                )
+                reason = f"step too small ({step:.1e}): {why}"
+                break
+            step = shorter
+            continue
+        new_values = [float(event.function(found.point)) for event in events]
+        located = []
+        for event, before, after in zip(events, values, new_values, strict=True):
+            if _changed(before, after):
+                located.append((event, locate(problem, event, y, found.point, settings)))
+        located.sort(key=lambda pair: float((pair[1].point - y) @ direction))
+        ended = False
+        for event, point in located:
+            special.append(point)
+            if event.terminal:
+                points.append(point.point)
+                tangents.append(tangent(problem.jacobian(point.point), direction))
+                reason, ended = event.reason or event.name, True
+                break
+        if ended:
+            break
+        y, direction, values = found.point, turned, new_values
+        points.append(y)
+        tangents.append(direction)
+        step = control.after_success(step, found.iterations, angle)
+    return Branch(
+        np.array(points), np.array(tangents), tuple(special), "starting point", reason
+    )
+
+
+def continue_both_ways(problem: Problem, start: np.ndarray, **options) -> Branch:
+    """Follow the branch through ``start`` to both sides, as one branch.
+
+    The parameter increases at ``start``. Options are those of
+    :func:`continue_branch`, but for ``increasing``.
+    """
+    back = continue_branch(problem, start, increasing=False, **options).reversed()
+    ahead = continue_branch(problem, start, increasing=True, **options)
+    return Branch(
+        np.concatenate([back.points, ahead.points[1:]]),
+        np.concatenate([back.tangents, ahead.tangents[1:]]),
+        back.special + ahead.special,
+        back.start_reason,
+        ahead.end_reason,
+    )
+
+
+def resample(
+    problem: Problem, branch: Branch, count: int, settings: NewtonSettings = NewtonSettings()
+) -> np.ndarray:
+    """Solutions at equal steps of arclength along a branch, shape (count, N + 1).
+
+    Cubic Hermite interpolation between the points of the branch predicts, the
+    corrector corrects; the first and last points are those of the branch. The
+    number of points is then the caller's and not that of the step control.
+
+    Raises
+    ------
+    ContinuationError
+        If the corrector fails, on a branch followed with too long steps.
+    """
+    arc = branch.arclength
+    wanted = np.linspace(0.0, arc[-1], count)
+    left = np.clip(np.searchsorted(arc, wanted, side="right") - 1, 0, len(arc) - 2)
+    width = (arc[left + 1] - arc[left])[:, np.newaxis]
+    t = (wanted[:, np.newaxis] - arc[left][:, np.newaxis]) / width
+    rest = 1 - t
+    guess = (
+        (1 + 2 * t) * rest**2 * branch.points[left]
+        + t * rest**2 * width * branch.tangents[left]
+        + (1 + 2 * rest) * t**2 * branch.points[left + 1]
+        - rest * t**2 * width * branch.tangents[left + 1]
+    )
+    normal = branch.points[left + 1] - branch.points[left]
+    normal = normal / np.linalg.norm(normal, axis=1, keepdims=True)
+    found = newton(problem, guess, plane(normal, guess), settings)
+    if not found.converged:
+        raise ContinuationError(
+            f"resampling to {count} points failed with residual {found.residual:.1e}"
+        )
+    return found.point

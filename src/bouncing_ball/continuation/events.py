@@ -1,0 +1,127 @@
+"""Special points on a branch: test functions and their exact location.
+
+An event is a zero of a test function g(y). A sign change between two points
+of the branch announces it; it is then located on the extended system
+``F(y) = 0, g(y) = 0``, to the tolerance of Newton's method and not to the step.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane
+from bouncing_ball.continuation.problem import Problem
+
+# Step of the central differences for ∇g, near the optimum ε^(1/3). It sets how
+# fast the iteration converges; where it converges to is set by g alone.
+_DIFFERENCE = 6e-6
+# A first-order gradient costs a few iterations more than the plain corrector.
+_EXTRA_ITERATIONS = 12
+_MAX_BISECTIONS = 40
+
+
+@dataclass(frozen=True)
+class Event:
+    """A test function on the branch.
+
+    Parameters
+    ----------
+    name : str
+        What its zero is called in results.
+    function : callable
+        g(y), for y of shape (..., N + 1).
+    terminal : bool
+        Whether the branch ends there. A terminal function is positive inside.
+    reason : str
+        For a terminal event, why the branch ends, in words.
+    """
+
+    name: str
+    function: Callable[[np.ndarray], np.ndarray]
+    terminal: bool = False
+    reason: str = ""
+
+
+class SpecialPoint(NamedTuple):
+    """A located event: its name, the point y and the largest residual left."""
+
+    name: str
+    point: np.ndarray
+    residual: float
+
+
+class LocationError(RuntimeError):
+    """An announced event could not be located."""
+
+
+def fold(problem: Problem, name: str = "fold") -> Event:
+    """Event at which ∂F/∂x is singular: the branch turns in the parameter."""
+
+    def function(y):
+        return np.linalg.det(problem.jacobian(y)[..., :-1])
+
+    return Event(name, function)
+
+
+def parameter_bound(bound: float, upper: bool, reason: str) -> Event:
+    """Terminal event at which the parameter, the last entry of y, meets a bound."""
+    sign = -1.0 if upper else 1.0
+
+    def function(y):
+        return sign * (y[..., -1] - bound)
+
+    return Event("parameter bound", function, terminal=True, reason=reason)
+
+
+def _with_gradient(function):
+    def condition(y):
+        size = y.shape[-1]
+        offsets = np.concatenate([np.zeros((1, size)), np.eye(size), -np.eye(size)])
+        values = function(y + _DIFFERENCE * offsets)
+        gradient = (values[1 : size + 1] - values[size + 1 :]) / (2 * _DIFFERENCE)
+        return values[0], gradient
+
+    return condition
+
+
+def locate(
+    problem: Problem,
+    event: Event,
+    left: np.ndarray,
+    right: np.ndarray,
+    settings: NewtonSettings,
+) -> SpecialPoint:
+    """The zero of an event between two points of the branch.
+
+    Newton's method on the extended system, from the secant estimate, confined
+    to the bracket; if it leaves the bracket, the bracket is halved on the
+    branch and it starts again.
+
+    Raises
+    ------
+    LocationError
+        If that fails down to the shortest bracket.
+    """
+    values = [float(event.function(left)), float(event.function(right))]
+    patient = settings._replace(max_iterations=settings.max_iterations + _EXTRA_ITERATIONS)
+    for _ in range(_MAX_BISECTIONS):
+        if values[0] == 0.0:
+            return SpecialPoint(event.name, left, float(np.max(np.abs(problem.residual(left)))))
+        chord = right - left
+        share = values[0] / (values[0] - values[1])
+        found = newton(problem, left + share * chord, _with_gradient(event.function), patient)
+        progress = (found.point - left) @ chord / (chord @ chord)
+        if found.converged and -1e-6 <= progress <= 1 + 1e-6:
+            return SpecialPoint(event.name, found.point, found.residual)
+        middle = left + chord / 2
+        halved = newton(problem, middle, plane(chord / np.linalg.norm(chord), middle), settings)
+        if not halved.converged:
+            break
+        value = float(event.function(halved.point))
+        if (value >= 0) == (values[0] >= 0):
+            left, values[0] = halved.point, value
+        else:
+            right, values[1] = halved.point, value
+    raise LocationError(f"{event.name} announced near {left} could not be located")

@@ -1,0 +1,19 @@
+"""What a continuation needs to know of a problem."""
+
+from typing import Protocol
+
+import numpy as np
+
+
+class Problem(Protocol):
+    """N equations F(y) = 0 in N unknowns x and one parameter p, y = (x, p).
+
+    Both methods broadcast over leading axes. The unknowns should be scaled to
+    order one: the arclength is measured in the plain Euclidean norm of y.
+    """
+
+    def residual(self, y: np.ndarray) -> np.ndarray:
+        """F(y), shape (..., N) for y of shape (..., N + 1)."""
+
+    def jacobian(self, y: np.ndarray) -> np.ndarray:
+        """∂F/∂y, shape (..., N, N + 1)."""

@@ -1,0 +1,54 @@
+"""How long the next step along the branch is."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class StepControl:
+    """Adaptive step in arclength.
+
+    The step grows when the corrector needed fewer iterations than
+    ``target_iterations`` and shrinks when it needed more; it shrinks as well
+    when the tangent turns by more than ``max_angle``, so that folds are
+    resolved and no two events fall unseen between two points.
+
+    Parameters
+    ----------
+    initial, smallest, largest : float
+        Steps in arclength.
+    target_iterations : int
+        Newton iterations at which the step stays as it is.
+    max_angle : float
+        Largest angle in radians between the tangents of neighbouring points.
+    """
+
+    initial: float = 0.02
+    smallest: float = 1e-8
+    largest: float = 0.2
+    target_iterations: int = 4
+    max_angle: float = 0.2
+
+    def after_success(self, step: float, iterations: int, angle: float) -> float:
+        """Next step after an accepted one.
+
+        Examples
+        --------
+        >>> StepControl(largest=1.0).after_success(0.1, iterations=4, angle=0.0)
+        0.1
+        """
+        factor = 2.0 ** ((self.target_iterations - iterations) / 2)
+        if angle > 0:
+            factor = min(factor, 0.9 * self.max_angle / angle)
+        factor = min(max(factor, 0.25), 2.0)
+        return min(max(step * factor, self.smallest), self.largest)
+
+    def after_failure(self, step: float) -> float | None:
+        """Next step after a rejected one, or None when it would be too small.
+
+        Examples
+        --------
+        >>> StepControl(smallest=0.1).after_failure(0.15) is None
+        True
+        """
+        shorter = step / 2
+        return shorter if shorter >= self.smallest else None

@@ -1,0 +1,1 @@
+"""Names, symbols, units and files of the results; knows no figure."""

@@ -1,0 +1,50 @@
+"""Writing and reading the datasets as netCDF, atomically and reproducibly."""
+
+import json
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+
+def parameter_attributes(parameters: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Nested parameters as flat netCDF attributes.
+
+    Lists of numbers stay lists; anything deeper becomes JSON.
+
+    Examples
+    --------
+    >>> parameter_attributes({"n": 1, "range": {"min": 0.5}, "cases": [{"r": 1}]})
+    {'n': 1, 'range.min': 0.5, 'cases': '[{"r": 1}]'}
+    """
+    flat: dict[str, Any] = {}
+    for key, value in parameters.items():
+        if isinstance(value, Mapping):
+            flat |= parameter_attributes(value, f"{prefix}{key}.")
+        elif isinstance(value, list) and not all(type(x) in (int, float) for x in value):
+            flat[prefix + key] = json.dumps(value, ensure_ascii=False)
+        elif isinstance(value, bool):
+            flat[prefix + key] = int(value)
+        else:
+            flat[prefix + key] = value
+    return flat
+
+
+def write_dataset(dataset: xr.Dataset, path: str | Path) -> None:
+    """Write a dataset so that the file is either whole or not there."""
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_name(f".{path.name}.part")
+    try:
+        dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4")
+        os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def read_dataset(path: str | Path) -> xr.Dataset:
+    """Read a dataset whole and close its file."""
+    with xr.open_dataset(path, engine="netcdf4") as dataset:
+        return dataset.load()

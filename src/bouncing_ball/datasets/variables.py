@@ -1,0 +1,135 @@
+"""The vocabulary of the datasets: every variable, with symbol and equation.
+
+A name means the same in every dataset. All quantities are dimensionless:
+times are Ωt, lengths Ω²y/g, velocities Ωẏ/g, and phases and angles are in
+radians of the table's motion. Units follow the CF conventions ("1", "rad").
+"""
+
+from typing import NamedTuple
+
+import xarray as xr
+
+
+class Variable(NamedTuple):
+    """What a variable is: in words, as in the paper, and where it is defined."""
+
+    long_name: str
+    symbol: str
+    units: str = "1"
+    equation: str = ""
+
+
+VARIABLES: dict[str, Variable] = {
+    # coordinates
+    "n": Variable("index of the family of periodic orbits", "n"),
+    "case": Variable("parameter set", ""),
+    "frequency_ratio": Variable("frequency ratio of contact and table", "ϖ"),
+    "point": Variable("point along the branch, at equal steps of arclength", ""),
+    "sample": Variable("sample number", ""),
+    "special": Variable("special point of the branch, in order of arclength", ""),
+    "end": Variable("end of the branch", ""),
+    "bound": Variable("end of the stability range", ""),
+    "multiplier": Variable("Floquet multiplier, the larger modulus first", ""),
+    "quantity": Variable("quantity compared between the two models", ""),
+    "tolerance": Variable("relative error tolerated", ""),
+    "impact_map": Variable("map of the restitution model", "", equation="Eqs. 5, 8"),
+    # parameters that appear as variables
+    "restitution": Variable("restitution coefficient", "r", equation="Eq. 2"),
+    "damping_ratio": Variable("damping ratio of the contact", "ζ", equation="Eq. 16"),
+    "amplitude": Variable("excitation amplitude", "Λ"),
+    # orbits
+    "phase": Variable("phase of the table when the contact starts", "φ", "rad", "Eqs. 6, 21"),
+    "release_phase": Variable("phase of the table when the contact ends", "φ + τ_b", "rad"),
+    "contact_duration": Variable("duration of the contact", "τ_b", equation="Eq. 23"),
+    "impact_velocity": Variable("velocity of the ball as contact starts", "z′_i", equation="Eq. 22"),
+    "bounce_velocity": Variable("bouncing-off velocity of the ball", "z′_b", equation="Eq. 27"),
+    "apparent_restitution": Variable("apparent restitution coefficient", "r_a", equation="Eq. 17"),
+    "max_height": Variable("greatest height of the ball over the cycle", "max z", equation="Eq. 37"),
+    "stable": Variable("whether both Floquet multipliers are inside the unit circle", ""),
+    "multiplier_real": Variable("real part of the Floquet multiplier", "Re μ"),
+    "multiplier_imag": Variable("imaginary part of the Floquet multiplier", "Im μ"),
+    "residual": Variable("largest defect of the orbit equations", "", equation="Eqs. 21-26"),
+    # special points
+    "special_kind": Variable("kind of special point", ""),
+    "special_amplitude": Variable("excitation amplitude at the special point", "Λ"),
+    "special_phase": Variable("phase at the special point", "φ", "rad"),
+    "special_contact_duration": Variable("contact duration at the special point", "τ_b"),
+    "special_residual": Variable("residual of the extended system at the special point", ""),
+    "end_reason": Variable("why the branch ends there", ""),
+    # restitution model's limits
+    "saddle_node_amplitude": Variable("amplitude of the saddle-node", "Λ_SN", equation="Eq. 7"),
+    "saddle_node_phase": Variable("phase at the saddle-node", "φ_SN", "rad"),
+    "period_doubling_amplitude": Variable(
+        "amplitude of the period doubling", "Λ_PD", equation="Eq. 8"
+    ),
+    "period_doubling_phase": Variable("phase at the period doubling", "φ_PD", "rad"),
+    # time histories
+    "time": Variable("time since the first impact", "τ"),
+    "table_phase": Variable("phase of the table", "τ + φ", "rad"),
+    "ball": Variable("height of the ball", "z"),
+    "ball_velocity": Variable("velocity of the ball", "z′"),
+    "table": Variable("height of the table", "w"),
+    "contact": Variable("whether the ball touches the table", ""),
+    # the same quantities in the restitution model, for comparison
+    "restitution_phase": Variable("phase of impact, restitution model", "φ_CR", "rad", "Eq. 6"),
+    "restitution_amplitude": Variable("excitation amplitude, restitution model", "Λ"),
+    "restitution_stable": Variable("whether the restitution model's orbit is stable", ""),
+    "restitution_bounce_velocity": Variable(
+        "bouncing-off velocity, restitution model", "nπ", equation="Eq. 6"
+    ),
+    "restitution_impact_velocity": Variable(
+        "velocity before impact, restitution model", "-nπ", equation="Eq. 3"
+    ),
+    "restitution_max_height": Variable(
+        "greatest height, restitution model", "max z_CR", equation="Eq. 37"
+    ),
+    "restitution_ball": Variable("height of the ball, restitution model", "z_CR", equation="Eq. 4"),
+    # permanent contact
+    "threshold_amplitude": Variable("threshold of permanent contact", "Λ_SD", equation="Eq. 33"),
+    "minimum_threshold": Variable(
+        "lowest threshold of permanent contact", "2ζ√(1-ζ²)", equation="Eq. 36"
+    ),
+    "minimum_frequency_ratio": Variable("where the lowest threshold is", "1/√(1-2ζ²)"),
+    "restitution_threshold": Variable(
+        "threshold of permanent contact, restitution model", "Λ_CR", equation="Eq. 9"
+    ),
+    # errors
+    "relative_error": Variable("relative error of the restitution model", "", equation="Eqs. 37-38"),
+    "error_threshold": Variable(
+        "frequency ratio above which the relative error stays below the tolerance",
+        "ϖ_1%",
+        equation="Eqs. 37-38",
+    ),
+    "threshold_status": Variable("whether the threshold lies within the range scanned", ""),
+    # Table 1
+    "computed": Variable("end of the stability range, this replication", "Λ"),
+    "printed": Variable("end of the stability range, as printed", "Λ", equation="Table 1"),
+    "restitution_range": Variable("end of the stability range, restitution model", "Λ"),
+}
+
+
+def describe(dataset: xr.Dataset) -> xr.Dataset:
+    """The dataset with the attributes of every variable and coordinate.
+
+    Raises
+    ------
+    KeyError
+        If a name is not in :data:`VARIABLES`.
+
+    Examples
+    --------
+    >>> describe(xr.Dataset({"phase": ("point", [0.0])})).phase.attrs["symbol"]
+    'φ'
+    """
+    described = dataset.copy()
+    for name in described.variables:
+        variable = VARIABLES[str(name)]
+        attributes = {"long_name": variable.long_name}
+        if described[name].dtype.kind in "fiu":
+            attributes["units"] = variable.units
+        if variable.symbol:
+            attributes["symbol"] = variable.symbol
+        if variable.equation:
+            attributes["equation"] = variable.equation
+        described[name].attrs = attributes
+    return described

@@ -1,0 +1,181 @@
+r"""How stiff a contact must be for the restitution model to be right.
+
+The relative error of a quantity q of the restitution model is
+``|q_SD(ϖ) - q_CR| / |q_CR|`` (Eqs. 37-38 for the greatest height and the
+permanent contact). The threshold for a tolerance is the ϖ above which the
+error stays below it, within the range scanned.
+"""
+
+from collections.abc import Callable, Mapping
+from enum import StrEnum
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from scipy.optimize.elementwise import find_root
+
+from bouncing_ball.datasets.variables import describe
+from bouncing_ball.models.contact import Contact, Release
+from bouncing_ball.models.damping import damping_ratio
+from bouncing_ball.models.permanent_contact import (
+    RESTITUTION_THRESHOLD,
+    permanent_contact_threshold,
+)
+from bouncing_ball.orbits import limits
+from bouncing_ball.orbits import restitution as restitution_orbits
+from bouncing_ball.orbits.closed_form import branch_point
+from bouncing_ball.studies.parameters import grid
+
+
+class Quantity(StrEnum):
+    """What is compared between the models."""
+
+    MAX_HEIGHT = "max_height"
+    BOUNCE_VELOCITY = "bounce_velocity"
+    PHASE = "phase"
+    APPARENT_RESTITUTION = "apparent_restitution"
+    SADDLE_NODE = "saddle_node"
+    PERIOD_DOUBLING = "period_doubling"
+    PERMANENT_CONTACT = "permanent_contact"
+
+
+class Status(StrEnum):
+    """Outcome of the search for a threshold."""
+
+    FOUND = "found"
+    ALWAYS_WITHIN = "within the tolerance at every frequency ratio scanned"
+    NEVER_WITHIN = "outside the tolerance at the largest frequency ratio scanned"
+
+
+def restitution_value(quantity: Quantity, n: int, r: float, amplitude: float) -> float:
+    """The quantity in the restitution model."""
+    if quantity is Quantity.PERMANENT_CONTACT:
+        return RESTITUTION_THRESHOLD
+    if quantity is Quantity.SADDLE_NODE:
+        return float(restitution_orbits.saddle_node(n, r))
+    if quantity is Quantity.PERIOD_DOUBLING:
+        return float(restitution_orbits.period_doubling(n, r))
+    if quantity is Quantity.APPARENT_RESTITUTION:
+        return r
+    if quantity is Quantity.BOUNCE_VELOCITY:
+        return n * np.pi
+    phase = float(restitution_orbits.phase(n, r, amplitude))
+    if quantity is Quantity.PHASE:
+        return phase
+    return float(restitution_orbits.max_height(n, amplitude, phase))
+
+
+def contact_value(
+    quantity: Quantity, n: int, contact: Contact, amplitude: float
+) -> np.ndarray:
+    """The quantity in the spring-damper model, NaN where it does not exist."""
+    if quantity is Quantity.PERMANENT_CONTACT:
+        return permanent_contact_threshold(contact.frequency_ratio, contact.damping_ratio)
+    if quantity in (Quantity.SADDLE_NODE, Quantity.PERIOD_DOUBLING):
+        find = (
+            limits.saddle_node if quantity is Quantity.SADDLE_NODE else limits.period_doubling
+        )
+        return branch_point(find(contact, n), contact, n).amplitude
+    return getattr(limits.orbit_at(contact, n, amplitude), quantity.value)
+
+
+def relative_error(
+    quantity: Quantity,
+    n: int,
+    r: float,
+    amplitude: float,
+    ratios: np.ndarray,
+    release: Release = Release.DISPLACEMENT,
+) -> np.ndarray:
+    """|q_SD - q_CR|/|q_CR| along ϖ (Eqs. 37-38).
+
+    Where the spring-damper model has no such quantity the error is infinite.
+
+    Examples
+    --------
+    Without damping, Λ_SD = 1 - 1/ϖ² above the resonance:
+
+    >>> error = relative_error(Quantity.PERMANENT_CONTACT, 1, 1.0, 1.0, np.array([2.0]))
+    >>> error.tolist()
+    [0.25]
+    """
+    contact = Contact(ratios, float(damping_ratio(r)), release)
+    reference = restitution_value(quantity, n, r, amplitude)
+    error = np.abs(contact_value(quantity, n, contact, amplitude) - reference) / abs(reference)
+    return np.where(np.isnan(error), np.inf, error)
+
+
+def thresholds(
+    error: Callable[[np.ndarray], np.ndarray], tolerances: np.ndarray, ratios: np.ndarray
+) -> tuple[np.ndarray, list[Status]]:
+    """The ϖ above which an error stays within each tolerance.
+
+    Parameters
+    ----------
+    error : callable
+        Relative error as a function of an array of ϖ.
+    tolerances : ndarray, shape (m,)
+    ratios : ndarray
+        Increasing grid, scanned for the last crossing of each tolerance; the
+        crossing is then closed to the last digit.
+
+    Returns
+    -------
+    ndarray, list of Status
+        NaN where the status is not ``FOUND``.
+
+    Examples
+    --------
+    >>> thresholds(lambda ratio: 1 / ratio, np.array([0.01]), np.geomspace(1, 1e4, 50))[0]
+    array([100.])
+    """
+    tolerances = np.asarray(tolerances, dtype=float)
+    outside = error(ratios) > tolerances[:, np.newaxis]
+    any_outside = np.any(outside, axis=1)
+    last = len(ratios) - 1 - np.argmax(outside[:, ::-1], axis=1)
+    found = any_outside & (last < len(ratios) - 1)
+    result = np.full(len(tolerances), np.nan)
+    if np.any(found):
+
+        def excess(ratio, tolerance):
+            # Bounded, so that an infinite error does not upset the bracketing.
+            return np.minimum(error(ratio), 1e3) / tolerance - 1
+
+        bracket = ratios[last[found]], ratios[last[found] + 1]
+        result[found] = find_root(excess, bracket, args=(tolerances[found],)).x
+    missing = [Status.NEVER_WITHIN if bad else Status.ALWAYS_WITHIN for bad in any_outside]
+    statuses = [Status.FOUND if ok else why for ok, why in zip(found, missing, strict=True)]
+    return result, statuses
+
+
+def error_thresholds(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
+    """Errors along ϖ and thresholds, for every quantity and tolerance."""
+    n, r, lam = parameters["n"], parameters["restitution"], parameters["amplitude"]
+    ratios = grid(parameters["frequency_ratio"])
+    tolerances = np.array(parameters["tolerances"], dtype=float)
+    quantities = [Quantity(name) for name in parameters["quantities"]]
+    errors, roots, statuses = [], [], []
+    for quantity in quantities:
+
+        def error(ratio, quantity=quantity):
+            return relative_error(quantity, n, r, lam, ratio, Release(release))
+
+        errors.append(error(ratios))
+        found, status = thresholds(error, tolerances, ratios)
+        roots.append(found)
+        statuses.append([str(s) for s in status])
+    dims = ("quantity", "tolerance")
+    return describe(
+        xr.Dataset(
+            {
+                "relative_error": (("quantity", "frequency_ratio"), np.array(errors)),
+                "error_threshold": (dims, np.array(roots)),
+                "threshold_status": (dims, np.array(statuses)),
+            },
+            coords={
+                "quantity": [str(q) for q in quantities],
+                "frequency_ratio": ratios,
+                "tolerance": tolerances,
+            },
+        )
+    )

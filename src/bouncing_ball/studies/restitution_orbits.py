@@ -1,0 +1,45 @@
+"""Existence and stability domains of the restitution model's orbits (Fig. 3)."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.datasets.variables import describe
+from bouncing_ball.orbits import restitution as orbits
+from bouncing_ball.orbits.restitution import ImpactMap
+from bouncing_ball.orbits.stability import is_stable
+
+
+def restitution_orbits(parameters: Mapping[str, Any]) -> xr.Dataset:
+    """φ against Λ for several families, from ``n``, ``restitution``,
+    ``amplitude_max`` and ``points``.
+
+    The branch of each family is run through in φ, from the unstable side to
+    the stable one, out to Λ = ``amplitude_max``.
+    """
+    n = np.array(parameters["n"])
+    r, top = parameters["restitution"], parameters["amplitude_max"]
+    fold = orbits.saddle_node(n, r)
+    reach = np.arccos(np.clip(fold / top, 0.0, 1.0))
+    phase = reach[:, np.newaxis] * np.linspace(-1.0, 1.0, parameters["points"])
+    amplitude = fold[:, np.newaxis] / np.cos(phase)
+    stable = is_stable(*orbits.trace_and_determinant(r, amplitude, phase))
+    maps = list(ImpactMap)
+    doubling = np.array([orbits.period_doubling(n, r, kind) for kind in maps])
+    lift = np.array([[float(orbits.period_doubling_lift(r, kind))] for kind in maps])
+    return describe(
+        xr.Dataset(
+            {
+                "amplitude": (("n", "point"), amplitude),
+                "phase": (("n", "point"), phase),
+                "stable": (("n", "point"), stable),
+                "saddle_node_amplitude": ("n", fold),
+                "saddle_node_phase": ("n", np.zeros_like(fold)),
+                "period_doubling_amplitude": (("impact_map", "n"), doubling),
+                "period_doubling_phase": (("impact_map", "n"), np.arctan2(lift, fold)),
+            },
+            coords={"n": n, "impact_map": [str(kind) for kind in maps]},
+        )
+    )

@@ -1,0 +1,116 @@
+"""Time histories of 1-T orbits (Figs. 2, 7 and 12)."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.datasets.variables import describe
+from bouncing_ball.orbits import restitution as restitution_orbits
+from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.limits import orbit_at, require_orbit
+from bouncing_ball.studies.parameters import contact
+
+
+def restitution_history(parameters: Mapping[str, Any]) -> xr.Dataset:
+    """Ball and table over ``periods`` of the orbit, restitution model (Fig. 2).
+
+    Raises
+    ------
+    NoOrbitError
+        If Λ lies below the saddle-node.
+    """
+    n, lam = parameters["n"], parameters["amplitude"]
+    phase = restitution_orbits.phase(n, parameters["restitution"], lam)
+    period = 2 * np.pi * n
+    time = np.linspace(0.0, parameters["periods"] * period, parameters["samples"])
+    height, velocity = restitution_orbits.path(n, lam, phase, time)
+    return describe(
+        xr.Dataset(
+            {
+                "time": ("sample", time),
+                "ball": ("sample", height),
+                "ball_velocity": ("sample", velocity),
+                "table": ("sample", lam * np.sin(time + phase)),
+                "phase": ((), float(phase)),
+            }
+        )
+    )
+
+
+def _cycle(orbit: ContactOrbit, samples: int) -> tuple[np.ndarray, ...]:
+    """Times of one cycle with the orbit's states: contact, then flight.
+
+    Half the samples fall in either part, and τ_b is a sample in both: the
+    contact may be a hundredth of the cycle and must be resolved all the same.
+    """
+    half = samples // 2
+    during = np.linspace(0.0, orbit.duration, half)
+    after = np.linspace(orbit.duration, 2 * np.pi * orbit.n, samples - half)
+    pairs = [orbit.contact_path(during), orbit.flight_path(after)]
+    time = np.concatenate([during, after])
+    touching = np.concatenate([np.ones(half, bool), np.zeros(samples - half, bool)])
+    return time, *(np.concatenate(part) for part in zip(*pairs, strict=True)), touching
+
+
+def contact_history(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
+    """One cycle of the spring-damper model from the start of contact (Fig. 7).
+
+    Raises
+    ------
+    NoOrbitError
+        If the orbit does not exist.
+    """
+    n, lam = parameters["n"], parameters["amplitude"]
+    touch = contact(parameters["frequency_ratio"], parameters["restitution"], release)
+    orbit = require_orbit(orbit_at(touch, n, lam))
+    time, ball, velocity, touching = _cycle(orbit, parameters["samples"])
+    return describe(
+        xr.Dataset(
+            {
+                "time": ("sample", time),
+                "ball": ("sample", ball),
+                "ball_velocity": ("sample", velocity),
+                "table": ("sample", lam * np.sin(time + orbit.phase)),
+                "contact": ("sample", touching),
+                "phase": ((), float(orbit.phase)),
+                "contact_duration": ((), float(orbit.duration)),
+                "impact_velocity": ((), float(orbit.impact_velocity)),
+                "bounce_velocity": ((), float(orbit.bounce_velocity)),
+            }
+        )
+    )
+
+
+def both_histories(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
+    """Both models against the phase of the table, for several ϖ (Fig. 12).
+
+    Raises
+    ------
+    NoOrbitError
+        If an orbit does not exist.
+    """
+    n, lam, r = parameters["n"], parameters["amplitude"], parameters["restitution"]
+    ratios = np.array(parameters["frequency_ratio"], dtype=float)
+    columns: dict[str, list[np.ndarray]] = {"table_phase": [], "ball": [], "contact": []}
+    for ratio in ratios:
+        orbit = require_orbit(orbit_at(contact(ratio, r, release), n, lam))
+        time, ball, _, touching = _cycle(orbit, parameters["samples"])
+        for name, values in zip(columns, (time + orbit.phase, ball, touching), strict=True):
+            columns[name].append(values)
+    phase = float(restitution_orbits.phase(n, r, lam))
+    time = np.linspace(0.0, 2 * np.pi * n, parameters["samples"])
+    height, _ = restitution_orbits.path(n, lam, phase, np.minimum(time, time[-1] * (1 - 1e-15)))
+    dims = ("frequency_ratio", "sample")
+    return describe(
+        xr.Dataset(
+            {
+                **{name: (dims, np.array(values)) for name, values in columns.items()},
+                "restitution_ball": ("sample", height),
+                "time": ("sample", time),
+                "restitution_phase": ((), phase),
+            },
+            coords={"frequency_ratio": ratios},
+        )
+    )

@@ -1,10 +1,16 @@
 r"""When the ball never leaves the table (Eq. 9 and Eqs. 28-36).
 
 A ball without contact stiffness stays down for Λ ≤ Λ_CR = 1. A ball on a
-spring-damper oscillates steadily, and stays down while its displacement
-relative to the table never becomes positive::
+spring-damper oscillates steadily, and with the displacement release it stays
+down while its displacement relative to the table never becomes positive::
 
     Λ ≤ Λ_SD(ϖ) = √γ/ϖ² = √((1 - x)² + 4ζ² x),     x = 1/ϖ²       (Eq. 33)
+
+With the force release it stays down while the table always pushes. The force
+over the weight is 1 + z″, and the table's motion reaches the ball with the
+transmissibility (1 + 2iζ√x)/(1 - x + 2iζ√x), so that ::
+
+    Λ ≤ Λ_F(ϖ) = √[((1 - x)² + 4ζ² x)/(1 + 4ζ² x)]
 
 All quantities are dimensionless.
 """
@@ -15,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.models.contact import check_contact
+from bouncing_ball.models.contact import Release, check_contact
 
 RESTITUTION_THRESHOLD = 1.0
 """Λ_CR: the table's acceleration reaches that of gravity (Eq. 9)."""
@@ -29,9 +35,11 @@ class Minimum(NamedTuple):
 
 
 def permanent_contact_threshold(
-    frequency_ratio: ArrayLike, damping_ratio: ArrayLike
+    frequency_ratio: ArrayLike,
+    damping_ratio: ArrayLike,
+    release: Release = Release.DISPLACEMENT,
 ) -> np.ndarray:
-    """Largest Λ of permanent contact, Λ_SD(ϖ) (Eq. 33).
+    """Largest Λ of permanent contact, Λ_SD(ϖ) (Eq. 33) or Λ_F(ϖ).
 
     Raises
     ------
@@ -44,17 +52,25 @@ def permanent_contact_threshold(
     0.5
     """
     check_contact(frequency_ratio, damping_ratio)
-    x = 1 / np.square(np.asarray(frequency_ratio, dtype=float))
-    return np.hypot(1 - x, 2 * np.asarray(damping_ratio) * np.sqrt(x))
+    omega = np.asarray(frequency_ratio, dtype=float)
+    loss = 2 * np.asarray(damping_ratio) / omega
+    threshold = np.hypot((1 - 1 / omega) * (1 + 1 / omega), loss)
+    return threshold / np.hypot(1, loss) if release is Release.FORCE else threshold
 
 
-def permanent_contact_minimum(damping_ratio: ArrayLike) -> Minimum:
-    """Lowest Λ_SD over ϖ: 2ζ√(1 - ζ²) at ϖ = 1/√(1 - 2ζ²) (Eq. 36).
+def permanent_contact_minimum(
+    damping_ratio: ArrayLike, release: Release = Release.DISPLACEMENT
+) -> Minimum:
+    """Lowest threshold over ϖ.
+
+    Displacement release: 2ζ√(1 - ζ²) at ϖ = 1/√(1 - 2ζ²) (Eq. 36). Force
+    release: at x = 2/(1 + √(1 + 8ζ²)), for every ζ.
 
     Raises
     ------
     ModelError
-        If ζ ≥ 1/√2: Λ_SD then falls towards 1 for all ϖ and has no minimum.
+        If ζ ≥ 1/√2 with the displacement release: Λ_SD then falls towards 1
+        for all ϖ and has no minimum.
 
     Examples
     --------
@@ -62,6 +78,10 @@ def permanent_contact_minimum(damping_ratio: ArrayLike) -> Minimum:
     0.96
     """
     zeta = np.asarray(damping_ratio, dtype=float)
+    if release is Release.FORCE:
+        check_contact(1.0, zeta)
+        omega = np.sqrt((1 + np.sqrt(1 + 8 * zeta * zeta)) / 2)
+        return Minimum(permanent_contact_threshold(omega, zeta, release), omega)
     if not np.all((zeta >= 0) & (2 * zeta * zeta < 1)):
         raise ModelError(
             f"damping ratio ζ = {damping_ratio} is not in [0, 1/√2): "
@@ -71,12 +91,15 @@ def permanent_contact_minimum(damping_ratio: ArrayLike) -> Minimum:
 
 
 def permanent_contact_frequency_ratios(
-    threshold: ArrayLike, damping_ratio: ArrayLike
+    threshold: ArrayLike,
+    damping_ratio: ArrayLike,
+    release: Release = Release.DISPLACEMENT,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Frequency ratios (ϖ₋, ϖ₊) at which Λ_SD takes a value (Eqs. 34-35).
+    """Frequency ratios (ϖ₋, ϖ₊) at which the threshold takes a value (Eqs. 34-35).
 
-    With x = 1/ϖ², ``x = 1 - 2ζ² ± √((1 - 2ζ²)² + Λ² - 1)``; the larger x is
-    the smaller ϖ. Where no such ϖ exists the entry is NaN, and infinite where
+    With x = 1/ϖ², ``x = m ± √(m² + Λ² - 1)``, where m = 1 - 2ζ² for the
+    displacement release and m = 1 - 2ζ²(1 - Λ²) for the force release; the
+    larger x is the smaller ϖ. Where no such ϖ exists the entry is NaN, and infinite where
     it is reached only in the limit ϖ → ∞.
 
     The paper's form divides by 1 - Λ² and fails at Λ = 1; this one does not.
@@ -91,12 +114,12 @@ def permanent_contact_frequency_ratios(
     """
     zeta = np.asarray(damping_ratio, dtype=float)
     lam = np.asarray(threshold, dtype=float)
-    centre = 1 - 2 * zeta * zeta
-    inside = centre * centre + (lam - 1) * (lam + 1)
+    # The smaller root comes from the product of both, 1 - Λ²: no cancellation.
+    product = (1 - lam) * (1 + lam)
+    centre = 1 - 2 * zeta * zeta * (product if release is Release.FORCE else 1.0)
+    inside = centre * centre - product
     root = np.sqrt(np.where(inside >= 0, inside, np.nan))
     outer = centre + root
-    # The smaller root through the product of both, 1 - Λ²: no cancellation.
-    product = (1 - lam) * (1 + lam)
     inner = np.where(outer > 0, product / np.where(outer > 0, outer, 1.0), centre - root)
 
     def frequency(x):

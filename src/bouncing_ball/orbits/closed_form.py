@@ -114,10 +114,11 @@ def branch_point(excess: ArrayLike, contact: Contact, n: ArrayLike) -> BranchPoi
 
     Examples
     --------
-    A stiff elastic contact: half a period of contact, no forcing needed.
+    A stiff elastic contact lasts exactly half a free period when the table's
+    acceleration balances gravity, Λ sin φ = 1:
 
     >>> point = branch_point(0.0, Contact(1e6, 0.0), 1)
-    >>> bool(point.amplitude < 1e-5), bool(abs(point.u + np.pi) < 1e-5)
+    >>> bool(abs(point.y - 1) < 1e-5), bool(abs(point.u + np.pi) < 1e-5)
     (True, True)
     """
     zeta = np.asarray(contact.damping_ratio, dtype=float)

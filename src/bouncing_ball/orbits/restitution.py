@@ -116,6 +116,31 @@ def phase(
     return np.arctan2(lift if stable_side else -lift, fold)
 
 
+def branch(
+    n: ArrayLike, restitution: ArrayLike, amplitude_max: float, points: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Λ and φ along the whole branch up to ``amplitude_max``.
+
+    From the unstable side to the stable one, at equal steps of Λ sin φ, which
+    parametrises the branch for r = 1 too. Shapes (..., points).
+
+    Raises
+    ------
+    NoOrbitError
+        If ``amplitude_max`` lies below the saddle-node.
+
+    Examples
+    --------
+    >>> amplitude, angle = branch(1, 0.5, 2.0, 3)
+    >>> amplitude.round(4).tolist(), angle.round(4).tolist()
+    ([2.0, 1.0472, 2.0], [-1.0197, 0.0, 1.0197])
+    """
+    end = phase(n, restitution, amplitude_max)
+    lift = amplitude_max * np.sin(end)[..., np.newaxis] * np.linspace(-1.0, 1.0, points)
+    level = saddle_node(n, restitution)[..., np.newaxis]
+    return np.hypot(level, lift), np.arctan2(lift, level)
+
+
 def trace_and_determinant(
     restitution: ArrayLike,
     amplitude: ArrayLike,

@@ -22,6 +22,7 @@ from bouncing_ball.continuation.corrector import NewtonSettings
 from bouncing_ball.continuation.events import fold, parameter_bound
 from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.datasets.variables import describe
+from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.contact import Release
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.orbits import restitution as restitution_orbits
@@ -88,13 +89,14 @@ def branch_along_amplitude(
             )
         y = way.points[-1]
     system = OrbitSystem(n, zeta, Parameter.AMPLITUDE, frequency_ratio, rule)
-    window = parameter_bound(
-        amplitude_max, True, f"left the window at amplitude {amplitude_max:g}"
+    windows = (
+        parameter_bound(0.0, False, "left the window at amplitude 0"),
+        parameter_bound(amplitude_max, True, f"left the window at amplitude {amplitude_max:g}"),
     )
     branch = continue_both_ways(
         system,
         np.append(y[:-1], start),
-        events=(*system.events(), fold(system, FOLD), window),
+        events=(*system.events(), fold(system, FOLD), *windows),
         control=control,
         settings=newton,
     )
@@ -106,10 +108,22 @@ def first_limits(branch: Branch) -> dict[str, np.ndarray]:
 
     The branch's last saddle-node in its order, from the unstable to the stable
     side, and the first period doubling after it.
+
+    Raises
+    ------
+    NoOrbitError
+        If the branch has not both.
     """
     names = [special.name for special in branch.special]
-    node = len(names) - 1 - names[::-1].index(SADDLE_NODE)
-    doubling = names.index(PERIOD_DOUBLING, node)
+    nodes = [k for k, name in enumerate(names) if name == SADDLE_NODE]
+    node = nodes[-1] if nodes else len(names)
+    doublings = [k for k, name in enumerate(names) if name == PERIOD_DOUBLING and k > node]
+    if not doublings:
+        raise NoOrbitError(
+            f"the branch from {branch.start_reason!r} to {branch.end_reason!r} has no "
+            f"{PERIOD_DOUBLING if nodes else SADDLE_NODE} to bound its stable range"
+        )
+    doubling = doublings[0]
     return {
         SADDLE_NODE: branch.special[node].point,
         PERIOD_DOUBLING: branch.special[doubling].point,
@@ -193,10 +207,7 @@ def both_domains(
     contact = orbit_branches(
         parameters | {"frequency_ratio": [parameters["frequency_ratio"]]}, release, settings
     )
-    fold_amplitude = float(restitution_orbits.saddle_node(n, r))
-    reach = np.arccos(min(fold_amplitude / top, 1.0))
-    phase = reach * np.linspace(-1.0, 1.0, parameters["points"])
-    amplitude = fold_amplitude / np.cos(phase)
+    amplitude, phase = restitution_orbits.branch(n, r, top, parameters["points"])
     doubling = float(restitution_orbits.period_doubling(n, r))
     stable = is_stable(*restitution_orbits.trace_and_determinant(r, amplitude, phase))
     return describe(
@@ -204,7 +215,7 @@ def both_domains(
             restitution_amplitude=("point", amplitude),
             restitution_phase=("point", phase),
             restitution_stable=("point", stable),
-            saddle_node_amplitude=((), fold_amplitude),
+            saddle_node_amplitude=((), float(restitution_orbits.saddle_node(n, r))),
             saddle_node_phase=((), 0.0),
             period_doubling_amplitude=((), doubling),
             period_doubling_phase=((), float(restitution_orbits.phase(n, r, doubling))),

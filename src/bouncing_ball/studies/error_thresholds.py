@@ -25,6 +25,7 @@ from bouncing_ball.orbits import limits
 from bouncing_ball.orbits import restitution as restitution_orbits
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.studies.parameters import grid
+from bouncing_ball.studies.permanent_contact import permanent_contact
 
 
 class Quantity(StrEnum):
@@ -70,7 +71,9 @@ def contact_value(
 ) -> np.ndarray:
     """The quantity in the spring-damper model, NaN where it does not exist."""
     if quantity is Quantity.PERMANENT_CONTACT:
-        return permanent_contact_threshold(contact.frequency_ratio, contact.damping_ratio)
+        return permanent_contact_threshold(
+            contact.frequency_ratio, contact.damping_ratio, contact.release
+        )
     if quantity in (Quantity.SADDLE_NODE, Quantity.PERIOD_DOUBLING):
         find = (
             limits.saddle_node if quantity is Quantity.SADDLE_NODE else limits.period_doubling
@@ -179,3 +182,34 @@ def error_thresholds(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
             },
         )
     )
+
+
+def height_error(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
+    """Greatest height along ϖ in both models, and ϖ_h for ``tolerance`` (Fig. 14)."""
+    n, r, lam = parameters["n"], parameters["restitution"], parameters["amplitude"]
+    dataset = error_thresholds(
+        parameters
+        | {"quantities": [Quantity.MAX_HEIGHT], "tolerances": [parameters["tolerance"]]},
+        release,
+    )
+    touch = Contact(dataset.frequency_ratio.values, float(damping_ratio(r)), Release(release))
+    height = contact_value(Quantity.MAX_HEIGHT, n, touch, lam)
+    dataset["max_height"] = ("frequency_ratio", height)
+    dataset["restitution_max_height"] = restitution_value(Quantity.MAX_HEIGHT, n, r, lam)
+    return describe(dataset)
+
+
+def permanent_contact_error(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
+    """Permanent contact along ϖ in both models, and ϖ_PC for ``tolerance`` (Fig. 16)."""
+    dataset = error_thresholds(
+        parameters
+        | {
+            # The threshold of permanent contact knows neither orbit nor amplitude.
+            "n": 1,
+            "amplitude": RESTITUTION_THRESHOLD,
+            "quantities": [Quantity.PERMANENT_CONTACT],
+            "tolerances": [parameters["tolerance"]],
+        },
+        release,
+    )
+    return describe(dataset.merge(permanent_contact(parameters, release)))

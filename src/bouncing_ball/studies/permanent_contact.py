@@ -6,6 +6,7 @@ from typing import Any
 import xarray as xr
 
 from bouncing_ball.datasets.variables import describe
+from bouncing_ball.models.contact import Release
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.permanent_contact import (
     RESTITUTION_THRESHOLD,
@@ -15,8 +16,8 @@ from bouncing_ball.models.permanent_contact import (
 from bouncing_ball.studies.parameters import grid
 
 
-def permanent_contact(parameters: Mapping[str, Any]) -> xr.Dataset:
-    """Λ_SD along ϖ with its minimum and the restitution model's Λ_CR.
+def permanent_contact(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
+    """The threshold along ϖ with its minimum and the restitution model's Λ_CR.
 
     Raises
     ------
@@ -25,13 +26,13 @@ def permanent_contact(parameters: Mapping[str, Any]) -> xr.Dataset:
     """
     ratios = grid(parameters["frequency_ratio"])
     zeta = float(damping_ratio(parameters["restitution"]))
-    lowest = permanent_contact_minimum(zeta)
+    lowest = permanent_contact_minimum(zeta, Release(release))
     return describe(
         xr.Dataset(
             {
                 "threshold_amplitude": (
                     "frequency_ratio",
-                    permanent_contact_threshold(ratios, zeta),
+                    permanent_contact_threshold(ratios, zeta, Release(release)),
                 ),
                 "minimum_threshold": ((), float(lowest.threshold)),
                 "minimum_frequency_ratio": ((), float(lowest.frequency_ratio)),

@@ -1,4 +1,4 @@
-"""Existence and stability domains of the restitution model's orbits (Fig. 3)."""
+"""Orbits of the restitution model: time history and domains (Figs. 2 and 3)."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -16,15 +16,18 @@ def restitution_orbits(parameters: Mapping[str, Any]) -> xr.Dataset:
     """φ against Λ for several families, from ``n``, ``restitution``,
     ``amplitude_max`` and ``points``.
 
-    The branch of each family is run through in φ, from the unstable side to
-    the stable one, out to Λ = ``amplitude_max``.
+    The branch of each family runs from the unstable side to the stable one,
+    out to Λ = ``amplitude_max``.
+
+    Raises
+    ------
+    NoOrbitError
+        If a family does not exist up to ``amplitude_max``.
     """
     n = np.array(parameters["n"])
     r, top = parameters["restitution"], parameters["amplitude_max"]
     fold = orbits.saddle_node(n, r)
-    reach = np.arccos(np.clip(fold / top, 0.0, 1.0))
-    phase = reach[:, np.newaxis] * np.linspace(-1.0, 1.0, parameters["points"])
-    amplitude = fold[:, np.newaxis] / np.cos(phase)
+    amplitude, phase = orbits.branch(n, r, top, parameters["points"])
     stable = is_stable(*orbits.trace_and_determinant(r, amplitude, phase))
     maps = list(ImpactMap)
     doubling = np.array([orbits.period_doubling(n, r, kind) for kind in maps])
@@ -41,5 +44,31 @@ def restitution_orbits(parameters: Mapping[str, Any]) -> xr.Dataset:
                 "period_doubling_phase": (("impact_map", "n"), np.arctan2(lift, fold)),
             },
             coords={"n": n, "impact_map": [str(kind) for kind in maps]},
+        )
+    )
+
+
+def restitution_history(parameters: Mapping[str, Any]) -> xr.Dataset:
+    """Ball and table over ``periods`` of the orbit, restitution model (Fig. 2).
+
+    Raises
+    ------
+    NoOrbitError
+        If Λ lies below the saddle-node.
+    """
+    n, lam = parameters["n"], parameters["amplitude"]
+    phase = orbits.phase(n, parameters["restitution"], lam)
+    period = 2 * np.pi * n
+    time = np.linspace(0.0, parameters["periods"] * period, parameters["samples"])
+    height, velocity = orbits.path(n, lam, phase, time)
+    return describe(
+        xr.Dataset(
+            {
+                "time": ("sample", time),
+                "ball": ("sample", height),
+                "ball_velocity": ("sample", velocity),
+                "table": ("sample", lam * np.sin(time + phase)),
+                "phase": ((), float(phase)),
+            }
         )
     )

@@ -1,4 +1,4 @@
-"""Time histories of 1-T orbits (Figs. 2, 7 and 12)."""
+"""Time histories of orbits of the spring-damper model (Figs. 7 and 12)."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -11,32 +11,6 @@ from bouncing_ball.orbits import restitution as restitution_orbits
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.limits import orbit_at, require_orbit
 from bouncing_ball.studies.parameters import contact
-
-
-def restitution_history(parameters: Mapping[str, Any]) -> xr.Dataset:
-    """Ball and table over ``periods`` of the orbit, restitution model (Fig. 2).
-
-    Raises
-    ------
-    NoOrbitError
-        If Λ lies below the saddle-node.
-    """
-    n, lam = parameters["n"], parameters["amplitude"]
-    phase = restitution_orbits.phase(n, parameters["restitution"], lam)
-    period = 2 * np.pi * n
-    time = np.linspace(0.0, parameters["periods"] * period, parameters["samples"])
-    height, velocity = restitution_orbits.path(n, lam, phase, time)
-    return describe(
-        xr.Dataset(
-            {
-                "time": ("sample", time),
-                "ball": ("sample", height),
-                "ball_velocity": ("sample", velocity),
-                "table": ("sample", lam * np.sin(time + phase)),
-                "phase": ((), float(phase)),
-            }
-        )
-    )
 
 
 def _cycle(orbit: ContactOrbit, samples: int) -> tuple[np.ndarray, ...]:

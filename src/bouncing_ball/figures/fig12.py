@@ -1,0 +1,47 @@
+"""Figure 12: time histories of both models for several ϖ."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from bouncing_ball.figures.style import COLOURS, RESTITUTION, TABLE, canvas, number
+
+
+def draw(data: xr.Dataset) -> Figure:
+    """Height against the phase of the table, which is the same for all curves."""
+    figure, axes = canvas(5.0, 3.2)
+    cycle = 2 * np.pi * data.attrs["n"]
+    turns = np.linspace(-0.1, data.attrs["n"] + 0.35, 400)
+    axes.plot(
+        turns, data.attrs["amplitude"] * np.sin(2 * np.pi * turns), color=TABLE, label="table"
+    )
+    looks = ((0, (1, 1)), (0, (3, 1, 1, 1)), (0, (5, 1.5)), (0, (8, 1.5)), "-", "-")
+    # From the softest contact to the stiffest, the lightest colour first.
+    colours = COLOURS[:0:-1]
+    for k, ratio in enumerate(data.frequency_ratio.values):
+        curve = data.sel(frequency_ratio=ratio)
+        phase, ball = curve.table_phase.values, curve.ball.values
+        # The orbit repeats: the curve is drawn again one cycle later.
+        shifted = np.concatenate([phase, phase + cycle]) / (2 * np.pi)
+        axes.plot(
+            shifted, np.concatenate([ball, ball]), color=colours[k % len(colours)],
+            linestyle=looks[k % len(looks)], label=rf"$\varpi={number(ratio)}$",
+        )
+    start = (data.time.values + float(data.restitution_phase)) / (2 * np.pi)
+    ball = data.restitution_ball.values
+    shifted = np.concatenate([start, start + cycle / (2 * np.pi)])
+    axes.plot(
+        shifted, np.concatenate([ball, ball]), color=RESTITUTION, label="restitution",
+        linewidth=1.0,
+    )
+    axes.set(
+        xlabel=r"phase of the table $(\tau+\varphi)/2\pi$", ylabel="$z$, $w$",
+        xlim=(turns[0], turns[-1]),
+    )
+    axes.set_title(
+        rf"$n={data.attrs['n']}$, $r={number(data.attrs['restitution'])}$, "
+        rf"$\Lambda={number(data.attrs['amplitude'])}$",
+        fontsize=9,
+    )
+    figure.legend(loc="outside right center")
+    return figure

@@ -1,0 +1,40 @@
+"""Figure 14: greatest height of the ball against ϖ."""
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from bouncing_ball.figures.style import CONTACT, GUIDE, RESTITUTION, canvas, logarithmic, number
+
+
+def draw(data: xr.Dataset) -> Figure:
+    """The height in both models and the threshold of the relative error."""
+    figure, axes = canvas(height=2.7)
+    limit, tolerance = float(data.restitution_max_height), float(data.tolerance[0])
+    axes.plot(data.frequency_ratio, data.max_height, color=CONTACT, label="spring-damper")
+    axes.axhline(limit, color=RESTITUTION, linewidth=1.0, label="restitution")
+    axes.axhspan(
+        (1 - tolerance) * limit, (1 + tolerance) * limit, color="#d9d9d9", linewidth=0,
+        label=rf"$\pm{100 * tolerance:g}\,\%$",
+    )
+    found = float(data.error_threshold.squeeze())
+    if found == found:  # not NaN: the threshold lies in the range
+        axes.axvline(found, **GUIDE)
+        axes.annotate(
+            rf"$\varpi_{{h,{100 * tolerance:g}\%}}={found:.1f}$", (found, 0.06),
+            xycoords=("data", "axes fraction"), xytext=(-4, 0), textcoords="offset points",
+            ha="right", fontsize=8,
+        )
+    logarithmic(axes)
+    axes.set(
+        xlabel=r"frequency ratio $\varpi$",
+        ylabel=r"greatest height $\max\,z$",
+        xlim=(float(data.frequency_ratio[0]), float(data.frequency_ratio[-1])),
+    )
+    axes.set_ylim(top=1.09 * limit)
+    axes.set_title(
+        rf"$n={data.attrs['n']}$, $r={number(data.attrs['restitution'])}$, "
+        rf"$\Lambda={number(data.attrs['amplitude'])}$",
+        fontsize=9,
+    )
+    axes.legend(loc="center right", bbox_to_anchor=(1.0, 0.45))
+    return figure

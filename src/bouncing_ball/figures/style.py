@@ -1,0 +1,108 @@
+"""One look for all figures, and files that are the same from run to run."""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+WIDTH = 3.4
+"""Width of a one-column figure in inches."""
+WIDE = 7.0
+"""Width of a two-column figure in inches."""
+
+# Okabe and Ito's colours, which colour-blind readers tell apart, in an order
+# of increasing lightness, so that neighbours differ in greyscale too.
+COLOURS = ("#000000", "#0072B2", "#D55E00", "#56B4E9", "#E69F00")
+RESTITUTION = "#000000"
+CONTACT = "#0072B2"
+TABLE = "#8c8c8c"
+GUIDE = {"color": "#8c8c8c", "linewidth": 0.7, "linestyle": (0, (1, 1.5))}
+
+SADDLE_NODE = {"marker": "o", "markersize": 4.5, "linestyle": "none"}
+PERIOD_DOUBLING = {
+    "marker": "s",
+    "markersize": 4.5,
+    "linestyle": "none",
+    "markerfacecolor": "white",
+    "markeredgewidth": 1.0,
+}
+STABLE = {"linestyle": "-", "linewidth": 1.3}
+UNSTABLE = {"linestyle": (0, (3.5, 2)), "linewidth": 1.0}
+
+_SETTINGS = {
+    "font.family": "STIXGeneral",
+    "mathtext.fontset": "stix",
+    "font.size": 9,
+    "axes.labelsize": 9,
+    "axes.linewidth": 0.6,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "xtick.labelsize": 8,
+    "ytick.labelsize": 8,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.minor.width": 0.4,
+    "ytick.minor.width": 0.4,
+    "legend.fontsize": 8,
+    "legend.frameon": False,
+    "legend.handlelength": 2.2,
+    "lines.linewidth": 1.3,
+    "savefig.dpi": 300,
+    # Fixed salt and text as paths: identifiers and fonts do not depend on the
+    # run or on the machine.
+    "svg.hashsalt": "bouncing-ball",
+    "svg.fonttype": "path",
+}
+
+
+@contextmanager
+def style() -> Iterator[None]:
+    """Matplotlib settings for drawing and saving one figure."""
+    with matplotlib.rc_context(_SETTINGS):
+        yield
+
+
+def canvas(width: float = WIDTH, height: float = 2.6, rows: int = 1, columns: int = 1, **options):
+    """A figure and its axes, laid out without overlaps."""
+    figure = Figure(figsize=(width, height), layout="constrained")
+    return figure, figure.subplots(rows, columns, **options)
+
+
+def logarithmic(axes: Axes) -> None:
+    """Logarithmic frequency-ratio axis with plain numbers at the decades."""
+    axes.set_xscale("log")
+    axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    axes.xaxis.set_minor_formatter(lambda value, _: "")
+
+
+def number(value: float) -> str:
+    """A parameter as it stands in a label.
+
+    Examples
+    --------
+    >>> number(0.85), number(10000.0), number(2.0)
+    ('0.85', '10^{4}', '2')
+    """
+    if value >= 1e4:
+        mantissa, exponent = f"{value:e}".split("e")
+        factor = "" if float(mantissa) == 1 else rf"{float(mantissa):g}\times "
+        return f"{factor}10^{{{int(exponent)}}}"
+    return f"{value:g}"
+
+
+def save(figure: Figure, path: str | Path) -> None:
+    """Write a figure as PNG or SVG, whole or not at all, the same every time."""
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_name(f".{path.stem}.part{path.suffix}")
+    # Neither a time nor a version among the metadata.
+    metadata = {"Date": None, "Creator": None} if path.suffix == ".svg" else {"Software": None}
+    try:
+        figure.savefig(temporary, metadata=metadata)
+        os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)

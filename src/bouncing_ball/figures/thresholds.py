@@ -1,0 +1,30 @@
+"""Permanent-contact threshold against ϖ, for Figs. 11 and 16."""
+
+import xarray as xr
+from matplotlib.axes import Axes
+
+from bouncing_ball.figures.style import CONTACT, GUIDE, logarithmic, number
+
+
+def draw_threshold(axes: Axes, data: xr.Dataset) -> None:
+    """Λ_SD with its minimum."""
+    low, high = float(data.frequency_ratio[0]), float(data.frequency_ratio[-1])
+    minimum = float(data.minimum_threshold)
+    axes.plot(data.frequency_ratio, data.threshold_amplitude, color=CONTACT)
+    axes.axhline(minimum, **GUIDE)
+    force = data.attrs.get("release") == "force"
+    axes.annotate(
+        "minimum" if force else r"$2\zeta\sqrt{1-\zeta^2}$", (high, minimum), xytext=(0, 3),
+        textcoords="offset points", ha="right", fontsize=8,
+    )
+    logarithmic(axes)
+    axes.set(
+        xlabel=r"frequency ratio $\varpi$",
+        ylabel=r"threshold amplitude $\Lambda_{F}$" if force else r"threshold amplitude $\Lambda_{SD}$",
+        xlim=(low, high),
+        ylim=(0, 2),
+    )
+    axes.set_title(
+        rf"$r={number(data.attrs['restitution'])}$, $\zeta={float(data.damping_ratio):.4f}$",
+        fontsize=9,
+    )

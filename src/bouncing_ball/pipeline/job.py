@@ -1,0 +1,61 @@
+"""The adapter around a job: log, one-line errors, files.
+
+Scripts of the workflow are three lines on top of this; ``snakemake`` is the
+object that Snakemake gives them.
+"""
+
+import sys
+import traceback
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from bouncing_ball.datasets.netcdf import parameter_attributes, write_dataset
+
+_REFERENCE = (
+    "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient "
+    "and spring-damper models for the bouncing ball problem, DETC2011-47870 (2011)"
+)
+
+
+@contextmanager
+def logged(snakemake: Any) -> Iterator[list[str]]:
+    """Collect lines for the job's log; on failure say in one line what failed.
+
+    The log holds the traceback, the terminal the sentence.
+    """
+    name = "/".join([snakemake.rule, *snakemake.wildcards])
+    lines: list[str] = []
+    log = Path(snakemake.log[0])
+    log.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        yield lines
+    except Exception as error:
+        log.write_text(traceback.format_exc(), encoding="utf-8")
+        kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
+        sys.exit(f"{name}: {kind}{error} (details in {log})")
+    log.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
+
+
+def make_dataset(snakemake: Any, study: Callable, *arguments: Any) -> None:
+    """Run a study on the job's parameters and write its dataset.
+
+    The parameters, all arguments included, become global attributes.
+    """
+    with logged(snakemake) as lines:
+        parameters = snakemake.params.parameters
+        dataset = study(parameters, *arguments)
+        more = {
+            key: value for key, value in snakemake.params.items() if key not in ("parameters",)
+        }
+        dataset.attrs = {
+            "title": snakemake.params.get("title", snakemake.rule),
+            "references": _REFERENCE,
+            **parameter_attributes(parameters | more),
+        }
+        write_dataset(dataset, snakemake.output.data)
+        sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())
+        lines.append(f"{snakemake.output.data}: {sizes}")
+        if "end_reason" in dataset:
+            lines += [str(reason) for reason in dataset.end_reason.values.ravel()]

@@ -1,0 +1,1 @@
+"""Tables of datasets as text: ``rows(dataset)`` gives header and rows."""

@@ -1,0 +1,30 @@
+# Check the configuration before anything runs; names shared by the rules.
+
+import sys
+from pathlib import Path
+
+import yaml
+
+from bouncing_ball.pipeline.configuration import ConfigurationError, check_configuration
+from bouncing_ball.pipeline.sources import sources
+
+schema = yaml.safe_load(Path(workflow.basedir, "config/schema.yaml").read_text(encoding="utf-8"))
+try:
+    check_configuration(config, schema)
+except ConfigurationError as error:
+    sys.exit(f"configuration: {error}")
+
+FIGURES = [f"fig{number:02d}" for number in range(1, 17)]
+SCHEMATICS = ["fig01", "fig04"]
+TABLES = ["table1", "thresholds"]
+
+
+def modules(*names):
+    """Source files that a job uses: those modules, the adapter, all they import."""
+    return sources("bouncing_ball.pipeline.job", *(f"bouncing_ball.{name}" for name in names))
+
+
+def figure_parameters(wildcards):
+    """The parameters of the figure or table whose dataset is made."""
+    section = "tables" if wildcards.figure in TABLES else "figures"
+    return config[section][wildcards.figure]

@@ -1,0 +1,22 @@
+# Stage: n-T orbits of the spring-damper model by continuation (Eqs. 18-27).
+
+
+rule continuation:
+    message:
+        "Continuation of the n-T orbits for {wildcards.figure}"
+    input:
+        source=modules("studies.continuation"),
+    output:
+        data="results/figures/{figure}.nc",
+    wildcard_constraints:
+        figure="fig08|fig09|fig15|table1",
+    params:
+        parameters=figure_parameters,
+        release=config["release"],
+        continuation=config["continuation"],
+    log:
+        "results/logs/continuation/{figure}.log",
+    benchmark:
+        "results/benchmarks/continuation/{figure}.tsv"
+    script:
+        "../scripts/continuation.py"

@@ -1,0 +1,28 @@
+# Renderings: one rule for each figure, called by its name.
+
+for name in FIGURES:
+
+    rule:
+        name:
+            name
+        message:
+            f"Drawing {name}"
+        input:
+            data=[] if name in SCHEMATICS else [f"results/figures/{name}.nc"],
+            source=modules(f"figures.{name}", "figures.style", "datasets.netcdf"),
+        output:
+            png=report(
+                f"results/figures/{name}.png",
+                caption=f"../report/{name}.rst",
+                category="Figures",
+                labels={"figure": name},
+            ),
+            svg=f"results/figures/{name}.svg",
+        params:
+            figure=name,
+        log:
+            f"results/logs/figures/{name}.log",
+        benchmark:
+            f"results/benchmarks/figures/{name}.tsv"
+        script:
+            "../scripts/figure.py"

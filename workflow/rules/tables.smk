@@ -1,0 +1,26 @@
+# Renderings: tables as CSV, Markdown and LaTeX.
+
+for name in TABLES:
+
+    rule:
+        name:
+            name
+        message:
+            f"Setting {name}"
+        input:
+            data=f"results/figures/{name}.nc",
+            source=modules(
+                f"tables.{name}", "tables.formats", "datasets.netcdf", "pipeline.files"
+            ),
+        output:
+            csv=f"results/figures/{name}.csv",
+            md=f"results/figures/{name}.md",
+            tex=f"results/figures/{name}.tex",
+        params:
+            table=name,
+        log:
+            f"results/logs/tables/{name}.log",
+        benchmark:
+            f"results/benchmarks/tables/{name}.tsv"
+        script:
+            "../scripts/table.py"

@@ -1,0 +1,12 @@
+"""n-T orbits by continuation."""
+
+from bouncing_ball.pipeline.job import make_dataset
+from bouncing_ball.studies import continuation
+
+study = {
+    "fig08": continuation.orbit_branches,
+    "fig09": continuation.orbit_branches,
+    "fig15": continuation.both_domains,
+    "table1": continuation.stability_ranges,
+}[snakemake.wildcards.figure]
+make_dataset(snakemake, study, snakemake.params.release, snakemake.params.continuation)

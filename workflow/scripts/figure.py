@@ -1,0 +1,15 @@
+"""One figure from its dataset."""
+
+from importlib import import_module
+
+from bouncing_ball.datasets.netcdf import read_dataset
+from bouncing_ball.figures.style import save, style
+from bouncing_ball.pipeline.job import logged
+
+with logged(snakemake) as lines, style():
+    draw = import_module(f"bouncing_ball.figures.{snakemake.params.figure}").draw
+    data = [read_dataset(path) for path in snakemake.input.get("data", [])]
+    figure = draw(*data)
+    for path in snakemake.output:
+        save(figure, path)
+        lines.append(path)

@@ -1,0 +1,21 @@
+"""One table as CSV, Markdown and LaTeX from its dataset."""
+
+from importlib import import_module
+
+from bouncing_ball.datasets.netcdf import read_dataset
+from bouncing_ball.pipeline.files import write_text
+from bouncing_ball.pipeline.job import logged
+from bouncing_ball.tables.formats import to_csv, to_latex, to_markdown
+
+LATEX = {"ϖ": r"$\varpi$", "n": "$n$"}
+
+with logged(snakemake) as lines:
+    rows = import_module(f"bouncing_ball.tables.{snakemake.params.table}").rows
+    header, body = rows(read_dataset(snakemake.input.data))
+    write_text(snakemake.output.csv, to_csv(header, body))
+    write_text(snakemake.output.md, to_markdown(header, body))
+    latex = [[cell.replace("%", r"\%") for cell in line] for line in (header, *body)]
+    write_text(
+        snakemake.output.tex, to_latex([LATEX.get(cell, cell) for cell in latex[0]], latex[1:])
+    )
+    lines += snakemake.output

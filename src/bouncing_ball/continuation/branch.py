@@ -167,9 +167,7 @@ def continue_branch(
         points.append(y)
         tangents.append(direction)
         step = control.after_success(step, found.iterations, angle)
-    return Branch(
-        np.array(points), np.array(tangents), tuple(special), "starting point", reason
-    )
+    return Branch(np.array(points), np.array(tangents), tuple(special), "starting point", reason)
 
 
 def continue_both_ways(problem: Problem, start: np.ndarray, **options) -> Branch:

@@ -41,10 +41,14 @@ VARIABLES: dict[str, Variable] = {
     "phase": Variable("phase of the table when the contact starts", "φ", "rad", "Eqs. 6, 21"),
     "release_phase": Variable("phase of the table when the contact ends", "φ + τ_b", "rad"),
     "contact_duration": Variable("duration of the contact", "τ_b", equation="Eq. 23"),
-    "impact_velocity": Variable("velocity of the ball as contact starts", "z′_i", equation="Eq. 22"),
+    "impact_velocity": Variable(
+        "velocity of the ball as contact starts", "z′_i", equation="Eq. 22"
+    ),
     "bounce_velocity": Variable("bouncing-off velocity of the ball", "z′_b", equation="Eq. 27"),
     "apparent_restitution": Variable("apparent restitution coefficient", "r_a", equation="Eq. 17"),
-    "max_height": Variable("greatest height of the ball over the cycle", "max z", equation="Eq. 37"),
+    "max_height": Variable(
+        "greatest height of the ball over the cycle", "max z", equation="Eq. 37"
+    ),
     "stable": Variable("whether both Floquet multipliers are inside the unit circle", ""),
     "multiplier_real": Variable("real part of the Floquet multiplier", "Re μ"),
     "multiplier_imag": Variable("imaginary part of the Floquet multiplier", "Im μ"),
@@ -94,7 +98,9 @@ VARIABLES: dict[str, Variable] = {
         "threshold of permanent contact, restitution model", "Λ_CR", equation="Eq. 9"
     ),
     # errors
-    "relative_error": Variable("relative error of the restitution model", "", equation="Eqs. 37-38"),
+    "relative_error": Variable(
+        "relative error of the restitution model", "", equation="Eqs. 37-38"
+    ),
     "error_threshold": Variable(
         "frequency ratio above which the relative error stays below the tolerance",
         "ϖ_1%",

@@ -1,6 +1,7 @@
 """Branches with stability and bifurcations, drawn alike in Figs. 3, 8, 9, 15."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,7 +15,7 @@ def _runs(stable: np.ndarray) -> list[tuple[int, int, bool]]:
     edges = [0, *(np.nonzero(np.diff(stable.astype(int)))[0] + 1), len(stable)]
     return [
         (start, min(stop + 1, len(stable)), bool(stable[start]))
-        for start, stop in zip(edges[:-1], edges[1:], strict=True)
+        for start, stop in pairwise(edges)
     ]
 
 

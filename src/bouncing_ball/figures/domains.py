@@ -54,7 +54,5 @@ def draw_domains(data: xr.Dataset) -> Figure:
         columnspacing=1.2,
         handletextpad=0.5,
     )
-    figure.suptitle(
-        rf"$n={data.attrs['n']}$, $r={number(data.attrs['restitution'])}$", fontsize=9
-    )
+    figure.suptitle(rf"$n={data.attrs['n']}$, $r={number(data.attrs['restitution'])}$", fontsize=9)
     return figure

@@ -30,7 +30,12 @@ def draw(data: xr.Dataset) -> Figure:
             RESTITUTION,
         )
         axes.annotate(
-            f"$n={n}$", node, xytext=(-4, 0), textcoords="offset points", ha="right", va="center",
+            f"$n={n}$",
+            node,
+            xytext=(-4, 0),
+            textcoords="offset points",
+            ha="right",
+            va="center",
             fontsize=8,
         )
     axes.set(

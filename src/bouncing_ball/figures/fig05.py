@@ -17,7 +17,11 @@ def draw(data: xr.Dataset) -> Figure:
         axes.annotate(
             rf"$r={number(r)}$, $\Lambda={number(lam)}$",
             (float(data.frequency_ratio[-1]), r),
-            xytext=(0, -3), textcoords="offset points", ha="right", va="top", fontsize=8,
+            xytext=(0, -3),
+            textcoords="offset points",
+            ha="right",
+            va="top",
+            fontsize=8,
             color=colour,
         )
     logarithmic(axes)

@@ -15,7 +15,9 @@ def draw(data: xr.Dataset) -> Figure:
     axes.axhline(limit, **GUIDE)
     axes.annotate(
         rf"${round(limit / np.pi)}\pi$" if limit > 1.5 * np.pi else r"$\pi$",
-        (float(data.frequency_ratio[0]), limit), xytext=(4, 3), textcoords="offset points",
+        (float(data.frequency_ratio[0]), limit),
+        xytext=(4, 3),
+        textcoords="offset points",
         fontsize=8,
     )
     for k, case in enumerate(data.case.values):
@@ -30,7 +32,7 @@ def draw(data: xr.Dataset) -> Figure:
     logarithmic(axes)
     axes.set(
         xlabel=r"frequency ratio $\varpi$",
-        ylabel="bouncing-off velocity $z'_b$",
+        ylabel=r"bouncing-off velocity $z_b^{\prime}$",
         xlim=(float(data.frequency_ratio[0]), float(data.frequency_ratio[-1])),
     )
     axes.legend(

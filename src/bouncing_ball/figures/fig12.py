@@ -24,18 +24,25 @@ def draw(data: xr.Dataset) -> Figure:
         # The orbit repeats: the curve is drawn again one cycle later.
         shifted = np.concatenate([phase, phase + cycle]) / (2 * np.pi)
         axes.plot(
-            shifted, np.concatenate([ball, ball]), color=colours[k % len(colours)],
-            linestyle=looks[k % len(looks)], label=rf"$\varpi={number(ratio)}$",
+            shifted,
+            np.concatenate([ball, ball]),
+            color=colours[k % len(colours)],
+            linestyle=looks[k % len(looks)],
+            label=rf"$\varpi={number(ratio)}$",
         )
     start = (data.time.values + float(data.restitution_phase)) / (2 * np.pi)
     ball = data.restitution_ball.values
     shifted = np.concatenate([start, start + cycle / (2 * np.pi)])
     axes.plot(
-        shifted, np.concatenate([ball, ball]), color=RESTITUTION, label="restitution",
+        shifted,
+        np.concatenate([ball, ball]),
+        color=RESTITUTION,
+        label="restitution",
         linewidth=1.0,
     )
     axes.set(
-        xlabel=r"phase of the table $(\tau+\varphi)/2\pi$", ylabel="$z$, $w$",
+        xlabel=r"phase of the table $(\tau+\varphi)/2\pi$",
+        ylabel="$z$, $w$",
         xlim=(turns[0], turns[-1]),
     )
     axes.set_title(

@@ -20,15 +20,30 @@ def draw(data: xr.Dataset) -> Figure:
         curve = data.sel(case=case)
         colour = COLOURS[1 + k % (len(COLOURS) - 1)]
         for axes, phase, velocity, limit, symbol in (
-            (above, curve.release_phase, curve.bounce_velocity,
-             data.restitution_bounce_velocity, r"end of contact $(\varphi+\tau_b,\,z'_b)$"),
-            (below, curve.phase, curve.impact_velocity,
-             data.restitution_impact_velocity, r"start of contact $(\varphi,\,z'_i)$"),
+            (
+                above,
+                curve.release_phase,
+                curve.bounce_velocity,
+                data.restitution_bounce_velocity,
+                r"end of contact $(\varphi+\tau_b,\,z_b^{\prime})$",
+            ),
+            (
+                below,
+                curve.phase,
+                curve.impact_velocity,
+                data.restitution_impact_velocity,
+                r"start of contact $(\varphi,\,z_i^{\prime})$",
+            ),
         ):
             axes.plot(phase / np.pi, velocity, color=colour, label=symbol if k == 0 else None)
             axes.plot(
-                float(curve.restitution_phase) / np.pi, float(limit), "*", color=RESTITUTION,
-                markersize=9, zorder=5, linestyle="none",
+                float(curve.restitution_phase) / np.pi,
+                float(limit),
+                "*",
+                color=RESTITUTION,
+                markersize=9,
+                zorder=5,
+                linestyle="none",
                 label="restitution model" if k == 0 else None,
             )
             for value in wanted:
@@ -37,8 +52,12 @@ def draw(data: xr.Dataset) -> Figure:
                 axes.plot(*point, "o", color=colour, markersize=3)
                 if value <= 10.0:
                     axes.annotate(
-                        rf"$\varpi={number(value)}$", point, xytext=(5, -1),
-                        textcoords="offset points", fontsize=7, va="center",
+                        rf"$\varpi={number(value)}$",
+                        point,
+                        xytext=(5, -1),
+                        textcoords="offset points",
+                        fontsize=7,
+                        va="center",
                     )
     above.set_ylabel("velocity after contact")
     below.set_ylabel("velocity before contact")

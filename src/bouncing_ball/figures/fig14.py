@@ -13,16 +13,23 @@ def draw(data: xr.Dataset) -> Figure:
     axes.plot(data.frequency_ratio, data.max_height, color=CONTACT, label="spring-damper")
     axes.axhline(limit, color=RESTITUTION, linewidth=1.0, label="restitution")
     axes.axhspan(
-        (1 - tolerance) * limit, (1 + tolerance) * limit, color="#d9d9d9", linewidth=0,
+        (1 - tolerance) * limit,
+        (1 + tolerance) * limit,
+        color="#d9d9d9",
+        linewidth=0,
         label=rf"$\pm{100 * tolerance:g}\,\%$",
     )
     found = float(data.error_threshold.squeeze())
     if found == found:  # not NaN: the threshold lies in the range
         axes.axvline(found, **GUIDE)
         axes.annotate(
-            rf"$\varpi_{{h,{100 * tolerance:g}\%}}={found:.1f}$", (found, 0.06),
-            xycoords=("data", "axes fraction"), xytext=(-4, 0), textcoords="offset points",
-            ha="right", fontsize=8,
+            rf"$\varpi_{{h,{100 * tolerance:g}\%}}={found:.1f}$",
+            (found, 0.06),
+            xycoords=("data", "axes fraction"),
+            xytext=(-4, 0),
+            textcoords="offset points",
+            ha="right",
+            fontsize=8,
         )
     logarithmic(axes)
     axes.set(

@@ -19,14 +19,19 @@ def draw(data: xr.Dataset) -> Figure:
     """Phases of both models against Λ."""
     figure, axes = canvas(4.6, 3.4)
     draw_branch(
-        axes, data.restitution_amplitude, data.restitution_phase / np.pi,
-        data.restitution_stable, RESTITUTION,
+        axes,
+        data.restitution_amplitude,
+        data.restitution_phase / np.pi,
+        data.restitution_stable,
+        RESTITUTION,
     )
     draw_saddle_nodes(
         axes, float(data.saddle_node_amplitude), float(data.saddle_node_phase) / np.pi, RESTITUTION
     )
     draw_period_doublings(
-        axes, float(data.period_doubling_amplitude), float(data.period_doubling_phase) / np.pi,
+        axes,
+        float(data.period_doubling_amplitude),
+        float(data.period_doubling_phase) / np.pi,
         RESTITUTION,
     )
     curve = data.squeeze("frequency_ratio")
@@ -52,7 +57,10 @@ def draw(data: xr.Dataset) -> Figure:
         fontsize=9,
     )
     figure.legend(
-        handles=[*models, *legend_handles("#5f5f5f")], loc="outside lower center", ncols=4,
-        columnspacing=1.0, handletextpad=0.5,
+        handles=[*models, *legend_handles("#5f5f5f")],
+        loc="outside lower center",
+        ncols=3,
+        columnspacing=1.0,
+        handletextpad=0.5,
     )
     return figure

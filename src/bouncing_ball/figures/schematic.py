@@ -23,8 +23,13 @@ def table(axes: Axes, x: float, y: float, width: float, height: float) -> None:
     """The table, hatched, its upper side at y."""
     axes.add_patch(
         Rectangle(
-            (x, y - height), width, height, facecolor="white", edgecolor="black",
-            hatch="////", linewidth=1.0,
+            (x, y - height),
+            width,
+            height,
+            facecolor="white",
+            edgecolor="black",
+            hatch="////",
+            linewidth=1.0,
         )
     )
 
@@ -32,18 +37,34 @@ def table(axes: Axes, x: float, y: float, width: float, height: float) -> None:
 def arrow(axes: Axes, x0: float, y0: float, x1: float, y1: float) -> None:
     """A thin arrow."""
     axes.annotate(
-        "", xy=(x1, y1), xytext=(x0, y0),
-        arrowprops={"arrowstyle": "-|>", "color": "black", "linewidth": 0.8, "shrinkA": 0,
-                    "shrinkB": 0, "mutation_scale": 8},
+        "",
+        xy=(x1, y1),
+        xytext=(x0, y0),
+        arrowprops={
+            "arrowstyle": "-|>",
+            "color": "black",
+            "linewidth": 0.8,
+            "shrinkA": 0,
+            "shrinkB": 0,
+            "mutation_scale": 8,
+        },
     )
 
 
 def double_arrow(axes: Axes, x: float, y0: float, y1: float) -> None:
     """A vertical double arrow, for the oscillation of the table."""
     axes.annotate(
-        "", xy=(x, y1), xytext=(x, y0),
-        arrowprops={"arrowstyle": "<|-|>", "color": "black", "linewidth": 0.8, "shrinkA": 0,
-                    "shrinkB": 0, "mutation_scale": 8},
+        "",
+        xy=(x, y1),
+        xytext=(x, y0),
+        arrowprops={
+            "arrowstyle": "<|-|>",
+            "color": "black",
+            "linewidth": 0.8,
+            "shrinkA": 0,
+            "shrinkB": 0,
+            "mutation_scale": 8,
+        },
     )
 
 

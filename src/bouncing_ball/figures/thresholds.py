@@ -14,13 +14,19 @@ def draw_threshold(axes: Axes, data: xr.Dataset) -> None:
     axes.axhline(minimum, **GUIDE)
     force = data.attrs.get("release") == "force"
     axes.annotate(
-        "minimum" if force else r"$2\zeta\sqrt{1-\zeta^2}$", (high, minimum), xytext=(0, 3),
-        textcoords="offset points", ha="right", fontsize=8,
+        "minimum" if force else r"$2\zeta\sqrt{1-\zeta^2}$",
+        (high, minimum),
+        xytext=(0, 3),
+        textcoords="offset points",
+        ha="right",
+        fontsize=8,
     )
     logarithmic(axes)
     axes.set(
         xlabel=r"frequency ratio $\varpi$",
-        ylabel=r"threshold amplitude $\Lambda_{F}$" if force else r"threshold amplitude $\Lambda_{SD}$",
+        ylabel=r"threshold amplitude $\Lambda_{F}$"
+        if force
+        else r"threshold amplitude $\Lambda_{SD}$",
         xlim=(low, high),
         ylim=(0, 2),
     )

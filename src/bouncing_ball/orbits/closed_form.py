@@ -180,9 +180,7 @@ def branch_point(excess: ArrayLike, contact: Contact, n: ArrayLike) -> BranchPoi
     planes = _cross(rows[1], rows[2]), _cross(rows[2], rows[0]), _cross(rows[0], rows[1])
     determinant = _dot(rows[0], planes[0])
     solution = _combination(planes, determinant, right)
-    change = tuple(
-        db - _dot(row, solution) for db, row in zip(d_right, d_rows, strict=True)
-    )
+    change = tuple(db - _dot(row, solution) for db, row in zip(d_right, d_rows, strict=True))
     _, d_x, d_y = _combination(planes, determinant, change)
     u, x, y = solution
     per_angle = 1 / (omega * root)

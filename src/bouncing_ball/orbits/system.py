@@ -147,10 +147,7 @@ class OrbitSystem:
         if self.release is Release.FORCE:
             release = release + 2 * self.damping_ratio * d_velocity
         velocity = (
-            d_velocity
-            + scaled(np.cos(end), d_lam)
-            - scaled(lam * np.sin(end), d_end)
-            - d_bounce
+            d_velocity + scaled(np.cos(end), d_lam) - scaled(lam * np.sin(end), d_end) - d_bounce
         )
         landing = (
             d_displacement

@@ -64,10 +64,13 @@ def branch_along_amplitude(
     control, newton = controls(settings)
     rule = Release(release)
     # Half way between the two bifurcations of the restitution orbit.
-    start = float(
-        restitution_orbits.saddle_node(n, restitution)
-        + restitution_orbits.period_doubling(n, restitution)
-    ) / 2
+    start = (
+        float(
+            restitution_orbits.saddle_node(n, restitution)
+            + restitution_orbits.period_doubling(n, restitution)
+        )
+        / 2
+    )
     stiff = max(settings["stiff_frequency_ratio"], frequency_ratio)
     towards = OrbitSystem(n, zeta, Parameter.LOG_FREQUENCY_RATIO, start, rule)
     y = solve_at(towards, towards.guess(start, stiff), newton)

@@ -66,18 +66,14 @@ def restitution_value(quantity: Quantity, n: int, r: float, amplitude: float) ->
     return float(restitution_orbits.max_height(n, amplitude, phase))
 
 
-def contact_value(
-    quantity: Quantity, n: int, contact: Contact, amplitude: float
-) -> np.ndarray:
+def contact_value(quantity: Quantity, n: int, contact: Contact, amplitude: float) -> np.ndarray:
     """The quantity in the spring-damper model, NaN where it does not exist."""
     if quantity is Quantity.PERMANENT_CONTACT:
         return permanent_contact_threshold(
             contact.frequency_ratio, contact.damping_ratio, contact.release
         )
     if quantity in (Quantity.SADDLE_NODE, Quantity.PERIOD_DOUBLING):
-        find = (
-            limits.saddle_node if quantity is Quantity.SADDLE_NODE else limits.period_doubling
-        )
+        find = limits.saddle_node if quantity is Quantity.SADDLE_NODE else limits.period_doubling
         return branch_point(find(contact, n), contact, n).amplitude
     return getattr(limits.orbit_at(contact, n, amplitude), quantity.value)
 
@@ -188,8 +184,7 @@ def height_error(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     """Greatest height along ϖ in both models, and ϖ_h for ``tolerance`` (Fig. 14)."""
     n, r, lam = parameters["n"], parameters["restitution"], parameters["amplitude"]
     dataset = error_thresholds(
-        parameters
-        | {"quantities": [Quantity.MAX_HEIGHT], "tolerances": [parameters["tolerance"]]},
+        parameters | {"quantities": [Quantity.MAX_HEIGHT], "tolerances": [parameters["tolerance"]]},
         release,
     )
     touch = Contact(dataset.frequency_ratio.values, float(damping_ratio(r)), Release(release))

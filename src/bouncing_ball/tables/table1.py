@@ -18,13 +18,20 @@ def rows(data: xr.Dataset) -> tuple[Sequence[str], list[list[str]]]:
                 at = {"frequency_ratio": ratio, "n": n, "bound": bound}
                 computed, printed = float(data.computed.sel(at)), float(data.printed.sel(at))
                 body.append(
-                    [f"{ratio:g}", f"{n}", str(bound), f"{computed:.5f}", f"{printed:.3f}",
-                     f"{computed - printed:+.5f}"]
+                    [
+                        f"{ratio:g}",
+                        f"{n}",
+                        str(bound),
+                        f"{computed:.5f}",
+                        f"{printed:.3f}",
+                        f"{computed - printed:+.5f}",
+                    ]
                 )
     for kind in data.impact_map.values:
         for n in data.n.values:
             for bound in data.bound.values:
                 value = float(data.restitution_range.sel(impact_map=kind, n=n, bound=bound))
-                body.append([f"restitution ({kind} map)", f"{n}", str(bound), f"{value:.5f}",
-                             "", ""])
+                body.append(
+                    [f"restitution ({kind} map)", f"{n}", str(bound), f"{value:.5f}", "", ""]
+                )
     return header, body

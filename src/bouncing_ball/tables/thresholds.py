@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import xarray as xr
 
+
 def rows(data: xr.Dataset) -> tuple[Sequence[str], list[list[str]]]:
     """One row for each quantity, one column for each tolerance.
 

@@ -5,7 +5,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: all setup test accept report clean lock
+.PHONY: all setup test accept report clean config-docs lock
 
 all: setup
 	$(BIN)/snakemake --cores 2
@@ -36,3 +36,6 @@ clean:
 lock:
 	uv pip compile pyproject.toml --extra test --extra lint --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate --upgrade --output-file requirements.lock
 	printf 'flit_core\nsetuptools\nwheel\n' | uv pip compile - --constraint requirements.lock --universal --python-version 3.11 --generate-hashes --no-header --no-annotate --upgrade --output-file requirements-build.lock
+
+config-docs: setup
+	$(BIN)/python -m bouncing_ball.pipeline.documentation

@@ -1,5 +1,6 @@
 # Check the configuration before anything runs; names shared by the rules.
 
+import os
 import sys
 from pathlib import Path
 
@@ -20,8 +21,12 @@ TABLES = ["table1", "thresholds"]
 
 
 def modules(*names):
-    """Source files that a job uses: those modules, the adapter, all they import."""
-    return sources("bouncing_ball.pipeline.job", *(f"bouncing_ball.{name}" for name in names))
+    """Source files that a job uses: those modules, the adapter, all they import.
+
+    Relative paths, so that a folder may be moved without running all again.
+    """
+    files = sources("bouncing_ball.pipeline.job", *(f"bouncing_ball.{name}" for name in names))
+    return [os.path.relpath(file) for file in files]
 
 
 def figure_parameters(wildcards):

@@ -176,12 +176,31 @@ def orbit_at(
     return ContactOrbit.from_branch(branch_point(excess, local, n), local, n)
 
 
-def require_orbit(orbit: ContactOrbit) -> ContactOrbit:
-    """The orbit itself, or :class:`NoOrbitError` if any entry does not exist."""
-    missing = np.isnan(orbit.duration)
-    if np.any(missing):
-        lam = np.asarray(orbit.amplitude)
+def require_orbit(contact: Contact, n: int, amplitude: float) -> ContactOrbit:
+    """The one orbit on the stable side at Λ.
+
+    Raises
+    ------
+    NoOrbitError
+        If there is none, with the reason.
+
+    Examples
+    --------
+    >>> require_orbit(Contact(10.0, 0.1), 1, 0.2)  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    ...
+    bouncing_ball.errors.NoOrbitError: no 1-T orbit at Λ = 0.2 for ϖ = 10, ...
+    """
+    orbit = orbit_at(contact, n, amplitude)
+    if np.isnan(orbit.duration):
+        point = branch_point(saddle_node(contact, n), contact, n)
+        why = (
+            f"below the saddle-node at Λ = {float(point.amplitude):.6g}"
+            if np.isfinite(point.amplitude)
+            else "the branch, which has no saddle-node, does not reach this Λ"
+        )
         raise NoOrbitError(
-            f"no {orbit.n}-T orbit for {int(np.sum(missing))} of {lam.size} parameter sets"
+            f"no {n}-T orbit at Λ = {amplitude:g} for ϖ = {float(contact.frequency_ratio):g}, "
+            f"ζ = {float(contact.damping_ratio):.4g}: {why}"
         )
     return orbit

@@ -51,11 +51,12 @@ def _looks_like_number(value: Any) -> bool:
 def _allowed(error: ValidationError) -> str:
     """What is allowed where the schema was violated, in words."""
     limit = error.validator_value
+    notes = [error.schema["description"]] if "description" in error.schema else []
     match error.validator:
         case "type":
             words = f"must be {_KINDS.get(limit, limit)}"
             if _looks_like_number(error.instance):
-                words += " (a number in powers of ten is written 1.0e+4, with point and sign)"
+                notes.insert(0, "powers of ten are written 1.0e+4, with point and sign")
         case "minimum":
             words = f"must be at least {limit:g}"
         case "maximum":
@@ -74,8 +75,7 @@ def _allowed(error: ValidationError) -> str:
             words = "must not repeat an item"
         case _:
             words = error.message
-    description = error.schema.get("description")
-    return f"{words} ({description})" if description else words
+    return f"{words} ({'; '.join(notes)})" if notes else words
 
 
 def _message(error: ValidationError) -> str:

@@ -9,7 +9,7 @@ import xarray as xr
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.orbits import restitution as restitution_orbits
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
-from bouncing_ball.orbits.limits import orbit_at, require_orbit
+from bouncing_ball.orbits.limits import require_orbit
 from bouncing_ball.studies.parameters import contact
 
 
@@ -38,7 +38,7 @@ def contact_history(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     """
     n, lam = parameters["n"], parameters["amplitude"]
     touch = contact(parameters["frequency_ratio"], parameters["restitution"], release)
-    orbit = require_orbit(orbit_at(touch, n, lam))
+    orbit = require_orbit(touch, n, lam)
     time, ball, velocity, touching = _cycle(orbit, parameters["samples"])
     return describe(
         xr.Dataset(
@@ -69,7 +69,7 @@ def both_histories(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     ratios = np.array(parameters["frequency_ratio"], dtype=float)
     columns: dict[str, list[np.ndarray]] = {"table_phase": [], "ball": [], "contact": []}
     for ratio in ratios:
-        orbit = require_orbit(orbit_at(contact(ratio, r, release), n, lam))
+        orbit = require_orbit(contact(ratio, r, release), n, lam)
         time, ball, _, touching = _cycle(orbit, parameters["samples"])
         for name, values in zip(columns, (time + orbit.phase, ball, touching), strict=True):
             columns[name].append(values)

@@ -1,0 +1,81 @@
+"""config/README.md from the schema: ``python -m bouncing_ball.pipeline.documentation``.
+
+The schema is the only place where a key is described; a test fails when the
+page is not the one that the schema gives.
+"""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+_HEAD = """# The configuration
+
+Every key of `config.yaml`, with what is allowed. This page is made from
+`schema.yaml` by `make config-docs`; change the schema, not the page.
+
+Numbers in powers of ten need a point and a sign, `1.0e+4`: YAML takes `1e4`
+for a text. To try a change without editing `config.yaml`, write only the keys
+that change into another file and add it, `snakemake --cores 2 --configfile mine.yaml`.
+
+| key | allowed | meaning | default |
+| --- | --- | --- | --- |
+"""
+
+
+def _resolved(schema: Mapping[str, Any], definitions: Mapping[str, Any]) -> dict[str, Any]:
+    """A schema with its reference filled in; its own entries win."""
+    own = {key: value for key, value in schema.items() if key != "$ref"}
+    if "$ref" in schema:
+        return _resolved(definitions[schema["$ref"].rsplit("/", 1)[1]], definitions) | own
+    return own
+
+
+def _allowed(schema: Mapping[str, Any], definitions: Mapping[str, Any]) -> str:
+    if "enum" in schema:
+        return ", ".join(f"`{value}`" for value in schema["enum"])
+    if schema["type"] == "array":
+        return f"list of {_allowed(_resolved(schema['items'], definitions), definitions)}"
+    if schema["type"] == "object":
+        return "{" + ", ".join(schema["properties"]) + "}"
+    words = "whole number" if schema["type"] == "integer" else schema["type"]
+    signs = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiveMaximum": "<"}
+    limits = [f"{sign} {schema[key]:g}" for key, sign in signs.items() if key in schema]
+    return ", ".join([words, *limits])
+
+
+def _rows(schema, definitions, default, path) -> Iterator[tuple[str, str, str, str]]:
+    schema = _resolved(schema, definitions)
+    if schema.get("type") == "object":
+        for key, part in schema["properties"].items():
+            yield from _rows(part, definitions, default[key], [*path, key])
+        return
+    shown = yaml.safe_dump(default, default_flow_style=True, width=10_000)
+    shown = shown.removesuffix("\n").removesuffix("\n...")
+    if len(shown) > 48:
+        shown = "see `config.yaml`"
+    else:
+        shown = f"`{shown}`"
+    yield ".".join(path), _allowed(schema, definitions), schema.get("description", ""), shown
+
+
+def configuration_page(schema: Mapping[str, Any], config: Mapping[str, Any]) -> str:
+    """The page as Markdown."""
+    rows = _rows(schema, schema["$defs"], config, [])
+    return _HEAD + "".join("| `{}` | {} | {} | {} |\n".format(*row) for row in rows)
+
+
+def main() -> None:
+    """Write config/README.md in the working directory."""
+    folder = Path("config")
+    schema, config = (
+        yaml.safe_load((folder / name).read_text(encoding="utf-8"))
+        for name in ("schema.yaml", "config.yaml")
+    )
+    page = configuration_page(schema, config)
+    (folder / "README.md").write_text(page, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,122 @@
+"""Copies of the tree in which the workflow is run as a user runs it."""
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+import yaml
+
+ROOT = Path(__file__).resolve().parents[2]
+# A fresh clone: neither results nor the state of earlier runs.
+IGNORED = shutil.ignore_patterns(
+    ".git", ".venv", "results", ".snakemake", "tests", "*.egg-info", "__pycache__", ".*_cache"
+)
+SNAKEMAKE = Path(sys.executable).with_name("snakemake")
+
+
+@dataclass(frozen=True)
+class Tree:
+    """A copy of the repository with shortcuts to run and to change it."""
+
+    path: Path
+
+    def run(self, *arguments: str, check: bool = True) -> subprocess.CompletedProcess:
+        """Snakemake in this tree; the package is imported from this tree."""
+        done = subprocess.run(
+            [SNAKEMAKE, *arguments],
+            cwd=self.path,
+            env=self.environment(),
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        if check and done.returncode != 0:
+            pytest.fail(f"snakemake {' '.join(arguments)} failed:\n{done.stdout}{done.stderr}")
+        return done
+
+    def environment(self) -> dict[str, str]:
+        return os.environ | {"PYTHONPATH": str(self.path / "src")}
+
+    def planned(self, *arguments: str) -> set[str]:
+        """Messages of the jobs that a run would execute, but for the last one."""
+        done = self.run("--cores", "1", "--dry-run", *arguments)
+        jobs = set(re.findall(r"^Job \d+: (.*)$", done.stdout + done.stderr, re.MULTILINE))
+        return jobs - {"All figures, tables and the paper are up to date"}
+
+    def configure(self, *keys, value) -> None:
+        """Change one value of the configuration."""
+        path = self.path / "config" / "config.yaml"
+        config = yaml.safe_load(path.read_text(encoding="utf-8"))
+        section = config
+        for key in keys[:-1]:
+            section = section[key]
+        section[keys[-1]] = value
+        path.write_text(yaml.safe_dump(config, sort_keys=False), encoding="utf-8")
+
+    def edit(self, file: str) -> None:
+        """Change a source file without changing what it does."""
+        path = self.path / "src" / "bouncing_ball" / file
+        path.write_text(path.read_text(encoding="utf-8") + "\n# edited\n", encoding="utf-8")
+
+    def contents(self, folder: str = "") -> dict[str, bytes]:
+        """All files under a folder but logs, measurements and Snakemake's own."""
+        base = self.path / folder
+        files = (path for path in sorted(base.rglob("*")) if path.is_file())
+        names = {str(path.relative_to(base)): path for path in files}
+        skipped = ("logs/", "benchmarks/", ".snakemake/")
+        return {
+            name: path.read_bytes()
+            for name, path in names.items()
+            if "__pycache__" not in name and not any(part in name for part in skipped)
+        }
+
+    def interrupt(self, sign: signal.Signals, *arguments: str) -> None:
+        """Start a run and stop it once a few results are there."""
+        running = subprocess.Popen(
+            [SNAKEMAKE, *arguments],
+            cwd=self.path,
+            env=self.environment(),
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
+        deadline = time.monotonic() + 60
+        while len(list(self.path.glob("results/figures/*"))) < 4:
+            assert running.poll() is None, "the run ended before it could be interrupted"
+            assert time.monotonic() < deadline, "no results within a minute"
+            time.sleep(0.02)
+        os.killpg(running.pid, sign)
+        running.wait(timeout=60)
+
+
+def copy_tree(source: Path, target: Path, *, with_results: bool = False) -> Tree:
+    ignored = shutil.ignore_patterns("__pycache__", ".git") if with_results else IGNORED
+    shutil.copytree(source, target, ignore=ignored, copy_function=shutil.copy2)
+    return Tree(target)
+
+
+@pytest.fixture(scope="session")
+def pristine(tmp_path_factory) -> Tree:
+    """A complete run. Tests must not change it."""
+    tree = copy_tree(ROOT, tmp_path_factory.mktemp("pristine") / "tree")
+    tree.run("--cores", "2")
+    return tree
+
+
+@pytest.fixture
+def fresh(tmp_path) -> Tree:
+    """A fresh clone, nothing run."""
+    return copy_tree(ROOT, tmp_path / "tree")
+
+
+@pytest.fixture
+def complete(pristine, tmp_path) -> Tree:
+    """A complete run that a test may change."""
+    return copy_tree(pristine.path, tmp_path / "tree", with_results=True)

@@ -1,0 +1,109 @@
+"""What a user sees: targets by name, reproducible bytes, interruptions."""
+
+import re
+import shutil
+import signal
+
+import pytest
+import yaml
+
+FIGURES = [f"fig{number:02d}" for number in range(1, 17)]
+
+
+def test_one_figure_by_its_name_makes_that_figure_only(fresh):
+    fresh.run("--cores", "2", "fig11")
+    assert set(fresh.contents("results")) == {
+        "figures/fig11.nc",
+        "figures/fig11.png",
+        "figures/fig11.svg",
+    }
+
+
+def test_a_run_makes_every_figure_and_table(pristine):
+    made = set(pristine.contents("results"))
+    pictures = {f"figures/{name}.{kind}" for name in FIGURES for kind in ("png", "svg")}
+    data = {f"figures/{name}.nc" for name in FIGURES if name not in ("fig01", "fig04")}
+    tables = {
+        f"figures/{name}.{kind}"
+        for name in ("table1", "thresholds")
+        for kind in ("nc", "csv", "md", "tex")
+    }
+    assert made == pictures | data | tables | {"paper.md"}
+
+
+def test_a_run_touches_no_tracked_file(pristine, fresh):
+    before = fresh.contents()
+    after = {k: v for k, v in pristine.contents().items() if not k.startswith("results/")}
+    assert after == before
+
+
+def test_up_to_date_means_nothing_to_do(pristine):
+    assert pristine.planned() == set()
+
+
+def test_two_runs_give_the_same_bytes(pristine, fresh):
+    fresh.run("--cores", "1")
+    first, second = pristine.contents("results"), fresh.contents("results")
+    assert first.keys() == second.keys()
+    assert [name for name in first if first[name] != second[name]] == []
+
+
+@pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_an_interrupted_run_is_resumed(pristine, fresh, sign):
+    fresh.interrupt(sign, "--cores", "2")
+    whole = pristine.contents("results")
+    early = {k: v for k, v in fresh.contents("results").items() if ".part" not in k}
+    assert 0 < len(early) < len(whole)
+    # What is there under its own name is whole, even after a kill.
+    assert [name for name, content in early.items() if content != whole[name]] == []
+    if sign is signal.SIGKILL:
+        # Snakemake could not remove its lock; it says so and names this command.
+        assert "--unlock" in fresh.run("--cores", "2", check=False).stderr
+        fresh.run("--unlock")
+    fresh.run("--cores", "2")
+    after = {k: v for k, v in fresh.contents("results").items() if ".part" not in k}
+    assert after == whole
+
+
+def test_accept_copies_the_results_over_the_record(complete):
+    shutil.rmtree(complete.path / "figures")
+    (complete.path / "figures").mkdir()
+    (complete.path / "figures" / "stale.png").write_bytes(b"from an older version")
+    complete.run("--cores", "1", "accept")
+    assert complete.contents("figures") == complete.contents("results/figures")
+    paper = (complete.path / "paper.md").read_bytes()
+    assert paper == (complete.path / "results" / "paper.md").read_bytes()
+
+
+def test_report_shows_every_figure_offline(complete):
+    complete.run("--report", "results/report.html")
+    page = (complete.path / "results" / "report.html").read_text(encoding="utf-8")
+    for name in FIGURES:
+        assert f"results/figures/{name}.png" in page
+        assert f"Figure {int(name[3:])}." in page
+    loaded = re.findall(r"<(?:script|link|img)[^>]+(?:src|href)=[\"'](\w+:[^\"']*)", page)
+    assert [url for url in loaded if not url.startswith("data:")] == []
+
+
+def test_an_orbit_that_does_not_exist_is_one_line(fresh):
+    # The restitution orbit exists there, so the configuration passes; the
+    # branch of a contact as soft as this one ends before.
+    fresh.configure("figures", "fig07", "frequency_ratio", value=0.2)
+    done = fresh.run("--cores", "1", "fig07", check=False)
+    assert done.returncode == 1
+    said = [line for line in done.stderr.splitlines() if line.startswith("time_histories/fig07:")]
+    assert len(said) == 1 and "no 1-T orbit" in said[0]
+    assert "Traceback" not in done.stderr
+    assert not (fresh.path / "results" / "figures" / "fig07.nc").exists()
+
+
+def test_configuration_page_is_the_schemas(fresh):
+    from bouncing_ball.pipeline.documentation import configuration_page
+
+    folder = fresh.path / "config"
+    schema, config = (
+        yaml.safe_load((folder / name).read_text(encoding="utf-8"))
+        for name in ("schema.yaml", "config.yaml")
+    )
+    page = (folder / "README.md").read_text(encoding="utf-8")
+    assert page == configuration_page(schema, config), "run `make config-docs`"

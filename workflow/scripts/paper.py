@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 from jinja2 import Environment, StrictUndefined
 
 from bouncing_ball.datasets.netcdf import read_dataset
@@ -15,5 +16,21 @@ with logged(snakemake) as lines:
     tables = {
         Path(path).stem: Path(path).read_text(encoding="utf-8") for path in snakemake.input.tables
     }
-    write_text(snakemake.output.paper, template.render(data=data, tables=tables) + "\n")
+
+    def at(dataset, variable, digits, **where):
+        """One value of a dataset, nearest to the coordinates given, as text."""
+        labels = {k: v for k, v in where.items() if isinstance(v, str)}
+        numbers = {k: v for k, v in where.items() if k not in labels}
+        chosen = data[dataset][variable].sel(labels).sel(numbers, method="nearest")
+        return f"{chosen.item():.{digits}f}"
+
+    def largest(difference):
+        """The largest absolute entry, as text."""
+        return f"{np.abs(difference).max().item():.4f}"
+
+    def percent(share):
+        return f"{100 * share:g} %"
+
+    text = template.render(data=data, tables=tables, at=at, largest=largest, percent=percent)
+    write_text(snakemake.output.paper, text + "\n")
     lines.append(snakemake.output.paper)

@@ -24,6 +24,11 @@ angle at which the free contact would be released: π for the displacement
 release, π - 2 arcsin ζ for the force release. The one coefficient that is
 sensitive, that of u in the release condition, is then proportional to sin ε.
 
+Differentiating the three equations along ε gives dΛ/dε, whose zero is the
+saddle-node, and linearising one cycle about the orbit the trace of the
+monodromy; its determinant is ``exp(-2ζϖD)``, as the contact contracts
+(τ, δ, δ′) volume at the rate 2ζϖ and the flight preserves it.
+
 All quantities are dimensionless; all functions broadcast.
 """
 
@@ -34,13 +39,19 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.contact import Contact, Release, responses
+from bouncing_ball.models.oscillator import CANCELLATION
+
+
+# Points computed at once: as many as keep the intermediate arrays in the cache.
+_BLOCK = 2048
 
 
 class BranchPoint(NamedTuple):
-    """A point of the branch and its derivatives along ε.
+    """A point of the branch, its derivatives along ε, and its stability.
 
     ``x``, ``y``, ``u`` are Λ cos φ, Λ sin φ and the relative impact velocity;
-    ``duration`` is D; ``d_x``, ``d_y`` the derivatives dX/dε and dY/dε.
+    ``duration`` is D; ``d_x``, ``d_y`` the derivatives dX/dε and dY/dε;
+    ``trace`` and ``determinant`` those of the monodromy.
     """
 
     duration: np.ndarray
@@ -49,11 +60,13 @@ class BranchPoint(NamedTuple):
     u: np.ndarray
     d_x: np.ndarray
     d_y: np.ndarray
+    trace: np.ndarray
+    determinant: np.ndarray
 
     @property
     def amplitude(self) -> np.ndarray:
         """Λ."""
-        return np.hypot(self.x, self.y)
+        return np.sqrt(self.x * self.x + self.y * self.y)
 
     @property
     def phase(self) -> np.ndarray:
@@ -66,19 +79,14 @@ class BranchPoint(NamedTuple):
         return self.x * self.d_x + self.y * self.d_y
 
 
-def _cross(p, q):
-    return (p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0])
+class _Responses(NamedTuple):
+    """g, g′, G, Q = Re h and P = Im h at the end of contact."""
 
-
-def _dot(p, q):
-    return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
-
-
-def _combination(planes, determinant, right):
-    return tuple(
-        sum(b * plane[i] for b, plane in zip(right, planes, strict=True)) / determinant
-        for i in range(3)
-    )
+    g: np.ndarray
+    g_rate: np.ndarray
+    gravity: np.ndarray
+    q: np.ndarray
+    p: np.ndarray
 
 
 def free_release_angle(contact: Contact) -> np.ndarray:
@@ -93,6 +101,53 @@ def free_release_angle(contact: Contact) -> np.ndarray:
     if contact.release is Release.FORCE:
         return np.pi - 2 * np.arcsin(zeta)
     return np.full_like(zeta, np.pi)
+
+
+def _responses(duration, sin_angle, cos_angle, sin_d, cos_d, decay, omega, zeta, root):
+    """Responses at time D, from the sine and cosine of ϖ_d D and of D.
+
+    The closed quotients of :mod:`bouncing_ball.models.oscillator` in real
+    arithmetic; where they lose digits (short or resonant contacts) the values
+    are taken from there.
+    """
+    stiffness, loss = omega * omega, 2 * zeta * omega
+    g = decay * sin_angle / (omega * root)
+    g_rate = decay * (cos_angle - zeta / root * sin_angle)
+    rest = g_rate + loss * g
+    detuning = stiffness - 1
+    gamma = detuning * detuning + loss * loss
+    square = duration * duration
+    delicate = np.minimum(gamma * square, stiffness * stiffness * square) * square
+    delicate = delicate < CANCELLATION * CANCELLATION
+    troubled = np.any(delicate)
+    if troubled:
+        gamma = np.where(delicate, 1.0, gamma)
+    gravity = (1 - rest) / stiffness
+    # h = (e^{iD} - g′ - (i + 2ζϖ) g)/(ϖ² - 1 + 2iζϖ)
+    real, imaginary = cos_d - rest, sin_d - g
+    q = (real * detuning + imaginary * loss) / gamma
+    p = (imaginary * detuning - real * loss) / gamma
+    if troubled:
+        arrays = np.broadcast_arrays(duration, omega, zeta, delicate)
+        exact = responses(*(x[delicate] for x in arrays[:3]))
+        gravity, q, p = (np.array(np.broadcast_to(x, delicate.shape)) for x in (gravity, q, p))
+        gravity[delicate] = exact.gravity.value
+        q[delicate], p[delicate] = exact.table.value.real, exact.table.value.imag
+    return _Responses(g, g_rate, gravity, q, p)
+
+
+def _solve(rows, right):
+    """Solution of 3×3 systems by Cramer's rule, and a solver for more right sides."""
+    (a1, a2, a3), (b1, b2, b3), (c1, c2, c3) = rows
+    bc = b2 * c3 - b3 * c2, b3 * c1 - b1 * c3, b1 * c2 - b2 * c1
+    ca = c2 * a3 - c3 * a2, c3 * a1 - c1 * a3, c1 * a2 - c2 * a1
+    ab = a2 * b3 - a3 * b2, a3 * b1 - a1 * b3, a1 * b2 - a2 * b1
+    inverse = 1 / (a1 * bc[0] + a2 * bc[1] + a3 * bc[2])
+
+    def solve(s, t, v):
+        return tuple((s * bc[k] + t * ca[k] + v * ab[k]) * inverse for k in range(3))
+
+    return solve(*right), solve
 
 
 def branch_point(excess: ArrayLike, contact: Contact, n: ArrayLike) -> BranchPoint:
@@ -121,67 +176,113 @@ def branch_point(excess: ArrayLike, contact: Contact, n: ArrayLike) -> BranchPoi
     >>> bool(abs(point.y - 1) < 1e-5), bool(abs(point.u + np.pi) < 1e-5)
     (True, True)
     """
-    zeta = np.asarray(contact.damping_ratio, dtype=float)
-    if not np.all(zeta < 1):
+    if not np.all(np.asarray(contact.damping_ratio) < 1):
         raise ModelError(f"damping ratio ζ = {contact.damping_ratio} is not below 1")
-    omega = np.asarray(contact.frequency_ratio, dtype=float)
-    eps = np.asarray(excess, dtype=float)
+    arguments = [
+        np.asarray(x, dtype=float)
+        for x in (excess, contact.frequency_ratio, contact.damping_ratio, n)
+    ]
+    shape = np.broadcast_shapes(*(x.shape for x in arguments))
+    size = int(np.prod(shape))
+    if size <= _BLOCK:
+        return _branch_point(*arguments, contact.release)
+    # Scalars stay scalars; the rest is run through in blocks.
+    flat = [x if x.ndim == 0 else np.broadcast_to(x, shape).ravel() for x in arguments]
+    out = np.empty((len(BranchPoint._fields), size))
+    for start in range(0, size, _BLOCK):
+        part = slice(start, start + _BLOCK)
+        block = (x if x.ndim == 0 else x[part] for x in flat)
+        for row, values in zip(out, _branch_point(*block, contact.release), strict=True):
+            row[part] = values
+    return BranchPoint(*(row.reshape(shape) for row in out))
+
+
+def _branch_point(eps, omega, zeta, n, rule: Release) -> BranchPoint:
+    """The same for one block of arrays."""
+    force = rule is Release.FORCE
     root = np.sqrt((1 - zeta) * (1 + zeta))
-    duration = (free_release_angle(contact) + eps) / (omega * root)
-    flight = 2 * np.pi * np.asarray(n) - duration
-    a, q = zeta * omega, omega * omega
-
-    g, G, h = responses(duration, omega, zeta)
-    accelerations = -2 * a * g.rate - q * g.value, g.rate, 1j * h.rate + g.rate
-    decay = np.exp(-a * duration) / root
-    push = -decay * np.sin(eps)
-    d_push = decay * (a * np.sin(eps) - omega * root * np.cos(eps))
-    if contact.release is Release.FORCE:
-
-        def released(value, rate):
-            return 2 * zeta * rate + omega * value
-
-        lift = 1.0
-    else:
-
-        def released(value, rate):
-            return omega * value
-
-        lift = 0.0  # the ball leaves from the table's level exactly
-    table = released(h.value, h.rate)
-    d_table = released(h.rate, accelerations[2])
-    weight = released(G.value, G.rate)
-    d_weight = released(G.rate, accelerations[1])
-    sin_d, cos_d = np.sin(duration), np.cos(duration)
-    versine = -2 * np.sin(duration / 2) ** 2  # cos D - 1
-
-    # Unknowns (u, X, Y). Rows: release, velocity, landing.
-    rows = (
-        (push, table.imag, table.real),
-        (g.rate - 1, h.rate.imag + versine, h.rate.real - sin_d),
-        (
-            flight + lift * g.value,
-            flight + sin_d + lift * h.value.imag,
-            versine + lift * h.value.real,
-        ),
-    )
-    right = (weight, g.value + flight, lift * G.value - flight * flight / 2)
-    d_rows = (
-        (d_push, d_table.imag, d_table.real),
-        (accelerations[0], accelerations[2].imag - sin_d, accelerations[2].real - cos_d),
-        (
-            lift * g.rate - 1,
-            cos_d - 1 + lift * h.rate.imag,
-            -sin_d + lift * h.rate.real,
-        ),
-    )
-    d_right = (d_weight, g.rate - 1, lift * G.rate + flight)
-
-    planes = _cross(rows[1], rows[2]), _cross(rows[2], rows[0]), _cross(rows[0], rows[1])
-    determinant = _dot(rows[0], planes[0])
-    solution = _combination(planes, determinant, right)
-    change = tuple(db - _dot(row, solution) for db, row in zip(d_right, d_rows, strict=True))
-    _, d_x, d_y = _combination(planes, determinant, change)
-    u, x, y = solution
     per_angle = 1 / (omega * root)
-    return BranchPoint(duration, x, y, u, d_x * per_angle, d_y * per_angle)
+    angle = np.pi - 2 * np.arcsin(zeta) if force else np.pi
+    duration = (angle + eps) * per_angle
+    flight = 2 * np.pi * n - duration
+    loss, stiffness = 2 * zeta * omega, omega * omega
+
+    sin_eps, cos_eps = np.sin(eps), np.cos(eps)
+    if force:
+        # θ₀ = π - 2α with sin α = ζ: the sine and cosine of 2α are exact.
+        sin_2a, cos_2a = 2 * zeta * root, 1 - 2 * zeta * zeta
+        sin_angle = sin_2a * cos_eps - cos_2a * sin_eps
+        cos_angle = -cos_2a * cos_eps - sin_2a * sin_eps
+    else:
+        sin_angle, cos_angle = -sin_eps, -cos_eps
+    sin_half, cos_half = np.sin(duration / 2), np.cos(duration / 2)
+    sin_d, versine = 2 * sin_half * cos_half, -2 * sin_half * sin_half
+    cos_d = 1 + versine
+    decay = np.exp(-zeta * omega * duration)
+    g, dg, gravity, q, p = _responses(
+        duration, sin_angle, cos_angle, sin_d, cos_d, decay, omega, zeta, root
+    )
+    # Accelerations from the oscillator's equation; h′ = i h + g, so that P′ = Q
+    # and Q′ = g - P.
+    ddg = -loss * dg - stiffness * g
+    dq, ddq, ddp = g - p, dg - q, g - p
+    push = -decay / root * sin_eps
+    d_push = decay / root * (zeta * omega * sin_eps - omega * root * cos_eps)
+    if force:
+        # 2ζ δ′ + ϖ δ = 0, and δ_b enters the landing.
+        release = (push, omega * p + 2 * zeta * q, omega * q + 2 * zeta * dq)
+        d_release = (d_push, omega * q + 2 * zeta * ddp, omega * dq + 2 * zeta * ddq)
+        weight, d_weight = omega * gravity + 2 * zeta * g, omega * g + 2 * zeta * dg
+        landing = (flight + g, flight + sin_d + p, versine + q)
+        d_landing = (dg - 1, versine + q, dq - sin_d)
+        fall, d_fall = gravity - flight * flight / 2, g + flight
+    else:
+        # ϖ δ = 0, and the ball leaves from the table's level exactly.
+        release, d_release = (push, omega * p, omega * q), (d_push, omega * q, omega * dq)
+        weight, d_weight = omega * gravity, omega * g
+        landing = (flight, flight + sin_d, versine)
+        d_landing = (-1.0, versine, -sin_d)
+        fall, d_fall = -flight * flight / 2, flight
+    velocity = (dg - 1, q + versine, dq - sin_d)
+    d_velocity = (ddg, ddp - sin_d, ddq - cos_d)
+
+    (u, x, y), solve = _solve((release, velocity, landing), (weight, g + flight, fall))
+    _, d_x, d_y = solve(
+        *(
+            db - (row[0] * u + row[1] * x + row[2] * y)
+            for db, row in (
+                (d_weight, d_release),
+                (dg - 1, d_velocity),
+                (d_fall, d_landing),
+            )
+        )
+    )
+
+    # Linearised cycle: contact, release, flight, landing; columns (τ, u).
+    bounce = u * dg + x * q + y * dq - g  # δ′ at release
+    leaving = x * cos_d - y * sin_d  # Λ cos and Λ sin of the phase at release
+    lifted = y * cos_d + x * sin_d
+    by_phase, by_phase_rate = x * q - y * p, x * dq - y * q
+    if force:
+        acceleration = lifted - 1
+        slope = omega * bounce + 2 * zeta * acceleration
+        stay_tau = -(omega * by_phase + 2 * zeta * by_phase_rate) / slope
+        stay_u = -push / slope
+    else:
+        acceleration = lifted - 1 - loss * bounce
+        stay_tau, stay_u = -by_phase / bounce, -g / bounce
+    columns = []
+    for stay, direct, displaced, moved in (
+        (stay_tau, by_phase_rate, by_phase, 1.0),
+        (stay_u, dg, g, 0.0),
+    ):
+        release_phase = moved + stay
+        risen = displaced + bounce * stay + leaving * release_phase
+        thrown = direct + acceleration * stay - lifted * release_phase
+        hang = -(risen + flight * thrown - x * release_phase) / u
+        landing_phase = release_phase + hang
+        columns.append((landing_phase, thrown - hang + y * landing_phase))
+    trace = columns[0][0] + columns[1][1]
+    return BranchPoint(
+        duration, x, y, u, d_x * per_angle, d_y * per_angle, trace, decay * decay + 0 * trace
+    )

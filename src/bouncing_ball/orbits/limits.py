@@ -20,8 +20,7 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.contact import Contact
 from bouncing_ball.orbits.closed_form import branch_point, free_release_angle
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
-from bouncing_ball.orbits.monodromy import monodromy
-from bouncing_ball.orbits.stability import period_doubling_function, trace_and_determinant
+from bouncing_ball.orbits.stability import period_doubling_function
 
 # Points of the scan on each side of ε = 0, spaced geometrically from a small
 # part of 1/ϖ, the scale of the fold, to the ends of the admissible range.
@@ -122,9 +121,8 @@ def period_doubling(contact: Contact, n: ArrayLike) -> np.ndarray:
     release = contact.release
 
     def flip(excess, omega, zeta, n):
-        local = Contact(omega, zeta, release)
-        orbit = ContactOrbit.from_branch(branch_point(excess, local, n), local, n)
-        return period_doubling_function(*trace_and_determinant(monodromy(orbit)))
+        point = branch_point(excess, Contact(omega, zeta, release), n)
+        return period_doubling_function(point.trace, point.determinant)
 
     fold = saddle_node(contact, n)
     low, _ = _range(contact, n)

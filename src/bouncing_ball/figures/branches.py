@@ -14,8 +14,7 @@ def _runs(stable: np.ndarray) -> list[tuple[int, int, bool]]:
     """Slices of constant stability, each reaching to the next one's first point."""
     edges = [0, *(np.nonzero(np.diff(stable.astype(int)))[0] + 1), len(stable)]
     return [
-        (start, min(stop + 1, len(stable)), bool(stable[start]))
-        for start, stop in pairwise(edges)
+        (start, min(stop + 1, len(stable)), bool(stable[start])) for start, stop in pairwise(edges)
     ]
 
 

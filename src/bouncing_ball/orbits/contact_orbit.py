@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bouncing_ball.models.contact import Contact, contact_flow
+from bouncing_ball.models.contact import Contact, Release, contact_flow
 from bouncing_ball.orbits.closed_form import BranchPoint
 
 
@@ -66,6 +66,14 @@ class ContactOrbit:
     def apparent_restitution(self) -> np.ndarray:
         """r_a = -(z′_b - w′_b)/(z′_i - w′_i) (Eq. 17)."""
         return -self.relative_bounce_velocity / self.relative_impact_velocity
+
+    @property
+    def release_displacement(self) -> np.ndarray:
+        """δ_b at release: 0, or where the contact force vanishes -2ζδ′_b/ϖ."""
+        if self.contact.release is Release.FORCE:
+            lag = 2 * self.contact.damping_ratio / self.contact.frequency_ratio
+            return -lag * self.relative_bounce_velocity
+        return np.zeros_like(self.duration)
 
     @property
     def bounce_height(self) -> np.ndarray:

@@ -174,8 +174,10 @@ def orbit_at(
     return ContactOrbit.from_branch(branch_point(excess, local, n), local, n)
 
 
-def require_orbit(contact: Contact, n: int, amplitude: float) -> ContactOrbit:
-    """The one orbit on the stable side at Λ.
+def require_orbit(
+    contact: Contact, n: int, amplitude: float, side: Side = Side.STABLE
+) -> ContactOrbit:
+    """The one orbit at Λ on a side of the saddle-node.
 
     Raises
     ------
@@ -189,14 +191,17 @@ def require_orbit(contact: Contact, n: int, amplitude: float) -> ContactOrbit:
     ...
     bouncing_ball.errors.NoOrbitError: no 1-T orbit at Λ = 0.2 for ϖ = 10, ...
     """
-    orbit = orbit_at(contact, n, amplitude)
+    orbit = orbit_at(contact, n, amplitude, side)
     if np.isnan(orbit.duration):
-        point = branch_point(saddle_node(contact, n), contact, n)
-        why = (
-            f"below the saddle-node at Λ = {float(point.amplitude):.6g}"
-            if np.isfinite(point.amplitude)
-            else "the branch, which has no saddle-node, does not reach this Λ"
-        )
+        fold = float(branch_point(saddle_node(contact, n), contact, n).amplitude)
+        if amplitude < fold:
+            why = f"below the saddle-node at Λ = {fold:.6g}"
+        elif np.isfinite(fold):
+            why = f"the {side} side of the branch does not reach this Λ"
+        elif side is Side.UNSTABLE:
+            why = "the branch has no saddle-node, and so no other side"
+        else:
+            why = "the branch, which has no saddle-node, does not reach this Λ"
         raise NoOrbitError(
             f"no {n}-T orbit at Λ = {amplitude:g} for ϖ = {float(contact.frequency_ratio):g}, "
             f"ζ = {float(contact.damping_ratio):.4g}: {why}"

@@ -5,14 +5,14 @@ table's phase and the relative impact velocity. One cycle is contact then
 flight; both end at an implicit event, whose time is differentiated through
 the event's condition. The flow in contact contracts (τ, δ, δ′) volume by
 e^{-2ζϖ s} and the flight preserves it, so that on an n-T orbit
-``det = exp(-2ζϖ τ_b)`` exactly, for both release rules; the code does not use
-this, the tests do.
+``det = exp(-2ζϖ τ_b)`` exactly, for both release rules.
 """
 
 import numpy as np
 
 from bouncing_ball.models.contact import Release, contact_flow
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.stability import trace_and_determinant
 
 
 def monodromy(orbit: ContactOrbit) -> np.ndarray:
@@ -46,7 +46,10 @@ def monodromy(orbit: ContactOrbit) -> np.ndarray:
     d_release_phase = start + d_duration
     release_phase = orbit.phase + orbit.duration
     landing_phase = orbit.phase + 2 * np.pi * np.asarray(orbit.n)
-    table = lambda x: np.asarray(x)[..., np.newaxis]  # noqa: E731
+
+    def table(x):
+        return np.asarray(x)[..., np.newaxis]
+
     d_height = d_state[..., 0, :] + table(lam * np.cos(release_phase)) * d_release_phase
     d_bounce = d_state[..., 1, :] - table(lam * np.sin(release_phase)) * d_release_phase
     # The flight ends on the table: z_b + z′_b T - T²/2 = Λ sin(τ_b + T).
@@ -56,3 +59,20 @@ def monodromy(orbit: ContactOrbit) -> np.ndarray:
     d_landing_phase = d_release_phase + d_flight
     d_impact = d_bounce - d_flight + table(lam * np.sin(landing_phase)) * d_landing_phase
     return np.stack([d_landing_phase, d_impact], axis=-2)
+
+
+def trace_and_contraction(orbit: ContactOrbit) -> tuple[np.ndarray, np.ndarray]:
+    """Trace of the monodromy and its exact determinant, exp(-2ζϖ τ_b).
+
+    The determinant of the matrix itself carries the rounding of its entries,
+    which at ζ = 0 would decide between stable and not.
+
+    Examples
+    --------
+    >>> from bouncing_ball.models.contact import Contact
+    >>> from bouncing_ball.orbits.limits import orbit_at
+    >>> float(trace_and_contraction(orbit_at(Contact(5.0, 0.0), 1, 0.5))[1])
+    1.0
+    """
+    loss = np.asarray(orbit.contact.damping_ratio) * orbit.contact.frequency_ratio
+    return trace_and_determinant(monodromy(orbit))[0], np.exp(-2 * loss * orbit.duration)

@@ -26,8 +26,8 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.contact import Release
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.orbits import restitution as restitution_orbits
-from bouncing_ball.orbits.monodromy import monodromy
-from bouncing_ball.orbits.stability import is_stable, multipliers, trace_and_determinant
+from bouncing_ball.orbits.monodromy import trace_and_contraction
+from bouncing_ball.orbits.stability import is_stable, multipliers
 from bouncing_ball.orbits.system import OrbitSystem, Parameter
 
 SADDLE_NODE, PERIOD_DOUBLING, FOLD = "saddle-node", "period doubling", "fold"
@@ -161,7 +161,7 @@ def orbit_branches(
         )
         y = resample(system, branch, parameters["points"], newton)
         orbit = system.orbit(y)
-        trace, det = trace_and_determinant(monodromy(orbit))
+        trace, det = trace_and_contraction(orbit)
         floquet = multipliers(trace, det)
         values = (
             orbit.amplitude,

@@ -12,8 +12,8 @@ from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.orbits import restitution as restitution_orbits
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.limits import orbit_at
-from bouncing_ball.orbits.monodromy import monodromy
-from bouncing_ball.orbits.stability import is_stable, trace_and_determinant
+from bouncing_ball.orbits.monodromy import trace_and_contraction
+from bouncing_ball.orbits.stability import is_stable
 from bouncing_ball.studies.parameters import grid
 
 
@@ -27,7 +27,7 @@ def sweep(
 
 def stability_along(orbit: ContactOrbit) -> np.ndarray:
     """Whether each orbit is stable; false where there is none."""
-    return is_stable(*trace_and_determinant(monodromy(orbit)))
+    return is_stable(*trace_and_contraction(orbit))
 
 
 def _sweep_dataset(parameters, restitution, amplitude, release) -> xr.Dataset:

@@ -1,0 +1,147 @@
+"""What each subcommand answers, as plain dictionaries."""
+
+import argparse
+import math
+from typing import Any
+
+import numpy as np
+
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.contact import Contact, Release
+from bouncing_ball.models.damping import damping_ratio
+from bouncing_ball.models.permanent_contact import (
+    permanent_contact_minimum,
+    permanent_contact_threshold,
+)
+from bouncing_ball.orbits import limits as contact_limits
+from bouncing_ball.orbits import restitution as restitution_orbits
+from bouncing_ball.orbits.admissibility import is_admissible, restitution_margin
+from bouncing_ball.orbits.closed_form import branch_point
+from bouncing_ball.orbits.monodromy import trace_and_contraction
+from bouncing_ball.orbits.stability import is_stable, multipliers
+from bouncing_ball.orbits.system import OrbitSystem, Parameter
+
+Answer = dict[str, Any]
+
+
+def _contact(args: argparse.Namespace) -> Contact:
+    zeta = args.damping_ratio
+    if zeta is None:
+        zeta = float(damping_ratio(args.restitution))
+    return Contact(args.frequency_ratio, zeta, Release(args.release))
+
+
+def _pairs(trace: float, determinant: float) -> list[list[float]]:
+    return [[value.real, value.imag] for value in multipliers(trace, determinant).tolist()]
+
+
+def _restitution_orbit(args: argparse.Namespace) -> Answer:
+    n, r, lam = args.n, args.restitution, args.amplitude
+    phase = float(restitution_orbits.phase(n, r, lam, args.side == "stable"))
+    velocity = n * math.pi
+    trace, det = (float(x) for x in restitution_orbits.trace_and_determinant(r, lam, phase))
+    defect = -r * velocity + velocity - (1 + r) * lam * math.cos(phase)
+    margin = float(restitution_margin(n, lam, phase, velocity))
+    return {
+        "phase": phase,
+        "contact_duration": 0.0,
+        "impact_velocity": -velocity,
+        "bounce_velocity": velocity,
+        "apparent_restitution": r,
+        "max_height": float(restitution_orbits.max_height(n, lam, phase)),
+        "multipliers": _pairs(trace, det),
+        "is_stable": bool(is_stable(trace, det)),
+        "is_admissible": margin > 0 and velocity > lam * math.cos(phase),
+        "residual": abs(defect),
+    }
+
+
+def _contact_orbit(args: argparse.Namespace) -> Answer:
+    contact = _contact(args)
+    side = contact_limits.Side(args.side)
+    orbit = contact_limits.require_orbit(contact, args.n, args.amplitude, side)
+    trace, det = (float(x) for x in trace_and_contraction(orbit))
+    system = OrbitSystem(
+        args.n, contact.damping_ratio, Parameter.AMPLITUDE, args.frequency_ratio, contact.release
+    )
+    angle = orbit.duration * args.frequency_ratio
+    y = np.array([orbit.phase, orbit.impact_velocity, angle, orbit.amplitude])
+    return {
+        "phase": float(orbit.phase),
+        "contact_duration": float(orbit.duration),
+        "impact_velocity": float(orbit.impact_velocity),
+        "bounce_velocity": float(orbit.bounce_velocity),
+        "apparent_restitution": float(orbit.apparent_restitution),
+        "max_height": float(orbit.max_height),
+        "multipliers": _pairs(trace, det),
+        "is_stable": bool(is_stable(trace, det)),
+        "is_admissible": bool(is_admissible(orbit)),
+        "residual": float(np.max(np.abs(system.residual(y)))),
+    }
+
+
+def orbit(args: argparse.Namespace) -> Answer:
+    """The n-T orbit at Λ.
+
+    Raises
+    ------
+    NoOrbitError
+        With the reason, if there is none.
+    """
+    return _restitution_orbit(args) if args.model == "restitution" else _contact_orbit(args)
+
+
+def limits(args: argparse.Namespace) -> Answer:
+    """Saddle-node and period doubling, the latter of the exact map.
+
+    Raises
+    ------
+    NoOrbitError
+        If the branch has not both.
+    """
+    if args.model == "restitution":
+        n, r = args.n, args.restitution
+        node = float(restitution_orbits.saddle_node(n, r))
+        doubling = float(restitution_orbits.period_doubling(n, r))
+        phase = float(restitution_orbits.phase(n, r, doubling))
+        return {
+            "saddle_node": {"amplitude": node, "phase": 0.0, "contact_duration": 0.0},
+            "period_doubling": {"amplitude": doubling, "phase": phase, "contact_duration": 0.0},
+        }
+    contact = _contact(args)
+    found = {}
+    for name, find in (
+        ("saddle_node", contact_limits.saddle_node),
+        ("period_doubling", contact_limits.period_doubling),
+    ):
+        point = branch_point(find(contact, args.n), contact, args.n)
+        if np.isnan(point.duration):
+            raise NoOrbitError(
+                f"the branch of {args.n}-T orbits for ϖ = {args.frequency_ratio:g}, "
+                f"ζ = {contact.damping_ratio:.4g} has no {name.replace('_', ' ')}"
+            )
+        found[name] = {
+            "amplitude": float(point.amplitude),
+            "phase": float(point.phase),
+            "contact_duration": float(point.duration),
+        }
+    return found
+
+
+def permanent_contact(args: argparse.Namespace) -> Answer:
+    """Threshold at ϖ, and its minimum over ϖ.
+
+    The minimum is null where there is none (ζ ≥ 1/√2, displacement release).
+    """
+    contact = _contact(args)
+    zeta, release = contact.damping_ratio, contact.release
+    answer = {
+        "threshold": float(permanent_contact_threshold(args.frequency_ratio, zeta, release)),
+        "minimum": None,
+        "at_frequency_ratio": None,
+    }
+    if release is Release.FORCE or 2 * zeta * zeta < 1:
+        lowest = permanent_contact_minimum(zeta, release)
+        answer["minimum"] = float(lowest.threshold)
+        answer["at_frequency_ratio"] = float(lowest.frequency_ratio)
+    return answer

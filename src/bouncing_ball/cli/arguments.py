@@ -1,0 +1,184 @@
+"""Arguments of the command line, checked with one line per mistake."""
+
+import argparse
+import math
+import sys
+from typing import NoReturn
+
+# Of frequency ratio and amplitude: beyond, their squares leave no digits.
+_LARGEST = 1e8
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser whose errors are one line and exit status 2."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"{self.prog}: {message}\n")
+
+
+def _number(low: float, high: float, *, low_open: bool = True, high_open: bool = True):
+    """A parser of finite numbers in an interval, for ``type=``."""
+    left, right = "(" if low_open else "[", ")" if high_open else "]"
+    if math.isinf(high):
+        allowed = f"a finite number {'>' if low_open else '≥'} {low:g}"
+    else:
+        allowed = f"a number in {left}{low:g}, {high:g}{right}"
+    if math.isinf(low):
+        allowed = "a finite number"
+
+    def parse(text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        above = value > low if low_open else value >= low
+        below = value < high if high_open else value <= high
+        if not (math.isfinite(value) and above and below):
+            raise argparse.ArgumentTypeError(f"{text!r} is not {allowed}")
+        return value
+
+    return parse
+
+
+def _count(text: str) -> int:
+    try:
+        value = int(text)
+    except ValueError:
+        value = 0
+    if not 1 <= value <= 10_000_000:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 1 to 10000000")
+    return value
+
+
+def _add_damping(parser: argparse.ArgumentParser) -> None:
+    group = parser.add_mutually_exclusive_group(required=True)
+    group.add_argument(
+        "--restitution",
+        type=_number(0, 1, high_open=False),
+        metavar="R",
+        help="restitution coefficient r in (0, 1]; gives the damping by Eq. 16",
+    )
+    group.add_argument(
+        "--damping-ratio",
+        type=_number(0, 1, low_open=False),
+        metavar="Z",
+        help="damping ratio ζ in [0, 1) of the contact, in place of --restitution",
+    )
+
+
+def _add_contact(parser: argparse.ArgumentParser, *, required: bool) -> None:
+    parser.add_argument(
+        "--frequency-ratio",
+        type=_number(0, _LARGEST, high_open=False),
+        required=required,
+        metavar="W",
+        help="frequency ratio ϖ > 0 of the spring-damper contact",
+    )
+    parser.add_argument(
+        "--release",
+        choices=["displacement", "force"],
+        default="displacement",
+        help="what ends a contact (default: displacement, the paper's)",
+    )
+
+
+def _add_model(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--model",
+        choices=["restitution", "spring-damper"],
+        help="default: spring-damper if --frequency-ratio is given, else restitution",
+    )
+
+
+def _add_family(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--n", type=_count, default=1, help="index of the family (default: 1)")
+
+
+def _add_amplitude(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--amplitude",
+        type=_number(0, _LARGEST, high_open=False),
+        required=True,
+        metavar="L",
+        help="excitation amplitude Λ > 0",
+    )
+
+
+def parser() -> Parser:
+    """The parser of all subcommands."""
+    top = Parser(
+        prog="bouncing-ball",
+        description="Periodic orbits of a ball on a vibrating table. All quantities are "
+        "dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g.",
+    )
+    commands = top.add_subparsers(dest="command", required=True, parser_class=Parser)
+
+    def command(name: str, text: str) -> Parser:
+        sub = commands.add_parser(name, help=text, description=text)
+        sub.add_argument("--json", action="store_true", help="one JSON object, full precision")
+        _add_damping(sub)
+        return sub
+
+    orbit = command("orbit", "the n-T orbit at an amplitude")
+    _add_model(orbit)
+    _add_family(orbit)
+    _add_amplitude(orbit)
+    _add_contact(orbit, required=False)
+    orbit.add_argument(
+        "--side",
+        choices=["stable", "unstable"],
+        default="stable",
+        help="side of the saddle-node: the one that is stable next to it, or the other",
+    )
+
+    limits = command("limits", "saddle-node and period doubling of the n-T orbits")
+    _add_model(limits)
+    _add_family(limits)
+    _add_contact(limits, required=False)
+
+    permanent = command("permanent-contact", "the amplitude up to which the ball stays down")
+    _add_contact(permanent, required=True)
+
+    simulate = command("simulate", "a sequence of impacts from any initial impact")
+    _add_model(simulate)
+    _add_amplitude(simulate)
+    _add_contact(simulate, required=False)
+    simulate.add_argument("--impacts", type=_count, default=100, help="default: 100")
+    simulate.add_argument(
+        "--phase",
+        type=_number(-math.inf, math.inf),
+        default=0.0,
+        help="phase of the table at the first impact (default: 0)",
+    )
+    simulate.add_argument(
+        "--velocity",
+        type=_number(-math.inf, math.inf),
+        help="absolute velocity of the ball before the first impact (default: -π)",
+    )
+    return top
+
+
+def parse(arguments: list[str] | None = None) -> argparse.Namespace:
+    """Parsed arguments, with the model settled.
+
+    Exits with status 2 and one line on a mistake.
+    """
+    top = parser()
+    args = top.parse_args(arguments)
+    if not hasattr(args, "model"):
+        return args
+    if args.model is None:
+        args.model = "restitution" if args.frequency_ratio is None else "spring-damper"
+    if args.model == "restitution":
+        if args.restitution is None:
+            top.error("--model restitution needs --restitution, not --damping-ratio")
+        if args.frequency_ratio is not None:
+            top.error("--frequency-ratio has no meaning for --model restitution")
+    elif args.frequency_ratio is None:
+        top.error("--model spring-damper needs --frequency-ratio")
+    return args
+
+
+def fail(message: str) -> NoReturn:
+    """One line on standard error and exit status 1."""
+    sys.exit(f"bouncing-ball: {message}")

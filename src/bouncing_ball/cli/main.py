@@ -1,0 +1,62 @@
+"""Entry point of ``bouncing-ball``."""
+
+import json
+from typing import Any
+
+from bouncing_ball.cli.arguments import fail, parse
+
+
+def _lines(answer: dict[str, Any], prefix: str = "") -> list[str]:
+    """A readable table: one line for each value, ten digits."""
+    lines = []
+    for key, value in answer.items():
+        name = f"{prefix}{key.replace('_', ' ')}"
+        if isinstance(value, dict):
+            lines += _lines(value, f"{name}, ")
+        elif key == "multipliers":
+            shown = "   ".join(f"{re:.10g} {im:+.10g}i" for re, im in value)
+            lines.append(f"{name:<32}{shown}")
+        elif isinstance(value, bool):
+            lines.append(f"{name:<32}{'yes' if value else 'no'}")
+        elif isinstance(value, float):
+            lines.append(f"{name:<32}{value:.10g}")
+        elif value is None:
+            lines.append(f"{name:<32}none")
+        else:
+            lines.append(f"{name:<32}{value}")
+    return lines
+
+
+def _table(rows: dict[str, list]) -> list[str]:
+    """Columns of a sequence, one line for each impact."""
+    head = "".join(f"{name.replace('_', ' '):>24}" for name in rows)
+    body = [
+        "".join(f"{value:>24.12g}" for value in line) for line in zip(*rows.values(), strict=True)
+    ]
+    return [head, *body]
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Answer one subcommand; exit 1 where there is no answer, 2 on a mistake."""
+    args = parse(arguments)
+    # Imported here, so that --help and a mistyped argument need no numpy.
+    import numpy as np
+
+    from bouncing_ball.cli import answers
+
+    with np.errstate(all="ignore"):
+        try:
+            answer = getattr(answers, args.command.replace("-", "_"))(args)
+        except ValueError as error:
+            if args.json:
+                print(json.dumps({"error": str(error)}, ensure_ascii=False))
+            fail(str(error))
+    if args.json:
+        print(json.dumps(answer, allow_nan=False))
+    else:
+        sequence = answer.pop("sequence", None)
+        print("\n".join(_lines(answer) + (_table(sequence) if sequence else [])))
+
+
+if __name__ == "__main__":
+    main()

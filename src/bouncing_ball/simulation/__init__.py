@@ -1,0 +1,1 @@
+"""Event-driven simulation of both models, from any initial state."""

@@ -1,0 +1,141 @@
+r"""The first upward zero of a smooth function, which no step can pass over.
+
+Let y(s) < 0, with y″ ≤ K and \|y‴\| ≤ J from s on. Then ::
+
+    y(s + h) ≤ y + y′ h + K h²/2
+
+so that no zero lies before the positive root h₀ of this parabola. Up to 2h₀
+the second derivative is at most ``K₁ = min(K, y″ + 2J h₀)``, which gives a
+longer step, limited to 2h₀. Steps of this kind approach a simple zero
+from the left with third order, and slow down, but do not fail, where two
+zeros lie close together or the function only touches zero. They are taken until
+
+* ``2K \|y\| ≤ θ y′²``, y′ > 0: the next zero is then simple and near (Newton
+  and Kantorovich), and
+* ``J h₀² ≤ κ y′``: one more step by the function's own parabola, without
+  the safeguard, reaches the last digit; its error is below κ⁴ h₀/6.
+
+Flight and contact are both *motions* of this kind, see :class:`Motion`.
+"""
+
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+# θ and κ above.
+_SIMPLE = 0.25
+_CLOSE = 3e-4
+# Steps after which a zero is given up as undecided. Each is a good part of the
+# shorter of the function's time scales, so this is hundreds of oscillations.
+_MAX_STEPS = 3000
+_TINY = 1e-300
+
+
+class State(NamedTuple):
+    """y and its derivatives at one time, and bounds from this time on.
+
+    ``ended`` marks where the search may stop without a zero, ``None`` for
+    nowhere.
+    """
+
+    value: np.ndarray
+    rate: np.ndarray
+    second: np.ndarray
+    third: np.ndarray
+    second_bound: np.ndarray
+    third_bound: np.ndarray
+    ended: np.ndarray | None = None
+
+
+class Motion(Protocol):
+    """An array of functions of time whose first upward zeros are wanted."""
+
+    def __call__(self, time: np.ndarray) -> State: ...
+
+    def take(self, which: np.ndarray) -> "Motion":
+        """The motions at some positions of the array."""
+        ...
+
+    def skip(self, time: np.ndarray) -> np.ndarray:
+        """A later time up to which there is certainly no zero, or the time itself."""
+        ...
+
+
+class Zero(NamedTuple):
+    """First upward zeros: time, y′ and y″ there, and where there is none.
+
+    ``ended`` are those whose motion said so, ``undecided`` those given up.
+    """
+
+    time: np.ndarray
+    rate: np.ndarray
+    ended: np.ndarray
+    undecided: np.ndarray
+
+
+def safe_step(state: State) -> tuple[np.ndarray, np.ndarray]:
+    """The longest certified step, and whether the zero is within reach after it.
+
+    Examples
+    --------
+    Exact for a parabola, here y = s² - 1 seen from s = 0:
+
+    >>> one = np.ones(1)
+    >>> step, _ = safe_step(State(-one, 0 * one, 2 * one, 0 * one, 2.0, 1.0))
+    >>> step.tolist()
+    [1.0]
+    """
+    y, v, acceleration, _, bound, jerk, _ = state
+    # Rounding may put y above zero where it touches it from below.
+    y = np.minimum(y, 0.0)
+    square, rising = v * v, v > 0
+    twice = -2 * y
+    pressed = bound * twice
+    root = np.sqrt(square + pressed)
+    first = np.where(rising, twice / (v + root), (root - v) / bound)
+    reach = 2 * first
+    local = np.minimum(acceleration + jerk * reach, bound)
+    root = np.sqrt(np.maximum(square + local * twice, 0.0))
+    step = np.where(rising, twice / (v + root), (root - v) / np.maximum(local, _TINY))
+    step = np.minimum(step, reach)
+    # Falling faster and faster from y = y′ = 0: y ≤ y″ h²/2 + J h³/6.
+    step = np.maximum(step, np.where(rising, 0.0, -3 * acceleration / (jerk + _TINY)))
+    done = (jerk * (first * first) <= _CLOSE * v) & (pressed <= _SIMPLE * square) & rising
+    return step, done
+
+
+def first_zero(motion: Motion, start: np.ndarray) -> Zero:
+    """First upward zero of each motion after a time that precedes it.
+
+    ``start`` has no zero between it and 0; a function that is zero and
+    rising at ``start`` has its zero there. All arrays have one dimension.
+    """
+    time = np.array(start, dtype=float)
+    ended = undecided = np.zeros(time.shape, dtype=bool)
+    active, part, now = slice(None), motion, time
+    for _ in range(_MAX_STEPS):
+        state = part(now)
+        step, done = safe_step(state)
+        later = now + step
+        # A zero that rounding has passed already, or no room for a step.
+        done |= (state.value >= 0) & (state.rate >= 0)
+        done |= (later == now) & (state.value >= -_TINY)
+        later = part.skip(np.where(state.value < 0, later, np.where(done, now, later)))
+        if state.ended is not None:
+            if np.any(state.ended & ~done):
+                if not ended.any():
+                    ended = np.zeros(time.shape, dtype=bool)
+                stop = state.ended & ~done
+                later = np.where(stop, now, later)
+                ended[active] = stop
+                done = done | stop
+        time[active] = later
+        if done.all():
+            break
+        left = np.flatnonzero(~done)
+        active = left if isinstance(active, slice) else active[left]
+        part, now = part.take(left), later[left]
+    else:
+        undecided = np.zeros(time.shape, dtype=bool)
+        undecided[active] = True
+    return _finish(motion, time, ended, undecided)

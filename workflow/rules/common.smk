@@ -15,7 +15,10 @@ try:
 except ConfigurationError as error:
     sys.exit(f"configuration: {error}")
 
-FIGURES = [f"fig{number:02d}" for number in range(1, 17)]
+# The paper's figures, those without data, and those beyond the paper.
+PAPER_FIGURES = [f"fig{number:02d}" for number in range(1, 17)]
+EXTENSIONS = ["ext_release"]
+FIGURES = PAPER_FIGURES + EXTENSIONS
 SCHEMATICS = ["fig01", "fig04"]
 TABLES = ["table1", "thresholds"]
 
@@ -31,5 +34,7 @@ def modules(*names):
 
 def figure_parameters(wildcards):
     """The parameters of the figure or table whose dataset is made."""
-    section = "tables" if wildcards.figure in TABLES else "figures"
-    return config[section][wildcards.figure]
+    for section in ("figures", "tables", "extensions"):
+        if wildcards.figure in config[section]:
+            return config[section][wildcards.figure]
+    raise KeyError(wildcards.figure)

@@ -14,7 +14,7 @@ for name in FIGURES:
             png=report(
                 f"results/figures/{name}.png",
                 caption=f"../report/{name}.rst",
-                category="Figures",
+                category="Beyond the paper" if name in EXTENSIONS else "Figures",
                 labels={"figure": name},
             ),
             svg=f"results/figures/{name}.svg",

@@ -11,7 +11,10 @@ import xarray as xr
 
 
 class Variable(NamedTuple):
-    """What a variable is: in words, as in the paper, and where it is defined."""
+    """What a variable is: in words, as in the paper, and where it is defined.
+
+    Symbol and equation are empty where the paper has none.
+    """
 
     long_name: str
     symbol: str
@@ -21,25 +24,27 @@ class Variable(NamedTuple):
 
 VARIABLES: dict[str, Variable] = {
     # coordinates
-    "n": Variable("index of the family of periodic orbits", "n"),
+    "n": Variable("index of the family of periodic orbits", "n", equation="Eq. 6"),
     "case": Variable("parameter set", ""),
-    "frequency_ratio": Variable("frequency ratio of contact and table", "ϖ"),
+    "frequency_ratio": Variable("frequency ratio of contact and table", "ϖ", equation="Eq. 11"),
     "point": Variable("point along the branch, at equal steps of arclength", ""),
     "sample": Variable("sample number", ""),
     "special": Variable("special point of the branch, in order of arclength", ""),
     "end": Variable("end of the branch", ""),
     "bound": Variable("end of the stability range", ""),
-    "multiplier": Variable("Floquet multiplier, the larger modulus first", ""),
+    "multiplier": Variable("Floquet multiplier, the larger modulus first", "μ"),
     "quantity": Variable("quantity compared between the two models", ""),
-    "tolerance": Variable("relative error tolerated", ""),
+    "tolerance": Variable("relative error tolerated", "", equation="Eqs. 37-38"),
     "impact_map": Variable("map of the restitution model", "", equation="Eqs. 5, 8"),
     # parameters that appear as variables
     "restitution": Variable("restitution coefficient", "r", equation="Eq. 2"),
     "damping_ratio": Variable("damping ratio of the contact", "ζ", equation="Eq. 16"),
-    "amplitude": Variable("excitation amplitude", "Λ"),
+    "amplitude": Variable("excitation amplitude", "Λ", equation="Eq. 4"),
     # orbits
     "phase": Variable("phase of the table when the contact starts", "φ", "rad", "Eqs. 6, 21"),
-    "release_phase": Variable("phase of the table when the contact ends", "φ + τ_b", "rad"),
+    "release_phase": Variable(
+        "phase of the table when the contact ends", "φ + τ_b", "rad", "Eq. 23"
+    ),
     "contact_duration": Variable("duration of the contact", "τ_b", equation="Eq. 23"),
     "impact_velocity": Variable(
         "velocity of the ball as contact starts", "z′_i", equation="Eq. 22"
@@ -49,30 +54,32 @@ VARIABLES: dict[str, Variable] = {
     "max_height": Variable(
         "greatest height of the ball over the cycle", "max z", equation="Eq. 37"
     ),
-    "stable": Variable("whether both Floquet multipliers are inside the unit circle", ""),
+    "stable": Variable("whether both Floquet multipliers are inside the unit circle", "|μ| < 1"),
     "multiplier_real": Variable("real part of the Floquet multiplier", "Re μ"),
     "multiplier_imag": Variable("imaginary part of the Floquet multiplier", "Im μ"),
     "residual": Variable("largest defect of the orbit equations", "", equation="Eqs. 21-26"),
     # special points
     "special_kind": Variable("kind of special point", ""),
     "special_amplitude": Variable("excitation amplitude at the special point", "Λ"),
-    "special_phase": Variable("phase at the special point", "φ", "rad"),
-    "special_contact_duration": Variable("contact duration at the special point", "τ_b"),
+    "special_phase": Variable("phase at the special point", "φ", "rad", "Eq. 21"),
+    "special_contact_duration": Variable(
+        "contact duration at the special point", "τ_b", equation="Eq. 23"
+    ),
     "special_residual": Variable("residual of the extended system at the special point", ""),
     "end_reason": Variable("why the branch ends there", ""),
     # restitution model's limits
     "saddle_node_amplitude": Variable("amplitude of the saddle-node", "Λ_SN", equation="Eq. 7"),
-    "saddle_node_phase": Variable("phase at the saddle-node", "φ_SN", "rad"),
+    "saddle_node_phase": Variable("phase at the saddle-node", "φ_SN", "rad", "Eq. 6"),
     "period_doubling_amplitude": Variable(
         "amplitude of the period doubling", "Λ_PD", equation="Eq. 8"
     ),
-    "period_doubling_phase": Variable("phase at the period doubling", "φ_PD", "rad"),
+    "period_doubling_phase": Variable("phase at the period doubling", "φ_PD", "rad", "Eq. 6"),
     # time histories
     "time": Variable("time since the first impact", "τ"),
     "table_phase": Variable("phase of the table", "τ + φ", "rad"),
-    "ball": Variable("height of the ball", "z"),
-    "ball_velocity": Variable("velocity of the ball", "z′"),
-    "table": Variable("height of the table", "w"),
+    "ball": Variable("height of the ball", "z", equation="Eqs. 4, 12, 14"),
+    "ball_velocity": Variable("velocity of the ball", "z′", equation="Eqs. 4, 13, 15"),
+    "table": Variable("height of the table", "w", equation="Eq. 4"),
     "contact": Variable("whether the ball touches the table", ""),
     # the same quantities in the restitution model, for comparison
     "restitution_phase": Variable("phase of impact, restitution model", "φ_CR", "rad", "Eq. 6"),
@@ -93,7 +100,9 @@ VARIABLES: dict[str, Variable] = {
     "minimum_threshold": Variable(
         "lowest threshold of permanent contact", "2ζ√(1-ζ²)", equation="Eq. 36"
     ),
-    "minimum_frequency_ratio": Variable("where the lowest threshold is", "1/√(1-2ζ²)"),
+    "minimum_frequency_ratio": Variable(
+        "where the lowest threshold is", "1/√(1-2ζ²)", equation="Eqs. 34-36"
+    ),
     "restitution_threshold": Variable(
         "threshold of permanent contact, restitution model", "Λ_CR", equation="Eq. 9"
     ),
@@ -107,6 +116,11 @@ VARIABLES: dict[str, Variable] = {
         equation="Eqs. 37-38",
     ),
     "threshold_status": Variable("whether the threshold lies within the range scanned", ""),
+    # release rules
+    "release": Variable("what ends a contact", ""),
+    "reading": Variable("release rule, and restitution coefficient compared with", ""),
+    "bifurcation_amplitude": Variable("excitation amplitude of the bifurcation", "Λ"),
+    "force_restitution": Variable("restitution coefficient of the force release", "r_F"),
     # Table 1
     "computed": Variable("end of the stability range, this replication", "Λ"),
     "printed": Variable("end of the stability range, as printed", "Λ", equation="Table 1"),
@@ -130,12 +144,5 @@ def describe(dataset: xr.Dataset) -> xr.Dataset:
     described = dataset.copy()
     for name in described.variables:
         variable = VARIABLES[str(name)]
-        attributes = {"long_name": variable.long_name}
-        if described[name].dtype.kind in "fiu":
-            attributes["units"] = variable.units
-        if variable.symbol:
-            attributes["symbol"] = variable.symbol
-        if variable.equation:
-            attributes["equation"] = variable.equation
-        described[name].attrs = attributes
+        described[name].attrs = variable._asdict()
     return described

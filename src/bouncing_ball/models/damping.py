@@ -1,14 +1,17 @@
 """Damping ratio and restitution coefficient of a linear contact (Eq. 16).
 
 Half a period of a free damped oscillator, without gravity, returns the
-velocity multiplied by ``r = exp(-π ζ / √(1 - ζ²))`` (Nagurka and Huang).
-Everything here is dimensionless.
+velocity multiplied by ``r = exp(-π ζ / √(1 - ζ²))`` (Nagurka and Huang). If the
+contact ends where its force vanishes instead, at the angle π - 2 arcsin ζ, the
+velocity is multiplied by ``exp(-ζ (π - 2 arcsin ζ) / √(1 - ζ²))`` (Schwager and
+Pöschel, Granular Matter 9, 2007). Everything here is dimensionless.
 """
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball.models.contact import Release
 
 
 def damping_ratio(restitution: ArrayLike) -> np.ndarray:
@@ -41,15 +44,20 @@ def damping_ratio(restitution: ArrayLike) -> np.ndarray:
     return decrement / np.hypot(np.pi, decrement)
 
 
-def restitution_coefficient(damping: ArrayLike) -> np.ndarray:
-    """Restitution coefficient r of an underdamped linear contact.
+def restitution_coefficient(
+    damping: ArrayLike, release: Release = Release.DISPLACEMENT
+) -> np.ndarray:
+    """Restitution coefficient of a free, underdamped linear contact.
 
-    Inverse of Eq. 16, ``r = exp(-π ζ / √(1 - ζ²))``.
+    The inverse of Eq. 16 for the displacement release; greater for the force
+    release, whose contact ends before it pulls.
 
     Parameters
     ----------
     damping : array_like
         ζ in [0, 1).
+    release : Release
+        What ends the contact.
 
     Raises
     ------
@@ -67,4 +75,5 @@ def restitution_coefficient(damping: ArrayLike) -> np.ndarray:
             f"damping ratio ζ = {damping} is not in [0, 1): "
             "an overdamped contact has no restitution coefficient"
         )
-    return np.exp(-np.pi * zeta / np.sqrt((1 - zeta) * (1 + zeta)))
+    angle = np.pi - 2 * np.arcsin(zeta) if release is Release.FORCE else np.pi
+    return np.exp(-angle * zeta / np.sqrt((1 - zeta) * (1 + zeta)))

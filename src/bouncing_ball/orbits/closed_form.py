@@ -41,7 +41,6 @@ from bouncing_ball.errors import ModelError
 from bouncing_ball.models.contact import Contact, Release, responses
 from bouncing_ball.models.oscillator import CANCELLATION
 
-
 # Points computed at once: as many as keep the intermediate arrays in the cache.
 _BLOCK = 2048
 

@@ -135,8 +135,11 @@ def _check_consistency(config: Mapping[str, Any]) -> None:
 
 def _needs(config: Mapping[str, Any]) -> Iterator[tuple[str, float, list[int], float]]:
     """Key and value of every Λ at which, or up to which, an orbit is needed."""
-    for section in ("figures", "tables"):
-        for name, figure in config[section].items():
+    sections = {section: config[section] for section in ("figures", "tables")}
+    for name, figure in config["extensions"].items():
+        sections[f"extensions.{name}"] = {key: figure[key] for key in ("thresholds",)}
+    for section, parts in sections.items():
+        for name, figure in parts.items():
             for index, case in enumerate(figure.get("cases", [])):
                 key = f"{section}.{name}.cases[{index}].amplitude"
                 yield key, case["amplitude"], [figure["n"]], case["restitution"]

@@ -62,7 +62,7 @@ class Motion(Protocol):
 
 
 class Zero(NamedTuple):
-    """First upward zeros: time, y′ and y″ there, and where there is none.
+    """First upward zeros: time and y′ there, and where there is none.
 
     ``ended`` are those whose motion said so, ``undecided`` those given up.
     """
@@ -107,35 +107,46 @@ def safe_step(state: State) -> tuple[np.ndarray, np.ndarray]:
 def first_zero(motion: Motion, start: np.ndarray) -> Zero:
     """First upward zero of each motion after a time that precedes it.
 
-    ``start`` has no zero between it and 0; a function that is zero and
-    rising at ``start`` has its zero there. All arrays have one dimension.
+    There is no zero between 0 and ``start``, where the function may be zero
+    itself: if it rises there, that is the zero. One-dimensional arrays.
     """
     time = np.array(start, dtype=float)
-    ended = undecided = np.zeros(time.shape, dtype=bool)
+    ended = np.zeros(time.shape, dtype=bool)
     active, part, now = slice(None), motion, time
     for _ in range(_MAX_STEPS):
         state = part(now)
         step, done = safe_step(state)
-        later = now + step
-        # A zero that rounding has passed already, or no room for a step.
-        done |= (state.value >= 0) & (state.rate >= 0)
-        done |= (later == now) & (state.value >= -_TINY)
-        later = part.skip(np.where(state.value < 0, later, np.where(done, now, later)))
+        later = part.skip(now + step)
+        # Zeros that are here: at the start, or where y touches zero to rounding.
+        rate = state.rate
+        here = (state.value >= 0) & ((rate > 0) | ((rate == 0) & (state.second >= 0)))
         if state.ended is not None:
-            if np.any(state.ended & ~done):
-                if not ended.any():
-                    ended = np.zeros(time.shape, dtype=bool)
-                stop = state.ended & ~done
-                later = np.where(stop, now, later)
-                ended[active] = stop
-                done = done | stop
+            stop = state.ended & ~(done | here)
+            ended[active] = stop
+            here |= stop
+        later = np.where(here, now, later)
+        done |= later == now
         time[active] = later
-        if done.all():
-            break
         left = np.flatnonzero(~done)
+        if left.size == 0:
+            break
         active = left if isinstance(active, slice) else active[left]
         part, now = part.take(left), later[left]
-    else:
-        undecided = np.zeros(time.shape, dtype=bool)
+    undecided = np.zeros(time.shape, dtype=bool)
+    if left.size:
         undecided[active] = True
-    return _finish(motion, time, ended, undecided)
+    return _to_the_last_digit(motion, time, ended, undecided)
+
+
+def _to_the_last_digit(motion, time, ended, undecided) -> Zero:
+    """One step of the function's own parabola, and the rate of change after it."""
+    state = motion(time)
+    v, acceleration = state.rate, state.second
+    twice = -2 * state.value
+    square = v * v
+    root = np.sqrt(np.maximum(square + acceleration * twice, 0.0))
+    # Where the zero is not certainly simple (a touch), the time stays as it is.
+    simple = (v > 0) & (state.second_bound * np.abs(twice) <= square)
+    step = np.where(simple, twice / (v + root), 0.0)
+    rate = v + step * (acceleration + 0.5 * step * state.third)
+    return Zero(time + step, rate, ended, undecided)

@@ -85,9 +85,11 @@ def relative_error(
     amplitude: float,
     ratios: np.ndarray,
     release: Release = Release.DISPLACEMENT,
+    damping: float | None = None,
 ) -> np.ndarray:
     """|q_SD - q_CR|/|q_CR| along ϖ (Eqs. 37-38).
 
+    The damping is that of r by Eq. 16 unless ``damping`` gives another ζ.
     Where the spring-damper model has no such quantity the error is infinite.
 
     Examples
@@ -98,7 +100,8 @@ def relative_error(
     >>> error.tolist()
     [0.25]
     """
-    contact = Contact(ratios, float(damping_ratio(r)), release)
+    zeta = float(damping_ratio(r)) if damping is None else damping
+    contact = Contact(ratios, zeta, release)
     reference = restitution_value(quantity, n, r, amplitude)
     error = np.abs(contact_value(quantity, n, contact, amplitude) - reference) / abs(reference)
     return np.where(np.isnan(error), np.inf, error)

@@ -18,7 +18,6 @@ All quantities are dimensionless: time Ωt, length Ω²y/g.
 """
 
 from dataclasses import dataclass
-from enum import StrEnum
 from typing import NamedTuple
 
 import numpy as np
@@ -26,6 +25,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.oscillator import Response, exponential_response, impulse_response
+from bouncing_ball.models.release import Release
 
 ARGUMENTS = (
     "time",
@@ -37,15 +37,6 @@ ARGUMENTS = (
     "damping_ratio",
 )
 """Order of the last axis of :attr:`ContactFlow.jacobian`."""
-
-
-class Release(StrEnum):
-    """What ends a contact."""
-
-    DISPLACEMENT = "displacement"
-    """The ball is back at the table's level, δ = 0 (Eq. 23, the paper's)."""
-    FORCE = "force"
-    """The contact force vanishes, 2ζϖ δ′ + ϖ² δ = 0: no tension."""
 
 
 class ContactFlow(NamedTuple):

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.models.contact import Release
+from bouncing_ball.models.release import Release
 
 
 def damping_ratio(restitution: ArrayLike) -> np.ndarray:

@@ -55,6 +55,12 @@ VARIABLES: dict[str, Variable] = {
         "greatest height of the ball over the cycle", "max z", equation="Eq. 37"
     ),
     "stable": Variable("whether both Floquet multipliers are inside the unit circle", "|μ| < 1"),
+    "admissible": Variable("whether nothing else happens during the orbit", ""),
+    "restitution_admissible": Variable(
+        "whether nothing else happens during the restitution model's orbit", ""
+    ),
+    "grazing_amplitude": Variable("amplitude at which the unstable orbit grazes the table", "Λ"),
+    "grazing_phase": Variable("phase at which the unstable orbit grazes the table", "φ", "rad"),
     "multiplier_real": Variable("real part of the Floquet multiplier", "Re μ"),
     "multiplier_imag": Variable("imaginary part of the Floquet multiplier", "Im μ"),
     "residual": Variable("largest defect of the orbit equations", "", equation="Eqs. 21-26"),

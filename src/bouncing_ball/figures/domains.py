@@ -7,6 +7,7 @@ from matplotlib.lines import Line2D
 
 from bouncing_ball.figures.branches import (
     draw_branch,
+    draw_grazings,
     draw_period_doublings,
     draw_saddle_nodes,
     legend_handles,
@@ -20,6 +21,7 @@ def draw_special(axes, curve: xr.Dataset, phase: xr.DataArray, colour: str) -> N
     for kind, mark in (
         ("saddle-node", draw_saddle_nodes),
         ("period doubling", draw_period_doublings),
+        ("grazing", draw_grazings),
     ):
         at = kinds == kind
         mark(axes, curve.special_amplitude.values[at], phase.values[at] / np.pi, colour)
@@ -36,7 +38,9 @@ def draw_domains(data: xr.Dataset) -> Figure:
             (panels[0], curve.phase, curve.special_phase),
             (panels[1], curve.release_phase, special_release),
         ):
-            draw_branch(axes, curve.amplitude, phase / np.pi, curve.stable, colour)
+            draw_branch(
+                axes, curve.amplitude, phase / np.pi, curve.stable, curve.admissible, colour
+            )
             draw_special(axes, curve, special, colour)
     panels[0].set_ylabel("phase of the table over $\\pi$")
     panels[0].set_title(r"start of contact, $\varphi/\pi$", fontsize=9)
@@ -47,10 +51,11 @@ def draw_domains(data: xr.Dataset) -> Figure:
         Line2D([], [], color=colour, linewidth=1.3, label=rf"$\varpi={number(ratio)}$")
         for colour, ratio in zip(COLOURS, ratios, strict=False)
     ]
+    markers = legend_handles("#5f5f5f", inadmissible=not bool(data.admissible.all()))
     figure.legend(
-        handles=[*contacts, *legend_handles("#5f5f5f")],
+        handles=[*contacts, *markers],
         loc="outside lower center",
-        ncols=len(contacts) + 4,
+        ncols=len(contacts) + len(markers),
         columnspacing=1.2,
         handletextpad=0.5,
     )

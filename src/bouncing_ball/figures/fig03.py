@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 
 from bouncing_ball.figures.branches import (
     draw_branch,
+    draw_grazings,
     draw_period_doublings,
     draw_saddle_nodes,
     legend_handles,
@@ -19,7 +20,9 @@ def draw(data: xr.Dataset) -> Figure:
     for n in data.n.values:
         family = data.sel(n=n)
         phase = family.phase / np.pi
-        draw_branch(axes, family.amplitude, phase, family.stable, RESTITUTION)
+        draw_branch(axes, family.amplitude, phase, family.stable, family.admissible, RESTITUTION)
+        grazing = float(family.grazing_amplitude), float(family.grazing_phase) / np.pi
+        draw_grazings(axes, *grazing, RESTITUTION)
         node = float(family.saddle_node_amplitude), float(family.saddle_node_phase) / np.pi
         draw_saddle_nodes(axes, *node, RESTITUTION)
         exact = family.sel(impact_map="exact")
@@ -45,5 +48,10 @@ def draw(data: xr.Dataset) -> Figure:
         ylim=(-0.55, 0.72),
     )
     axes.set_title(rf"$r={number(data.attrs['restitution'])}$", fontsize=9)
-    axes.legend(handles=legend_handles(), loc="upper left", ncols=2, columnspacing=1.2)
+    axes.legend(
+        handles=legend_handles(inadmissible=not bool(data.admissible.all())),
+        loc="upper left",
+        ncols=2,
+        columnspacing=1.2,
+    )
     return figure

@@ -23,6 +23,7 @@ def draw(data: xr.Dataset) -> Figure:
         data.restitution_amplitude,
         data.restitution_phase / np.pi,
         data.restitution_stable,
+        data.restitution_admissible,
         RESTITUTION,
     )
     draw_saddle_nodes(
@@ -37,8 +38,10 @@ def draw(data: xr.Dataset) -> Figure:
     curve = data.squeeze("frequency_ratio")
     start, end = COLOURS[1], COLOURS[4]
     release = curve.special_phase + curve.special_contact_duration
-    draw_branch(axes, curve.amplitude, curve.phase / np.pi, curve.stable, start)
-    draw_branch(axes, curve.amplitude, curve.release_phase / np.pi, curve.stable, end)
+    draw_branch(axes, curve.amplitude, curve.phase / np.pi, curve.stable, curve.admissible, start)
+    draw_branch(
+        axes, curve.amplitude, curve.release_phase / np.pi, curve.stable, curve.admissible, end
+    )
     draw_special(axes, curve, curve.special_phase, start)
     draw_special(axes, curve, release, end)
     models = [
@@ -57,7 +60,7 @@ def draw(data: xr.Dataset) -> Figure:
         fontsize=9,
     )
     figure.legend(
-        handles=[*models, *legend_handles("#5f5f5f")],
+        handles=[*models, *legend_handles("#5f5f5f", inadmissible=not bool(data.admissible.all()))],
         loc="outside lower center",
         ncols=3,
         columnspacing=1.0,

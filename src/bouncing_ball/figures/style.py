@@ -31,6 +31,8 @@ PERIOD_DOUBLING = {
     "markeredgewidth": 1.0,
 }
 STABLE = {"linestyle": "-", "linewidth": 1.3}
+GRAZING = {"marker": "^", "markersize": 4.5, "linestyle": "none"}
+INADMISSIBLE = {"linestyle": (0, (0.8, 2.2)), "linewidth": 0.8}
 UNSTABLE = {"linestyle": (0, (3.5, 2)), "linewidth": 1.0}
 
 _SETTINGS = {

@@ -29,7 +29,7 @@ from bouncing_ball.orbits.stability import (
 
 # Impact velocity and flight time vanish together where an orbit merges with
 # permanent contact, and the equations are singular there: stop just before.
-_MARGIN = 1e-6
+_MARGIN = 1e-5
 
 
 class Parameter(StrEnum):

@@ -44,6 +44,7 @@ class State(NamedTuple):
     third: np.ndarray
     second_bound: np.ndarray
     third_bound: np.ndarray
+    rapidity: np.ndarray | float
     ended: np.ndarray | None = None
 
 
@@ -81,27 +82,50 @@ def safe_step(state: State) -> tuple[np.ndarray, np.ndarray]:
     Exact for a parabola, here y = s² - 1 seen from s = 0:
 
     >>> one = np.ones(1)
-    >>> step, _ = safe_step(State(-one, 0 * one, 2 * one, 0 * one, 2.0, 1.0))
+    >>> step, _ = safe_step(State(-one, 0 * one, 2 * one, 0 * one, 2.0, 0.0, 1.0))
     >>> step.tolist()
     [1.0]
     """
-    y, v, acceleration, _, bound, jerk, _ = state
+    y, v, a, third, bound, jerk, rapidity, _ = state
     # Rounding may put y above zero where it touches it from below.
-    y = np.minimum(y, 0.0)
+    twice = -2 * np.minimum(y, 0.0)
     square, rising = v * v, v > 0
-    twice = -2 * y
     pressed = bound * twice
     root = np.sqrt(square + pressed)
-    first = np.where(rising, twice / (v + root), (root - v) / bound)
-    reach = 2 * first
-    local = np.minimum(acceleration + jerk * reach, bound)
-    root = np.sqrt(np.maximum(square + local * twice, 0.0))
-    step = np.where(rising, twice / (v + root), (root - v) / np.maximum(local, _TINY))
-    step = np.minimum(step, reach)
+    first = np.where(rising, twice / (v + root + _TINY), (root - v) / bound)
+    step = first
+    terms = (v, rising, square, twice, a, third, bound, jerk * rapidity)
+    part, now, which = terms, step, slice(None)
+    while True:
+        reach = REACH * now
+        longer = np.minimum(_step_within(reach, *part), reach)
+        now = np.maximum(now, longer)
+        if isinstance(which, slice):
+            step = now
+        else:
+            step[which] = now
+        further = np.flatnonzero(longer == reach)
+        if not further.size:
+            break
+        which = further if isinstance(which, slice) else which[further]
+        part = tuple(x[further] if np.ndim(x) else x for x in part)
+        now = now[further]
     # Falling faster and faster from y = y′ = 0: y ≤ y″ h²/2 + J h³/6.
-    step = np.maximum(step, np.where(rising, 0.0, -3 * acceleration / (jerk + _TINY)))
-    done = (jerk * (first * first) <= _CLOSE * v) & (pressed <= _SIMPLE * square) & rising
+    step = np.maximum(step, np.where(rising, 0.0, -3 * a / (jerk + _TINY)))
+    third = np.abs(third) + rapidity * jerk * first
+    done = (third * (first * first) <= _CLOSE * v) & (pressed <= _SIMPLE * square) & rising
     return step, done
+
+
+def _step_within(reach, v, rising, square, twice, a, third, bound, fourth):
+    """Root of the parabola that bounds y up to ``reach``, if it lies before."""
+    growth = np.maximum(third, 0.0) + 0.25 * fourth * reach
+    local = np.minimum(a + reach * growth * (1 / 3), bound)
+    root = np.sqrt(np.maximum(square + local * twice, 0.0))
+    return np.where(rising, twice / (v + root + _TINY), (root - v) / np.maximum(local, _TINY))
+
+
+PASSES, REACH = 1, 4.0
 
 
 def first_zero(motion: Motion, start: np.ndarray) -> Zero:

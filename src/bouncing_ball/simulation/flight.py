@@ -52,7 +52,8 @@ class Flight:
 
     def __call__(self, time: np.ndarray) -> State:
         displacement, rate, second, third = self.gap(time)
-        return State(-displacement, -rate, -second, -third, 1 + self.amplitude, self.amplitude)
+        lam = self.amplitude
+        return State(-displacement, -rate, -second, -third, 1 + lam, lam, 1.0)
 
     def take(self, which: np.ndarray) -> "Flight":
         part = object.__new__(Flight)

@@ -26,11 +26,14 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.contact import Release
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.orbits import restitution as restitution_orbits
+from bouncing_ball.orbits.admissibility import is_admissible, restitution_is_admissible
+from bouncing_ball.orbits.grazing import grazing_points
 from bouncing_ball.orbits.monodromy import trace_and_contraction
 from bouncing_ball.orbits.stability import is_stable, multipliers
 from bouncing_ball.orbits.system import OrbitSystem, Parameter
 
 SADDLE_NODE, PERIOD_DOUBLING, FOLD = "saddle-node", "period doubling", "fold"
+GRAZING = "grazing"
 
 
 def controls(settings: Mapping[str, Any]) -> tuple[StepControl, NewtonSettings]:
@@ -151,7 +154,7 @@ def orbit_branches(
     _, newton = controls(settings)
     names = (
         "amplitude phase contact_duration release_phase impact_velocity bounce_velocity "
-        "apparent_restitution stable multiplier_real multiplier_imag residual"
+        "apparent_restitution stable admissible multiplier_real multiplier_imag residual"
     ).split()
     columns: dict[str, list] = {name: [] for name in names}
     kinds, special_points, residuals, reasons = [], [], [], []
@@ -172,6 +175,7 @@ def orbit_branches(
             orbit.bounce_velocity,
             orbit.apparent_restitution,
             is_stable(trace, det),
+            is_admissible(orbit),
             floquet.real,
             floquet.imag,
             np.max(np.abs(system.residual(y)), axis=-1),
@@ -179,9 +183,15 @@ def orbit_branches(
         for name, value in zip(names, values, strict=True):
             columns[name].append(value)
         chosen = [s for s in branch.special if s.name in (SADDLE_NODE, PERIOD_DOUBLING)]
-        kinds.append([s.name for s in chosen])
-        special_points.append(np.array([s.point for s in chosen]).reshape(-1, 4))
-        residuals.append([s.residual for s in chosen])
+
+        def admissible_at(y, system=system):
+            return is_admissible(system.orbit(y))
+
+        grazing = grazing_points(system, admissible_at, y, newton)
+        kinds.append([*(s.name for s in chosen), *[GRAZING] * len(grazing)])
+        points = np.array([*(s.point for s in chosen), *grazing]).reshape(-1, 4)
+        special_points.append(points)
+        residuals.append(np.max(np.abs(system.residual(points)), axis=-1))
         reasons.append([branch.start_reason, branch.end_reason])
     dims, special = ("frequency_ratio", "point"), ("frequency_ratio", "special")
     floquet_dims = (*dims, "multiplier")
@@ -218,6 +228,7 @@ def both_domains(
             restitution_amplitude=("point", amplitude),
             restitution_phase=("point", phase),
             restitution_stable=("point", stable),
+            restitution_admissible=("point", restitution_is_admissible(n, amplitude, phase)),
             saddle_node_amplitude=((), float(restitution_orbits.saddle_node(n, r))),
             saddle_node_phase=((), 0.0),
             period_doubling_amplitude=((), doubling),

@@ -10,6 +10,7 @@ from bouncing_ball.datasets.variables import describe
 from bouncing_ball.models.contact import Contact, Release
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.orbits import restitution as restitution_orbits
+from bouncing_ball.orbits.admissibility import is_admissible
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.limits import orbit_at
 from bouncing_ball.orbits.monodromy import trace_and_contraction
@@ -46,6 +47,7 @@ def _sweep_dataset(parameters, restitution, amplitude, release) -> xr.Dataset:
             "apparent_restitution": (dims, orbit.apparent_restitution),
             "max_height": (dims, orbit.max_height),
             "stable": (dims, stability_along(orbit)),
+            "admissible": (dims, is_admissible(orbit)),
         },
         coords={"frequency_ratio": ratios, "case": np.arange(len(restitution))},
     )

@@ -8,8 +8,27 @@ import xarray as xr
 
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.orbits import restitution as orbits
+from bouncing_ball.orbits.admissibility import restitution_is_admissible
 from bouncing_ball.orbits.restitution import ImpactMap
 from bouncing_ball.orbits.stability import is_stable
+
+
+def _grazing(n: int, r: float, top: float) -> tuple[float, float]:
+    """Λ and φ at which the unstable orbit grazes the table, NaN beyond ``top``.
+
+    Bisection of Λ on the unstable side, down to neighbouring numbers.
+    """
+    low, high = float(orbits.saddle_node(n, r)), top
+
+    def admissible(amplitude):
+        phase = orbits.phase(n, r, amplitude, stable_side=False)
+        return bool(restitution_is_admissible(n, amplitude, phase))
+
+    if admissible(high):
+        return np.nan, np.nan
+    while low < (middle := (low + high) / 2) < high:
+        low, high = (middle, high) if admissible(middle) else (low, middle)
+    return low, float(orbits.phase(n, r, low, stable_side=False))
 
 
 def restitution_orbits(parameters: Mapping[str, Any]) -> xr.Dataset:
@@ -29,6 +48,8 @@ def restitution_orbits(parameters: Mapping[str, Any]) -> xr.Dataset:
     fold = orbits.saddle_node(n, r)
     amplitude, phase = orbits.branch(n, r, top, parameters["points"])
     stable = is_stable(*orbits.trace_and_determinant(r, amplitude, phase))
+    admissible = restitution_is_admissible(n[:, np.newaxis], amplitude, phase)
+    grazing = np.array([_grazing(int(k), r, top) for k in n])
     maps = list(ImpactMap)
     doubling = np.array([orbits.period_doubling(n, r, kind) for kind in maps])
     lift = np.array([[float(orbits.period_doubling_lift(r, kind))] for kind in maps])
@@ -38,6 +59,9 @@ def restitution_orbits(parameters: Mapping[str, Any]) -> xr.Dataset:
                 "amplitude": (("n", "point"), amplitude),
                 "phase": (("n", "point"), phase),
                 "stable": (("n", "point"), stable),
+                "admissible": (("n", "point"), admissible),
+                "grazing_amplitude": ("n", grazing[:, 0]),
+                "grazing_phase": ("n", grazing[:, 1]),
                 "saddle_node_amplitude": ("n", fold),
                 "saddle_node_phase": ("n", np.zeros_like(fold)),
                 "period_doubling_amplitude": (("impact_map", "n"), doubling),

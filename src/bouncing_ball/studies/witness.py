@@ -1,0 +1,328 @@
+"""Three independent routes to every orbit that a figure or Table 1 shows.
+
+*Continuation* solves the paper's equations, the *formula* is the explicit
+branch, the *simulation* runs from event to event. Every published orbit and
+bifurcation is taken from its dataset and met by the two routes that it did not
+come from. A disagreement beyond its budget fails the run with the orbit named.
+"""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.continuation.branch import ContinuationError, continue_branch, solve_at
+from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane
+from bouncing_ball.continuation.events import parameter_bound
+from bouncing_ball.datasets.variables import describe
+from bouncing_ball.models.contact import Contact, Release
+from bouncing_ball.models.damping import damping_ratio
+from bouncing_ball.orbits.closed_form import branch_point
+from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.monodromy import monodromy, trace_and_contraction
+from bouncing_ball.orbits.projection import distance, nearest_excess
+from bouncing_ball.orbits.stability import (
+    is_stable,
+    period_doubling_function,
+    saddle_node_function,
+)
+from bouncing_ball.orbits.system import OrbitSystem, Parameter
+from bouncing_ball.simulation.spring_damper import contact_cycle
+from bouncing_ball.studies.continuation import PERIOD_DOUBLING, SADDLE_NODE, controls
+
+# Periods over which the simulation must hold a stable orbit.
+HELD_PERIODS = 50
+# Departure from an unstable orbit: small against the orbit, large against
+# rounding, so that its growth over one cycle shows six digits of the multiplier.
+_NUDGE = 1e-8
+
+
+class WitnessError(ValueError):
+    """Two routes to one orbit disagree beyond their budget."""
+
+
+class Comparison(NamedTuple):
+    """Disagreements of one kind, one for each orbit, and the orbits' names."""
+
+    kind: str
+    values: np.ndarray
+    names: list[str]
+
+
+class Published(NamedTuple):
+    """Orbits of one dataset with constant n, and where they came from."""
+
+    orbit: ContactOrbit
+    from_continuation: bool
+    special: tuple[np.ndarray, ...] | None = None
+
+
+def _names(orbit: ContactOrbit) -> list[str]:
+    lam, omega = np.broadcast_arrays(orbit.amplitude, orbit.contact.frequency_ratio)
+    pairs = zip(np.ravel(lam), np.ravel(omega), strict=True)
+    return [f"{orbit.n}-T orbit at Λ = {x:.6g}, ϖ = {w:.6g}" for x, w in pairs]
+
+
+def _rule(data: xr.Dataset) -> Release:
+    return Release(data.attrs["release"])
+
+
+def _flat(n: int, omega, zeta, rule, *values) -> ContactOrbit:
+    arrays = [np.ravel(x) for x in np.broadcast_arrays(omega, zeta, *values)]
+    there = np.isfinite(arrays[-1])
+    omega, zeta, *values = (x[there] for x in arrays)
+    return ContactOrbit(n, Contact(omega, zeta, rule), *values)
+
+
+def sweep_orbits(data: xr.Dataset) -> ContactOrbit:
+    """The orbits of a dataset along ϖ (Figs. 5, 6, 10, 13)."""
+    zeta = damping_ratio(data.restitution.values)[:, np.newaxis]
+    return _flat(
+        int(data.attrs["n"]),
+        data.frequency_ratio.values,
+        zeta,
+        _rule(data),
+        data.amplitude.values[:, np.newaxis],
+        data.phase.values,
+        data.contact_duration.values,
+        data.impact_velocity.values,
+    )
+
+
+def branch_orbits(data: xr.Dataset) -> ContactOrbit:
+    """The orbits of a dataset along Λ (Figs. 8, 9, 15)."""
+    return _flat(
+        int(data.attrs["n"]),
+        data.frequency_ratio.values[:, np.newaxis],
+        float(damping_ratio(data.attrs["restitution"])),
+        _rule(data),
+        data.amplitude.values,
+        data.phase.values,
+        data.contact_duration.values,
+        data.impact_velocity.values,
+    )
+
+
+def single_orbits(data: xr.Dataset) -> ContactOrbit:
+    """The orbits of a dataset of time histories (Figs. 7 and 12)."""
+    return _flat(
+        int(data.attrs["n"]),
+        np.asarray(data.frequency_ratio.values, dtype=float),
+        float(damping_ratio(data.attrs["restitution"])),
+        _rule(data),
+        float(data.attrs["amplitude"]),
+        data.phase.values,
+        data.contact_duration.values,
+        data.impact_velocity.values,
+    )
+
+
+def continuation_against_formula(orbit: ContactOrbit) -> Comparison:
+    """Orbits from a continuation against the nearest points of the formula."""
+    point = branch_point(nearest_excess(orbit), orbit.contact, orbit.n)
+    return Comparison("continuation and formula", distance(orbit, point), _names(orbit))
+
+
+def _continued(orbit: ContactOrbit, settings: Mapping[str, Any]) -> np.ndarray:
+    """Distances of orbits along ϖ, one ζ and Λ, from a continuation in ln ϖ."""
+    control, tolerance = controls(settings)
+    omega = orbit.contact.frequency_ratio
+    zeta, lam = float(orbit.contact.damping_ratio[0]), float(orbit.amplitude[0])
+    rule = orbit.contact.release
+    system = OrbitSystem(orbit.n, zeta, Parameter.LOG_FREQUENCY_RATIO, lam, rule)
+    stiff = max(settings["stiff_frequency_ratio"], float(omega.max()))
+    start = solve_at(system, system.guess(lam, stiff), tolerance)
+    # A hair beyond the softest contact, so that it lies inside the branch.
+    target = parameter_bound(np.log(omega.min()) - 1e-3, False, "target reached")
+    branch = continue_branch(
+        system,
+        start,
+        increasing=False,
+        events=(*system.events(), target),
+        control=control,
+        settings=tolerance,
+    )
+    if branch.end_reason != target.reason:
+        raise ContinuationError(
+            f"continuation at Λ = {lam:g} ends before ϖ = {omega.min():g}: {branch.end_reason}"
+        )
+    y = _at_parameter(system, branch.points, np.log(omega), tolerance)
+    found = system.orbit(y)
+    turn = np.angle(np.exp(1j * (orbit.phase - found.phase)))
+    differences = (
+        turn,
+        (orbit.duration - found.duration) * omega,
+        orbit.impact_velocity - found.impact_velocity,
+    )
+    return np.max(np.abs(differences), axis=0)
+
+
+def _at_parameter(system, points, wanted, settings: NewtonSettings) -> np.ndarray:
+    """Solutions at given parameters between the points of a monotone branch."""
+    order = np.argsort(points[:, -1])
+    columns = [np.interp(wanted, points[order, -1], points[order, k]) for k in range(4)]
+    guess = np.stack(columns, axis=-1)
+    axis = np.zeros(4)
+    axis[-1] = 1.0
+    patient = settings._replace(max_iterations=2 * settings.max_iterations)
+    return newton(system, guess, plane(np.broadcast_to(axis, guess.shape), guess), patient).point
+
+
+def formula_against_continuation(
+    orbit: ContactOrbit, settings: Mapping[str, Any]
+) -> Comparison:
+    """Orbits from the formula against a continuation along ϖ, curve by curve."""
+    zeta, lam = orbit.contact.damping_ratio, orbit.amplitude
+    values = np.empty(lam.shape)
+    for pair in sorted(set(zip(zeta.tolist(), lam.tolist(), strict=True))):
+        at = (zeta == pair[0]) & (lam == pair[1])
+        contact = Contact(
+            orbit.contact.frequency_ratio[at], zeta[at], orbit.contact.release
+        )
+        part = ContactOrbit(
+            orbit.n,
+            contact,
+            lam[at],
+            orbit.phase[at],
+            orbit.duration[at],
+            orbit.impact_velocity[at],
+        )
+        values[at] = _continued(part, settings)
+    return Comparison("continuation and formula", values, _names(orbit))
+
+
+def bifurcations_against_formula(data: xr.Dataset) -> Comparison:
+    """Located bifurcations of a dataset against those of the formula."""
+    rule, n = _rule(data), int(data.attrs["n"])
+    zeta = float(damping_ratio(data.attrs["restitution"]))
+    values, names = [], []
+    for ratio in data.frequency_ratio.values:
+        row = data.sel(frequency_ratio=ratio)
+        for kind, lam, phase, duration in zip(
+            row.special_kind.values,
+            row.special_amplitude.values,
+            row.special_phase.values,
+            row.special_contact_duration.values,
+            strict=True,
+        ):
+            if kind not in (SADDLE_NODE, PERIOD_DOUBLING):
+                continue
+            values.append(
+                _bifurcation_distance(str(kind), n, Contact(ratio, zeta, rule), lam, phase, duration)
+            )
+            names.append(f"{kind} of the {n}-T orbits at Λ = {lam:.6g}, ϖ = {ratio:.6g}")
+    return Comparison("continuation and formula", np.array(values), names)
+
+
+def _bifurcation_distance(kind, n, contact, amplitude, phase, duration) -> float:
+    """Distance of a located bifurcation from that of the formula, in Λ and φ."""
+    scalar = np.asarray(amplitude), np.asarray(phase), np.asarray(duration)
+    excess = nearest_excess(ContactOrbit(n, contact, *scalar, np.asarray(0.0)))
+    test = saddle_node_function if kind == SADDLE_NODE else period_doubling_function
+    # Two secant steps from a start that is right to rounding.
+    width = 1e-4 / max(contact.frequency_ratio, 1.0)
+    ends = [excess - width, excess + width]
+    for _ in range(6):
+        points = [branch_point(e, contact, n) for e in ends]
+        low, high = (test(point.trace, point.determinant) for point in points)
+        if high == low:
+            break
+        ends = [ends[1], ends[1] - high * (ends[1] - ends[0]) / (high - low)]
+    point = branch_point(ends[1], contact, n)
+    turn = np.angle(np.exp(1j * (phase - point.phase)))
+    return float(max(abs(amplitude - point.amplitude), abs(turn)))
+
+
+def simulation_closes(orbit: ContactOrbit) -> Comparison:
+    """The simulation returns to every orbit after one cycle."""
+    u = orbit.relative_impact_velocity
+    cycle = contact_cycle(orbit.contact, orbit.amplitude, orbit.phase, u)
+    turn = np.angle(np.exp(1j * (cycle.phase - orbit.phase)))
+    late = cycle.time - 2 * np.pi * orbit.n
+    values = np.max(np.abs([turn, late, cycle.relative_velocity - u]), axis=0)
+    return Comparison("simulation over one cycle", values, _names(orbit))
+
+
+def simulation_holds(orbit: ContactOrbit) -> Comparison:
+    """The simulation stays on every stable orbit."""
+    phase, u = orbit.phase, orbit.relative_impact_velocity
+    start = phase, u
+    for _ in range(HELD_PERIODS):
+        cycle = contact_cycle(orbit.contact, orbit.amplitude, phase, u)
+        phase, u = cycle.phase, cycle.relative_velocity
+    turn = np.angle(np.exp(1j * (phase - start[0])))
+    values = np.max(np.abs([turn, u - start[1]]), axis=0)
+    kind = f"simulation over {HELD_PERIODS} cycles, stable orbits"
+    return Comparison(kind, np.where(np.isnan(values), np.inf, values), _names(orbit))
+
+
+def simulation_leaves(orbit: ContactOrbit) -> Comparison:
+    """The simulation leaves every unstable orbit at the rate of its multiplier.
+
+    Started a little off along the unstable direction, on both sides; the
+    growth of the difference over one cycle is compared with the multiplier.
+    """
+    matrix = monodromy(orbit)
+    values, vectors = np.linalg.eig(matrix)
+    which = np.argmax(np.abs(values), axis=-1)[..., np.newaxis]
+    multiplier = np.take_along_axis(values, which, axis=-1)[..., 0].real
+    direction = np.take_along_axis(vectors, which[..., np.newaxis, :], axis=-1)[..., 0].real
+    u = orbit.relative_impact_velocity
+    # A fixed part of the impact velocity, so that soft landings are met too.
+    nudge = _NUDGE * np.abs(u)[:, np.newaxis] * direction
+    ends = []
+    for sign in (1.0, -1.0):
+        cycle = contact_cycle(
+            orbit.contact,
+            orbit.amplitude,
+            orbit.phase + sign * nudge[:, 0],
+            u + sign * nudge[:, 1],
+        )
+        turn = np.angle(np.exp(1j * (cycle.phase - orbit.phase)))
+        ends.append(np.stack([turn, cycle.relative_velocity], axis=-1))
+    growth = np.sum((ends[0] - ends[1]) * nudge, axis=-1) / (2 * np.sum(nudge * nudge, axis=-1))
+    return Comparison(
+        "rate of departure, unstable orbits", np.abs(growth / multiplier - 1), _names(orbit)
+    )
+
+
+def _chosen(orbit: ContactOrbit, which: np.ndarray) -> ContactOrbit:
+    contact = Contact(
+        orbit.contact.frequency_ratio[which],
+        orbit.contact.damping_ratio[which],
+        orbit.contact.release,
+    )
+    return ContactOrbit(
+        orbit.n,
+        contact,
+        *(
+            x[which]
+            for x in (orbit.amplitude, orbit.phase, orbit.duration, orbit.impact_velocity)
+        ),
+    )
+
+
+def _simulated(orbit: ContactOrbit) -> Iterator[Comparison]:
+    omega, zeta = orbit.contact.frequency_ratio, orbit.contact.damping_ratio
+    # The simulation has no steady contact at the undamped resonance.
+    orbit = _chosen(orbit, np.hypot((omega - 1) * (omega + 1), 2 * zeta * omega) > 1e-3)
+    stable = is_stable(*trace_and_contraction(orbit))
+    yield simulation_closes(orbit)
+    yield simulation_holds(_chosen(orbit, stable))
+    trace, det = trace_and_contraction(orbit)
+    # Away from the bifurcations, where the multiplier is ±1 and tells nothing.
+    unstable = np.minimum(saddle_node_function(trace, det), period_doubling_function(trace, det))
+    yield simulation_leaves(_chosen(orbit, unstable < -0.05))
+
+
+def compare(name: str, data: xr.Dataset, settings: Mapping[str, Any]) -> Iterator[Comparison]:
+    """All comparisons for the orbits of one dataset."""
+    if "special_kind" in data:
+        orbit = branch_orbits(data)
+        yield continuation_against_formula(orbit)
+        yield bifurcations_against_formula(data)
+    else:
+        orbit = sweep_orbits(data) if "case" in data.dims else single_orbits(data)
+        yield formula_against_continuation(orbit, settings)
+    yield from _simulated(orbit)

@@ -20,6 +20,7 @@ include: "workflow/rules/frequency_sweeps.smk"
 include: "workflow/rules/permanent_contact.smk"
 include: "workflow/rules/error_thresholds.smk"
 include: "workflow/rules/release_rules.smk"
+include: "workflow/rules/witness.smk"
 # Renderings: datasets in, figures, tables and text out.
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/tables.smk"

@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize_scalar
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.models.contact import contact_flow
+from bouncing_ball.models.contact import Release, contact_flow, contact_force
+from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.permanent_contact import (
     RESTITUTION_THRESHOLD,
     permanent_contact_frequency_ratios,
@@ -30,16 +31,25 @@ def test_threshold_against_the_papers_formula(omega, zeta):
     assert abs(computed - exact) <= 6 * EPS * max(exact, 1.0)
 
 
-@pytest.mark.parametrize(("omega", "zeta"), [(0.7, 0.1), (1.0, 0.2), (3.0, 0.05), (20.0, 0.4)])
-def test_steady_oscillation_just_reaches_the_table(omega, zeta):
-    # At Λ_SD the steady displacement touches zero from below: integrate the
-    # flow until the transient has gone, then one period.
-    lam = float(permanent_contact_threshold(omega, zeta))
-    settled = 2 * np.pi * np.ceil(40 / (zeta * omega) / (2 * np.pi))
+@pytest.mark.parametrize("release", list(Release))
+@pytest.mark.parametrize("zeta", [0.05, 0.4, 1.3])
+@pytest.mark.parametrize("omega", [0.7, 1.0, 3.0, 20.0])
+def test_steady_oscillation_just_reaches_the_release(omega, zeta, release):
+    # At the threshold the steady displacement touches zero from below, or the
+    # force from above: the flow, once the transient has gone, over a period.
+    lam = float(permanent_contact_threshold(omega, zeta, release))
+    slowest = omega * (zeta - np.sqrt(max(zeta**2 - 1, 0)))
+    settled = 2 * np.pi * np.ceil(40 / slowest / (2 * np.pi))
     t = settled + np.linspace(0, 2 * np.pi, 20001)
-    d = contact_flow(t, 0.0, 0.0, 0.0, lam, omega, zeta).displacement
-    # The highest sample is within (2π/40000)²/2 · Λ/√γ of the top.
-    assert abs(d.max()) * omega**2 < 2e-8
+    flow = contact_flow(t, 0.0, 0.0, 0.0, lam, omega, zeta)
+    # In units of the weight, both oscillate about one with amplitude one; the
+    # sample nearest to the extremum is within (2π/40000)²/2 of it.
+    if release is Release.FORCE:
+        reserve = contact_force(flow.displacement, flow.velocity, omega, zeta)
+    else:
+        reserve = -(omega**2) * flow.displacement
+    assert abs(reserve.min()) < 2e-8
+    assert reserve.max() == pytest.approx(2.0, abs=2e-8)
 
 
 def test_limits():
@@ -56,11 +66,14 @@ def test_limits():
         assert float(permanent_contact_threshold(1.0, zeta)) == 2 * zeta
 
 
-@pytest.mark.parametrize("zeta", [0.05, 0.136, 0.4, 0.65])
-def test_minimum_against_a_minimiser(zeta):
-    lowest = permanent_contact_minimum(zeta)
+@pytest.mark.parametrize(
+    ("zeta", "release"),
+    [(z, rule) for z in (0.05, 0.136, 0.4, 0.65) for rule in Release] + [(1.5, Release.FORCE)],
+)
+def test_minimum_against_a_minimiser(zeta, release):
+    lowest = permanent_contact_minimum(zeta, release)
     found = minimize_scalar(
-        lambda w: float(permanent_contact_threshold(w, zeta)),
+        lambda w: float(permanent_contact_threshold(w, zeta, release)),
         bounds=(0.5, 10.0),
         method="bounded",
         options={"xatol": 1e-10},
@@ -68,13 +81,47 @@ def test_minimum_against_a_minimiser(zeta):
     # A minimum locates to the square root of eps, its value to eps.
     assert float(lowest.frequency_ratio) == pytest.approx(found.x, rel=1e-6)
     assert float(lowest.threshold) == pytest.approx(found.fun, rel=1e-12)
-    at = float(permanent_contact_threshold(lowest.frequency_ratio, zeta))
+    at = float(permanent_contact_threshold(lowest.frequency_ratio, zeta, release))
     assert float(lowest.threshold) == pytest.approx(at, rel=10 * EPS)
 
 
-def test_undamped_minimum_is_zero_at_resonance():
-    lowest = permanent_contact_minimum(0.0)
+@pytest.mark.parametrize("release", list(Release))
+def test_undamped_minimum_is_zero_at_resonance(release):
+    lowest = permanent_contact_minimum(0.0, release)
     assert (float(lowest.threshold), float(lowest.frequency_ratio)) == (0.0, 1.0)
+
+
+def test_releases_agree_without_damping_and_differ_with_it():
+    omega = np.array([0.3, 1.0, 2.0, 50.0])
+    assert np.array_equal(
+        permanent_contact_threshold(omega, 0.0), permanent_contact_threshold(omega, 0.0, Release.FORCE)
+    )
+    # A damper pulls before the displacement is zero: less is permanent contact.
+    assert np.all(
+        permanent_contact_threshold(omega, 0.2, Release.FORCE)
+        < permanent_contact_threshold(omega, 0.2)
+    )
+
+
+@given(st.floats(0.02, 100), st.floats(0, 2))
+def test_inverse_for_the_force_release(omega, zeta):
+    lam = float(permanent_contact_threshold(omega, zeta, Release.FORCE))
+    found = permanent_contact_frequency_ratios(lam, zeta, Release.FORCE)
+    # Λ² of both, with the roundings of the sums of squares; next to the
+    # minimum Λ may round below it.
+    size = 1 + lam**2 * (1 + 4 * zeta**2) ** 2
+    noise = 64 * EPS * size**2
+    finite = [float(w) for w in found if np.isfinite(w)]
+    for w in finite:
+        again = float(permanent_contact_threshold(w, zeta, Release.FORCE))
+        assert abs(again**2 - lam**2) <= noise
+    lowest = permanent_contact_minimum(zeta, Release.FORCE)
+    if lam**2 - float(lowest.threshold) ** 2 > noise:
+        # And ϖ itself is one of them, unless the slope is flat there.
+        assert finite
+        nearest = min(abs(w / omega - 1) for w in finite)
+        slope = 2 * abs(1 - 2 * zeta**2 * (1 - lam**2) - omega**-2) * omega**-2
+        assert nearest * slope <= noise + nearest**2 * (1 + omega**-4) * 4
 
 
 @given(st.floats(0.02, 300), st.floats(0, 2))
@@ -94,9 +141,9 @@ def test_inverse_is_the_inverse(omega, zeta):
         assert min(abs(root - x) for root in roots) <= allowed
     for w in (low, high):
         if np.isfinite(w):
-            # Both are solutions, as far as Λ can tell.
+            # Both are solutions: the same noise, now in Λ².
             again = float(permanent_contact_threshold(w, zeta))
-            assert again == pytest.approx(lam, rel=1e-7)
+            assert abs(again**2 - lam**2) <= 2 * noise
 
 
 @pytest.mark.parametrize("zeta", [0.0, 0.136, 0.6])
@@ -135,8 +182,6 @@ def test_no_frequency_ratio_has_a_negative_threshold():
 
 def test_one_percent_threshold_of_the_permanent_contact():
     # Λ_SD = 0.99 at the larger ϖ. Figure 16's r = 0.65.
-    from bouncing_ball.models.damping import damping_ratio
-
     high = float(permanent_contact_frequency_ratios(0.99, damping_ratio(0.65))[1])
     assert high == pytest.approx(9.81177, abs=5e-6)
 

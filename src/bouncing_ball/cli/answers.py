@@ -15,7 +15,7 @@ from bouncing_ball.models.permanent_contact import (
 )
 from bouncing_ball.orbits import limits as contact_limits
 from bouncing_ball.orbits import restitution as restitution_orbits
-from bouncing_ball.orbits.admissibility import is_admissible, restitution_margin
+from bouncing_ball.orbits.admissibility import is_admissible, restitution_is_admissible
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.monodromy import trace_and_contraction
 from bouncing_ball.orbits.stability import is_stable, multipliers
@@ -41,7 +41,6 @@ def _restitution_orbit(args: argparse.Namespace) -> Answer:
     velocity = n * math.pi
     trace, det = (float(x) for x in restitution_orbits.trace_and_determinant(r, lam, phase))
     defect = -r * velocity + velocity - (1 + r) * lam * math.cos(phase)
-    margin = float(restitution_margin(n, lam, phase, velocity))
     return {
         "phase": phase,
         "contact_duration": 0.0,
@@ -51,7 +50,7 @@ def _restitution_orbit(args: argparse.Namespace) -> Answer:
         "max_height": float(restitution_orbits.max_height(n, lam, phase)),
         "multipliers": _pairs(trace, det),
         "is_stable": bool(is_stable(trace, det)),
-        "is_admissible": margin > 0 and velocity > lam * math.cos(phase),
+        "is_admissible": bool(restitution_is_admissible(n, lam, phase)),
         "residual": abs(defect),
     }
 

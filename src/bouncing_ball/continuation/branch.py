@@ -12,7 +12,7 @@ from bouncing_ball.continuation.corrector import (
     plane,
     tangent,
 )
-from bouncing_ball.continuation.events import Event, SpecialPoint, locate
+from bouncing_ball.continuation.events import Event, LocationError, SpecialPoint, locate
 from bouncing_ball.continuation.problem import Problem
 from bouncing_ball.continuation.step_control import StepControl
 
@@ -121,6 +121,8 @@ def continue_branch(
     ------
     ContinuationError
         If there is no solution near ``start``.
+    LocationError
+        If an announced event cannot be located, down to the smallest step.
     """
     y = solve_at(problem, np.asarray(start, dtype=float), settings)
     direction = null_vector(problem.jacobian(y)) * (1.0 if increasing else -1.0)
@@ -148,10 +150,24 @@ def continue_branch(
             step = shorter
             continue
         new_values = [float(event.function(found.point)) for event in events]
-        located = []
+        located, failure = [], None
         for event, before, after in zip(events, values, new_values, strict=True):
             if _changed(before, after):
-                located.append((event, locate(problem, event, y, found.point, settings)))
+                try:
+                    located.append((event, locate(problem, event, y, found.point, settings)))
+                except LocationError as error:
+                    failure = event, error
+        if failure and not any(event.terminal for event, _ in located):
+            # The step may have left the domain in which the event makes sense.
+            event, error = failure
+            shorter = control.after_failure(step)
+            if shorter is not None:
+                step = shorter
+                continue
+            if not event.terminal:
+                raise error
+            reason = f"{event.reason or event.name} (within {step:.0e})"
+            break
         located.sort(key=lambda pair: float((pair[1].point - y) @ direction))
         ended = False
         for event, point in located:

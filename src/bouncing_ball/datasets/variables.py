@@ -127,6 +127,13 @@ VARIABLES: dict[str, Variable] = {
     "reading": Variable("release rule, and restitution coefficient compared with", ""),
     "bifurcation_amplitude": Variable("excitation amplitude of the bifurcation", "Λ"),
     "force_restitution": Variable("restitution coefficient of the force release", "r_F"),
+    # witness
+    "artifact": Variable("figure or table whose orbits are compared", ""),
+    "comparison": Variable("the two routes compared", ""),
+    "disagreement": Variable("largest disagreement between two routes", ""),
+    "budget": Variable("disagreement allowed", ""),
+    "orbits": Variable("number of orbits or bifurcations compared", ""),
+    "worst": Variable("where the largest disagreement is", ""),
     # Table 1
     "computed": Variable("end of the stability range, this replication", "Λ"),
     "printed": Variable("end of the stability range, as printed", "Λ", equation="Table 1"),

@@ -257,7 +257,20 @@ def _branch_point(eps, omega, zeta, n, rule: Release) -> BranchPoint:
         )
     )
 
-    # Linearised cycle: contact, release, flight, landing; columns (τ, u).
+    trace = _trace(force, omega, zeta, flight, (u, x, y), (sin_d, cos_d), (g, dg, p, q, dq), push)
+    return BranchPoint(
+        duration, x, y, u, d_x * per_angle, d_y * per_angle, trace, decay * decay + 0 * trace
+    )
+
+
+@np.errstate(divide="ignore", invalid="ignore")
+def _trace(force, omega, zeta, flight, orbit, end, responses_at_end, push):
+    """Trace of the linearised cycle: contact, release, flight, landing.
+
+    Infinite or not a number where the ball grazes at impact or at release.
+    """
+    (u, x, y), (sin_d, cos_d), (g, dg, p, q, dq) = orbit, end, responses_at_end
+    # Columns of the monodromy over (τ, u).
     bounce = u * dg + x * q + y * dq - g  # δ′ at release
     leaving = x * cos_d - y * sin_d  # Λ cos and Λ sin of the phase at release
     lifted = y * cos_d + x * sin_d
@@ -268,7 +281,7 @@ def _branch_point(eps, omega, zeta, n, rule: Release) -> BranchPoint:
         stay_tau = -(omega * by_phase + 2 * zeta * by_phase_rate) / slope
         stay_u = -push / slope
     else:
-        acceleration = lifted - 1 - loss * bounce
+        acceleration = lifted - 1 - 2 * zeta * omega * bounce
         stay_tau, stay_u = -by_phase / bounce, -g / bounce
     columns = []
     for stay, direct, displaced, moved in (
@@ -281,7 +294,4 @@ def _branch_point(eps, omega, zeta, n, rule: Release) -> BranchPoint:
         hang = -(risen + flight * thrown - x * release_phase) / u
         landing_phase = release_phase + hang
         columns.append((landing_phase, thrown - hang + y * landing_phase))
-    trace = columns[0][0] + columns[1][1]
-    return BranchPoint(
-        duration, x, y, u, d_x * per_angle, d_y * per_angle, trace, decay * decay + 0 * trace
-    )
+    return columns[0][0] + columns[1][1]

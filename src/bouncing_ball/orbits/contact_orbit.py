@@ -11,6 +11,11 @@ import numpy as np
 from bouncing_ball.models.contact import Contact, Release, contact_flow
 from bouncing_ball.orbits.closed_form import BranchPoint
 
+# Samples of a contact among which its highest point is looked for, and Newton
+# steps from there.
+_CONTACT_SAMPLES = 33
+_REFINEMENTS = 4
+
 
 @dataclass(frozen=True)
 class ContactOrbit:
@@ -86,17 +91,36 @@ class ContactOrbit:
         return landing - mean_velocity * self.flight_time
 
     @property
-    def max_height(self) -> np.ndarray:
-        """Greatest absolute height over the cycle.
-
-        The top of the flight, or its start if the ball is released downwards.
-        """
+    def flight_top(self) -> np.ndarray:
+        """Greatest height in flight: its top, or its start if released downwards."""
         rising = np.maximum(self.bounce_velocity, 0.0)
         return self.bounce_height + rising * rising / 2
 
-    def contact_path(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Absolute position and velocity at times 0 ≤ τ ≤ τ_b in contact."""
-        flow = contact_flow(
+    @property
+    def max_height(self) -> np.ndarray:
+        """Greatest absolute height over the cycle.
+
+        In flight, unless a long contact lifts the ball higher with the table;
+        its highest sample is then refined by Newton's method on the velocity.
+        """
+        share = np.linspace(0.0, 1.0, _CONTACT_SAMPLES)
+        share = share.reshape(-1, *(1,) * np.ndim(self.duration))
+        height, _ = self.contact_path(share * self.duration)
+        highest = np.argmax(np.where(np.isnan(height), -np.inf, height), axis=0)
+        step = self.duration / (_CONTACT_SAMPLES - 1)
+        centre = highest * step
+        low = np.maximum(centre - step, 0.0)
+        high = np.minimum(centre + step, self.duration)
+        time = centre
+        for _ in range(_REFINEMENTS):
+            _, velocity = self.contact_path(time)
+            slope = self._contact_acceleration(time)
+            moved = np.where(slope < 0, -velocity / np.where(slope < 0, slope, -1.0), 0.0)
+            time = np.clip(time + moved, low, high)
+        return np.maximum(self.flight_top, self.contact_path(time)[0])
+
+    def _contact_flow(self, time: np.ndarray):
+        return contact_flow(
             time,
             0.0,
             self.relative_impact_velocity,
@@ -105,6 +129,14 @@ class ContactOrbit:
             self.contact.frequency_ratio,
             self.contact.damping_ratio,
         )
+
+    def _contact_acceleration(self, time: np.ndarray) -> np.ndarray:
+        table = self.amplitude * np.sin(self.phase + time)
+        return self._contact_flow(time).acceleration - table
+
+    def contact_path(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Absolute position and velocity at times 0 ≤ τ ≤ τ_b in contact."""
+        flow = self._contact_flow(time)
         angle = self.phase + time
         return (
             flow.displacement + self.amplitude * np.sin(angle),

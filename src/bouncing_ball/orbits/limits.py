@@ -20,12 +20,16 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.contact import Contact
 from bouncing_ball.orbits.closed_form import branch_point, free_release_angle
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
-from bouncing_ball.orbits.stability import period_doubling_function
+from bouncing_ball.orbits.stability import period_doubling_function, saddle_node_function
 
 # Points of the scan on each side of ε = 0, spaced geometrically from a small
 # part of 1/ϖ, the scale of the fold, to the ends of the admissible range.
 _SCAN = 60
 _SCAN_START = 1e-3
+# The scan's ends: contacts of a thousandth of the free one, at which Λ exceeds
+# 10⁶, and contacts that fill the cycle but for a millionth.
+_SHORTEST = 1e-3
+_FULL = 1e-6
 
 
 class Side(StrEnum):
@@ -42,43 +46,42 @@ def _columns(contact: Contact, n: ArrayLike, *more: ArrayLike):
 
 
 def _range(contact: Contact, n: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """ε at D → 0 and at D → 2πn, drawn in by a part in 10⁶."""
+    """ε at short contacts, where Λ is beyond any use, and at D → 2πn."""
     omega, zeta, n = _columns(contact, n)
     start = free_release_angle(contact)
     full = omega * np.sqrt((1 - zeta) * (1 + zeta)) * 2 * np.pi * n
-    margin = 1e-6
-    low = np.broadcast_to(-start * (1 - margin), full.shape)
-    return low, full * (1 - margin) - start
-
-
-def _unit_grid(trailing: int) -> np.ndarray:
-    return np.linspace(0, 1, _SCAN).reshape(-1, *(1,) * trailing)
+    low = -start * (1 - _SHORTEST)
+    high = full * (1 - _FULL) - start
+    return np.minimum(low, high), high
 
 
 def _scan(low, high, scale):
-    """Geometric grid through 0 on (low, high), shape (points, ...)."""
-    small = np.minimum(_SCAN_START * scale, np.minimum(-low, np.abs(high)) / 2)
-    steps = _unit_grid(np.ndim(low))
+    """Grid from low to high, geometric on both sides of 0, shape (points, ...)."""
+    small = np.minimum(_SCAN_START * scale, -low / 2)
+    steps = np.linspace(0, 1, _SCAN).reshape(-1, *(1,) * np.ndim(low))
     down = -small * (-low / small) ** steps[::-1]
     up = small * np.maximum(high / small, 1.0) ** steps
-    return np.concatenate([down, np.zeros((1, *np.shape(low))), up])
+    grid = np.concatenate([down, np.zeros((1, *np.shape(low))), up])
+    # A contact softer than the cycle is long ends before ε = 0.
+    return np.minimum(grid, high)
 
 
-def _first_root(function, grid, args):
-    """First sign change of a function along the grid's first axis, refined.
-
-    NaN where there is none.
-    """
-    values = function(grid, *args)
-    change = (values[:-1] < 0) != (values[1:] < 0)
+def _bracket(values, *, last=False):
+    """Index of the first, or last, sign change along the first axis, and whether
+    there is one. Not-a-number has no sign."""
+    left, right = values[:-1], values[1:]
+    change = ((left < 0) & (right >= 0)) | ((left >= 0) & (right < 0))
     found = np.any(change, axis=0)
-    first = np.argmax(change, axis=0)[np.newaxis]
-    left = np.take_along_axis(grid, first, axis=0)[0]
-    right = np.take_along_axis(grid, first + 1, axis=0)[0]
-    return _close(function, left, right, found, args)
+    at = np.argmax(change[::-1] if last else change, axis=0)
+    return (len(change) - 1 - at if last else at), found
+
+
+def _at(grid, index):
+    return np.take_along_axis(grid, index[np.newaxis], axis=0)[0]
 
 
 def _close(function, left, right, found, args):
+    """Roots in brackets, NaN where there is none."""
     result = np.full(np.shape(found), np.nan)
     if np.any(found):
         chosen = tuple(x[found] for x in args)
@@ -109,7 +112,14 @@ def saddle_node(contact: Contact, n: ArrayLike) -> np.ndarray:
         return branch_point(excess, Contact(omega, zeta, release), n).fold
 
     low, high = _range(contact, n)
-    return _first_root(fold, _scan(low, high, 1 / omega), (omega, zeta, n))
+    grid = _scan(low, high, 1 / omega)
+    points = branch_point(grid, Contact(omega, zeta, release), n)
+    # Λ turns at grazing releases as well, where no multiplier is 1, and rounding
+    # turns it at vanishing contacts: both test functions must change sign.
+    floquet = saddle_node_function(points.trace, points.determinant)
+    agreed = np.where(points.fold * floquet < 0, floquet, np.nan)
+    index, found = _bracket(agreed)
+    return _close(fold, _at(grid, index), _at(grid, index + 1), found, (omega, zeta, n))
 
 
 def period_doubling(contact: Contact, n: ArrayLike) -> np.ndarray:
@@ -125,10 +135,12 @@ def period_doubling(contact: Contact, n: ArrayLike) -> np.ndarray:
         return period_doubling_function(point.trace, point.determinant)
 
     fold = saddle_node(contact, n)
-    low, _ = _range(contact, n)
-    scale = _SCAN_START * np.minimum(1 / omega, 1.0)
-    outward = fold - scale * ((fold - low) / scale) ** _unit_grid(fold.ndim)
-    return _first_root(flip, outward, (omega, zeta, n))
+    low, high = _range(contact, n)
+    end = np.where(np.isnan(fold), high, fold)
+    # The part of the scan on the stable side; its points beyond collapse there.
+    grid = np.minimum(_scan(low, high, 1 / omega), end)
+    index, found = _bracket(flip(grid, omega, zeta, n), last=True)
+    return _close(flip, _at(grid, index), _at(grid, index + 1), found, (omega, zeta, n))
 
 
 def orbit_at(
@@ -168,9 +180,12 @@ def orbit_at(
         excess = _close(surplus, low, end, found, (omega, zeta, n, lam))
     else:
         scale = _SCAN_START / omega
-        outward = fold + scale * ((high - fold) / scale) ** _unit_grid(fold.ndim)
-        outward = np.concatenate([fold[np.newaxis], outward])
-        excess = _first_root(surplus, outward, (omega, zeta, n, lam))
+        steps = np.linspace(0, 1, _SCAN).reshape(-1, *(1,) * fold.ndim)
+        outward = fold + scale * np.maximum((high - fold) / scale, 1.0) ** steps
+        grid = np.minimum(np.concatenate([fold[np.newaxis], outward]), high)
+        index, found = _bracket(surplus(grid, omega, zeta, n, lam))
+        args = (omega, zeta, n, lam)
+        excess = _close(surplus, _at(grid, index), _at(grid, index + 1), found, args)
     return ContactOrbit.from_branch(branch_point(excess, local, n), local, n)
 
 

@@ -91,6 +91,12 @@ def period_doubling(
     return np.hypot(period_doubling_lift(restitution, impact_map), saddle_node(n, restitution))
 
 
+def _first_below(lam, n, fold):
+    """Λ, n and Λ_SN where Λ lies below the saddle-node."""
+    lam, n, fold = np.broadcast_arrays(lam, n, fold)
+    return tuple(np.atleast_1d(x)[np.atleast_1d(~(lam >= fold))] for x in (lam, n, fold))
+
+
 def phase(
     n: ArrayLike, restitution: ArrayLike, amplitude: ArrayLike, stable_side: bool = True
 ) -> np.ndarray:
@@ -109,8 +115,9 @@ def phase(
     """
     fold, lam = saddle_node(n, restitution), np.asarray(amplitude, dtype=float)
     if not np.all(lam >= fold):
+        lam, family, fold = (x.ravel()[0] for x in _first_below(lam, np.asarray(n), fold))
         raise NoOrbitError(
-            f"no {n}-T orbit at Λ = {amplitude}: below the saddle-node at Λ = {fold:.6g}"
+            f"no {family}-T orbit at Λ = {lam:g}: below the saddle-node at Λ = {fold:.6g}"
         )
     lift = np.sqrt((lam - fold) * (lam + fold))
     return np.arctan2(lift if stable_side else -lift, fold)

@@ -19,6 +19,7 @@ from bouncing_ball.continuation.events import Event
 from bouncing_ball.models.contact import Contact, Release, contact_flow
 from bouncing_ball.models.damping import restitution_coefficient
 from bouncing_ball.orbits import restitution as restitution_orbits
+from bouncing_ball.orbits.closed_form import free_release_angle
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.monodromy import monodromy
 from bouncing_ball.orbits.stability import (
@@ -160,15 +161,17 @@ class OrbitSystem:
         return np.stack([release, velocity, landing], axis=-2)
 
     def guess(self, amplitude: float, frequency_ratio: float) -> np.ndarray:
-        """The stable restitution orbit with half a contact period: y to start from.
+        """The stable restitution orbit with a free contact: y to start from.
 
         Close to a solution for ϖ ≫ 1 only.
         """
-        r = float(restitution_coefficient(self.damping_ratio))
+        zeta = self.damping_ratio
+        r = float(restitution_coefficient(zeta, self.release))
         phase = float(restitution_orbits.phase(self.n, r, amplitude))
-        half_period = np.pi / np.sqrt((1 - self.damping_ratio) * (1 + self.damping_ratio))
+        contact = Contact(frequency_ratio, zeta, self.release)
+        angle = float(free_release_angle(contact)) / np.sqrt((1 - zeta) * (1 + zeta))
         p = amplitude if self.parameter is Parameter.AMPLITUDE else np.log(frequency_ratio)
-        return np.array([phase, -self.n * np.pi, half_period, p])
+        return np.array([phase, -self.n * np.pi, angle, p])
 
     def _stability(self, test: Callable) -> Callable[[np.ndarray], np.ndarray]:
         return lambda y: test(*trace_and_determinant(monodromy(self.orbit(y))))
@@ -183,6 +186,12 @@ class OrbitSystem:
                 lambda y: -self.orbit(y).relative_impact_velocity - _MARGIN,
                 terminal=True,
                 reason="contact lost: the ball no longer closes in on the table at impact",
+            ),
+            Event(
+                "release lost",
+                lambda y: self.orbit(y).relative_bounce_velocity,
+                terminal=True,
+                reason="release lost: the ball no longer leaves the table as the contact ends",
             ),
             Event(
                 "flight lost",

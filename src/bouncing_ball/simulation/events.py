@@ -99,12 +99,12 @@ def safe_step(state: State) -> tuple[np.ndarray, np.ndarray]:
     while True:
         reach = REACH * now
         longer = np.minimum(_step_within(reach, *part), reach)
+        further = np.flatnonzero((longer == reach) & (longer > now))
         now = np.maximum(now, longer)
         if isinstance(which, slice):
-            step = now
+            step = now.copy()
         else:
             step[which] = now
-        further = np.flatnonzero(longer == reach)
         if not further.size:
             break
         which = further if isinstance(which, slice) else which[further]

@@ -243,13 +243,15 @@ def stability_ranges(
     """Ranges of Λ in which the n-T orbits are stable, computed and printed (Table 1)."""
     n, r = parameters["n"], parameters["restitution"]
     ratios = parameters["frequency_ratio"]
-    computed = np.empty((len(ratios), len(n), 2))
+    computed, phase, duration = np.empty((3, len(ratios), len(n), 2))
     for i, ratio in enumerate(ratios):
         for j, family in enumerate(n):
             top = parameters["amplitude_max"]
             _, branch = branch_along_amplitude(family, r, ratio, top, release, settings)
             limits = first_limits(branch)
-            computed[i, j] = limits[SADDLE_NODE][-1], limits[PERIOD_DOUBLING][-1]
+            for k, kind in enumerate((SADDLE_NODE, PERIOD_DOUBLING)):
+                phase[i, j, k], _, angle, computed[i, j, k] = limits[kind]
+                duration[i, j, k] = angle / ratio
     families = np.array(n)
     maps = list(restitution_orbits.ImpactMap)
     limit = np.empty((len(maps), len(n), 2))
@@ -261,6 +263,8 @@ def stability_ranges(
         xr.Dataset(
             {
                 "computed": (dims, computed),
+                "special_phase": (dims, phase),
+                "special_contact_duration": (dims, duration),
                 "printed": (dims, np.array(parameters["printed"], dtype=float)),
                 "restitution_range": (("impact_map", "n", "bound"), limit),
             },

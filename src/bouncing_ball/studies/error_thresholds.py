@@ -191,8 +191,14 @@ def height_error(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         release,
     )
     touch = Contact(dataset.frequency_ratio.values, float(damping_ratio(r)), Release(release))
-    height = contact_value(Quantity.MAX_HEIGHT, n, touch, lam)
-    dataset["max_height"] = ("frequency_ratio", height)
+    orbit = limits.orbit_at(touch, n, lam)
+    for name, values in (
+        ("max_height", orbit.max_height),
+        ("phase", orbit.phase),
+        ("contact_duration", orbit.duration),
+        ("impact_velocity", orbit.impact_velocity),
+    ):
+        dataset[name] = ("frequency_ratio", values)
     dataset["restitution_max_height"] = restitution_value(Quantity.MAX_HEIGHT, n, r, lam)
     return describe(dataset)
 

@@ -48,6 +48,7 @@ def contact_history(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
                 "ball_velocity": ("sample", velocity),
                 "table": ("sample", lam * np.sin(time + orbit.phase)),
                 "contact": ("sample", touching),
+                "frequency_ratio": ((), float(parameters["frequency_ratio"])),
                 "phase": ((), float(orbit.phase)),
                 "contact_duration": ((), float(orbit.duration)),
                 "impact_velocity": ((), float(orbit.impact_velocity)),
@@ -68,11 +69,20 @@ def both_histories(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     n, lam, r = parameters["n"], parameters["amplitude"], parameters["restitution"]
     ratios = np.array(parameters["frequency_ratio"], dtype=float)
     columns: dict[str, list[np.ndarray]] = {"table_phase": [], "ball": [], "contact": []}
+    states: dict[str, list[float]] = {
+        "phase": [],
+        "contact_duration": [],
+        "impact_velocity": [],
+        "bounce_velocity": [],
+    }
     for ratio in ratios:
         orbit = require_orbit(contact(ratio, r, release), n, lam)
         time, ball, _, touching = _cycle(orbit, parameters["samples"])
         for name, values in zip(columns, (time + orbit.phase, ball, touching), strict=True):
             columns[name].append(values)
+        state = (orbit.phase, orbit.duration, orbit.impact_velocity, orbit.bounce_velocity)
+        for name, value in zip(states, state, strict=True):
+            states[name].append(float(value))
     phase = float(restitution_orbits.phase(n, r, lam))
     time = np.linspace(0.0, 2 * np.pi * n, parameters["samples"])
     height, _ = restitution_orbits.path(n, lam, phase, np.minimum(time, time[-1] * (1 - 1e-15)))
@@ -81,6 +91,7 @@ def both_histories(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         xr.Dataset(
             {
                 **{name: (dims, np.array(values)) for name, values in columns.items()},
+                **{name: ("frequency_ratio", values) for name, values in states.items()},
                 "restitution_ball": ("sample", height),
                 "time": ("sample", time),
                 "restitution_phase": ((), phase),

@@ -38,6 +38,19 @@ HELD_PERIODS = 50
 _NUDGE = 1e-8
 
 
+# Kinds of comparison and their budgets. Continuation and formula are both right
+# to rounding, amplified where the branch merges with permanent contact: the
+# impact velocity is 1e-5 at the end of the branches there, and rounding of the
+# orbit's equations enters divided by it. One cycle of the simulation adds as
+# much again; fifty add up. The departure is a difference quotient over 1e-8 of
+# the impact velocity, so that rounding, 1e-15, leaves seven digits, and one or
+# two fewer in the same corner.
+FORMULA, CLOSES = "continuation and formula", "simulation over one cycle"
+HOLDS = f"simulation over {HELD_PERIODS} cycles, stable orbits"
+LEAVES = "rate of departure, unstable orbits"
+BUDGETS = {FORMULA: 1e-11, CLOSES: 1e-10, HOLDS: 1e-9, LEAVES: 1e-5}
+
+
 class WitnessError(ValueError):
     """Two routes to one orbit disagree beyond their budget."""
 
@@ -48,14 +61,6 @@ class Comparison(NamedTuple):
     kind: str
     values: np.ndarray
     names: list[str]
-
-
-class Published(NamedTuple):
-    """Orbits of one dataset with constant n, and where they came from."""
-
-    orbit: ContactOrbit
-    from_continuation: bool
-    special: tuple[np.ndarray, ...] | None = None
 
 
 def _names(orbit: ContactOrbit) -> list[str]:
@@ -121,7 +126,7 @@ def single_orbits(data: xr.Dataset) -> ContactOrbit:
 def continuation_against_formula(orbit: ContactOrbit) -> Comparison:
     """Orbits from a continuation against the nearest points of the formula."""
     point = branch_point(nearest_excess(orbit), orbit.contact, orbit.n)
-    return Comparison("continuation and formula", distance(orbit, point), _names(orbit))
+    return Comparison(FORMULA, distance(orbit, point), _names(orbit))
 
 
 def _continued(orbit: ContactOrbit, settings: Mapping[str, Any]) -> np.ndarray:
@@ -169,17 +174,13 @@ def _at_parameter(system, points, wanted, settings: NewtonSettings) -> np.ndarra
     return newton(system, guess, plane(np.broadcast_to(axis, guess.shape), guess), patient).point
 
 
-def formula_against_continuation(
-    orbit: ContactOrbit, settings: Mapping[str, Any]
-) -> Comparison:
+def formula_against_continuation(orbit: ContactOrbit, settings: Mapping[str, Any]) -> Comparison:
     """Orbits from the formula against a continuation along ϖ, curve by curve."""
     zeta, lam = orbit.contact.damping_ratio, orbit.amplitude
     values = np.empty(lam.shape)
     for pair in sorted(set(zip(zeta.tolist(), lam.tolist(), strict=True))):
         at = (zeta == pair[0]) & (lam == pair[1])
-        contact = Contact(
-            orbit.contact.frequency_ratio[at], zeta[at], orbit.contact.release
-        )
+        contact = Contact(orbit.contact.frequency_ratio[at], zeta[at], orbit.contact.release)
         part = ContactOrbit(
             orbit.n,
             contact,
@@ -189,7 +190,7 @@ def formula_against_continuation(
             orbit.impact_velocity[at],
         )
         values[at] = _continued(part, settings)
-    return Comparison("continuation and formula", values, _names(orbit))
+    return Comparison(FORMULA, values, _names(orbit))
 
 
 def bifurcations_against_formula(data: xr.Dataset) -> Comparison:
@@ -209,10 +210,12 @@ def bifurcations_against_formula(data: xr.Dataset) -> Comparison:
             if kind not in (SADDLE_NODE, PERIOD_DOUBLING):
                 continue
             values.append(
-                _bifurcation_distance(str(kind), n, Contact(ratio, zeta, rule), lam, phase, duration)
+                _bifurcation_distance(
+                    str(kind), n, Contact(ratio, zeta, rule), lam, phase, duration
+                )
             )
             names.append(f"{kind} of the {n}-T orbits at Λ = {lam:.6g}, ϖ = {ratio:.6g}")
-    return Comparison("continuation and formula", np.array(values), names)
+    return Comparison(FORMULA, np.array(values), names)
 
 
 def _bifurcation_distance(kind, n, contact, amplitude, phase, duration) -> float:
@@ -241,7 +244,7 @@ def simulation_closes(orbit: ContactOrbit) -> Comparison:
     turn = np.angle(np.exp(1j * (cycle.phase - orbit.phase)))
     late = cycle.time - 2 * np.pi * orbit.n
     values = np.max(np.abs([turn, late, cycle.relative_velocity - u]), axis=0)
-    return Comparison("simulation over one cycle", values, _names(orbit))
+    return Comparison(CLOSES, values, _names(orbit))
 
 
 def simulation_holds(orbit: ContactOrbit) -> Comparison:
@@ -253,8 +256,7 @@ def simulation_holds(orbit: ContactOrbit) -> Comparison:
         phase, u = cycle.phase, cycle.relative_velocity
     turn = np.angle(np.exp(1j * (phase - start[0])))
     values = np.max(np.abs([turn, u - start[1]]), axis=0)
-    kind = f"simulation over {HELD_PERIODS} cycles, stable orbits"
-    return Comparison(kind, np.where(np.isnan(values), np.inf, values), _names(orbit))
+    return Comparison(HOLDS, np.where(np.isnan(values), np.inf, values), _names(orbit))
 
 
 def simulation_leaves(orbit: ContactOrbit) -> Comparison:
@@ -282,9 +284,7 @@ def simulation_leaves(orbit: ContactOrbit) -> Comparison:
         turn = np.angle(np.exp(1j * (cycle.phase - orbit.phase)))
         ends.append(np.stack([turn, cycle.relative_velocity], axis=-1))
     growth = np.sum((ends[0] - ends[1]) * nudge, axis=-1) / (2 * np.sum(nudge * nudge, axis=-1))
-    return Comparison(
-        "rate of departure, unstable orbits", np.abs(growth / multiplier - 1), _names(orbit)
-    )
+    return Comparison(LEAVES, np.abs(growth / multiplier - 1), _names(orbit))
 
 
 def _chosen(orbit: ContactOrbit, which: np.ndarray) -> ContactOrbit:
@@ -296,10 +296,7 @@ def _chosen(orbit: ContactOrbit, which: np.ndarray) -> ContactOrbit:
     return ContactOrbit(
         orbit.n,
         contact,
-        *(
-            x[which]
-            for x in (orbit.amplitude, orbit.phase, orbit.duration, orbit.impact_velocity)
-        ),
+        *(x[which] for x in (orbit.amplitude, orbit.phase, orbit.duration, orbit.impact_velocity)),
     )
 
 
@@ -316,8 +313,27 @@ def _simulated(orbit: ContactOrbit) -> Iterator[Comparison]:
     yield simulation_leaves(_chosen(orbit, unstable < -0.05))
 
 
-def compare(name: str, data: xr.Dataset, settings: Mapping[str, Any]) -> Iterator[Comparison]:
-    """All comparisons for the orbits of one dataset."""
+def _table_against_formula(data: xr.Dataset) -> Comparison:
+    """Table 1's bifurcations against those of the formula."""
+    rule, zeta = _rule(data), float(damping_ratio(data.attrs["restitution"]))
+    values, names = [], []
+    for ratio in data.frequency_ratio.values:
+        for n in data.n.values:
+            for kind in data.bound.values:
+                cell = data.sel(frequency_ratio=ratio, n=n, bound=kind)
+                place = (cell.computed, cell.special_phase, cell.special_contact_duration)
+                place = tuple(float(x) for x in place)
+                contact = Contact(ratio, zeta, rule)
+                values.append(_bifurcation_distance(str(kind), int(n), contact, *place))
+                names.append(f"{kind} of the {n}-T orbits, ϖ = {ratio:g}")
+    return Comparison(FORMULA, np.array(values), names)
+
+
+def compare(data: xr.Dataset, settings: Mapping[str, Any]) -> Iterator[Comparison]:
+    """All comparisons for the spring-damper orbits of one dataset."""
+    if "computed" in data:
+        yield _table_against_formula(data)
+        return
     if "special_kind" in data:
         orbit = branch_orbits(data)
         yield continuation_against_formula(orbit)
@@ -326,3 +342,49 @@ def compare(name: str, data: xr.Dataset, settings: Mapping[str, Any]) -> Iterato
         orbit = sweep_orbits(data) if "case" in data.dims else single_orbits(data)
         yield formula_against_continuation(orbit, settings)
     yield from _simulated(orbit)
+
+
+def _worst(comparisons: list[Comparison], kind: str) -> tuple[float, int, str]:
+    """Largest disagreement of a kind, how many were compared, and which it is."""
+    same = [c for c in comparisons if c.kind == kind and len(c.values)]
+    if not same:
+        return np.nan, 0, ""
+    values = np.concatenate([c.values for c in same])
+    names = [name for c in same for name in c.names]
+    worst = int(np.argmax(np.where(np.isnan(values), np.inf, values)))
+    return float(values[worst]), len(values), names[worst]
+
+
+def witness(datasets: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.Dataset:
+    """Largest disagreement of every kind for every figure and table.
+
+    Raises
+    ------
+    WitnessError
+        If a disagreement exceeds its budget, with the orbit named.
+    """
+    kinds = list(BUDGETS)
+    shape = (len(datasets), len(kinds))
+    largest, count, place = np.empty(shape), np.zeros(shape, dtype=int), np.empty(shape, object)
+    for i, (name, data) in enumerate(datasets.items()):
+        routes = compare_restitution if "release" not in data.attrs else compare
+        comparisons = list(routes(data, settings))
+        for j, kind in enumerate(kinds):
+            largest[i, j], count[i, j], place[i, j] = _worst(comparisons, kind)
+            if count[i, j] and not largest[i, j] <= BUDGETS[kind]:
+                raise WitnessError(
+                    f"{name}: {kind} disagree by {largest[i, j]:.1e}, more than "
+                    f"{BUDGETS[kind]:.0e}, at the {place[i, j]}"
+                )
+    dims = ("artifact", "comparison")
+    return describe(
+        xr.Dataset(
+            {
+                "disagreement": (dims, largest),
+                "orbits": (dims, count),
+                "worst": (dims, place.astype(str)),
+                "budget": ("comparison", np.array(list(BUDGETS.values()))),
+            },
+            coords={"artifact": list(datasets), "comparison": kinds},
+        )
+    )

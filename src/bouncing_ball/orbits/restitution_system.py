@@ -1,0 +1,80 @@
+"""The equations of the restitution model's n-T orbits for a continuation.
+
+The exact map (Eq. 5) with a flight of 2πn: unknowns (φ, v), parameter Λ. They
+have the closed form of :mod:`bouncing_ball.orbits.restitution`; continued,
+they check both the continuation and the formula.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from bouncing_ball.continuation.events import Event
+from bouncing_ball.models.restitution import bounce, exact_map_jacobian, landing_gap
+from bouncing_ball.orbits.stability import (
+    period_doubling_function,
+    saddle_node_function,
+    trace_and_determinant,
+)
+
+
+@dataclass(frozen=True)
+class RestitutionSystem:
+    """n-T orbits as a :class:`~bouncing_ball.continuation.problem.Problem`.
+
+    Parameters
+    ----------
+    n : int
+        Index of the family.
+    restitution : float
+        r.
+
+    Examples
+    --------
+    >>> system = RestitutionSystem(1, 1.0)
+    >>> defects = system.residual(np.array([np.pi / 2, np.pi, 1.0]))
+    >>> [abs(round(float(x), 12)) for x in defects]
+    [0.0, 0.0]
+    """
+
+    n: int
+    restitution: float
+
+    def residual(self, y: np.ndarray) -> np.ndarray:
+        """Landing gap and velocity defect after 2πn, shape (..., 2)."""
+        phase, velocity, amplitude = (y[..., k] for k in range(3))
+        period = np.full_like(phase, 2 * np.pi * self.n)
+        after = bounce(period, phase, velocity, amplitude, self.restitution)
+        gap = landing_gap(period, phase, velocity, amplitude)
+        return np.stack([gap, after - velocity], axis=-1)
+
+    def jacobian(self, y: np.ndarray) -> np.ndarray:
+        """Exact Jacobian of the residual, shape (..., 2, 3).
+
+        The table is back at its phase after 2πn, so that the gap depends on v
+        alone, but for rounding.
+        """
+        phase, amplitude = y[..., 0], y[..., 2]
+        r = self.restitution
+        out = np.zeros((*y.shape[:-1], 2, 3))
+        out[..., 0, 1] = 2 * np.pi * self.n
+        out[..., 1, 0] = -(1 + r) * amplitude * np.sin(phase)
+        out[..., 1, 1] = -r - 1
+        out[..., 1, 2] = (1 + r) * np.cos(phase)
+        return out
+
+    def _stability(self, test):
+        def function(y):
+            phase, velocity, amplitude = (y[..., k] for k in range(3))
+            period = np.full_like(phase, 2 * np.pi * self.n)
+            matrix = exact_map_jacobian(period, phase, velocity, amplitude, self.restitution)
+            return test(*trace_and_determinant(matrix))
+
+        return function
+
+    def events(self) -> tuple[Event, ...]:
+        """Saddle-node and period doubling."""
+        return (
+            Event("saddle-node", self._stability(saddle_node_function)),
+            Event("period doubling", self._stability(period_doubling_function)),
+        )

@@ -1,0 +1,342 @@
+"""Continuation of problems whose branches are known exactly."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.continuation.branch import (
+    Branch,
+    ContinuationError,
+    continue_both_ways,
+    continue_branch,
+    resample,
+    solve_at,
+)
+from bouncing_ball.continuation.corrector import NewtonSettings
+from bouncing_ball.continuation.events import Event, fold, parameter_bound
+from bouncing_ball.continuation.step_control import StepControl
+from bouncing_ball.models.restitution import bounce, exact_map_jacobian, landing_gap
+from bouncing_ball.orbits import restitution as exact_orbits
+from bouncing_ball.orbits.stability import period_doubling_function, trace_and_determinant
+
+# Newton's last step is below 1e-12 and converges quadratically, so points are
+# exact to a few roundings; the brief's 1e-12 has a wide margin.
+EXACT = 1e-12
+
+
+class Scalar:
+    """One equation f(x, p) = 0 with its derivatives."""
+
+    def __init__(self, f, f_x, f_p):
+        self.f, self.parts = f, (f_x, f_p)
+
+    def residual(self, y):
+        return self.f(y[..., 0], y[..., 1])[..., np.newaxis]
+
+    def jacobian(self, y):
+        x, p = y[..., 0], y[..., 1]
+        parts = [np.broadcast_to(part(x, p), x.shape) for part in self.parts]
+        return np.stack(parts, axis=-1)[..., np.newaxis, :]
+
+
+CIRCLE = Scalar(lambda x, p: x**2 + p**2 - 1, lambda x, p: 2 * x, lambda x, p: 2 * p)
+CUBIC = Scalar(lambda x, p: x**3 - x + p, lambda x, p: 3 * x**2 - 1, lambda x, p: 1.0)
+LINE = Scalar(lambda x, p: x - 2 * p, lambda x, p: 1.0, lambda x, p: -2.0)
+
+
+def test_circle_goes_round_and_stops_at_the_limit():
+    branch = continue_branch(
+        CIRCLE, np.array([1.0, 0.0]), increasing=True, events=[fold(CIRCLE)], max_points=120
+    )
+    assert branch.start_reason == "starting point"
+    assert branch.end_reason == "reached the limit of 120 points"
+    assert len(branch.points) == 120
+    assert np.hypot(*branch.points.T) == pytest.approx(np.ones(120), abs=EXACT)
+    angle = np.unwrap(np.arctan2(branch.points[:, 1], branch.points[:, 0]))
+    assert np.all(np.diff(angle) > 0)
+    turned = angle[-1]
+    assert turned > 2 * np.pi  # round and on, over the start
+    # Each fold every time it is passed, in turn at p = 1 and p = -1.
+    passes = int((turned - np.pi / 2) // np.pi) + 1
+    expected = np.array([[0.0, (-1.0) ** k] for k in range(passes)])
+    assert np.array(branch.named("fold")) == pytest.approx(expected, abs=EXACT)
+    assert all(special.residual < EXACT for special in branch.special)
+
+
+def test_steps_obey_the_control():
+    control = StepControl(initial=0.01, largest=0.15, max_angle=0.1)
+    branch = continue_branch(
+        CIRCLE, np.array([1.0, 0.0]), increasing=True, control=control, max_points=80
+    )
+    assert np.hypot(*(branch.points[1] - branch.points[0])) == pytest.approx(0.01, rel=1e-3)
+    # On the unit circle the tangent turns by the angle run through.
+    angle = np.diff(np.unwrap(np.arctan2(branch.points[:, 1], branch.points[:, 0])))
+    assert angle.max() <= 0.1 * (1 + 1e-12)
+    assert angle.max() > 0.08  # and the steps do grow that far
+    # The tangents are those of the circle, in the direction of the steps.
+    normal = np.stack([-branch.points[:, 1], branch.points[:, 0]], axis=-1)
+    assert branch.tangents == pytest.approx(normal, abs=EXACT)
+
+
+def test_a_turn_of_the_tangent_shortens_the_step():
+    control = StepControl(initial=1.0, largest=1.0, max_angle=0.05)
+    branch = continue_branch(
+        CIRCLE, np.array([1.0, 0.0]), increasing=True, control=control, max_points=5
+    )
+    angle = np.diff(np.arctan2(branch.points[:, 1], branch.points[:, 0]))
+    assert np.all(angle <= 0.05 * (1 + 1e-12))
+
+
+def test_decreasing_starts_the_other_way():
+    branch = continue_branch(CIRCLE, np.array([1.0, 0.0]), increasing=False, max_points=10)
+    assert np.all(np.diff(branch.points[:, 1]) < 0)
+
+
+def test_both_folds_of_a_cubic():
+    # p = x - x³ has its extrema at x = ±1/√3.
+    events = [
+        fold(CUBIC),
+        parameter_bound(3.0, True, "too large"),
+        parameter_bound(-3.0, False, "too small"),
+    ]
+    branch = continue_both_ways(CUBIC, np.array([0.0, 0.0]), events=events)
+    x = 1 / np.sqrt(3)
+    # The parameter increases at the start, so the start is passed upwards.
+    assert np.array(branch.named("fold")) == pytest.approx(
+        np.array([[-x, -2 * x / 3], [x, 2 * x / 3]]), abs=EXACT
+    )
+    assert (branch.start_reason, branch.end_reason) == ("too large", "too small")
+    assert branch.points[[0, -1], 1] == pytest.approx([3.0, -3.0], abs=EXACT)
+    assert CUBIC.residual(branch.points) == pytest.approx(
+        np.zeros((len(branch.points), 1)), abs=EXACT
+    )
+    # One sequence: no point twice, no jump, tangents along it.
+    steps = np.diff(branch.points, axis=0)
+    lengths = np.linalg.norm(steps, axis=1)
+    assert lengths.min() > 0
+    assert lengths.max() <= StepControl().largest * 1.01
+    assert np.all(np.sum(steps * branch.tangents[:-1], axis=1) > 0.9 * lengths)
+    # The special points come in the order of the branch.
+    order = [np.argmin(np.linalg.norm(branch.points - s.point, axis=1)) for s in branch.special]
+    assert order == sorted(order)
+    assert [s.name for s in branch.special] == [
+        "parameter bound", "fold", "fold", "parameter bound",
+    ]
+
+
+def test_straight_line_leaves_its_window():
+    events = [parameter_bound(1.0, True, "window")]
+    branch = continue_branch(LINE, np.array([0.0, 0.0]), increasing=True, events=events)
+    assert branch.end_reason == "window"
+    assert branch.points[-1] == pytest.approx(np.array([2.0, 1.0]), abs=EXACT)
+    assert branch.arclength[-1] == pytest.approx(np.sqrt(5), abs=EXACT)
+    assert np.all(branch.points[:-1, 1] < 1.0)
+    assert branch.tangents == pytest.approx(
+        np.broadcast_to(np.array([2, 1]) / np.sqrt(5), branch.points.shape), abs=EXACT
+    )
+    # Straight and linear: the step grows to the largest and stays.
+    steps = np.diff(branch.arclength)
+    assert steps.max() == pytest.approx(StepControl().largest, rel=EXACT)
+
+
+def test_terminal_event_without_a_reason_gives_its_name():
+    event = Event("far", lambda y: 1.0 - y[..., 0], terminal=True)
+    branch = continue_branch(LINE, np.array([0.0, 0.0]), increasing=True, events=[event])
+    assert branch.end_reason == "far"
+    assert branch.points[-1] == pytest.approx(np.array([1.0, 0.5]), abs=EXACT)
+    assert [s.name for s in branch.special] == ["far"]
+
+
+def test_events_of_one_step_come_in_order_and_none_after_the_end():
+    # All within one step of 0.2, given out of order; the last is behind the end.
+    def at(p, name, terminal=False):
+        return Event(name, lambda y: p - y[..., 1], terminal=terminal)
+
+    control = StepControl(initial=0.2)
+    events = [at(0.06, "c"), at(0.05, "end", True), at(0.01, "a"), at(0.02, "b")]
+    branch = continue_branch(
+        LINE, np.array([0.0, 0.0]), increasing=True, events=events, control=control
+    )
+    assert [s.name for s in branch.special] == ["a", "b", "end"]
+    assert [s.point[1] for s in branch.special] == pytest.approx([0.01, 0.02, 0.05], abs=EXACT)
+    assert len(branch.points) == 2
+
+
+def test_event_on_a_point_of_the_branch_is_found_once():
+    # Steps of exactly 0.25 in p: the zero at 0.5 is hit exactly.
+    step = 0.25 * np.sqrt(5)
+    control = StepControl(initial=step, largest=step)
+    for sign in (1.0, -1.0):
+        event = Event("half", lambda y, sign=sign: sign * (y[..., 1] - 0.5))
+        end = parameter_bound(0.9, True, "end")
+        branch = continue_branch(
+            LINE, np.array([0.0, 0.0]), increasing=True, events=[event, end], control=control
+        )
+        assert np.array(branch.named("half")) == pytest.approx(np.array([[1.0, 0.5]]), abs=EXACT)
+
+
+def test_corrector_failure_ends_the_branch():
+    # x = p, undefined beyond p = 1.
+    problem = Scalar(
+        lambda x, p: np.where(p > 1, np.nan, x - p), lambda x, p: 1.0, lambda x, p: -1.0
+    )
+    control = StepControl(smallest=1e-6)
+    branch = continue_branch(problem, np.array([0.0, 0.0]), increasing=True, control=control)
+    assert branch.end_reason.startswith("step too small (")
+    assert branch.end_reason.endswith("the corrector fails with residual nan")
+    # The last step tried was below twice the smallest.
+    assert 1 - 2 * np.sqrt(2) * 1e-6 < branch.points[-1, 1] <= 1
+
+
+def test_a_corner_ends_the_branch():
+    # x = max(p, 0): the tangent turns by half a right angle at once.
+    problem = Scalar(
+        lambda x, p: x - np.maximum(p, 0), lambda x, p: 1.0, lambda x, p: np.where(p < 0, 0.0, -1.0)
+    )
+    branch = continue_branch(problem, np.array([0.0, -0.5]), increasing=True)
+    assert branch.end_reason.startswith("step too small (")
+    assert branch.end_reason.endswith("the tangent turns by more than 0.2 rad")
+    assert branch.points[-1] == pytest.approx(np.zeros(2), abs=1e-7)
+
+
+def test_no_start(one_line):
+    with pytest.raises(ContinuationError) as error:
+        solve_at(CIRCLE, np.array([1.0, 2.0]))
+    one_line(error, "no solution near the starting guess [1. 2.]", "residual", "8 Newton iterations")
+    with pytest.raises(ContinuationError):
+        continue_branch(CIRCLE, np.array([1.0, 2.0]), increasing=True)
+
+
+def test_start_is_corrected_at_its_own_parameter():
+    assert solve_at(CIRCLE, np.array([0.9, 0.6])) == pytest.approx([0.8, 0.6], abs=EXACT)
+    branch = continue_branch(CIRCLE, np.array([0.9, 0.6]), increasing=True, max_points=3)
+    assert branch.points[0] == pytest.approx(np.array([0.8, 0.6]), abs=EXACT)
+
+
+def test_reversed_and_named():
+    events = [fold(CUBIC), parameter_bound(-1.0, False, "end")]
+    branch = continue_branch(CUBIC, np.array([0.0, 0.0]), increasing=True, events=events)
+    back = branch.reversed()
+    assert np.array_equal(back.points, branch.points[::-1])
+    assert np.array_equal(back.tangents, -branch.tangents[::-1])
+    assert [s.name for s in back.special] == ["parameter bound", "fold"]
+    assert (back.start_reason, back.end_reason) == ("end", "starting point")
+    assert back.arclength[-1] == pytest.approx(branch.arclength[-1], rel=1e-14)
+    assert branch.named("nothing") == []
+
+
+def circle_arc(control):
+    event = Event("end", lambda y: y[..., 0] + 0.5, terminal=True)
+    return continue_branch(
+        CIRCLE, np.array([1.0, 0.0]), increasing=True, events=[event], control=control
+    )
+
+
+COARSE, FINE = StepControl(), StepControl(initial=0.003, largest=0.03, max_angle=0.05)
+
+
+@pytest.mark.parametrize("count", [2, 17, 400])
+def test_resampled_points_are_solutions_from_end_to_end(count):
+    branch = circle_arc(COARSE)
+    points = resample(CIRCLE, branch, count)
+    assert points.shape == (count, 2)
+    assert CIRCLE.residual(points) == pytest.approx(np.zeros((count, 1)), abs=EXACT)
+    assert points[[0, -1]] == pytest.approx(branch.points[[0, -1]], abs=EXACT)
+    angle = np.arctan2(points[:, 1], points[:, 0])
+    assert np.all(np.diff(angle) > 0)
+
+
+def test_resampled_points_do_not_depend_on_the_step_control():
+    # The true arclength of the circle is its angle: equal steps of 2π/3 / 20.
+    expected = np.linspace(0.0, 2 * np.pi / 3, 21)
+    for control in (COARSE, FINE):
+        points = resample(CIRCLE, circle_arc(control), 21)
+        angle = np.arctan2(points[:, 1], points[:, 0])
+        assert angle == pytest.approx(expected, abs=1e-10)
+
+
+def test_resampled_points_of_a_straight_line_are_equally_spaced():
+    events = [parameter_bound(1.0, True, "window")]
+    branch = continue_branch(LINE, np.array([0.0, 0.0]), increasing=True, events=events)
+    points = resample(LINE, branch, 11)
+    assert points[:, 1] == pytest.approx(np.linspace(0, 1, 11), abs=EXACT)
+
+
+def test_resampling_with_too_long_steps(one_line):
+    # Between two far points of a fast wave Newton runs out of iterations.
+    wave = Scalar(
+        lambda x, p: x - np.sin(40 * p), lambda x, p: 1.0, lambda x, p: -40 * np.cos(40 * p)
+    )
+    ends = np.array([[0.0, 0.0], [np.sin(40.0), 1.0]])
+    tangents = np.array([[1.0, 0.0], [1.0, 0.0]])
+    branch = Branch(ends, tangents, (), "", "")
+    with pytest.raises(ContinuationError) as error:
+        resample(wave, branch, 5, NewtonSettings(max_iterations=3))
+    one_line(error, "resampling to 5 points failed with residual")
+
+
+def test_resampling_a_branch_of_one_point():
+    # A branch whose first step fails has one point only.
+    alone = Branch(np.array([[1.0, 0.0]]), np.array([[0.0, 1.0]]), (), "", "")
+    try:
+        points = resample(CIRCLE, alone, 3)
+    except ContinuationError as error:
+        assert "nan" not in str(error)
+    else:
+        assert points == pytest.approx(np.broadcast_to([1.0, 0.0], (3, 2)), abs=EXACT)
+
+
+class ImpactMap:
+    """Fixed points of the exact map: y = (φ, v, Λ)."""
+
+    def __init__(self, n, r):
+        self.n, self.r = n, r
+
+    def residual(self, y):
+        phase, v, lam = np.moveaxis(y, -1, 0)
+        s = 2 * np.pi * self.n
+        return np.stack(
+            [landing_gap(s, phase, v, lam) / s, bounce(s, phase, v, lam, self.r) - v], axis=-1
+        )
+
+    def jacobian(self, y):
+        phase, _, lam = np.moveaxis(y, -1, 0)
+        rise, zero = (1 + self.r) * np.cos(phase), np.zeros_like(lam)
+        rows = [
+            [zero, zero + 1, zero],
+            [-(1 + self.r) * lam * np.sin(phase), zero - 1 - self.r, rise],
+        ]
+        return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+    def flip(self, y):
+        s = 2 * np.pi * self.n
+        jacobian = exact_map_jacobian(s, y[..., 0], y[..., 1], y[..., 2], self.r)
+        return period_doubling_function(*trace_and_determinant(jacobian))
+
+
+@pytest.mark.parametrize(("n", "r"), [(1, 0.85), (2, 0.5), (5, 0.65)])
+def test_restitution_map_as_a_problem(n, r):
+    problem = ImpactMap(n, r)
+    node, doubling = exact_orbits.saddle_node(n, r), exact_orbits.period_doubling(n, r)
+    start = np.array([0.3, n * np.pi, node / np.cos(0.3)])
+    top = 2 * float(doubling)
+    branch = continue_both_ways(
+        problem,
+        start,
+        events=[
+            fold(problem),
+            Event("period doubling", problem.flip),
+            parameter_bound(top, True, "window"),
+        ],
+        control=StepControl(largest=0.1),
+    )
+    scale = 1 + n * np.pi
+    [found] = branch.named("fold")
+    assert found == pytest.approx(np.array([0.0, n * np.pi, node]), abs=EXACT * scale)
+    [found] = branch.named("period doubling")
+    phase = float(exact_orbits.phase(n, r, doubling))
+    assert found == pytest.approx(np.array([phase, n * np.pi, doubling]), abs=EXACT * scale)
+    assert (branch.start_reason, branch.end_reason) == ("window", "window")
+    assert branch.points[[0, -1], 2] == pytest.approx([top, top], abs=EXACT * scale)
+    # Λ cos φ is the same all along.
+    along = branch.points[:, 2] * np.cos(branch.points[:, 0])
+    assert along == pytest.approx(np.full(len(along), node), abs=EXACT * scale)

@@ -1,0 +1,137 @@
+"""Newton's method on an extended system, and tangents."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.continuation.corrector import (
+    NewtonSettings,
+    newton,
+    null_vector,
+    plane,
+    tangent,
+)
+
+EPS = np.finfo(float).eps
+
+
+class Circle:
+    """x² + p² = 1."""
+
+    def residual(self, y):
+        return np.sum(y * y, axis=-1, keepdims=True) - 1
+
+    def jacobian(self, y):
+        return 2 * y[..., np.newaxis, :]
+
+
+class Bounded:
+    """x = p, defined for p ≤ 1 only."""
+
+    def residual(self, y):
+        return np.where(y[..., 1:] > 1, np.nan, y[..., :1] - y[..., 1:])
+
+    def jacobian(self, y):
+        return np.broadcast_to([[1.0, -1.0]], (*y.shape[:-1], 1, 2))
+
+
+def test_converges_to_the_intersection_with_a_plane():
+    # The line x = 2p meets the circle at p = 1/√5.
+    normal = np.array([1.0, -2.0])
+    found = newton(
+        Circle(), np.array([1.0, 0.6]), plane(normal, np.zeros(2)), NewtonSettings()
+    )
+    assert found.converged
+    assert found.point == pytest.approx(np.array([2.0, 1.0]) / np.sqrt(5), abs=4 * EPS)
+    assert found.iterations <= 6
+    assert found.step <= NewtonSettings().tolerance
+
+
+def test_convergence_is_quadratic():
+    # With the exact Jacobian each residual is about the square of the last.
+    residuals = []
+    for count in (1, 2, 3, 4):
+        settings = NewtonSettings(tolerance=0.0, max_iterations=count)
+        condition = plane(np.array([1.0, -2.0]), np.zeros(2))
+        residuals.append(newton(Circle(), np.array([1.0, 0.6]), condition, settings).residual)
+    # residuals[0] is that of the guess; the plane is met after one step.
+    assert residuals[2] < residuals[1] ** 2
+    assert residuals[3] < residuals[2] ** 2
+
+
+def test_many_guesses_at_once():
+    angles = np.linspace(0.1, 6.0, 11)
+    guess = 1.1 * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+    normals = np.stack([-np.sin(angles), np.cos(angles)], axis=-1)
+    found = newton(Circle(), guess, plane(normals, guess), NewtonSettings())
+    assert found.converged
+    assert found.point == pytest.approx(guess / 1.1, abs=4 * EPS)
+
+
+def test_one_bad_guess_fails_the_batch():
+    guess = np.array([[1.0, 0.6], [0.0, 0.0]])
+    found = newton(Circle(), guess, plane(np.array([1.0, -2.0]), guess * 0), NewtonSettings())
+    assert not found.converged
+
+
+def test_singular_matrix():
+    # ∇F = 0 at the centre.
+    found = newton(Circle(), np.zeros(2), plane(np.array([1.0, 0.0]), np.zeros(2)), NewtonSettings())
+    assert not found.converged
+    assert (found.iterations, found.residual, found.step) == (1, 1.0, np.inf)
+    assert found.point.tolist() == [0.0, 0.0]
+
+
+def test_leaving_the_domain():
+    found = newton(
+        Bounded(), np.array([0.5, 2.0]), plane(np.array([0.0, 1.0]), np.array([0.5, 2.0])),
+        NewtonSettings(),
+    )
+    assert not found.converged
+    assert np.isnan(found.residual)
+    assert found.iterations == 1
+
+
+def test_running_out_of_iterations():
+    # The plane p = 2 misses the circle: no solution at all.
+    guess = np.array([1.0, 2.0])
+    found = newton(
+        Circle(), guess, plane(np.array([0.0, 1.0]), guess), NewtonSettings(max_iterations=5)
+    )
+    assert not found.converged
+    assert found.iterations == 5
+    assert found.step > 1e-3
+
+
+def test_does_not_change_the_guess():
+    guess = np.array([1.0, 0.6])
+    newton(Circle(), guess, plane(np.array([1.0, -2.0]), np.zeros(2)), NewtonSettings())
+    assert guess.tolist() == [1.0, 0.6]
+
+
+def test_tangent_is_the_unit_null_vector_on_the_given_side():
+    rng = np.random.default_rng(3)
+    for size in (1, 2, 5):
+        jacobian = rng.normal(size=(size, size + 1))
+        along = rng.normal(size=size + 1)
+        vector = tangent(jacobian, along)
+        # Condition numbers below 1e3 for these seeds.
+        assert np.linalg.norm(vector) == pytest.approx(1.0, abs=4 * EPS)
+        assert jacobian @ vector == pytest.approx(np.zeros(size), abs=1e-12)
+        assert vector @ along > 0
+        assert tangent(jacobian, -along) == pytest.approx(-vector, abs=1e-12)
+
+
+def test_null_vector_points_up_in_the_parameter():
+    rng = np.random.default_rng(4)
+    for size in (1, 2, 5):
+        jacobian = rng.normal(size=(size, size + 1))
+        vector = null_vector(jacobian)
+        assert vector[-1] > 0
+        assert np.linalg.norm(vector) == pytest.approx(1.0, abs=4 * EPS)
+        assert jacobian @ vector == pytest.approx(np.zeros(size), abs=1e-12)
+
+
+def test_plane_broadcasts_its_normal():
+    value, gradient = plane(np.array([1.0, 2.0]), np.zeros(2))(np.ones((4, 2)))
+    assert value.tolist() == [3.0] * 4
+    assert gradient.tolist() == [[1.0, 2.0]] * 4

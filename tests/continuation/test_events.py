@@ -1,0 +1,115 @@
+"""Location of events on a branch."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.continuation.corrector import NewtonSettings
+from bouncing_ball.continuation.events import (
+    Event,
+    LocationError,
+    fold,
+    locate,
+    parameter_bound,
+)
+
+SETTINGS = NewtonSettings()
+
+
+class Circle:
+    """x² + p² = 1."""
+
+    def residual(self, y):
+        return np.sum(y * y, axis=-1, keepdims=True) - 1
+
+    def jacobian(self, y):
+        return 2 * y[..., np.newaxis, :]
+
+
+class Line:
+    """x = p, for p outside (hole) only, if a hole is given."""
+
+    def __init__(self, hole=(np.inf, np.inf)):
+        self.hole = hole
+
+    def residual(self, y):
+        inside = (y[..., 1:] > self.hole[0]) & (y[..., 1:] < self.hole[1])
+        return np.where(inside, np.nan, y[..., :1] - y[..., 1:])
+
+    def jacobian(self, y):
+        return np.broadcast_to([[1.0, -1.0]], (*y.shape[:-1], 1, 2))
+
+
+def on_circle(angle):
+    return np.array([np.cos(angle), np.sin(angle)])
+
+
+def test_fold_of_the_circle():
+    # ∂F/∂x = 2x vanishes at (0, 1).
+    event = fold(Circle())
+    assert event.name == "fold" and not event.terminal
+    assert float(event.function(np.array([0.25, 0.0]))) == 0.5
+    found = locate(Circle(), event, on_circle(1.4), on_circle(1.7), SETTINGS)
+    # Newton stops at a last step of 1e-12; the point is then exact.
+    assert found.point == pytest.approx(np.array([0.0, 1.0]), abs=1e-14)
+    assert found.residual < 1e-14
+    assert found.name == "fold"
+
+
+def test_location_is_not_limited_by_the_gradients_differences():
+    # sin(20 x) = 0.5 at x = π/120; third derivatives of 8000 spoil ∇g.
+    event = Event("level", lambda y: np.sin(20 * y[..., 0]) - 0.5)
+    found = locate(Line(), event, np.array([0.0, 0.0]), np.array([0.05, 0.05]), SETTINGS)
+    assert found.point == pytest.approx(np.full(2, np.pi / 120), abs=1e-15)
+
+
+@pytest.mark.parametrize(("upper", "inside"), [(True, 1.0), (False, 3.0)])
+def test_parameter_bound_is_positive_inside(upper, inside):
+    event = parameter_bound(2.0, upper, "left the window")
+    assert event.terminal and event.reason == "left the window"
+    assert float(event.function(np.array([7.0, inside]))) == 1.0
+    assert float(event.function(np.array([7.0, 4.0 - inside]))) == -1.0
+
+
+def test_event_exactly_on_the_left_point():
+    event = Event("zero", lambda y: y[..., 1])
+    found = locate(Circle(), event, np.array([1.0, 0.0]), on_circle(-0.1), SETTINGS)
+    assert found.point.tolist() == [1.0, 0.0]
+    assert found.residual == 0.0
+
+
+@pytest.mark.parametrize("root", [0.11, 0.3, 0.93])
+def test_bisection_when_newton_leaves_the_bracket(root):
+    # Newton's method for the arc tangent diverges unless it starts within
+    # 1.39/200 of the zero.
+    event = Event("steep", lambda y: np.arctan(200 * (y[..., 1] - root)))
+    found = locate(Line(), event, np.array([0.0, 0.0]), np.array([1.0, 1.0]), SETTINGS)
+    assert found.point == pytest.approx(np.full(2, root), abs=1e-15)
+
+
+def test_the_zero_inside_the_bracket_is_found():
+    # Seven more zeros lie outside, and the secant is flat.
+    event = Event("wave", lambda y: np.sin(np.pi * y[..., 1]) * (y[..., 1] + 0.05))
+    found = locate(Line(), event, np.full(2, 0.6), np.full(2, 1.9), SETTINGS)
+    assert found.point == pytest.approx(np.ones(2), abs=1e-14)
+
+
+def test_a_jump_is_no_zero(one_line):
+    event = Event("jump", lambda y: np.where(y[..., 1] < 0.3, 1.0, -1.0))
+    with pytest.raises(LocationError) as error:
+        locate(Line(), event, np.array([0.0, 0.0]), np.array([1.0, 1.0]), SETTINGS)
+    one_line(error, "jump announced near", "could not be located")
+
+
+def test_a_pole_is_no_zero(one_line):
+    event = Event("pole", lambda y: 1 / (y[..., 1] - 0.3))
+    with pytest.raises(LocationError) as error:
+        locate(Line(), event, np.array([0.0, 0.0]), np.array([1.0, 1.0]), SETTINGS)
+    one_line(error, "pole announced near")
+
+
+def test_a_gap_in_the_branch(one_line):
+    # The middle of the bracket cannot be corrected.
+    event = Event("lost", lambda y: np.where(y[..., 1] < 0.3, 1.0, -1.0))
+    with pytest.raises(LocationError) as error:
+        locate(Line((0.2, 0.8)), event, np.array([0.0, 0.0]), np.array([1.0, 1.0]), SETTINGS)
+    one_line(error, "lost announced near")

@@ -1,0 +1,171 @@
+"""The branch as an explicit curve."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bouncing_ball.errors import ModelError
+from bouncing_ball.models.contact import Contact, Release, responses
+from bouncing_ball.models.permanent_contact import permanent_contact_threshold
+from bouncing_ball.orbits.closed_form import branch_point, free_release_angle
+from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.monodromy import monodromy
+from bouncing_ball.orbits.stability import trace_and_determinant
+from bouncing_ball.orbits.system import OrbitSystem, Parameter
+
+EPS = np.finfo(float).eps
+
+releases = st.sampled_from(list(Release))
+# log ϖ, ζ, n, and the excess angle in units of the fold's scale, 1/ϖ.
+log_ratios = st.floats(np.log(0.5), np.log(1e6))
+dampings = st.one_of(st.just(0.0), st.floats(0, 0.9))
+families = st.integers(1, 5)
+
+
+def scaled_residual(system, point, contact):
+    omega = float(contact.frequency_ratio)
+    y = np.array([point.phase, point.u + point.x, omega * point.duration, point.amplitude])
+    # Velocities, and lengths over one flight; the phase ϖD is rounded too.
+    speed = 1 + abs(float(point.u)) + float(point.amplitude) + 2 * np.pi * system.n
+    size = np.array([speed, speed, speed * 2 * np.pi * system.n])
+    return system.residual(y) / (size * (1 + omega * float(point.duration)))
+
+
+@given(log_ratios, dampings, families, releases, st.floats(-0.9, 1.0))
+def test_every_point_satisfies_the_papers_equations(log_omega, zeta, n, release, share):
+    contact = Contact(float(np.exp(log_omega)), zeta, release)
+    omega_d = contact.frequency_ratio * np.sqrt((1 - zeta) * (1 + zeta))
+    start = float(free_release_angle(contact))
+    # Contacts from a tenth of the free one up to ε = 1, or up to the cycle's
+    # end (where the three equations become dependent).
+    excess = share * start if share < 0 else min(share, 0.95 * (omega_d * 2 * np.pi * n - start))
+    point = branch_point(excess, contact, n)
+    system = OrbitSystem(n, zeta, Parameter.AMPLITUDE, contact.frequency_ratio, release)
+    # A 3 × 3 solve: its condition costs about two digits.
+    assert np.all(np.abs(scaled_residual(system, point, contact)) < 1e-13)
+
+
+@pytest.mark.parametrize("release", list(Release))
+@pytest.mark.parametrize("omega", [2.0, 10.0, 1e3, 1e6])
+@pytest.mark.parametrize("n", [1, 3])
+def test_next_to_the_fold_at_any_stiffness(release, omega, n):
+    contact = Contact(omega, 0.05, release)
+    system = OrbitSystem(n, 0.05, Parameter.AMPLITUDE, omega, release)
+    for excess in np.linspace(-1.0, 1.0, 9) / omega:
+        point = branch_point(excess, contact, n)
+        assert np.all(np.abs(scaled_residual(system, point, contact)) < 1e-14)
+
+
+@pytest.mark.parametrize("release", list(Release))
+@pytest.mark.parametrize("zeta", [0.0, 0.0517, 0.4, 0.9])
+@pytest.mark.parametrize("omega", [0.7, 1.0, 2.0, 10.0, 1e4, 1e6])
+def test_derivatives_along_the_branch(release, zeta, omega):
+    contact = Contact(omega, zeta, release)
+    # The branch turns within 1/ϖ of ε; in those units all is of order one. D
+    # is kept away from zero, where Λ is infinite.
+    unit = min(1.0, 1 / omega, float(free_release_angle(contact)) / 2)
+    h = 2e-3 * unit
+    excess = np.array([-1.0, -0.3, 0.0, 0.2, 0.7]) * unit
+    steps = [branch_point(excess + k * h, contact, 2) for k in (-2, -1, 1, 2)]
+    point = branch_point(excess, contact, 2)
+    weights = np.array([1, -8, 8, -1]) / (12 * h)
+    for name in ("x", "y"):
+        difference = weights @ np.array([getattr(step, name) for step in steps])
+        computed = getattr(point, f"d_{name}")
+        # h⁴ times a fifth derivative of up to 1e3: 1e-8; roundings eps/2e-3.
+        scale = np.hypot(point.d_x, point.d_y).max()
+        assert computed == pytest.approx(difference, abs=1e-8 * scale)
+    slope = weights @ np.array([step.amplitude**2 / 2 for step in steps])
+    assert point.fold == pytest.approx(slope, abs=1e-8 * np.abs(slope).max())
+
+
+@pytest.mark.parametrize("zeta", [0.0, 0.05, 0.5, 0.95])
+def test_free_release_angles(zeta):
+    # The free contact, thrown against the table with velocity -1: δ = -g.
+    omega = 3.0
+    omega_d = omega * np.sqrt(1 - zeta**2)
+    for release in Release:
+        angle = float(free_release_angle(Contact(omega, zeta, release)))
+        g = responses(angle / omega_d, omega, zeta).impulse
+        defect = g.value if release is Release.DISPLACEMENT else 2 * zeta * g.rate + omega * g.value
+        assert abs(float(defect)) < 20 * EPS
+        # Nothing vanishes earlier: it is the first release.
+        s = np.linspace(0.01, 0.99, 50) * angle / omega_d
+        g = responses(s, omega, zeta).impulse
+        before = g.value if release is Release.DISPLACEMENT else (
+            2 * zeta * g.rate + omega * g.value
+        )
+        assert np.all(before > 0)
+
+
+@pytest.mark.parametrize("n", [1, 2])
+def test_contact_filling_the_cycle_is_permanent_contact(n):
+    # As the flight vanishes the orbit merges with the steady oscillation, at
+    # its threshold. A flight of length T changes Λ by the order T², and the
+    # impact velocity is of order T.
+    for omega, zeta in ((2.0, 0.05), (1.0, 0.3), (5.0, 0.1)):
+        contact = Contact(omega, zeta)
+        omega_d = omega * np.sqrt(1 - zeta**2)
+        flight = 1e-4
+        point = branch_point((2 * np.pi * n - flight) * omega_d - np.pi, contact, n)
+        expected = float(permanent_contact_threshold(omega, zeta))
+        assert float(point.amplitude) == pytest.approx(expected, abs=flight**2 * omega**2)
+        assert 0 < -float(point.u) < flight
+
+
+def test_elastic_contact_of_half_a_period():
+    # ζ = 0, ε = 0: the velocity is reversed whatever the forces, if these
+    # vanish over the contact: Λ sin φ → 1 balances gravity.
+    point = branch_point(0.0, Contact(1e6, 0.0), 1)
+    assert float(point.amplitude) == pytest.approx(1.0, abs=1e-5)
+    assert float(point.phase) == pytest.approx(np.pi / 2, abs=1e-5)
+    assert float(point.u) == pytest.approx(-np.pi, abs=1e-5)
+
+
+@given(log_ratios, dampings, families, releases, st.floats(-0.9, 1.0))
+def test_trace_and_determinant_are_those_of_the_linearised_flow(
+    log_omega, zeta, n, release, share
+):
+    # Worked out from the formula here, from the flow's Jacobian there.
+    contact = Contact(float(np.exp(log_omega)), zeta, release)
+    excess = share * float(free_release_angle(contact)) if share < 0 else share / 2
+    point = branch_point(excess, contact, n)
+    if not (0 < point.duration < 2 * np.pi * n - 0.1 and point.u < -0.1):
+        return
+    matrix = monodromy(ContactOrbit.from_branch(point, contact, n))
+    # Both lose digits where the ball leaves slowly, and entries are large.
+    scale = 1 + np.abs(matrix).max() ** 2
+    trace, det = trace_and_determinant(matrix)
+    assert abs(float(point.trace) - float(trace)) <= 1e-13 * scale
+    assert abs(float(point.determinant) - float(det)) <= 1e-13 * scale
+    expected = np.exp(-2 * zeta * float(contact.frequency_ratio * point.duration))
+    assert float(point.determinant) == pytest.approx(expected, rel=1e-13)
+
+
+def test_long_arrays_are_the_same_as_single_points():
+    # More than two blocks, with the short and resonant contacts among them.
+    excess = np.linspace(-3.1, 3.0, 5000)
+    whole = branch_point(excess, Contact(1.0, 0.0), 2)
+    assert whole.amplitude.shape == (5000,)
+    for k in (0, 1, 2047, 2048, 3001, 4999):
+        single = branch_point(excess[k], Contact(1.0, 0.0), 2)
+        for field, value in zip(whole, single, strict=True):
+            assert float(field[k]) == pytest.approx(float(value), rel=1e-12, abs=1e-14)
+
+
+def test_broadcasting_over_contacts_and_families():
+    contact = Contact(np.array([[2.0], [10.0]]), 0.1)
+    point = branch_point(0.1, contact, np.array([1, 2, 3]))
+    assert point.amplitude.shape == (2, 3)
+    single = branch_point(0.1, Contact(10.0, 0.1), 3)
+    for name in single._fields:
+        whole = np.broadcast_to(getattr(point, name), (2, 3))[1, 2]
+        assert float(whole) == pytest.approx(float(getattr(single, name)), rel=1e-13)
+
+
+@pytest.mark.parametrize("zeta", [1.0, 1.5])
+def test_overdamped_contacts_are_refused(zeta, one_line):
+    with pytest.raises(ModelError) as error:
+        branch_point(0.0, Contact(10.0, zeta), 1)
+    one_line(error, f"ζ = {zeta}", "not below 1")

@@ -1,0 +1,162 @@
+"""What is read from an orbit of the spring-damper model."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from bouncing_ball.models.contact import Contact, Release, contact_force
+from bouncing_ball.models.damping import damping_ratio
+from bouncing_ball.orbits.closed_form import branch_point
+from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.limits import orbit_at
+
+CASES = [
+    # n, r, ϖ, Λ, release
+    (1, 0.85, 2.0, 0.9, Release.DISPLACEMENT),
+    (1, 0.65, 20.0, 1.0, Release.DISPLACEMENT),
+    (2, 0.65, 10.0, 1.5, Release.DISPLACEMENT),
+    (3, 1.0, 5.0, 0.5, Release.DISPLACEMENT),
+    (1, 0.65, 3.0, 1.0, Release.FORCE),
+    (2, 0.85, 50.0, 0.9, Release.FORCE),
+]
+
+
+def build(case):
+    n, r, omega, lam, release = case
+    return orbit_at(Contact(omega, float(damping_ratio(r)), release), n, lam)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_one_cycle_by_numerical_integration(case):
+    """The orbit, integrated from its start alone, closes after 2πn."""
+    n, _, omega, lam, release = case
+    orbit = build(case)
+    zeta, phase = float(orbit.contact.damping_ratio), float(orbit.phase)
+
+    def table(t):
+        return lam * np.sin(t + phase), lam * np.cos(t + phase)
+
+    def touching(t, y):
+        w, wdot = table(t)
+        return [y[1], -1 - 2 * zeta * omega * (y[1] - wdot) - omega**2 * (y[0] - w)]
+
+    def released(t, y):
+        w, wdot = table(t)
+        if release is Release.FORCE:
+            return omega * (y[0] - w) + 2 * zeta * (y[1] - wdot)
+        return omega * (y[0] - w) if t > 1e-6 else -1.0
+
+    released.terminal, released.direction = True, 1
+
+    def landed(t, y):
+        return y[0] - table(t)[0] if t > float(orbit.duration) + 0.1 else 1.0
+
+    landed.terminal, landed.direction = True, -1
+    options = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-14}
+    start = [table(0)[0], float(orbit.impact_velocity)]
+    contact = solve_ivp(touching, (0, 2 * np.pi), start, events=released, **options)
+    t_b, at_b = contact.t_events[0][0], contact.y_events[0][0]
+    flight = solve_ivp(
+        lambda t, y: [y[1], -1.0], (t_b, 2 * np.pi * n + 1), at_b, events=landed,
+        max_step=0.05, **options,
+    )
+    t_2, at_2 = flight.t_events[0][0], flight.y_events[0][0]
+    # The integrator's tolerance over the cycle, and that of its dense output,
+    # of order 1e-11 for these steps; times the flight of at most 20.
+    assert t_b == pytest.approx(float(orbit.duration), abs=1e-10)
+    assert at_b[1] == pytest.approx(float(orbit.bounce_velocity), abs=1e-9)
+    assert at_b[0] == pytest.approx(float(orbit.bounce_height), abs=1e-8)
+    assert t_2 == pytest.approx(2 * np.pi * n, abs=1e-8)
+    assert at_2[1] == pytest.approx(float(orbit.impact_velocity), abs=1e-8)
+    assert at_2[0] == pytest.approx(table(0)[0], abs=1e-8)
+    # Its greatest height, from the integrated flight's own parabola.
+    assert at_b[0] + at_b[1] ** 2 / 2 == pytest.approx(float(orbit.max_height), abs=1e-8)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_paths_join(case):
+    n, _, omega, lam, release = case
+    orbit = build(case)
+    zeta, phase = orbit.contact.damping_ratio, orbit.phase
+    # Lengths of up to (nπ)²/2 = 44, with the roundings of the closed form.
+    close = {"abs": 2e-12}
+    z, v = orbit.contact_path(np.array([0.0, float(orbit.duration)]))
+    assert z[0] == pytest.approx(lam * np.sin(phase), **close)
+    assert v == pytest.approx([orbit.impact_velocity, orbit.bounce_velocity], **close)
+    z2, v2 = orbit.flight_path(np.array([float(orbit.duration), 2 * np.pi * n]))
+    assert z2 == pytest.approx([z[1], z[0]], **close)
+    assert v2 == pytest.approx([orbit.bounce_velocity, orbit.impact_velocity], **close)
+    assert float(orbit.flight_time + orbit.duration) == pytest.approx(2 * np.pi * n, **close)
+    # The release rule, whichever it is.
+    lift = z[1] - lam * np.sin(phase + orbit.duration)
+    if release is Release.DISPLACEMENT:
+        assert lift == pytest.approx(0.0, **close)
+        assert contact_force(0.0, orbit.relative_bounce_velocity, omega, zeta) <= 0
+    else:
+        pull = contact_force(lift, orbit.relative_bounce_velocity, omega, zeta)
+        assert float(pull) == pytest.approx(0.0, abs=2e-12 * omega**2)
+        assert lift < 0
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_ball_stays_where_it_should(case):
+    # In the table during contact, above it in flight.
+    n, _, _, lam, _ = case
+    orbit = build(case)
+    s = np.linspace(0, float(orbit.duration), 400)
+    depth = orbit.contact_path(s)[0] - lam * np.sin(orbit.phase + s)
+    assert np.all(depth[1:-1] < 0)
+    s = np.linspace(float(orbit.duration), 2 * np.pi * n, 400)
+    height = orbit.flight_path(s)[0] - lam * np.sin(orbit.phase + s)
+    assert np.all(height[1:-1] > (-np.inf if case[-1] is Release.FORCE else 0))
+    assert np.all(height[200:-1] > 0)
+
+
+def test_relative_velocities_and_apparent_restitution():
+    orbit = ContactOrbit(2, Contact(10.0, 0.1), 1.5, 0.4, 0.3, -6.0)
+    # By hand: bounce velocity -6 + 4π - 0.3.
+    assert orbit.bounce_velocity == pytest.approx(4 * np.pi - 6.3, rel=1e-15)
+    before, after = -6.0 - 1.5 * np.cos(0.4), 4 * np.pi - 6.3 - 1.5 * np.cos(0.7)
+    assert orbit.relative_impact_velocity == pytest.approx(before, rel=1e-15)
+    assert orbit.relative_bounce_velocity == pytest.approx(after, rel=1e-15)
+    assert orbit.apparent_restitution == pytest.approx(-after / before, rel=1e-15)
+
+
+def test_elastic_contacts_at_rest_return_all():
+    # r = 1 at the fold, Λ → 0: table at rest, r_a = 1 and ½v² = height.
+    contact = Contact(30.0, 0.0)
+    orbit = ContactOrbit.from_branch(branch_point(1e-9, contact, 1), contact, 1)
+    assert float(orbit.apparent_restitution) == pytest.approx(1.0, abs=1e-8)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_max_height_is_the_greatest(case):
+    orbit = build(case)
+    contact = orbit.contact_path(np.linspace(0, float(orbit.duration), 500))[0]
+    s = np.linspace(float(orbit.duration), 2 * np.pi * orbit.n, 4001)
+    flight = orbit.flight_path(s)[0]
+    # A sampled parabola misses its top by h²/8.
+    assert max(contact.max(), flight.max()) <= float(orbit.max_height) + 1e-12
+    assert flight.max() >= float(orbit.max_height) - (s[1] - s[0]) ** 2 / 8
+
+
+def test_max_height_of_a_ball_released_downwards():
+    # A stable orbit of a soft contact: the ball turns round before release, so
+    # its greatest height lies in the contact.
+    r, omega, lam = 0.1546, 0.3691, 10.5378
+    orbit = orbit_at(Contact(omega, float(damping_ratio(r))), 1, lam)
+    assert float(orbit.bounce_velocity) < 0
+    z, _ = orbit.contact_path(np.linspace(0, float(orbit.duration), 20001))
+    # Sampled to (1e-4)²: far below the difference of 0.4.
+    assert float(orbit.max_height) == pytest.approx(z.max(), abs=1e-6)
+
+
+def test_arrays_of_orbits():
+    contact = Contact(np.array([5.0, 50.0]), 0.1)
+    orbits = orbit_at(contact, 1, np.array([[0.9], [1.1]]))
+    assert orbits.max_height.shape == orbits.apparent_restitution.shape == (2, 2)
+    single = orbit_at(Contact(50.0, 0.1), 1, 0.9)
+    for name in ("phase", "bounce_velocity", "max_height", "apparent_restitution"):
+        assert float(getattr(orbits, name)[0, 1]) == pytest.approx(
+            float(getattr(single, name)), rel=1e-12
+        )

@@ -1,0 +1,343 @@
+"""Saddle-node, period doubling and orbits at a given Λ."""
+
+import warnings
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.contact import Contact, Release, responses
+from bouncing_ball.models.damping import damping_ratio
+from bouncing_ball.orbits import restitution as restitution_orbits
+from bouncing_ball.orbits.closed_form import branch_point, free_release_angle
+from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.limits import (
+    Side,
+    orbit_at,
+    period_doubling,
+    require_orbit,
+    saddle_node,
+)
+from bouncing_ball.orbits.monodromy import monodromy
+from bouncing_ball.orbits.stability import (
+    is_stable,
+    period_doubling_function,
+    saddle_node_function,
+    trace_and_determinant,
+)
+from bouncing_ball.orbits.system import OrbitSystem, Parameter
+
+EPS = np.finfo(float).eps
+
+# r from 0.35 on: below, a soft contact's branch may have no fold (see
+# test_without_a_fold). Nearly elastic contacts have a test of their own.
+families = st.integers(1, 5)
+coefficients = st.one_of(st.floats(0.35, 0.9999), st.just(1.0))
+log_ratios = st.floats(np.log(2.0), np.log(1e4))
+releases = st.sampled_from(list(Release))
+
+
+def stability(orbit):
+    return trace_and_determinant(monodromy(orbit))
+
+
+def stable(orbit):
+    return bool(is_stable(*stability(orbit)))
+
+
+def amplitudes(contact, n):
+    """Λ at the saddle-node and the period doubling."""
+    return tuple(
+        float(branch_point(find(contact, n), contact, n).amplitude)
+        for find in (saddle_node, period_doubling)
+    )
+
+
+@given(families, coefficients, log_ratios, releases)
+def test_the_saddle_node_is_the_lowest_amplitude(n, r, log_omega, release):
+    contact = Contact(float(np.exp(log_omega)), float(damping_ratio(r)), release)
+    excess = float(saddle_node(contact, n))
+    point = branch_point(excess, contact, n)
+    # ½ d(Λ²)/dε is a sum of X dX and Y dY, with X and Y from equations of
+    # order one: the 3 × 3 solve leaves some tens of their roundings.
+    size = float((1 + point.amplitude) * np.hypot(point.d_x, point.d_y))
+    assert abs(float(point.fold)) <= 200 * EPS * size
+    # Λ rises to both sides, in steps of the fold's own scale.
+    step = 0.05 / contact.frequency_ratio
+    around = branch_point(excess + step * np.array([-2, -1, 1, 2]), contact, n).amplitude
+    assert np.all(around > float(point.amplitude))
+    assert around[0] > around[1] and around[3] > around[2]
+    # Λ vanishes at the fold of an elastic contact, and the phase is then
+    # undefined; else a multiplier is one.
+    assume(r < 0.999)
+    trace, det = stability(ContactOrbit.from_branch(point, contact, n))
+    assert abs(float(saddle_node_function(trace, det))) <= 1e-10
+
+
+@given(families, coefficients, log_ratios, releases)
+def test_a_multiplier_is_minus_one_at_the_period_doubling(n, r, log_omega, release):
+    contact = Contact(float(np.exp(log_omega)), float(damping_ratio(r)), release)
+    node, excess = float(saddle_node(contact, n)), float(period_doubling(contact, n))
+    assert excess < node
+    orbit = ContactOrbit.from_branch(branch_point(excess, contact, n), contact, n)
+    trace, det = stability(orbit)
+    # A root to the last digit; the trace has lost two or three.
+    assert abs(float(period_doubling_function(trace, det))) <= 1e-11 * (1 + n)
+    assert -1 < float(det) <= 1 + 1e-12
+
+
+def check_orbit(orbit, n, lam):
+    """The orbit is at Λ, and solves the paper's equations."""
+    assert float(orbit.amplitude) == pytest.approx(lam, rel=1e-13, abs=1e-13)
+    assert 0 < orbit.duration < 2 * np.pi * n
+    omega, zeta = (float(x) for x in (orbit.contact.frequency_ratio, orbit.contact.damping_ratio))
+    # In the continuation's variables; heights of the landing equation are of
+    # order (2πn)².
+    y = np.array([orbit.phase, orbit.impact_velocity, omega * orbit.duration, lam])
+    system = OrbitSystem(n, zeta, Parameter.AMPLITUDE, omega, orbit.contact.release)
+    scale = np.array([1, 1, 2 * np.pi * n]) * (2 * np.pi * n)
+    assert np.all(np.abs(system.residual(y)) < 1e-12 * scale)
+    assert float(orbit.relative_impact_velocity) < 0
+    assert float(orbit.apparent_restitution) > 0
+
+
+@given(families, st.floats(0.2, 1.0), log_ratios, releases, st.floats(0.01, 0.99))
+def test_orbits_on_the_stable_side(n, r, log_omega, release, share):
+    contact = Contact(float(np.exp(log_omega)), float(damping_ratio(r)), release)
+    node, doubling = amplitudes(contact, n)
+    assume(np.isfinite(node) and np.isfinite(doubling) and r < 0.9999)
+    lam = node + share * (doubling - node)
+    orbit = orbit_at(contact, n, lam)
+    check_orbit(orbit, n, lam)
+    fold = float(branch_point(saddle_node(contact, n), contact, n).duration)
+    assert orbit.duration < fold
+    assert stable(orbit)
+
+
+# From ϖ = 10 the unstable side reaches up to the period doubling; a soft one
+# may turn before.
+@given(
+    families,
+    coefficients,
+    st.floats(np.log(10.0), np.log(1e4)),
+    releases,
+    st.floats(0.01, 0.99),
+)
+def test_orbits_on_the_unstable_side(n, r, log_omega, release, share):
+    contact = Contact(float(np.exp(log_omega)), float(damping_ratio(r)), release)
+    node, doubling = amplitudes(contact, n)
+    lam = node + share * (doubling - node)
+    orbit = orbit_at(contact, n, lam, Side.UNSTABLE)
+    check_orbit(orbit, n, lam)
+    fold = float(branch_point(saddle_node(contact, n), contact, n).duration)
+    assert orbit.duration > fold
+    assert not stable(orbit)
+
+
+@given(families, st.floats(0.35, 0.999), log_ratios, releases, st.floats(1e-6, 0.5))
+def test_not_stable_beyond_the_period_doubling(n, r, log_omega, release, beyond):
+    contact = Contact(float(np.exp(log_omega)), float(damping_ratio(r)), release)
+    _, doubling = amplitudes(contact, n)
+    orbit = orbit_at(contact, n, doubling * (1 + beyond))
+    assert float(orbit.duration) > 0
+    assert not stable(orbit)
+
+
+@given(families, coefficients, log_ratios, releases, st.floats(1e-9, 0.5))
+def test_nothing_below_the_saddle_node_on_the_stable_side(n, r, log_omega, release, below):
+    contact = Contact(float(np.exp(log_omega)), float(damping_ratio(r)), release)
+    node, _ = amplitudes(contact, n)
+    assume(node > 1e-6)
+    assert np.isnan(orbit_at(contact, n, node * (1 - below)).duration)
+
+
+def limit_errors(n, r, omega, release):
+    """Differences from the restitution model, one per quantity."""
+    zeta = float(damping_ratio(r))
+    contact = Contact(omega, zeta, release)
+    if release is Release.FORCE:
+        # A contact released at zero force returns more: the free velocity there.
+        angle = float(free_release_angle(Contact(1.0, zeta, release)))
+        free = responses(angle / np.sqrt(1 - zeta**2), 1.0, zeta).impulse
+        r = -float(free.rate)
+    lam = float(restitution_orbits.saddle_node(n, r)) + 0.3
+    orbit = orbit_at(contact, n, lam)
+    node, doubling = amplitudes(contact, n)
+    phi = float(restitution_orbits.phase(n, r, lam))
+    return np.array(
+        [
+            node - restitution_orbits.saddle_node(n, r),
+            doubling - restitution_orbits.period_doubling(n, r),
+            orbit.phase - phi,
+            orbit.impact_velocity + n * np.pi,
+            orbit.bounce_velocity - n * np.pi,
+            orbit.apparent_restitution - r,
+            orbit.max_height - restitution_orbits.max_height(n, lam, phi),
+            orbit.duration,
+        ],
+        dtype=float,
+    )
+
+
+@pytest.mark.parametrize("release", list(Release))
+@pytest.mark.parametrize(("n", "r"), [(1, 0.85), (1, 0.65), (2, 0.5), (3, 0.3)])
+def test_stiff_contacts_converge_to_the_restitution_model(n, r, release):
+    errors = [limit_errors(n, r, omega, release) for omega in (1e3, 1e4, 1e5)]
+    # First order in 1/ϖ. Where the first coefficient is small the second is
+    # seen at 1e3; towards 1e5 the ratio is 0.1 to 1/1000 and the roundings.
+    assert np.all(np.abs(errors[0]) < 50 / 1e3)
+    first, second = errors[1] / errors[0], errors[2] / errors[1]
+    assert second == pytest.approx(np.full(8, 0.1), abs=1.5e-3)
+    assert np.all(np.abs(second - 0.1) <= 0.2 * np.abs(first - 0.1) + 1e-5)
+
+
+def test_elastic_contacts_converge_too():
+    # r = 1: fold at Λ = 0 for every ϖ; the doubling at order 1/ϖ².
+    errors = [limit_errors(2, 1.0, omega, Release.DISPLACEMENT) for omega in (1e2, 1e3)]
+    assert abs(errors[0][0]) < 1e-12 and abs(errors[1][0]) < 1e-12
+    assert errors[1][1] / errors[0][1] == pytest.approx(0.01, rel=0.01)
+    assert errors[1][[2, 3, 4, 6, 7]] / errors[0][[2, 3, 4, 6, 7]] == pytest.approx(
+        np.full(5, 0.1), abs=2e-3
+    )
+    assert abs(errors[0][5]) < 1e-12  # r_a = 1 exactly
+
+
+def test_table_of_the_model_notes():
+    # Worked out without the package, to four decimals, for r = 0.85.
+    zeta = float(damping_ratio(0.85))
+    expected = {
+        10.0: [(0.2400, 1.0375), (0.4954, 1.1242), (0.7507, 1.2577)],
+        2.0: [(0.1877, 1.0871), (0.4609, 1.1646), (0.7319, 1.2956)],
+    }
+    for omega, rows in expected.items():
+        for n, row in enumerate(rows, start=1):
+            assert amplitudes(Contact(omega, zeta), n) == pytest.approx(row, abs=5.1e-5)
+
+
+def test_the_unstable_side_starts_at_the_fold():
+    contact = Contact(10.0, float(damping_ratio(0.85)))
+    node, _ = amplitudes(contact, 1)
+    near = [orbit_at(contact, 1, node * (1 + 1e-10), side) for side in Side]
+    # Λ is quadratic there: √1e-10 in D, in units of the fold's scale.
+    assert float(near[0].duration) == pytest.approx(float(near[1].duration), abs=1e-4)
+    assert near[0].duration < near[1].duration
+
+
+def test_arrays():
+    contact = Contact(np.array([[2.0], [10.0], [1e4]]), 0.0517)
+    n = np.array([1, 2])
+    nodes, doublings = saddle_node(contact, n), period_doubling(contact, n)
+    assert nodes.shape == doublings.shape == (3, 2)
+    orbits = orbit_at(contact, n, 0.1 + branch_point(nodes, contact, n).amplitude)
+    for i, omega in enumerate((2.0, 10.0, 1e4)):
+        for j, family in enumerate((1, 2)):
+            one = Contact(omega, 0.0517)
+            # Roots to four roundings, of angles where the rest is of order one.
+            assert float(saddle_node(one, family)) == pytest.approx(nodes[i, j], abs=1e-14)
+            assert float(period_doubling(one, family)) == pytest.approx(doublings[i, j], abs=1e-14)
+            single = orbit_at(one, family, float(orbits.amplitude[i, j]))
+            assert float(single.phase) == pytest.approx(float(orbits.phase[i, j]), rel=1e-10)
+
+
+def test_missing_orbits_are_marked_among_others():
+    contact = Contact(10.0, float(damping_ratio(0.85)))
+    orbits = orbit_at(contact, 1, np.array([0.1, 0.5, 0.2, 1.0]))
+    assert np.isnan(orbits.duration).tolist() == [True, False, True, False]
+    assert np.isnan(orbits.max_height).tolist() == [True, False, True, False]
+
+
+def test_a_required_orbit_is_that_of_the_stable_side():
+    contact = Contact(10.0, 0.05)
+    orbit = require_orbit(contact, 1, 0.9)
+    assert float(orbit.duration) == float(orbit_at(contact, 1, 0.9).duration)
+    assert stable(orbit)
+
+
+def test_a_required_orbit_that_is_missing(one_line):
+    contact = Contact(10.0, float(damping_ratio(0.85)))
+    with pytest.raises(NoOrbitError) as error:
+        require_orbit(contact, 1, 0.2)
+    # The saddle-node of the model notes' table, 0.2400.
+    one_line(error, "no 1-T orbit at Λ = 0.2 for ϖ = 10", "below the saddle-node at Λ = 0.239988")
+    soft = Contact(2.592, float(damping_ratio(0.0893)))
+    with pytest.raises(NoOrbitError) as error:
+        require_orbit(soft, 1, 0.5)
+    one_line(error, "no 1-T orbit at Λ = 0.5 for ϖ = 2.592", "no saddle-node")
+
+
+def test_without_a_fold():
+    # Strong damping, soft contact: Λ falls all the way to permanent contact.
+    contact = Contact(2.592, float(damping_ratio(0.0893)))
+    assert np.isnan(saddle_node(contact, 1))
+    orbit = orbit_at(contact, 1, 2.5)
+    assert float(orbit.amplitude) == pytest.approx(2.5, rel=1e-13)
+    assert stable(orbit)
+    assert not stable(orbit_at(contact, 1, 4.0))
+
+
+def test_period_doubling_without_a_fold():
+    # At ϖ = 1 the 1-T branch of r = 0.85 has no fold either. It is stable at
+    # Λ = 1.2 and has a multiplier below -1 at 1.4: there is a period doubling
+    # between, and NaN is for a side that has none.
+    contact = Contact(1.0, float(damping_ratio(0.85)))
+    assert np.isnan(saddle_node(contact, 1))
+    assert stable(orbit_at(contact, 1, 1.2)) and not stable(orbit_at(contact, 1, 1.4))
+    excess = period_doubling(contact, 1)
+    assert np.isfinite(excess)
+    orbit = ContactOrbit.from_branch(branch_point(excess, contact, 1), contact, 1)
+    assert float(orbit.amplitude) == pytest.approx(1.29751875, abs=1e-8)
+    assert abs(float(period_doubling_function(*stability(orbit)))) < 1e-10
+
+
+@pytest.mark.parametrize(
+    ("n", "r", "omega"), [(3, 0.9999700944704891, 6586.302158952978), (1, 0.99999, np.e)]
+)
+def test_saddle_node_of_a_nearly_elastic_contact_released_at_zero_force(n, r, omega):
+    # The fold is next to that of the displacement release, Λ → 0 as r → 1; the
+    # derivative's roundings at vanishing contacts (Λ → ∞) are no fold.
+    contact = Contact(omega, float(damping_ratio(r)), Release.FORCE)
+    point = branch_point(saddle_node(contact, n), contact, n)
+    assert float(point.amplitude) < 1e-3
+    assert abs(float(saddle_node_function(point.trace, point.determinant))) < 1e-9
+
+
+def test_a_grazing_release_is_no_saddle_node():
+    # The ball is left with no velocity relative to the table: the branch turns
+    # there in Λ, but no multiplier is one.
+    contact = Contact(float(np.exp(2.0)), float(damping_ratio(0.05078125)))
+    excess = saddle_node(contact, 1)
+    if np.isfinite(excess):
+        point = branch_point(excess, contact, 1)
+        assert abs(float(saddle_node_function(point.trace, point.determinant))) < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("n", "r", "omega", "release"),
+    [
+        (2, 0.0772894585329348, 1.373860091406201, Release.DISPLACEMENT),
+        (1, 0.0656671754199356, 1.5424026568889453, Release.FORCE),
+    ],
+)
+def test_no_numerical_warnings_on_the_way(n, r, omega, release):
+    # The scan passes points at which the impact velocity is exactly zero.
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        saddle_node(Contact(omega, float(damping_ratio(r)), release), n)
+
+
+@pytest.mark.parametrize("omega", [0.18, 0.32, 0.45])
+def test_a_very_soft_contact_has_no_fold_after_the_cycles_end(omega):
+    # ϖ_d < 1/2: half a period of contact is longer than the cycle 2π.
+    contact = Contact(omega, float(damping_ratio(0.6)))
+    duration = float(branch_point(saddle_node(contact, 1), contact, 1).duration)
+    assert np.isnan(duration) or duration < 2 * np.pi
+
+
+@pytest.mark.parametrize("omega", [0.18, 0.32])
+def test_the_unstable_side_of_a_very_soft_contact(omega):
+    # None or an orbit, and no numerical warning on the way.
+    contact = Contact(omega, float(damping_ratio(0.6)))
+    orbit = orbit_at(contact, 1, 40.0, Side.UNSTABLE)
+    assert np.isnan(orbit.duration) or 0 < float(orbit.duration) < 2 * np.pi

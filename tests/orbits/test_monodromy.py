@@ -1,0 +1,103 @@
+"""The linearised return map against an independent nonlinear one."""
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from bouncing_ball.models.contact import Contact, Release
+from bouncing_ball.models.damping import damping_ratio
+from bouncing_ball.orbits import restitution as restitution_orbits
+from bouncing_ball.orbits.closed_form import branch_point
+from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.limits import Side, orbit_at
+from bouncing_ball.orbits.monodromy import monodromy
+from bouncing_ball.orbits.stability import trace_and_determinant
+
+CASES = [
+    # n, r, ϖ, Λ
+    (1, 0.85, 2.0, 0.9),
+    (1, 0.65, 100.0, 1.0),
+    (2, 0.65, 10.0, 1.5),
+    (3, 1.0, 5.0, 0.5),
+    (1, 0.10, 20.0, 2.6),
+    (2, 0.85, 1e4, 0.9),
+]
+
+
+@pytest.mark.parametrize("release", list(Release))
+@pytest.mark.parametrize("side", list(Side))
+@pytest.mark.parametrize("case", CASES)
+def test_against_differences_of_the_return_map(case, side, release, reference):
+    n, r, omega, lam = case
+    zeta = float(damping_ratio(r))
+    orbit = orbit_at(Contact(omega, zeta, release), n, lam, side)
+    phase, u, duration = (
+        float(x) for x in (orbit.phase, orbit.relative_impact_velocity, orbit.duration)
+    )
+    assert duration > 0
+
+    def cycle(d_phase, d_u):
+        force = release is Release.FORCE
+        return np.array(
+            reference.cycle(phase + d_phase, u + d_u, n, lam, omega, zeta, duration, force)
+        )
+
+    # The orbit is a fixed point: phase after one cycle advanced by 2πn. The
+    # return map amplifies the roundings of its events by the flight time.
+    assert cycle(0, 0) == pytest.approx([phase + 2 * np.pi * n, u], abs=1e-11)
+    h = 1e-3
+    weights = np.array([1, -8, 8, -1]) / (12 * h)
+    columns = [
+        weights @ np.array([cycle(*(k * h * np.array(axis))) for k in (-2, -1, 1, 2)])
+        for axis in ((1, 0), (0, 1))
+    ]
+    computed = monodromy(orbit)
+    # h⁴/30 times a fifth derivative, up to 1e4 where |u| is small, and the
+    # map's own 1e-13 over h.
+    assert computed == pytest.approx(np.array(columns).T, abs=1e-9 * (1 + np.abs(computed).max()))
+
+
+@given(
+    st.integers(1, 5),
+    st.floats(0.05, 1.0),
+    st.floats(np.log(2.0), np.log(1e4)),
+    st.sampled_from(list(Release)),
+    st.floats(-1.0, 1.0),
+)
+def test_determinant_is_the_contraction_of_the_contact(n, r, log_omega, release, share):
+    zeta, omega = float(damping_ratio(r)), float(np.exp(log_omega))
+    contact = Contact(omega, zeta, release)
+    point = branch_point(share / omega, contact, n)
+    orbit = ContactOrbit.from_branch(point, contact, n)
+    leaving = abs(float(orbit.relative_bounce_velocity))
+    assume(leaving > 1e-3)  # the contact's end is not differentiable at zero
+    matrix = monodromy(orbit)
+    expected = np.exp(-2 * zeta * omega * float(orbit.duration))
+    det = float(trace_and_determinant(matrix)[1])
+    # Products of entries cancel in the determinant; each entry has lost about
+    # two digits to the phase, and some to the division by the release velocity.
+    scale = (1 + np.abs(matrix).max() ** 2) / min(leaving, 1.0)
+    assert abs(det - expected) <= 1e-13 * scale
+
+
+@pytest.mark.parametrize(("n", "r", "lam"), [(1, 0.85, 0.9), (3, 0.5, 3.5)])
+def test_stiff_limit_is_the_restitution_map(n, r, lam):
+    zeta = float(damping_ratio(r))
+    phase = restitution_orbits.phase(n, r, lam)
+    expected = np.array(restitution_orbits.trace_and_determinant(r, lam, phase))
+    errors = []
+    for omega in (1e4, 1e5):
+        orbit = orbit_at(Contact(omega, zeta), n, lam)
+        errors.append(np.array(trace_and_determinant(monodromy(orbit))) - expected)
+    # First order in 1/ϖ; the next order changes the ratio by 1e-4 or so.
+    assert np.abs(errors[0]).max() < 100 / 1e4
+    assert errors[1] / errors[0] == pytest.approx([0.1, 0.1], abs=2e-3)
+
+
+def test_shape_follows_the_orbits():
+    orbits = orbit_at(Contact(np.array([5.0, 50.0]), 0.1), 1, np.array([[0.9], [1.0], [1.1]]))
+    matrices = monodromy(orbits)
+    assert matrices.shape == (3, 2, 2, 2)
+    single = monodromy(orbit_at(Contact(50.0, 0.1), 1, 1.1))
+    assert matrices[2, 1] == pytest.approx(single, rel=1e-10)

@@ -1,0 +1,111 @@
+"""Figures 5, 6, 10 and 13: orbits along ϖ."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.models.contact import Contact, Release
+from bouncing_ball.models.damping import damping_ratio
+from bouncing_ball.orbits.limits import orbit_at
+from bouncing_ball.orbits.monodromy import monodromy
+from bouncing_ball.studies.frequency_sweeps import apparent_restitution, frequency_sweep, sweep
+
+SPAN = {"min": 1.0, "max": 1000.0, "samples": 7}
+CASES = {
+    "n": 1,
+    "cases": [
+        {"restitution": 1.0, "amplitude": 0.8},
+        {"restitution": 0.65, "amplitude": 1.0},
+        {"restitution": 0.10, "amplitude": 2.6},
+    ],
+    "frequency_ratio": SPAN,
+}
+
+
+@pytest.mark.parametrize("release", ["displacement", "force"])
+def test_every_entry_is_the_orbit_of_its_parameters(described, release):
+    data = described(apparent_restitution(CASES, release))
+    assert data.phase.dims == ("case", "frequency_ratio") and data.phase.shape == (3, 7)
+    for i, case in enumerate(CASES["cases"]):
+        row = data.sel(case=i)
+        assert (float(row.restitution), float(row.amplitude)) == tuple(case.values())
+        zeta = float(damping_ratio(case["restitution"]))
+        for ratio in data.frequency_ratio.values:
+            at = row.sel(frequency_ratio=ratio)
+            orbit = orbit_at(Contact(ratio, zeta, Release(release)), 1, case["amplitude"])
+            if np.isnan(orbit.duration):
+                assert np.isnan(at.phase) and not bool(at.stable)
+                continue
+            # Scalars against arrays: the roundings of a root.
+            for name in (
+                "phase impact_velocity bounce_velocity apparent_restitution max_height"
+            ).split():
+                assert float(at[name]) == pytest.approx(float(getattr(orbit, name)), abs=1e-11)
+            assert float(at.contact_duration) == pytest.approx(float(orbit.duration), abs=1e-12)
+            assert float(at.release_phase) == pytest.approx(
+                float(at.phase + at.contact_duration), abs=1e-15
+            )
+            if case["restitution"] < 1:
+                largest = np.abs(np.linalg.eigvals(monodromy(orbit))).max()
+                assert bool(at.stable) == (largest < 1)
+
+
+def test_what_the_paper_says_of_its_figures():
+    data = apparent_restitution(CASES | {"frequency_ratio": {"min": 1.0, "max": 1e3, "samples": 31}}, "displacement")
+    # An elastic contact returns all of the velocity only on average over the
+    # gravity and table of a symmetric contact: exactly for r = 1.
+    elastic = data.apparent_restitution.sel(case=0).values
+    assert elastic[np.isfinite(elastic)] == pytest.approx(1.0, abs=1e-9)
+    # Claim 1: r_a = r for ϖ > 100, within the percent.
+    stiff = data.sel(frequency_ratio=slice(100, None))
+    assert np.all(np.abs(stiff.apparent_restitution / stiff.restitution - 1) < 0.01)
+    # Claim 2, as computed in the model notes: r_a(1) = 0.809 for Λ = 1.
+    assert float(data.apparent_restitution.sel(case=1)[0]) == pytest.approx(0.809, abs=5e-4)
+
+
+def test_not_stable_where_there_is_no_orbit():
+    # r = 0.1 needs Λ ≥ 2.57 when stiff.
+    cases = CASES | {"cases": [{"restitution": 0.10, "amplitude": 2.0}]}
+    data = apparent_restitution(cases, "displacement")
+    gone = np.isnan(data.phase.values)
+    assert gone[0, -1]
+    assert not data.stable.values[gone].any()
+    assert np.isnan(data.max_height.values[gone]).all()
+
+
+def test_sweep_of_one_restitution(described):
+    parameters = {
+        "n": 2, "restitution": 0.85, "amplitude": [1.1, 0.6], "frequency_ratio": SPAN,
+    }
+    data = described(frequency_sweep(parameters, "displacement"))
+    assert data.amplitude.values.tolist() == [1.1, 0.6]
+    assert data.restitution.values.tolist() == [0.85, 0.85]
+    # Limits by hand: Eq. 6 and nπ.
+    node = 2 * np.pi * 0.15 / 1.85
+    assert data.restitution_phase.values == pytest.approx(np.arccos(node / np.array([1.1, 0.6])))
+    assert float(data.restitution_bounce_velocity) == 2 * np.pi
+    assert float(data.restitution_impact_velocity) == -2 * np.pi
+    # At ϖ = 1000 the differences are of order 1/ϖ, with factors of up to 5.
+    last = data.isel(frequency_ratio=-1)
+    assert last.phase.values == pytest.approx(last.restitution_phase.values, abs=5e-3)
+    assert last.bounce_velocity.values == pytest.approx(np.full(2, 2 * np.pi), abs=5e-3)
+    assert last.impact_velocity.values == pytest.approx(np.full(2, -2 * np.pi), abs=5e-3)
+
+
+def test_shape_of_a_sweep():
+    orbit = sweep(1, np.array([0.85, 0.65]), np.array([1.0, 0.9]), np.array([5.0, 50.0, 500.0]), "force")
+    assert orbit.duration.shape == (2, 3)
+    assert orbit.contact.release is Release.FORCE
+
+
+def test_errors(one_line):
+    bad = CASES | {"cases": [{"restitution": 0.0, "amplitude": 1.0}]}
+    with pytest.raises(ModelError) as error:
+        apparent_restitution(bad, "displacement")
+    one_line(error, "restitution coefficient", "(0, 1]")
+    with pytest.raises(NoOrbitError) as error:
+        frequency_sweep(
+            {"n": 2, "restitution": 0.85, "amplitude": [1.0, 0.3], "frequency_ratio": SPAN},
+            "displacement",
+        )
+    one_line(error, "no 2-T orbit", "0.3")

@@ -1,0 +1,84 @@
+"""Figures 7 and 12: orbits over time."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.damping import damping_ratio
+from bouncing_ball.studies.time_histories import both_histories, contact_history
+
+ONE = {"n": 1, "restitution": 0.85, "amplitude": 1.0, "frequency_ratio": 4.0, "samples": 101}
+BOTH = {"n": 1, "restitution": 0.65, "amplitude": 1.0, "frequency_ratio": [2.0, 20.0], "samples": 60}
+
+
+@pytest.mark.parametrize("release", ["displacement", "force"])
+def test_one_cycle_against_an_integration(described, release):
+    data = described(contact_history(ONE, release))
+    assert data.ball.dims == ("sample",) and data.sizes["sample"] == 101
+    touching = data.contact.values
+    assert touching.sum() == 50 and np.all(np.diff(touching.astype(int)) <= 0)
+    assert float(data.time[49]) == float(data.time[50]) == float(data.contact_duration)
+    assert float(data.time[-1]) == pytest.approx(2 * np.pi, rel=1e-15)
+    phase, zeta, omega = float(data.phase), float(damping_ratio(0.85)), 4.0
+
+    def field(t, y):
+        w, wdot = np.sin(t + phase), np.cos(t + phase)
+        force = -2 * zeta * omega * (y[1] - wdot) - omega**2 * (y[0] - w)
+        return [y[1], -1 + force * (t <= float(data.contact_duration))]
+
+    # In two parts, so that no step runs over the release.
+    start = [np.sin(phase), float(data.impact_velocity)]
+    states = []
+    for part in (touching, ~touching):
+        times = data.time.values[part]
+        run = solve_ivp(
+            field if part[0] else lambda t, y: [y[1], -1.0],
+            times[[0, -1]],
+            start,
+            method="DOP853",
+            t_eval=times,
+            rtol=1e-13,
+            atol=1e-14,
+        )
+        states.append(run.y)
+        start = run.y[:, -1]
+    ball, velocity = np.concatenate(states, axis=1)
+    # The integrator's tolerance over some hundred steps.
+    assert data.ball.values == pytest.approx(ball, abs=1e-10)
+    assert data.ball_velocity.values == pytest.approx(velocity, abs=1e-10)
+    # It closes, and the scalars are those of the curves.
+    assert ball[-1] == pytest.approx(ball[0], abs=1e-10)
+    assert velocity[-1] == pytest.approx(velocity[0], abs=1e-10)
+    assert float(data.bounce_velocity) == float(data.ball_velocity[50])
+    assert data.table.values == pytest.approx(np.sin(data.time.values + phase), abs=1e-15)
+
+
+def test_no_cycle_below_the_saddle_node(one_line):
+    with pytest.raises(NoOrbitError) as error:
+        contact_history(ONE | {"amplitude": 0.1}, "displacement")
+    one_line(error, "no 1-T orbit at Λ = 0.1 for ϖ = 4")
+    with pytest.raises(NoOrbitError) as error:
+        both_histories(BOTH | {"amplitude": 0.1}, "displacement")
+    one_line(error, "no 1-T orbit at Λ = 0.1 for ϖ = 2")
+
+
+def test_both_models(described):
+    data = described(both_histories(BOTH, "displacement"))
+    assert data.ball.dims == ("frequency_ratio", "sample") and data.ball.shape == (2, 60)
+    for ratio in BOTH["frequency_ratio"]:
+        row = data.sel(frequency_ratio=ratio)
+        single = contact_history(BOTH | {"frequency_ratio": ratio}, "displacement")
+        assert row.ball.values == pytest.approx(single.ball.values, abs=1e-13)
+        assert np.array_equal(row.contact.values, single.contact.values)
+        phase = (single.time + single.phase).values
+        assert row.table_phase.values == pytest.approx(phase, abs=1e-13)
+    # The restitution orbit, by hand: one whole flight, both ends on the table.
+    phase = float(data.restitution_phase)
+    s = data.time.values
+    flight = np.sin(phase) + np.pi * s - s**2 / 2
+    assert data.restitution_ball.values == pytest.approx(flight, abs=1e-12)
+    assert np.cos(phase) == pytest.approx(np.pi * 0.35 / 1.65, rel=1e-14)
+    # The stiffer contact is nearer to it.
+    tops = data.ball.max("sample").values
+    assert tops[0] < tops[1] < flight.max()

@@ -1,0 +1,16 @@
+"""Three routes to every published orbit."""
+
+from pathlib import Path
+
+from bouncing_ball.datasets.netcdf import read_dataset
+from bouncing_ball.pipeline.job import make_dataset
+from bouncing_ball.studies.witness import witness
+
+
+def study(settings):
+    """The comparisons, on the datasets of the job."""
+    paths = map(Path, snakemake.input.data)
+    return witness({path.stem: read_dataset(path) for path in paths}, settings)
+
+
+make_dataset(snakemake, study)

@@ -1,9 +1,10 @@
 """Shared by all tests: the hypothesis profile and reference implementations.
 
-The references use nothing of the package: a matrix exponential, Brent's
-method and the textbook formulas of the table and of free flight.
+The references use nothing of the package: a matrix exponential, the paper's
+own solution of the contact, Brent's method, and free flight.
 """
 
+import math
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,11 +13,14 @@ from hypothesis import HealthCheck, settings
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
+from bouncing_ball.datasets.variables import VARIABLES
+
 settings.register_profile(
     "deterministic",
     derandomize=True,
     deadline=None,
     max_examples=60,
+    database=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )
 settings.load_profile("deterministic")
@@ -37,6 +41,32 @@ def _contact_state(s, d0, v0, phase, lam, omega, zeta):
     return scaled_d / omega, v
 
 
+def _paper_contact(u, phase, lam, omega, zeta):
+    """(δ, δ′) as a function of time, from the paper's Eqs. 12-13 (ζ < 1, no resonance)."""
+    gamma = (omega**2 - 1) ** 2 + (2 * zeta * omega) ** 2
+    p, q, a = omega**2 - 1, 2 * zeta * omega, zeta * omega
+    omega_d = omega * math.sqrt(1 - zeta**2)
+
+    def steady(s):
+        sin, cos = math.sin(s + phase), math.cos(s + phase)
+        return (
+            -1 / omega**2 + lam * (p * sin - q * cos) / gamma,
+            lam * (p * cos + q * sin) / gamma,
+        )
+
+    d0, v0 = steady(0.0)
+    b1, b2 = -d0, (u - v0 - a * d0) / omega_d
+
+    def state(s):
+        sin, cos, decay = math.sin(omega_d * s), math.cos(omega_d * s), math.exp(-a * s)
+        free = decay * (b1 * cos + b2 * sin)
+        rate = decay * omega_d * (b2 * cos - b1 * sin) - a * free
+        d, v = steady(s)
+        return d + free, v + rate
+
+    return state
+
+
 def _cycle(phase, u, n, lam, omega, zeta, duration, force_release=False):
     """One cycle from the start of contact: (landing phase, relative landing velocity).
 
@@ -44,27 +74,31 @@ def _cycle(phase, u, n, lam, omega, zeta, duration, force_release=False):
     around the guesses and closed by Brent's method to the last digits.
     """
 
+    state = _paper_contact(u, phase, lam, omega, zeta)
+
     def release(s):
-        d, v = _contact_state(s, 0.0, u, phase, lam, omega, zeta)
+        d, v = state(s)
         return omega * d + (2 * zeta * v if force_release else 0.0)
 
-    s = brentq(release, 0.97 * duration, 1.03 * duration, xtol=1e-300, rtol=4e-16)
-    d, v = _contact_state(s, 0.0, u, phase, lam, omega, zeta)
+    s = brentq(release, 0.97 * duration, 1.03 * duration, xtol=1e-300, rtol=9e-16)
+    d, v = state(s)
     z = d + lam * np.sin(phase + s)
     zdot = v + lam * np.cos(phase + s)
     flight = 2 * np.pi * n - duration
 
     def gap(t):
-        return z + zdot * t - t * t / 2 - lam * np.sin(phase + s + t)
+        return z + zdot * t - t * t / 2 - lam * math.sin(phase + s + t)
 
-    t = brentq(gap, 0.97 * flight, 1.03 * flight, xtol=1e-300, rtol=4e-16)
+    t = brentq(gap, 0.97 * flight, 1.03 * flight, xtol=1e-300, rtol=9e-16)
     return phase + s + t, zdot - t - lam * np.cos(phase + s + t)
 
 
 @pytest.fixture(scope="session")
 def reference():
-    """Independent implementations: ``contact_state`` and ``cycle``."""
-    return SimpleNamespace(contact_state=_contact_state, cycle=_cycle)
+    """Independent implementations: ``contact_state``, ``paper_contact`` and ``cycle``."""
+    return SimpleNamespace(
+        contact_state=_contact_state, paper_contact=_paper_contact, cycle=_cycle
+    )
 
 
 @pytest.fixture(scope="session")
@@ -76,6 +110,24 @@ def one_line():
         assert "\n" not in message, message
         for part in parts:
             assert part in message, message
+
+    return check
+
+
+@pytest.fixture(scope="session")
+def described():
+    """Asserts that all of a dataset is named and described."""
+
+    def check(dataset):
+        for name in dataset.variables:
+            attributes = dataset[name].attrs
+            assert attributes.get("long_name"), name
+            if dataset[name].dtype.kind in "fiu":
+                assert attributes.get("units") in ("1", "rad"), name
+            else:
+                assert dataset[name].dtype.kind in "bU", name
+        assert set(dataset.dims) <= set(VARIABLES)
+        return dataset
 
     return check
 

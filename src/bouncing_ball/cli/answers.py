@@ -20,6 +20,7 @@ from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.monodromy import trace_and_contraction
 from bouncing_ball.orbits.stability import is_stable, multipliers
 from bouncing_ball.orbits.system import OrbitSystem, Parameter
+from bouncing_ball.simulation.sequence import Status
 
 Answer = dict[str, Any]
 
@@ -144,3 +145,40 @@ def permanent_contact(args: argparse.Namespace) -> Answer:
         answer["minimum"] = float(lowest.threshold)
         answer["at_frequency_ratio"] = float(lowest.frequency_ratio)
     return answer
+
+
+def _columns(sequence: Any) -> Answer:
+    """The recorded impacts of one ball, as lists; null for what does not happen."""
+    there = np.isfinite(sequence.time)
+    columns = {
+        "time": sequence.time,
+        "phase": sequence.phase,
+        "impact_velocity": sequence.impact_velocity,
+        "contact_duration": sequence.contact_duration,
+        "bounce_velocity": sequence.release_velocity,
+    }
+    return {
+        name: [value if math.isfinite(value) else None for value in column[there].tolist()]
+        for name, column in columns.items()
+    }
+
+
+def simulate(args: argparse.Namespace) -> Answer:
+    """The sequence of impacts from an initial impact.
+
+    Raises
+    ------
+    ModelError
+        If the ball does not approach the table at the first impact.
+    """
+    velocity = -math.pi if args.velocity is None else args.velocity
+    if args.model == "restitution":
+        from bouncing_ball.simulation.restitution import simulate as run
+
+        sequence = run(args.restitution, args.amplitude, args.phase, velocity, args.impacts)
+    else:
+        from bouncing_ball.simulation.spring_damper import simulate as run
+
+        sequence = run(_contact(args), args.amplitude, args.phase, velocity, args.impacts)
+    status = Status(int(sequence.status)).name.lower().replace("_", " ")
+    return {"status": status, "sequence": _columns(sequence)}

@@ -179,6 +179,7 @@ def parse(arguments: list[str] | None = None) -> argparse.Namespace:
     return args
 
 
-def fail(message: str) -> NoReturn:
-    """One line on standard error and exit status 1."""
-    sys.exit(f"bouncing-ball: {message}")
+def fail(message: str, status: int) -> NoReturn:
+    """One line on standard error and the exit status."""
+    print(f"bouncing-ball: {message}", file=sys.stderr)
+    sys.exit(status)

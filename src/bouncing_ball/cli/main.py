@@ -1,9 +1,12 @@
 """Entry point of ``bouncing-ball``."""
 
 import json
+import os
+import sys
 from typing import Any
 
 from bouncing_ball.cli.arguments import fail, parse
+from bouncing_ball.errors import NoOrbitError
 
 
 def _lines(answer: dict[str, Any], prefix: str = "") -> list[str]:
@@ -31,7 +34,8 @@ def _table(rows: dict[str, list]) -> list[str]:
     """Columns of a sequence, one line for each impact."""
     head = "".join(f"{name.replace('_', ' '):>24}" for name in rows)
     body = [
-        "".join(f"{value:>24.12g}" for value in line) for line in zip(*rows.values(), strict=True)
+        "".join(f"{'never' if value is None else format(value, '.12g'):>24}" for value in line)
+        for line in zip(*rows.values(), strict=True)
     ]
     return [head, *body]
 
@@ -49,13 +53,21 @@ def main(arguments: list[str] | None = None) -> None:
             answer = getattr(answers, args.command.replace("-", "_"))(args)
         except ValueError as error:
             if args.json:
-                print(json.dumps({"error": str(error)}, ensure_ascii=False))
-            fail(str(error))
+                _print([json.dumps({"error": str(error)}, ensure_ascii=False)])
+            fail(str(error), status=1 if isinstance(error, NoOrbitError) else 2)
     if args.json:
-        print(json.dumps(answer, allow_nan=False))
+        _print([json.dumps(answer, allow_nan=False)])
     else:
         sequence = answer.pop("sequence", None)
-        print("\n".join(_lines(answer) + (_table(sequence) if sequence else [])))
+        _print(_lines(answer) + (_table(sequence) if sequence else []))
+
+
+def _print(lines: list[str]) -> None:
+    """Print, and end quietly if nobody reads on (``| head``)."""
+    try:
+        print("\n".join(lines), flush=True)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 if __name__ == "__main__":

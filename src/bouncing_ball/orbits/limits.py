@@ -189,6 +189,36 @@ def orbit_at(
     return ContactOrbit.from_branch(branch_point(excess, local, n), local, n)
 
 
+class Absence(StrEnum):
+    """Why there is no orbit on a side of the branch at some Λ."""
+
+    NONE = "there is one"
+    BELOW_SADDLE_NODE = "below the saddle-node"
+    NO_OTHER_SIDE = "the branch has no saddle-node, and so no other side"
+    NOT_REACHED = "this side of the branch does not reach this Λ"
+
+
+def absence(
+    contact: Contact, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE
+) -> np.ndarray:
+    """The :class:`Absence` of each orbit that :func:`orbit_at` looks for, as text.
+
+    Examples
+    --------
+    >>> str(absence(Contact(10.0, 0.1), 1, 0.2))
+    'below the saddle-node'
+    """
+    omega, zeta, n, lam = _columns(contact, n, amplitude)
+    local = Contact(omega, zeta, contact.release)
+    fold = branch_point(saddle_node(local, n), local, n).amplitude
+    missing = np.isnan(orbit_at(local, n, lam, side).duration)
+    reason = np.where(np.isnan(fold), Absence.NO_OTHER_SIDE, Absence.NOT_REACHED)
+    if side is Side.STABLE:
+        reason = np.full(missing.shape, Absence.NOT_REACHED)
+    reason = np.where(lam < fold, Absence.BELOW_SADDLE_NODE, reason)
+    return np.where(missing, reason, Absence.NONE)
+
+
 def require_orbit(
     contact: Contact, n: int, amplitude: float, side: Side = Side.STABLE
 ) -> ContactOrbit:
@@ -208,15 +238,10 @@ def require_orbit(
     """
     orbit = orbit_at(contact, n, amplitude, side)
     if np.isnan(orbit.duration):
-        fold = float(branch_point(saddle_node(contact, n), contact, n).amplitude)
-        if amplitude < fold:
-            why = f"below the saddle-node at Λ = {fold:.6g}"
-        elif np.isfinite(fold):
-            why = f"the {side} side of the branch does not reach this Λ"
-        elif side is Side.UNSTABLE:
-            why = "the branch has no saddle-node, and so no other side"
-        else:
-            why = "the branch, which has no saddle-node, does not reach this Λ"
+        why = str(absence(contact, n, amplitude, side))
+        if why == Absence.BELOW_SADDLE_NODE:
+            fold = branch_point(saddle_node(contact, n), contact, n).amplitude
+            why = f"{why} at Λ = {float(fold):.6g}"
         raise NoOrbitError(
             f"no {n}-T orbit at Λ = {amplitude:g} for ϖ = {float(contact.frequency_ratio):g}, "
             f"ζ = {float(contact.damping_ratio):.4g}: {why}"

@@ -47,7 +47,8 @@ class OrbitSystem:
     Parameters
     ----------
     n : int
-        Index of the family.
+        Index of the family. It, ζ and the fixed parameter may be arrays along
+        the leading axis of y, to solve for many systems at once.
     damping_ratio : float
         ζ.
     parameter : Parameter
@@ -67,11 +68,13 @@ class OrbitSystem:
     def orbit(self, y: np.ndarray) -> ContactOrbit:
         """The orbits at points y of shape (..., 4)."""
         phase, impact, angle, p = (y[..., k] for k in range(4))
+        fixed = np.broadcast_to(np.asarray(self.fixed, dtype=float), p.shape)
+        zeta = np.broadcast_to(np.asarray(self.damping_ratio, dtype=float), p.shape)
         if self.parameter is Parameter.AMPLITUDE:
-            amplitude, omega = p, np.full_like(p, self.fixed)
+            amplitude, omega = p, fixed
         else:
-            amplitude, omega = np.full_like(p, self.fixed), np.exp(p)
-        contact = Contact(omega, np.full_like(p, self.damping_ratio), self.release)
+            amplitude, omega = fixed, np.exp(p)
+        contact = Contact(omega, zeta, self.release)
         return ContactOrbit(self.n, contact, amplitude, phase, angle / omega, impact)
 
     def _flow(self, orbit: ContactOrbit):
@@ -146,7 +149,7 @@ class OrbitSystem:
         d_bounce = d_impact + d_flight
         release = scaled(omega, d_displacement) + scaled(flow.displacement, d_omega)
         if self.release is Release.FORCE:
-            release = release + 2 * self.damping_ratio * d_velocity
+            release = release + scaled(2 * o.contact.damping_ratio, d_velocity)
         velocity = (
             d_velocity + scaled(np.cos(end), d_lam) - scaled(lam * np.sin(end), d_end) - d_bounce
         )

@@ -36,14 +36,12 @@ class Oscillator(NamedTuple):
 
     ``lag`` is κ; ``in_phase`` and ``quadrature`` the steady response to
     Λ sin τ + κ Λ cos τ over Λ sin τ and Λ cos τ; ``half`` the half period
-    π/ϖ_d and ``growth`` e^{aπ/ϖ_d}; ``rapidity`` max(ϖ, 1) bounds the ratio of the
-    bounds of successive derivatives.
+    π/ϖ_d and ``growth`` e^{aπ/ϖ_d}.
     """
 
     amplitude: np.ndarray
     stiffness: np.ndarray
     omega: np.ndarray
-    rapidity: np.ndarray
     decay: np.ndarray
     damped: np.ndarray
     lag: np.ndarray
@@ -96,7 +94,6 @@ def oscillator(contact: Contact, amplitude: ArrayLike) -> Oscillator:
         amplitude=lam,
         stiffness=omega * omega,
         omega=omega,
-        rapidity=np.maximum(omega, 1.0),
         decay=zeta * omega,
         damped=damped,
         lag=lag,
@@ -169,7 +166,7 @@ class ContactMotion:
             free_third - forced_rate,
             bound + o.steady,
             o.omega * bound + o.steady,
-            o.rapidity,
+            o.stiffness * bound + o.steady,
             envelope + (o.steady - level) <= _ROUNDING * level,
         )
 

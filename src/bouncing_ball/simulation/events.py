@@ -4,16 +4,20 @@ Let y(s) < 0, with y″ ≤ K and \|y‴\| ≤ J from s on. Then ::
 
     y(s + h) ≤ y + y′ h + K h²/2
 
-so that no zero lies before the positive root h₀ of this parabola. Up to 2h₀
-the second derivative is at most ``K₁ = min(K, y″ + 2J h₀)``, which gives a
-longer step, limited to 2h₀. Steps of this kind approach a simple zero
-from the left with third order, and slow down, but do not fail, where two
-zeros lie close together or the function only touches zero. They are taken until
+so that no zero lies before the positive root h₀ of this parabola. Within any
+H ≥ h the bound may be replaced by a local one, with \|y⁗\| ≤ L ::
+
+    K_H = min(K, y″ + H max(y‴, 0)/3 + L H²/12)
+
+and the step is as long as the best H = 4h₀, 16h₀, ... allows. Such steps
+approach a simple zero from the left with third order, and slow down, but do
+not fail, where two zeros lie close together or the function only touches
+zero. They are taken until
 
 * ``2K \|y\| ≤ θ y′²``, y′ > 0: the next zero is then simple and near (Newton
   and Kantorovich), and
-* ``J h₀² ≤ κ y′``: one more step by the function's own parabola, without
-  the safeguard, reaches the last digit; its error is below κ⁴ h₀/6.
+* ``(\|y‴\| + L h₀) h₀² ≤ κ y′``: one more step, by the function's own parabola
+  and without the safeguard, reaches the last digit; its error is of order κ⁴ h₀.
 
 Flight and contact are both *motions* of this kind, see :class:`Motion`.
 """
@@ -25,6 +29,8 @@ import numpy as np
 # θ and κ above.
 _SIMPLE = 0.25
 _CLOSE = 3e-4
+# Ratio of successive H.
+_REACH = 4.0
 # Steps after which a zero is given up as undecided. Each is a good part of the
 # shorter of the function's time scales, so this is hundreds of oscillations.
 _MAX_STEPS = 3000
@@ -32,7 +38,7 @@ _TINY = 1e-300
 
 
 class State(NamedTuple):
-    """y and its derivatives at one time, and bounds from this time on.
+    """y and its derivatives at one time, and K, J, L from this time on.
 
     ``ended`` marks where the search may stop without a zero, ``None`` for
     nowhere.
@@ -44,7 +50,7 @@ class State(NamedTuple):
     third: np.ndarray
     second_bound: np.ndarray
     third_bound: np.ndarray
-    rapidity: np.ndarray | float
+    fourth_bound: np.ndarray
     ended: np.ndarray | None = None
 
 
@@ -74,6 +80,33 @@ class Zero(NamedTuple):
     undecided: np.ndarray
 
 
+class _Reading(NamedTuple):
+    """What the length of a step depends on."""
+
+    v: np.ndarray
+    rising: np.ndarray
+    square: np.ndarray
+    twice: np.ndarray
+    second: np.ndarray
+    third: np.ndarray
+    second_bound: np.ndarray
+    fourth_bound: np.ndarray
+
+    def take(self, which: np.ndarray) -> "_Reading":
+        return _Reading(*(x[which] if np.ndim(x) else x for x in self))
+
+    def root(self, bound):
+        """Positive root of y + y′ h + (bound) h²/2; long if there is none."""
+        root = np.sqrt(np.maximum(self.square + bound * self.twice, 0.0))
+        falling = (root - self.v) / np.maximum(bound, _TINY)
+        return np.where(self.rising, self.twice / (self.v + root + _TINY), falling)
+
+    def root_within(self, reach):
+        """The same with the bound that holds up to ``reach``."""
+        growth = np.maximum(self.third, 0.0) + 0.25 * self.fourth_bound * reach
+        return self.root(np.minimum(self.second + reach * growth * (1 / 3), self.second_bound))
+
+
 def safe_step(state: State) -> tuple[np.ndarray, np.ndarray]:
     """The longest certified step, and whether the zero is within reach after it.
 
@@ -82,50 +115,44 @@ def safe_step(state: State) -> tuple[np.ndarray, np.ndarray]:
     Exact for a parabola, here y = s² - 1 seen from s = 0:
 
     >>> one = np.ones(1)
-    >>> step, _ = safe_step(State(-one, 0 * one, 2 * one, 0 * one, 2.0, 0.0, 1.0))
+    >>> step, _ = safe_step(State(-one, 0 * one, 2 * one, 0 * one, 2.0, 0.0, 0.0))
     >>> step.tolist()
     [1.0]
     """
-    y, v, a, third, bound, jerk, rapidity, _ = state
+    v, jerk = state.rate, state.third_bound
     # Rounding may put y above zero where it touches it from below.
-    twice = -2 * np.minimum(y, 0.0)
-    square, rising = v * v, v > 0
-    pressed = bound * twice
-    root = np.sqrt(square + pressed)
-    first = np.where(rising, twice / (v + root + _TINY), (root - v) / bound)
-    step = first
-    terms = (v, rising, square, twice, a, third, bound, jerk * rapidity)
-    part, now, which = terms, step, slice(None)
+    twice = -2 * np.minimum(state.value, 0.0)
+    reading = _Reading(
+        v, v > 0, v * v, twice, state.second, state.third, state.second_bound, state.fourth_bound
+    )
+    first = reading.root(state.second_bound)
+    step = _prolonged(first, reading)
+    # Falling faster and faster from y = y′ = 0: y ≤ y″ h²/2 + J h³/6.
+    sinking = -3 * state.second / (jerk + _TINY)
+    step = np.maximum(step, np.where(reading.rising, 0.0, sinking))
+    bend = (np.abs(state.third) + state.fourth_bound * first) * (first * first)
+    simple = state.second_bound * twice <= _SIMPLE * reading.square
+    return step, (bend <= _CLOSE * v) & simple & reading.rising
+
+
+def _prolonged(first, reading: _Reading):
+    """Steps at least as long as the certified ``first`` ones."""
+    step, which = first, None
+    now = first
     while True:
-        reach = REACH * now
-        longer = np.minimum(_step_within(reach, *part), reach)
+        reach = _REACH * now
+        longer = np.minimum(reading.root_within(reach), reach)
+        # Where only the reach was in the way, it is worth another try.
         further = np.flatnonzero((longer == reach) & (longer > now))
         now = np.maximum(now, longer)
-        if isinstance(which, slice):
-            step = now.copy()
+        if which is None:
+            step = now
         else:
             step[which] = now
         if not further.size:
-            break
-        which = further if isinstance(which, slice) else which[further]
-        part = tuple(x[further] if np.ndim(x) else x for x in part)
-        now = now[further]
-    # Falling faster and faster from y = y′ = 0: y ≤ y″ h²/2 + J h³/6.
-    step = np.maximum(step, np.where(rising, 0.0, -3 * a / (jerk + _TINY)))
-    third = np.abs(third) + rapidity * jerk * first
-    done = (third * (first * first) <= _CLOSE * v) & (pressed <= _SIMPLE * square) & rising
-    return step, done
-
-
-def _step_within(reach, v, rising, square, twice, a, third, bound, fourth):
-    """Root of the parabola that bounds y up to ``reach``, if it lies before."""
-    growth = np.maximum(third, 0.0) + 0.25 * fourth * reach
-    local = np.minimum(a + reach * growth * (1 / 3), bound)
-    root = np.sqrt(np.maximum(square + local * twice, 0.0))
-    return np.where(rising, twice / (v + root + _TINY), (root - v) / np.maximum(local, _TINY))
-
-
-PASSES, REACH = 1, 4.0
+            return step
+        which = further if which is None else which[further]
+        now, reading = now[further], reading.take(further)
 
 
 def first_zero(motion: Motion, start: np.ndarray) -> Zero:

@@ -53,7 +53,7 @@ class Flight:
     def __call__(self, time: np.ndarray) -> State:
         displacement, rate, second, third = self.gap(time)
         lam = self.amplitude
-        return State(-displacement, -rate, -second, -third, 1 + lam, lam, 1.0)
+        return State(-displacement, -rate, -second, -third, 1 + lam, lam, lam)
 
     def take(self, which: np.ndarray) -> "Flight":
         part = object.__new__(Flight)

@@ -53,7 +53,7 @@ class _Unloaded:
             -(third + lag * fourth),
             1 + forcing,
             forcing,
-            1.0,
+            forcing,
             displacement >= 0,
         )
 

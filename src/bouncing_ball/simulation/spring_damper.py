@@ -5,6 +5,7 @@ force release a contact may also start at δ < 0, see
 :mod:`bouncing_ball.simulation.resumption`; each such start is an impact.
 """
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -18,8 +19,9 @@ from bouncing_ball.simulation.flight import Flight, land
 from bouncing_ball.simulation.resumption import leaves_fast, resumption
 from bouncing_ball.simulation.sequence import ImpactSequence, Status
 
-# Balls computed at once: as many as keep the intermediate arrays in the cache.
-_BLOCK = 4096
+# Balls computed at once, at most: as many as keep the arrays in the cache. Fewer
+# cost more, as a few late balls decide on the number of steps of each block.
+_BLOCK = 8192
 
 
 class Impact(NamedTuple):
@@ -109,6 +111,12 @@ def _columns(contact: Contact, amplitude, *states):
     return constants, [flat(x) for x in arrays[3:]], shape
 
 
+def _blocks(size: int):
+    """Slices of about equal length that cover all balls."""
+    edges = np.linspace(0, size, -(-size // _BLOCK) + 1, dtype=int)
+    return [slice(int(a), int(b)) for a, b in pairwise(edges)]
+
+
 def _check_impact(phase, velocity, x) -> None:
     if not np.all(np.isfinite(phase) & np.isfinite(velocity)):
         raise ModelError("the phase and the velocity of the impact must be finite")
@@ -158,8 +166,7 @@ def simulate(
     gaps = np.empty((2, impacts, size)) if np.any(constants.lag) else None
     status = np.zeros(size, dtype=np.int8)
     relative = np.minimum(velocity - x, 0.0)
-    for first in range(0, size, _BLOCK):
-        part = slice(first, first + _BLOCK)
+    for part in _blocks(size):
         _run(
             Impact(reduce_angle(phase[part]), np.zeros_like(phase[part]), relative[part]),
             constants.take(part),
@@ -173,7 +180,7 @@ def simulate(
 
     time, angle, speed, duration, thrown = (shaped(table) for table in tables)
     if gaps is None:
-        below = left_below = np.where(np.isfinite(time), 0.0, np.nan)
+        below = np.where(np.isfinite(time), 0.0, np.nan)
         left_below = np.where(np.isfinite(thrown), 0.0, np.nan)
     else:
         below, left_below = (shaped(table) for table in gaps)
@@ -236,8 +243,7 @@ def contact_cycle(
     constants, (phase, u), shape = _columns(contact, amplitude, phase, relative_velocity)
     out = np.full((4, phase.size), np.nan)
     out[3] = np.inf
-    for first in range(0, phase.size, _BLOCK):
-        part = slice(first, first + _BLOCK)
+    for part in _blocks(phase.size):
         here = constants.take(part)
         impact = Impact(reduce_angle(phase[part]), np.zeros_like(u[part]), u[part])
         departure = _depart(impact, here)
@@ -249,5 +255,5 @@ def contact_cycle(
         landed, flown = _fly(left, departure, here.take(going))
         rows = (landed.phase, landed.velocity, landed.displacement, departure.duration + flown)
         for row, values in zip(out, rows, strict=True):
-            row[first + going] = values
+            row[part.start + going] = values
     return Cycle(*(row.reshape(shape) for row in out))

@@ -1,0 +1,98 @@
+"""Formula, Newton's method and simulation on 10⁵ random parameter sets."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane
+from bouncing_ball.models.contact import Contact, Release
+from bouncing_ball.models.damping import damping_ratio
+from bouncing_ball.orbits import restitution
+from bouncing_ball.orbits.admissibility import is_admissible
+from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.limits import Absence, Side, absence, orbit_at
+from bouncing_ball.orbits.monodromy import monodromy
+from bouncing_ball.orbits.system import OrbitSystem, Parameter
+from bouncing_ball.simulation.spring_damper import contact_cycle
+
+SIZE = 25_000  # for each of two rules and two sides
+
+
+def sample(seed):
+    """Random contacts, families and amplitudes around the existence of the orbits."""
+    rng = np.random.default_rng(seed)
+    r = rng.uniform(0.05, 0.999, SIZE)
+    n = rng.integers(1, 6, SIZE)
+    omega = 10 ** rng.uniform(0.0, 5.0, SIZE)
+    fold = restitution.saddle_node(n, r)
+    doubling = restitution.period_doubling(n, r)
+    # From half the saddle-node to well beyond the period doubling.
+    amplitude = fold / 2 + rng.uniform(0.0, 1.0, SIZE) * (1.5 * doubling - fold / 2)
+    return damping_ratio(r), n, omega, amplitude
+
+
+@pytest.fixture(scope="module", params=[(x, y) for x in Release for y in Side], ids=str)
+def drawn(request):
+    rule, side = request.param
+    zeta, n, omega, lam = sample([list(Release).index(rule), list(Side).index(side)])
+    contact = Contact(omega, zeta, rule)
+    return contact, n, lam, side, orbit_at(contact, n, lam, side)
+
+
+def chosen(orbit, which):
+    contact = Contact(
+        orbit.contact.frequency_ratio[which],
+        orbit.contact.damping_ratio[which],
+        orbit.contact.release,
+    )
+    parts = (orbit.amplitude, orbit.phase, orbit.duration, orbit.impact_velocity)
+    return ContactOrbit(orbit.n[which], contact, *(x[which] for x in parts))
+
+
+def test_every_missing_orbit_has_its_reason(drawn):
+    contact, n, lam, side, orbit = drawn
+    missing = np.isnan(orbit.duration)
+    reasons = absence(contact, n, lam, side)
+    assert np.all((reasons == Absence.NONE) == ~missing)
+    # The sample reaches below the saddle-nodes, and most of it lies above.
+    assert np.sum(reasons == Absence.BELOW_SADDLE_NODE) > SIZE / 50
+    assert np.sum(~missing) > SIZE / 2
+
+
+def test_newton_on_the_full_system_agrees(drawn):
+    contact, _, _, _, every = drawn
+    orbit = chosen(every, np.isfinite(every.duration))
+    omega = orbit.contact.frequency_ratio
+    system = OrbitSystem(
+        orbit.n, orbit.contact.damping_ratio, Parameter.AMPLITUDE, omega, contact.release
+    )
+    y = np.stack(
+        [orbit.phase, orbit.impact_velocity, omega * orbit.duration, orbit.amplitude], axis=-1
+    )
+    # Off the branch by a thousandth, back onto it in the plane across it: at a
+    # fixed Λ the fold would amplify rounding to its square root.
+    normal = np.linalg.svd(system.jacobian(y))[2][..., -1, :]
+    rng = np.random.default_rng(0)
+    guess = y + 1e-3 * rng.uniform(-1, 1, y.shape) * np.minimum(1, np.abs(y))
+    found = newton(system, guess, plane(normal, y), NewtonSettings(max_iterations=20))
+    assert found.converged
+    # The formula's own error, a few 1e-15 of quantities up to 1e2, over the
+    # smallest pivot of the system.
+    scale = 1 + np.abs(y)
+    assert np.max(np.abs(found.point - y) / scale) < 1e-11
+
+
+def test_the_simulation_returns_to_the_admissible_ones(drawn):
+    _, _, _, _, every = drawn
+    orbit = chosen(every, np.isfinite(every.duration))
+    admissible = is_admissible(orbit)
+    assert np.sum(admissible) > SIZE / 4
+    orbit = chosen(orbit, admissible)
+    u = orbit.relative_impact_velocity
+    cycle = contact_cycle(orbit.contact, orbit.amplitude, orbit.phase, u)
+    turn = np.angle(np.exp(1j * (cycle.phase - orbit.phase)))
+    late = cycle.time - 2 * np.pi * orbit.n
+    off = np.max(np.abs([turn, late, (cycle.relative_velocity - u)]), axis=0)
+    # Rounding of the start, amplified by one cycle.
+    amplification = 1 + np.linalg.norm(monodromy(orbit), axis=(-2, -1))
+    size = 1 + np.abs(u) + np.abs(orbit.phase) + 2 * np.pi * orbit.n
+    assert np.max(off / (amplification * size)) < 1e-13

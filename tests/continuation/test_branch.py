@@ -12,7 +12,12 @@ from bouncing_ball.continuation.branch import (
     solve_at,
 )
 from bouncing_ball.continuation.corrector import NewtonSettings
-from bouncing_ball.continuation.events import Event, fold, parameter_bound
+from bouncing_ball.continuation.events import (
+    Event,
+    LocationError,
+    fold,
+    parameter_bound,
+)
 from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.models.restitution import bounce, exact_map_jacobian, landing_gap
 from bouncing_ball.orbits import restitution as exact_orbits
@@ -196,6 +201,40 @@ def test_a_corner_ends_the_branch():
     assert branch.end_reason.startswith("step too small (")
     assert branch.end_reason.endswith("the tangent turns by more than 0.2 rad")
     assert branch.points[-1] == pytest.approx(np.zeros(2), abs=1e-7)
+
+
+def jump(terminal, reason=""):
+    """A sign change without a zero, at p = 0.3."""
+    return Event("jump", lambda y: np.where(y[..., 1] < 0.3, 1.0, -1.0), terminal, reason)
+
+
+def test_a_terminal_event_without_a_zero_ends_the_branch_close_to_it():
+    control = StepControl(smallest=1e-6)
+    for event, reason in ((jump(True), "jump"), (jump(True, "the edge"), "the edge")):
+        branch = continue_branch(
+            LINE, np.array([0.0, 0.0]), increasing=True, events=[event], control=control
+        )
+        assert branch.end_reason.startswith(f"{reason} (within ")
+        # The last step tried was below twice the smallest.
+        assert 0.3 - 2e-6 < branch.points[-1, 1] < 0.3
+        assert branch.special == ()
+
+
+def test_another_event_without_a_zero_is_an_error(one_line):
+    with pytest.raises(LocationError) as error:
+        continue_branch(LINE, np.array([0.0, 0.0]), increasing=True, events=[jump(False)])
+    one_line(error, "jump announced near", "could not be located")
+
+
+def test_an_event_that_cannot_be_located_gives_way_to_the_end():
+    # The end, at p = 0.29, is met in the same step as the jump at 0.3.
+    end = parameter_bound(0.29, True, "window")
+    control = StepControl(initial=1.0, largest=1.0)
+    branch = continue_branch(
+        LINE, np.array([0.0, 0.0]), increasing=True, events=[jump(False), end], control=control
+    )
+    assert branch.end_reason == "window"
+    assert branch.points[-1] == pytest.approx(np.array([0.58, 0.29]), abs=EXACT)
 
 
 def test_no_start(one_line):

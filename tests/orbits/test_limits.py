@@ -14,7 +14,9 @@ from bouncing_ball.orbits import restitution as restitution_orbits
 from bouncing_ball.orbits.closed_form import branch_point, free_release_angle
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.limits import (
+    Absence,
     Side,
+    absence,
     orbit_at,
     period_doubling,
     require_orbit,
@@ -261,10 +263,31 @@ def test_a_required_orbit_that_is_missing(one_line):
         require_orbit(contact, 1, 0.2)
     # The saddle-node of the model notes' table, 0.2400.
     one_line(error, "no 1-T orbit at Λ = 0.2 for ϖ = 10", "below the saddle-node at Λ = 0.239988")
+    # Without a saddle-node Λ ends at permanent contact, 0.97, on its one side.
     soft = Contact(2.592, float(damping_ratio(0.0893)))
     with pytest.raises(NoOrbitError) as error:
         require_orbit(soft, 1, 0.5)
-    one_line(error, "no 1-T orbit at Λ = 0.5 for ϖ = 2.592", "no saddle-node")
+    one_line(error, "no 1-T orbit at Λ = 0.5 for ϖ = 2.592", "does not reach this Λ")
+    with pytest.raises(NoOrbitError) as error:
+        require_orbit(soft, 1, 2.5, Side.UNSTABLE)
+    one_line(error, "Λ = 2.5", "no saddle-node, and so no other side")
+    # The unstable side of r = 0.85, ϖ = 2 turns at Λ = 1.176.
+    with pytest.raises(NoOrbitError) as error:
+        require_orbit(Contact(2.0, float(damping_ratio(0.85))), 1, 1.3, Side.UNSTABLE)
+    one_line(error, "Λ = 1.3", "does not reach this Λ")
+
+
+def test_reasons_for_missing_orbits():
+    zeta = float(damping_ratio(0.85))
+    amplitudes = np.array([0.1, 0.9, 1.3])
+    below, there, short = Absence.BELOW_SADDLE_NODE, Absence.NONE, Absence.NOT_REACHED
+    contact = Contact(2.0, zeta)
+    assert absence(contact, 1, amplitudes).tolist() == [below, there, there]
+    assert absence(contact, 1, amplitudes, Side.UNSTABLE).tolist() == [below, there, short]
+    # At ϖ = 1 there is no fold.
+    other = Absence.NO_OTHER_SIDE
+    assert absence(Contact(1.0, zeta), 1, 0.9, Side.UNSTABLE).tolist() == other
+    assert absence(Contact(1.0, zeta), 1, np.array([0.05, 0.9])).tolist() == [short, there]
 
 
 def test_without_a_fold():

@@ -184,15 +184,16 @@ def test_missing_orbits_are_infinitely_wrong():
 
 @given(st.integers(1, 5), st.floats(0.5, 0.999), st.floats(np.log(2), np.log(1e4)), st.floats(0.02, 0.98))
 def test_height_error_is_about_one_over_n_and_ratio(n, r, log_omega, share):
-    # The orbit loses half a contact of flight. The model notes saw
-    # error · n · ϖ ≤ 1.01 for r ≥ 0.5 over the stable range.
+    # The orbit loses half a contact of flight. Over 120000 orbits of the stable
+    # range with r ≥ 0.5 the product was at most 1.0333, at n = 5, r = 0.5 and
+    # ϖ = 2, and below 1 from ϖ = 10.
     node, doubling = (
         float(find(n, r)) for find in (restitution_orbits.saddle_node, restitution_orbits.period_doubling)
     )
     lam, omega = node + share * (doubling - node), float(np.exp(log_omega))
     assume(np.isfinite(orbit_at(Contact(omega, float(damping_ratio(r))), n, lam).duration))
     error = relative_error(Quantity.MAX_HEIGHT, n, r, lam, np.array([omega]))
-    assert 0 < float(error[0]) * n * omega < 1.011
+    assert 0 < float(error[0]) * n * omega < (1.0 if omega > 10 else 1.04)
 
 
 def test_thresholds_of_known_functions():
@@ -200,13 +201,17 @@ def test_thresholds_of_known_functions():
     found, statuses = thresholds(lambda x: 1 / x, np.array([0.3, 0.01]), ratios)
     assert found == pytest.approx([1 / 0.3, 100.0], rel=1e-14)
     assert statuses == [Status.FOUND, Status.FOUND]
-    # The last crossing of several: the wave is within 1 % from x = 100 on only.
+    # The last crossing of several, and no earlier one.
     def wave(x):
-        return np.where(x < 100, 0.02 + 0.015 * np.sin(8 * np.log(x)), 1 / x)
+        return (1.5 + np.sin(4 * np.log(x))) / x
 
     found, statuses = thresholds(wave, np.array([0.01]), ratios)
     assert statuses == [Status.FOUND]
-    assert wave(np.array(found[0] * (1 + 1e-9)))[()] <= 0.01 < wave(np.array(found[0] * (1 - 1e-9)))[()]
+    fine = np.geomspace(1, 1e4, 200001)
+    crossings = np.nonzero(np.diff(wave(fine) > 0.01))[0]
+    assert len(crossings) == 3
+    assert fine[crossings[-1]] <= found[0] <= fine[crossings[-1] + 1]
+    assert float(wave(found[0])) == pytest.approx(0.01, rel=1e-13)
     # An orbit that does not exist below x = 7: the error jumps from infinity.
     found, statuses = thresholds(
         lambda x: np.where(x < 7, np.inf, 0.001), np.array([0.01]), ratios

@@ -20,12 +20,9 @@ def test_domains(described):
         # Every point is a fixed point of the exact map: lands after n periods
         # with the velocity it started with. Roundings of 2πn and (2πn)²/2.
         s, v = 2 * np.pi * n, np.pi * n
-        assert landing_gap(s, row.phase, v, row.amplitude).values == pytest.approx(
-            np.zeros(81), abs=1e-12
-        )
-        assert bounce(s, row.phase, v, row.amplitude, 0.85).values == pytest.approx(
-            np.full(81, v), abs=1e-13
-        )
+        phi, lam = row.phase.values, row.amplitude.values
+        assert landing_gap(s, phi, v, lam) == pytest.approx(np.zeros(81), abs=1e-12)
+        assert bounce(s, phi, v, lam, 0.85) == pytest.approx(np.full(81, v), abs=1e-13)
         assert row.amplitude.values[[0, -1]] == pytest.approx([2.0, 2.0], rel=1e-14)
         # Stable exactly between the saddle-node and the exact period doubling.
         doubling = float(row.period_doubling_phase.sel(impact_map="exact"))
@@ -45,7 +42,7 @@ def test_domains(described):
 
 def test_admissible_points_fly_over_the_table():
     data = restitution_orbits(DOMAINS | {"amplitude_max": 6.0, "n": [1, 2]})
-    assert not data.admissible.all()
+    assert data.admissible.all("point").values.tolist() == [False, True]
     for n in (1, 2):
         row = data.sel(n=n)
         s = np.linspace(0, 2 * np.pi * n, 4001)[1:-1, np.newaxis]
@@ -55,10 +52,14 @@ def test_admissible_points_fly_over_the_table():
         clear = np.abs(gap) > 1e-4
         assert np.array_equal(row.admissible.values[clear], (gap > 0)[clear])
         assert clear.mean() > 0.5
-        # The grazing orbit lies between the last point in and the first one out.
-        phase = float(row.grazing_phase)
-        unstable = row.phase.values < 0
-        assert np.all(row.admissible.values[unstable] == (row.phase.values > phase)[unstable])
+    # The grazing orbit divides the unstable side; where there is none, it is NaN.
+    row = data.sel(n=1)
+    lam, phase = float(row.grazing_amplitude), float(row.grazing_phase)
+    assert np.array_equal(row.admissible.values, row.phase.values > phase)
+    s = np.linspace(0.3, 2 * np.pi - 0.3, 40001)
+    # It touches the table: a minimum of zero, seen to (step)²/8 · Λ.
+    assert abs(float(landing_gap(s, phase, np.pi, lam).min())) < 1e-8
+    assert np.isnan(float(data.grazing_amplitude.sel(n=2)))
 
 
 def test_elastic_domains_reach_the_top():

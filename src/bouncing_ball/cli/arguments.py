@@ -40,14 +40,19 @@ def _number(low: float, high: float, *, low_open: bool = True, high_open: bool =
     return parse
 
 
-def _count(text: str) -> int:
-    try:
-        value = int(text)
-    except ValueError:
-        value = 0
-    if not 1 <= value <= 10_000_000:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 1 to 10000000")
-    return value
+def _count(largest: int):
+    """A parser of whole numbers from 1, for ``type=``."""
+
+    def parse(text: str) -> int:
+        try:
+            value = int(text)
+        except ValueError:
+            value = 0
+        if not 1 <= value <= largest:
+            raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 1 to {largest}")
+        return value
+
+    return parse
 
 
 def _add_damping(parser: argparse.ArgumentParser) -> None:
@@ -91,7 +96,7 @@ def _add_model(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_family(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--n", type=_count, default=1, help="index of the family (default: 1)")
+    parser.add_argument("--n", type=_count(1000), default=1, help="index of the family (default: 1)")
 
 
 def _add_amplitude(parser: argparse.ArgumentParser) -> None:
@@ -143,7 +148,7 @@ def parser() -> Parser:
     _add_model(simulate)
     _add_amplitude(simulate)
     _add_contact(simulate, required=False)
-    simulate.add_argument("--impacts", type=_count, default=100, help="default: 100")
+    simulate.add_argument("--impacts", type=_count(1_000_000), default=100, help="default: 100")
     simulate.add_argument(
         "--phase",
         type=_number(-math.inf, math.inf),

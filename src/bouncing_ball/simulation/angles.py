@@ -30,13 +30,28 @@ def sine_and_versine(angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return tangent * scale, square * scale
 
 
+def table(phase: np.ndarray, amplitude: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
+    """Λ cos φ and Λ sin φ: the table's velocity and height, and minus its jerk
+    and acceleration.
+
+    Examples
+    --------
+    >>> [float(x) for x in table(np.zeros(()), 2.0)]
+    [2.0, 0.0]
+    """
+    sine, versine = sine_and_versine(phase)
+    return amplitude * (1 - versine), amplitude * sine
+
+
 def reduce_angle(angle: np.ndarray) -> np.ndarray:
     """The angle modulo 2π, in [-π, π], to the last digit up to 10⁶ turns.
 
     Examples
     --------
-    >>> float(reduce_angle(-1.0)), float(reduce_angle(0.25 + 8 * np.pi))
-    (-1.0, 0.2499999999999989)
+    The second is what the double next to 2π lacks:
+
+    >>> float(reduce_angle(-1.0)), round(1e16 * float(reduce_angle(2 * np.pi)), 6)
+    (-1.0, -2.449294)
     """
     turns = np.rint(angle * _TURNS)
     return (angle - turns * _TURN_HIGH) - turns * _TURN_LOW

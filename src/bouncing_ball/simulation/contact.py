@@ -23,10 +23,13 @@ from numpy.typing import ArrayLike
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.contact import Contact, Release
 from bouncing_ball.simulation.angles import sine_and_versine
+from bouncing_ball.simulation.ensembles import pick
 from bouncing_ball.simulation.events import State, Zero, first_zero
 
 # √γ below which the steady part has lost too many digits: ε/√γ remain.
 _RESONANCE = 1e-4
+# Steps before the long view of :meth:`ContactMotion.skip` is taken.
+_PATIENCE = 12
 # Rounding of the three terms of the certificate.
 _ROUNDING = 8 * np.finfo(float).eps
 
@@ -54,7 +57,7 @@ class Oscillator(NamedTuple):
 
     def take(self, which) -> "Oscillator":
         """The constants of some of the balls; scalars are those of all."""
-        return Oscillator(*(x[which] if np.ndim(x) else x for x in self))
+        return Oscillator(*(pick(x, which) for x in self))
 
 
 def oscillator(contact: Contact, amplitude: ArrayLike) -> Oscillator:
@@ -102,7 +105,8 @@ def oscillator(contact: Contact, amplitude: ArrayLike) -> Oscillator:
         steady=lam * np.sqrt(in_phase * in_phase + quadrature * quadrature),
         forcing=lam * np.sqrt(1 + lag * lag),
         half=half,
-        growth=np.exp(zeta * omega * half),
+        # Nearly critical: any number so large excludes the bound that uses it.
+        growth=np.exp(np.minimum(zeta * omega * half, 690.0)),
     )
     return Oscillator(*(x[0] if x.size == 1 else x for x in constants))
 
@@ -178,8 +182,24 @@ class ContactMotion:
                 setattr(part, name, value[which])
         return part
 
-    def skip(self, time: np.ndarray) -> np.ndarray:
-        return time
+    def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
+        """No zero while even the transient's envelope leaves y negative.
+
+        That is until the steady part rises through 1/ϖ² - R e^{-as}: a stiff,
+        weakly damped contact would oscillate about ϖ times before.
+        """
+        if steps < _PATIENCE:
+            return time
+        o = self.constants
+        level = 1 / o.stiffness - self.envelope * np.exp(-o.decay * time)
+        ratio = level / np.maximum(o.steady, 1e-300)
+        inside = np.abs(ratio) < 1
+        rising = np.arcsin(np.where(inside, ratio, 0.0))
+        now = time + np.arctan2(self.cosine, self.sine)
+        below = inside & (np.sin(now) < ratio)
+        # Short of the crossing by more than its rounding.
+        wait = np.mod(rising - now, 2 * np.pi) - 1e-9
+        return time + np.where(below, np.maximum(wait, 0.0), 0.0)
 
     def sure(self) -> np.ndarray:
         r"""A time by which the contact has not ended, within half a period.

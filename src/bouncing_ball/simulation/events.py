@@ -26,6 +26,8 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from bouncing_ball.simulation.ensembles import pick
+
 # θ and κ above.
 _SIMPLE = 0.25
 _CLOSE = 3e-4
@@ -63,8 +65,11 @@ class Motion(Protocol):
         """The motions at some positions of the array."""
         ...
 
-    def skip(self, time: np.ndarray) -> np.ndarray:
-        """A later time up to which there is certainly no zero, or the time itself."""
+    def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
+        """A later time up to which there is certainly no zero, or the time itself.
+
+        ``steps`` have been taken before; what is dear may wait for a few.
+        """
         ...
 
 
@@ -93,7 +98,7 @@ class _Reading(NamedTuple):
     fourth_bound: np.ndarray
 
     def take(self, which: np.ndarray) -> "_Reading":
-        return _Reading(*(x[which] if np.ndim(x) else x for x in self))
+        return _Reading(*(pick(x, which) for x in self))
 
     def root(self, bound):
         """Positive root of y + y′ h + (bound) h²/2; long if there is none."""
@@ -164,10 +169,10 @@ def first_zero(motion: Motion, start: np.ndarray) -> Zero:
     time = np.array(start, dtype=float)
     ended = np.zeros(time.shape, dtype=bool)
     active, part, now = slice(None), motion, time
-    for _ in range(_MAX_STEPS):
+    for steps in range(_MAX_STEPS):
         state = part(now)
         step, done = safe_step(state)
-        later = part.skip(now + step)
+        later = part.skip(now + step, steps)
         # Zeros that are here: at the start, or where y touches zero to rounding.
         rate = state.rate
         here = (state.value >= 0) & ((rate > 0) | ((rate == 0) & (state.second >= 0)))
@@ -186,10 +191,11 @@ def first_zero(motion: Motion, start: np.ndarray) -> Zero:
     undecided = np.zeros(time.shape, dtype=bool)
     if left.size:
         undecided[active] = True
-    return _to_the_last_digit(motion, time, ended, undecided)
+    time, rate = _to_the_last_digit(motion, time)
+    return Zero(np.maximum(time, start), rate, ended, undecided)
 
 
-def _to_the_last_digit(motion, time, ended, undecided) -> Zero:
+def _to_the_last_digit(motion, time):
     """One step of the function's own parabola, and the rate of change after it."""
     state = motion(time)
     v, acceleration = state.rate, state.second
@@ -198,6 +204,6 @@ def _to_the_last_digit(motion, time, ended, undecided) -> Zero:
     root = np.sqrt(np.maximum(square + acceleration * twice, 0.0))
     # Where the zero is not certainly simple (a touch), the time stays as it is.
     simple = (v > 0) & (state.second_bound * np.abs(twice) <= square)
-    step = np.where(simple, twice / (v + root), 0.0)
+    step = np.where(simple, twice / (v + root + _TINY), 0.0)
     rate = v + step * (acceleration + 0.5 * step * state.third)
-    return Zero(time + step, rate, ended, undecided)
+    return time + step, rate

@@ -12,7 +12,9 @@ above the table's highest point, z > Λ: that part is skipped.
 
 import numpy as np
 
+from bouncing_ball.errors import ModelError
 from bouncing_ball.simulation.angles import sine_and_versine
+from bouncing_ball.simulation.ensembles import pick
 from bouncing_ball.simulation.events import State, Zero, first_zero
 
 
@@ -58,10 +60,10 @@ class Flight:
     def take(self, which: np.ndarray) -> "Flight":
         part = object.__new__(Flight)
         for name, value in vars(self).items():
-            setattr(part, name, value[which] if np.ndim(value) else value)
+            setattr(part, name, pick(value, which))
         return part
 
-    def skip(self, time: np.ndarray) -> np.ndarray:
+    def skip(self, time: np.ndarray, steps: int = 0) -> np.ndarray:
         return np.where((time >= self.above) & (time < self.below), self.below, time)
 
     def sure(self) -> np.ndarray:
@@ -77,6 +79,11 @@ def land(flight: Flight, start: np.ndarray) -> Zero:
 
     ``rate`` of the result is minus the relative impact velocity.
 
+    Raises
+    ------
+    ModelError
+        If the numbers are too large for floating point.
+
     Examples
     --------
     A ball thrown up at 3 from a table at rest comes back after s = 6:
@@ -87,4 +94,7 @@ def land(flight: Flight, start: np.ndarray) -> Zero:
     >>> landing.time.tolist(), landing.rate.tolist()
     ([6.0], [3.0])
     """
-    return first_zero(flight, flight.skip(start))
+    landing = first_zero(flight, flight.skip(start))
+    if landing.undecided.any():
+        raise ModelError("a landing was not found: the flight is out of floating-point range")
+    return landing

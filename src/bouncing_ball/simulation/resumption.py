@@ -60,7 +60,7 @@ class _Unloaded:
     def take(self, which: np.ndarray) -> "_Unloaded":
         return _Unloaded(self.flight.take(which), self.constants.take(which))
 
-    def skip(self, time: np.ndarray) -> np.ndarray:
+    def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
         return time
 
 

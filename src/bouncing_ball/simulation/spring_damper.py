@@ -5,7 +5,6 @@ force release a contact may also start at δ < 0, see
 :mod:`bouncing_ball.simulation.resumption`; each such start is an impact.
 """
 
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -13,16 +12,12 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.contact import Contact
-from bouncing_ball.simulation.angles import reduce_angle, sine_and_versine
+from bouncing_ball.simulation.angles import reduce_angle, table
 from bouncing_ball.simulation.contact import ContactMotion, Oscillator, oscillator, release
+from bouncing_ball.simulation.ensembles import blocks, flatten, pick
 from bouncing_ball.simulation.flight import Flight, land
 from bouncing_ball.simulation.resumption import leaves_fast, resumption
 from bouncing_ball.simulation.sequence import ImpactSequence, Status
-
-# Balls computed at once, at most: as many as keep the arrays in the cache. Fewer
-# cost more, as a few late balls decide on the number of steps of each block.
-_BLOCK = 8192
-
 
 class Impact(NamedTuple):
     """Starts of contact: table phase, δ and δ′."""
@@ -53,17 +48,11 @@ class Cycle(NamedTuple):
     time: np.ndarray
 
 
-def _table(phase, amplitude):
-    """Λ cos φ and Λ sin φ."""
-    sine, versine = sine_and_versine(phase)
-    return amplitude * (1 - versine), amplitude * sine
-
-
 def _depart(impact: Impact, constants: Oscillator) -> Departure:
-    x, y = _table(impact.phase, constants.amplitude)
+    x, y = table(impact.phase, constants.amplitude)
     motion = ContactMotion(constants, impact.displacement, impact.velocity, x, y)
     end = release(motion)
-    _, lift = _table(impact.phase + end.time, constants.amplitude)
+    _, lift = table(impact.phase + end.time, constants.amplitude)
     # Rounding may leave a touch of the table's level with a falling ball.
     displacement, velocity = motion.state(np.maximum(end.rate, 0.0), lift)
     status = np.where(end.ended, Status.PERMANENT_CONTACT, Status.BOUNCING)
@@ -78,7 +67,7 @@ def _depart(impact: Impact, constants: Oscillator) -> Departure:
 
 def _fly(phase, departure: Departure, constants: Oscillator) -> tuple[Impact, np.ndarray]:
     """The next impact of balls that leave at a phase, and the time of flight."""
-    x, y = _table(phase, constants.amplitude)
+    x, y = table(phase, constants.amplitude)
     flight = Flight(departure.displacement, departure.velocity, x, y, constants.amplitude)
     start, resumed = flight.sure(), None
     if np.any(constants.lag):
@@ -97,31 +86,18 @@ def _fly(phase, departure: Departure, constants: Oscillator) -> tuple[Impact, np
     return Impact(reduce_angle(phase + time), displacement, velocity), time
 
 
-def _columns(contact: Contact, amplitude, *states):
-    """Contact and Λ as scalars or flat arrays, states as flat arrays, and the shape."""
+def _prepare(contact: Contact, amplitude, *states):
+    """Constants of the contacts, states as flat arrays, and their shape."""
     parameters = (contact.frequency_ratio, contact.damping_ratio, amplitude)
-    arrays = [np.asarray(x, dtype=float) for x in (*parameters, *states)]
-    shape = np.broadcast_shapes(*(x.shape for x in arrays))
-
-    def flat(x):
-        return np.ascontiguousarray(np.broadcast_to(x, shape)).reshape(-1)
-
-    omega, zeta, lam = (flat(x) if x.ndim else x for x in arrays[:3])
-    constants = oscillator(Contact(omega, zeta, contact.release), lam)
-    return constants, [flat(x) for x in arrays[3:]], shape
+    (omega, zeta, lam), states, shape = flatten(parameters, states)
+    return oscillator(Contact(omega, zeta, contact.release), lam), states, shape
 
 
-def _blocks(size: int):
-    """Slices of about equal length that cover all balls."""
-    edges = np.linspace(0, size, -(-size // _BLOCK) + 1, dtype=int)
-    return [slice(int(a), int(b)) for a, b in pairwise(edges)]
-
-
-def _check_impact(phase, velocity, x) -> None:
+def _check_impact(phase, velocity, x, amplitude) -> None:
     if not np.all(np.isfinite(phase) & np.isfinite(velocity)):
         raise ModelError("the phase and the velocity of the impact must be finite")
     # A ball at rest on the table may come out of rounding as rising by a little.
-    if not np.all(velocity - x <= 4 * np.finfo(float).eps * (np.abs(velocity) + np.abs(x))):
+    if not np.all(velocity - x <= 8 * np.finfo(float).eps * (np.abs(velocity) + amplitude)):
         raise ModelError("a ball that rises from the table has no impact: z′ > w′")
 
 
@@ -158,15 +134,15 @@ def simulate(
     >>> sequence.impact_velocity.round(13).tolist()
     [-2.0, -2.0, -2.0]
     """
-    constants, (phase, velocity), shape = _columns(contact, amplitude, phase, velocity)
-    x, _ = _table(phase, constants.amplitude)
-    _check_impact(phase, velocity, x)
+    constants, (phase, velocity), shape = _prepare(contact, amplitude, phase, velocity)
+    x, _ = table(phase, constants.amplitude)
+    _check_impact(phase, velocity, x, constants.amplitude)
     size = phase.size
     tables = np.empty((5, impacts, size))
     gaps = np.empty((2, impacts, size)) if np.any(constants.lag) else None
     status = np.zeros(size, dtype=np.int8)
     relative = np.minimum(velocity - x, 0.0)
-    for part in _blocks(size):
+    for part in blocks(size):
         _run(
             Impact(reduce_angle(phase[part]), np.zeros_like(phase[part]), relative[part]),
             constants.take(part),
@@ -175,15 +151,12 @@ def simulate(
             status[part],
         )
 
-    def shaped(table):
-        return table.reshape(impacts, *shape)
-
-    time, angle, speed, duration, thrown = (shaped(table) for table in tables)
+    time, angle, speed, duration, thrown = tables.reshape(5, impacts, *shape)
     if gaps is None:
         below = np.where(np.isfinite(time), 0.0, np.nan)
         left_below = np.where(np.isfinite(thrown), 0.0, np.nan)
     else:
-        below, left_below = (shaped(table) for table in gaps)
+        below, left_below = gaps.reshape(2, impacts, *shape)
     return ImpactSequence(
         amplitude=np.broadcast_to(np.asarray(amplitude, dtype=float), shape),
         contact=contact,
@@ -206,8 +179,8 @@ def _run(impact: Impact, constants: Oscillator, tables, gaps, status) -> None:
     for row in range(impacts):
         departure = _depart(impact, constants)
         record = (time, impact.phase, impact.velocity, departure.duration, departure.velocity)
-        for table, values in zip(tables, record, strict=True):
-            table[row, alive] = values
+        for array, values in zip(tables, record, strict=True):
+            array[row, alive] = values
         if gaps is not None:
             gaps[0, row, alive], gaps[1, row, alive] = impact.displacement, departure.displacement
         if np.any(departure.status):
@@ -215,11 +188,11 @@ def _run(impact: Impact, constants: Oscillator, tables, gaps, status) -> None:
             going = np.flatnonzero(departure.status == Status.BOUNCING)
             indices = np.arange(len(status))[alive]
             stopped = np.setdiff1d(indices, indices[going])
-            for table in (tables, *(() if gaps is None else (gaps,))):
-                table[:, row + 1 :, stopped] = np.nan
+            for array in (tables, *(() if gaps is None else (gaps,))):
+                array[:, row + 1 :, stopped] = np.nan
             alive = indices[going]
             constants, time = constants.take(going), time[going]
-            departure = Departure(*(x[going] if np.ndim(x) else x for x in departure))
+            departure = Departure(*(pick(x, going) for x in departure))
             impact = Impact(*(x[going] for x in impact))
         if row == impacts - 1 or not len(impact.phase):
             break
@@ -240,17 +213,17 @@ def contact_cycle(
     >>> round(float(cycle.relative_velocity), 13)
     -2.0
     """
-    constants, (phase, u), shape = _columns(contact, amplitude, phase, relative_velocity)
+    constants, (phase, u), shape = _prepare(contact, amplitude, phase, relative_velocity)
     out = np.full((4, phase.size), np.nan)
     out[3] = np.inf
-    for part in _blocks(phase.size):
+    for part in blocks(phase.size):
         here = constants.take(part)
         impact = Impact(reduce_angle(phase[part]), np.zeros_like(u[part]), u[part])
         departure = _depart(impact, here)
         going = np.flatnonzero(departure.status == Status.BOUNCING)
         if not going.size:
             continue
-        departure = Departure(*(x[going] if np.ndim(x) else x for x in departure))
+        departure = Departure(*(pick(x, going) for x in departure))
         left = impact.phase[going] + departure.duration
         landed, flown = _fly(left, departure, here.take(going))
         rows = (landed.phase, landed.velocity, landed.displacement, departure.duration + flown)

@@ -1,0 +1,208 @@
+"""The command line: answers, exit statuses, one-line errors."""
+
+import json
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bouncing_ball.cli.main import main
+from bouncing_ball.models.contact import Contact, Release
+from bouncing_ball.models.damping import damping_ratio
+from bouncing_ball.orbits import limits, restitution
+
+PROGRAM = Path(sys.executable).with_name("bouncing-ball")
+
+
+def ask(capsys, *arguments):
+    """The JSON answer of a call that succeeds."""
+    main([*arguments, "--json"])
+    out, err = capsys.readouterr()
+    assert err == "" and out.count("\n") == 1
+    return json.loads(out)
+
+
+def refused(capsys, *arguments):
+    """Exit status and the one line on standard error of a call that fails."""
+    with pytest.raises(SystemExit) as exit_:
+        main(list(arguments))
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 1
+    return exit_.value.code, lines[0]
+
+
+ORBIT = ("orbit", "--n", "1", "--restitution", "0.85", "--amplitude", "1.0")
+FIELDS = [
+    "phase",
+    "contact_duration",
+    "impact_velocity",
+    "bounce_velocity",
+    "apparent_restitution",
+    "max_height",
+    "multipliers",
+    "is_stable",
+    "is_admissible",
+    "residual",
+]
+
+
+def test_restitution_orbit_is_the_closed_form(capsys):
+    answer = ask(capsys, *ORBIT)
+    assert list(answer) == FIELDS
+    assert answer["phase"] == float(restitution.phase(1, 0.85, 1.0))
+    assert answer["bounce_velocity"] == math.pi == -answer["impact_velocity"]
+    product = complex(*answer["multipliers"][0]) * complex(*answer["multipliers"][1])
+    assert product == pytest.approx(0.85**2, rel=1e-14)
+    assert answer["is_stable"] is True and answer["is_admissible"] is True
+
+
+@pytest.mark.parametrize("release", ["displacement", "force"])
+@pytest.mark.parametrize("side", ["stable", "unstable"])
+def test_spring_damper_orbit_in_full_precision(capsys, release, side):
+    answer = ask(
+        capsys, *ORBIT, "--frequency-ratio", "10", "--release", release, "--side", side
+    )
+    assert list(answer) == FIELDS
+    contact = Contact(10.0, float(damping_ratio(0.85)), Release(release))
+    orbit = limits.orbit_at(contact, 1, 1.0, limits.Side(side))
+    for name in ("phase", "impact_velocity", "bounce_velocity", "max_height"):
+        assert answer[name] == float(getattr(orbit, name))
+    assert answer["is_stable"] is (side == "stable")
+    # The formula solves the paper's equations to rounding.
+    assert answer["residual"] < 1e-13
+
+
+def test_damping_ratio_in_place_of_restitution(capsys):
+    zeta = repr(float(damping_ratio(0.85)))
+    call = ("orbit", "--damping-ratio", zeta, "--amplitude", "1", "--frequency-ratio", "10")
+    assert ask(capsys, *call) == ask(capsys, *ORBIT, "--frequency-ratio", "10")
+
+
+def test_limits_of_both_models(capsys):
+    answer = ask(capsys, "limits", "--restitution", "0.85")
+    assert answer["saddle_node"]["amplitude"] == float(restitution.saddle_node(1, 0.85))
+    assert answer["period_doubling"]["amplitude"] == float(restitution.period_doubling(1, 0.85))
+    answer = ask(capsys, "limits", "--restitution", "0.85", "--frequency-ratio", "10")
+    assert set(answer["saddle_node"]) == {"amplitude", "phase", "contact_duration"}
+    # Table 1 as computed by continuation, see the accepted record.
+    assert answer["saddle_node"]["amplitude"] == pytest.approx(0.2399879121, abs=1e-9)
+    assert answer["period_doubling"]["amplitude"] == pytest.approx(1.0374563012, abs=1e-9)
+
+
+def test_permanent_contact(capsys):
+    call = ("permanent-contact", "--restitution", "0.65", "--frequency-ratio", "6")
+    answer = ask(capsys, *call)
+    zeta, x = float(damping_ratio(0.65)), 1 / 36
+    square = (1 - x) ** 2 + 4 * zeta**2 * x
+    assert answer["threshold"] == pytest.approx(math.sqrt(square), rel=1e-15)
+    assert answer["minimum"] == pytest.approx(2 * zeta * math.sqrt(1 - zeta**2), rel=1e-15)
+    force = ask(capsys, *call, "--release", "force")
+    expected = math.sqrt(square / (1 + 4 * zeta**2 * x))
+    assert force["threshold"] == pytest.approx(expected, rel=1e-15)
+    strong = ask(capsys, "permanent-contact", "--damping-ratio", "0.9", "--frequency-ratio", "6")
+    assert strong["minimum"] is None
+
+
+def test_simulation_holds_the_orbit(capsys):
+    orbit = ask(capsys, *ORBIT, "--frequency-ratio", "10")
+    start = ("--phase", repr(orbit["phase"]), "--velocity", repr(orbit["impact_velocity"]))
+    call = ("--restitution", "0.85", "--amplitude", "1", "--frequency-ratio", "10")
+    answer = ask(capsys, "simulate", *call, *start, "--impacts", "30")
+    assert answer["status"] == "bouncing"
+    assert len(answer["sequence"]["time"]) == 30
+    # Rounding stays rounding on a stable orbit.
+    assert np.ptp(answer["sequence"]["impact_velocity"]) < 1e-12
+
+
+def test_simulation_into_permanent_contact(capsys):
+    call = ("--restitution", "0.5", "--amplitude", "0.5", "--frequency-ratio", "10")
+    answer = ask(capsys, "simulate", *call, "--velocity", "-1")
+    assert answer["status"] == "permanent contact"
+    assert answer["sequence"]["contact_duration"][-1] is None
+
+
+def test_a_missing_orbit_exits_1_with_the_reason(capsys):
+    call = ("orbit", "--restitution", "0.85", "--amplitude", "0.1")
+    assert refused(capsys, *call) == (
+        1,
+        "bouncing-ball: no 1-T orbit at Λ = 0.1: below the saddle-node at Λ = 0.254724",
+    )
+    status, line = refused(capsys, *call, "--frequency-ratio", "10")
+    assert status == 1 and "below the saddle-node at Λ = 0.239988" in line
+    with pytest.raises(SystemExit) as exit_:
+        main([*call, "--json"])
+    assert exit_.value.code == 1
+    assert "below the saddle-node" in json.loads(capsys.readouterr().out)["error"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ((), "required: command"),
+        (("orbit", "--amplitude", "1"), "--restitution --damping-ratio is required"),
+        (("orbit", "--restitution", "0.85"), "required: --amplitude"),
+        (("orbit", "--restitution", "1.2", "--amplitude", "1"), "'1.2' is not a number in (0, 1]"),
+        (("orbit", "--restitution", "nan", "--amplitude", "1"), "'nan' is not a number in (0, 1]"),
+        (("orbit", "--restitution", "r", "--amplitude", "1"), "'r' is not a number in (0, 1]"),
+        (("orbit", "--restitution", "0.5", "--amplitude", "inf"), "'inf' is not a number in"),
+        ((*ORBIT, "--frequency-ratio", "0"), "'0' is not a number in (0, 1e+08]"),
+        (("orbit", "--damping-ratio", "1", "--amplitude", "1"), "'1' is not a number in [0, 1)"),
+        (("orbit", "--damping-ratio", "0.1", "--amplitude", "1"), "needs --restitution"),
+        ((*ORBIT, "--n", "0"), "'0' is not a whole number"),
+        ((*ORBIT, "--n", "1.5"), "'1.5' is not a whole number"),
+        ((*ORBIT, "--model", "spring-damper"), "needs --frequency-ratio"),
+        ((*ORBIT, "--model", "restitution", "--frequency-ratio", "3"), "has no meaning"),
+        ((*ORBIT, "--side", "left"), "invalid choice: 'left'"),
+        ((*ORBIT, "--tension", "1"), "unrecognized arguments: --tension 1"),
+        (
+            ("simulate", "--restitution", "0.5", "--amplitude", "1", "--frequency-ratio", "5")
+            + ("--velocity", "9"),
+            "rises from the table",
+        ),
+    ],
+)
+def test_a_bad_argument_exits_2_with_one_line(capsys, arguments, said):
+    status, line = refused(capsys, *arguments)
+    assert status == 2
+    assert said in line
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("--frequency-ratio", "1e8"),
+        ("--frequency-ratio", "1e-8"),
+        ("--frequency-ratio", "1"),
+        ("--frequency-ratio", "1", "--n", "1000"),
+        ("--frequency-ratio", "0.7", "--side", "unstable"),
+        ("--frequency-ratio", "3", "--release", "force", "--side", "unstable"),
+        ("--n", "1000"),
+    ],
+)
+@pytest.mark.parametrize("r", ["1", "0.5", "1e-300"])
+@pytest.mark.parametrize("amplitude", ["1e8", "1", "1e-300"])
+def test_no_traceback_and_no_warning_ever(capsys, arguments, r, amplitude):
+    # Warnings are errors in this suite.
+    try:
+        main(["orbit", "--restitution", r, "--amplitude", amplitude, *arguments, "--json"])
+    except SystemExit as exit_:
+        assert exit_.code == 1
+    out, err = capsys.readouterr()
+    assert "Traceback" not in err and len(err.splitlines()) <= 1
+    json.loads(out)
+
+
+def test_readable_tables(capsys):
+    main([*ORBIT])
+    out = capsys.readouterr().out
+    assert "phase                           1.31323433" in out
+    assert "is stable                       yes" in out
+
+
+def test_the_installed_program():
+    done = subprocess.run([PROGRAM, *ORBIT, "--json"], capture_output=True, text=True, check=True)
+    assert json.loads(done.stdout)["is_stable"] is True
+    assert done.stderr == ""

@@ -1,0 +1,147 @@
+"""Files: whole or not there, and the same bytes every time."""
+
+import os
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from bouncing_ball.datasets.netcdf import parameter_attributes, read_dataset, write_dataset
+from bouncing_ball.datasets.variables import describe
+
+
+@pytest.fixture
+def data():
+    return describe(
+        xr.Dataset(
+            {
+                "phase": (("n", "point"), [[0.1, 0.2, np.nan], [0.3, 0.4, 1e-300]]),
+                "stable": (("n", "point"), [[True, False, True], [False, True, True]]),
+                "special_kind": ("special", ["saddle-node", "", "period doubling"]),
+                "saddle_node_amplitude": ((), 1 / 3),
+            },
+            coords={"n": [1, 2], "end": ["unstable side", "stable side"]},
+        )
+    ).assign_attrs({"title": "ϖ and Λ", "n": 1, "range.min": 0.5, "tolerances": [0.1, 0.01]})
+
+
+def test_round_trip(data, tmp_path):
+    path = tmp_path / "data.nc"
+    write_dataset(data, path)
+    again = read_dataset(path)
+    xr.testing.assert_identical(again.drop_attrs(), data.drop_attrs())
+    for name in data.variables:
+        assert again[name].attrs == data[name].attrs, name
+        assert again[name].dtype.kind == data[name].dtype.kind or name in ("special_kind", "end")
+    assert again.stable.dtype == bool
+    assert again.attrs["title"] == "ϖ and Λ" and again.attrs["range.min"] == 0.5
+    assert again.attrs["tolerances"].tolist() == [0.1, 0.01]
+    # The file is closed: it can be replaced and removed.
+    path.unlink()
+
+
+def test_only_the_target_is_left(data, tmp_path):
+    write_dataset(data, tmp_path / "deep" / "er" / "data.nc")
+    assert [p.name for p in tmp_path.rglob("*") if p.is_file()] == ["data.nc"]
+
+
+def test_the_same_bytes_every_time(data, tmp_path):
+    paths = [tmp_path / name for name in ("one.nc", "two.nc")]
+    for path in paths:
+        write_dataset(data, path)
+    first = paths[0].read_bytes()
+    assert first == paths[1].read_bytes()
+    write_dataset(data, paths[0])
+    assert paths[0].read_bytes() == first
+    # And after a round trip through memory.
+    write_dataset(read_dataset(paths[0]), paths[1])
+    xr.testing.assert_identical(read_dataset(paths[0]), read_dataset(paths[1]))
+
+
+@pytest.mark.parametrize("written", [b"", b"half a file"])
+def test_a_failing_write_leaves_nothing(data, tmp_path, monkeypatch, written):
+    def fail(self, path, **options):
+        with open(path, "wb") as file:
+            file.write(written)
+        raise OSError("disk full")
+
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", fail)
+    with pytest.raises(OSError, match="disk full"):
+        write_dataset(data, tmp_path / "data.nc")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_failing_write_keeps_the_old_file(data, tmp_path, monkeypatch):
+    path = tmp_path / "data.nc"
+    write_dataset(data, path)
+    before = path.read_bytes()
+
+    def fail(self, path, **options):
+        raise OSError("disk full")
+
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", fail)
+    with pytest.raises(OSError, match="disk full"):
+        write_dataset(data, path)
+    assert path.read_bytes() == before
+    assert [p.name for p in tmp_path.iterdir()] == ["data.nc"]
+
+
+def test_a_failing_replacement_leaves_no_temporary_file(data, tmp_path, monkeypatch):
+    def fail(source, target):
+        raise PermissionError("read-only")
+
+    monkeypatch.setattr(os, "replace", fail)
+    with pytest.raises(PermissionError):
+        write_dataset(data, tmp_path / "data.nc")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_target_appears_in_one_step(data, tmp_path, monkeypatch):
+    # While it is written the target does not exist.
+    seen = []
+    original = xr.Dataset.to_netcdf
+
+    def spy(self, path, **options):
+        result = original(self, path, **options)
+        seen.append((tmp_path / "data.nc").exists())
+        return result
+
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", spy)
+    write_dataset(data, tmp_path / "data.nc")
+    assert seen == [False]
+    assert (tmp_path / "data.nc").exists()
+
+
+def test_parameters_as_attributes(tmp_path):
+    parameters = {
+        "n": 2,
+        "restitution": 0.85,
+        "release": "displacement",
+        "flag": True,
+        "amplitude": [1.1, 1, 0.6],
+        "frequency_ratio": {"min": 1.0, "max": 1e3, "samples": 7},
+        "cases": [{"restitution": 1.0, "amplitude": 0.8}],
+        "quantities": ["max_height", "phase"],
+        "printed": [[[0.255, 1.032]]],
+    }
+    flat = parameter_attributes(parameters)
+    assert flat == {
+        "n": 2,
+        "restitution": 0.85,
+        "release": "displacement",
+        "flag": 1,
+        "amplitude": [1.1, 1, 0.6],
+        "frequency_ratio.min": 1.0,
+        "frequency_ratio.max": 1e3,
+        "frequency_ratio.samples": 7,
+        "cases": '[{"restitution": 1.0, "amplitude": 0.8}]',
+        "quantities": '["max_height", "phase"]',
+        "printed": "[[[0.255, 1.032]]]",
+    }
+    # All of them are attributes that netCDF can hold.
+    path = tmp_path / "parameters.nc"
+    write_dataset(xr.Dataset(attrs=flat), path)
+    again = read_dataset(path).attrs
+    assert list(again) == list(flat)
+    assert again["amplitude"].tolist() == [1.1, 1.0, 0.6]
+    assert again["cases"] == flat["cases"]

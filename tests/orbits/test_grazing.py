@@ -1,0 +1,41 @@
+"""Limits of admissibility along a branch of a known problem."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.continuation.branch import continue_branch
+from bouncing_ball.continuation.corrector import NewtonSettings
+from bouncing_ball.orbits.grazing import grazing_points
+
+
+class Circle:
+    """x² + p² = 1."""
+
+    def residual(self, y):
+        return np.sum(y * y, axis=-1, keepdims=True) - 1
+
+    def jacobian(self, y):
+        return 2 * y[..., np.newaxis, :]
+
+
+def test_changes_are_found_to_the_last_digit():
+    # Round the circle once; admissible where x > 0.3 or p < -0.9.
+    branch = continue_branch(Circle(), np.array([1.0, 0.0]), increasing=True, max_points=60)
+
+    def admissible(y):
+        return (y[..., 0] > 0.3) | (y[..., 1] < -0.9)
+
+    found = np.array(grazing_points(Circle(), admissible, branch.points, NewtonSettings()))
+    low = np.sqrt(1 - 0.81)
+    expected = [[0.3, np.sqrt(0.91)], [-low, -0.9]]
+    assert found[:2] == pytest.approx(np.array(expected), abs=4e-16)
+    # Each is the last admissible point on its side.
+    assert admissible(found).all()
+
+
+def test_no_change_no_point():
+    points = np.array([[1.0, 0.0], [np.cos(0.1), np.sin(0.1)]])
+    for always in (True, False):
+        assert grazing_points(
+            Circle(), lambda y, a=always: np.full(y.shape[:-1], a), points, NewtonSettings()
+        ) == []

@@ -1,0 +1,54 @@
+"""The nearest point of the explicit branch."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.models.contact import Contact, Release
+from bouncing_ball.orbits.closed_form import branch_point
+from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.limits import saddle_node
+from bouncing_ball.orbits.projection import distance, nearest_excess
+
+
+@pytest.mark.parametrize("release", list(Release))
+@pytest.mark.parametrize("omega", [2.0, 10.0, 1e4])
+def test_points_of_the_branch_are_their_own_nearest(omega, release):
+    contact = Contact(omega, 0.05, release)
+    excess = float(saddle_node(contact, 2)) + np.linspace(-1, 1, 11) / omega
+    point = branch_point(excess, contact, 2)
+    orbit = ContactOrbit.from_branch(point, contact, 2)
+    found = nearest_excess(orbit)
+    # Also at the fold. ε to the rounding of X and Y over the speed along ε.
+    assert found == pytest.approx(excess, abs=1e-14)
+    assert distance(orbit, branch_point(found, contact, 2)).max() < 1e-12
+
+
+def test_distance_is_the_largest_difference():
+    contact = Contact(10.0, 0.05)
+    point = branch_point(0.02, contact, 1)
+    base = {
+        "n": 1,
+        "contact": contact,
+        "amplitude": point.amplitude,
+        "phase": point.phase + 2 * np.pi,  # the same table
+        "duration": point.duration,
+        "impact_velocity": point.u + point.x,
+    }
+    assert float(distance(ContactOrbit(**base), point)) < 1e-14
+    for name, size in (("amplitude", 1), ("phase", 1), ("duration", 10), ("impact_velocity", 1)):
+        moved = base | {name: base[name] + 1e-3}
+        assert float(distance(ContactOrbit(**moved), point)) == pytest.approx(
+            size * 1e-3, rel=1e-9
+        )
+
+
+def test_an_orbit_beside_the_branch():
+    contact = Contact(10.0, 0.05)
+    point = branch_point(0.02, contact, 1)
+    # One step normal to the curve in the plane (Λ cos φ, Λ sin φ).
+    normal = np.array([-point.d_y, point.d_x]) / np.hypot(point.d_x, point.d_y)
+    x, y = point.x + 1e-4 * normal[0], point.y + 1e-4 * normal[1]
+    orbit = ContactOrbit(
+        1, contact, np.hypot(x, y), np.arctan2(y, x), point.duration + 1e-6, point.u + point.x
+    )
+    assert float(nearest_excess(orbit)) == pytest.approx(0.02, abs=1e-9)

@@ -1,0 +1,131 @@
+"""What each layer may import, read from the source's import statements."""
+
+import ast
+import sys
+from pathlib import Path
+
+import pytest
+
+import bouncing_ball
+
+ROOT = Path(bouncing_ball.__file__).parent
+PACKAGE = "bouncing_ball"
+STANDARD = set(sys.stdlib_module_names)
+
+# For each layer: other layers of the package, and packages from outside.
+ALLOWED = {
+    "models": (set(), {"numpy"}),
+    "continuation": (set(), {"numpy", "scipy"}),
+    "simulation": ({"models"}, {"numpy"}),
+    "orbits": ({"models", "continuation", "simulation"}, {"numpy", "scipy"}),
+    "datasets": (set(), {"numpy", "xarray"}),
+    "studies": (
+        {"models", "continuation", "orbits", "simulation", "datasets"},
+        {"numpy", "scipy", "xarray"},
+    ),
+    "figures": ({"datasets"}, {"numpy", "xarray", "matplotlib"}),
+}
+
+
+def imports(source: str, module: str) -> set[str]:
+    """Absolute names of all modules that a module imports, however it does."""
+    found = set()
+    package = module.split(".")[:-1]
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            base = package[: len(package) - node.level + 1] if node.level else []
+            parts = [*base, *([node.module] if node.module else [])]
+            name = ".".join(parts)
+            # "from package import x" may import a module x.
+            found |= {f"{name}.{alias.name}" for alias in node.names}
+        elif isinstance(node, ast.Call):
+            called = ast.unparse(node.func)
+            if called in ("__import__", "import_module", "importlib.import_module"):
+                found.add(ast.literal_eval(node.args[0]))
+    return found
+
+
+def violations(layer: str, source: str, module: str) -> set[str]:
+    layers, outside = ALLOWED[layer]
+    # The errors of the package are a module that any layer may import.
+    inside = {f"{PACKAGE}.{name}" for name in (layer, "errors", *layers)}
+    bad = set()
+    for name in imports(source, module):
+        top = name.split(".")[0]
+        if top == PACKAGE:
+            if ".".join(name.split(".")[:2]) not in inside:
+                bad.add(name)
+        elif top not in STANDARD and top not in outside:
+            bad.add(name)
+    return bad
+
+
+def modules(layer: str):
+    for path in sorted((ROOT / layer).rglob("*.py")):
+        parts = path.relative_to(ROOT.parent).with_suffix("").parts
+        yield path, ".".join(parts)
+
+
+@pytest.mark.parametrize("layer", ALLOWED)
+def test_layer_imports_only_what_it_may(layer):
+    if layer == "figures" and not (ROOT / layer).is_dir():
+        return
+    found = {
+        module: bad
+        for path, module in modules(layer)
+        if (bad := violations(layer, path.read_text(encoding="utf-8"), module))
+    }
+    assert found == {}
+    assert len(list(modules(layer))) > 1
+
+
+@pytest.mark.parametrize(
+    ("layer", "source"),
+    [
+        ("models", "import scipy"),
+        ("models", "from bouncing_ball.orbits import limits"),
+        ("models", "from bouncing_ball import orbits"),
+        ("models", "from ..orbits.limits import orbit_at"),
+        ("continuation", "import bouncing_ball.models.contact"),
+        ("continuation", "def f():\n    from bouncing_ball.models import damping"),
+        ("orbits", "from bouncing_ball.studies.parameters import grid"),
+        ("datasets", "from bouncing_ball.models import contact"),
+        ("studies", "from bouncing_ball.figures import style"),
+        ("studies", "import matplotlib.pyplot as plt"),
+        ("figures", "from bouncing_ball.orbits import limits"),
+        ("figures", "from scipy.optimize import brentq"),
+        ("figures", "import importlib\nimportlib.import_module('bouncing_ball.models')"),
+        ("figures", "from .. import studies"),
+    ],
+)
+def test_the_check_sees_violations(layer, source):
+    assert violations(layer, source, f"{PACKAGE}.{layer}.some_module")
+
+
+@pytest.mark.parametrize(
+    ("layer", "source"),
+    [
+        ("models", "import numpy as np\nfrom bouncing_ball.errors import ModelError"),
+        ("models", "from .damping import damping_ratio\nimport dataclasses"),
+        ("orbits", "from bouncing_ball.models.contact import Contact"),
+        ("figures", "import matplotlib.pyplot as plt\nfrom bouncing_ball.datasets import netcdf"),
+    ],
+)
+def test_the_check_lets_the_rest_pass(layer, source):
+    assert violations(layer, source, f"{PACKAGE}.{layer}.some_module") == set()
+
+
+def test_the_documented_order_of_the_layers():
+    # The package's docstring: each layer imports only what lies above it.
+    lines = bouncing_ball.__doc__.splitlines()
+    order = [line.split("``")[1] for line in lines if line.startswith("``")]
+    assert set(ALLOWED) <= set(order)
+    for layer in order:
+        above = {layer, "errors", *order[: order.index(layer)]}
+        for path, module in modules(layer):
+            for name in imports(path.read_text(encoding="utf-8"), module):
+                parts = name.split(".")
+                if parts[0] == PACKAGE and len(parts) > 1:
+                    assert parts[1] in above, f"{module} imports {name}"

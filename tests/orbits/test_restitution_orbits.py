@@ -169,7 +169,7 @@ def test_no_branch_below_the_saddle_node(one_line):
     one_line(error, "no 2-T orbit at Λ = 0.5", "saddle-node at Λ = 0.509447")
 
 
-@pytest.mark.parametrize("n", [0, -1, 1.5, np.nan, [1, 0]])
+@pytest.mark.parametrize("n", [0, -1, 1.5, np.nan, np.inf, [1, 0]])
 def test_family_outside_its_range(n, one_line):
     with pytest.raises(ModelError) as error:
         saddle_node(n, 0.85)

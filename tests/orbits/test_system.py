@@ -227,7 +227,7 @@ FLIGHT_LOST = "flight lost: the contact fills the whole cycle"
     [
         (1.5, 0.65, 0.2, {CONTACT_LOST}),
         (2.0, 0.85, 0.1, {CONTACT_LOST}),
-        # Both vanish together there: which is met first is a matter of 1e-5.
+        # Both vanish together there: which is met first is a matter of 1e-4.
         (2.0, 0.85, 0.2, {CONTACT_LOST, FLIGHT_LOST}),
     ],
 )
@@ -235,14 +235,14 @@ def test_the_branch_ends_in_permanent_contact(omega, r, largest, reasons):
     system, branch = follow_unstable_side(1, omega, r, 2.0 if r == 0.3 else 0.9, largest)
     assert branch.end_reason in reasons
     # Where impact velocity and flight vanish the ball just stays on the table.
-    # Λ is off by the square of the flight left: up to 4e-6 at ϖ = 10, where
-    # the impact velocity meets its margin of 1e-5.
+    # Λ is off by the square of the flight left: up to 4e-5 at ϖ = 10, where
+    # the impact velocity meets its margin of 1e-4.
     end = system.orbit(branch.points[-1])
     expected = float(permanent_contact_threshold(omega, system.damping_ratio))
     assert branch.points[-1, 3] == pytest.approx(expected, abs=float(end.flight_time) ** 2 + 1e-12)
-    assert float(end.flight_time) < 3e-3
+    assert float(end.flight_time) < 1e-2
     if branch.end_reason == CONTACT_LOST:
-        assert float(end.relative_impact_velocity) == pytest.approx(-1e-5, abs=1e-11)
+        assert float(end.relative_impact_velocity) == pytest.approx(-1e-4, abs=1e-10)
 
 
 def test_flight_lost():

@@ -32,9 +32,7 @@ def dips(least, seed=0, count=400):
     clear = np.all(gap(grid, height, velocity, phase, lam) > least, axis=0)
     clear &= gap(0.0, height, velocity, phase, lam) > 0.1
     assert clear.sum() > 50
-    return tuple(
-        x[clear] for x in (s0, lam * np.sin(top) - 1, height, velocity, phase, lam)
-    )
+    return tuple(x[clear] for x in (s0, lam * np.sin(top) - 1, height, velocity, phase, lam))
 
 
 def test_a_flight_that_dips_below_the_table_for_a_millionth():

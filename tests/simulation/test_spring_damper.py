@@ -250,3 +250,27 @@ def test_errors_are_one_line(one_line):
         with pytest.raises(ModelError) as error:
             simulate(*arguments)
         one_line(error, part)
+
+
+def test_a_stiff_undamped_contact_ends_in_the_end():
+    """A ball that hardly moves rides the table for thousands of oscillations of the contact,
+    in which nothing decays, before it leaves; no zero is passed over on the way."""
+    omega, lam, phase = 3000.0, 0.999, 2.0
+    ride = simulate(Contact(omega, 0.0), lam, phase, lam * np.cos(phase), 1)
+    assert ride.status == Status.BOUNCING and 1.0 < ride.contact_duration[0] < 10.0
+    s = np.linspace(0.0, float(ride.contact_duration[0]), 400_001)[1:-1]
+    steady = -1 / omega**2 + lam * np.sin(s + phase) / (omega**2 - 1)
+    start = -1 / omega**2 + lam * np.sin(phase) / (omega**2 - 1)
+    rate = lam * np.cos(phase) / (omega**2 - 1)
+    free = -start * np.cos(omega * s) - rate / omega * np.sin(omega * s)
+    # In units of the static compression; the phase ϖ s is known to 1e-12.
+    assert np.all((steady + free) * omega**2 < 1e-11)
+
+
+def test_nearly_critical_damping():
+    """ζ → 1: the bound by half a free period is of no use, and not needed."""
+    zeta = np.array([0.99, 0.99999, 1 - 1e-9])
+    cycle = contact_cycle(Contact(3.0, zeta), 2.0, -0.5, -3.0)
+    # A smooth limit: the cycle changes by as little as ζ, times 100.
+    assert np.all(np.isfinite(cycle.time))
+    assert abs(cycle.time[1] - cycle.time[2]) < 1e-3

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.models.contact import Contact, Release
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.permanent_contact import (
@@ -175,7 +175,11 @@ def simulate(args: argparse.Namespace) -> Answer:
     if args.model == "restitution":
         from bouncing_ball.simulation.restitution import simulate as run
 
-        sequence = run(args.restitution, args.amplitude, args.phase, velocity, args.impacts)
+        r, table = args.restitution, args.amplitude * math.cos(args.phase)
+        if velocity > table:
+            raise ModelError("a ball that rises from the table has no impact: z′ > w′")
+        after = -r * velocity + (1 + r) * table
+        sequence = run(r, args.amplitude, args.phase, after, args.impacts)
     else:
         from bouncing_ball.simulation.spring_damper import simulate as run
 

@@ -96,7 +96,9 @@ def _add_model(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_family(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--n", type=_count(1000), default=1, help="index of the family (default: 1)")
+    parser.add_argument(
+        "--n", type=_count(1000), default=1, help="index of the family (default: 1)"
+    )
 
 
 def _add_amplitude(parser: argparse.ArgumentParser) -> None:

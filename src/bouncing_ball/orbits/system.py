@@ -29,8 +29,9 @@ from bouncing_ball.orbits.stability import (
 )
 
 # Impact velocity and flight time vanish together where an orbit merges with
-# permanent contact, and the equations are singular there: stop just before.
-_MARGIN = 1e-5
+# permanent contact. The equations are singular there, and rounding enters
+# divided by both: stop where 1e-12 is left.
+_MARGIN = 1e-4
 
 
 class Parameter(StrEnum):

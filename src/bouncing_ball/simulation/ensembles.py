@@ -43,9 +43,11 @@ def flatten(
         return np.ascontiguousarray(np.broadcast_to(x, shape)).reshape(-1)
 
     count = len(parameters)
-    return [flat(x) if x.ndim else x for x in arrays[:count]], [
-        flat(x) for x in arrays[count:]
-    ], shape
+    return (
+        [flat(x) if x.ndim else x for x in arrays[:count]],
+        [flat(x) for x in arrays[count:]],
+        shape,
+    )
 
 
 def pick(value, which):

@@ -25,9 +25,7 @@ class History(NamedTuple):
     touching: np.ndarray
 
 
-def history(
-    sequence: ImpactSequence, time: ArrayLike, ball: int | tuple[int, ...] = ()
-) -> History:
+def history(sequence: ImpactSequence, time: ArrayLike, ball: int | tuple[int, ...] = ()) -> History:
     """Where a ball is at given times since its first impact.
 
     Parameters

@@ -19,6 +19,7 @@ from bouncing_ball.simulation.flight import Flight, land
 from bouncing_ball.simulation.resumption import leaves_fast, resumption
 from bouncing_ball.simulation.sequence import ImpactSequence, Status
 
+
 class Impact(NamedTuple):
     """Starts of contact: table phase, δ and δ′."""
 

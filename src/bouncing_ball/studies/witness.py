@@ -12,22 +12,32 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.continuation.branch import ContinuationError, continue_branch, solve_at
+from bouncing_ball.continuation.branch import (
+    ContinuationError,
+    continue_both_ways,
+    continue_branch,
+    solve_at,
+)
 from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane
 from bouncing_ball.continuation.events import parameter_bound
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.models.contact import Contact, Release
 from bouncing_ball.models.damping import damping_ratio
+from bouncing_ball.models.restitution import exact_map_jacobian
+from bouncing_ball.orbits import restitution
+from bouncing_ball.orbits.admissibility import restitution_is_admissible
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.monodromy import monodromy, trace_and_contraction
 from bouncing_ball.orbits.projection import distance, nearest_excess
+from bouncing_ball.orbits.restitution_system import RestitutionSystem
 from bouncing_ball.orbits.stability import (
     is_stable,
     period_doubling_function,
     saddle_node_function,
 )
 from bouncing_ball.orbits.system import OrbitSystem, Parameter
+from bouncing_ball.simulation.restitution import impact_cycle
 from bouncing_ball.simulation.spring_damper import contact_cycle
 from bouncing_ball.studies.continuation import PERIOD_DOUBLING, SADDLE_NODE, controls
 
@@ -40,7 +50,7 @@ _NUDGE = 1e-8
 
 # Kinds of comparison and their budgets. Continuation and formula are both right
 # to rounding, amplified where the branch merges with permanent contact: the
-# impact velocity is 1e-5 at the end of the branches there, and rounding of the
+# impact velocity is 1e-4 at the end of the branches there, and rounding of the
 # orbit's equations enters divided by it. One cycle of the simulation adds as
 # much again; fifty add up. The departure is a difference quotient over 1e-8 of
 # the impact velocity, so that rounding, 1e-15, leaves seven digits, and one or
@@ -49,6 +59,12 @@ FORMULA, CLOSES = "continuation and formula", "simulation over one cycle"
 HOLDS = f"simulation over {HELD_PERIODS} cycles, stable orbits"
 LEAVES = "rate of departure, unstable orbits"
 BUDGETS = {FORMULA: 1e-11, CLOSES: 1e-10, HOLDS: 1e-9, LEAVES: 1e-5}
+
+
+# Test function below which an orbit counts as left: away from the bifurcations,
+# where the multiplier is ±1 and a departure would tell nothing.
+_UNSTABLE = -0.05
+BIFURCATIONS = (SADDLE_NODE, PERIOD_DOUBLING)
 
 
 class WitnessError(ValueError):
@@ -265,11 +281,7 @@ def simulation_leaves(orbit: ContactOrbit) -> Comparison:
     Started a little off along the unstable direction, on both sides; the
     growth of the difference over one cycle is compared with the multiplier.
     """
-    matrix = monodromy(orbit)
-    values, vectors = np.linalg.eig(matrix)
-    which = np.argmax(np.abs(values), axis=-1)[..., np.newaxis]
-    multiplier = np.take_along_axis(values, which, axis=-1)[..., 0].real
-    direction = np.take_along_axis(vectors, which[..., np.newaxis, :], axis=-1)[..., 0].real
+    multiplier, direction = _leading(monodromy(orbit))
     u = orbit.relative_impact_velocity
     # A fixed part of the impact velocity, so that soft landings are met too.
     nudge = _NUDGE * np.abs(u)[:, np.newaxis] * direction
@@ -283,8 +295,7 @@ def simulation_leaves(orbit: ContactOrbit) -> Comparison:
         )
         turn = np.angle(np.exp(1j * (cycle.phase - orbit.phase)))
         ends.append(np.stack([turn, cycle.relative_velocity], axis=-1))
-    growth = np.sum((ends[0] - ends[1]) * nudge, axis=-1) / (2 * np.sum(nudge * nudge, axis=-1))
-    return Comparison(LEAVES, np.abs(growth / multiplier - 1), _names(orbit))
+    return Comparison(LEAVES, _departure(ends, nudge, multiplier), _names(orbit))
 
 
 def _chosen(orbit: ContactOrbit, which: np.ndarray) -> ContactOrbit:
@@ -308,9 +319,8 @@ def _simulated(orbit: ContactOrbit) -> Iterator[Comparison]:
     yield simulation_closes(orbit)
     yield simulation_holds(_chosen(orbit, stable))
     trace, det = trace_and_contraction(orbit)
-    # Away from the bifurcations, where the multiplier is ±1 and tells nothing.
     unstable = np.minimum(saddle_node_function(trace, det), period_doubling_function(trace, det))
-    yield simulation_leaves(_chosen(orbit, unstable < -0.05))
+    yield simulation_leaves(_chosen(orbit, unstable < _UNSTABLE))
 
 
 def _table_against_formula(data: xr.Dataset) -> Comparison:
@@ -329,6 +339,121 @@ def _table_against_formula(data: xr.Dataset) -> Comparison:
     return Comparison(FORMULA, np.array(values), names)
 
 
+class RestitutionOrbits(NamedTuple):
+    """n-T orbits of the restitution model: n, r, Λ, φ, as flat arrays or scalars."""
+
+    n: int
+    restitution: float
+    amplitude: np.ndarray
+    phase: np.ndarray
+
+
+def _restitution_names(orbits: RestitutionOrbits) -> list[str]:
+    return [f"{orbits.n}-T orbit at Λ = {x:.6g}, restitution model" for x in orbits.amplitude]
+
+
+def _restitution_families(data: xr.Dataset) -> Iterator[RestitutionOrbits]:
+    r = data.attrs["restitution"]
+    if "restitution_amplitude" in data:
+        lam, phase = data.restitution_amplitude.values, data.restitution_phase.values
+        yield RestitutionOrbits(int(data.attrs["n"]), r, lam, phase)
+    elif "n" in data.dims:
+        for n in data.n.values:
+            family = data.sel(n=n)
+            yield RestitutionOrbits(int(n), r, family.amplitude.values, family.phase.values)
+    else:
+        lam, phase = np.array([data.attrs["amplitude"]]), np.array([float(data.phase)])
+        yield RestitutionOrbits(int(data.attrs["n"]), r, lam, phase)
+
+
+def _restitution_continued(
+    orbits: RestitutionOrbits, settings: Mapping[str, Any]
+) -> Iterator[Comparison]:
+    """Continuation of the map's fixed points, and its located bifurcations."""
+    control, tolerance = controls(settings)
+    n, r, lam, phase = orbits
+    system = RestitutionSystem(n, r)
+    node, doubling = restitution.saddle_node(n, r), restitution.period_doubling(n, r)
+    start = float(node + doubling) / 2
+    y = np.array([float(restitution.phase(n, r, start)), n * np.pi, start])
+    top = max(float(lam.max()), float(doubling)) + control.largest
+    branch = continue_both_ways(
+        system,
+        y,
+        events=(*system.events(), parameter_bound(top, True, "left the window")),
+        control=control,
+        settings=tolerance,
+    )
+    # φ runs along the whole branch: the continued point at each published φ.
+    guess = np.stack(
+        [np.interp(phase, branch.points[:, 0], branch.points[:, k]) for k in range(3)], axis=-1
+    )
+    axis = np.array([1.0, 0.0, 0.0])
+    patient = tolerance._replace(max_iterations=2 * tolerance.max_iterations)
+    found = newton(system, guess, plane(np.broadcast_to(axis, guess.shape), guess), patient)
+    differences = found.point[:, 2] - lam, found.point[:, 1] - n * np.pi
+    yield Comparison(FORMULA, np.max(np.abs(differences), axis=0), _restitution_names(orbits))
+    names = [f"{kind} of the {n}-T orbits, restitution model" for kind in BIFURCATIONS]
+    located = [branch.named(kind)[0][2] for kind in BIFURCATIONS]
+    yield Comparison(FORMULA, np.abs(np.array(located) - [float(node), float(doubling)]), names)
+
+
+def _restitution_simulated(orbits: RestitutionOrbits) -> Iterator[Comparison]:
+    n, r, lam, phase = orbits
+    there = restitution_is_admissible(n, lam, phase)
+    orbits = orbits._replace(amplitude=lam[there], phase=phase[there])
+    lam, phase = orbits.amplitude, orbits.phase
+    names, velocity = _restitution_names(orbits), np.full_like(lam, n * np.pi)
+
+    def off(cycle):
+        turn = np.angle(np.exp(1j * (cycle.phase - phase)))
+        return np.max(np.abs([turn, cycle.velocity - n * np.pi]), axis=0)
+
+    cycle = impact_cycle(r, lam, phase, velocity)
+    late = np.abs(cycle.time - 2 * np.pi * n)
+    yield Comparison(CLOSES, np.maximum(off(cycle), late), names)
+    trace, det = restitution.trace_and_determinant(r, lam, phase)
+    stable = is_stable(trace, det)
+    for _ in range(HELD_PERIODS - 1):
+        cycle = impact_cycle(r, lam, cycle.phase, cycle.velocity)
+    kept = [name for name, keep in zip(names, stable, strict=True) if keep]
+    yield Comparison(HOLDS, off(cycle)[stable], kept)
+    test = np.minimum(saddle_node_function(trace, det), period_doubling_function(trace, det))
+    gone = test < _UNSTABLE
+    matrix = exact_map_jacobian(2 * np.pi * n, phase, velocity, lam, r)[gone]
+    multiplier, direction = _leading(matrix)
+    nudge = _NUDGE * direction
+    ends = []
+    for sign in (1.0, -1.0):
+        start = phase[gone] + sign * nudge[:, 0], velocity[gone] + sign * nudge[:, 1]
+        cycle = impact_cycle(r, lam[gone], *start)
+        turn = np.angle(np.exp(1j * (cycle.phase - phase[gone])))
+        ends.append(np.stack([turn, cycle.velocity], axis=-1))
+    left = [name for name, leaves in zip(names, gone, strict=True) if leaves]
+    yield Comparison(LEAVES, _departure(ends, nudge, multiplier), left)
+
+
+def _leading(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Real multiplier of larger modulus and its eigenvector, of matrices (..., 2, 2)."""
+    values, vectors = np.linalg.eig(matrix)
+    which = np.argmax(np.abs(values), axis=-1)[..., np.newaxis]
+    value = np.take_along_axis(values, which, axis=-1)[..., 0].real
+    return value, np.take_along_axis(vectors, which[..., np.newaxis, :], axis=-1)[..., 0].real
+
+
+def _departure(ends, nudge, multiplier) -> np.ndarray:
+    """Relative difference of the growth over one cycle from the multiplier."""
+    growth = np.sum((ends[0] - ends[1]) * nudge, axis=-1) / (2 * np.sum(nudge * nudge, axis=-1))
+    return np.abs(growth / multiplier - 1)
+
+
+def compare_restitution(data: xr.Dataset, settings: Mapping[str, Any]) -> Iterator[Comparison]:
+    """All comparisons for the restitution model's orbits of one dataset."""
+    for orbits in _restitution_families(data):
+        yield from _restitution_continued(orbits, settings)
+        yield from _restitution_simulated(orbits)
+
+
 def compare(data: xr.Dataset, settings: Mapping[str, Any]) -> Iterator[Comparison]:
     """All comparisons for the spring-damper orbits of one dataset."""
     if "computed" in data:
@@ -342,6 +467,8 @@ def compare(data: xr.Dataset, settings: Mapping[str, Any]) -> Iterator[Compariso
         orbit = sweep_orbits(data) if "case" in data.dims else single_orbits(data)
         yield formula_against_continuation(orbit, settings)
     yield from _simulated(orbit)
+    if "restitution_amplitude" in data:
+        yield from compare_restitution(data, settings)
 
 
 def _worst(comparisons: list[Comparison], kind: str) -> tuple[float, int, str]:

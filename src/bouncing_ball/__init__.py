@@ -8,10 +8,14 @@ The layers, each importing only what lies above it in this list:
 
 ``models``        the impact: restitution map, spring-damper contact, permanent contact
 ``continuation``  pseudo-arclength continuation; knows nothing of balls
+``simulation``    event-driven simulation of both models, from any initial state
 ``orbits``        n-T orbits of both models, their stability and bifurcations
 ``studies``       the stages of the pipeline: parameters in, arrays out
 ``datasets``      names, symbols, units and netCDF files
 ``figures``       pictures of datasets; they compute nothing
+``tables``        tables of datasets
+``cli``           the command line, ``bouncing-ball``
+``pipeline``      what the Snakefile needs of Python
 """
 
 __version__ = "0.1.0"

@@ -3,6 +3,8 @@
 import pytest
 
 PAPER = "Writing results/paper.md"
+# Every change of an orbit is followed by the comparison of the three routes.
+WITNESS = {"Comparing continuation, formula and simulation for witness", "Setting witness"}
 
 
 def drawing(*names):
@@ -15,12 +17,17 @@ def drawing(*names):
         (
             ("figures", "fig06", "cases"),
             [{"restitution": 0.6, "amplitude": 1.0}],
-            {"Apparent restitution for fig06", *drawing("fig06")},
+            {"Apparent restitution for fig06", *drawing("fig06"), *WITNESS},
         ),
         (
             ("figures", "fig08", "points"),
             101,
-            {"Continuation of the n-T orbits for fig08", *drawing("fig08")},
+            {"Continuation of the n-T orbits for fig08", *drawing("fig08"), *WITNESS},
+        ),
+        (
+            ("extensions", "ext_release", "restitution"),
+            0.9,
+            {"Release rules for ext_release", *drawing("ext_release")},
         ),
         (
             ("figures", "fig16", "tolerance"),
@@ -30,7 +37,7 @@ def drawing(*names):
         (
             ("tables", "table1", "amplitude_max"),
             1.6,
-            {"Continuation of the n-T orbits for table1", "Setting table1"},
+            {"Continuation of the n-T orbits for table1", "Setting table1", *WITNESS},
         ),
         (
             ("continuation", "max_angle"),
@@ -40,6 +47,7 @@ def drawing(*names):
                 *(f"Continuation of the n-T orbits for {x}" for x in ("fig15", "table1")),
                 *drawing("fig08", "fig09", "fig15"),
                 "Setting table1",
+                *WITNESS,
             },
         ),
     ],
@@ -57,6 +65,7 @@ def test_a_changed_parameter(complete, keys, value, expected):
             {
                 *(f"Orbits of the restitution model for {x}" for x in ("fig02", "fig03")),
                 *drawing("fig02", "fig03"),
+                *WITNESS,
                 PAPER,
             },
         ),
@@ -66,15 +75,17 @@ def test_a_changed_parameter(complete, keys, value, expected):
             {
                 "Permanent contact threshold for fig11",
                 *(f"Error thresholds for {x}" for x in ("fig14", "fig16", "thresholds")),
-                *drawing("fig11", "fig14", "fig16"),
+                "Release rules for ext_release",
+                *drawing("fig11", "fig14", "fig16", "ext_release"),
                 "Setting thresholds",
+                *WITNESS,
                 PAPER,
             },
         ),
         # A plotting change does not run the science again.
         ("figures/fig12.py", drawing("fig12")),
         ("figures/branches.py", drawing("fig03", "fig08", "fig09", "fig15")),
-        ("figures/style.py", drawing(*(f"fig{k:02d}" for k in range(1, 17)))),
+        ("figures/style.py", drawing("ext_release", *(f"fig{k:02d}" for k in range(1, 17)))),
         ("tables/table1.py", {"Setting table1", PAPER}),
     ],
 )

@@ -7,7 +7,8 @@ import signal
 import pytest
 import yaml
 
-FIGURES = [f"fig{number:02d}" for number in range(1, 17)]
+PAPER_FIGURES = [f"fig{number:02d}" for number in range(1, 17)]
+FIGURES = [*PAPER_FIGURES, "ext_release"]
 
 
 def test_one_figure_by_its_name_makes_that_figure_only(fresh):
@@ -25,7 +26,7 @@ def test_a_run_makes_every_figure_and_table(pristine):
     data = {f"figures/{name}.nc" for name in FIGURES if name not in ("fig01", "fig04")}
     tables = {
         f"figures/{name}.{kind}"
-        for name in ("table1", "thresholds")
+        for name in ("table1", "thresholds", "witness")
         for kind in ("nc", "csv", "md", "tex")
     }
     assert made == pictures | data | tables | {"paper.md"}
@@ -80,6 +81,7 @@ def test_report_shows_every_figure_offline(complete):
     page = (complete.path / "results" / "report.html").read_text(encoding="utf-8")
     for name in FIGURES:
         assert f"results/figures/{name}.png" in page
+    for name in PAPER_FIGURES:
         assert f"Figure {int(name[3:])}." in page
     loaded = re.findall(r"<(?:script|link|img)[^>]+(?:src|href)=[\"'](\w+:[^\"']*)", page)
     assert [url for url in loaded if not url.startswith("data:")] == []

@@ -4,6 +4,9 @@ Both derive from :class:`ValueError`, so that callers who do not care for the
 distinction can catch that.
 """
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 
 class ModelError(ValueError):
     """A parameter outside the range in which the model is defined."""
@@ -11,3 +14,19 @@ class ModelError(ValueError):
 
 class NoOrbitError(ValueError):
     """The requested periodic orbit does not exist, with the reason why."""
+
+
+def require(valid: ArrayLike, value: ArrayLike, name: str, allowed: str) -> None:
+    """Raise :class:`ModelError` with the first value that is not valid.
+
+    Examples
+    --------
+    >>> require([True, False], [0.5, 1.5], "restitution coefficient r", "in (0, 1]")
+    Traceback (most recent call last):
+    ...
+    bouncing_ball.errors.ModelError: restitution coefficient r = 1.5 is not in (0, 1]
+    """
+    valid, value = np.broadcast_arrays(valid, value)
+    if not np.all(valid):
+        first = value[~valid][0]
+        raise ModelError(f"{name} = {first} is not {allowed}")

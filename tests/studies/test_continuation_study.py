@@ -96,12 +96,13 @@ def test_branches_start_and_end_where_they_should(figure_8):
     window = "left the window at amplitude 1.5"
     assert figure_8.end_reason.sel(frequency_ratio=10.0).values.tolist() == [window, window]
     # The soft branch comes from permanent contact, where the impact velocity
-    # and the flight vanish together; which is seen first is a matter of 1e-6.
+    # and the flight vanish together; which is seen first is a matter of 1e-4.
     start, end = figure_8.end_reason.sel(frequency_ratio=2.0).values.tolist()
     assert start.startswith(("contact lost", "flight lost")) and end == window
     threshold = float(permanent_contact_threshold(2.0, damping_ratio(0.85)))
+    # Λ is off by the square of the flight left, about 1e-4 there, and some.
     assert float(figure_8.amplitude.sel(frequency_ratio=2.0)[0]) == pytest.approx(
-        threshold, abs=1e-9
+        threshold, abs=1e-6
     )
     assert figure_8.amplitude.sel(frequency_ratio=10.0).values[[0, -1]] == pytest.approx(
         [1.5, 1.5], abs=1e-12
@@ -186,21 +187,18 @@ def test_blocked_ways_are_reported(continuation_settings, one_line):
     # At ϖ = 0.6 and this Λ the ball stays on the table.
     with pytest.raises(ContinuationError) as error:
         branch_along_amplitude(1, 0.85, 0.6, 1.5, "displacement", continuation_settings)
-    one_line(error, "1-T orbit at Λ = 0.6465", "ϖ = 10000", "before 0.6", "contact lost")
+    one_line(error, "1-T orbit at Λ = 0.6465", "ϖ = 10000", "before 0.6", "lost: the")
 
 
-def test_blocked_ways_are_reported_as_such(continuation_settings):
-    # The documented error, also where the last events are hard to locate.
-    with pytest.raises(ContinuationError):
-        branch_along_amplitude(1, 0.3, 0.6, 10.0, "displacement", continuation_settings)
-
-
-def test_a_turn_of_the_way_ends_it(continuation_settings):
-    # The branch along ϖ turns before 0.6; followed on it would run to ϖ → ∞.
-    with pytest.raises(ContinuationError) as error:
-        branch_along_amplitude(2, 0.85, 0.6, 1.5, "displacement", continuation_settings)
-    reached = float(str(error.value).split("ends at ϖ = ")[1].split(",")[0])
-    assert reached < 1e4
+@pytest.mark.parametrize(("n", "r", "top"), [(1, 0.3, 10.0), (2, 0.85, 1.5)])
+def test_another_way_round_a_blocked_one(continuation_settings, n, r, top):
+    # Half way between the bifurcations the branch along ϖ turns, or ends, before
+    # 0.6; at another Λ it gets there.
+    system, branch = branch_along_amplitude(
+        n, r, 0.6, top, "displacement", continuation_settings
+    )
+    assert np.max(np.abs(system.residual(branch.points))) < 1e-10
+    assert branch.points[:, -1].min() >= 0 and branch.points[:, -1].max() <= top * (1 + 1e-12)
 
 
 @pytest.mark.parametrize("release", ["displacement", "force"])

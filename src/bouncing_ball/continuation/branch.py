@@ -120,13 +120,19 @@ def continue_branch(
     Raises
     ------
     ContinuationError
-        If there is no solution near ``start``.
+        If there is no solution near ``start``, or it lies outside the domain.
     LocationError
         If an announced event cannot be located, down to the smallest step.
     """
     y = solve_at(problem, np.asarray(start, dtype=float), settings)
     direction = null_vector(problem.jacobian(y)) * (1.0 if increasing else -1.0)
     values = [float(event.function(y)) for event in events]
+    for event, value in zip(events, values, strict=True):
+        if event.terminal and value < 0:
+            raise ContinuationError(
+                f"the start {np.array2string(y, precision=4)} lies beyond the end of the branch: "
+                f"{event.reason or event.name}"
+            )
     points, tangents, special = [y], [direction], []
     step, reason = control.initial, f"reached the limit of {max_points} points"
     while len(points) < max_points:
@@ -203,22 +209,43 @@ def continue_both_ways(problem: Problem, start: np.ndarray, **options) -> Branch
     )
 
 
+# Rounds of equalising the chords between resampled points; each gains two to
+# four digits, and the corrector's own rounding is reached after five or six.
+_EQUALISING_ROUNDS = 8
+
+
 def resample(
     problem: Problem, branch: Branch, count: int, settings: NewtonSettings = NewtonSettings()
 ) -> np.ndarray:
-    """Solutions at equal steps of arclength along a branch, shape (count, N + 1).
+    """Solutions at equal distances along a branch, shape (count, N + 1).
 
     Cubic Hermite interpolation between the points of the branch predicts, the
     corrector corrects; the first and last points are those of the branch. The
-    number of points is then the caller's and not that of the step control.
+    chords between neighbours are made equal, so that the result is a matter of
+    the branch and of ``count``, and not of the step control.
 
     Raises
     ------
     ContinuationError
-        If the corrector fails, on a branch followed with too long steps.
+        If the corrector fails, on a branch followed with too long steps, or if
+        the branch has a single point.
     """
     arc = branch.arclength
+    if len(arc) < 2:
+        raise ContinuationError(f"a branch of one point has no length: {branch.end_reason}")
     wanted = np.linspace(0.0, arc[-1], count)
+    for _ in range(_EQUALISING_ROUNDS):
+        points = _interpolated(problem, branch, arc, wanted, settings)
+        chords = np.linalg.norm(np.diff(points, axis=0), axis=1)
+        if np.ptp(chords) <= settings.tolerance * chords.mean():
+            break
+        reached = np.concatenate([[0.0], np.cumsum(chords)])
+        wanted = np.interp(np.linspace(0.0, reached[-1], count), reached, wanted)
+    return points
+
+
+def _interpolated(problem, branch, arc, wanted, settings) -> np.ndarray:
+    """Solutions near given chord lengths from the branch's first point."""
     left = np.clip(np.searchsorted(arc, wanted, side="right") - 1, 0, len(arc) - 2)
     width = (arc[left + 1] - arc[left])[:, np.newaxis]
     t = (wanted[:, np.newaxis] - arc[left][:, np.newaxis]) / width
@@ -234,6 +261,6 @@ def resample(
     found = newton(problem, guess, plane(normal, guess), settings)
     if not found.converged:
         raise ContinuationError(
-            f"resampling to {count} points failed with residual {found.residual:.1e}"
+            f"resampling to {len(wanted)} points failed with residual {found.residual:.1e}"
         )
     return found.point

@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball.errors import require
 from bouncing_ball.models.oscillator import Response, exponential_response, impulse_response
 from bouncing_ball.models.release import Release
 
@@ -62,10 +62,9 @@ class Responses(NamedTuple):
 
 def check_contact(frequency_ratio: ArrayLike, damping_ratio: ArrayLike) -> None:
     """Raise :class:`ModelError` unless ϖ > 0 and ζ ≥ 0, both finite."""
-    if not np.all((np.asarray(frequency_ratio) > 0) & np.isfinite(frequency_ratio)):
-        raise ModelError(f"frequency ratio ϖ = {frequency_ratio} is not finite and positive")
-    if not np.all((np.asarray(damping_ratio) >= 0) & np.isfinite(damping_ratio)):
-        raise ModelError(f"damping ratio ζ = {damping_ratio} is not finite and ≥ 0")
+    omega, zeta = (np.asarray(x, dtype=float) for x in (frequency_ratio, damping_ratio))
+    require((omega > 0) & np.isfinite(omega), omega, "frequency ratio ϖ", "finite and positive")
+    require((zeta >= 0) & np.isfinite(zeta), zeta, "damping ratio ζ", "finite and ≥ 0")
 
 
 def responses(time: ArrayLike, frequency_ratio: ArrayLike, damping_ratio: ArrayLike) -> Responses:

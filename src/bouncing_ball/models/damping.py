@@ -10,7 +10,7 @@ Pöschel, Granular Matter 9, 2007). Everything here is dimensionless.
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball.errors import require
 from bouncing_ball.models.release import Release
 
 
@@ -38,8 +38,7 @@ def damping_ratio(restitution: ArrayLike) -> np.ndarray:
     0.1359
     """
     r = np.asarray(restitution, dtype=float)
-    if not np.all((r > 0) & (r <= 1)):
-        raise ModelError(f"restitution coefficient r = {restitution} is not in (0, 1]")
+    require((r > 0) & (r <= 1), r, "restitution coefficient r", "in (0, 1]")
     decrement = -np.log(r) + 0.0  # + 0.0 turns -0 into 0 at r = 1
     return decrement / np.hypot(np.pi, decrement)
 
@@ -70,10 +69,7 @@ def restitution_coefficient(
     1.0
     """
     zeta = np.asarray(damping, dtype=float)
-    if not np.all((zeta >= 0) & (zeta < 1)):
-        raise ModelError(
-            f"damping ratio ζ = {damping} is not in [0, 1): "
-            "an overdamped contact has no restitution coefficient"
-        )
+    allowed = "in [0, 1): an overdamped contact has no restitution coefficient"
+    require((zeta >= 0) & (zeta < 1), zeta, "damping ratio ζ", allowed)
     angle = np.pi - 2 * np.arcsin(zeta) if release is Release.FORCE else np.pi
     return np.exp(-angle * zeta / np.sqrt((1 - zeta) * (1 + zeta)))

@@ -58,8 +58,8 @@ class Response(NamedTuple):
     rate_d_q: np.ndarray
 
 
-def _damped_csr(s, a, w):
-    """e^{-as} times C, S and R, for any sign of w."""
+def _damped_csr(s, a, q, w):
+    """e^{-as} times C, S and R, for any sign of w = q - a²."""
     w_s2 = w * s * s
     root = np.sqrt(np.abs(w))
     safe_root = np.where(root > 0, root, 1.0)
@@ -72,7 +72,7 @@ def _damped_csr(s, a, w):
         # The slow exponent κ - a is written -q/(κ + a): no cancellation and,
         # for a > 0, no overflow.
         total = np.where(over, root + a, 1.0)
-        slow = np.exp(np.where(over, -(w + a * a) / total * s, 0.0))
+        slow = np.exp(np.where(over, -q / total * s, 0.0))
         fast = np.exp(np.where(over, -total * s, 0.0))
         c = np.where(over, (slow + fast) / 2, c)
         sn = np.where(over, (slow - fast) / (2 * safe_root), sn)
@@ -112,7 +112,7 @@ def impulse_response(s: ArrayLike, a: ArrayLike, q: ArrayLike, w: ArrayLike) -> 
     """
     s, a, q, w = (np.asarray(x, dtype=float) for x in (s, a, q, w))
     s, a, q, w = np.broadcast_arrays(s, a, q, w)
-    c, sn, r = _damped_csr(s, a, w)
+    c, sn, r = _damped_csr(s, a, q, w)
     value, rate = sn, c - a * sn
     return Response(
         value=value,
@@ -139,10 +139,11 @@ def _circle_mean(nu, s, a, q, g: Response):
     def column(x):
         return x[..., np.newaxis]
 
-    short = np.maximum(np.abs(s), 1e-100)  # below, h = s²/2 underflows anyway
+    # Below 1e-100, h = s²/2 underflows anyway.
+    short = np.where(np.abs(s) < 1e-100, 1e-100, s)
     root = np.sqrt(a * a - q + 0j)
     distance = np.abs(nu - np.stack([-a + root, -a - root]))
-    radii = np.stack([radius / short for radius in _CIRCLE_RADII])
+    radii = np.stack([radius / np.abs(short) for radius in _CIRCLE_RADII])
     # The radius whose circle stays farthest, in proportion, from both poles.
     clearance = np.min(np.abs(radii[:, np.newaxis] - distance) / radii[:, np.newaxis], axis=1)
     radius = np.take_along_axis(radii, np.argmax(clearance, axis=0)[np.newaxis], axis=0)[0]

@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball.errors import require
 from bouncing_ball.models.contact import Release, check_contact
 
 RESTITUTION_THRESHOLD = 1.0
@@ -82,11 +82,8 @@ def permanent_contact_minimum(
         check_contact(1.0, zeta)
         omega = np.sqrt((1 + np.sqrt(1 + 8 * zeta * zeta)) / 2)
         return Minimum(permanent_contact_threshold(omega, zeta, release), omega)
-    if not np.all((zeta >= 0) & (2 * zeta * zeta < 1)):
-        raise ModelError(
-            f"damping ratio ζ = {damping_ratio} is not in [0, 1/√2): "
-            "the permanent-contact threshold has no minimum over ϖ there"
-        )
+    allowed = "in [0, 1/√2): the permanent-contact threshold has no minimum over ϖ there"
+    require((zeta >= 0) & (2 * zeta * zeta < 1), zeta, "damping ratio ζ", allowed)
     return Minimum(2 * zeta * np.sqrt((1 - zeta) * (1 + zeta)), 1 / np.sqrt(1 - 2 * zeta * zeta))
 
 
@@ -118,7 +115,7 @@ def permanent_contact_frequency_ratios(
     product = (1 - lam) * (1 + lam)
     centre = 1 - 2 * zeta * zeta * (product if release is Release.FORCE else 1.0)
     inside = centre * centre - product
-    root = np.sqrt(np.where(inside >= 0, inside, np.nan))
+    root = np.sqrt(np.where((inside >= 0) & (lam >= 0), inside, np.nan))
     outer = centre + root
     inner = np.where(outer > 0, product / np.where(outer > 0, outer, 1.0), centre - root)
 

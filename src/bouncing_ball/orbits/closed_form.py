@@ -37,7 +37,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball.errors import require
 from bouncing_ball.models.contact import Contact, Release, responses
 from bouncing_ball.models.oscillator import CANCELLATION
 
@@ -175,8 +175,8 @@ def branch_point(excess: ArrayLike, contact: Contact, n: ArrayLike) -> BranchPoi
     >>> bool(abs(point.y - 1) < 1e-5), bool(abs(point.u + np.pi) < 1e-5)
     (True, True)
     """
-    if not np.all(np.asarray(contact.damping_ratio) < 1):
-        raise ModelError(f"damping ratio ζ = {contact.damping_ratio} is not below 1")
+    zeta = np.asarray(contact.damping_ratio)
+    require(zeta < 1, zeta, "damping ratio ζ", "below 1")
     arguments = [
         np.asarray(x, dtype=float)
         for x in (excess, contact.frequency_ratio, contact.damping_ratio, n)

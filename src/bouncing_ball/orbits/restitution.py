@@ -21,7 +21,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.errors import NoOrbitError, require
 
 
 class ImpactMap(StrEnum):
@@ -35,12 +35,10 @@ class ImpactMap(StrEnum):
 
 def check_family(n: ArrayLike, restitution: ArrayLike) -> None:
     """Raise :class:`ModelError` unless n is a positive integer and 0 < r ≤ 1."""
-    index = np.asarray(n)
-    if not np.all((index == np.floor(index)) & (index >= 1)):
-        raise ModelError(f"index of the family n = {n} is not a positive integer")
-    r = np.asarray(restitution, dtype=float)
-    if not np.all((r > 0) & (r <= 1)):
-        raise ModelError(f"restitution coefficient r = {restitution} is not in (0, 1]")
+    index, r = np.asarray(n, dtype=float), np.asarray(restitution, dtype=float)
+    whole = (index == np.floor(index)) & (index >= 1) & np.isfinite(index)
+    require(whole, np.asarray(n), "index of the family n", "a positive integer")
+    require((r > 0) & (r <= 1), r, "restitution coefficient r", "in (0, 1]")
 
 
 def saddle_node(n: ArrayLike, restitution: ArrayLike) -> np.ndarray:

@@ -19,7 +19,7 @@ from bouncing_ball.continuation.branch import (
     solve_at,
 )
 from bouncing_ball.continuation.corrector import NewtonSettings
-from bouncing_ball.continuation.events import fold, parameter_bound
+from bouncing_ball.continuation.events import Event, fold, parameter_bound
 from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import NoOrbitError
@@ -32,7 +32,7 @@ from bouncing_ball.orbits.monodromy import trace_and_contraction
 from bouncing_ball.orbits.stability import is_stable, multipliers
 from bouncing_ball.orbits.system import OrbitSystem, Parameter
 
-SADDLE_NODE, PERIOD_DOUBLING, FOLD = "saddle-node", "period doubling", "fold"
+SADDLE_NODE, PERIOD_DOUBLING = "saddle-node", "period doubling"
 GRAZING = "grazing"
 
 
@@ -63,38 +63,25 @@ def branch_along_amplitude(
     ContinuationError
         If the way from the restitution orbit to this contact is blocked.
     """
-    zeta = float(damping_ratio(restitution))
+    node = float(restitution_orbits.saddle_node(n, restitution))
+    doubling = float(restitution_orbits.period_doubling(n, restitution))
+    # Half way between the two bifurcations of the restitution orbit, or to the
+    # end of the window; other ways are tried if that one is blocked.
+    shares = (0.5, 0.25, 0.9, 1.3)
+    ways = [node + share * (min(doubling, amplitude_max) - node) for share in shares]
+    failures = []
+    for start in (way for way in ways if way <= amplitude_max):
+        try:
+            y = _orbit_on_the_way(n, restitution, frequency_ratio, start, release, settings)
+            break
+        except ContinuationError as error:
+            failures.append(error)
+    else:
+        raise failures[0]
     control, newton = controls(settings)
-    rule = Release(release)
-    # Half way between the two bifurcations of the restitution orbit.
-    start = (
-        float(
-            restitution_orbits.saddle_node(n, restitution)
-            + restitution_orbits.period_doubling(n, restitution)
-        )
-        / 2
+    system = OrbitSystem(
+        n, float(damping_ratio(restitution)), Parameter.AMPLITUDE, frequency_ratio, Release(release)
     )
-    stiff = max(settings["stiff_frequency_ratio"], frequency_ratio)
-    towards = OrbitSystem(n, zeta, Parameter.LOG_FREQUENCY_RATIO, start, rule)
-    y = solve_at(towards, towards.guess(start, stiff), newton)
-    if frequency_ratio < stiff:
-        target = parameter_bound(np.log(frequency_ratio), False, "target reached")
-        way = continue_branch(
-            towards,
-            y,
-            increasing=False,
-            events=(*towards.events(), target),
-            control=control,
-            settings=newton,
-        )
-        if way.end_reason != target.reason:
-            raise ContinuationError(
-                f"{n}-T orbit at Λ = {start:.4g} followed from ϖ = {stiff:g} ends at "
-                f"ϖ = {np.exp(way.points[-1, -1]):.4g}, before {frequency_ratio:g}: "
-                f"{way.end_reason}"
-            )
-        y = way.points[-1]
-    system = OrbitSystem(n, zeta, Parameter.AMPLITUDE, frequency_ratio, rule)
     windows = (
         parameter_bound(0.0, False, "left the window at amplitude 0"),
         parameter_bound(amplitude_max, True, f"left the window at amplitude {amplitude_max:g}"),
@@ -102,11 +89,52 @@ def branch_along_amplitude(
     branch = continue_both_ways(
         system,
         np.append(y[:-1], start),
-        events=(*system.events(), fold(system, FOLD), *windows),
+        events=(*system.events(), *windows),
         control=control,
         settings=newton,
     )
+    for reason in (branch.start_reason, branch.end_reason):
+        if reason.startswith("reached the limit"):
+            raise ContinuationError(
+                f"the branch of {n}-T orbits at ϖ = {frequency_ratio:g} is not followed to its "
+                f"end: {reason}"
+            )
     return system, branch
+
+
+def _orbit_on_the_way(n, restitution, frequency_ratio, start, release, settings) -> np.ndarray:
+    """The orbit at Λ = ``start``, followed along ϖ from a very stiff contact."""
+    zeta, rule = float(damping_ratio(restitution)), Release(release)
+    control, newton = controls(settings)
+    stiff = max(settings["stiff_frequency_ratio"], frequency_ratio)
+    towards = OrbitSystem(n, zeta, Parameter.LOG_FREQUENCY_RATIO, start, rule)
+    y = solve_at(towards, towards.guess(start, stiff), newton)
+    if frequency_ratio >= stiff:
+        return y
+    target = parameter_bound(np.log(frequency_ratio), False, "target reached")
+    determinant = fold(towards).function
+    side = np.sign(determinant(y))
+    turn = Event(
+        "turn",
+        lambda y: side * determinant(y),
+        terminal=True,
+        reason="the branch turns back to stiffer contacts",
+    )
+    way = continue_branch(
+        towards,
+        y,
+        increasing=False,
+        events=(*towards.events(), turn, target),
+        control=control,
+        settings=newton,
+    )
+    if way.end_reason != target.reason:
+        raise ContinuationError(
+            f"{n}-T orbit at Λ = {start:.4g} followed from ϖ = {stiff:g} ends at "
+            f"ϖ = {np.exp(way.points[-1, -1]):.4g}, before {frequency_ratio:g}: "
+            f"{way.end_reason}"
+        )
+    return way.points[-1]
 
 
 def first_limits(branch: Branch) -> dict[str, np.ndarray]:

@@ -90,7 +90,9 @@ def relative_error(
     """|q_SD - q_CR|/|q_CR| along ϖ (Eqs. 37-38).
 
     The damping is that of r by Eq. 16 unless ``damping`` gives another ζ.
-    Where the spring-damper model has no such quantity the error is infinite.
+    Where the spring-damper model has no such quantity the error is infinite,
+    and so it is where the restitution model's value is 0, which leaves nothing
+    to be relative to (the saddle-node and the phase at r = 1).
 
     Examples
     --------
@@ -103,6 +105,8 @@ def relative_error(
     zeta = float(damping_ratio(r)) if damping is None else damping
     contact = Contact(ratios, zeta, release)
     reference = restitution_value(quantity, n, r, amplitude)
+    if reference == 0:
+        return np.full(np.shape(ratios), np.inf)
     error = np.abs(contact_value(quantity, n, contact, amplitude) - reference) / abs(reference)
     return np.where(np.isnan(error), np.inf, error)
 

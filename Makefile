@@ -12,9 +12,9 @@ all: setup
 
 setup: .venv/.installed
 
-.venv/.installed: requirements-build.lock requirements.lock pyproject.toml
+.venv/.installed: requirements-build.lock requirements.lock
 	@$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "Python 3.11 or newer is needed, this is %d.%d: make PYTHON=python3.12" % sys.version_info[:2])'
-	$(PYTHON) -m venv --clear .venv
+	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes --only-binary :all: --requirement requirements-build.lock
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes --no-build-isolation --requirement requirements.lock
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
@@ -26,7 +26,7 @@ test: setup
 accept: setup
 	$(BIN)/snakemake --cores 1 accept
 
-report: setup
+report: all
 	$(BIN)/snakemake --report results/report.html
 
 clean:

@@ -15,6 +15,7 @@ with logged(snakemake) as lines:
         shutil.copyfile(source, target)
         lines.append(f"{source} -> {target.name}")
     # What the pipeline no longer makes is no longer part of the record.
-    for stale in set((record / "figures").iterdir()) - set(wanted):
+    kept = {path for path in (record / "figures").iterdir() if path.is_file()}
+    for stale in kept - set(wanted):
         stale.unlink()
         lines.append(f"removed {stale.name}")

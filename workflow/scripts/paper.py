@@ -18,10 +18,11 @@ with logged(snakemake) as lines:
     }
 
     def at(dataset, variable, digits, **where):
-        """One value of a dataset, nearest to the coordinates given, as text."""
+        """One value of a dataset, at the coordinates given, as text."""
         labels = {k: v for k, v in where.items() if isinstance(v, str)}
         numbers = {k: v for k, v in where.items() if k not in labels}
-        chosen = data[dataset][variable].sel(labels).sel(numbers, method="nearest")
+        chosen = data[dataset][variable].sel(labels)
+        chosen = chosen.sel(numbers, method="nearest", tolerance=1e-9) if numbers else chosen
         return f"{chosen.item():.{digits}f}"
 
     def largest(difference):

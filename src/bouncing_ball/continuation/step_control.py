@@ -10,7 +10,7 @@ class StepControl:
     The step grows when the corrector needed fewer iterations than
     ``target_iterations`` and shrinks when it needed more; it shrinks as well
     when the tangent turns by more than ``max_angle``, so that folds are
-    resolved and no two events fall unseen between two points.
+    resolved and the branch is not left for another.
 
     Parameters
     ----------

@@ -7,6 +7,7 @@ radians of the table's motion. Units follow the CF conventions ("1", "rad").
 
 from typing import NamedTuple
 
+import numpy as np
 import xarray as xr
 
 
@@ -102,7 +103,9 @@ VARIABLES: dict[str, Variable] = {
     ),
     "restitution_ball": Variable("height of the ball, restitution model", "z_CR", equation="Eq. 4"),
     # permanent contact
-    "threshold_amplitude": Variable("threshold of permanent contact", "Λ_SD", equation="Eq. 33"),
+    "threshold_amplitude": Variable(
+        "threshold of permanent contact", "Λ_SD, or Λ_F for the force release", equation="Eq. 33"
+    ),
     "minimum_threshold": Variable(
         "lowest threshold of permanent contact", "2ζ√(1-ζ²)", equation="Eq. 36"
     ),
@@ -144,6 +147,8 @@ VARIABLES: dict[str, Variable] = {
 def describe(dataset: xr.Dataset) -> xr.Dataset:
     """The dataset with the attributes of every variable and coordinate.
 
+    Dimensions without a coordinate get their index as one.
+
     Raises
     ------
     KeyError
@@ -154,7 +159,8 @@ def describe(dataset: xr.Dataset) -> xr.Dataset:
     >>> describe(xr.Dataset({"phase": ("point", [0.0])})).phase.attrs["symbol"]
     'φ'
     """
-    described = dataset.copy()
+    bare = [name for name in dataset.dims if name not in dataset.coords]
+    described = dataset.assign_coords({name: np.arange(dataset.sizes[name]) for name in bare})
     for name in described.variables:
         variable = VARIABLES[str(name)]
         described[name].attrs = variable._asdict()

@@ -1,6 +1,5 @@
 """Branches with stability and bifurcations, drawn alike in Figs. 3, 8, 9, 15."""
 
-from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -49,7 +48,7 @@ def draw_grazings(axes: Axes, x, y, colour: str) -> None:
     axes.plot(x, y, color=colour, zorder=4, **GRAZING)
 
 
-def legend_handles(colour: str = "black", inadmissible: bool = False) -> Sequence[Line2D]:
+def legend_handles(colour: str = "black", inadmissible: bool = False) -> list[Line2D]:
     """Handles for stable, unstable, saddle-node and period doubling, and those
     of inadmissible orbits if there are any."""
     rest = [

@@ -12,7 +12,7 @@ from bouncing_ball.figures.branches import (
     draw_saddle_nodes,
     legend_handles,
 )
-from bouncing_ball.figures.style import COLOURS, WIDE, canvas, number
+from bouncing_ball.figures.style import COLOURS, END, WIDE, canvas, number
 
 
 def draw_special(axes, curve: xr.Dataset, phase: xr.DataArray, colour: str) -> None:
@@ -25,6 +25,13 @@ def draw_special(axes, curve: xr.Dataset, phase: xr.DataArray, colour: str) -> N
     ):
         at = kinds == kind
         mark(axes, curve.special_amplitude.values[at], phase.values[at] / np.pi, colour)
+
+
+def draw_ends(axes, curve: xr.Dataset, phase: xr.DataArray, colour: str) -> None:
+    """A cross where a branch ends inside the window, and not at its edge."""
+    for at, reason in zip((0, -1), curve.end_reason.values, strict=True):
+        if not str(reason).startswith("left the window"):
+            axes.plot(float(curve.amplitude[at]), float(phase[at]), color=colour, **END)
 
 
 def draw_domains(data: xr.Dataset) -> Figure:
@@ -42,6 +49,7 @@ def draw_domains(data: xr.Dataset) -> Figure:
                 axes, curve.amplitude, phase / np.pi, curve.stable, curve.admissible, colour
             )
             draw_special(axes, curve, special, colour)
+            draw_ends(axes, curve, phase / np.pi, colour)
     panels[0].set_ylabel("phase of the table over $\\pi$")
     panels[0].set_title(r"start of contact, $\varphi/\pi$", fontsize=9)
     panels[1].set_title(r"end of contact, $(\varphi+\tau_b)/\pi$", fontsize=9)
@@ -51,7 +59,10 @@ def draw_domains(data: xr.Dataset) -> Figure:
         Line2D([], [], color=colour, linewidth=1.3, label=rf"$\varpi={number(ratio)}$")
         for colour, ratio in zip(COLOURS, ratios, strict=False)
     ]
+    inside = any(not str(r).startswith("left the window") for r in data.end_reason.values.flat)
     markers = legend_handles("#5f5f5f", inadmissible=not bool(data.admissible.all()))
+    if inside:
+        markers.append(Line2D([], [], color="#5f5f5f", label="end of branch", **END))
     figure.legend(
         handles=[*contacts, *markers],
         loc="outside lower center",

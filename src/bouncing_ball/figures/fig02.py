@@ -15,7 +15,8 @@ def draw(data: xr.Dataset) -> Figure:
     axes.plot(periods, data.table, color=TABLE, label="table $w$")
     axes.set(xlabel=r"time $\tau/2\pi$", ylabel="$z$, $w$", xlim=(0, float(periods[-1])))
     axes.set_title(
-        rf"$r={number(data.attrs['restitution'])}$, $\Lambda={number(data.attrs['amplitude'])}$",
+        rf"$n={data.attrs['n']}$, $r={number(data.attrs['restitution'])}$, "
+        rf"$\Lambda={number(data.attrs['amplitude'])}$",
         fontsize=9,
     )
     axes.set_ylim(top=1.25 * float(data.ball.max()))

@@ -31,4 +31,5 @@ def draw(data: xr.Dataset) -> Figure:
         xlim=(float(data.frequency_ratio[0]), float(data.frequency_ratio[-1])),
         ylim=(0, 1.05),
     )
+    axes.set_title(rf"$n={data.attrs['n']}$", fontsize=9)
     return figure

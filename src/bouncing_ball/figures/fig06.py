@@ -27,5 +27,5 @@ def draw(data: xr.Dataset) -> Figure:
         xlim=(float(data.frequency_ratio[0]), float(data.frequency_ratio[-1])),
     )
     shown = ", ".join(sorted({number(r) for r in data.restitution.values}))
-    axes.legend(title=f"$r={shown}$", title_fontsize=8)
+    axes.legend(title=rf"$n={data.attrs['n']}$, $r={shown}$", title_fontsize=8)
     return figure

@@ -21,21 +21,22 @@ def draw(data: xr.Dataset) -> Figure:
     for k, ratio in enumerate(data.frequency_ratio.values):
         curve = data.sel(frequency_ratio=ratio)
         phase, ball = curve.table_phase.values, curve.ball.values
-        # The orbit repeats: the curve is drawn again one cycle later.
-        shifted = np.concatenate([phase, phase + cycle]) / (2 * np.pi)
+        # The orbit repeats: the cycles before and after are drawn as well.
+        shifted = np.concatenate([phase - cycle, phase, phase + cycle]) / (2 * np.pi)
         axes.plot(
             shifted,
-            np.concatenate([ball, ball]),
+            np.concatenate([ball, ball, ball]),
             color=colours[k % len(colours)],
             linestyle=looks[k % len(looks)],
             label=rf"$\varpi={number(ratio)}$",
         )
     start = (data.time.values + float(data.restitution_phase)) / (2 * np.pi)
     ball = data.restitution_ball.values
-    shifted = np.concatenate([start, start + cycle / (2 * np.pi)])
+    turn = cycle / (2 * np.pi)
+    shifted = np.concatenate([start - turn, start, start + turn])
     axes.plot(
         shifted,
-        np.concatenate([ball, ball]),
+        np.concatenate([ball, ball, ball]),
         color=RESTITUTION,
         label="restitution",
         linewidth=1.0,

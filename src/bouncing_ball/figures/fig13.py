@@ -52,16 +52,18 @@ def draw(data: xr.Dataset) -> Figure:
                 axes.plot(*point, "o", color=colour, markersize=3)
                 if value <= 10.0:
                     axes.annotate(
-                        rf"$\varpi={number(value)}$",
+                        rf"$\varpi={ratios[at]:.3g}$",
                         point,
                         xytext=(5, -1),
                         textcoords="offset points",
                         fontsize=7,
                         va="center",
                     )
-    above.set_ylabel("velocity after contact")
-    below.set_ylabel("velocity before contact")
+    above.set_ylabel(r"velocity after contact $z_b^{\prime}$")
+    below.set_ylabel(r"velocity before contact $z_i^{\prime}$")
     below.set_xlabel(r"phase of the table over $\pi$")
+    for axes in (above, below):
+        axes.margins(x=0.12)
     above.legend(loc="best")
     below.legend(loc="best")
     above.set_title(

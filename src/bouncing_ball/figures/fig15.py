@@ -36,7 +36,7 @@ def draw(data: xr.Dataset) -> Figure:
         RESTITUTION,
     )
     curve = data.squeeze("frequency_ratio")
-    start, end = COLOURS[1], COLOURS[4]
+    start, end = COLOURS[1], COLOURS[2]
     release = curve.special_phase + curve.special_contact_duration
     draw_branch(axes, curve.amplitude, curve.phase / np.pi, curve.stable, curve.admissible, start)
     draw_branch(

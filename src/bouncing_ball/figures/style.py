@@ -14,9 +14,9 @@ WIDTH = 3.4
 WIDE = 7.0
 """Width of a two-column figure in inches."""
 
-# Okabe and Ito's colours, which colour-blind readers tell apart, in an order
-# of increasing lightness, so that neighbours differ in greyscale too.
-COLOURS = ("#000000", "#0072B2", "#D55E00", "#56B4E9", "#E69F00")
+# Okabe and Ito's colours, which colour-blind readers tell apart, in an order in
+# which neighbours differ in greyscale too (grey levels 0, 87, 162, 119, 158).
+COLOURS = ("#000000", "#0072B2", "#E69F00", "#D55E00", "#56B4E9")
 RESTITUTION = "#000000"
 CONTACT = "#0072B2"
 TABLE = "#8c8c8c"
@@ -32,6 +32,7 @@ PERIOD_DOUBLING = {
 }
 STABLE = {"linestyle": "-", "linewidth": 1.3}
 GRAZING = {"marker": "^", "markersize": 4.5, "linestyle": "none"}
+END = {"marker": "x", "markersize": 5, "linestyle": "none", "markeredgewidth": 1.2}
 INADMISSIBLE = {"linestyle": (0, (0.8, 2.2)), "linewidth": 0.8}
 UNSTABLE = {"linestyle": (0, (3.5, 2)), "linewidth": 1.0}
 

@@ -24,8 +24,9 @@ angle at which the free contact would be released: π for the displacement
 release, π - 2 arcsin ζ for the force release. The one coefficient that is
 sensitive, that of u in the release condition, is then proportional to sin ε.
 
-Differentiating the three equations along ε gives dΛ/dε, whose zero is the
-saddle-node, and linearising one cycle about the orbit the trace of the
+Differentiating the three equations along ε gives dΛ/dε. It vanishes at the
+saddle-node, and also where the ball grazes at impact or release, without a
+multiplier at 1. Linearising one cycle about the orbit gives the trace of the
 monodromy; its determinant is ``exp(-2ζϖD)``, as the contact contracts
 (τ, δ, δ′) volume at the rate 2ζϖ and the flight preserves it.
 

@@ -90,6 +90,13 @@ def _close(function, left, right, found, args):
     return result
 
 
+def _fold_function(release):
+    def fold(excess, omega, zeta, n):
+        return branch_point(excess, Contact(omega, zeta, release), n).fold
+
+    return fold
+
+
 def saddle_node(contact: Contact, n: ArrayLike) -> np.ndarray:
     """Excess angle ε of the saddle-node, dΛ/dε = 0.
 
@@ -107,10 +114,6 @@ def saddle_node(contact: Contact, n: ArrayLike) -> np.ndarray:
     """
     omega, zeta, n = _columns(contact, n)
     release = contact.release
-
-    def fold(excess, omega, zeta, n):
-        return branch_point(excess, Contact(omega, zeta, release), n).fold
-
     low, high = _range(contact, n)
     grid = _scan(low, high, 1 / omega)
     points = branch_point(grid, Contact(omega, zeta, release), n)
@@ -119,7 +122,9 @@ def saddle_node(contact: Contact, n: ArrayLike) -> np.ndarray:
     floquet = saddle_node_function(points.trace, points.determinant)
     agreed = np.where(points.fold * floquet < 0, floquet, np.nan)
     index, found = _bracket(agreed)
-    return _close(fold, _at(grid, index), _at(grid, index + 1), found, (omega, zeta, n))
+    return _close(
+        _fold_function(release), _at(grid, index), _at(grid, index + 1), found, (omega, zeta, n)
+    )
 
 
 def period_doubling(contact: Contact, n: ArrayLike) -> np.ndarray:
@@ -155,7 +160,9 @@ def orbit_at(
     n, amplitude : array_like
         Index of the family and Λ.
     side : Side
-        Side of the saddle-node.
+        Side of the saddle-node. Where the unstable side turns again, as it
+        does for soft contacts, the orbit nearest to the saddle-node is meant;
+        there may be others with longer contacts.
 
     Examples
     --------
@@ -183,6 +190,12 @@ def orbit_at(
         steps = np.linspace(0, 1, _SCAN).reshape(-1, *(1,) * fold.ndim)
         outward = fold + scale * np.maximum((high - fold) / scale, 1.0) ** steps
         grid = np.minimum(np.concatenate([fold[np.newaxis], outward]), high)
+        # The next turn of Λ is a point of the grid, so that no orbit next to it
+        # is missed between two points.
+        turn, turns = _bracket(branch_point(grid[1:], local, n).fold)
+        ends = _at(grid[1:], turn), _at(grid[1:], turn + 1)
+        summit = _close(_fold_function(release), *ends, turns, (omega, zeta, n))
+        grid = np.sort(np.concatenate([grid, np.where(turns, summit, high)[np.newaxis]]), axis=0)
         index, found = _bracket(surplus(grid, omega, zeta, n, lam))
         args = (omega, zeta, n, lam)
         excess = _close(surplus, _at(grid, index), _at(grid, index + 1), found, args)

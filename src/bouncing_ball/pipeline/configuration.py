@@ -10,9 +10,17 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from jsonschema import Draft202012Validator, ValidationError
+from jsonschema import Draft202012Validator, ValidationError, validators
 
 from bouncing_ball.errors import ModelError
+
+# JSON takes 801.0 for an integer; a number of samples is written 801.
+_Validator = validators.extend(
+    Draft202012Validator,
+    type_checker=Draft202012Validator.TYPE_CHECKER.redefine(
+        "integer", lambda _, value: type(value) is int
+    ),
+)
 
 
 class ConfigurationError(ModelError):
@@ -191,7 +199,7 @@ def check_configuration(config: Mapping[str, Any], schema: Mapping[str, Any]) ->
         if not math.isfinite(value):
             raise ConfigurationError(f"{_dotted(path)} = {value} must be a finite number")
     errors = sorted(
-        Draft202012Validator(schema).iter_errors(config),
+        _Validator(schema).iter_errors(config),
         key=lambda error: [str(part) for part in error.absolute_path],
     )
     if errors:

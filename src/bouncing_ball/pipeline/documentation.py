@@ -17,7 +17,8 @@ Every key of `config.yaml`, with what is allowed. This page is made from
 
 Numbers in powers of ten need a point and a sign, `1.0e+4`: YAML takes `1e4`
 for a text. To try a change without editing `config.yaml`, write only the keys
-that change into another file and add it, `snakemake --cores 2 --configfile mine.yaml`.
+that change into another file and name it last,
+`snakemake --cores 2 fig12 --configfile mine.yaml`.
 
 | key | allowed | meaning | default |
 | --- | --- | --- | --- |

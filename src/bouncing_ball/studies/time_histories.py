@@ -67,7 +67,7 @@ def both_histories(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         If an orbit does not exist.
     """
     n, lam, r = parameters["n"], parameters["amplitude"], parameters["restitution"]
-    ratios = np.array(parameters["frequency_ratio"], dtype=float)
+    ratios = np.sort(np.array(parameters["frequency_ratio"], dtype=float))
     columns: dict[str, list[np.ndarray]] = {"table_phase": [], "ball": [], "contact": []}
     states: dict[str, list[float]] = {
         "phase": [],

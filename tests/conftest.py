@@ -96,9 +96,7 @@ def _cycle(phase, u, n, lam, omega, zeta, duration, force_release=False):
 @pytest.fixture(scope="session")
 def reference():
     """Independent implementations: ``contact_state``, ``paper_contact`` and ``cycle``."""
-    return SimpleNamespace(
-        contact_state=_contact_state, paper_contact=_paper_contact, cycle=_cycle
-    )
+    return SimpleNamespace(contact_state=_contact_state, paper_contact=_paper_contact, cycle=_cycle)
 
 
 @pytest.fixture(scope="session")

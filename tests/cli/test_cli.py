@@ -62,9 +62,7 @@ def test_restitution_orbit_is_the_closed_form(capsys):
 @pytest.mark.parametrize("release", ["displacement", "force"])
 @pytest.mark.parametrize("side", ["stable", "unstable"])
 def test_spring_damper_orbit_in_full_precision(capsys, release, side):
-    answer = ask(
-        capsys, *ORBIT, "--frequency-ratio", "10", "--release", release, "--side", side
-    )
+    answer = ask(capsys, *ORBIT, "--frequency-ratio", "10", "--release", release, "--side", side)
     assert list(answer) == FIELDS
     contact = Contact(10.0, float(damping_ratio(0.85)), Release(release))
     orbit = limits.orbit_at(contact, 1, 1.0, limits.Side(side))
@@ -158,8 +156,10 @@ def test_a_missing_orbit_exits_1_with_the_reason(capsys):
         ((*ORBIT, "--side", "left"), "invalid choice: 'left'"),
         ((*ORBIT, "--tension", "1"), "unrecognized arguments: --tension 1"),
         (
-            ("simulate", "--restitution", "0.5", "--amplitude", "1", "--frequency-ratio", "5")
-            + ("--velocity", "9"),
+            (
+                *("simulate", "--restitution", "0.5", "--amplitude", "1"),
+                *("--frequency-ratio", "5", "--velocity", "9"),
+            ),
             "rises from the table",
         ),
     ],

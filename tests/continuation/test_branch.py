@@ -124,7 +124,10 @@ def test_both_folds_of_a_cubic():
     order = [np.argmin(np.linalg.norm(branch.points - s.point, axis=1)) for s in branch.special]
     assert order == sorted(order)
     assert [s.name for s in branch.special] == [
-        "parameter bound", "fold", "fold", "parameter bound",
+        "parameter bound",
+        "fold",
+        "fold",
+        "parameter bound",
     ]
 
 
@@ -240,7 +243,9 @@ def test_an_event_that_cannot_be_located_gives_way_to_the_end():
 def test_no_start(one_line):
     with pytest.raises(ContinuationError) as error:
         solve_at(CIRCLE, np.array([1.0, 2.0]))
-    one_line(error, "no solution near the starting guess [1. 2.]", "residual", "8 Newton iterations")
+    one_line(
+        error, "no solution near the starting guess [1. 2.]", "residual", "8 Newton iterations"
+    )
     with pytest.raises(ContinuationError):
         continue_branch(CIRCLE, np.array([1.0, 2.0]), increasing=True)
 

@@ -37,9 +37,7 @@ class Bounded:
 def test_converges_to_the_intersection_with_a_plane():
     # The line x = 2p meets the circle at p = 1/√5.
     normal = np.array([1.0, -2.0])
-    found = newton(
-        Circle(), np.array([1.0, 0.6]), plane(normal, np.zeros(2)), NewtonSettings()
-    )
+    found = newton(Circle(), np.array([1.0, 0.6]), plane(normal, np.zeros(2)), NewtonSettings())
     assert found.converged
     assert found.point == pytest.approx(np.array([2.0, 1.0]) / np.sqrt(5), abs=4 * EPS)
     assert found.iterations <= 6
@@ -75,7 +73,9 @@ def test_one_bad_guess_fails_the_batch():
 
 def test_singular_matrix():
     # ∇F = 0 at the centre.
-    found = newton(Circle(), np.zeros(2), plane(np.array([1.0, 0.0]), np.zeros(2)), NewtonSettings())
+    found = newton(
+        Circle(), np.zeros(2), plane(np.array([1.0, 0.0]), np.zeros(2)), NewtonSettings()
+    )
     assert not found.converged
     assert (found.iterations, found.residual, found.step) == (1, 1.0, np.inf)
     assert found.point.tolist() == [0.0, 0.0]
@@ -83,7 +83,9 @@ def test_singular_matrix():
 
 def test_leaving_the_domain():
     found = newton(
-        Bounded(), np.array([0.5, 2.0]), plane(np.array([0.0, 1.0]), np.array([0.5, 2.0])),
+        Bounded(),
+        np.array([0.5, 2.0]),
+        plane(np.array([0.0, 1.0]), np.array([0.5, 2.0])),
         NewtonSettings(),
     )
     assert not found.converged

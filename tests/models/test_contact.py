@@ -25,9 +25,7 @@ contacts = st.fixed_dictionaries(
         "phase": st.floats(-4, 4),
         "amplitude": st.floats(0, 3),
         "frequency_ratio": st.floats(0.05, 50),
-        "damping_ratio": st.one_of(
-            st.just(0.0), st.just(1.0), st.floats(0, 1), st.floats(1, 3)
-        ),
+        "damping_ratio": st.one_of(st.just(0.0), st.just(1.0), st.floats(0, 1), st.floats(1, 3)),
     }
 )
 

@@ -94,7 +94,8 @@ def test_undamped_minimum_is_zero_at_resonance(release):
 def test_releases_agree_without_damping_and_differ_with_it():
     omega = np.array([0.3, 1.0, 2.0, 50.0])
     assert np.array_equal(
-        permanent_contact_threshold(omega, 0.0), permanent_contact_threshold(omega, 0.0, Release.FORCE)
+        permanent_contact_threshold(omega, 0.0),
+        permanent_contact_threshold(omega, 0.0, Release.FORCE),
     )
     # A damper pulls before the displacement is zero: less is permanent contact.
     assert np.all(

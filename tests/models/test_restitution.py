@@ -54,9 +54,7 @@ def test_exact_jacobian_against_differences_of_the_solved_map(state):
     h = 1e-3
     columns = []
     for step in ((h, 0), (0, h)):
-        values = [
-            exact_map(tau + k * step[0], v + k * step[1], lam, r) for k in (-2, -1, 1, 2)
-        ]
+        values = [exact_map(tau + k * step[0], v + k * step[1], lam, r) for k in (-2, -1, 1, 2)]
         columns.append(np.array([1, -8, 8, -1]) / 12 @ np.array(values) / h)
     computed = exact_map_jacobian(first_landing(tau, v, lam), tau, v, lam, r)
     # h⁴ times a fifth derivative of order 1 to 100, and 1e-15/h from brentq.
@@ -81,9 +79,7 @@ def test_holmes_jacobian(state):
     h = 1e-3
     columns = []
     for step in ((h, 0), (0, h)):
-        values = [
-            holmes_map(tau + k * step[0], v + k * step[1], lam, r) for k in (-2, -1, 1, 2)
-        ]
+        values = [holmes_map(tau + k * step[0], v + k * step[1], lam, r) for k in (-2, -1, 1, 2)]
         columns.append(np.array([1, -8, 8, -1]) / 12 @ np.array(values) / h)
     computed = holmes_map_jacobian(tau, v, lam, r)
     # h⁴ · 2⁵/30 · (1 + r) Λ: 3e-12 · 5.

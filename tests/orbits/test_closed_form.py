@@ -93,8 +93,8 @@ def test_free_release_angles(zeta):
         # Nothing vanishes earlier: it is the first release.
         s = np.linspace(0.01, 0.99, 50) * angle / omega_d
         g = responses(s, omega, zeta).impulse
-        before = g.value if release is Release.DISPLACEMENT else (
-            2 * zeta * g.rate + omega * g.value
+        before = (
+            g.value if release is Release.DISPLACEMENT else (2 * zeta * g.rate + omega * g.value)
         )
         assert np.all(before > 0)
 
@@ -124,9 +124,7 @@ def test_elastic_contact_of_half_a_period():
 
 
 @given(log_ratios, dampings, families, releases, st.floats(-0.9, 1.0))
-def test_trace_and_determinant_are_those_of_the_linearised_flow(
-    log_omega, zeta, n, release, share
-):
+def test_trace_and_determinant_are_those_of_the_linearised_flow(log_omega, zeta, n, release, share):
     # Worked out from the formula here, from the flow's Jacobian there.
     contact = Contact(float(np.exp(log_omega)), zeta, release)
     excess = share * float(free_release_angle(contact)) if share < 0 else share / 2

@@ -57,8 +57,12 @@ def test_one_cycle_by_numerical_integration(case):
     contact = solve_ivp(touching, (0, 2 * np.pi), start, events=released, **options)
     t_b, at_b = contact.t_events[0][0], contact.y_events[0][0]
     flight = solve_ivp(
-        lambda t, y: [y[1], -1.0], (t_b, 2 * np.pi * n + 1), at_b, events=landed,
-        max_step=0.05, **options,
+        lambda t, y: [y[1], -1.0],
+        (t_b, 2 * np.pi * n + 1),
+        at_b,
+        events=landed,
+        max_step=0.05,
+        **options,
     )
     t_2, at_2 = flight.t_events[0][0], flight.y_events[0][0]
     # The integrator's tolerance over the cycle, and that of its dense output,

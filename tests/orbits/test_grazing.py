@@ -36,6 +36,9 @@ def test_changes_are_found_to_the_last_digit():
 def test_no_change_no_point():
     points = np.array([[1.0, 0.0], [np.cos(0.1), np.sin(0.1)]])
     for always in (True, False):
-        assert grazing_points(
-            Circle(), lambda y, a=always: np.full(y.shape[:-1], a), points, NewtonSettings()
-        ) == []
+        assert (
+            grazing_points(
+                Circle(), lambda y, a=always: np.full(y.shape[:-1], a), points, NewtonSettings()
+            )
+            == []
+        )

@@ -37,9 +37,7 @@ def test_distance_is_the_largest_difference():
     assert float(distance(ContactOrbit(**base), point)) < 1e-14
     for name, size in (("amplitude", 1), ("phase", 1), ("duration", 10), ("impact_velocity", 1)):
         moved = base | {name: base[name] + 1e-3}
-        assert float(distance(ContactOrbit(**moved), point)) == pytest.approx(
-            size * 1e-3, rel=1e-9
-        )
+        assert float(distance(ContactOrbit(**moved), point)) == pytest.approx(size * 1e-3, rel=1e-9)
 
 
 def test_an_orbit_beside_the_branch():

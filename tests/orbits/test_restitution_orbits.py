@@ -61,9 +61,7 @@ def test_trace_and_determinant_are_those_of_the_jacobians(n, r, excess, stable):
         # Entries of the matrix, at most of order s²Λ, cancel in the determinant.
         size = np.abs(jacobian).max() ** 2 + 1
         assert float(trace) == pytest.approx(float(np.trace(jacobian)), abs=20 * EPS * size * s)
-        assert float(det) == pytest.approx(
-            float(np.linalg.det(jacobian)), abs=20 * EPS * size * s
-        )
+        assert float(det) == pytest.approx(float(np.linalg.det(jacobian)), abs=20 * EPS * size * s)
     # The determinants of the two maps: r² and r.
     assert float(trace_and_determinant(r, lam, phi)[1]) == r * r
     assert float(trace_and_determinant(r, lam, phi, ImpactMap.HOLMES)[1]) == r

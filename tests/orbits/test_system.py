@@ -147,9 +147,7 @@ def test_continuation_along_the_frequency_ratio(n, r, lam, release):
     system = OrbitSystem(n, zeta, Parameter.LOG_FREQUENCY_RATIO, lam, release)
     start = solve_at(system, system.guess(lam, 1e4))
     target = parameter_bound(np.log(2.0), False, "there")
-    way = continue_branch(
-        system, start, increasing=False, events=(*system.events(), target)
-    )
+    way = continue_branch(system, start, increasing=False, events=(*system.events(), target))
     assert way.end_reason == "there"
     expected = orbit_at(Contact(2.0, zeta, release), n, lam)
     # As in the comparison above.
@@ -167,7 +165,9 @@ def test_orbit_reads_both_parametrisations():
     orbit = along.orbit(np.array([0.3, -6.0, 3.2, 1.4]))
     assert (orbit.n, orbit.contact.release) == (2, Release.FORCE)
     assert [float(x) for x in (orbit.phase, orbit.impact_velocity, orbit.amplitude)] == [
-        0.3, -6.0, 1.4,
+        0.3,
+        -6.0,
+        1.4,
     ]
     assert float(orbit.contact.frequency_ratio) == 8.0
     assert float(orbit.duration) == 0.4
@@ -213,9 +213,7 @@ def follow_unstable_side(n, omega, r, lam, largest=0.2):
     start = np.array([orbit.phase, orbit.impact_velocity, omega * orbit.duration, lam])
     events = (*system.events(), fold(system), parameter_bound(10.0, True, "window"))
     control = StepControl(largest=largest)
-    return system, continue_branch(
-        system, start, increasing=False, events=events, control=control
-    )
+    return system, continue_branch(system, start, increasing=False, events=events, control=control)
 
 
 CONTACT_LOST = "contact lost: the ball no longer closes in on the table at impact"

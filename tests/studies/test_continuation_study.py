@@ -24,7 +24,11 @@ from bouncing_ball.studies.continuation import (
 )
 
 FIGURE_8 = {
-    "n": 1, "restitution": 0.85, "frequency_ratio": [10.0, 2.0], "amplitude_max": 1.5, "points": 61,
+    "n": 1,
+    "restitution": 0.85,
+    "frequency_ratio": [10.0, 2.0],
+    "amplitude_max": 1.5,
+    "points": 61,
 }
 
 
@@ -46,7 +50,10 @@ def test_settings_reach_the_parts(continuation_settings):
         continuation_settings | {"largest_step": 0.07, "max_newton_iterations": 5}
     )
     assert (control.initial, control.smallest, control.largest, control.max_angle) == (
-        0.02, 1e-8, 0.07, 0.2,
+        0.02,
+        1e-8,
+        0.07,
+        0.2,
     )
     assert newton == (1e-12, 5)
 
@@ -65,8 +72,12 @@ def test_points_are_orbits(figure_8):
     for omega in FIGURE_8["frequency_ratio"]:
         row = figure_8.sel(frequency_ratio=omega)
         orbit = ContactOrbit(
-            1, Contact(omega, zeta), row.amplitude.values, row.phase.values,
-            row.contact_duration.values, row.impact_velocity.values,
+            1,
+            Contact(omega, zeta),
+            row.amplitude.values,
+            row.phase.values,
+            row.contact_duration.values,
+            row.impact_velocity.values,
         )
         # The explicit formula at the same contact duration: ε carries the
         # rounding of ϖD, and Λ changes by ϖ² over ε.
@@ -79,7 +90,9 @@ def test_points_are_orbits(figure_8):
         assert row.bounce_velocity.values == pytest.approx(
             row.impact_velocity.values + 2 * np.pi - row.contact_duration.values, abs=1e-13
         )
-        assert row.apparent_restitution.values == pytest.approx(orbit.apparent_restitution, rel=1e-12)
+        assert row.apparent_restitution.values == pytest.approx(
+            orbit.apparent_restitution, rel=1e-12
+        )
         # Multipliers and stability from the matrix itself. At the end of the
         # soft branch the impact velocity vanishes, and the map is singular.
         inner = np.abs(orbit.relative_impact_velocity) > 1e-3
@@ -130,7 +143,10 @@ def test_special_points(figure_8):
 @pytest.mark.parametrize("release", ["displacement", "force"])
 def test_stability_ranges(continuation_settings, described, release):
     parameters = {
-        "n": [1, 2], "restitution": 0.85, "frequency_ratio": [1e4, 2.0], "amplitude_max": 1.5,
+        "n": [1, 2],
+        "restitution": 0.85,
+        "frequency_ratio": [1e4, 2.0],
+        "amplitude_max": 1.5,
         "printed": [[[0.255, 1.032], [0.509, 1.122]], [[0.187, 1.082], [0.463, 1.170]]],
     }
     data = described(stability_ranges(parameters, release, continuation_settings))
@@ -152,7 +168,11 @@ def test_stability_ranges(continuation_settings, described, release):
 
 def test_both_domains(continuation_settings, described):
     parameters = {
-        "n": 2, "restitution": 0.65, "frequency_ratio": 10.0, "amplitude_max": 2.2, "points": 41,
+        "n": 2,
+        "restitution": 0.65,
+        "frequency_ratio": 10.0,
+        "amplitude_max": 2.2,
+        "points": 41,
     }
     data = described(both_domains(parameters, "displacement", continuation_settings))
     assert data.amplitude.shape == (1, 41) and data.restitution_amplitude.shape == (41,)
@@ -194,9 +214,7 @@ def test_blocked_ways_are_reported(continuation_settings, one_line):
 def test_another_way_round_a_blocked_one(continuation_settings, n, r, top):
     # Half way between the bifurcations the branch along ϖ turns, or ends, before
     # 0.6; at another Λ it gets there.
-    system, branch = branch_along_amplitude(
-        n, r, 0.6, top, "displacement", continuation_settings
-    )
+    system, branch = branch_along_amplitude(n, r, 0.6, top, "displacement", continuation_settings)
     assert np.max(np.abs(system.residual(branch.points))) < 1e-10
     assert branch.points[:, -1].min() >= 0 and branch.points[:, -1].max() <= top * (1 + 1e-12)
 
@@ -211,7 +229,10 @@ def test_strong_damping(continuation_settings, release):
 
 def test_a_window_without_a_period_doubling(continuation_settings, one_line):
     parameters = {
-        "n": [1], "restitution": 0.85, "frequency_ratio": [10.0], "amplitude_max": 0.9,
+        "n": [1],
+        "restitution": 0.85,
+        "frequency_ratio": [10.0],
+        "amplitude_max": 0.9,
         "printed": [[[0.238, 1.035]]],
     }
     with pytest.raises(NoOrbitError) as error:

@@ -51,13 +51,20 @@ def integrated_height(omega, r, lam):
 
         back.terminal, back.direction = True, 1
         run = solve_ivp(
-            field, (0, 4 * np.pi / omega), [-1e-300, u], method="DOP853", events=back,
-            rtol=1e-13, atol=1e-14,
+            field,
+            (0, 4 * np.pi / omega),
+            [-1e-300, u],
+            method="DOP853",
+            events=back,
+            rtol=1e-13,
+            atol=1e-14,
         )
         t, (_, v) = run.t_events[0][0], run.y_events[0][0]
         z, zdot = lam * np.sin(phase + t), v + lam * np.cos(phase + t)
         flight = brentq(
-            lambda s: z + zdot * s - s * s / 2 - lam * np.sin(phase + t + s), 5.0, 7.5,
+            lambda s: z + zdot * s - s * s / 2 - lam * np.sin(phase + t + s),
+            5.0,
+            7.5,
             xtol=1e-14,
         )
         end = phase + t + flight
@@ -162,7 +169,10 @@ def test_values_of_both_models():
             np.hypot(2 * (1 + r * r) / (1 + r) ** 2, n * np.pi * (1 - r) / (1 + r)),
             None,
         ),
-        Quantity.PERMANENT_CONTACT: (1.0, np.hypot(1 - omega**-2, 2 * contact.damping_ratio / omega)),
+        Quantity.PERMANENT_CONTACT: (
+            1.0,
+            np.hypot(1 - omega**-2, 2 * contact.damping_ratio / omega),
+        ),
     }
     assert set(expected) == set(Quantity)
     for quantity, (simple, stiff) in expected.items():
@@ -182,13 +192,19 @@ def test_missing_orbits_are_infinitely_wrong():
     assert error.tolist() == [np.inf] or np.isfinite(error).all()
 
 
-@given(st.integers(1, 5), st.floats(0.5, 0.999), st.floats(np.log(2), np.log(1e4)), st.floats(0.02, 0.98))
+@given(
+    st.integers(1, 5),
+    st.floats(0.5, 0.999),
+    st.floats(np.log(2), np.log(1e4)),
+    st.floats(0.02, 0.98),
+)
 def test_height_error_is_about_one_over_n_and_ratio(n, r, log_omega, share):
     # The orbit loses half a contact of flight. Over 120000 orbits of the stable
     # range with r ≥ 0.5 the product was at most 1.0333, at n = 5, r = 0.5 and
     # ϖ = 2, and below 1 from ϖ = 10.
     node, doubling = (
-        float(find(n, r)) for find in (restitution_orbits.saddle_node, restitution_orbits.period_doubling)
+        float(find(n, r))
+        for find in (restitution_orbits.saddle_node, restitution_orbits.period_doubling)
     )
     lam, omega = node + share * (doubling - node), float(np.exp(log_omega))
     assume(np.isfinite(orbit_at(Contact(omega, float(damping_ratio(r))), n, lam).duration))
@@ -201,6 +217,7 @@ def test_thresholds_of_known_functions():
     found, statuses = thresholds(lambda x: 1 / x, np.array([0.3, 0.01]), ratios)
     assert found == pytest.approx([1 / 0.3, 100.0], rel=1e-14)
     assert statuses == [Status.FOUND, Status.FOUND]
+
     # The last crossing of several, and no earlier one.
     def wave(x):
         return (1.5 + np.sin(4 * np.log(x))) / x
@@ -213,9 +230,7 @@ def test_thresholds_of_known_functions():
     assert fine[crossings[-1]] <= found[0] <= fine[crossings[-1] + 1]
     assert float(wave(found[0])) == pytest.approx(0.01, rel=1e-13)
     # An orbit that does not exist below x = 7: the error jumps from infinity.
-    found, statuses = thresholds(
-        lambda x: np.where(x < 7, np.inf, 0.001), np.array([0.01]), ratios
-    )
+    found, statuses = thresholds(lambda x: np.where(x < 7, np.inf, 0.001), np.array([0.01]), ratios)
     assert statuses == [Status.FOUND]
     assert found == pytest.approx([7.0], rel=1e-12)
 

@@ -51,7 +51,9 @@ def test_every_entry_is_the_orbit_of_its_parameters(described, release):
 
 
 def test_what_the_paper_says_of_its_figures():
-    data = apparent_restitution(CASES | {"frequency_ratio": {"min": 1.0, "max": 1e3, "samples": 31}}, "displacement")
+    data = apparent_restitution(
+        CASES | {"frequency_ratio": {"min": 1.0, "max": 1e3, "samples": 31}}, "displacement"
+    )
     # An elastic contact returns all of the velocity only on average over the
     # gravity and table of a symmetric contact: exactly for r = 1.
     elastic = data.apparent_restitution.sel(case=0).values
@@ -76,7 +78,10 @@ def test_not_stable_where_there_is_no_orbit():
 
 def test_sweep_of_one_restitution(described):
     parameters = {
-        "n": 2, "restitution": 0.85, "amplitude": [1.1, 0.6], "frequency_ratio": SPAN,
+        "n": 2,
+        "restitution": 0.85,
+        "amplitude": [1.1, 0.6],
+        "frequency_ratio": SPAN,
     }
     data = described(frequency_sweep(parameters, "displacement"))
     assert data.amplitude.values.tolist() == [1.1, 0.6]
@@ -94,7 +99,9 @@ def test_sweep_of_one_restitution(described):
 
 
 def test_shape_of_a_sweep():
-    orbit = sweep(1, np.array([0.85, 0.65]), np.array([1.0, 0.9]), np.array([5.0, 50.0, 500.0]), "force")
+    orbit = sweep(
+        1, np.array([0.85, 0.65]), np.array([1.0, 0.9]), np.array([5.0, 50.0, 500.0]), "force"
+    )
     assert orbit.duration.shape == (2, 3)
     assert orbit.contact.release is Release.FORCE
 

@@ -15,7 +15,9 @@ def test_threshold_and_minimum(described):
     assert zeta == pytest.approx(0.13585, abs=5e-6)
     gamma = (omega**2 - 1) ** 2 + (2 * zeta * omega) ** 2
     assert data.threshold_amplitude.values == pytest.approx(np.sqrt(gamma) / omega**2, rel=1e-13)
-    assert float(data.minimum_threshold) == pytest.approx(2 * zeta * np.sqrt(1 - zeta**2), rel=1e-14)
+    assert float(data.minimum_threshold) == pytest.approx(
+        2 * zeta * np.sqrt(1 - zeta**2), rel=1e-14
+    )
     assert float(data.minimum_frequency_ratio) == pytest.approx(
         1 / np.sqrt(1 - 2 * zeta**2), rel=1e-14
     )

@@ -9,7 +9,13 @@ from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.studies.time_histories import both_histories, contact_history
 
 ONE = {"n": 1, "restitution": 0.85, "amplitude": 1.0, "frequency_ratio": 4.0, "samples": 101}
-BOTH = {"n": 1, "restitution": 0.65, "amplitude": 1.0, "frequency_ratio": [2.0, 20.0], "samples": 60}
+BOTH = {
+    "n": 1,
+    "restitution": 0.65,
+    "amplitude": 1.0,
+    "frequency_ratio": [2.0, 20.0],
+    "samples": 60,
+}
 
 
 @pytest.mark.parametrize("release", ["displacement", "force"])

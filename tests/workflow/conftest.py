@@ -93,7 +93,11 @@ class Tree:
             assert time.monotonic() < deadline, "no results within a minute"
             time.sleep(0.02)
         os.killpg(running.pid, sign)
-        running.wait(timeout=60)
+        try:
+            running.wait(timeout=60)
+        finally:
+            if running.poll() is None:
+                os.killpg(running.pid, signal.SIGKILL)
 
 
 def copy_tree(source: Path, target: Path, *, with_results: bool = False) -> Tree:

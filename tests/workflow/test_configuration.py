@@ -36,10 +36,11 @@ FIG08, FIG05 = ("figures", "fig08"), ("figures", "fig05")
 @pytest.mark.parametrize(
     ("keys", "value", "message"),
     [
-        ((*FIG08, "restitution"), 1.2, "figures.fig08.restitution = 1.2 must be at most 1"),
+        ((*FIG08, "restitution"), 1.2, "figures.fig08.restitution = 1.2 must be less than 1"),
         ((*FIG08, "restitution"), 0, "figures.fig08.restitution = 0 must be greater than 0"),
         ((*FIG08, "n"), 0, "figures.fig08.n = 0 must be at least 1"),
         ((*FIG08, "n"), 1.5, "figures.fig08.n = 1.5 must be a whole number"),
+        ((*FIG08, "n"), 1.0, "figures.fig08.n = 1.0 must be a whole number"),
         ((*FIG08, "n"), True, "figures.fig08.n = True must be a whole number"),
         ((*FIG08, "n"), REMOVED, "missing key figures.fig08.n"),
         ((*FIG08, "m"), 1, "unknown key figures.fig08.m = 1; allowed here: n, restitution"),
@@ -48,6 +49,7 @@ FIG08, FIG05 = ("figures", "fig08"), ("figures", "fig05")
         ((*FIG08, "frequency_ratio", 1), 0, "fig08.frequency_ratio[1] = 0 must be greater"),
         ((*FIG08, "frequency_ratio"), [2, 2], "fig08.frequency_ratio = [2, 2] must not repeat"),
         ((*FIG08, "frequency_ratio", 0), "1e4", "'1e4' must be a number (powers of ten are"),
+        ((*FIG05, "cases", 0, "restitution"), 1.2, "restitution = 1.2 must be at most 1"),
         ((*FIG08, "points"), 3, "figures.fig08.points = 3 must be at least 11"),
         (FIG08, 3, "figures.fig08 = 3 must be a mapping"),
         (FIG08, REMOVED, "missing key figures.fig08"),
@@ -86,6 +88,6 @@ def test_the_workflow_stops_at_once_and_touches_nothing(complete):
     # Snakemake itself says which profile it uses; the rest is ours.
     said = [line for line in done.stderr.splitlines() if not line.startswith("Using ")]
     assert len(said) == 1
-    assert said[0].startswith("configuration: figures.fig08.restitution = 1.2 must be at most 1")
+    assert said[0].startswith("configuration: figures.fig08.restitution = 1.2 must be less than 1")
     after = {k: (complete.path / k).stat().st_mtime_ns for k in before}
     assert after == before

@@ -33,7 +33,13 @@ def draw(data: xr.Dataset) -> Figure:
     )
     left.set_title(rf"$r={number(data.attrs['restitution'])}$", fontsize=9)
     left.legend(
-        fontsize=6.5, loc="lower right", bbox_to_anchor=(1.0, 0.09), ncols=2, columnspacing=1.0
+        fontsize=6,
+        loc="lower right",
+        bbox_to_anchor=(1.0, 0.1),
+        ncols=2,
+        columnspacing=0.7,
+        handlelength=1.6,
+        handletextpad=0.4,
     )
 
     rows = np.arange(data.sizes["quantity"])[::-1]

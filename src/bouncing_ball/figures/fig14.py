@@ -43,5 +43,5 @@ def draw(data: xr.Dataset) -> Figure:
         rf"$\Lambda={number(data.attrs['amplitude'])}$",
         fontsize=9,
     )
-    axes.legend(loc="center left", bbox_to_anchor=(0.32, 0.42))
+    axes.legend(loc="lower right", bbox_to_anchor=(1.02, 0.3), handlelength=1.2)
     return figure

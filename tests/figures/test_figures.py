@@ -86,8 +86,9 @@ def test_a_figure_follows_its_data(datasets, name):
     before = [np.concatenate(line.get_data()) for line in lines(drawn(name, data))]
     moved = data.assign({SHOWN[name]: data[SHOWN[name]] * 1.5 + 0.1})
     after = [np.concatenate(line.get_data()) for line in lines(drawn(name, moved))]
-    same = [len(a) == len(b) and np.array_equal(a, b, True) for a, b in zip(before, after)]
-    assert not all(same)
+    assert len(before) == len(after)
+    pairs = zip(before, after, strict=True)
+    assert not all(len(a) == len(b) and np.array_equal(a, b, True) for a, b in pairs)
 
 
 @pytest.mark.parametrize("name", SHOWN)

@@ -27,7 +27,7 @@ def drawing(*names):
         (
             ("extensions", "ext_release", "restitution"),
             0.9,
-            {"Release rules for ext_release", *drawing("ext_release")},
+            {"Release rules for ext_release", *drawing("ext_release"), *WITNESS},
         ),
         (
             ("figures", "fig16", "tolerance"),

@@ -23,7 +23,7 @@ SCHEMATICS = ["fig01", "fig04"]
 TABLES = ["table1", "thresholds", "witness"]
 # Those that show orbits or their bifurcations.
 WITNESSED = [f"fig{number:02d}" for number in (2, 3, 5, 6, 7, 8, 9, 10, 12, 13, 14, 15)]
-WITNESSED += ["table1"]
+WITNESSED += ["table1", "ext_release"]
 
 
 def modules(*names):

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane
+from bouncing_ball.continuation.corrector import Condition, NewtonSettings, newton, plane
 from bouncing_ball.continuation.problem import Problem
 
 # Step of the central differences for ∇g, near the optimum ε^(1/3). It sets how
@@ -75,13 +75,16 @@ def parameter_bound(bound: float, upper: bool, reason: str) -> Event:
     return Event("parameter bound", function, terminal=True, reason=reason)
 
 
-def _with_gradient(function):
+def vanishing(function: Callable[[np.ndarray], np.ndarray]) -> Condition:
+    """The condition that a test function is zero, its gradient by differences."""
+
     def condition(y):
         size = y.shape[-1]
         offsets = np.concatenate([np.zeros((1, size)), np.eye(size), -np.eye(size)])
+        offsets = offsets.reshape(-1, *(1,) * (y.ndim - 1), size)
         values = function(y + _DIFFERENCE * offsets)
-        gradient = (values[1 : size + 1] - values[size + 1 :]) / (2 * _DIFFERENCE)
-        return values[0], gradient
+        slopes = (values[1 : size + 1] - values[size + 1 :]) / (2 * _DIFFERENCE)
+        return values[0], np.moveaxis(slopes, 0, -1)
 
     return condition
 
@@ -111,7 +114,7 @@ def locate(
             return SpecialPoint(event.name, left, float(np.max(np.abs(problem.residual(left)))))
         chord = right - left
         share = values[0] / (values[0] - values[1])
-        found = newton(problem, left + share * chord, _with_gradient(event.function), patient)
+        found = newton(problem, left + share * chord, vanishing(event.function), patient)
         progress = (found.point - left) @ chord / (chord @ chord)
         if found.converged and -1e-6 <= progress <= 1 + 1e-6:
             return SpecialPoint(event.name, found.point, found.residual)

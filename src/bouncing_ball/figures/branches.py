@@ -33,6 +33,14 @@ def draw_branch(axes: Axes, x, y, stable, admissible, colour: str) -> None:
         axes.plot(x[start:stop], y[start:stop], color=colour, **looks[look])
 
 
+def draw_curve(axes: Axes, x, y, admissible, **look) -> None:
+    """A curve of orbits in its own look, dotted where they are inadmissible."""
+    x, y, shown = np.asarray(x), np.asarray(y), np.asarray(admissible, dtype=bool)
+    axes.plot(x, np.where(shown, y, np.nan), **look)
+    if not np.all(shown):
+        axes.plot(x, np.where(shown, np.nan, y), color=look["color"], **INADMISSIBLE)
+
+
 def draw_saddle_nodes(axes: Axes, x, y, colour: str) -> None:
     """Saddle-node markers."""
     axes.plot(x, y, color=colour, zorder=4, **SADDLE_NODE)

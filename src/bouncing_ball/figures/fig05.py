@@ -3,6 +3,7 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
+from bouncing_ball.figures.branches import draw_curve
 from bouncing_ball.figures.style import COLOURS, GUIDE, canvas, logarithmic, number
 
 
@@ -13,7 +14,13 @@ def draw(data: xr.Dataset) -> Figure:
         curve = data.sel(case=case)
         r, lam = float(curve.restitution), float(curve.amplitude)
         axes.axhline(r, **GUIDE)
-        axes.plot(curve.frequency_ratio, curve.apparent_restitution, color=colour)
+        draw_curve(
+            axes,
+            curve.frequency_ratio,
+            curve.apparent_restitution,
+            curve.admissible,
+            color=colour,
+        )
         axes.annotate(
             rf"$r={number(r)}$, $\Lambda={number(lam)}$",
             (float(data.frequency_ratio[-1]), r),

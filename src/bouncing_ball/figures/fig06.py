@@ -3,6 +3,7 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
+from bouncing_ball.figures.branches import draw_curve
 from bouncing_ball.figures.style import COLOURS, GUIDE, canvas, logarithmic, number
 
 
@@ -13,9 +14,11 @@ def draw(data: xr.Dataset) -> Figure:
     for k, case in enumerate(data.case.values):
         curve = data.sel(case=case)
         axes.axhline(float(curve.restitution), **GUIDE)
-        axes.plot(
+        draw_curve(
+            axes,
             curve.frequency_ratio,
             curve.apparent_restitution,
+            curve.admissible,
             color=COLOURS[k % len(COLOURS)],
             linestyle=looks[k % len(looks)],
             label=rf"$\Lambda={number(float(curve.amplitude))}$",

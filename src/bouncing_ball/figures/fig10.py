@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from bouncing_ball.figures.branches import draw_curve
 from bouncing_ball.figures.style import COLOURS, GUIDE, canvas, logarithmic, number
 
 
@@ -22,9 +23,11 @@ def draw(data: xr.Dataset) -> Figure:
     )
     for k, case in enumerate(data.case.values):
         curve = data.sel(case=case)
-        axes.plot(
+        draw_curve(
+            axes,
             curve.frequency_ratio,
             curve.bounce_velocity,
+            curve.admissible,
             color=COLOURS[k % len(COLOURS)],
             linestyle=looks[k % len(looks)],
             label=rf"$\Lambda={number(float(curve.amplitude))}$",

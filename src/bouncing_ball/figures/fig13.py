@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from bouncing_ball.figures.branches import draw_curve
 from bouncing_ball.figures.style import COLOURS, RESTITUTION, canvas, number
 
 
@@ -35,7 +36,8 @@ def draw(data: xr.Dataset) -> Figure:
                 r"start of contact $(\varphi,\,z_i^{\prime})$",
             ),
         ):
-            axes.plot(phase / np.pi, velocity, color=colour, label=symbol if k == 0 else None)
+            label = symbol if k == 0 else None
+            draw_curve(axes, phase / np.pi, velocity, curve.admissible, color=colour, label=label)
             axes.plot(
                 float(curve.restitution_phase) / np.pi,
                 float(limit),

@@ -3,6 +3,7 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
+from bouncing_ball.figures.branches import draw_curve
 from bouncing_ball.figures.style import CONTACT, GUIDE, RESTITUTION, canvas, logarithmic, number
 
 
@@ -10,7 +11,14 @@ def draw(data: xr.Dataset) -> Figure:
     """The height in both models and the threshold of the relative error."""
     figure, axes = canvas(height=2.7)
     limit, tolerance = float(data.restitution_max_height), float(data.tolerance[0])
-    axes.plot(data.frequency_ratio, data.max_height, color=CONTACT, label="spring-damper")
+    draw_curve(
+        axes,
+        data.frequency_ratio,
+        data.max_height,
+        data.admissible,
+        color=CONTACT,
+        label="spring-damper",
+    )
     axes.axhline(limit, color=RESTITUTION, linewidth=1.0, label="restitution")
     axes.axhspan(
         (1 - tolerance) * limit,

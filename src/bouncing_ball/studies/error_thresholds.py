@@ -23,6 +23,7 @@ from bouncing_ball.models.permanent_contact import (
 )
 from bouncing_ball.orbits import limits
 from bouncing_ball.orbits import restitution as restitution_orbits
+from bouncing_ball.orbits.admissibility import is_admissible
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.studies.parameters import grid
 from bouncing_ball.studies.permanent_contact import permanent_contact
@@ -201,6 +202,7 @@ def height_error(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         ("phase", orbit.phase),
         ("contact_duration", orbit.duration),
         ("impact_velocity", orbit.impact_velocity),
+        ("admissible", is_admissible(orbit)),
     ):
         dataset[name] = ("frequency_ratio", values)
     dataset["restitution_max_height"] = restitution_value(Quantity.MAX_HEIGHT, n, r, lam)

@@ -7,10 +7,24 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.datasets.variables import describe
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.contact import Contact
 from bouncing_ball.orbits import restitution as restitution_orbits
+from bouncing_ball.orbits.admissibility import is_admissible
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.limits import require_orbit
 from bouncing_ball.studies.parameters import contact
+
+
+def _orbit(touch: Contact, n: int, amplitude: float) -> ContactOrbit:
+    """The admissible orbit on the stable side."""
+    orbit = require_orbit(touch, n, amplitude)
+    if not is_admissible(orbit):
+        raise NoOrbitError(
+            f"the {n}-T orbit at Λ = {amplitude:g}, ϖ = {float(touch.frequency_ratio):g} is "
+            "inadmissible: another impact or release comes first"
+        )
+    return orbit
 
 
 def _cycle(orbit: ContactOrbit, samples: int) -> tuple[np.ndarray, ...]:
@@ -34,11 +48,11 @@ def contact_history(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     Raises
     ------
     NoOrbitError
-        If the orbit does not exist.
+        If the orbit does not exist or is inadmissible.
     """
     n, lam = parameters["n"], parameters["amplitude"]
     touch = contact(parameters["frequency_ratio"], parameters["restitution"], release)
-    orbit = require_orbit(touch, n, lam)
+    orbit = _orbit(touch, n, lam)
     time, ball, velocity, touching = _cycle(orbit, parameters["samples"])
     return describe(
         xr.Dataset(
@@ -64,7 +78,7 @@ def both_histories(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     Raises
     ------
     NoOrbitError
-        If an orbit does not exist.
+        If an orbit does not exist or is inadmissible.
     """
     n, lam, r = parameters["n"], parameters["amplitude"], parameters["restitution"]
     ratios = np.sort(np.array(parameters["frequency_ratio"], dtype=float))
@@ -76,7 +90,7 @@ def both_histories(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         "bounce_velocity": [],
     }
     for ratio in ratios:
-        orbit = require_orbit(contact(ratio, r, release), n, lam)
+        orbit = _orbit(contact(ratio, r, release), n, lam)
         time, ball, _, touching = _cycle(orbit, parameters["samples"])
         for name, values in zip(columns, (time + orbit.phase, ball, touching), strict=True):
             columns[name].append(values)

@@ -19,7 +19,7 @@ from bouncing_ball.continuation.branch import (
     solve_at,
 )
 from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane
-from bouncing_ball.continuation.events import parameter_bound
+from bouncing_ball.continuation.events import parameter_bound, vanishing
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.models.contact import Contact, Release
 from bouncing_ball.models.damping import damping_ratio
@@ -28,6 +28,7 @@ from bouncing_ball.orbits import restitution
 from bouncing_ball.orbits.admissibility import restitution_is_admissible
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.limits import period_doubling, saddle_node
 from bouncing_ball.orbits.monodromy import monodromy, trace_and_contraction
 from bouncing_ball.orbits.projection import distance, nearest_excess
 from bouncing_ball.orbits.restitution_system import RestitutionSystem
@@ -454,8 +455,41 @@ def compare_restitution(data: xr.Dataset, settings: Mapping[str, Any]) -> Iterat
         yield from _restitution_simulated(orbits)
 
 
+def _rules_against_extended_systems(
+    data: xr.Dataset, settings: Mapping[str, Any]
+) -> Iterator[Comparison]:
+    """Bifurcations along ϖ from the formula against the extended systems.
+
+    The paper's equations with the test function, solved from a start that is
+    a thousandth off, as the continuation locates its events.
+    """
+    zeta = float(data.damping_ratio)
+    _, tolerance = controls(settings)
+    patient = tolerance._replace(max_iterations=4 * tolerance.max_iterations)
+    omega = data.frequency_ratio.values
+    for rule in data.release.values:
+        contact = Contact(omega, zeta, Release(str(rule)))
+        for n in data.n.values:
+            for kind, find in ((SADDLE_NODE, saddle_node), (PERIOD_DOUBLING, period_doubling)):
+                orbit = ContactOrbit.from_branch(
+                    branch_point(find(contact, n), contact, n), contact, int(n)
+                )
+                system = OrbitSystem(int(n), zeta, Parameter.AMPLITUDE, omega, Release(str(rule)))
+                parts = (orbit.phase, orbit.impact_velocity, omega * orbit.duration)
+                y = np.stack([*parts, orbit.amplitude], axis=-1)
+                test = next(event for event in system.events() if event.name == kind)
+                found = newton(system, y * (1 + 1e-3), vanishing(test.function), patient)
+                shown = data.bifurcation_amplitude.sel(release=rule, n=n, bound=kind).values
+                values = np.abs(found.point[:, -1] - shown)
+                names = [f"{kind} of the {n}-T orbits, {rule} release, ϖ = {w:.6g}" for w in omega]
+                yield Comparison(FORMULA, values, names)
+
+
 def compare(data: xr.Dataset, settings: Mapping[str, Any]) -> Iterator[Comparison]:
     """All comparisons for the spring-damper orbits of one dataset."""
+    if "bifurcation_amplitude" in data:
+        yield from _rules_against_extended_systems(data, settings)
+        return
     if "computed" in data:
         yield _table_against_formula(data)
         return
@@ -494,7 +528,8 @@ def witness(datasets: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> 
     shape = (len(datasets), len(kinds))
     largest, count, place = np.empty(shape), np.zeros(shape, dtype=int), np.empty(shape, object)
     for i, (name, data) in enumerate(datasets.items()):
-        routes = compare_restitution if "release" not in data.attrs else compare
+        contact = "release" in data.attrs or "release" in data.dims
+        routes = compare if contact else compare_restitution
         comparisons = list(routes(data, settings))
         for j, kind in enumerate(kinds):
             largest[i, j], count[i, j], place[i, j] = _worst(comparisons, kind)

@@ -374,6 +374,16 @@ def _restitution_continued(
     control, tolerance = controls(settings)
     n, r, lam, phase = orbits
     system = RestitutionSystem(n, r)
+    patient = tolerance._replace(max_iterations=2 * tolerance.max_iterations)
+    if r == 1:
+        # φ is ±π/2 all along: solved at each Λ, from a start that is off. The
+        # fold lies at Λ = 0, where φ has no meaning.
+        guess = np.stack([phase + 1e-3, np.full_like(lam, n * np.pi - 1e-3), lam], axis=-1)
+        axis = np.broadcast_to([0.0, 0.0, 1.0], guess.shape)
+        found = newton(system, guess, plane(axis, guess), patient)
+        differences = found.point[:, 0] - phase, found.point[:, 1] - n * np.pi
+        yield Comparison(FORMULA, np.max(np.abs(differences), axis=0), _restitution_names(orbits))
+        return
     node, doubling = restitution.saddle_node(n, r), restitution.period_doubling(n, r)
     start = float(node + doubling) / 2
     y = np.array([float(restitution.phase(n, r, start)), n * np.pi, start])
@@ -389,9 +399,8 @@ def _restitution_continued(
     guess = np.stack(
         [np.interp(phase, branch.points[:, 0], branch.points[:, k]) for k in range(3)], axis=-1
     )
-    axis = np.array([1.0, 0.0, 0.0])
-    patient = tolerance._replace(max_iterations=2 * tolerance.max_iterations)
-    found = newton(system, guess, plane(np.broadcast_to(axis, guess.shape), guess), patient)
+    axis = np.broadcast_to([1.0, 0.0, 0.0], guess.shape)
+    found = newton(system, guess, plane(axis, guess), patient)
     differences = found.point[:, 2] - lam, found.point[:, 1] - n * np.pi
     yield Comparison(FORMULA, np.max(np.abs(differences), axis=0), _restitution_names(orbits))
     names = [f"{kind} of the {n}-T orbits, restitution model" for kind in BIFURCATIONS]
@@ -450,7 +459,9 @@ def _departure(ends, nudge, multiplier) -> np.ndarray:
 
 def compare_restitution(data: xr.Dataset, settings: Mapping[str, Any]) -> Iterator[Comparison]:
     """All comparisons for the restitution model's orbits of one dataset."""
-    for orbits in _restitution_families(data):
+    for family in _restitution_families(data):
+        there = family.amplitude > 0
+        orbits = family._replace(amplitude=family.amplitude[there], phase=family.phase[there])
         yield from _restitution_continued(orbits, settings)
         yield from _restitution_simulated(orbits)
 

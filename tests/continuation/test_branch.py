@@ -94,6 +94,10 @@ def test_a_turn_of_the_tangent_shortens_the_step():
 def test_decreasing_starts_the_other_way():
     branch = continue_branch(CIRCLE, np.array([1.0, 0.0]), increasing=False, max_points=10)
     assert np.all(np.diff(branch.points[:, 1]) < 0)
+    # With the same first step, and tangents of length one.
+    first = np.linalg.norm(branch.points[1] - branch.points[0])
+    assert first == pytest.approx(StepControl().initial, rel=1e-3)
+    assert np.linalg.norm(branch.tangents, axis=1) == pytest.approx(np.ones(10), abs=EXACT)
 
 
 def test_both_folds_of_a_cubic():

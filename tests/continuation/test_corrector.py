@@ -104,6 +104,21 @@ def test_running_out_of_iterations():
     assert found.step > 1e-3
 
 
+@pytest.mark.parametrize("count", [1, 5])
+def test_every_iteration_is_used(count):
+    class Counting(Circle):
+        calls = 0
+
+        def residual(self, y):
+            self.calls += 1
+            return super().residual(y)
+
+    problem, guess = Counting(), np.array([1.0, 2.0])
+    condition = plane(np.array([0.0, 1.0]), guess)
+    newton(problem, guess, condition, NewtonSettings(max_iterations=count))
+    assert problem.calls == count
+
+
 def test_does_not_change_the_guess():
     guess = np.array([1.0, 0.6])
     newton(Circle(), guess, plane(np.array([1.0, -2.0]), np.zeros(2)), NewtonSettings())
@@ -125,7 +140,7 @@ def test_tangent_is_the_unit_null_vector_on_the_given_side():
 
 def test_null_vector_points_up_in_the_parameter():
     rng = np.random.default_rng(4)
-    for size in (1, 2, 5):
+    for size in (1, 2, 5) * 20:
         jacobian = rng.normal(size=(size, size + 1))
         vector = null_vector(jacobian)
         assert vector[-1] > 0

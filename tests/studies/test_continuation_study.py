@@ -87,6 +87,8 @@ def test_points_are_orbits(figure_8):
         turn = np.angle(np.exp(1j * (point.phase - row.phase.values)))
         # Next to permanent contact the equations are nearly singular: 1e-9.
         assert np.abs(turn).max() < 1e-9
+        end = row.phase.values + row.contact_duration.values
+        assert row.release_phase.values == pytest.approx(end, abs=1e-14)
         assert row.bounce_velocity.values == pytest.approx(
             row.impact_velocity.values + 2 * np.pi - row.contact_duration.values, abs=1e-13
         )

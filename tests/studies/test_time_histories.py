@@ -19,13 +19,14 @@ BOTH = {
 
 
 @pytest.mark.parametrize("release", ["displacement", "force"])
-def test_one_cycle_against_an_integration(described, release):
-    data = described(contact_history(ONE, release))
+@pytest.mark.parametrize("n", [1, 2])
+def test_one_cycle_against_an_integration(described, n, release):
+    data = described(contact_history(ONE | {"n": n}, release))
     assert data.ball.dims == ("sample",) and data.sizes["sample"] == 101
     touching = data.contact.values
     assert touching.sum() == 50 and np.all(np.diff(touching.astype(int)) <= 0)
     assert float(data.time[49]) == float(data.time[50]) == float(data.contact_duration)
-    assert float(data.time[-1]) == pytest.approx(2 * np.pi, rel=1e-15)
+    assert float(data.time[-1]) == pytest.approx(2 * np.pi * n, rel=1e-15)
     phase, zeta, omega = float(data.phase), float(damping_ratio(0.85)), 4.0
 
     def field(t, y):
@@ -69,12 +70,14 @@ def test_no_cycle_below_the_saddle_node(one_line):
     one_line(error, "no 1-T orbit at Λ = 0.1 for ϖ = 2")
 
 
-def test_both_models(described):
-    data = described(both_histories(BOTH, "displacement"))
+@pytest.mark.parametrize(("n", "lam"), [(1, 1.0), (2, 1.5)])
+def test_both_models(described, n, lam):
+    parameters = BOTH | {"n": n, "amplitude": lam}
+    data = described(both_histories(parameters, "displacement"))
     assert data.ball.dims == ("frequency_ratio", "sample") and data.ball.shape == (2, 60)
     for ratio in BOTH["frequency_ratio"]:
         row = data.sel(frequency_ratio=ratio)
-        single = contact_history(BOTH | {"frequency_ratio": ratio}, "displacement")
+        single = contact_history(parameters | {"frequency_ratio": ratio}, "displacement")
         assert row.ball.values == pytest.approx(single.ball.values, abs=1e-13)
         assert np.array_equal(row.contact.values, single.contact.values)
         phase = (single.time + single.phase).values
@@ -82,9 +85,10 @@ def test_both_models(described):
     # The restitution orbit, by hand: one whole flight, both ends on the table.
     phase = float(data.restitution_phase)
     s = data.time.values
-    flight = np.sin(phase) + np.pi * s - s**2 / 2
+    assert s[-1] == pytest.approx(2 * np.pi * n, rel=1e-15)
+    flight = lam * np.sin(phase) + n * np.pi * s - s**2 / 2
     assert data.restitution_ball.values == pytest.approx(flight, abs=1e-12)
-    assert np.cos(phase) == pytest.approx(np.pi * 0.35 / 1.65, rel=1e-14)
+    assert lam * np.cos(phase) == pytest.approx(n * np.pi * 0.35 / 1.65, rel=1e-14)
     # The stiffer contact is nearer to it.
     tops = data.ball.max("sample").values
     assert tops[0] < tops[1] < flight.max()

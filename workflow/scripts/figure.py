@@ -10,6 +10,9 @@ with logged(snakemake) as lines, style():
     draw = import_module(f"bouncing_ball.figures.{snakemake.params.figure}").draw
     data = [read_dataset(path) for path in snakemake.input.get("data", [])]
     figure = draw(*data)
+    # Laid out once, for both files.
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")
     for path in snakemake.output:
         save(figure, path)
         lines.append(path)

@@ -31,7 +31,7 @@ from numpy.typing import ArrayLike
 
 # Below this |p(ν)| s² the quotient for h is taken on a circle instead: there
 # the terms of the numerator exceed the result, of order s²/2, by 4 or more.
-CANCELLATION = 4.0
+_CANCELLATION = 4.0
 # Trapezoidal points on the circle: with |radius · s| ≤ 4 the first neglected
 # term is 4⁴⁰/40! < 2e-24.
 _CIRCLE_POINTS = 40
@@ -184,7 +184,7 @@ def exponential_response(
     """
     s, a, q = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in (s, a, q)))
     p = nu * nu + 2 * a * nu + q
-    delicate = np.abs(p) * s * s < CANCELLATION
+    delicate = np.abs(p) * s * s < _CANCELLATION
     if np.any(delicate):
         safe = np.where(delicate, 1e300, q)  # value unused; avoids 0/0
         h, h_a, h_q = (np.array(x) for x in _quotient(nu, s, a, safe, g))

@@ -40,10 +40,12 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import require
 from bouncing_ball.models.contact import Contact, Release, responses
-from bouncing_ball.models.oscillator import CANCELLATION
 
 # Points computed at once: as many as keep the intermediate arrays in the cache.
 _BLOCK = 2048
+# As in the oscillator's responses, of which only the values are
+# wanted here: their terms exceed the result by a factor of 16 at most.
+_DELICATE = 0.5
 
 
 class BranchPoint(NamedTuple):
@@ -123,7 +125,7 @@ def _responses(duration, sin_angle, cos_angle, sin_d, cos_d, decay, omega, zeta,
     gamma = detuning * detuning + loss * loss
     square = duration * duration
     delicate = np.minimum(gamma * square, stiffness * stiffness * square) * square
-    delicate = delicate < CANCELLATION * CANCELLATION
+    delicate = delicate < _DELICATE * _DELICATE
     troubled = np.any(delicate)
     if troubled:
         gamma = np.where(delicate, 1.0, gamma)

@@ -124,7 +124,7 @@ def _orbit_on_the_way(n, restitution, frequency_ratio, start, release, settings)
         towards,
         y,
         increasing=False,
-        events=(*towards.events(), turn, target),
+        events=(*(event for event in towards.events() if event.terminal), turn, target),
         control=control,
         settings=newton,
     )

@@ -143,13 +143,13 @@ def thresholds(
     found = any_outside & (last < len(ratios) - 1)
     result = np.full(len(tolerances), np.nan)
     if np.any(found):
+        # In logarithms the error is nearly a straight line. Bounded, so that an
+        # infinite or vanishing error does not upset the bracketing.
+        def excess(log_ratio, tolerance):
+            return np.log(np.clip(error(np.exp(log_ratio)), 1e-300, 1e3) / tolerance)
 
-        def excess(ratio, tolerance):
-            # Bounded, so that an infinite error does not upset the bracketing.
-            return np.minimum(error(ratio), 1e3) / tolerance - 1
-
-        bracket = ratios[last[found]], ratios[last[found] + 1]
-        result[found] = find_root(excess, bracket, args=(tolerances[found],)).x
+        bracket = np.log(ratios[last[found]]), np.log(ratios[last[found] + 1])
+        result[found] = np.exp(find_root(excess, bracket, args=(tolerances[found],)).x)
     missing = [Status.NEVER_WITHIN if bad else Status.ALWAYS_WITHIN for bad in any_outside]
     statuses = [Status.FOUND if ok else why for ok, why in zip(found, missing, strict=True)]
     return result, statuses

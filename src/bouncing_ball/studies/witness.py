@@ -161,7 +161,7 @@ def _continued(orbit: ContactOrbit, settings: Mapping[str, Any]) -> np.ndarray:
         system,
         start,
         increasing=False,
-        events=(*system.events(), target),
+        events=(*(event for event in system.events() if event.terminal), target),
         control=control,
         settings=tolerance,
     )

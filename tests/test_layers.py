@@ -24,6 +24,7 @@ ALLOWED = {
         {"numpy", "scipy", "xarray"},
     ),
     "figures": ({"datasets"}, {"numpy", "xarray", "matplotlib"}),
+    "tables": ({"datasets"}, {"numpy", "xarray"}),
 }
 
 

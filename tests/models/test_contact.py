@@ -42,8 +42,8 @@ def test_flow_against_the_matrix_exponential(reference, start, s):
     flow = contact_flow(s, **start)
     expected = reference.contact_state(s, *(start[name] for name in ARGUMENTS[1:]))
     omega, zeta = start["frequency_ratio"], start["damping_ratio"]
-    # expm loses about the norm of its argument in roundings, here 2(1 + ζ)ϖs,
-    # and works in the units of ϖδ and δ′, so that both share one error.
+    # The exponential loses about the norm of its argument in roundings, here
+    # 2(1 + ζ)ϖs, and works in the units of ϖδ and δ′, so that both share one.
     v = size(start, s)[1] + 1 + start["amplitude"]
     allowed = 20 * EPS * (1 + 2 * (1 + zeta) * max(omega, 1) * s) * v
     assert abs(float(flow.displacement) - expected[0]) <= allowed / min(omega, 1)

@@ -44,8 +44,7 @@ def test_clearance_is_the_lowest_interior_minimum(total, tau, d, v, lam):
     step = s[1]
     if not len(minima):
         # A minimum nearer to an end than a step is not seen on the grid.
-        ends = min(abs(values[0]), abs(values[-1]))
-        assert found == np.inf or abs(found) <= ends + 10 * step
+        assert found == np.inf or min(abs(found - values[[0, -1]])) <= step**2 * lam
         return
     k = minima[np.argmin(values[minima])]
     refined = minimize_scalar(

@@ -115,6 +115,9 @@ def permanent_contact_frequency_ratios(
     product = (1 - lam) * (1 + lam)
     centre = 1 - 2 * zeta * zeta * (product if release is Release.FORCE else 1.0)
     inside = centre * centre - product
+    # At the minimum the two roots meet; rounding must not push them apart into
+    # the complex plane.
+    inside = np.where(np.abs(inside) <= 8 * np.finfo(float).eps, 0.0, inside)
     root = np.sqrt(np.where((inside >= 0) & (lam >= 0), inside, np.nan))
     outer = centre + root
     inner = np.where(outer > 0, product / np.where(outer > 0, outer, 1.0), centre - root)

@@ -41,7 +41,10 @@ def grazing_points(
         for _ in range(_BISECTIONS):
             middle = (left + right) / 2
             normal = (right - left) / np.linalg.norm(right - left)
-            middle = newton(problem, middle, plane(normal, middle), settings).point
+            corrected = newton(problem, middle, plane(normal, middle), settings)
+            if not corrected.converged:
+                break
+            middle = corrected.point
             if np.linalg.norm(right - left) <= 4e-16 * np.linalg.norm(left):
                 break
             if admissible_at(middle[np.newaxis])[0]:

@@ -22,7 +22,7 @@ IGNORED = shutil.ignore_patterns(".git", ".venv", "results", ".snakemake", "*.eg
 LATE_DATA = "import netCDF4, xarray.backends.netCDF4_\n"
 LATE_FIGURE = (
     "import matplotlib.backends.backend_agg, matplotlib.backends.backend_svg\n"
-    "import PIL.PngImagePlugin\n"
+    "import PIL.Image, PIL.PngImagePlugin\nPIL.Image.preinit()\n"
 )
 FINISH = """
 for path in (*snakemake.output, *snakemake.log):

@@ -11,7 +11,7 @@ with logged(snakemake) as lines, style():
     data = [read_dataset(path) for path in snakemake.input.get("data", [])]
     figure = draw(*data)
     # Laid out once, for both files.
-    figure.draw_without_rendering()
+    figure.get_layout_engine().execute(figure)
     figure.set_layout_engine("none")
     for path in snakemake.output:
         save(figure, path)

@@ -100,9 +100,13 @@ class ContactOrbit:
     def max_height(self) -> np.ndarray:
         """Greatest absolute height over the cycle.
 
-        In flight, unless a long contact lifts the ball higher with the table;
-        its highest sample is then refined by Newton's method on the velocity.
+        In flight, if that reaches Λ: in contact the ball stays below the table.
+        Else a long contact may lift it higher with the table; its highest
+        sample is then refined by Newton's method on the velocity.
         """
+        top = self.flight_top
+        if not np.any(top < self.amplitude):
+            return top
         share = np.linspace(0.0, 1.0, _CONTACT_SAMPLES)
         share = share.reshape(-1, *(1,) * np.ndim(self.duration))
         height, _ = self.contact_path(share * self.duration)
@@ -117,7 +121,7 @@ class ContactOrbit:
             slope = self._contact_acceleration(time)
             moved = np.where(slope < 0, -velocity / np.where(slope < 0, slope, -1.0), 0.0)
             time = np.clip(time + moved, low, high)
-        return np.maximum(self.flight_top, self.contact_path(time)[0])
+        return np.maximum(top, self.contact_path(time)[0])
 
     def _contact_flow(self, time: np.ndarray):
         return contact_flow(

@@ -113,7 +113,10 @@ def relative_error(
 
 
 def thresholds(
-    error: Callable[[np.ndarray], np.ndarray], tolerances: np.ndarray, ratios: np.ndarray
+    error: Callable[[np.ndarray], np.ndarray],
+    tolerances: np.ndarray,
+    ratios: np.ndarray,
+    scanned: np.ndarray | None = None,
 ) -> tuple[np.ndarray, list[Status]]:
     """The ϖ above which an error stays within each tolerance.
 
@@ -125,6 +128,8 @@ def thresholds(
     ratios : ndarray
         Increasing grid, scanned for the last crossing of each tolerance; the
         crossing is then closed to the last digit.
+    scanned : ndarray, optional
+        The errors on the grid, if they are known already.
 
     Returns
     -------
@@ -137,7 +142,8 @@ def thresholds(
     array([100.])
     """
     tolerances = np.asarray(tolerances, dtype=float)
-    outside = error(ratios) > tolerances[:, np.newaxis]
+    scanned = error(ratios) if scanned is None else scanned
+    outside = scanned > tolerances[:, np.newaxis]
     any_outside = np.any(outside, axis=1)
     last = len(ratios) - 1 - np.argmax(outside[:, ::-1], axis=1)
     found = any_outside & (last < len(ratios) - 1)
@@ -168,7 +174,7 @@ def error_thresholds(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
             return relative_error(quantity, n, r, lam, ratio, Release(release))
 
         errors.append(error(ratios))
-        found, status = thresholds(error, tolerances, ratios)
+        found, status = thresholds(error, tolerances, ratios, errors[-1])
         roots.append(found)
         statuses.append([str(s) for s in status])
     dims = ("quantity", "tolerance")

@@ -7,6 +7,7 @@ come from. A disagreement beyond its budget fails the run with the orbit named.
 """
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,6 +21,7 @@ from bouncing_ball.continuation.branch import (
 )
 from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane
 from bouncing_ball.continuation.events import parameter_bound, vanishing
+from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.models.contact import Contact, Release
 from bouncing_ball.models.damping import damping_ratio
@@ -62,6 +64,8 @@ LEAVES = "rate of departure, unstable orbits"
 BUDGETS = {FORMULA: 1e-11, CLOSES: 1e-10, HOLDS: 1e-9, LEAVES: 1e-5}
 
 
+# Steps of a continuation whose points only start Newton's method at the orbits.
+_LARGEST_STEP, _LARGEST_ANGLE = 0.8, 0.4
 # Test function below which an orbit counts as left: away from the bifurcations,
 # where the multiplier is ±1 and a departure would tell nothing.
 _UNSTABLE = -0.05
@@ -146,9 +150,15 @@ def continuation_against_formula(orbit: ContactOrbit) -> Comparison:
     return Comparison(FORMULA, distance(orbit, point), _names(orbit))
 
 
+def _coarse(settings: Mapping[str, Any]) -> tuple[StepControl, NewtonSettings]:
+    """Long steps: the branch is only a guess, corrected at every orbit."""
+    control, newton_settings = controls(settings)
+    return replace(control, largest=_LARGEST_STEP, max_angle=_LARGEST_ANGLE), newton_settings
+
+
 def _continued(orbit: ContactOrbit, settings: Mapping[str, Any]) -> np.ndarray:
     """Distances of orbits along ϖ, one ζ and Λ, from a continuation in ln ϖ."""
-    control, tolerance = controls(settings)
+    control, tolerance = _coarse(settings)
     omega = orbit.contact.frequency_ratio
     zeta, lam = float(orbit.contact.damping_ratio[0]), float(orbit.amplitude[0])
     rule = orbit.contact.release
@@ -371,7 +381,7 @@ def _restitution_continued(
     orbits: RestitutionOrbits, settings: Mapping[str, Any]
 ) -> Iterator[Comparison]:
     """Continuation of the map's fixed points, and its located bifurcations."""
-    control, tolerance = controls(settings)
+    control, tolerance = _coarse(settings)
     n, r, lam, phase = orbits
     system = RestitutionSystem(n, r)
     patient = tolerance._replace(max_iterations=2 * tolerance.max_iterations)

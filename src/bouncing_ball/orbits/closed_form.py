@@ -149,7 +149,9 @@ def _solve(rows, right):
     bc = b2 * c3 - b3 * c2, b3 * c1 - b1 * c3, b1 * c2 - b2 * c1
     ca = c2 * a3 - c3 * a2, c3 * a1 - c1 * a3, c1 * a2 - c2 * a1
     ab = a2 * b3 - a3 * b2, a3 * b1 - a1 * b3, a1 * b2 - a2 * b1
-    inverse = 1 / (a1 * bc[0] + a2 * bc[1] + a3 * bc[2])
+    determinant = a1 * bc[0] + a2 * bc[1] + a3 * bc[2]
+    # Zero at a pole of the branch, where Λ is infinite: no orbit.
+    inverse = 1 / np.where(determinant == 0, np.nan, determinant)
 
     def solve(s, t, v):
         return tuple((s * bc[k] + t * ca[k] + v * ab[k]) * inverse for k in range(3))

@@ -33,6 +33,7 @@ monodromy; its determinant is ``exp(-2ζϖD)``, as the contact contracts
 All quantities are dimensionless; all functions broadcast.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -151,7 +152,9 @@ def _solve(rows, right):
     ab = a2 * b3 - a3 * b2, a3 * b1 - a1 * b3, a1 * b2 - a2 * b1
     determinant = a1 * bc[0] + a2 * bc[1] + a3 * bc[2]
     # Zero at a pole of the branch, where Λ is infinite: no orbit.
-    inverse = 1 / np.where(determinant == 0, np.nan, determinant)
+    if np.any(determinant == 0):
+        determinant = np.where(determinant == 0, np.nan, determinant)
+    inverse = 1 / determinant
 
     def solve(s, t, v):
         return tuple((s * bc[k] + t * ca[k] + v * ab[k]) * inverse for k in range(3))
@@ -185,14 +188,15 @@ def branch_point(excess: ArrayLike, contact: Contact, n: ArrayLike) -> BranchPoi
     >>> bool(abs(point.y - 1) < 1e-5), bool(abs(point.u + np.pi) < 1e-5)
     (True, True)
     """
-    zeta = np.asarray(contact.damping_ratio)
-    require(zeta < 1, zeta, "damping ratio ζ", "below 1")
     arguments = [
         np.asarray(x, dtype=float)
         for x in (excess, contact.frequency_ratio, contact.damping_ratio, n)
     ]
+    zeta = arguments[2]
+    if not (zeta < 1).all():
+        require(zeta < 1, zeta, "damping ratio ζ", "below 1")
     shape = np.broadcast_shapes(*(x.shape for x in arguments))
-    size = int(np.prod(shape))
+    size = math.prod(shape)
     if size <= _BLOCK:
         return _branch_point(*arguments, contact.release)
     # Scalars stay scalars; the rest is run through in blocks.

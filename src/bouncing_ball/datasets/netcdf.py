@@ -1,12 +1,13 @@
 """Writing and reading the datasets as netCDF, atomically and reproducibly."""
 
 import json
-import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import xarray as xr
+
+from bouncing_ball.datasets.atomic import replacing
 
 
 def parameter_attributes(parameters: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
@@ -34,14 +35,8 @@ def parameter_attributes(parameters: Mapping[str, Any], prefix: str = "") -> dic
 
 def write_dataset(dataset: xr.Dataset, path: str | Path) -> None:
     """Write a dataset so that the file is either whole or not there."""
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.part")
-    try:
+    with replacing(path) as temporary:
         dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4")
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 def read_dataset(path: str | Path) -> xr.Dataset:

@@ -4,14 +4,13 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from bouncing_ball.figures.branches import draw_curve
-from bouncing_ball.figures.style import COLOURS, GUIDE, canvas, logarithmic, number
+from bouncing_ball.figures.amplitudes import draw_amplitudes
+from bouncing_ball.figures.style import GUIDE, canvas, number
 
 
 def draw(data: xr.Dataset) -> Figure:
     """One curve for each amplitude, with the restitution model's nπ."""
     figure, axes = canvas(height=2.6)
-    looks = ("-", (0, (5, 1.5)), (0, (1, 1)), (0, (5, 1.5, 1, 1.5)))
     limit = float(data.restitution_bounce_velocity)
     axes.axhline(limit, **GUIDE)
     axes.annotate(
@@ -21,23 +20,8 @@ def draw(data: xr.Dataset) -> Figure:
         textcoords="offset points",
         fontsize=8,
     )
-    for k, case in enumerate(data.case.values):
-        curve = data.sel(case=case)
-        draw_curve(
-            axes,
-            curve.frequency_ratio,
-            curve.bounce_velocity,
-            curve.admissible,
-            color=COLOURS[k % len(COLOURS)],
-            linestyle=looks[k % len(looks)],
-            label=rf"$\Lambda={number(float(curve.amplitude))}$",
-        )
-    logarithmic(axes)
-    axes.set(
-        xlabel=r"frequency ratio $\varpi$",
-        ylabel=r"bouncing-off velocity $z_b^{\prime}$",
-        xlim=(float(data.frequency_ratio[0]), float(data.frequency_ratio[-1])),
-    )
+    draw_amplitudes(axes, data, "bounce_velocity")
+    axes.set_ylabel(r"bouncing-off velocity $z_b^{\prime}$")
     axes.legend(
         loc="lower right",
         title=rf"$n={data.attrs['n']}$, $r={number(data.attrs['restitution'])}$",

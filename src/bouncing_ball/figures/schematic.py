@@ -34,38 +34,16 @@ def table(axes: Axes, x: float, y: float, width: float, height: float) -> None:
     )
 
 
-def arrow(axes: Axes, x0: float, y0: float, x1: float, y1: float) -> None:
-    """A thin arrow."""
-    axes.annotate(
-        "",
-        xy=(x1, y1),
-        xytext=(x0, y0),
-        arrowprops={
-            "arrowstyle": "-|>",
-            "color": "black",
-            "linewidth": 0.8,
-            "shrinkA": 0,
-            "shrinkB": 0,
-            "mutation_scale": 8,
-        },
-    )
+def arrow(axes: Axes, x0: float, y0: float, x1: float, y1: float, heads: str = "-|>") -> None:
+    """A thin arrow; ``heads`` is one of matplotlib's arrow styles."""
+    look = {"arrowstyle": heads, "color": "black", "linewidth": 0.8, "mutation_scale": 8}
+    look |= {"shrinkA": 0, "shrinkB": 0}
+    axes.annotate("", xy=(x1, y1), xytext=(x0, y0), arrowprops=look)
 
 
 def double_arrow(axes: Axes, x: float, y0: float, y1: float) -> None:
     """A vertical double arrow, for the oscillation of the table."""
-    axes.annotate(
-        "",
-        xy=(x, y1),
-        xytext=(x, y0),
-        arrowprops={
-            "arrowstyle": "<|-|>",
-            "color": "black",
-            "linewidth": 0.8,
-            "shrinkA": 0,
-            "shrinkB": 0,
-            "mutation_scale": 8,
-        },
-    )
+    arrow(axes, x, y0, x, y1, heads="<|-|>")
 
 
 def spring(axes: Axes, x: float, y0: float, y1: float, coils: int = 5, width: float = 0.16) -> None:

@@ -1,6 +1,5 @@
 """One look for all figures, and files that are the same from run to run."""
 
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -8,6 +7,8 @@ from pathlib import Path
 import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+
+from bouncing_ball.datasets.atomic import replacing
 
 WIDTH = 3.4
 """Width of a one-column figure in inches."""
@@ -99,13 +100,8 @@ def number(value: float) -> str:
 
 def save(figure: Figure, path: str | Path) -> None:
     """Write a figure as PNG or SVG, whole or not at all, the same every time."""
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.stem}.part{path.suffix}")
     # Neither a time nor a version among the metadata.
-    metadata = {"Date": None, "Creator": None} if path.suffix == ".svg" else {"Software": None}
-    try:
+    svg = Path(path).suffix == ".svg"
+    metadata = {"Date": None, "Creator": None} if svg else {"Software": None}
+    with replacing(path) as temporary:
         figure.savefig(temporary, metadata=metadata)
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)

@@ -4,6 +4,7 @@ Scripts of the workflow are three lines on top of this; ``snakemake`` is the
 object that Snakemake gives them.
 """
 
+import signal
 import sys
 import traceback
 from collections.abc import Callable, Iterator
@@ -25,6 +26,10 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
 
     The log holds the traceback, the terminal the sentence.
     """
+    # Ctrl-C ends the job at once. As an exception it can arrive while a netCDF
+    # file is locked, whose closing then waits for ever; files are written whole
+    # or not at all, so nothing is lost.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
     name = "/".join([snakemake.rule, *snakemake.wildcards])
     lines: list[str] = []
     log = Path(snakemake.log[0])

@@ -8,16 +8,6 @@ from bouncing_ball.studies.frequency_sweeps import frequency_sweep
 from bouncing_ball.studies.restitution_orbits import restitution_history, restitution_orbits
 from bouncing_ball.studies.witness import BUDGETS, FORMULA, HOLDS, LEAVES, WitnessError, witness
 
-SETTINGS = {
-    "newton_tolerance": 1e-12,
-    "max_newton_iterations": 8,
-    "initial_step": 0.02,
-    "smallest_step": 1e-8,
-    "largest_step": 0.2,
-    "max_angle": 0.2,
-    "stiff_frequency_ratio": 1e4,
-}
-
 
 def with_attributes(data, parameters, release=None):
     data.attrs = parameters | ({"release": release} if release else {})
@@ -25,7 +15,7 @@ def with_attributes(data, parameters, release=None):
 
 
 @pytest.fixture(params=["displacement", "force"])
-def branches(request):
+def branches(request, continuation_settings):
     parameters = {
         "n": 1,
         "restitution": 0.85,
@@ -33,12 +23,12 @@ def branches(request):
         "amplitude_max": 1.5,
         "points": 41,
     }
-    data = orbit_branches(parameters, request.param, SETTINGS)
+    data = orbit_branches(parameters, request.param, continuation_settings)
     return with_attributes(data, parameters, request.param)
 
 
-def test_branches_agree(branches):
-    result = witness({"fig08": branches}, SETTINGS)
+def test_branches_agree(branches, continuation_settings):
+    result = witness({"fig08": branches}, continuation_settings)
     assert np.all(result.disagreement <= result.budget)
     # Every kind of comparison is made on some orbits.
     assert np.all(result.orbits > 0)
@@ -54,16 +44,16 @@ def test_branches_agree(branches):
         ("special_amplitude", 1e-10),
     ],
 )
-def test_a_wrong_point_is_named(branches, variable, shift):
+def test_a_wrong_point_is_named(branches, continuation_settings, variable, shift):
     branches[variable][0, 1] += shift
     with pytest.raises(WitnessError) as error:
-        witness({"fig08": branches}, SETTINGS)
+        witness({"fig08": branches}, continuation_settings)
     assert "fig08: continuation and formula disagree by" in str(error.value)
     assert "ϖ = 10" in str(error.value) and "\n" not in str(error.value)
 
 
 @pytest.mark.parametrize("release", ["displacement", "force"])
-def test_sweeps_agree(release):
+def test_sweeps_agree(continuation_settings, release):
     parameters = {
         "n": 2,
         "restitution": 0.85,
@@ -71,29 +61,29 @@ def test_sweeps_agree(release):
         "frequency_ratio": {"min": 1.0, "max": 1e3, "samples": 15},
     }
     data = with_attributes(frequency_sweep(parameters, release), parameters, release)
-    result = witness({"fig10": data}, SETTINGS)
+    result = witness({"fig10": data}, continuation_settings)
     assert float(result.disagreement.sel(comparison=FORMULA).squeeze()) < 1e-12
     data["impact_velocity"][0, 3] += 1e-9
     with pytest.raises(WitnessError, match="Λ = 1, ϖ ="):
-        witness({"fig10": data}, SETTINGS)
+        witness({"fig10": data}, continuation_settings)
 
 
-def test_restitution_model_agrees():
+def test_restitution_model_agrees(continuation_settings):
     domains = {"n": [1, 4], "restitution": 0.85, "amplitude_max": 2.0, "points": 31}
     history = {"n": 1, "restitution": 0.85, "amplitude": 1.0, "periods": 1, "samples": 11}
     datasets = {
         "fig02": with_attributes(restitution_history(history), history),
         "fig03": with_attributes(restitution_orbits(domains), domains),
     }
-    result = witness(datasets, SETTINGS)
+    result = witness(datasets, continuation_settings)
     assert np.nanmax(result.disagreement.sel(comparison=HOLDS)) < 1e-12
     assert int(result.orbits.sel(artifact="fig03", comparison=LEAVES)) > 10
     datasets["fig03"]["phase"][1, 2] += 1e-9
     with pytest.raises(WitnessError, match=r"4-T orbit .* restitution model"):
-        witness(datasets, SETTINGS)
+        witness(datasets, continuation_settings)
 
 
-def test_both_models_in_one_dataset_and_the_table():
+def test_both_models_in_one_dataset_and_the_table(continuation_settings):
     domains = {
         "n": 2,
         "restitution": 0.65,
@@ -110,13 +100,13 @@ def test_both_models_in_one_dataset_and_the_table():
     }
     datasets = {
         "fig15": with_attributes(
-            both_domains(domains, "displacement", SETTINGS), domains, "displacement"
+            both_domains(domains, "displacement", continuation_settings), domains, "displacement"
         ),
         "table1": with_attributes(
-            stability_ranges(ranges, "displacement", SETTINGS), ranges, "displacement"
+            stability_ranges(ranges, "displacement", continuation_settings), ranges, "displacement"
         ),
     }
-    result = witness(datasets, SETTINGS)
+    result = witness(datasets, continuation_settings)
     # 21 points and 2 bifurcations of each model; 4 bifurcations of the table.
     assert result.orbits.sel(comparison=FORMULA).values.tolist() == [46, 4]
     assert set(BUDGETS) == set(result.comparison.values)

@@ -9,7 +9,7 @@ from bouncing_ball.figures.style import canvas
 def draw() -> Figure:
     """Ball in flight over the table, without contact elements."""
     figure, axes = canvas(2.6, 1.5)
-    schematic.blank(axes, 4.0, 3.7)
+    schematic.blank(axes, (-0.6, 5.2), (0.4, 3.45))
     schematic.ball(axes, 1.7, 2.7, 0.42)
     schematic.table(axes, 0.5, 1.0, 2.4, 0.45)
     axes.text(0.36, 0.78, r"$M=\infty$", ha="right", va="center")
@@ -21,5 +21,4 @@ def draw() -> Figure:
     axes.text(0.65, 3.02, "$g$", ha="right", va="center")
     axes.plot([1.7, 1.7], [1.0, 2.28], color="#8c8c8c", linewidth=0.7, linestyle=(0, (1, 1.5)))
     axes.text(1.8, 1.2, "impact: $r$", ha="left", va="center", fontsize=8)
-    axes.set(xlim=(-0.6, 5.2), ylim=(0.4, 3.45))
     return figure

@@ -9,7 +9,7 @@ from bouncing_ball.figures.style import canvas
 def draw() -> Figure:
     """Ball over a spring and a dashpot that stand on the table."""
     figure, axes = canvas(2.8, 1.5)
-    schematic.blank(axes, 4.0, 3.7)
+    schematic.blank(axes, (-0.6, 5.9), (0.4, 3.5))
     schematic.ball(axes, 1.7, 2.95, 0.42)
     axes.plot([1.15, 2.25], [2.3, 2.3], **schematic.LINE)
     schematic.spring(axes, 1.35, 1.0, 2.3)
@@ -24,5 +24,4 @@ def draw() -> Figure:
     axes.text(3.25, 0.9, r"$a\,\sin(\Omega t+\varphi)$", ha="left", va="center")
     schematic.arrow(axes, 0.75, 3.4, 0.75, 2.75)
     axes.text(0.65, 3.07, "$g$", ha="right", va="center")
-    axes.set(xlim=(-0.6, 5.9), ylim=(0.4, 3.5))
     return figure

@@ -4,7 +4,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from bouncing_ball.figures.branches import draw_curve
-from bouncing_ball.figures.style import CONTACT, GUIDE, RESTITUTION, canvas, logarithmic, number
+from bouncing_ball.figures.style import CONTACT, RESTITUTION, canvas, logarithmic, number
+from bouncing_ball.figures.thresholds import mark_error_threshold
 
 
 def draw(data: xr.Dataset) -> Figure:
@@ -27,18 +28,7 @@ def draw(data: xr.Dataset) -> Figure:
         linewidth=0,
         label=rf"$\pm{100 * tolerance:g}\,\%$",
     )
-    found = float(data.error_threshold.squeeze())
-    if found == found:  # not NaN: the threshold lies in the range
-        axes.axvline(found, **GUIDE)
-        axes.annotate(
-            rf"$\varpi_{{h,{100 * tolerance:g}\%}}={found:.1f}$",
-            (found, 0.06),
-            xycoords=("data", "axes fraction"),
-            xytext=(-4, 0),
-            textcoords="offset points",
-            ha="right",
-            fontsize=8,
-        )
+    mark_error_threshold(axes, data, "h", digits=1, height=0.06, side="left")
     logarithmic(axes)
     axes.set(
         xlabel=r"frequency ratio $\varpi$",

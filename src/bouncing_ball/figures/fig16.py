@@ -3,8 +3,8 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
-from bouncing_ball.figures.style import GUIDE, RESTITUTION, canvas
-from bouncing_ball.figures.thresholds import draw_threshold
+from bouncing_ball.figures.style import RESTITUTION, canvas
+from bouncing_ball.figures.thresholds import draw_threshold, mark_error_threshold
 
 
 def draw(data: xr.Dataset) -> Figure:
@@ -12,7 +12,7 @@ def draw(data: xr.Dataset) -> Figure:
     figure, axes = canvas(height=2.6)
     draw_threshold(axes, data)
     high = axes.get_xlim()[1]
-    limit, tolerance = float(data.restitution_threshold), float(data.tolerance[0])
+    limit = float(data.restitution_threshold)
     axes.axhline(limit, color=RESTITUTION, linewidth=1.0)
     axes.annotate(
         r"$\Lambda_{CR}$",
@@ -22,15 +22,5 @@ def draw(data: xr.Dataset) -> Figure:
         ha="right",
         fontsize=8,
     )
-    found = float(data.error_threshold.squeeze())
-    if found == found:  # not NaN: the threshold lies in the range
-        axes.axvline(found, **GUIDE)
-        axes.annotate(
-            rf"$\varpi_{{PC,{100 * tolerance:g}\%}}={found:.2f}$",
-            (found, 0.82),
-            xycoords=("data", "axes fraction"),
-            xytext=(4, 0),
-            textcoords="offset points",
-            fontsize=8,
-        )
+    mark_error_threshold(axes, data, "PC", digits=2, height=0.82, side="right")
     return figure

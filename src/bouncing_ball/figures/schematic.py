@@ -7,9 +7,9 @@ from matplotlib.patches import Circle, Rectangle
 LINE = {"color": "black", "linewidth": 1.0, "solid_capstyle": "round"}
 
 
-def blank(axes: Axes, width: float, height: float) -> None:
+def blank(axes: Axes, width: tuple[float, float], height: tuple[float, float]) -> None:
     """Axes in plain coordinates, without frame."""
-    axes.set(xlim=(0, width), ylim=(0, height), aspect="equal")
+    axes.set(xlim=width, ylim=height, aspect="equal")
     axes.axis("off")
 
 

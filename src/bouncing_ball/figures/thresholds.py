@@ -1,5 +1,6 @@
-"""Permanent-contact threshold against ϖ, for Figs. 11 and 16."""
+"""Thresholds along ϖ: of permanent contact (Figs. 11, 16), of an error (Figs. 14, 16)."""
 
+import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
@@ -33,4 +34,27 @@ def draw_threshold(axes: Axes, data: xr.Dataset) -> None:
     axes.set_title(
         rf"$r={number(data.attrs['restitution'])}$, $\zeta={float(data.damping_ratio):.4f}$",
         fontsize=9,
+    )
+
+
+def mark_error_threshold(
+    axes: Axes, data: xr.Dataset, name: str, digits: int, height: float, side: str
+) -> None:
+    """The ϖ from which the error stays below the tolerance, if it is in the range.
+
+    Labelled on the ``side`` of its line, at a height in parts of the axes.
+    """
+    found = float(data.error_threshold.squeeze())
+    if np.isnan(found):
+        return
+    percent = 100 * float(data.tolerance[0])
+    axes.axvline(found, **GUIDE)
+    axes.annotate(
+        rf"$\varpi_{{{name},{percent:g}\%}}={found:.{digits}f}$",
+        (found, height),
+        xycoords=("data", "axes fraction"),
+        xytext=(-4 if side == "left" else 4, 0),
+        textcoords="offset points",
+        ha="right" if side == "left" else "left",
+        fontsize=8,
     )

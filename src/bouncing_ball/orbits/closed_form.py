@@ -106,9 +106,11 @@ def free_release_angle(contact: Contact) -> np.ndarray:
     True
     """
     zeta = np.asarray(contact.damping_ratio, dtype=float)
-    if contact.release is Release.FORCE:
-        return np.pi - 2 * np.arcsin(zeta)
-    return np.full_like(zeta, np.pi)
+    return _release_angle(zeta, contact.release) + np.zeros_like(zeta)
+
+
+def _release_angle(zeta, rule: Release):
+    return np.pi - 2 * np.arcsin(zeta) if rule is Release.FORCE else np.pi
 
 
 def _responses(duration, sin_angle, cos_angle, sin_d, cos_d, decay, omega, zeta, root):
@@ -215,8 +217,7 @@ def _branch_point(eps, omega, zeta, n, rule: Release) -> BranchPoint:
     force = rule is Release.FORCE
     root = np.sqrt((1 - zeta) * (1 + zeta))
     per_angle = 1 / (omega * root)
-    angle = np.pi - 2 * np.arcsin(zeta) if force else np.pi
-    duration = (angle + eps) * per_angle
+    duration = (_release_angle(zeta, rule) + eps) * per_angle
     flight = 2 * np.pi * n - duration
     loss, stiffness = 2 * zeta * omega, omega * omega
 

@@ -51,9 +51,9 @@ def make_dataset(snakemake: Any, study: Callable, *arguments: Any) -> None:
     with logged(snakemake) as lines:
         parameters = snakemake.params.parameters
         dataset = study(parameters, *arguments)
-        more = {key: value for key, value in snakemake.params.items() if key not in ("parameters",)}
+        more = {key: value for key, value in snakemake.params.items() if key != "parameters"}
         dataset.attrs = {
-            "title": snakemake.params.get("title", snakemake.rule),
+            "title": snakemake.rule,
             "references": _REFERENCE,
             **parameter_attributes(parameters | more),
         }

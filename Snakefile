@@ -21,6 +21,8 @@ include: "workflow/rules/permanent_contact.smk"
 include: "workflow/rules/error_thresholds.smk"
 include: "workflow/rules/release_rules.smk"
 include: "workflow/rules/witness.smk"
+include: "workflow/rules/formulas.smk"
+include: "workflow/rules/claims.smk"
 # Renderings: datasets in, figures, tables and text out.
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/tables.smk"
@@ -37,6 +39,9 @@ rule all:
             "results/figures/{table}.{kind}", table=TABLES, kind=["csv", "md", "tex"]
         ),
         paper="results/paper.md",
+        tally="results/tally.txt",
+    shell:
+        "cat {input.tally}"
 
 
 localrules:

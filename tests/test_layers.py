@@ -23,6 +23,7 @@ ALLOWED = {
         {"models", "continuation", "orbits", "simulation", "datasets"},
         {"numpy", "scipy", "xarray"},
     ),
+    "claims": ({"datasets"}, {"numpy", "xarray"}),
     "figures": ({"datasets"}, {"numpy", "xarray", "matplotlib"}),
     "tables": ({"datasets"}, {"numpy", "xarray"}),
 }

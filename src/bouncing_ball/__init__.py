@@ -12,6 +12,7 @@ The layers, each importing only what lies above it in this list (and the errors)
 ``simulation``    event-driven simulation of both models, from any initial state
 ``orbits``        n-T orbits of both models, their stability and bifurcations
 ``studies``       the stages of the pipeline: parameters in, arrays out
+``claims``        the ledger of the paper's claims and the verdict on each
 ``figures``       pictures of datasets; they compute nothing
 ``tables``        tables of datasets
 ``cli``           the command line, ``bouncing-ball``

@@ -14,6 +14,10 @@ rule continuation:
         parameters=figure_parameters,
         release=config["release"],
         continuation=config["continuation"],
+        # Only Table 1 stands in print.
+        printed=lambda wildcards: (
+            printed(LEDGER, "Table 1") if wildcards.figure == "table1" else {}
+        ),
     log:
         "results/logs/continuation/{figure}.log",
     benchmark:

@@ -137,6 +137,104 @@ VARIABLES: dict[str, Variable] = {
     "budget": Variable("disagreement allowed", ""),
     "orbits": Variable("number of orbits or bifurcations compared", ""),
     "worst": Variable("where the largest disagreement is", ""),
+    # formulas
+    "formula": Variable("printed formula", ""),
+    "compared_with": Variable("what the formula is compared with", ""),
+    "static_error": Variable(
+        "relative error of Eq. 16 on a table at rest, with gravity", "", equation="Eq. 16"
+    ),
+    # evidence for statements in words
+    "curve": Variable("curve of a figure", ""),
+    "figure": Variable("figure", ""),
+    "apparent_restitution_error": Variable(
+        "largest |r_a - r|/r among stiff contacts", "", equation="Eq. 17"
+    ),
+    "apparent_restitution_rebound": Variable(
+        "largest growth of |r_a - r|/r above its value at a softer contact", "", equation="Eq. 17"
+    ),
+    "apparent_restitution_dip": Variable("largest (r - r_a)/r", "", equation="Eq. 17"),
+    "apparent_restitution_spread": Variable("largest spread of r_a over Λ", "", equation="Eq. 17"),
+    "bounce_velocity_error": Variable("largest |z′_b - nπ|/(nπ) among stiff contacts", ""),
+    "bounce_velocity_error_soft": Variable("smallest |z′_b - nπ|/(nπ) at the softest contact", ""),
+    "bounce_velocity_departure": Variable("ϖ above which z′_b is nπ within the tolerance", "ϖ"),
+    "bounce_velocity_spread": Variable("largest spread of z′_b/(nπ) over Λ", ""),
+    "bounce_velocity_spread_end": Variable(
+        "ϖ above which the spread of z′_b/(nπ) over Λ is within the tolerance", "ϖ"
+    ),
+    "bounce_velocity_rise": Variable("smallest rise of z′_b from contact to contact", ""),
+    "velocity_balance": Variable(
+        "largest defect of the velocity balance over a cycle", "", equation="Eq. 27"
+    ),
+    "contact_duration_rise": Variable("largest rise of τ_b from contact to contact", ""),
+    "max_height_rise": Variable("smallest rise of max z from contact to contact", ""),
+    "phase_error": Variable("|φ - φ_CR|/φ_CR at the stiffest contact", ""),
+    "phase_error_rise": Variable("largest rise of |φ - φ_CR|/φ_CR from contact to contact", ""),
+    "release_phase_error": Variable("|φ + τ_b - φ_CR|/φ_CR at the stiffest contact", ""),
+    "release_phase_error_rise": Variable(
+        "largest rise of |φ + τ_b - φ_CR|/φ_CR from contact to contact", ""
+    ),
+    "stiffest_error": Variable("relative error at the stiffest contact scanned", ""),
+    "softest_error": Variable("relative error at the softest contact scanned", ""),
+    "stiff_error": Variable("largest relative error among stiff contacts", ""),
+    "stability_exceptions": Variable(
+        "orbits that are not stable exactly between saddle-node and period doubling", ""
+    ),
+    "inadmissible_orbits": Variable(
+        "orbits drawn along ϖ that do not have one impact per period", ""
+    ),
+    "contact_duration_stiffest": Variable("longest contact of the stiffest branch", "τ_b"),
+    "contact_duration_softest": Variable("longest contact of the softest branch", "τ_b"),
+    "range_error": Variable("relative error of the ends of the stability range", ""),
+    "computed_softening": Variable("change of an end of the range with the next softer ϖ", "Λ"),
+    "printed_softening": Variable(
+        "change of a printed end of the range with the next softer ϖ", "Λ", equation="Table 1"
+    ),
+    "computed_widening": Variable("change of the width of the range with the next softer ϖ", "Λ"),
+    "printed_widening": Variable(
+        "change of the printed width with the next softer ϖ", "Λ", equation="Table 1"
+    ),
+    "computed_stiff_difference": Variable(
+        "difference of the stiffest row from the restitution model", "Λ"
+    ),
+    "printed_stiff_difference": Variable(
+        "difference of the printed stiffest row from the restitution model",
+        "Λ",
+        equation="Table 1",
+    ),
+    "soft_range_shift": Variable(
+        "relative shift of the ends of the softest row from the restitution model", ""
+    ),
+    "period_doubling_lowest": Variable("ϖ at which the period doubling is lowest", "ϖ"),
+    "period_doubling_drop": Variable(
+        "how far the period doubling sinks below that of the stiffest contact", "Λ"
+    ),
+    "permanent_contact_error": Variable(
+        "relative error of Λ_CR at the printed threshold", "", equation="Eq. 38"
+    ),
+    "permanent_contact_inverse": Variable(
+        "relative difference of the threshold found from Eq. 34", "", equation="Eq. 34"
+    ),
+    # claims: the paper against the replication
+    "claim": Variable("claim of the paper", ""),
+    "section": Variable("section of the paper", ""),
+    "item": Variable("figure, table or equation of the paper", ""),
+    "kind": Variable("number, formula or statement", ""),
+    "statement": Variable("what the claim says", ""),
+    "printed_text": Variable("the number as printed", ""),
+    "legibility": Variable("how legible the claim is in the text at hand", ""),
+    "remark": Variable("how the claim was read", ""),
+    "condition": Variable("condition that decides a statement in words", ""),
+    "decided_by": Variable("dataset, variable and bound that decide", ""),
+    "found": Variable("the number found", ""),
+    "deviation_units": Variable("deviation in units of the last printed digit", ""),
+    "deviation": Variable("relative deviation", ""),
+    "verdict": Variable("reproduced, close, contradicted or undecidable", ""),
+    "reason": Variable("why a claim is undecidable", ""),
+    "explained_by": Variable("name of the explanation", ""),
+    "explained": Variable("reproduced, or explained by checks that hold", ""),
+    "explanation": Variable("explanation of claims that are not reproduced", ""),
+    "explanation_text": Variable("the explanation in words", ""),
+    "explanation_holds": Variable("whether the checks of the explanation hold", ""),
     # Table 1
     "computed": Variable("end of the stability range, this replication", "Λ"),
     "printed": Variable("end of the stability range, as printed", "Λ", equation="Table 1"),

@@ -1,9 +1,8 @@
 """Check of the configuration, with one line per mistake.
 
 The schema says what each key may be; :func:`check_configuration` adds what a
-schema cannot say: that numbers are finite, ranges are not empty, the printed
-table has the shape of the computed one, and that the restitution orbits which
-a figure needs exist (Eq. 7).
+schema cannot say: that numbers are finite, ranges are not empty, and that the
+restitution orbits which a figure needs exist (Eq. 7).
 """
 
 import math
@@ -131,14 +130,6 @@ def _check_consistency(config: Mapping[str, Any]) -> None:
             raise ConfigurationError(
                 f"{_dotted(path)}.min = {span['min']} must be less than max = {span['max']}"
             )
-    table = config["tables"]["table1"]
-    shape = (len(table["frequency_ratio"]), len(table["n"]))
-    printed = table["printed"]
-    if len(printed) != shape[0] or any(len(row) != shape[1] for row in printed):
-        raise ConfigurationError(
-            f"tables.table1.printed = {_shown(printed)} must have {shape[0]} rows (one per "
-            f"frequency_ratio) of {shape[1]} ranges (one per n)"
-        )
 
 
 def _needs(config: Mapping[str, Any]) -> Iterator[tuple[str, float, list[int], float]]:
@@ -179,6 +170,25 @@ def _check_existence(config: Mapping[str, Any]) -> None:
             )
 
 
+def check_schema(mapping: Mapping[str, Any], schema: Mapping[str, Any]) -> None:
+    """Raise on the first violation of a schema, or number that is not finite.
+
+    Raises
+    ------
+    ConfigurationError
+        One line that names the key, the value and what is allowed.
+    """
+    for path, value in _numbers(mapping):
+        if not math.isfinite(value):
+            raise ConfigurationError(f"{_dotted(path)} = {value} must be a finite number")
+    errors = sorted(
+        _Validator(schema).iter_errors(mapping),
+        key=lambda error: [str(part) for part in error.absolute_path],
+    )
+    if errors:
+        raise ConfigurationError(_message(errors[0]))
+
+
 def check_configuration(config: Mapping[str, Any], schema: Mapping[str, Any]) -> None:
     """Raise on the first mistake in a configuration.
 
@@ -195,14 +205,6 @@ def check_configuration(config: Mapping[str, Any], schema: Mapping[str, Any]) ->
     ...
     bouncing_ball.pipeline.configuration.ConfigurationError: n = 0 must be at least 1
     """
-    for path, value in _numbers(config):
-        if not math.isfinite(value):
-            raise ConfigurationError(f"{_dotted(path)} = {value} must be a finite number")
-    errors = sorted(
-        _Validator(schema).iter_errors(config),
-        key=lambda error: [str(part) for part in error.absolute_path],
-    )
-    if errors:
-        raise ConfigurationError(_message(errors[0]))
+    check_schema(config, schema)
     _check_consistency(config)
     _check_existence(config)

@@ -14,7 +14,7 @@ from typing import Any
 
 from bouncing_ball.datasets.netcdf import parameter_attributes, write_dataset
 
-_REFERENCE = (
+REFERENCE = (
     "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient "
     "and spring-damper models for the bouncing ball problem, DETC2011-47870 (2011)"
 )
@@ -54,7 +54,7 @@ def make_dataset(snakemake: Any, study: Callable, *arguments: Any) -> None:
         more = {key: value for key, value in snakemake.params.items() if key != "parameters"}
         dataset.attrs = {
             "title": snakemake.rule,
-            "references": _REFERENCE,
+            "references": REFERENCE,
             **parameter_attributes(parameters | more),
         }
         write_dataset(dataset, snakemake.output.data)

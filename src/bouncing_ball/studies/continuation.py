@@ -265,8 +265,33 @@ def both_domains(
     )
 
 
+def printed_ranges(printed: Mapping[str, Any], ratios: list, families: list) -> np.ndarray:
+    """A printed table at the frequency ratios and families computed, shape (ϖ, n, 2).
+
+    NaN where the paper has no entry.
+
+    Examples
+    --------
+    >>> printed = {"frequency_ratio": [10.0], "n": [1], "bound": ["saddle-node",
+    ...            "period doubling"], "values": [[[0.25, 1.0]]]}
+    >>> printed_ranges(printed, [10.0, 5.0], [1]).tolist()
+    [[[0.25, 1.0]], [[nan, nan]]]
+    """
+    axes = {key: printed[key] for key in ("frequency_ratio", "n", "bound")}
+    table = xr.DataArray(printed["values"], axes)
+    wanted = {
+        "frequency_ratio": ratios,
+        "n": families,
+        "bound": [SADDLE_NODE, PERIOD_DOUBLING],
+    }
+    return table.reindex(wanted).values
+
+
 def stability_ranges(
-    parameters: Mapping[str, Any], release: str, settings: Mapping[str, Any]
+    parameters: Mapping[str, Any],
+    release: str,
+    settings: Mapping[str, Any],
+    printed: Mapping[str, Any],
 ) -> xr.Dataset:
     """Ranges of Λ in which the n-T orbits are stable, computed and printed (Table 1)."""
     n, r = parameters["n"], parameters["restitution"]
@@ -293,7 +318,7 @@ def stability_ranges(
                 "computed": (dims, computed),
                 "special_phase": (dims, phase),
                 "special_contact_duration": (dims, duration),
-                "printed": (dims, np.array(parameters["printed"], dtype=float)),
+                "printed": (dims, printed_ranges(printed, ratios, n)),
                 "restitution_range": (("impact_map", "n", "bound"), limit),
             },
             coords={

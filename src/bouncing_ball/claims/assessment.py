@@ -1,0 +1,97 @@
+"""Every claim with its verdict, as a dataset."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.claims.ledger import Claim, Criterion, Explanation, Ledger
+from bouncing_ball.claims.verdict import Verdict, decide, find, foreign_parameter
+from bouncing_ball.datasets.variables import describe
+
+_SIGNS = {"at_most": "≤", "at_least": "≥", "below": "<", "above": ">"}
+
+
+def _condition(claim: Claim, criterion: Criterion) -> str:
+    if criterion.condition is None:
+        return f"{criterion.measure} is {claim.printed}"
+    bound = criterion.condition.bound
+    if criterion.condition.bound_is_variable:
+        bound = f"its {bound}"
+    return f"{criterion.measure} {_SIGNS[criterion.condition.relation]} {bound}"
+
+
+def _holds(explanation: Explanation, ledger: Ledger, data: Mapping[str, xr.Dataset]) -> bool:
+    """Whether every check of an explanation is met, on the paper's parameters."""
+    if foreign_parameter(explanation.uses, ledger, data):
+        return False
+    verdicts = (find(criterion, None, ledger, data).verdict for criterion in explanation.criteria)
+    return all(verdict is Verdict.REPRODUCED for verdict in verdicts)
+
+
+def assess(ledger: Ledger, data: Mapping[str, xr.Dataset]) -> xr.Dataset:
+    """The verdict on each claim of a ledger.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    data : mapping of str to xarray.Dataset
+        Every dataset that the ledger names.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``claim`` what the ledger says of it, the number found, its
+        deviation and the verdict; over ``explanation`` whether its checks hold.
+
+    Raises
+    ------
+    ModelError
+        If an input of a claim or of an explanation is missing.
+    """
+    holds = {
+        explanation.id: _holds(explanation, ledger, data) for explanation in ledger.explanations
+    }
+    rows: dict[str, list] = {}
+    for claim in ledger.claims:
+        decision = decide(claim, ledger, data)
+        finding = decision.finding
+        row = {
+            "section": claim.section,
+            "item": claim.item,
+            "kind": claim.kind,
+            "statement": claim.statement,
+            "printed_text": claim.printed,
+            "legibility": claim.legibility,
+            "remark": claim.remark,
+            "condition": claim.condition_text,
+            "decided_by": "; ".join(_condition(claim, criterion) for criterion in claim.criteria),
+            "found": finding.value if finding else np.nan,
+            "deviation_units": finding.units if finding else np.nan,
+            "deviation": finding.relative if finding else np.nan,
+            "verdict": str(decision.verdict),
+            "reason": decision.reason,
+            "explained_by": claim.explanation,
+            # Other parameters than the paper's are a reason of their own.
+            "explained": decision.verdict is Verdict.REPRODUCED
+            or decision.foreign
+            or holds.get(claim.explanation, False),
+        }
+        for key, value in row.items():
+            rows.setdefault(key, []).append(value)
+    return describe(
+        xr.Dataset(
+            {
+                **{key: ("claim", np.array(values)) for key, values in rows.items()},
+                "explanation_text": (
+                    "explanation",
+                    [explanation.text for explanation in ledger.explanations],
+                ),
+                "explanation_holds": ("explanation", np.array(list(holds.values()))),
+            },
+            coords={
+                "claim": [claim.id for claim in ledger.claims],
+                "explanation": list(holds),
+            },
+        )
+    )

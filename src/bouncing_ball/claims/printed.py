@@ -1,0 +1,26 @@
+"""Numbers as printed: their value and the unit of their last digit."""
+
+
+def last_unit(text: str) -> float:
+    """Unit of the last printed digit.
+
+    Examples
+    --------
+    >>> last_unit("0.255"), last_unit("82"), last_unit("1.0e-2")
+    (0.001, 1.0, 0.001)
+    """
+    mantissa, _, exponent = text.lower().partition("e")
+    decimals = len(mantissa.partition(".")[2])
+    # From its decimal form, so that 0.001 is the nearest number to 1/1000.
+    return float(f"1e{int(exponent or 0) - decimals}")
+
+
+def distance_in_units(computed: float, text: str, unit: float | None = None) -> float:
+    """(computed - printed) in units of the last printed digit.
+
+    Examples
+    --------
+    >>> round(distance_in_units(82.25, "82"), 10)
+    0.25
+    """
+    return (computed - float(text)) / (unit or last_unit(text))

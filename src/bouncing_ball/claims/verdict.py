@@ -1,0 +1,187 @@
+"""The verdict on a claim: reproduced, close, contradicted or undecidable."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.claims.ledger import Claim, Condition, Criterion, Ledger, Relation
+from bouncing_ball.claims.measure import measured
+from bouncing_ball.claims.printed import distance_in_units, last_unit
+
+# A digit that rounds to the printed one, and the rounding of the comparison.
+_HALF = 0.5 + 1e-9
+
+
+class Verdict(StrEnum):
+    """From the best to the worst."""
+
+    REPRODUCED = "reproduced"
+    """Within half a unit of the last printed digit; a condition that holds."""
+    CLOSE = "close"
+    """A number farther away, but within the ledger's ``close_within``; a bound
+    missed by less than half a unit of its last digit."""
+    CONTRADICTED = "contradicted"
+    UNDECIDABLE = "undecidable"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What one criterion of a claim gave.
+
+    ``units`` and ``relative`` are the deviation from the printed number, or
+    from the bound of a condition that is missed, in units of its last digit and
+    as a share of it; NaN where that has no meaning (a bound of zero, a bound
+    from a dataset).
+    """
+
+    verdict: Verdict
+    value: float
+    units: float
+    relative: float
+
+
+@dataclass(frozen=True)
+class Decision:
+    """The verdict on a claim with the finding that it rests on.
+
+    ``foreign`` says that parameters other than the paper's leave it open.
+    """
+
+    verdict: Verdict
+    finding: Finding | None
+    reason: str = ""
+    foreign: bool = False
+
+
+def _relative(difference: float, reference: float) -> float:
+    return difference / abs(reference) if reference else float("nan")
+
+
+def judge_number(value: float, printed: str, unit: float | None, close_within: float) -> Finding:
+    """A computed number against a printed one.
+
+    Examples
+    --------
+    >>> str(judge_number(82.177, "82", None, 0.01).verdict)
+    'reproduced'
+    >>> str(judge_number(0.2400, "0.238", None, 0.01).verdict)
+    'close'
+    >>> str(judge_number(9.81, "6", None, 0.01).verdict)
+    'contradicted'
+    """
+    units = distance_in_units(value, printed, unit)
+    relative = _relative(value - float(printed), float(printed))
+    if abs(units) <= _HALF:
+        verdict = Verdict.REPRODUCED
+    elif abs(relative) <= close_within:
+        verdict = Verdict.CLOSE
+    else:
+        verdict = Verdict.CONTRADICTED
+    return Finding(verdict, value, units, relative)
+
+
+def judge_condition(value: float, condition: Condition, bound: float) -> Finding:
+    """A computed number against the bound of a condition.
+
+    Examples
+    --------
+    >>> one_percent = Condition(Relation.AT_MOST, "0.01")
+    >>> [str(judge_condition(x, one_percent, 0.01).verdict) for x in (0.009, 0.011, 0.02)]
+    ['reproduced', 'close', 'contradicted']
+    """
+    holds = {
+        Relation.AT_MOST: value <= bound,
+        Relation.AT_LEAST: value >= bound,
+        Relation.BELOW: value < bound,
+        Relation.ABOVE: value > bound,
+    }[condition.relation]
+    units = relative = float("nan")
+    graded = condition.relation in (Relation.AT_MOST, Relation.AT_LEAST)
+    if graded and not (holds or condition.bound_is_variable or bound == 0 or np.isinf(value)):
+        units = (value - bound) / last_unit(condition.bound)
+        relative = _relative(value - bound, bound)
+    if holds:
+        verdict = Verdict.REPRODUCED
+    elif abs(units) <= _HALF:
+        verdict = Verdict.CLOSE
+    else:
+        verdict = Verdict.CONTRADICTED
+    return Finding(verdict, value, units, relative)
+
+
+def find(criterion: Criterion, claim: Claim | None, ledger: Ledger, data: Mapping[str, xr.Dataset]):
+    """The :class:`Finding` of one criterion.
+
+    Raises
+    ------
+    ModelError
+        If an input is missing.
+    """
+    value = measured(criterion.measure, data)
+    if criterion.condition is None:
+        assert claim is not None
+        return judge_number(value, claim.printed, claim.unit, ledger.close_within)
+    if criterion.condition.bound_is_variable:
+        measure = criterion.measure
+        beside = type(measure)(
+            measure.dataset, criterion.condition.bound, measure.at, measure.reduce
+        )
+        bound = measured(beside, data)
+    else:
+        bound = float(criterion.condition.bound)
+    return judge_condition(value, criterion.condition, bound)
+
+
+def _same(given: Any, paper: Any) -> bool:
+    if isinstance(given, str) and not isinstance(paper, str):
+        # Nested parameters are JSON among a dataset's attributes.
+        given = json.loads(given)
+    if isinstance(paper, str) or isinstance(given, list):
+        return given == paper
+    given, paper = np.atleast_1d(given), np.atleast_1d(paper)
+    return given.shape == paper.shape and bool(np.all(given == paper))
+
+
+def foreign_parameter(uses: Sequence[str], ledger: Ledger, data: Mapping[str, xr.Dataset]) -> str:
+    """The first parameter of these datasets that is not the paper's, in words; or "".
+
+    A parameter stands in the ledger as it stands among a dataset's attributes;
+    those under ``every`` are asked of all that have them.
+    """
+    common = ledger.parameters.get("every", {})
+    for name in uses:
+        for key, paper in {**common, **ledger.parameters.get(name, {})}.items():
+            given = data[name].attrs.get(key) if name in data else None
+            if given is not None and not _same(given, paper):
+                return f"{name} was computed with {key} = {given}, not with the paper's {paper}"
+    return ""
+
+
+def decide(claim: Claim, ledger: Ledger, data: Mapping[str, xr.Dataset]) -> Decision:
+    """The decision on a claim.
+
+    Undecidable if the datasets were not computed with the paper's parameters,
+    or if the verdict depends on how the claim is read.
+
+    Raises
+    ------
+    ModelError
+        If an input is missing.
+    """
+    foreign = foreign_parameter(claim.uses, ledger, data)
+    if foreign:
+        return Decision(Verdict.UNDECIDABLE, None, foreign, foreign=True)
+    findings = [find(criterion, claim, ledger, data) for criterion in claim.criteria]
+    verdicts = {finding.verdict for finding in findings}
+    if len(verdicts) > 1:
+        readings = "; ".join(
+            f"{criterion.reading}: {finding.verdict} ({finding.value:.4g})"
+            for criterion, finding in zip(claim.criteria, findings, strict=True)
+        )
+        return Decision(Verdict.UNDECIDABLE, None, f"depends on the reading: {readings}")
+    return Decision(findings[0].verdict, findings[0])

@@ -1,0 +1,224 @@
+"""What the paper's statements are decided by, read off the figures' datasets.
+
+Each variable turns a statement in words into numbers; the ledger of claims says
+which bound they must meet. Only what no dataset holds already is here. Nothing
+is simulated or solved: datasets in, a dataset out.
+
+A *rise* is the change from one sampled contact to the next stiffer one, a
+*softening* the change from one row of Table 1 to the next softer one.
+"""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.datasets.variables import describe
+from bouncing_ball.studies import printed
+
+Datasets = Mapping[str, xr.Dataset]
+Found = dict[str, xr.DataArray]
+BOUNDS = ("saddle-node", "period doubling")
+
+
+def last_crossing(error: np.ndarray, ratio: np.ndarray, tolerance: float) -> float:
+    """The ϖ above which a sampled error stays within a tolerance.
+
+    Between the last sample outside and the next one the error is taken for a
+    power of ϖ. NaN if no sample, or the last one, is outside.
+
+    Examples
+    --------
+    >>> ratio = np.array([1.0, 10.0, 100.0])
+    >>> round(last_crossing(1 / ratio, ratio, 0.05), 10)
+    20.0
+    """
+    outside = np.flatnonzero(error > tolerance)
+    if not outside.size or outside[-1] == len(ratio) - 1:
+        return float("nan")
+    pair = slice(outside[-1], outside[-1] + 2)
+    x, y = np.log(ratio[pair]), np.log(np.maximum(error[pair], np.finfo(float).tiny))
+    share = (np.log(tolerance) - y[0]) / (y[1] - y[0])
+    return float(np.exp(x[0] + share * (x[1] - x[0])))
+
+
+def _stiff(values: xr.DataArray, limit: float) -> xr.DataArray:
+    """The part for contacts at least as stiff as a limit, as the grid rounds it."""
+    return values.sel(frequency_ratio=values.frequency_ratio >= limit * (1 - 1e-9))
+
+
+def _smallest_rise(values: xr.DataArray) -> xr.DataArray:
+    return values.diff("frequency_ratio").min("frequency_ratio")
+
+
+def _largest_rise(values: xr.DataArray) -> xr.DataArray:
+    return values.diff("frequency_ratio").max("frequency_ratio")
+
+
+def _apparent_restitution(data: Datasets, stiff: float) -> Found:
+    """Figs. 5 and 6: how far r_a is from r, and whether it only comes closer."""
+    found: dict[str, list[xr.DataArray]] = {"error": [], "rebound": [], "dip": []}
+    for name in ("fig05", "fig06"):
+        sweep = data[name]
+        signed = (sweep.apparent_restitution - sweep.restitution) / sweep.restitution
+        signed = signed.reset_coords(drop=True)
+        error = np.abs(signed)
+        # How much farther from r than some softer contact is.
+        closest = error.copy(data=np.fmin.accumulate(error.values, axis=1))
+        for key, values in (
+            ("error", _stiff(error, stiff).max("frequency_ratio")),
+            ("rebound", (error - closest).max("frequency_ratio")),
+            ("dip", -signed.min("frequency_ratio")),
+        ):
+            labels = [f"{name} r={r:g} Λ={lam:g}" for r, lam in _cases(sweep)]
+            found[key].append(values.rename(case="curve").assign_coords(curve=labels))
+    drawn = data["fig06"].apparent_restitution
+    return {
+        **{
+            f"apparent_restitution_{key}": xr.concat(parts, "curve") for key, parts in found.items()
+        },
+        "apparent_restitution_spread": (drawn.max("case") - drawn.min("case")).max(),
+    }
+
+
+def _cases(sweep: xr.Dataset):
+    return zip(sweep.restitution.values, sweep.amplitude.values, strict=True)
+
+
+def _bounce(data: Datasets, stiff: float) -> Found:
+    """Fig. 10: the bouncing-off velocity against nπ, and the balance of Eq. 27."""
+    sweep, tolerances = data["fig10"], data["thresholds"].tolerance
+    velocity, limit = sweep.bounce_velocity, sweep.restitution_bounce_velocity
+    ratio = sweep.frequency_ratio.values
+    error = np.abs(velocity - limit) / limit
+    spread = (velocity.max("case") - velocity.min("case")) / limit
+
+    def crossings(values: xr.DataArray) -> xr.DataArray:
+        found = [last_crossing(values.values, ratio, x) for x in tolerances.values]
+        return xr.DataArray(found, {"tolerance": tolerances.values})
+
+    period = 2 * np.pi * sweep.attrs["n"]
+    balance = sweep.impact_velocity + period - sweep.contact_duration - velocity
+    return {
+        "bounce_velocity_error": _stiff(error, stiff).max(),
+        "bounce_velocity_error_soft": error.isel(frequency_ratio=0).min(),
+        "bounce_velocity_departure": crossings(error.max("case")),
+        "bounce_velocity_spread": spread.max(),
+        "bounce_velocity_spread_end": crossings(spread),
+        "bounce_velocity_rise": _smallest_rise(velocity).min(),
+        "velocity_balance": np.abs(balance).max(),
+    }
+
+
+def _convergence(data: Datasets) -> Found:
+    """Figs. 13 and 14 and the thresholds: what happens with rising ϖ."""
+    sweep, errors = data["fig13"], data["thresholds"].relative_error
+    found = {
+        "contact_duration_rise": _largest_rise(sweep.contact_duration).max(),
+        "max_height_rise": _smallest_rise(data["fig14"].max_height),
+        "stiffest_error": errors.isel(frequency_ratio=-1),
+        "softest_error": errors.isel(frequency_ratio=0),
+    }
+    for name in ("phase", "release_phase"):
+        error = np.abs(sweep[name] - sweep.restitution_phase) / sweep.restitution_phase
+        found[f"{name}_error"] = error.isel(frequency_ratio=-1).max()
+        found[f"{name}_error_rise"] = _largest_rise(error).max()
+    return found
+
+
+def _domains(data: Datasets) -> Found:
+    """Figs. 3, 8, 9 and 15: existence and stability along Λ."""
+    orbits = data["fig03"]
+    doubling = orbits.period_doubling_amplitude.sel(impact_map="exact")
+    between = (
+        (orbits.phase > 0)
+        & (orbits.amplitude > orbits.saddle_node_amplitude)
+        & (orbits.amplitude < doubling)
+    )
+    found = {"stability_exceptions": (orbits.stable != between).sum()}
+    swept = [data[name].admissible for name in ("fig05", "fig06", "fig10", "fig13", "fig14")]
+    found["inadmissible_orbits"] = xr.DataArray(sum(int((~x).sum()) for x in swept))
+    names = ["fig08", "fig09"]
+    for key, pick in (("stiffest", "argmax"), ("softest", "argmin")):
+        longest = []
+        for name in names:
+            ratio = data[name].frequency_ratio.values
+            at = int(getattr(ratio, pick)())
+            longest.append(float(data[name].contact_duration.isel(frequency_ratio=at).max()))
+        found[f"contact_duration_{key}"] = xr.DataArray(longest, {"figure": names})
+
+    both = data["fig15"].isel(frequency_ratio=0)
+    rigid = np.array([both.saddle_node_amplitude, both.period_doubling_amplitude])
+    # The branch's own order ends on the stable side: the last of each kind.
+    soft = [both.special_amplitude.values[both.special_kind.values == kind] for kind in BOUNDS]
+    ends = np.array([part[-1] if part.size else np.nan for part in soft])
+    found["range_error"] = xr.DataArray(np.abs(ends / rigid - 1), {"bound": list(BOUNDS)})
+    return found
+
+
+def _table(data: Datasets) -> Found:
+    """Table 1: how its ranges move from the stiffest contact to softer ones."""
+    # From stiff to soft, so that a difference is what softening does.
+    table = data["table1"].sortby("frequency_ratio", ascending=False)
+    node, doubling = BOUNDS
+    found = {}
+    for source in ("computed", "printed"):
+        ends = table[source]
+        width = ends.sel(bound=doubling) - ends.sel(bound=node)
+        found[f"{source}_softening"] = ends.diff("frequency_ratio")
+        found[f"{source}_widening"] = width.diff("frequency_ratio")
+        stiffest = ends.isel(frequency_ratio=0, drop=True)
+        found[f"{source}_stiff_difference"] = np.abs(stiffest - table.restitution_range)
+    exact = table.restitution_range.sel(impact_map="exact")
+    softest = table.computed.isel(frequency_ratio=-1, drop=True)
+    found["soft_range_shift"] = np.abs(softest - exact) / exact
+
+    curve = data["ext_release"].bifurcation_amplitude.sel(release="displacement", bound=doubling)
+    at = curve.argmin("frequency_ratio")
+    found["period_doubling_lowest"] = curve.frequency_ratio[at]
+    stiffest = curve.isel(frequency_ratio=-1, drop=True)
+    found["period_doubling_drop"] = stiffest - curve.min("frequency_ratio")
+    return found
+
+
+def _permanent_contact(figure: xr.Dataset, asked: float) -> Found:
+    """Fig. 16: the error at the printed threshold, and the threshold by Eq. 34."""
+    error = figure.relative_error.isel(quantity=0)
+    grid = np.log(figure.frequency_ratio.values)
+    threshold = figure.error_threshold.isel(quantity=0, tolerance=0, drop=True)
+    # The error is one-sided there: Λ_SD comes from below.
+    level = (1 - figure.tolerance.values[0]) * figure.restitution_threshold
+    by_formula = printed.permanent_contact_frequency_ratio(level, figure.damping_ratio, 1)
+    return {
+        "permanent_contact_error": xr.DataArray(np.interp(np.log(asked), grid, error.values)),
+        "permanent_contact_inverse": np.abs(by_formula / threshold - 1),
+    }
+
+
+def evidence(data: Datasets, parameters: Mapping[str, Any]) -> xr.Dataset:
+    """All numbers by which statements of the paper are decided.
+
+    Parameters
+    ----------
+    data : mapping of str to xarray.Dataset
+        Figs. 3, 5, 6, 8, 9, 10, 13, 14, 15, 16, Table 1, the table of
+        thresholds and the extension on release rules, by name.
+    parameters : mapping
+        ``stiff_frequency_ratio``, from which on the paper takes both models for
+        the same, and ``permanent_contact_frequency_ratio``, its own threshold.
+
+    Raises
+    ------
+    KeyError
+        If a dataset is missing.
+    """
+    stiff = parameters["stiff_frequency_ratio"]
+    parts: list[Callable[[Datasets], Found]] = [_convergence, _domains, _table]
+    found = _apparent_restitution(data, stiff) | _bounce(data, stiff)
+    for part in parts:
+        found |= part(data)
+    errors = data["thresholds"].relative_error
+    found["stiff_error"] = _stiff(errors, stiff).max("frequency_ratio")
+    found |= _permanent_contact(data["fig16"], parameters["permanent_contact_frequency_ratio"])
+    return describe(xr.Dataset({k: v.reset_coords(drop=True) for k, v in found.items()}))

@@ -1,0 +1,39 @@
+# Stages: what statements in words are decided by, and the verdict on each claim.
+
+
+rule evidence:
+    message:
+        "Evidence for the paper's statements"
+    input:
+        data=[f"results/figures/{name}.nc" for name in EVIDENCE],
+        source=modules("studies.evidence", "datasets.netcdf"),
+    output:
+        data="results/figures/evidence.nc",
+    params:
+        parameters=config["studies"]["evidence"],
+    log:
+        "results/logs/evidence.log",
+    benchmark:
+        "results/benchmarks/evidence.tsv"
+    script:
+        "../scripts/evidence.py"
+
+
+rule claims_stage:
+    message:
+        "Verdicts on the paper's claims"
+    input:
+        data=[f"results/figures/{name}.nc" for name in datasets_of(LEDGER)],
+        source=modules("claims.assessment", "claims.tally", "datasets.netcdf", "pipeline.files"),
+    output:
+        data="results/figures/claims.nc",
+        tally="results/tally.txt",
+    params:
+        ledger=LEDGER,
+        figures=len(PAPER_FIGURES),
+    log:
+        "results/logs/claims_stage.log",
+    benchmark:
+        "results/benchmarks/claims_stage.tsv"
+    script:
+        "../scripts/claims.py"

@@ -1,0 +1,20 @@
+"""Verdicts on the claims of the ledger, and the tally."""
+
+from pathlib import Path
+
+from bouncing_ball.claims.assessment import assess
+from bouncing_ball.claims.ledger import parse_ledger
+from bouncing_ball.claims.tally import tally
+from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
+from bouncing_ball.pipeline.files import write_text
+from bouncing_ball.pipeline.job import REFERENCE, logged
+
+with logged(snakemake) as lines:
+    paths = map(Path, snakemake.input.data)
+    data = {path.stem: read_dataset(path) for path in paths}
+    verdicts = assess(parse_ledger(snakemake.params.ledger), data)
+    verdicts.attrs = {"title": snakemake.rule, "references": REFERENCE}
+    write_dataset(verdicts, snakemake.output.data)
+    last = tally(verdicts, snakemake.params.figures)
+    write_text(snakemake.output.tally, last + "\n")
+    lines.append(last)

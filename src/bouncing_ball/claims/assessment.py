@@ -9,8 +9,6 @@ from bouncing_ball.claims.ledger import Claim, Criterion, Explanation, Ledger
 from bouncing_ball.claims.verdict import Verdict, decide, find, foreign_parameter
 from bouncing_ball.datasets.variables import describe
 
-_SIGNS = {"at_most": "≤", "at_least": "≥", "below": "<", "above": ">"}
-
 
 def _condition(claim: Claim, criterion: Criterion) -> str:
     if criterion.condition is None:
@@ -18,7 +16,7 @@ def _condition(claim: Claim, criterion: Criterion) -> str:
     bound = criterion.condition.bound
     if criterion.condition.bound_is_variable:
         bound = f"its {bound}"
-    return f"{criterion.measure} {_SIGNS[criterion.condition.relation]} {bound}"
+    return f"{criterion.measure} {criterion.condition.relation.sign} {bound}"
 
 
 def _holds(explanation: Explanation, ledger: Ledger, data: Mapping[str, xr.Dataset]) -> bool:
@@ -66,6 +64,7 @@ def assess(ledger: Ledger, data: Mapping[str, xr.Dataset]) -> xr.Dataset:
             "remark": claim.remark,
             "condition": claim.condition_text,
             "decided_by": "; ".join(_condition(claim, criterion) for criterion in claim.criteria),
+            "required": finding.required if finding else "",
             "found": finding.value if finding else np.nan,
             "deviation_units": finding.units if finding else np.nan,
             "deviation": finding.relative if finding else np.nan,

@@ -21,6 +21,11 @@ class Relation(StrEnum):
     BELOW = "below"
     ABOVE = "above"
 
+    @property
+    def sign(self) -> str:
+        """As it stands between two numbers."""
+        return {"at_most": "≤", "at_least": "≥", "below": "<", "above": ">"}[self]
+
 
 @dataclass(frozen=True)
 class Measure:

@@ -36,13 +36,14 @@ class Finding:
     ``units`` and ``relative`` are the deviation from the printed number, or
     from the bound of a condition that is missed, in units of its last digit and
     as a share of it; NaN where that has no meaning (a bound of zero, a bound
-    from a dataset).
+    from a dataset). ``required`` is the printed number, or the bound in words.
     """
 
     verdict: Verdict
     value: float
     units: float
     relative: float
+    required: str
 
 
 @dataclass(frozen=True)
@@ -82,7 +83,7 @@ def judge_number(value: float, printed: str, unit: float | None, close_within: f
         verdict = Verdict.CLOSE
     else:
         verdict = Verdict.CONTRADICTED
-    return Finding(verdict, value, units, relative)
+    return Finding(verdict, value, units, relative, printed)
 
 
 def judge_condition(value: float, condition: Condition, bound: float) -> Finding:
@@ -111,7 +112,7 @@ def judge_condition(value: float, condition: Condition, bound: float) -> Finding
         verdict = Verdict.CLOSE
     else:
         verdict = Verdict.CONTRADICTED
-    return Finding(verdict, value, units, relative)
+    return Finding(verdict, value, units, relative, f"{condition.relation.sign} {bound:g}")
 
 
 def find(criterion: Criterion, claim: Claim | None, ledger: Ledger, data: Mapping[str, xr.Dataset]):
@@ -127,10 +128,7 @@ def find(criterion: Criterion, claim: Claim | None, ledger: Ledger, data: Mappin
         assert claim is not None
         return judge_number(value, claim.printed, claim.unit, ledger.close_within)
     if criterion.condition.bound_is_variable:
-        measure = criterion.measure
-        beside = type(measure)(
-            measure.dataset, criterion.condition.bound, measure.at, measure.reduce
-        )
+        beside = replace(criterion.measure, variable=criterion.condition.bound)
         bound = measured(beside, data)
     else:
         bound = float(criterion.condition.bound)

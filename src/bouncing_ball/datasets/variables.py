@@ -225,6 +225,7 @@ VARIABLES: dict[str, Variable] = {
     "remark": Variable("how the claim was read", ""),
     "condition": Variable("condition that decides a statement in words", ""),
     "decided_by": Variable("dataset, variable and bound that decide", ""),
+    "required": Variable("the number as printed, or the bound to be met", ""),
     "found": Variable("the number found", ""),
     "deviation_units": Variable("deviation in units of the last printed digit", ""),
     "deviation": Variable("relative deviation", ""),

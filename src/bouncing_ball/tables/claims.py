@@ -10,33 +10,30 @@ def _found(claim: xr.Dataset) -> str:
     """The number found: two digits more than printed, or four in all."""
     value, printed = float(claim.found), str(claim.printed_text.values)
     if np.isnan(value):
-        return ""
+        return "–"
     if not printed:
         return f"{value:.4g}"
     decimals = len(printed.partition(".")[2])
     return f"{value:.{decimals + 2}f}"
 
 
-def rows(data: xr.Dataset) -> tuple[Sequence[str], list[list[str]]]:
-    """One row for each claim: place, statement, printed, found, deviation, verdict.
+def _deviation(claim: xr.Dataset) -> str:
+    """In units of the last printed digit, and in per cent."""
+    units, share = float(claim.deviation_units), float(claim.deviation)
+    return "" if np.isnan(units) else f"{units:+.2f} ({100 * share:+.2g} %)"
 
-    The deviation is given in units of the last printed digit and in per cent.
+
+def rows(data: xr.Dataset) -> tuple[Sequence[str], list[list[str]]]:
+    """One row for each claim: place, statement, number, deviation, verdict.
+
+    Under "printed or required" stands the printed number, or for a formula or a
+    statement the bound that must be met.
     """
-    header = ["claim", "where", "what the paper says", "printed", "found", "deviation", "verdict"]
+    header = ["claim", "where", "what the paper says", "printed or required", "found"]
+    header += ["deviation", "verdict"]
     body = []
     for index in range(data.sizes["claim"]):
         claim = data.isel(claim=index)
-        units, share = float(claim.deviation_units), float(claim.deviation)
-        deviation = "" if np.isnan(units) else f"{units:+.2g} ({100 * share:+.2g} %)"
-        body.append(
-            [
-                str(claim.claim.values),
-                str(claim.item.values),
-                str(claim.statement.values),
-                str(claim.printed_text.values),
-                _found(claim),
-                deviation,
-                str(claim.verdict.values),
-            ]
-        )
+        texts = (claim[key].item() for key in ("claim", "item", "statement", "required"))
+        body.append([*texts, _found(claim), _deviation(claim), claim.verdict.item()])
     return header, body

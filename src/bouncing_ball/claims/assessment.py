@@ -64,7 +64,7 @@ def assess(ledger: Ledger, data: Mapping[str, xr.Dataset]) -> xr.Dataset:
             "remark": claim.remark,
             "condition": claim.condition_text,
             "decided_by": "; ".join(_condition(claim, criterion) for criterion in claim.criteria),
-            "required": finding.required if finding else "",
+            "required": finding.required if finding else claim.printed,
             "found": finding.value if finding else np.nan,
             "deviation_units": finding.units if finding else np.nan,
             "deviation": finding.relative if finding else np.nan,

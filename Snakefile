@@ -21,6 +21,7 @@ include: "workflow/rules/permanent_contact.smk"
 include: "workflow/rules/error_thresholds.smk"
 include: "workflow/rules/release_rules.smk"
 include: "workflow/rules/witness.smk"
+include: "workflow/rules/forensics.smk"
 include: "workflow/rules/formulas.smk"
 include: "workflow/rules/claims.smk"
 # Renderings: datasets in, figures, tables and text out.

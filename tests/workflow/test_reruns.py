@@ -40,6 +40,11 @@ def drawing(*names):
             {"Continuation of the n-T orbits for table1", "Setting table1", *WITNESS},
         ),
         (
+            ("studies", "forensics", "steps"),
+            [0.01],
+            {"Readings of Table 1 for forensics", "Setting forensics"},
+        ),
+        (
             ("continuation", "max_angle"),
             0.1,
             {
@@ -81,6 +86,10 @@ def test_a_changed_parameter(complete, keys, value, expected):
                 *WITNESS,
                 PAPER,
             },
+        ),
+        (
+            "studies/forensics/readings.py",
+            {"Readings of Table 1 for forensics", "Setting forensics", PAPER},
         ),
         # A plotting change does not run the science again.
         ("figures/fig12.py", drawing("fig12")),

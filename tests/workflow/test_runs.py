@@ -26,7 +26,7 @@ def test_a_run_makes_every_figure_and_table(pristine):
     data = {f"figures/{name}.nc" for name in FIGURES if name not in ("fig01", "fig04")}
     tables = {
         f"figures/{name}.{kind}"
-        for name in ("table1", "thresholds", "witness")
+        for name in ("table1", "thresholds", "witness", "forensics")
         for kind in ("nc", "csv", "md", "tex")
     }
     assert made == pictures | data | tables | {"paper.md"}

@@ -25,7 +25,7 @@ PAPER_FIGURES = [f"fig{number:02d}" for number in range(1, 17)]
 EXTENSIONS = ["ext_release"]
 FIGURES = PAPER_FIGURES + EXTENSIONS
 SCHEMATICS = ["fig01", "fig04"]
-TABLES = ["table1", "thresholds", "witness", "formulas", "claims"]
+TABLES = ["table1", "thresholds", "witness", "forensics", "formulas", "claims"]
 # Those that show orbits or their bifurcations.
 WITNESSED = [f"fig{number:02d}" for number in (2, 3, 5, 6, 7, 8, 9, 10, 12, 13, 14, 15)]
 WITNESSED += ["table1", "ext_release"]

@@ -127,7 +127,7 @@ VARIABLES: dict[str, Variable] = {
     "threshold_status": Variable("whether the threshold lies within the range scanned", ""),
     # release rules
     "release": Variable("what ends a contact", ""),
-    "reading": Variable("release rule, and restitution coefficient compared with", ""),
+    "reading": Variable("what is assumed, one reading of the paper each", ""),
     "bifurcation_amplitude": Variable("excitation amplitude of the bifurcation", "Λ"),
     "force_restitution": Variable("restitution coefficient of the force release", "r_F"),
     # witness
@@ -240,6 +240,18 @@ VARIABLES: dict[str, Variable] = {
     "computed": Variable("end of the stability range, this replication", "Λ"),
     "printed": Variable("end of the stability range, as printed", "Λ", equation="Table 1"),
     "restitution_range": Variable("end of the stability range, restitution model", "Λ"),
+    # forensics
+    "rows": Variable("rows of the table that are compared", "", equation="Table 1"),
+    "rank": Variable("place of the reading, the closest to the printed table first", ""),
+    "description": Variable("what the reading assumes, in words", ""),
+    "difference": Variable("computed less printed value, in units of the last digit", ""),
+    "largest_difference": Variable("largest difference, in units of the last digit", ""),
+    "rms_difference": Variable("root mean square difference, in units of the last digit", ""),
+    "reproduced": Variable("number of entries within half a unit of the last digit", ""),
+    "entries": Variable("number of entries compared", ""),
+    "unreachable": Variable("number of saddle-nodes printed below every computed orbit", ""),
+    "chosen_in_range": Variable("whether the reading allows a range, its best value taken", ""),
+    "step_needed": Variable("arclength step from which a continued point may round to it", "h"),
 }
 
 

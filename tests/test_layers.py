@@ -26,6 +26,7 @@ ALLOWED = {
     "claims": ({"datasets"}, {"numpy", "xarray"}),
     "figures": ({"datasets"}, {"numpy", "xarray", "matplotlib"}),
     "tables": ({"datasets"}, {"numpy", "xarray"}),
+    "article": ({"datasets", "tables"}, {"numpy", "xarray", "jinja2"}),
 }
 
 

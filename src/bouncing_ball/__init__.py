@@ -15,6 +15,7 @@ The layers, each importing only what lies above it in this list (and the errors)
 ``claims``        the ledger of the paper's claims and the verdict on each
 ``figures``       pictures of datasets; they compute nothing
 ``tables``        tables of datasets
+``article``       the replication article from its templates
 ``cli``           the command line, ``bouncing-ball``
 ``pipeline``      what the Snakefile needs of Python
 """

@@ -1,17 +1,20 @@
 # Rendering: the replication article, every number from a dataset.
 
+ARTICLE = Path(workflow.basedir, "workflow/report/paper")
+
 
 rule paper:
     message:
         "Writing results/paper.md"
     input:
-        template="workflow/report/paper.md.j2",
+        templates=sorted(os.path.relpath(path) for path in ARTICLE.glob("*.md.j2")),
+        references=os.path.relpath(ARTICLE / "references.yaml"),
         data=[
             f"results/figures/{name}.nc"
-            for name in [*(f for f in FIGURES if f not in SCHEMATICS), *TABLES]
+            for name in [*(f for f in FIGURES if f not in SCHEMATICS), *TABLES, "evidence"]
         ],
         tables=expand("results/figures/{table}.md", table=TABLES),
-        source=modules("pipeline.files", "datasets.netcdf"),
+        source=modules("article.render", "pipeline.files", "datasets.netcdf"),
     output:
         paper="results/paper.md",
     log:

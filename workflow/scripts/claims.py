@@ -12,8 +12,13 @@ from bouncing_ball.pipeline.job import REFERENCE, logged
 with logged(snakemake) as lines:
     paths = map(Path, snakemake.input.data)
     data = {path.stem: read_dataset(path) for path in paths}
-    verdicts = assess(parse_ledger(snakemake.params.ledger), data)
-    verdicts.attrs = {"title": snakemake.rule, "references": REFERENCE}
+    ledger = parse_ledger(snakemake.params.ledger)
+    verdicts = assess(ledger, data)
+    verdicts.attrs = {
+        "title": snakemake.rule,
+        "references": REFERENCE,
+        "close_within": ledger.close_within,
+    }
     write_dataset(verdicts, snakemake.output.data)
     last = tally(verdicts, snakemake.params.figures)
     write_text(snakemake.output.tally, last + "\n")

@@ -19,12 +19,20 @@ def _condition(claim: Claim, criterion: Criterion) -> str:
     return f"{criterion.measure} {criterion.condition.relation.sign} {bound}"
 
 
-def _holds(explanation: Explanation, ledger: Ledger, data: Mapping[str, xr.Dataset]) -> bool:
-    """Whether every check of an explanation is met, on the paper's parameters."""
-    if foreign_parameter(explanation.uses, ledger, data):
-        return False
-    verdicts = (find(criterion, None, ledger, data).verdict for criterion in explanation.criteria)
-    return all(verdict is Verdict.REPRODUCED for verdict in verdicts)
+def _checks(
+    explanation: Explanation, ledger: Ledger, data: Mapping[str, xr.Dataset]
+) -> tuple[bool, str]:
+    """Whether every check of an explanation is met, and each in words with its number."""
+    foreign = foreign_parameter(explanation.uses, ledger, data)
+    if foreign:
+        return False, foreign
+    findings = [find(criterion, None, ledger, data) for criterion in explanation.criteria]
+    words = [
+        f"{criterion.measure} = {finding.value:.4g} {finding.required}"
+        for criterion, finding in zip(explanation.criteria, findings, strict=True)
+    ]
+    met = all(finding.verdict is Verdict.REPRODUCED for finding in findings)
+    return met, "; ".join(words)
 
 
 def assess(ledger: Ledger, data: Mapping[str, xr.Dataset]) -> xr.Dataset:
@@ -47,9 +55,8 @@ def assess(ledger: Ledger, data: Mapping[str, xr.Dataset]) -> xr.Dataset:
     ModelError
         If an input of a claim or of an explanation is missing.
     """
-    holds = {
-        explanation.id: _holds(explanation, ledger, data) for explanation in ledger.explanations
-    }
+    checks = {part.id: _checks(part, ledger, data) for part in ledger.explanations}
+    holds = {name: met for name, (met, _) in checks.items()}
     rows: dict[str, list] = {}
     for claim in ledger.claims:
         decision = decide(claim, ledger, data)
@@ -86,7 +93,8 @@ def assess(ledger: Ledger, data: Mapping[str, xr.Dataset]) -> xr.Dataset:
                     "explanation",
                     [explanation.text for explanation in ledger.explanations],
                 ),
-                "explanation_holds": ("explanation", np.array(list(holds.values()))),
+                "explanation_holds": ("explanation", list(holds.values())),
+                "explanation_checks": ("explanation", [words for _, words in checks.values()]),
             },
             coords={
                 "claim": [claim.id for claim in ledger.claims],

@@ -190,8 +190,7 @@ def _cells(entry: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
         for index, _ in place:
             printed = printed[index]
         at = {label: value for label, (_, value) in zip(labels, place, strict=True)}
-        name = " ".join(f"{value:g}" if isinstance(value, float) else str(value)
-                        for value in at.values())  # fmt: skip
+        labels_at = (f"{x:g}" if isinstance(x, float) else str(x) for x in at.values())
         explanation = entry["explanation"]
         for rule in explanation:
             if all(at[key] == value for key, value in rule.get("where", {}).items()):
@@ -201,7 +200,7 @@ def _cells(entry: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
             chosen = ""
         yield {
             **{key: entry[key] for key in ("section", "item", "legibility")},
-            "id": f"{entry['id']} {name}",
+            "id": f"{entry['id']}: {', '.join(labels_at)}",
             "kind": "number",
             "statement": entry["statement"].format(**at),
             "printed": printed,

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.claims.ledger import Claim, Condition, Criterion, Ledger, Relation
+from bouncing_ball.claims.ledger import Claim, Condition, Criterion, Ledger, Measure, Relation
 from bouncing_ball.claims.measure import measured
 from bouncing_ball.claims.printed import distance_in_units, last_unit
 
@@ -115,6 +115,13 @@ def judge_condition(value: float, condition: Condition, bound: float) -> Finding
     return Finding(verdict, value, units, relative, f"{condition.relation.sign} {bound:g}")
 
 
+def _beside(measure: Measure, variable: str, data: Mapping[str, xr.Dataset]) -> Measure:
+    """Another variable of the same dataset, at the same place as far as it has one."""
+    dims = data[measure.dataset][variable].dims if variable in data[measure.dataset] else ()
+    at = tuple((name, wanted) for name, wanted in measure.at if name in dims)
+    return replace(measure, variable=variable, at=at)
+
+
 def find(criterion: Criterion, claim: Claim | None, ledger: Ledger, data: Mapping[str, xr.Dataset]):
     """The :class:`Finding` of one criterion.
 
@@ -128,7 +135,7 @@ def find(criterion: Criterion, claim: Claim | None, ledger: Ledger, data: Mappin
         assert claim is not None
         return judge_number(value, claim.printed, claim.unit, ledger.close_within)
     if criterion.condition.bound_is_variable:
-        beside = replace(criterion.measure, variable=criterion.condition.bound)
+        beside = _beside(criterion.measure, criterion.condition.bound, data)
         bound = measured(beside, data)
     else:
         bound = float(criterion.condition.bound)

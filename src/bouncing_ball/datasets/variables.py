@@ -235,6 +235,7 @@ VARIABLES: dict[str, Variable] = {
     "explained": Variable("reproduced, or explained by checks that hold", ""),
     "explanation": Variable("explanation of claims that are not reproduced", ""),
     "explanation_text": Variable("the explanation in words", ""),
+    "explanation_checks": Variable("the checks of the explanation, with the numbers found", ""),
     "explanation_holds": Variable("whether the checks of the explanation hold", ""),
     # Table 1
     "computed": Variable("end of the stability range, this replication", "Λ"),

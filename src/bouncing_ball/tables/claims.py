@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 
-def _found(claim: xr.Dataset) -> str:
+def found_text(claim: xr.Dataset) -> str:
     """The number found: two digits more than printed, or four in all."""
     value, printed = float(claim.found), str(claim.printed_text.values)
     if np.isnan(value):
@@ -17,7 +17,7 @@ def _found(claim: xr.Dataset) -> str:
     return f"{value:.{decimals + 2}f}"
 
 
-def _deviation(claim: xr.Dataset) -> str:
+def deviation_text(claim: xr.Dataset) -> str:
     """In units of the last printed digit, and in per cent."""
     units, share = float(claim.deviation_units), float(claim.deviation)
     return "" if np.isnan(units) else f"{units:+.2f} ({100 * share:+.2g} %)"
@@ -35,5 +35,5 @@ def rows(data: xr.Dataset) -> tuple[Sequence[str], list[list[str]]]:
     for index in range(data.sizes["claim"]):
         claim = data.isel(claim=index)
         texts = (claim[key].item() for key in ("claim", "item", "statement", "required"))
-        body.append([*texts, _found(claim), _deviation(claim), claim.verdict.item()])
+        body.append([*texts, found_text(claim), deviation_text(claim), claim.verdict.item()])
     return header, body

@@ -1,0 +1,1 @@
+"""The replication article from its templates: every number from a dataset."""

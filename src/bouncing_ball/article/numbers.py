@@ -1,0 +1,101 @@
+"""Numbers of datasets as text."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.errors import ModelError
+
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def decimal(value: float, digits: int) -> str:
+    """A number with so many decimals.
+
+    Examples
+    --------
+    >>> decimal(82.1774, 2)
+    '82.18'
+    """
+    return f"{float(value):.{digits}f}".replace("-", "−")
+
+
+def short(value: float, digits: int = 6) -> str:
+    """A parameter without trailing zeros; large and small ones with a power of ten.
+
+    Examples
+    --------
+    >>> short(0.85), short(10000.0), short(2.5e-13, 2)
+    ('0.85', '10⁴', '2.5·10⁻¹³')
+    """
+    value = float(value)
+    if value and not 1e-3 <= abs(value) < 1e4:
+        mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+        factor = f"{float(mantissa):g}"
+        power = f"10{str(int(exponent)).translate(_SUPERSCRIPTS)}"
+        return power if factor == "1" else f"{factor}·{power}".replace("-", "−")
+    return f"{value:.{digits}g}".replace("-", "−")
+
+
+def percent(share: float, digits: int = 3) -> str:
+    """A share in per cent.
+
+    Examples
+    --------
+    >>> percent(0.01), percent(0.0279, 2)
+    ('1 %', '2.8 %')
+    """
+    return f"{short(100 * float(share), digits)} %"
+
+
+def listed(values, word: str = "and") -> str:
+    """Texts or numbers as a list in a sentence.
+
+    Examples
+    --------
+    >>> listed([0.7, 1.0, 1.2])
+    '0.7, 1 and 1.2'
+    """
+    texts = [value if isinstance(value, str) else short(value) for value in values]
+    return texts[0] if len(texts) == 1 else f"{', '.join(texts[:-1])} {word} {texts[-1]}"
+
+
+def largest(values: xr.DataArray) -> float:
+    """The largest absolute entry.
+
+    Examples
+    --------
+    >>> largest(xr.DataArray([1.0, -3.0, np.nan]))
+    3.0
+    """
+    return float(np.abs(values).max())
+
+
+def value_at(data: Mapping[str, xr.Dataset], dataset: str, variable: str, **where: Any) -> float:
+    """One number of a dataset, at the coordinates given.
+
+    Raises
+    ------
+    ModelError
+        If there is no such place, or more than one number is left.
+
+    Examples
+    --------
+    >>> value_at({"t": xr.Dataset({"x": ("n", [1.0, 3.0])}, {"n": [1, 2]})}, "t", "x", n=2)
+    3.0
+    """
+    chosen = data[dataset][variable]
+    for name, wanted in where.items():
+        labels = chosen[name].values
+        if isinstance(wanted, str):
+            there = np.flatnonzero(labels == wanted)
+        else:
+            there = np.flatnonzero(np.isclose(labels.astype(float), wanted, rtol=1e-9, atol=0))
+        if there.size != 1:
+            raise ModelError(f"{dataset}: {variable} has no {name} = {wanted}")
+        chosen = chosen.isel({name: int(there[0])})
+    if chosen.size != 1:
+        raise ModelError(f"{dataset}: {variable} at {where} is {chosen.size} numbers, not one")
+    return chosen.item()

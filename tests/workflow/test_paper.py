@@ -1,0 +1,110 @@
+"""The article of a complete run: figures, verdicts and numbers follow the data."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from bouncing_ball.article.render import render_article
+from bouncing_ball.claims.verdict import Verdict
+from bouncing_ball.datasets.netcdf import read_dataset
+
+
+@pytest.fixture(scope="module")
+def run(pristine):
+    """Folder of templates, datasets, tables and references of a complete run."""
+    folder = pristine.path / "workflow" / "report" / "paper"
+    results = pristine.path / "results" / "figures"
+    data = {path.stem: read_dataset(path) for path in sorted(results.glob("*.nc"))}
+    tables = {path.stem: path.read_text(encoding="utf-8") for path in results.glob("*.md")}
+    references = yaml.safe_load((folder / "references.yaml").read_text(encoding="utf-8"))
+    return folder, data, tables, references
+
+
+@pytest.fixture(scope="module")
+def text(pristine):
+    return (pristine.path / "results" / "paper.md").read_text(encoding="utf-8")
+
+
+def test_the_parts_of_an_article_are_there(text):
+    headings = re.findall(r"^## (.*)$", text, re.MULTILINE)
+    assert headings == [
+        "Abstract",
+        "Introduction",
+        "Methods",
+        "Results, figure by figure",
+        "All claims",
+        "What did not reproduce, and why",
+        "Beyond the paper",
+        "Conclusion",
+        "Reproducibility",
+        "References",
+    ]
+
+
+def test_every_figure_and_table_is_shown(text, pristine):
+    shown = re.findall(r"!\[[^]]*\]\((figures/[^)]*)\)", text)
+    figures = sorted(
+        f"figures/{path.name}" for path in (pristine.path / "results/figures").glob("*.png")
+    )
+    assert sorted(shown) == figures
+    for name in ("table1", "thresholds", "witness", "formulas", "claims"):
+        table = (pristine.path / "results" / "figures" / f"{name}.md").read_text(encoding="utf-8")
+        assert table in text
+
+
+def test_every_claim_stands_with_its_verdict(text, run):
+    claims = run[1]["claims"]
+    text = text[text.index("## All claims") : text.index("## What did not")]
+    for name, verdict in zip(claims.claim.values, claims.verdict.values, strict=True):
+        rows = [line for line in text.splitlines() if line.startswith(f"| {name} |")]
+        assert len(rows) == 1 and rows[0].endswith(f"| {verdict} |")
+
+
+def test_verdicts_follow_the_data(run):
+    folder, data, tables, references = run
+    changed = data["claims"].copy(deep=True)
+    changed["verdict"].values[:] = str(Verdict.UNDECIDABLE)
+    changed["reason"].values[:] = "for the test"
+    text = render_article(folder, data | {"claims": changed}, {k: "" for k in tables}, references)
+    bullets = re.findall(r"\*\*(\w+)\*\*; ", text)
+    assert len(bullets) > 30 and set(bullets) == {str(Verdict.UNDECIDABLE)}
+    # In prose the other verdicts are defined or counted, and their count is 0.
+    assert "0 are\nreproduced, 0 are close, 0 are contradicted" in text
+    assert not re.search(r"\((?:close|contradicted)\)", text)
+
+
+def test_numbers_follow_the_data(run, text):
+    folder, data, tables, references = run
+    changed = data["fig16"].copy(deep=True)
+    changed["error_threshold"].values[:] = 77.77
+    other = render_article(folder, data | {"fig16": changed}, tables, references)
+    assert "77.77" in other and "77.77" not in text
+
+
+def test_a_run_with_other_parameters_says_so(run):
+    folder, data, tables, references = run
+    changed = data["claims"].copy(deep=True)
+    reason = "fig14 was computed with n = 2, not with the paper's 1"
+    changed["reason"] = changed.reason.astype(object)
+    changed["reason"].values[np.flatnonzero(changed.claim.values == "height threshold")] = reason
+    text = render_article(folder, data | {"claims": changed}, tables, references)
+    assert text.index(reason) < text.index("## Abstract")
+
+
+def test_the_explanations_that_are_needed_hold(run):
+    claims = run[1]["claims"]
+    open_claims = claims.verdict.values != str(Verdict.REPRODUCED)
+    needed = set(claims.explained_by.values[open_claims])
+    assert "" not in needed
+    holds = dict(zip(claims.explanation.values, claims.explanation_holds.values, strict=True))
+    assert all(holds[name] for name in needed)
+
+
+def test_the_run_ends_with_the_tally(pristine):
+    done = pristine.run("--cores", "1")
+    tally = Path(pristine.path, "results", "tally.txt").read_text(encoding="utf-8")
+    assert tally.startswith("16 figures, Table 1, ")
+    assert tally in done.stdout

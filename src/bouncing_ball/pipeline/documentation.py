@@ -15,6 +15,10 @@ _HEAD = """# The configuration
 Every key of `config.yaml`, with what is allowed. This page is made from
 `schema.yaml` by `make config-docs`; change the schema, not the page.
 
+Beside it stands `claims.yaml`, the ledger of the paper's claims. What the paper
+printed is there and nowhere else; its schema, `claims.schema.yaml`, says how a
+claim is written.
+
 Numbers in powers of ten need a point and a sign, `1.0e+4`: YAML takes `1e4`
 for a text. To try a change without editing `config.yaml`, write only the keys
 that change into another file and name it last,

@@ -108,3 +108,8 @@ def test_the_run_ends_with_the_tally(pristine):
     tally = Path(pristine.path, "results", "tally.txt").read_text(encoding="utf-8")
     assert tally.startswith("16 figures, Table 1, ")
     assert tally in done.stdout
+
+
+def test_the_readme_gives_the_tally_of_this_run(pristine):
+    tally = Path(pristine.path, "results", "tally.txt").read_text(encoding="utf-8")
+    assert tally in Path(pristine.path, "README.md").read_text(encoding="utf-8")

@@ -14,8 +14,8 @@ The layers, each importing only what lies above it in this list (and the errors)
 ``studies``       the stages of the pipeline: parameters in, arrays out
 ``figures``       pictures of datasets; they compute nothing
 ``tables``        tables of datasets
-``cli``           the command line, ``bouncing-ball``
 ``pipeline``      what the Snakefile needs of Python
+``cli``           the command line, ``bouncing-ball``
 """
 
 __version__ = "0.1.0"

@@ -1,6 +1,7 @@
 """One look for all figures, and files that are the same from run to run."""
 
-from collections.abc import Iterator
+import json
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -98,10 +99,16 @@ def number(value: float) -> str:
     return f"{value:g}"
 
 
-def save(figure: Figure, path: str | Path) -> None:
-    """Write a figure as PNG or SVG, whole or not at all, the same every time."""
-    # Neither a time nor a version among the metadata.
-    svg = Path(path).suffix == ".svg"
-    metadata = {"Date": None, "Creator": None} if svg else {"Software": None}
+def save(figure: Figure, path: str | Path, metadata: Mapping[str, str]) -> None:
+    """Write a figure as PNG or SVG, whole or not at all, the same every time.
+
+    The metadata become text chunks of a PNG; an SVG, whose vocabulary is
+    limited, holds them as JSON in its description.
+    """
+    # Neither a time nor a version of matplotlib's own.
+    if Path(path).suffix == ".svg":
+        embedded = {"Date": None, "Creator": None, "Description": json.dumps(dict(metadata))}
+    else:
+        embedded = {"Software": None, **metadata}
     with replacing(path) as temporary:
-        figure.savefig(temporary, metadata=metadata)
+        figure.savefig(temporary, metadata=embedded)

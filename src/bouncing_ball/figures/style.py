@@ -4,6 +4,7 @@ import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 from matplotlib.axes import Axes
@@ -22,23 +23,26 @@ COLOURS = ("#000000", "#0072B2", "#E69F00", "#D55E00", "#56B4E9")
 RESTITUTION = "#000000"
 CONTACT = "#0072B2"
 TABLE = "#8c8c8c"
-GUIDE = {"color": "#8c8c8c", "linewidth": 0.7, "linestyle": (0, (1, 1.5))}
+Look = dict[str, Any]
+"""Keywords of a line or a marker."""
 
-SADDLE_NODE = {"marker": "o", "markersize": 4.5, "linestyle": "none"}
-PERIOD_DOUBLING = {
+GUIDE: Look = {"color": "#8c8c8c", "linewidth": 0.7, "linestyle": (0, (1, 1.5))}
+
+SADDLE_NODE: Look = {"marker": "o", "markersize": 4.5, "linestyle": "none"}
+PERIOD_DOUBLING: Look = {
     "marker": "s",
     "markersize": 4.5,
     "linestyle": "none",
     "markerfacecolor": "white",
     "markeredgewidth": 1.0,
 }
-STABLE = {"linestyle": "-", "linewidth": 1.3}
-GRAZING = {"marker": "^", "markersize": 4.5, "linestyle": "none"}
-END = {"marker": "x", "markersize": 5, "linestyle": "none", "markeredgewidth": 1.2}
-INADMISSIBLE = {"linestyle": (0, (0.8, 2.2)), "linewidth": 0.8}
-UNSTABLE = {"linestyle": (0, (3.5, 2)), "linewidth": 1.0}
+STABLE: Look = {"linestyle": "-", "linewidth": 1.3}
+GRAZING: Look = {"marker": "^", "markersize": 4.5, "linestyle": "none"}
+END: Look = {"marker": "x", "markersize": 5, "linestyle": "none", "markeredgewidth": 1.2}
+INADMISSIBLE: Look = {"linestyle": (0, (0.8, 2.2)), "linewidth": 0.8}
+UNSTABLE: Look = {"linestyle": (0, (3.5, 2)), "linewidth": 1.0}
 
-_SETTINGS = {
+_SETTINGS: dict[Any, Any] = {
     "font.family": "STIXGeneral",
     "mathtext.fontset": "stix",
     "font.size": 9,

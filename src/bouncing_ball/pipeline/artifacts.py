@@ -21,7 +21,7 @@ def _of_png(path: Path) -> dict[str, Any]:
     from PIL import Image
 
     with Image.open(path, formats=["PNG"]) as picture:
-        return dict(picture.info)
+        return {str(key): value for key, value in picture.info.items()}
 
 
 def _of_svg(path: Path) -> dict[str, Any]:

@@ -16,7 +16,7 @@ import yaml
 ROOT = Path(__file__).resolve().parents[2]
 # A fresh clone: neither results nor the state of earlier runs.
 IGNORED = shutil.ignore_patterns(
-    ".git", ".venv", "results", ".snakemake", "tests", "*.egg-info", "__pycache__", ".*_cache"
+    ".git", ".venv*", "results", ".snakemake", "tests", "*.egg-info", "__pycache__", ".*_cache"
 )
 SNAKEMAKE = Path(sys.executable).with_name("snakemake")
 

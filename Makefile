@@ -3,28 +3,46 @@
 # The environment is .venv/, from the hashed lock files.
 
 PYTHON ?= python3
-BIN := .venv/bin
+VENV ?= .venv
+BIN := $(VENV)/bin
+NEWEST := .venv-newest
+# What comes before anything runs; nothing, where another venv is there already.
+SETUP ?= setup
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: all setup test accept report clean config-docs lock
+.PHONY: all setup lint test diff accept report clean ci setup-newest newest config-docs lock
 
-all: setup
+all: $(SETUP)
 	$(BIN)/snakemake --cores 2
 
-setup: .venv/.installed
+setup: $(VENV)/.installed
 
-.venv/.installed: requirements-build.lock requirements.lock
+$(VENV)/.installed: requirements-build.lock requirements.lock
 	@$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "Python 3.11 or newer is needed, this is %d.%d: make PYTHON=python3.12" % sys.version_info[:2])'
-	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes --only-binary :all: --requirement requirements-build.lock
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes --no-build-isolation --requirement requirements.lock
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	$(PYTHON) -m venv $(VENV)
+	$(PIP) --require-hashes --only-binary :all: --requirement requirements-build.lock
+	$(PIP) --require-hashes --no-build-isolation --requirement requirements.lock
+	$(PIP) --no-deps --no-build-isolation --editable .
 	@touch $@
 
-test: setup
+# Style, types, and the workflow's own linter.
+lint: $(SETUP)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/snakefmt --check .
+	$(BIN)/mypy
+	$(BIN)/python -m bouncing_ball.pipeline.lint
+
+test: $(SETUP)
 	$(BIN)/python -m pytest
 
-accept: setup
-	$(BIN)/snakemake --cores 1 accept
+# The results against the accepted record; reports in results/diff/.
+diff: $(SETUP)
+	$(BIN)/snakemake --cores 2 diff
+
+# make accept REASON="why the record moves"
+accept: $(SETUP)
+	$(BIN)/snakemake --cores 1 accept --config reason="$(REASON)"
 
 report: all
 	$(BIN)/snakemake --report results/report.html
@@ -32,10 +50,23 @@ report: all
 clean:
 	rm -rf results .snakemake
 
+# What continuous integration does, step by step.
+ci:
+	.ci/run
+
+# The newest versions that pyproject.toml allows, without the lock: a venv of
+# their own, then tests, the pipeline from clean and the diff in it.
+setup-newest:
+	$(PYTHON) -m venv --clear $(NEWEST)
+	$(NEWEST)/bin/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+
+newest: setup-newest clean
+	$(MAKE) test all diff VENV=$(NEWEST) SETUP=
+
+config-docs: setup
+	$(BIN)/python -m bouncing_ball.pipeline.documentation
+
 # For maintainers; needs uv.
 lock:
 	uv pip compile pyproject.toml --extra test --extra lint --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate --upgrade --output-file requirements.lock
 	printf 'flit_core\nsetuptools\nwheel\n' | uv pip compile - --constraint requirements.lock --universal --python-version 3.11 --generate-hashes --no-header --no-annotate --upgrade --output-file requirements-build.lock
-
-config-docs: setup
-	$(BIN)/python -m bouncing_ball.pipeline.documentation

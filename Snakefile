@@ -36,9 +36,7 @@ rule all:
         "All figures, tables and the paper are up to date"
     input:
         figures=expand("results/figures/{figure}.{kind}", figure=FIGURES, kind=["png", "svg"]),
-        tables=expand(
-            "results/figures/{table}.{kind}", table=TABLES, kind=["csv", "md", "tex"]
-        ),
+        tables=expand("results/figures/{table}.{kind}", table=TABLES, kind=["csv", "md", "tex"]),
         paper="results/paper.md",
         tally="results/tally.txt",
     shell:

@@ -16,8 +16,8 @@ The layers, each importing only what lies above it in this list (and the errors)
 ``figures``       pictures of datasets; they compute nothing
 ``tables``        tables of datasets
 ``article``       the replication article from its templates
-``cli``           the command line, ``bouncing-ball``
 ``pipeline``      what the Snakefile needs of Python
+``cli``           the command line, ``bouncing-ball``
 """
 
 __version__ = "0.1.0"

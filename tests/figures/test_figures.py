@@ -8,6 +8,7 @@ import pytest
 import yaml
 
 from bouncing_ball.figures.style import INADMISSIBLE, STABLE, UNSTABLE, number, save, style
+from bouncing_ball.pipeline.artifacts import read_attributes
 from bouncing_ball.studies import (
     continuation,
     error_thresholds,
@@ -147,8 +148,10 @@ def test_files_are_the_same_every_time(datasets, tmp_path, kind):
     for run in ("first", "second"):
         path = tmp_path / run / f"fig11.{kind}"
         with style():
-            save(import_module("bouncing_ball.figures.fig11").draw(datasets["fig11"]), path)
+            figure = import_module("bouncing_ball.figures.fig11").draw(datasets["fig11"])
+            save(figure, path, {"provenance_commit": 'of <"ϖ">'})
         contents.append(path.read_bytes())
+        assert read_attributes(path)["provenance_commit"] == 'of <"ϖ">'
         assert [p.name for p in path.parent.iterdir()] == [path.name]
     assert contents[0] == contents[1] and len(contents[0]) > 5000
 

@@ -17,7 +17,7 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-IGNORED = shutil.ignore_patterns(".git", ".venv", "results", ".snakemake", "*.egg-info")
+IGNORED = shutil.ignore_patterns(".git", ".venv*", "results", ".snakemake", "*.egg-info")
 # What xarray and matplotlib import only when they read, write or draw.
 LATE_DATA = "import netCDF4, xarray.backends.netCDF4_\n"
 LATE_FIGURE = (

@@ -16,7 +16,7 @@ import yaml
 ROOT = Path(__file__).resolve().parents[2]
 # A fresh clone: neither results nor the state of earlier runs.
 IGNORED = shutil.ignore_patterns(
-    ".git", ".venv", "results", ".snakemake", "tests", "*.egg-info", "__pycache__", ".*_cache"
+    ".git", ".venv*", "results", ".snakemake", "tests", "*.egg-info", "__pycache__", ".*_cache"
 )
 SNAKEMAKE = Path(sys.executable).with_name("snakemake")
 
@@ -44,6 +44,29 @@ class Tree:
     def environment(self) -> dict[str, str]:
         return os.environ | {"PYTHONPATH": str(self.path / "src")}
 
+    def git(self, *arguments: str) -> str:
+        """Git in this tree, deaf to the settings of whoever runs the tests."""
+        # A fixed date: the same files give the same commit.
+        who = {f"GIT_{x}_{y}": "tests" for x in ("AUTHOR", "COMMITTER") for y in ("NAME", "EMAIL")}
+        when = {f"GIT_{x}_DATE": "2011-08-28T00:00:00Z" for x in ("AUTHOR", "COMMITTER")}
+        settings = {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_NOSYSTEM": "1"}
+        bare = {key: value for key, value in os.environ.items() if not key.startswith("GIT_")}
+        done = subprocess.run(
+            ["git", *arguments],
+            cwd=self.path,
+            env=bare | who | when | settings,
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        return done.stdout.strip()
+
+    def commit(self, message: str) -> str:
+        """Commit everything that is not ignored; the full hash."""
+        self.git("add", "--all")
+        self.git("commit", "--quiet", "--allow-empty", "--message", message)
+        return self.git("rev-parse", "HEAD")
+
     def planned(self, *arguments: str) -> set[str]:
         """Messages of the jobs that a run would execute, but for the last one."""
         done = self.run("--cores", "1", "--dry-run", *arguments)
@@ -70,7 +93,7 @@ class Tree:
         base = self.path / folder
         files = (path for path in sorted(base.rglob("*")) if path.is_file())
         names = {str(path.relative_to(base)): path for path in files}
-        skipped = ("logs/", "benchmarks/", ".snakemake/")
+        skipped = ("logs/", "benchmarks/", ".snakemake/", ".git/")
         return {
             name: path.read_bytes()
             for name, path in names.items()
@@ -101,15 +124,23 @@ class Tree:
 
 
 def copy_tree(source: Path, target: Path, *, with_results: bool = False) -> Tree:
-    ignored = shutil.ignore_patterns("__pycache__", ".git") if with_results else IGNORED
+    ignored = shutil.ignore_patterns("__pycache__") if with_results else IGNORED
     shutil.copytree(source, target, ignore=ignored, copy_function=shutil.copy2)
     return Tree(target)
+
+
+def clone(target: Path) -> Tree:
+    """A copy of the repository, in a repository of its own with one commit."""
+    tree = copy_tree(ROOT, target)
+    tree.git("init", "--quiet")
+    tree.commit("All")
+    return tree
 
 
 @pytest.fixture(scope="session")
 def pristine(tmp_path_factory) -> Tree:
     """A complete run. Tests must not change it."""
-    tree = copy_tree(ROOT, tmp_path_factory.mktemp("pristine") / "tree")
+    tree = clone(tmp_path_factory.mktemp("pristine") / "tree")
     tree.run("--cores", "2")
     return tree
 
@@ -117,7 +148,7 @@ def pristine(tmp_path_factory) -> Tree:
 @pytest.fixture
 def fresh(tmp_path) -> Tree:
     """A fresh clone, nothing run."""
-    return copy_tree(ROOT, tmp_path / "tree")
+    return clone(tmp_path / "tree")
 
 
 @pytest.fixture

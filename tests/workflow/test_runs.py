@@ -1,7 +1,6 @@
 """What a user sees: targets by name, reproducible bytes, interruptions."""
 
 import re
-import shutil
 import signal
 
 import pytest
@@ -64,16 +63,6 @@ def test_an_interrupted_run_is_resumed(pristine, fresh, sign):
     fresh.run("--cores", "2")
     after = {k: v for k, v in fresh.contents("results").items() if ".part" not in k}
     assert after == whole
-
-
-def test_accept_copies_the_results_over_the_record(complete):
-    shutil.rmtree(complete.path / "figures")
-    (complete.path / "figures").mkdir()
-    (complete.path / "figures" / "stale.png").write_bytes(b"from an older version")
-    complete.run("--cores", "1", "accept")
-    assert complete.contents("figures") == complete.contents("results/figures")
-    paper = (complete.path / "paper.md").read_bytes()
-    assert paper == (complete.path / "results" / "paper.md").read_bytes()
 
 
 def test_report_shows_every_figure_offline(complete):

@@ -1,5 +1,7 @@
-# The accepted record: figures/ and paper.md, which git holds. Only this target
-# writes there.
+# The accepted record: figures/ and paper.md, which git holds, with accepted.csv,
+# which says why it moved. Only this target writes there:
+#     snakemake --cores 1 accept --config reason="…"
+# It has no output and no benchmark, so that it looks at the record each time.
 
 
 rule accept:
@@ -13,9 +15,8 @@ rule accept:
         ],
     params:
         record=workflow.basedir,
+        reason=config.get("reason", ""),
     log:
         "results/logs/accept.log",
-    benchmark:
-        "results/benchmarks/accept.tsv"
     script:
         "../scripts/accept.py"

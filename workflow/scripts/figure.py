@@ -4,7 +4,7 @@ from importlib import import_module
 
 from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.figures.style import save, style
-from bouncing_ball.pipeline.job import logged
+from bouncing_ball.pipeline.job import logged, provenance
 
 with logged(snakemake) as lines, style():
     draw = import_module(f"bouncing_ball.figures.{snakemake.params.figure}").draw
@@ -13,6 +13,7 @@ with logged(snakemake) as lines, style():
     # Laid out once, for both files.
     figure.get_layout_engine().execute(figure)
     figure.set_layout_engine("none")
+    metadata = provenance(snakemake, {}).attributes()
     for path in snakemake.output:
-        save(figure, path)
+        save(figure, path, metadata)
         lines.append(path)

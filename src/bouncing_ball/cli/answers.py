@@ -173,16 +173,16 @@ def simulate(args: argparse.Namespace) -> Answer:
     """
     velocity = -math.pi if args.velocity is None else args.velocity
     if args.model == "restitution":
-        from bouncing_ball.simulation.restitution import simulate as run
+        from bouncing_ball.simulation.restitution import simulate as of_instants
 
         r, table = args.restitution, args.amplitude * math.cos(args.phase)
         if velocity > table:
             raise ModelError("a ball that rises from the table has no impact: z′ > w′")
         after = -r * velocity + (1 + r) * table
-        sequence = run(r, args.amplitude, args.phase, after, args.impacts)
+        sequence = of_instants(r, args.amplitude, args.phase, after, args.impacts)
     else:
-        from bouncing_ball.simulation.spring_damper import simulate as run
+        from bouncing_ball.simulation.spring_damper import simulate as of_contacts
 
-        sequence = run(_contact(args), args.amplitude, args.phase, velocity, args.impacts)
+        sequence = of_contacts(_contact(args), args.amplitude, args.phase, velocity, args.impacts)
     status = Status(int(sequence.status)).name.lower().replace("_", " ")
     return {"status": status, "sequence": _columns(sequence)}

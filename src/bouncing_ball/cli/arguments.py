@@ -3,6 +3,7 @@
 import argparse
 import math
 import sys
+from pathlib import Path
 from typing import NoReturn
 
 # Of frequency ratio and amplitude: beyond, their squares leave no digits.
@@ -162,6 +163,11 @@ def parser() -> Parser:
         type=_number(-math.inf, math.inf),
         help="absolute velocity of the ball before the first impact (default: -π)",
     )
+
+    text = "where a figure, dataset or table comes from, and the command that makes it again"
+    explain = commands.add_parser("explain", help=text, description=text)
+    explain.add_argument("file", type=Path, metavar="FILE", help="an artifact, or a copy of one")
+    explain.add_argument("--json", action="store_true", help="one JSON object, whole checksums")
     return top
 
 

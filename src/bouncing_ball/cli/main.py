@@ -1,8 +1,10 @@
 """Entry point of ``bouncing-ball``."""
 
+import argparse
 import json
 import os
 import sys
+from collections.abc import Callable
 from typing import Any
 
 from bouncing_ball.cli.arguments import fail, parse
@@ -40,26 +42,46 @@ def _table(rows: dict[str, list]) -> list[str]:
     return [head, *body]
 
 
+def _readable(answer: dict[str, Any]) -> list[str]:
+    """The values, and the sequence of a simulation as a table."""
+    values = {key: value for key, value in answer.items() if key != "sequence"}
+    sequence = answer.get("sequence")
+    return _lines(values) + (_table(sequence) if sequence else [])
+
+
 def main(arguments: list[str] | None = None) -> None:
     """Answer one subcommand; exit 1 where there is no answer, 2 on a mistake."""
     args = parse(arguments)
-    # Imported here, so that --help and a mistyped argument need no numpy.
+    try:
+        answer, readable = (_explained if args.command == "explain" else _answered)(args)
+    except ValueError as error:
+        if args.json:
+            _print([json.dumps({"error": str(error)}, ensure_ascii=False)])
+        fail(str(error), status=1 if isinstance(error, NoOrbitError) else 2)
+    _print([json.dumps(answer, allow_nan=False)] if args.json else readable(answer))
+
+
+Answered = tuple[dict[str, Any], Callable[[dict[str, Any]], list[str]]]
+"""An answer, and the function that makes it readable."""
+
+# Imports where they are needed: --help and a mistyped argument need no numpy.
+
+
+def _answered(args: argparse.Namespace) -> Answered:
+    """What the models say."""
     import numpy as np
 
     from bouncing_ball.cli import answers
 
     with np.errstate(all="ignore"):
-        try:
-            answer = getattr(answers, args.command.replace("-", "_"))(args)
-        except ValueError as error:
-            if args.json:
-                _print([json.dumps({"error": str(error)}, ensure_ascii=False)])
-            fail(str(error), status=1 if isinstance(error, NoOrbitError) else 2)
-    if args.json:
-        _print([json.dumps(answer, allow_nan=False)])
-    else:
-        sequence = answer.pop("sequence", None)
-        _print(_lines(answer) + (_table(sequence) if sequence else []))
+        return getattr(answers, args.command.replace("-", "_"))(args), _readable
+
+
+def _explained(args: argparse.Namespace) -> Answered:
+    """Where an artifact comes from."""
+    from bouncing_ball.cli.explain import explain, lines
+
+    return explain(args.file), lines
 
 
 def _print(lines: list[str]) -> None:

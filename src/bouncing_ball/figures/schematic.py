@@ -4,7 +4,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, Rectangle
 
-LINE = {"color": "black", "linewidth": 1.0, "solid_capstyle": "round"}
+from bouncing_ball.figures.style import Look
+
+LINE: Look = {"color": "black", "linewidth": 1.0, "solid_capstyle": "round"}
 
 
 def blank(axes: Axes, width: tuple[float, float], height: tuple[float, float]) -> None:

@@ -1,8 +1,10 @@
 """One look for all figures, and files that are the same from run to run."""
 
-from collections.abc import Iterator
+import json
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 from matplotlib.axes import Axes
@@ -21,23 +23,26 @@ COLOURS = ("#000000", "#0072B2", "#E69F00", "#D55E00", "#56B4E9")
 RESTITUTION = "#000000"
 CONTACT = "#0072B2"
 TABLE = "#8c8c8c"
-GUIDE = {"color": "#8c8c8c", "linewidth": 0.7, "linestyle": (0, (1, 1.5))}
+Look = dict[str, Any]
+"""Keywords of a line or a marker."""
 
-SADDLE_NODE = {"marker": "o", "markersize": 4.5, "linestyle": "none"}
-PERIOD_DOUBLING = {
+GUIDE: Look = {"color": "#8c8c8c", "linewidth": 0.7, "linestyle": (0, (1, 1.5))}
+
+SADDLE_NODE: Look = {"marker": "o", "markersize": 4.5, "linestyle": "none"}
+PERIOD_DOUBLING: Look = {
     "marker": "s",
     "markersize": 4.5,
     "linestyle": "none",
     "markerfacecolor": "white",
     "markeredgewidth": 1.0,
 }
-STABLE = {"linestyle": "-", "linewidth": 1.3}
-GRAZING = {"marker": "^", "markersize": 4.5, "linestyle": "none"}
-END = {"marker": "x", "markersize": 5, "linestyle": "none", "markeredgewidth": 1.2}
-INADMISSIBLE = {"linestyle": (0, (0.8, 2.2)), "linewidth": 0.8}
-UNSTABLE = {"linestyle": (0, (3.5, 2)), "linewidth": 1.0}
+STABLE: Look = {"linestyle": "-", "linewidth": 1.3}
+GRAZING: Look = {"marker": "^", "markersize": 4.5, "linestyle": "none"}
+END: Look = {"marker": "x", "markersize": 5, "linestyle": "none", "markeredgewidth": 1.2}
+INADMISSIBLE: Look = {"linestyle": (0, (0.8, 2.2)), "linewidth": 0.8}
+UNSTABLE: Look = {"linestyle": (0, (3.5, 2)), "linewidth": 1.0}
 
-_SETTINGS = {
+_SETTINGS: dict[Any, Any] = {
     "font.family": "STIXGeneral",
     "mathtext.fontset": "stix",
     "font.size": 9,
@@ -98,10 +103,16 @@ def number(value: float) -> str:
     return f"{value:g}"
 
 
-def save(figure: Figure, path: str | Path) -> None:
-    """Write a figure as PNG or SVG, whole or not at all, the same every time."""
-    # Neither a time nor a version among the metadata.
-    svg = Path(path).suffix == ".svg"
-    metadata = {"Date": None, "Creator": None} if svg else {"Software": None}
+def save(figure: Figure, path: str | Path, metadata: Mapping[str, str]) -> None:
+    """Write a figure as PNG or SVG, whole or not at all, the same every time.
+
+    The metadata become text chunks of a PNG; an SVG, whose vocabulary is
+    limited, holds them as JSON in its description.
+    """
+    # Neither a time nor a version of matplotlib's own.
+    if Path(path).suffix == ".svg":
+        embedded = {"Date": None, "Creator": None, "Description": json.dumps(dict(metadata))}
+    else:
+        embedded = {"Software": None, **metadata}
     with replacing(path) as temporary:
-        figure.savefig(temporary, metadata=metadata)
+        figure.savefig(temporary, metadata=embedded)

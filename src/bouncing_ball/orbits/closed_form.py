@@ -200,19 +200,19 @@ def branch_point(excess: ArrayLike, contact: Contact, n: ArrayLike) -> BranchPoi
     shape = np.broadcast_shapes(*(x.shape for x in arguments))
     size = math.prod(shape)
     if size <= _BLOCK:
-        return _branch_point(*arguments, contact.release)
+        return _branch_point(contact.release, *arguments)
     # Scalars stay scalars; the rest is run through in blocks.
     flat = [x if x.ndim == 0 else np.broadcast_to(x, shape).ravel() for x in arguments]
     out = np.empty((len(BranchPoint._fields), size))
     for start in range(0, size, _BLOCK):
         part = slice(start, start + _BLOCK)
         block = (x if x.ndim == 0 else x[part] for x in flat)
-        for row, values in zip(out, _branch_point(*block, contact.release), strict=True):
+        for row, values in zip(out, _branch_point(contact.release, *block), strict=True):
             row[part] = values
     return BranchPoint(*(row.reshape(shape) for row in out))
 
 
-def _branch_point(eps, omega, zeta, n, rule: Release) -> BranchPoint:
+def _branch_point(rule: Release, eps, omega, zeta, n) -> BranchPoint:
     """The same for one block of arrays."""
     force = rule is Release.FORCE
     root = np.sqrt((1 - zeta) * (1 + zeta))

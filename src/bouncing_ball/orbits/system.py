@@ -60,10 +60,10 @@ class OrbitSystem:
         What ends the contact.
     """
 
-    n: int
-    damping_ratio: float
+    n: int | np.ndarray
+    damping_ratio: float | np.ndarray
     parameter: Parameter
-    fixed: float
+    fixed: float | np.ndarray
     release: Release = Release.DISPLACEMENT
 
     def orbit(self, y: np.ndarray) -> ContactOrbit:

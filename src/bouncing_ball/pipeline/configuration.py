@@ -74,6 +74,8 @@ def _allowed(error: ValidationError) -> str:
             words = f"must be less than {limit:g}"
         case "enum":
             words = "must be one of " + ", ".join(map(str, limit))
+        case "pattern":
+            words = "must be one line that is not empty"
         case "minItems":
             words = f"must have at least {limit} item{'s' if limit > 1 else ''}"
         case "maxItems":

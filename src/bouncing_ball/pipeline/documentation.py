@@ -44,7 +44,7 @@ def _allowed(schema: Mapping[str, Any], definitions: Mapping[str, Any]) -> str:
         return f"list of {_allowed(_resolved(schema['items'], definitions), definitions)}"
     if schema["type"] == "object":
         return "{" + ", ".join(schema["properties"]) + "}"
-    words = "whole number" if schema["type"] == "integer" else schema["type"]
+    words = {"integer": "whole number", "string": "text"}.get(schema["type"], schema["type"])
     signs = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiveMaximum": "<"}
     limits = [f"{sign} {schema[key]:g}" for key, sign in signs.items() if key in schema]
     return ", ".join([words, *limits])
@@ -54,7 +54,10 @@ def _rows(schema, definitions, default, path) -> Iterator[tuple[str, str, str, s
     schema = _resolved(schema, definitions)
     if schema.get("type") == "object":
         for key, part in schema["properties"].items():
-            yield from _rows(part, definitions, default[key], [*path, key])
+            yield from _rows(part, definitions, default.get(key), [*path, key])
+        return
+    if default is None:
+        yield ".".join(path), _allowed(schema, definitions), schema["description"], "not set"
         return
     shown = yaml.safe_dump(default, default_flow_style=True, width=10_000)
     shown = shown.removesuffix("\n").removesuffix("\n...")

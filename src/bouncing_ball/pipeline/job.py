@@ -7,12 +7,14 @@ object that Snakemake gives them.
 import signal
 import sys
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from bouncing_ball.datasets.netcdf import parameter_attributes, write_dataset
+from bouncing_ball.pipeline.artifacts import read_attributes
+from bouncing_ball.pipeline.provenance import PREFIX, Provenance, gather
 
 REFERENCE = (
     "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient "
@@ -43,10 +45,19 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
     log.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
 
 
+def provenance(snakemake: Any, parameters: Mapping[str, Any]) -> Provenance:
+    """The provenance of what the job writes, its inputs' parameters included."""
+    attributes = [read_attributes(Path(path)) for path in snakemake.input if path[-3:] == ".nc"]
+    name = PREFIX + "parameters"
+    inherited = [data[name] for data in attributes if name in data]
+    return gather(snakemake, parameters, inherited)
+
+
 def make_dataset(snakemake: Any, study: Callable, *arguments: Any) -> None:
     """Run a study on the job's parameters and write its dataset.
 
-    The parameters, all arguments included, become global attributes.
+    The parameters, all arguments included, become global attributes, and so
+    does the provenance.
     """
     with logged(snakemake) as lines:
         parameters = snakemake.params.parameters
@@ -56,6 +67,7 @@ def make_dataset(snakemake: Any, study: Callable, *arguments: Any) -> None:
             "title": snakemake.rule,
             "references": REFERENCE,
             **parameter_attributes(parameters | more),
+            **provenance(snakemake, dict(snakemake.params.items())).attributes(),
         }
         write_dataset(dataset, snakemake.output.data)
         sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())

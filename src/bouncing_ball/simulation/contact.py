@@ -80,7 +80,7 @@ def oscillator(contact: Contact, amplitude: ArrayLike) -> Oscillator:
             "the simulation needs an underdamped contact"
         )
     if not np.all((lam >= 0) & np.isfinite(lam)):
-        raise ModelError(f"amplitude Λ = {amplitude} is not finite and ≥ 0")
+        raise ModelError(f"amplitude Λ = {np.asarray(amplitude)} is not finite and ≥ 0")
     detuning, loss = (omega - 1) * (omega + 1), 2 * zeta * omega
     gamma = detuning * detuning + loss * loss
     if not np.all(np.sqrt(gamma) >= _RESONANCE):

@@ -1,6 +1,6 @@
 """Dense time histories of one ball, from its sequence of impacts."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -43,7 +43,7 @@ def history(sequence: ImpactSequence, time: ArrayLike, ball: int | tuple[int, ..
     >>> history(simulate(1.0, 0.0, 0.0, 2.0, 2), [0.0, 2.0, 4.0]).height.tolist()
     [0.0, 2.0, 0.0]
     """
-    index = (ball,) if isinstance(ball, int) else tuple(ball)
+    index: tuple[Any, ...] = (ball,) if isinstance(ball, int) else tuple(ball)
     t = np.asarray(time, dtype=float)
     starts = sequence.time[(slice(None), *index)]
     if starts.ndim != 1:
@@ -63,7 +63,7 @@ def history(sequence: ImpactSequence, time: ArrayLike, ball: int | tuple[int, ..
         gap = speed = np.zeros_like(t)
     else:
         omega, zeta = (
-            x[index] if np.ndim(x) else x
+            np.asarray(x)[index] if np.ndim(x) else x
             for x in (sequence.contact.frequency_ratio, sequence.contact.damping_ratio)
         )
         start, rate = of(sequence.displacement), of(sequence.relative_velocity)

@@ -246,7 +246,7 @@ def both_domains(
     """The branch of one ϖ beside that of the restitution model (Fig. 15)."""
     n, r, top = parameters["n"], parameters["restitution"], parameters["amplitude_max"]
     contact = orbit_branches(
-        parameters | {"frequency_ratio": [parameters["frequency_ratio"]]}, release, settings
+        {**parameters, "frequency_ratio": [parameters["frequency_ratio"]]}, release, settings
     )
     amplitude, phase = restitution_orbits.branch(n, r, top, parameters["points"])
     doubling = float(restitution_orbits.period_doubling(n, r))

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 from scipy.optimize.elementwise import find_root
 
 from bouncing_ball.datasets.variables import describe
@@ -114,7 +115,7 @@ def relative_error(
 
 def thresholds(
     error: Callable[[np.ndarray], np.ndarray],
-    tolerances: np.ndarray,
+    tolerances: ArrayLike,
     ratios: np.ndarray,
     scanned: np.ndarray | None = None,
 ) -> tuple[np.ndarray, list[Status]]:
@@ -198,7 +199,11 @@ def height_error(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     """Greatest height along ϖ in both models, and ϖ_h for ``tolerance`` (Fig. 14)."""
     n, r, lam = parameters["n"], parameters["restitution"], parameters["amplitude"]
     dataset = error_thresholds(
-        parameters | {"quantities": [Quantity.MAX_HEIGHT], "tolerances": [parameters["tolerance"]]},
+        {
+            **parameters,
+            "quantities": [Quantity.MAX_HEIGHT],
+            "tolerances": [parameters["tolerance"]],
+        },
         release,
     )
     touch = Contact(dataset.frequency_ratio.values, float(damping_ratio(r)), Release(release))
@@ -218,8 +223,8 @@ def height_error(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
 def permanent_contact_error(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     """Permanent contact along ϖ in both models, and ϖ_PC for ``tolerance`` (Fig. 16)."""
     dataset = error_thresholds(
-        parameters
-        | {
+        {
+            **parameters,
             # The threshold of permanent contact knows neither orbit nor amplitude.
             "n": 1,
             "amplitude": RESTITUTION_THRESHOLD,

@@ -159,8 +159,8 @@ def _coarse(settings: Mapping[str, Any]) -> tuple[StepControl, NewtonSettings]:
 def _continued(orbit: ContactOrbit, settings: Mapping[str, Any]) -> np.ndarray:
     """Distances of orbits along ϖ, one ζ and Λ, from a continuation in ln ϖ."""
     control, tolerance = _coarse(settings)
-    omega = orbit.contact.frequency_ratio
-    zeta, lam = float(orbit.contact.damping_ratio[0]), float(orbit.amplitude[0])
+    omega = np.asarray(orbit.contact.frequency_ratio)
+    zeta, lam = np.asarray(orbit.contact.damping_ratio).item(0), float(orbit.amplitude[0])
     rule = orbit.contact.release
     system = OrbitSystem(orbit.n, zeta, Parameter.LOG_FREQUENCY_RATIO, lam, rule)
     stiff = max(settings["stiff_frequency_ratio"], float(omega.max()))
@@ -203,20 +203,11 @@ def _at_parameter(system, points, wanted, settings: NewtonSettings) -> np.ndarra
 
 def formula_against_continuation(orbit: ContactOrbit, settings: Mapping[str, Any]) -> Comparison:
     """Orbits from the formula against a continuation along ϖ, curve by curve."""
-    zeta, lam = orbit.contact.damping_ratio, orbit.amplitude
+    zeta, lam = np.asarray(orbit.contact.damping_ratio), orbit.amplitude
     values = np.empty(lam.shape)
     for pair in sorted(set(zip(zeta.tolist(), lam.tolist(), strict=True))):
         at = (zeta == pair[0]) & (lam == pair[1])
-        contact = Contact(orbit.contact.frequency_ratio[at], zeta[at], orbit.contact.release)
-        part = ContactOrbit(
-            orbit.n,
-            contact,
-            lam[at],
-            orbit.phase[at],
-            orbit.duration[at],
-            orbit.impact_velocity[at],
-        )
-        values[at] = _continued(part, settings)
+        values[at] = _continued(_chosen(orbit, at), settings)
     return Comparison(FORMULA, values, _names(orbit))
 
 
@@ -311,8 +302,8 @@ def simulation_leaves(orbit: ContactOrbit) -> Comparison:
 
 def _chosen(orbit: ContactOrbit, which: np.ndarray) -> ContactOrbit:
     contact = Contact(
-        orbit.contact.frequency_ratio[which],
-        orbit.contact.damping_ratio[which],
+        np.asarray(orbit.contact.frequency_ratio)[which],
+        np.asarray(orbit.contact.damping_ratio)[which],
         orbit.contact.release,
     )
     return ContactOrbit(

@@ -1,0 +1,166 @@
+"""The accepted record: what may replace it, how, and the log of what did.
+
+git holds the record, ``figures/`` and ``paper.md``, laid out as the results
+are, and ``accepted.csv``, in which every acceptance says why the record moved.
+"""
+
+import csv
+import io
+import shutil
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+
+from bouncing_ball.datasets.atomic import replacing
+from bouncing_ball.errors import ModelError
+from bouncing_ball.pipeline.artifacts import CARRIERS, read_provenance
+from bouncing_ball.pipeline.provenance import Provenance
+from bouncing_ball.pipeline.repository import Revision, revision
+
+LOG = "accepted.csv"
+COLUMNS = ("number", "commit", "reason", "changes")
+
+
+class RefusedError(ModelError):
+    """Results that must not become the record, with the reason why."""
+
+
+def check_reason(reason: str) -> None:
+    """Raise :class:`RefusedError` without a reason to write into the log."""
+    if not reason.strip():
+        raise RefusedError('say why the record changes: --config reason="…"')
+
+
+def check_tree(now: Revision) -> None:
+    """Raise :class:`RefusedError` unless a commit, and nothing else, is checked out.
+
+    Results carry no word of the texts and tables; but Snakemake has just found
+    them up to date, so that a clean tree now is the one they are made from.
+    """
+    if now.commit == "unknown":
+        raise RefusedError("no git repository with a commit here, and the record is what git holds")
+    if now.dirty != "no":
+        raise RefusedError("the tree is dirty: commit first, and accept what that commit makes")
+
+
+def check_results(made: Mapping[str, Provenance]) -> None:
+    """Raise :class:`RefusedError` if a result was not made from a commit alone."""
+    bad = [name for name, provenance in made.items() if provenance.dirty != "no"]
+    if bad:
+        more = f" and {len(bad) - 1} more" if len(bad) > 1 else ""
+        raise RefusedError(
+            f"{bad[0]}{more} made from a dirty or unknown tree: make them again from the "
+            "commit, snakemake --cores 2 --forceall"
+        )
+
+
+def commits(made: Iterable[Provenance], now: Revision) -> list[str]:
+    """One line for each commit that results were made from."""
+    found = Counter(provenance.commit for provenance in made)
+    return [
+        f"{count} files made at commit {commit}"
+        + ("" if commit == now.commit else ", up to date but not the one checked out")
+        for commit, count in found.most_common()
+    ]
+
+
+def stale(folder: Path, wanted: Iterable[Path]) -> list[Path]:
+    """Files of a folder that are not among the wanted ones."""
+    kept = {path for path in folder.glob("*") if path.is_file()}
+    return sorted(kept - set(wanted))
+
+
+def different_files(record: Path, results: Path, files: Sequence[str]) -> dict[str, str]:
+    """Artifacts whose bytes differ, each with what became of it.
+
+    Examples
+    --------
+    >>> different_files(Path("nowhere"), Path("results"), ["figures/fig01.png"])
+    {'fig01': 'new'}
+    """
+    verdicts: dict[str, str] = {}
+    for file in files:
+        old = record / file
+        if not old.is_file():
+            verdicts.setdefault(old.stem, "new")
+        elif old.read_bytes() != (results / file).read_bytes():
+            verdicts[old.stem] = "changed"
+    for path in stale(record / "figures", [record / file for file in files]):
+        verdicts.setdefault(path.stem, "removed")
+    return verdicts
+
+
+def log_with(text: str, commit: str, reason: str, changes: Mapping[str, str]) -> str:
+    """The log with one entry more.
+
+    Examples
+    --------
+    >>> print(log_with("", "1f0e", "Eq. 8, exact", {"fig03": "drifted"}), end="")
+    number,commit,reason,changes
+    1,1f0e,"Eq. 8, exact",fig03 drifted
+    """
+    rows = list(csv.reader(io.StringIO(text))) or [list(COLUMNS)]
+    said = "; ".join(f"{name} {verdict}" for name, verdict in sorted(changes.items()))
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerows([*rows, [len(rows), commit, reason.strip(), said]])
+    return out.getvalue()
+
+
+def replace_record(record: Path, results: Path, files: Sequence[str], log: str) -> list[str]:
+    """Copy the results over the record and remove what is no longer made.
+
+    Everything is copied under temporary names first: if that fails, the record
+    is as it was.
+    """
+    with ExitStack() as stack:
+        # Entered first, so renamed last.
+        stack.enter_context(replacing(record / LOG)).write_text(log, encoding="utf-8", newline="\n")
+        for file in files:
+            shutil.copyfile(results / file, stack.enter_context(replacing(record / file)))
+    removed = stale(record / "figures", [record / file for file in files])
+    for path in removed:
+        path.unlink()
+    return [*files, *(f"removed figures/{path.name}" for path in removed)]
+
+
+def _show_difference(record: Path, results: Path, files: Sequence[str]) -> dict[str, str]:
+    """Print how the results differ from the record; the artifacts that do, with verdicts."""
+    # The owner replaces these lines by the comparison of both folders, within
+    # the tolerances, once that is there.
+    verdicts = different_files(record, results, files)
+    for name, verdict in sorted(verdicts.items()):
+        print(f"{name:<24}{verdict}")
+    return verdicts
+
+
+def accept(record: Path, results: Path, files: Sequence[str], reason: str) -> list[str]:
+    """Make the results the record; the lines of the job's log.
+
+    Raises
+    ------
+    RefusedError
+        If there is no reason, the tree is dirty or unknown, a result was made
+        from such a tree, or is not one of the files that the workflow makes.
+        Nothing is touched then.
+    """
+    check_reason(reason)
+    now = revision(record)
+    check_tree(now)
+    foreign = stale(results / "figures", [results / file for file in files])
+    if foreign:
+        raise RefusedError(f"{foreign[0]} is not made by this workflow: remove it")
+    carriers = [file for file in files if Path(file).suffix in CARRIERS]
+    made = {file: read_provenance(results / file) for file in carriers}
+    check_results(made)
+    print(*commits(made.values(), now), sep="\n")
+    changes = _show_difference(record, results, files)
+    if not changes:
+        print("Nothing to accept: the results are the record.")
+        return ["nothing to accept"]
+    log = record / LOG
+    text = log.read_text(encoding="utf-8") if log.is_file() else ""
+    lines = replace_record(record, results, files, log_with(text, now.commit, reason, changes))
+    print(f"Accepted, reason: {reason.strip()}", flush=True)
+    return lines

@@ -1,0 +1,120 @@
+"""``accept``: what may become the record, and what is refused."""
+
+import csv
+import shutil
+
+import pytest
+
+REASON = "The reason, in a few words"
+
+
+def log(tree):
+    with open(tree.path / "accepted.csv", encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def record(tree):
+    return {
+        name: content
+        for name, content in tree.contents().items()
+        if name.split("/")[0] in ("figures", "paper.md", "accepted.csv")
+    }
+
+
+def refused(tree, *arguments):
+    """The one line of ours; nothing of the record is touched."""
+    before = record(tree)
+    done = tree.run("--cores", "1", "accept", *arguments, check=False)
+    assert done.returncode == 1 and "Traceback" not in done.stdout + done.stderr
+    assert record(tree) == before
+    said = [line for line in done.stderr.splitlines() if line.startswith("accept: ")]
+    assert len(said) == 1
+    return said[0]
+
+
+def test_the_results_become_the_record(complete):
+    tree, results = complete, complete.path / "results"
+    (tree.path / "figures" / "stale.png").write_bytes(b"from an older version")
+    done = tree.run("--cores", "1", "accept", "--config", f"reason={REASON}")
+    # First what there is to accept, and where it was made.
+    commit = tree.git("rev-parse", "HEAD")
+    assert f"52 files made at commit {commit}\n" in done.stdout
+    assert "stale" in done.stdout and f"Accepted, reason: {REASON}" in done.stdout
+    assert tree.contents("figures") == tree.contents("results/figures")
+    assert (tree.path / "paper.md").read_bytes() == (results / "paper.md").read_bytes()
+    entry = log(tree)[-1]
+    assert (entry["commit"], entry["reason"]) == (commit, REASON)
+    assert "stale removed" in entry["changes"].split("; ")
+    # The record is no dirt, and the same results are nothing new.
+    before = record(tree)
+    again = tree.run("--cores", "1", "accept", "--config", "reason=Again")
+    assert "Nothing to accept" in again.stdout
+    assert record(tree) == before
+    # A second acceptance is a second entry.
+    (tree.path / "figures" / "fig08.png").unlink()
+    tree.run("--cores", "1", "accept", "--config", "reason=Lost")
+    last = log(tree)[-1]
+    assert int(last["number"]) == int(entry["number"]) + 1
+    assert (last["reason"], last["changes"]) == ("Lost", "fig08 new")
+    assert tree.contents("figures") == tree.contents("results/figures")
+
+
+def test_a_reason_runs_nothing_again(complete):
+    assert complete.planned("--config", "reason=Something") == set()
+
+
+def test_refused_without_a_reason(complete):
+    assert 'say why the record changes: --config reason="…"' in refused(complete)
+
+
+def test_refused_with_a_dirty_tree(complete):
+    (complete.path / "README.md").write_text("Not committed.\n", encoding="utf-8")
+    said = refused(complete, "--config", f"reason={REASON}")
+    assert "the tree is dirty: commit first" in said
+
+
+def test_refused_without_git(complete):
+    shutil.rmtree(complete.path / ".git")
+    assert "no git repository" in refused(complete, "--config", f"reason={REASON}")
+
+
+def test_refused_with_results_of_a_dirty_tree(complete):
+    readme = complete.path / "README.md"
+    before = readme.read_bytes()
+    readme.write_text("Not committed.\n", encoding="utf-8")
+    complete.run("--cores", "1", "--force", "fig01")
+    readme.write_bytes(before)
+    said = refused(complete, "--config", f"reason={REASON}")
+    assert "figures/fig01.png and 1 more made from a dirty or unknown tree" in said
+
+
+def test_refused_with_a_file_that_nothing_makes(complete):
+    (complete.path / "results" / "figures" / "mine.png").write_bytes(b"")
+    said = refused(complete, "--config", f"reason={REASON}")
+    assert "results/figures/mine.png is not made by this workflow" in said
+
+
+def test_an_incomplete_result_is_made_first(complete):
+    (complete.path / "results" / "figures" / "fig11.nc").unlink()
+    complete.run("--cores", "1", "accept", "--config", f"reason={REASON}")
+    assert (complete.path / "figures" / "fig11.nc").is_file()
+    assert complete.contents("figures") == complete.contents("results/figures")
+
+
+def test_results_of_several_commits_are_reported(complete):
+    first = complete.git("rev-parse", "HEAD")
+    (complete.path / "README.md").write_text("Other words.\n", encoding="utf-8")
+    second = complete.commit("Other words")
+    complete.run("--cores", "1", "--force", "fig01")
+    done = complete.run("--cores", "1", "accept", "--config", f"reason={REASON}")
+    assert f"50 files made at commit {first}, up to date but not the one checked out" in done.stdout
+    assert f"2 files made at commit {second}\n" in done.stdout
+    assert log(complete)[-1]["commit"] == second
+
+
+@pytest.mark.parametrize("reason", ["", "Eq. 8: sign"])
+def test_a_reason_that_is_no_line_is_a_mistake_of_the_configuration(complete, reason):
+    before = record(complete)
+    done = complete.run("--cores", "1", "accept", "--config", f"reason={reason}", check=False)
+    assert done.returncode == 1 and "configuration: reason = " in done.stderr
+    assert record(complete) == before

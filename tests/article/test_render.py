@@ -63,9 +63,7 @@ def test_numbers_come_from_the_datasets(render):
 
 
 def test_verdicts_come_from_the_claims(render):
-    text = (
-        '{{ claims("contact").verdict }} {{ claims.count("reproduced") }}/{{ claims.count() }}'
-    )
+    text = '{{ claims("contact").verdict }} {{ claims.count("reproduced") }}/{{ claims.count() }}'
     assert render(text) == "contradicted 1/2"
     assert render(text, claims=claims(verdict=["close", "close"])) == "close 0/2"
 

@@ -26,6 +26,8 @@ EXTENSIONS = ["ext_release"]
 FIGURES = PAPER_FIGURES + EXTENSIONS
 SCHEMATICS = ["fig01", "fig04"]
 TABLES = ["table1", "thresholds", "witness", "forensics", "formulas", "claims"]
+# Every dataset: of figures, of tables, and what statements are decided by.
+DATASETS = [name for name in FIGURES if name not in SCHEMATICS] + TABLES + ["evidence"]
 # Those that show orbits or their bifurcations.
 WITNESSED = [f"fig{number:02d}" for number in (2, 3, 5, 6, 7, 8, 9, 10, 12, 13, 14, 15)]
 WITNESSED += ["table1", "ext_release"]

@@ -9,10 +9,7 @@ rule paper:
     input:
         templates=sorted(os.path.relpath(path) for path in ARTICLE.glob("*.md.j2")),
         references=os.path.relpath(ARTICLE / "references.yaml"),
-        data=[
-            f"results/figures/{name}.nc"
-            for name in [*(f for f in FIGURES if f not in SCHEMATICS), *TABLES, "evidence"]
-        ],
+        data=expand("results/figures/{name}.nc", name=DATASETS),
         tables=expand("results/figures/{table}.md", table=TABLES),
         source=modules("article.render", "pipeline.files", "datasets.netcdf"),
     output:

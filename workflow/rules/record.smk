@@ -8,11 +8,10 @@ rule accept:
     message:
         "Copying the results over the record in figures/ and paper.md"
     input:
-        rules.all.input,
-        data=[
-            f"results/figures/{name}.nc"
-            for name in [*(f for f in FIGURES if f not in SCHEMATICS), *TABLES]
-        ],
+        figures=rules.all.input.figures,
+        tables=rules.all.input.tables,
+        paper=rules.all.input.paper,
+        data=expand("results/figures/{name}.nc", name=DATASETS),
     params:
         record=workflow.basedir,
         reason=config.get("reason", ""),

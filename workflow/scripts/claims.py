@@ -7,7 +7,7 @@ from bouncing_ball.claims.ledger import parse_ledger
 from bouncing_ball.claims.tally import tally
 from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
 from bouncing_ball.pipeline.files import write_text
-from bouncing_ball.pipeline.job import REFERENCE, logged
+from bouncing_ball.pipeline.job import REFERENCE, logged, provenance
 
 with logged(snakemake) as lines:
     paths = map(Path, snakemake.input.data)
@@ -18,6 +18,7 @@ with logged(snakemake) as lines:
         "title": snakemake.rule,
         "references": REFERENCE,
         "close_within": ledger.close_within,
+        **provenance(snakemake, dict(snakemake.params.items())).attributes(),
     }
     write_dataset(verdicts, snakemake.output.data)
     last = tally(verdicts, snakemake.params.figures)

@@ -127,8 +127,8 @@ def replace_record(record: Path, results: Path, files: Sequence[str], log: str) 
 
 def _show_difference(record: Path, results: Path, files: Sequence[str]) -> dict[str, str]:
     """Print how the results differ from the record; the artifacts that do, with verdicts."""
-    # The owner replaces these lines by the comparison of both folders, within
-    # the tolerances, once that is there.
+    # To be replaced by the comparison of both folders, within the tolerances,
+    # once that is there.
     verdicts = different_files(record, results, files)
     for name, verdict in sorted(verdicts.items()):
         print(f"{name:<24}{verdict}")

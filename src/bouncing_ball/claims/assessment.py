@@ -21,7 +21,7 @@ def _condition(claim: Claim, criterion: Criterion) -> str:
 
 def _holds(explanation: Explanation, ledger: Ledger, data: Mapping[str, xr.Dataset]) -> bool:
     """Whether every check of an explanation is met, on the paper's parameters."""
-    if foreign_parameter(explanation.uses, ledger, data):
+    if foreign_parameter(explanation, ledger, data):
         return False
     verdicts = (find(criterion, None, ledger, data).verdict for criterion in explanation.criteria)
     return all(verdict is Verdict.REPRODUCED for verdict in verdicts)

@@ -15,9 +15,7 @@ rule continuation:
         release=config["release"],
         continuation=config["continuation"],
         # Only Table 1 stands in print.
-        printed=lambda wildcards: (
-            printed(LEDGER, "Table 1") if wildcards.figure == "table1" else {}
-        ),
+        printed=lambda wildcards: TABLE1 if wildcards.figure == "table1" else {},
     log:
         "results/logs/continuation/{figure}.log",
     benchmark:

@@ -34,13 +34,19 @@ class Claims:
 
     def __init__(self, data: xr.Dataset) -> None:
         self._data = data
-        names = ("claim", "item", "statement", "printed_text", "required", "verdict", "reason")
         rows = [data.isel(claim=index) for index in range(data.sizes["claim"])]
         self._claims = [
             ClaimText(
-                *(str(row[name].values) for name in (*names, "explained_by")),
-                found_text(row),
-                deviation_text(row),
+                id=row.claim.item(),
+                item=row["item"].item(),
+                statement=row.statement.item(),
+                printed=row.printed_text.item(),
+                required=row.required.item(),
+                verdict=row.verdict.item(),
+                reason=row.reason.item(),
+                explanation=row.explained_by.item(),
+                found=found_text(row),
+                deviation=deviation_text(row),
             )
             for row in rows
         ]

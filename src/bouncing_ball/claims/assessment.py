@@ -23,7 +23,7 @@ def _checks(
     explanation: Explanation, ledger: Ledger, data: Mapping[str, xr.Dataset]
 ) -> tuple[bool, str]:
     """Whether every check of an explanation is met, and each in words with its number."""
-    foreign = foreign_parameter(explanation.uses, ledger, data)
+    foreign = foreign_parameter(explanation, ledger, data)
     if foreign:
         return False, foreign
     findings = [find(criterion, None, ledger, data) for criterion in explanation.criteria]

@@ -4,12 +4,13 @@ The mapping is taken to satisfy ``config/claims.schema.yaml``; the pipeline
 checks that before.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import product
 from typing import Any
 
+from bouncing_ball.claims.printed import is_number_text
 from bouncing_ball.errors import ModelError
 
 
@@ -181,31 +182,67 @@ def _claim(entry: Mapping[str, Any]) -> Claim:
     )
 
 
+def _entry(entry: Mapping[str, Any], place) -> str:
+    """The printed number at a place, ((axis, index, value), ...) from the outermost axis."""
+    printed: Any = entry["printed"]
+    passed: list[str] = []
+    for axis, index, value in place:
+        expected = len(entry["over"][axis])
+        if not isinstance(printed, list) or len(printed) != expected:
+            at = f" at {', '.join(passed)}" if passed else ""
+            raise ModelError(
+                f"table {entry['id']!r}: printed{at} is not a list of {expected}, one for each "
+                f"{axis}"
+            )
+        printed = printed[index]
+        passed.append(f"{axis} = {value}")
+    if not is_number_text(printed):
+        raise ModelError(
+            f"table {entry['id']!r}: printed at {', '.join(passed)} is {printed!r}, not a number "
+            "as a text"
+        )
+    return printed
+
+
+def _chosen_explanation(entry: Mapping[str, Any], at: Mapping[str, Any]) -> str:
+    """The first explanation of a table whose ``where`` fits; empty if none does."""
+    for rule in entry["explanation"]:
+        where = rule.get("where", {})
+        strange = next((key for key in where if key not in at), None)
+        if strange is not None:
+            raise ModelError(
+                f"table {entry['id']!r}: the explanation {rule['name']!r} is for {strange}, which "
+                f"is not one of {', '.join(at)}"
+            )
+        if all(at[key] == value for key, value in where.items()):
+            return rule["name"]
+    return ""
+
+
 def _cells(entry: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
     """One entry for each number of a printed table."""
     axes = entry["over"]
-    labels = list(axes)
-    for place in product(*(enumerate(axes[label]) for label in labels)):
-        printed = entry["printed"]
-        for index, _ in place:
-            printed = printed[index]
-        at = {label: value for label, (_, value) in zip(labels, place, strict=True)}
-        labels_at = (f"{x:g}" if isinstance(x, float) else str(x) for x in at.values())
-        explanation = entry["explanation"]
-        for rule in explanation:
-            if all(at[key] == value for key, value in rule.get("where", {}).items()):
-                chosen = rule["name"]
-                break
-        else:
-            chosen = ""
+    labelled = ([(axis, *pair) for pair in enumerate(values)] for axis, values in axes.items())
+    for place in product(*labelled):
+        at = {axis: value for axis, _, value in place}
+        labels = (f"{x:g}" if isinstance(x, float) else str(x) for x in at.values())
+        try:
+            statement = entry["statement"].format(**at)
+        except (LookupError, ValueError) as error:
+            raise ModelError(
+                f"table {entry['id']!r}: the statement {entry['statement']!r} may name only "
+                f"{', '.join(axes)}"
+            ) from error
+        source = entry["decided_by"]
         yield {
             **{key: entry[key] for key in ("section", "item", "legibility")},
-            "id": f"{entry['id']}: {', '.join(labels_at)}",
+            "id": f"{entry['id']}: {', '.join(labels)}",
             "kind": "number",
-            "statement": entry["statement"].format(**at),
-            "printed": printed,
-            "decided_by": {**entry["decided_by"], "at": at},
-            "explanation": chosen,
+            "statement": statement,
+            "printed": _entry(entry, place),
+            "remark": entry.get("remark", ""),
+            "decided_by": {**source, "at": {**source.get("at", {}), **at}},
+            "explanation": _chosen_explanation(entry, at),
             "uses": entry.get("uses", []),
         }
 
@@ -225,31 +262,36 @@ def printed_table(entry: Mapping[str, Any]) -> dict[str, Any]:
     return {**entry["over"], "values": numbers(entry["printed"])}
 
 
+def _explanation(entry: Mapping[str, Any]) -> Explanation:
+    criteria = _criteria({"readings": entry["checks"]})
+    return Explanation(entry["id"], entry["text"], criteria, _uses(entry, criteria))
+
+
+def _once(kind: str, names: Sequence[str]) -> None:
+    for name in names:
+        if names.count(name) > 1:
+            raise ModelError(f"{kind} {name!r} stands twice in the ledger")
+
+
 def parse_ledger(mapping: Mapping[str, Any]) -> Ledger:
     """The ledger from its mapping; tables become one claim for each number.
 
     Raises
     ------
     ModelError
-        If a name stands twice, or a claim names an explanation that there is not.
+        If a name stands twice, a claim names an explanation that there is not,
+        or a printed table does not have the shape of its axes.
     """
-    explanations = tuple(
-        Explanation(
-            entry["id"], entry["text"], _criteria({"readings": entry["checks"]}),
-            _uses(entry, _criteria({"readings": entry["checks"]})),
-        )
-        for entry in mapping["explanations"]
-    )  # fmt: skip
+    explanations = tuple(_explanation(entry) for entry in mapping["explanations"])
+    _once("explanation", [explanation.id for explanation in explanations])
+    _once("claim", [entry["id"] for entry in mapping["claims"]])
     claims: list[Claim] = []
     for entry in mapping["claims"]:
         parts = _cells(entry) if entry["kind"] == "table" else [entry]
         claims += [_claim(part) for part in parts]
+    _once("claim", [claim.id for claim in claims])
     known = {explanation.id for explanation in explanations}
-    seen: set[str] = set()
     for claim in claims:
-        if claim.id in seen:
-            raise ModelError(f"claim {claim.id!r} stands twice in the ledger")
-        seen.add(claim.id)
         if claim.explanation and claim.explanation not in known:
             raise ModelError(
                 f"claim {claim.id!r} names the explanation {claim.explanation!r}, which is not one "

@@ -1,7 +1,6 @@
 """One number out of the datasets."""
 
-import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 import xarray as xr
@@ -11,6 +10,11 @@ from bouncing_ball.errors import ModelError
 
 # Coordinates are computed from the numbers of the configuration.
 _MATCH = 1e-9
+_REDUCTIONS: dict[str, Callable[[np.ndarray], float]] = {
+    "max": np.max,
+    "min": np.min,
+    "sum": np.sum,
+}
 
 
 def measured(measure: Measure, datasets: Mapping[str, xr.Dataset]) -> float:
@@ -20,7 +24,8 @@ def measured(measure: Measure, datasets: Mapping[str, xr.Dataset]) -> float:
     ------
     ModelError
         If the dataset, the variable or the place is missing, if more than one
-        number is left, or if it is not a number.
+        number is left, or if any of them is not a number: what is not there is
+        not passed over.
 
     Examples
     --------
@@ -34,28 +39,33 @@ def measured(measure: Measure, datasets: Mapping[str, xr.Dataset]) -> float:
     if measure.variable not in dataset.variables:
         raise ModelError(f"{measure}: {measure.dataset} has no variable {measure.variable}")
     values = dataset[measure.variable]
+    if values.dtype.kind not in "biuf":
+        raise ModelError(f"{measure}: {measure.variable} does not hold numbers")
     for name, wanted in measure.at:
         values = values.isel({name: _index(values, name, wanted, measure)})
     numbers = values.values.astype(float).ravel()
+    if not numbers.size:
+        raise ModelError(f"{measure}: no numbers over {', '.join(map(str, values.dims))}")
+    if np.isnan(numbers).any():
+        raise ModelError(f"{measure}: {np.isnan(numbers).sum()} of {numbers.size} not a number")
     if measure.reduce != "value":
-        number = {"max": np.nanmax, "min": np.nanmin, "sum": np.nansum}[measure.reduce](numbers)
-    elif numbers.size == 1:
-        number = numbers[0]
-    else:
-        raise ModelError(f"{measure}: {numbers.size} numbers over {', '.join(values.dims)}, not 1")
-    if math.isnan(number):
-        raise ModelError(f"{measure}: not a number")
-    return float(number)
+        return float(_REDUCTIONS[measure.reduce](numbers))
+    if numbers.size > 1:
+        dims = ", ".join(map(str, values.dims))
+        raise ModelError(f"{measure}: {numbers.size} numbers over {dims}, not 1")
+    return float(numbers[0])
 
 
 def _index(values: xr.DataArray, name: str, wanted, measure: Measure) -> int:
     if name not in values.dims:
         raise ModelError(f"{measure}: {measure.variable} has no coordinate {name}")
     labels = values[name].values
-    if isinstance(wanted, str):
-        there = np.flatnonzero(labels == wanted)
+    if isinstance(wanted, str) or labels.dtype.kind not in "iuf":
+        there = np.flatnonzero([label == wanted for label in labels.tolist()])
     else:
-        there = np.flatnonzero(np.isclose(labels.astype(float), wanted, rtol=_MATCH, atol=0))
+        there = np.flatnonzero(np.isclose(labels, wanted, rtol=_MATCH, atol=0))
     if there.size != 1:
-        raise ModelError(f"{measure}: {name} = {wanted} is not among {labels.tolist()}")
+        known = ", ".join(map(str, labels.tolist()))
+        often = "is not among" if not there.size else f"stands {there.size} times among"
+        raise ModelError(f"{measure}: {name} = {wanted} {often} {known}")
     return int(there[0])

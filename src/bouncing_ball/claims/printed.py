@@ -1,5 +1,21 @@
 """Numbers as printed: their value and the unit of their last digit."""
 
+import re
+
+# Digits with or without a decimal part, and a power of ten.
+_NUMBER = re.compile(r"-?[0-9]+(\.[0-9]+)?(e-?[0-9]+)?")
+
+
+def is_number_text(value: object) -> bool:
+    """Whether a value is a number written as a text.
+
+    Examples
+    --------
+    >>> is_number_text("0.750"), is_number_text(0.75)
+    (True, False)
+    """
+    return isinstance(value, str) and _NUMBER.fullmatch(value) is not None
+
 
 def last_unit(text: str) -> float:
     """Unit of the last printed digit.

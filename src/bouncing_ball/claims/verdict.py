@@ -1,7 +1,7 @@
 """The verdict on a claim: reproduced, close, contradicted or undecidable."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any
@@ -9,12 +9,23 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.claims.ledger import Claim, Condition, Criterion, Ledger, Measure, Relation
+from bouncing_ball.claims.ledger import (
+    Claim,
+    Condition,
+    Criterion,
+    Explanation,
+    Ledger,
+    Measure,
+    Relation,
+)
 from bouncing_ball.claims.measure import measured
 from bouncing_ball.claims.printed import distance_in_units, last_unit
+from bouncing_ball.errors import ModelError
 
-# A digit that rounds to the printed one, and the rounding of the comparison.
-_HALF = 0.5 + 1e-9
+# Rounding must not decide what stands exactly on a bound.
+_ROUNDING = 1e-9
+# A digit that rounds to the printed one.
+_HALF = 0.5 + _ROUNDING
 
 
 class Verdict(StrEnum):
@@ -79,7 +90,7 @@ def judge_number(value: float, printed: str, unit: float | None, close_within: f
     relative = _relative(value - float(printed), float(printed))
     if abs(units) <= _HALF:
         verdict = Verdict.REPRODUCED
-    elif abs(relative) <= close_within:
+    elif abs(relative) <= close_within * (1 + _ROUNDING):
         verdict = Verdict.CLOSE
     else:
         verdict = Verdict.CONTRADICTED
@@ -142,28 +153,70 @@ def find(criterion: Criterion, claim: Claim | None, ledger: Ledger, data: Mappin
     return judge_condition(value, criterion.condition, bound)
 
 
-def _same(given: Any, paper: Any) -> bool:
-    if isinstance(given, str) and not isinstance(paper, str):
+def _plain(value: Any) -> Any:
+    """An attribute as numbers, texts and lists: arrays and JSON undone."""
+    if isinstance(value, str) and value[:1] in ("[", "{"):
         # Nested parameters are JSON among a dataset's attributes.
-        given = json.loads(given)
-    if isinstance(paper, str) or isinstance(given, list):
-        return given == paper
-    given, paper = np.atleast_1d(given), np.atleast_1d(paper)
-    return given.shape == paper.shape and bool(np.all(given == paper))
+        return json.loads(value)
+    return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
 
 
-def foreign_parameter(uses: Sequence[str], ledger: Ledger, data: Mapping[str, xr.Dataset]) -> str:
-    """The first parameter of these datasets that is not the paper's, in words; or "".
+def _agrees(given: Any, paper: Any) -> bool:
+    if isinstance(paper, Mapping):
+        limits = (
+            given >= paper.get("at_least", given),
+            given <= paper.get("at_most", given),
+        )
+        return all(limits) and set(paper.get("includes", [])) <= set(_listed(given))
+    # A list of one number is that number among the attributes.
+    return _listed(given) == _listed(paper)
+
+
+def _listed(value: Any) -> list:
+    return value if isinstance(value, list) else [value]
+
+
+def _words(paper: Any) -> str:
+    if not isinstance(paper, Mapping):
+        return str(paper)
+    named = {"at_least": "at least", "at_most": "at most", "includes": "all of"}
+    return " and ".join(f"{named[key]} {value}" for key, value in paper.items())
+
+
+def foreign_parameter(
+    part: Claim | Explanation, ledger: Ledger, data: Mapping[str, xr.Dataset]
+) -> str:
+    """The first parameter of the datasets used that is not the paper's, in words; or "".
 
     A parameter stands in the ledger as it stands among a dataset's attributes;
-    those under ``every`` are asked of all that have them.
+    those under ``every`` are asked of all datasets that have them, those under
+    ``dataset.variable`` only for what is decided by that variable. A mapping
+    with ``at_least``, ``at_most`` or ``includes`` asks no more than that.
+
+    Raises
+    ------
+    ModelError
+        If a dataset is missing, or a parameter that the ledger gives for it.
     """
     common = ledger.parameters.get("every", {})
-    for name in uses:
-        for key, paper in {**common, **ledger.parameters.get(name, {})}.items():
-            given = data[name].attrs.get(key) if name in data else None
-            if given is not None and not _same(given, paper):
-                return f"{name} was computed with {key} = {given}, not with the paper's {paper}"
+    for name in part.uses:
+        if name not in data:
+            raise ModelError(f"{part.id!r} uses the dataset {name}, which there is not")
+        attributes = data[name].attrs
+        own = dict(ledger.parameters.get(name, {}))
+        for measure in (criterion.measure for criterion in part.criteria):
+            if measure.dataset == name:
+                own |= ledger.parameters.get(f"{name}.{measure.variable}", {})
+        absent = next((key for key in own if key not in attributes), None)
+        if absent is not None:
+            raise ModelError(
+                f"{part.id!r} needs {absent} = {_words(own[absent])}, but dataset {name} has no "
+                f"parameter {absent}"
+            )
+        for key, paper in {**common, **own}.items():
+            if key in attributes and not _agrees(_plain(attributes[key]), paper):
+                given = _plain(attributes[key])
+                return f"{name} was computed with {key} = {given}, needed is {_words(paper)}"
     return ""
 
 
@@ -178,7 +231,7 @@ def decide(claim: Claim, ledger: Ledger, data: Mapping[str, xr.Dataset]) -> Deci
     ModelError
         If an input is missing.
     """
-    foreign = foreign_parameter(claim.uses, ledger, data)
+    foreign = foreign_parameter(claim, ledger, data)
     if foreign:
         return Decision(Verdict.UNDECIDABLE, None, foreign, foreign=True)
     findings = [find(criterion, claim, ledger, data) for criterion in claim.criteria]

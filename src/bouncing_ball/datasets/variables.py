@@ -149,6 +149,7 @@ VARIABLES: dict[str, Variable] = {
     "apparent_restitution_error": Variable(
         "largest |r_a - r|/r among stiff contacts", "", equation="Eq. 17"
     ),
+    "apparent_restitution_difference": Variable("largest |r_a - r|/r", "", equation="Eq. 17"),
     "apparent_restitution_rebound": Variable(
         "largest growth of |r_a - r|/r above its value at a softer contact", "", equation="Eq. 17"
     ),
@@ -162,9 +163,6 @@ VARIABLES: dict[str, Variable] = {
         "ϖ above which the spread of z′_b/(nπ) over Λ is within the tolerance", "ϖ"
     ),
     "bounce_velocity_rise": Variable("smallest rise of z′_b from contact to contact", ""),
-    "velocity_balance": Variable(
-        "largest defect of the velocity balance over a cycle", "", equation="Eq. 27"
-    ),
     "contact_duration_rise": Variable("largest rise of τ_b from contact to contact", ""),
     "max_height_rise": Variable("smallest rise of max z from contact to contact", ""),
     "phase_error": Variable("|φ - φ_CR|/φ_CR at the stiffest contact", ""),
@@ -179,9 +177,7 @@ VARIABLES: dict[str, Variable] = {
     "stability_exceptions": Variable(
         "orbits that are not stable exactly between saddle-node and period doubling", ""
     ),
-    "inadmissible_orbits": Variable(
-        "orbits drawn along ϖ that do not have one impact per period", ""
-    ),
+    "inadmissible_orbits": Variable("orbits drawn that do not have one impact per period", ""),
     "contact_duration_stiffest": Variable("longest contact of the stiffest branch", "τ_b"),
     "contact_duration_softest": Variable("longest contact of the softest branch", "τ_b"),
     "range_error": Variable("relative error of the ends of the stability range", ""),
@@ -198,6 +194,14 @@ VARIABLES: dict[str, Variable] = {
     ),
     "printed_stiff_difference": Variable(
         "difference of the printed stiffest row from the restitution model",
+        "Λ",
+        equation="Table 1",
+    ),
+    "printed_soft_distance": Variable(
+        "largest difference of a softer printed row from the computed one", "Λ", equation="Table 1"
+    ),
+    "printed_release_distance": Variable(
+        "largest difference of the printed softest row from a release rule's",
         "Λ",
         equation="Table 1",
     ),

@@ -26,10 +26,17 @@ class ConfigurationError(ModelError):
     """A wrong key, type or value in the configuration, in one line."""
 
 
-def _dotted(path) -> str:
+def _dotted(path, root: Any = None) -> str:
+    """A path in words; an entry of a list that has an ``id`` is called by it."""
     text = ""
+    value: Any = root
     for part in path:
-        text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else str(part)
+        value = value[part] if root is not None else {}
+        if isinstance(part, int):
+            name = value.get("id") if isinstance(value, Mapping) else None
+            text += f"[{name!r}]" if isinstance(name, str) else f"[{part}]"
+        else:
+            text += f".{part}" if text else str(part)
     return text
 
 
@@ -61,7 +68,8 @@ def _allowed(error: ValidationError) -> str:
     notes = [error.schema["description"]] if "description" in error.schema else []
     match error.validator:
         case "type":
-            words = f"must be {_KINDS.get(limit, limit)}"
+            kinds = limit if isinstance(limit, list) else [limit]
+            words = "must be " + " or ".join(_KINDS.get(str(kind), str(kind)) for kind in kinds)
             if _looks_like_number(error.instance):
                 notes.insert(0, "powers of ten are written 1.0e+4, with point and sign")
         case "minimum":
@@ -74,31 +82,72 @@ def _allowed(error: ValidationError) -> str:
             words = f"must be less than {limit:g}"
         case "enum":
             words = "must be one of " + ", ".join(map(str, limit))
-        case "pattern":
-            words = "must be one line that is not empty"
         case "minItems":
             words = f"must have at least {limit} item{'s' if limit > 1 else ''}"
         case "maxItems":
             words = f"must have at most {limit} items"
         case "uniqueItems":
             words = "must not repeat an item"
+        case "minLength":
+            words = "must not be empty"
+        case "minProperties":
+            words = f"must have at least {limit} key{'s' if limit > 1 else ''}"
+        case "pattern" | "oneOf" if notes:
+            words = f"must be {notes.pop()}"
         case _:
             words = error.message
     return f"{words} ({'; '.join(notes)})" if notes else words
 
 
-def _message(error: ValidationError) -> str:
-    where = _dotted(error.absolute_path)
-    if error.validator == "additionalProperties":
-        known = error.schema["properties"]
-        unknown = next(key for key in error.instance if key not in known)
-        key = f"{where}.{unknown}" if where else str(unknown)
-        value = _shown(error.instance[unknown])
-        return f"unknown key {key} = {value}; allowed here: {', '.join(known)}"
+def _resolved(schema: Mapping[str, Any], root: Mapping[str, Any]) -> Mapping[str, Any]:
+    """A schema with what it refers to by ``$ref``."""
+    if "$ref" not in schema:
+        return schema
+    target: Any = root
+    for part in schema["$ref"].removeprefix("#/").split("/"):
+        target = target[part]
+    return {**_resolved(target, root), **schema}
+
+
+def _known_keys(schema: Mapping[str, Any], root: Mapping[str, Any]) -> list[str]:
+    """The keys that a schema allows, those of the schema it extends first."""
+    extended = {"$ref": schema["$ref"]} if "$ref" in schema else {}
+    base = _resolved(extended, root).get("properties", {})
+    return list(dict.fromkeys([*base, *schema.get("properties", {})]))
+
+
+def _chosen(error: ValidationError) -> ValidationError | None:
+    """The error within the alternative that was meant, if one key tells which."""
+    met = [
+        index
+        for index, option in enumerate(error.validator_value)
+        if "required" in option and all(key in error.instance for key in option["required"])
+    ]
+    within = [part for part in error.context or [] if part.relative_schema_path[0] in met]
+    return within[0] if len(met) == 1 and within else None
+
+
+def _message(error: ValidationError, mapping: Any, root: Mapping[str, Any]) -> str:
+    where = _dotted(error.absolute_path, mapping)
+    key, where = f"{where}." if where else "", where or "the whole file"
+    if error.validator in ("additionalProperties", "unevaluatedProperties"):
+        known = _known_keys(error.schema, root)
+        unknown = next((name for name in error.instance if name not in known), None)
+        if unknown is not None:
+            value = _shown(error.instance[unknown])
+            return f"unknown key {key}{unknown} = {value}; allowed here: {', '.join(known)}"
     if error.validator == "required":
-        missing = next(key for key in error.validator_value if key not in error.instance)
-        return f"missing key {where + '.' if where else ''}{missing}"
-    return f"{where or 'the whole file'} = {_shown(error.instance)} {_allowed(error)}"
+        missing = next(name for name in error.validator_value if name not in error.instance)
+        return f"missing key {key}{missing}"
+    if error.validator == "oneOf" and isinstance(error.instance, Mapping):
+        chosen = _chosen(error)
+        if chosen is not None:
+            return _message(chosen, mapping, root)
+        if all("required" in option for option in error.validator_value):
+            names = [name for option in error.validator_value for name in option["required"]]
+            found = " and ".join(name for name in names if name in error.instance) or "none"
+            return f"{where} must have one of {', '.join(names)}; it has {found}"
+    return f"{where} = {_shown(error.instance)} {_allowed(error)}"
 
 
 def _numbers(value: Any, path: tuple = ()) -> Iterator[tuple[tuple, float]]:
@@ -182,13 +231,13 @@ def check_schema(mapping: Mapping[str, Any], schema: Mapping[str, Any]) -> None:
     """
     for path, value in _numbers(mapping):
         if not math.isfinite(value):
-            raise ConfigurationError(f"{_dotted(path)} = {value} must be a finite number")
+            raise ConfigurationError(f"{_dotted(path, mapping)} = {value} must be a finite number")
     errors = sorted(
         _Validator(schema).iter_errors(mapping),
         key=lambda error: [str(part) for part in error.absolute_path],
     )
     if errors:
-        raise ConfigurationError(_message(errors[0]))
+        raise ConfigurationError(_message(errors[0], mapping, schema))
 
 
 def check_configuration(config: Mapping[str, Any], schema: Mapping[str, Any]) -> None:

@@ -1,13 +1,22 @@
 """The ledger of claims from its file, checked, and what the rules need of it."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 import yaml
 
 from bouncing_ball.claims.ledger import parse_ledger, printed_table
+from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.configuration import ConfigurationError, check_schema
+
+
+def _parsed(path: Path) -> Any:
+    try:
+        return yaml.safe_load(path.read_text(encoding="utf-8"))
+    except yaml.MarkedYAMLError as error:
+        line = f" in line {error.problem_mark.line + 1}" if error.problem_mark else ""
+        raise ConfigurationError(f"not YAML{line}: {error.problem}") from error
 
 
 def read_ledger(folder: str | Path) -> dict[str, Any]:
@@ -18,25 +27,48 @@ def read_ledger(folder: str | Path) -> dict[str, Any]:
     ConfigurationError
         One line for the first mistake.
     """
-    mapping, schema = (
-        yaml.safe_load(Path(folder, name).read_text(encoding="utf-8"))
-        for name in ("claims.yaml", "claims.schema.yaml")
-    )
+    names = ("claims.yaml", "claims.schema.yaml")
+    mapping, schema = (_parsed(Path(folder, name)) for name in names)
     check_schema(mapping, schema)
     try:
         parse_ledger(mapping)
-    except ValueError as error:
+    except ModelError as error:
         raise ConfigurationError(str(error)) from error
     return mapping
+
+
+def check_datasets(mapping: Mapping[str, Any], made: Iterable[str]) -> None:
+    """Raise if a ledger needs a dataset that the pipeline does not make.
+
+    Raises
+    ------
+    ConfigurationError
+        One line for the first one.
+    """
+    made = sorted(made)
+    asked = {name.partition(".")[0] for name in mapping["parameters"]} - {"every"}
+    named = [*datasets_of(mapping), *sorted(asked)]
+    for name in named:
+        if name not in made:
+            raise ConfigurationError(f"there is no dataset {name}, only {', '.join(made)}")
 
 
 def datasets_of(mapping: Mapping[str, Any]) -> list[str]:
     """Names of the datasets that a ledger is decided by, sorted."""
     ledger = parse_ledger(mapping)
-    parts = [*ledger.claims, *ledger.explanations]
-    return sorted({name for part in parts for name in part.uses})
+    used = [part.uses for part in ledger.claims] + [part.uses for part in ledger.explanations]
+    return sorted({name for names in used for name in names})
 
 
 def printed(mapping: Mapping[str, Any], name: str) -> dict[str, Any]:
-    """A printed table of the ledger by its id, as numbers."""
-    return printed_table(next(entry for entry in mapping["claims"] if entry["id"] == name))
+    """A printed table of the ledger by its id, as numbers.
+
+    Raises
+    ------
+    ConfigurationError
+        If the ledger has no such table.
+    """
+    for entry in mapping["claims"]:
+        if entry["id"] == name and entry["kind"] == "table":
+            return printed_table(entry)
+    raise ConfigurationError(f"there is no table {name!r} among the claims")

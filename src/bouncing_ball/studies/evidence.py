@@ -20,13 +20,16 @@ from bouncing_ball.studies import printed
 Datasets = Mapping[str, xr.Dataset]
 Found = dict[str, xr.DataArray]
 BOUNDS = ("saddle-node", "period doubling")
+# A logarithmic grid meets its round numbers but for rounding.
+_GRID = 1e-9
 
 
 def last_crossing(error: np.ndarray, ratio: np.ndarray, tolerance: float) -> float:
     """The ϖ above which a sampled error stays within a tolerance.
 
     Between the last sample outside and the next one the error is taken for a
-    power of ϖ. NaN if no sample, or the last one, is outside.
+    power of ϖ. NaN if no sample, or the last one, is outside, or if a sample
+    that is needed has no finite error.
 
     Examples
     --------
@@ -38,14 +41,17 @@ def last_crossing(error: np.ndarray, ratio: np.ndarray, tolerance: float) -> flo
     if not outside.size or outside[-1] == len(ratio) - 1:
         return float("nan")
     pair = slice(outside[-1], outside[-1] + 2)
+    if not np.isfinite(error[pair]).all():
+        return float("nan")
     x, y = np.log(ratio[pair]), np.log(np.maximum(error[pair], np.finfo(float).tiny))
     share = (np.log(tolerance) - y[0]) / (y[1] - y[0])
     return float(np.exp(x[0] + share * (x[1] - x[0])))
 
 
-def _stiff(values: xr.DataArray, limit: float) -> xr.DataArray:
-    """The part for contacts at least as stiff as a limit, as the grid rounds it."""
-    return values.sel(frequency_ratio=values.frequency_ratio >= limit * (1 - 1e-9))
+def _worst_when_stiff(values: xr.DataArray, limit: float) -> xr.DataArray:
+    """Largest value among contacts at least as stiff as a limit, NaN if none is."""
+    stiff = values.frequency_ratio >= limit * (1 - _GRID)
+    return values.where(stiff).max("frequency_ratio")
 
 
 def _smallest_rise(values: xr.DataArray) -> xr.DataArray:
@@ -58,16 +64,20 @@ def _largest_rise(values: xr.DataArray) -> xr.DataArray:
 
 def _apparent_restitution(data: Datasets, stiff: float) -> Found:
     """Figs. 5 and 6: how far r_a is from r, and whether it only comes closer."""
-    found: dict[str, list[xr.DataArray]] = {"error": [], "rebound": [], "dip": []}
+    found: dict[str, list[xr.DataArray]] = {
+        key: [] for key in ("error", "difference", "rebound", "dip")
+    }
     for name in ("fig05", "fig06"):
         sweep = data[name]
         signed = (sweep.apparent_restitution - sweep.restitution) / sweep.restitution
         signed = signed.reset_coords(drop=True)
         error = np.abs(signed)
         # How much farther from r than some softer contact is.
-        closest = error.copy(data=np.fmin.accumulate(error.values, axis=1))
+        axis = error.get_axis_num("frequency_ratio")
+        closest = error.copy(data=np.fmin.accumulate(error.values, axis=axis))
         for key, values in (
-            ("error", _stiff(error, stiff).max("frequency_ratio")),
+            ("error", _worst_when_stiff(error, stiff)),
+            ("difference", error.max("frequency_ratio")),
             ("rebound", (error - closest).max("frequency_ratio")),
             ("dip", -signed.min("frequency_ratio")),
         ):
@@ -87,7 +97,7 @@ def _cases(sweep: xr.Dataset):
 
 
 def _bounce(data: Datasets, stiff: float) -> Found:
-    """Fig. 10: the bouncing-off velocity against nπ, and the balance of Eq. 27."""
+    """Fig. 10: the bouncing-off velocity against nπ."""
     sweep, tolerances = data["fig10"], data["thresholds"].tolerance
     velocity, limit = sweep.bounce_velocity, sweep.restitution_bounce_velocity
     ratio = sweep.frequency_ratio.values
@@ -98,16 +108,13 @@ def _bounce(data: Datasets, stiff: float) -> Found:
         found = [last_crossing(values.values, ratio, x) for x in tolerances.values]
         return xr.DataArray(found, {"tolerance": tolerances.values})
 
-    period = 2 * np.pi * sweep.attrs["n"]
-    balance = sweep.impact_velocity + period - sweep.contact_duration - velocity
     return {
-        "bounce_velocity_error": _stiff(error, stiff).max(),
+        "bounce_velocity_error": _worst_when_stiff(error, stiff).max(),
         "bounce_velocity_error_soft": error.isel(frequency_ratio=0).min(),
         "bounce_velocity_departure": crossings(error.max("case")),
         "bounce_velocity_spread": spread.max(),
         "bounce_velocity_spread_end": crossings(spread),
         "bounce_velocity_rise": _smallest_rise(velocity).min(),
-        "velocity_balance": np.abs(balance).max(),
     }
 
 
@@ -137,8 +144,9 @@ def _domains(data: Datasets) -> Found:
         & (orbits.amplitude < doubling)
     )
     found = {"stability_exceptions": (orbits.stable != between).sum()}
-    swept = [data[name].admissible for name in ("fig05", "fig06", "fig10", "fig13", "fig14")]
-    found["inadmissible_orbits"] = xr.DataArray(sum(int((~x).sum()) for x in swept))
+    drawn = [data[name].admissible for name in ("fig03", "fig05", "fig06", "fig10", "fig13")]
+    drawn.append(data["fig14"].admissible)
+    found["inadmissible_orbits"] = xr.DataArray(sum(int((~x.astype(bool)).sum()) for x in drawn))
     names = ["fig08", "fig09"]
     for key, pick in (("stiffest", "argmax"), ("softest", "argmin")):
         longest = []
@@ -150,11 +158,28 @@ def _domains(data: Datasets) -> Found:
 
     both = data["fig15"].isel(frequency_ratio=0)
     rigid = np.array([both.saddle_node_amplitude, both.period_doubling_amplitude])
-    # The branch's own order ends on the stable side: the last of each kind.
-    soft = [both.special_amplitude.values[both.special_kind.values == kind] for kind in BOUNDS]
-    ends = np.array([part[-1] if part.size else np.nan for part in soft])
-    found["range_error"] = xr.DataArray(np.abs(ends / rigid - 1), {"bound": list(BOUNDS)})
+    soft = _first_range(both.special_kind.values, both.special_amplitude.values)
+    found["range_error"] = xr.DataArray(np.abs(soft / rigid - 1), {"bound": list(BOUNDS)})
     return found
+
+
+def _first_range(kinds: np.ndarray, amplitudes: np.ndarray) -> np.ndarray:
+    """Ends of the stable range next to the saddle-node, NaN where there is none.
+
+    The special points stand in the branch's order, which ends on the stable
+    side: the last saddle-node, and the first period doubling after it.
+    """
+    node, doubling = (np.flatnonzero(kinds == kind) for kind in BOUNDS)
+    doubling = doubling[doubling > node[-1]] if node.size else doubling[:0]
+    ends = (node[-1:], doubling[:1])
+    return np.array([amplitudes[part[0]] if part.size else np.nan for part in ends])
+
+
+def _softer_rows(values: xr.DataArray, table: xr.Dataset) -> xr.DataArray:
+    """Values of all rows but the stiffest; a table of one row has one, which is NaN."""
+    if values.sizes["frequency_ratio"]:
+        return values
+    return values.reindex(frequency_ratio=table.frequency_ratio)
 
 
 def _table(data: Datasets) -> Found:
@@ -166,19 +191,29 @@ def _table(data: Datasets) -> Found:
     for source in ("computed", "printed"):
         ends = table[source]
         width = ends.sel(bound=doubling) - ends.sel(bound=node)
-        found[f"{source}_softening"] = ends.diff("frequency_ratio")
-        found[f"{source}_widening"] = width.diff("frequency_ratio")
+        found[f"{source}_softening"] = _softer_rows(ends.diff("frequency_ratio"), table)
+        found[f"{source}_widening"] = _softer_rows(width.diff("frequency_ratio"), table)
         stiffest = ends.isel(frequency_ratio=0, drop=True)
         found[f"{source}_stiff_difference"] = np.abs(stiffest - table.restitution_range)
     exact = table.restitution_range.sel(impact_map="exact")
     softest = table.computed.isel(frequency_ratio=-1, drop=True)
     found["soft_range_shift"] = np.abs(softest - exact) / exact
 
-    curve = data["ext_release"].bifurcation_amplitude.sel(release="displacement", bound=doubling)
-    at = curve.argmin("frequency_ratio")
-    found["period_doubling_lowest"] = curve.frequency_ratio[at]
-    stiffest = curve.isel(frequency_ratio=-1, drop=True)
-    found["period_doubling_drop"] = stiffest - curve.min("frequency_ratio")
+    # The families of the table only, so that its rows stay complete.
+    curves = data["ext_release"].bifurcation_amplitude.reindex(n=table.n)
+    curve = curves.sel(release="displacement", bound=doubling)
+    lowest = curve.min("frequency_ratio")
+    found["period_doubling_lowest"] = curve.frequency_ratio.where(curve == lowest).min(
+        "frequency_ratio"
+    )
+    found["period_doubling_drop"] = curve.isel(frequency_ratio=-1, drop=True) - lowest
+    # How far the printed softest row is from that of either release rule.
+    ratio = table.frequency_ratio.values[-1]
+    at = np.abs(curves.frequency_ratio - ratio) <= _GRID * ratio
+    distance = np.abs(table.printed.isel(frequency_ratio=-1, drop=True) - curves.where(at))
+    found["printed_release_distance"] = distance.max(["frequency_ratio", "n", "bound"])
+    distance = np.abs(table.computed - table.printed).isel(frequency_ratio=slice(1, None))
+    found["printed_soft_distance"] = _softer_rows(distance.max(["n", "bound"]), table)
     return found
 
 
@@ -189,9 +224,13 @@ def _permanent_contact(figure: xr.Dataset, asked: float) -> Found:
     threshold = figure.error_threshold.isel(quantity=0, tolerance=0, drop=True)
     # The error is one-sided there: Λ_SD comes from below.
     level = (1 - figure.tolerance.values[0]) * figure.restitution_threshold
-    by_formula = printed.permanent_contact_frequency_ratio(level, figure.damping_ratio, 1)
+    with np.errstate(invalid="ignore"):
+        # NaN where the threshold takes that value nowhere.
+        by_formula = printed.permanent_contact_frequency_ratio(level, figure.damping_ratio, 1)
     return {
-        "permanent_contact_error": xr.DataArray(np.interp(np.log(asked), grid, error.values)),
+        "permanent_contact_error": xr.DataArray(
+            np.interp(np.log(asked), grid, error.values, left=np.nan, right=np.nan)
+        ),
         "permanent_contact_inverse": np.abs(by_formula / threshold - 1),
     }
 
@@ -219,6 +258,6 @@ def evidence(data: Datasets, parameters: Mapping[str, Any]) -> xr.Dataset:
     for part in parts:
         found |= part(data)
     errors = data["thresholds"].relative_error
-    found["stiff_error"] = _stiff(errors, stiff).max("frequency_ratio")
+    found["stiff_error"] = _worst_when_stiff(errors, stiff)
     found |= _permanent_contact(data["fig16"], parameters["permanent_contact_frequency_ratio"])
     return describe(xr.Dataset({k: v.reset_coords(drop=True) for k, v in found.items()}))

@@ -7,6 +7,12 @@ computed from them. All quantities are dimensionless; the functions broadcast.
 import numpy as np
 
 
+def free_flight(time, start, height, velocity):
+    """Eq. 4: height and velocity of the ball in flight since τ₀, from z₀ and z′₀."""
+    since = time - start
+    return -(since**2) / 2 + since * velocity + height, -since + velocity
+
+
 def landing_defect(phase, velocity, flight, amplitude):
     """First line of Eq. 5: Λ[sin(τ₀ + s) - sin τ₀] - (s v₀ - s²/2)."""
     rise = amplitude * (np.sin(phase + flight) - np.sin(phase))
@@ -39,6 +45,11 @@ def saddle_node(n, restitution):
 def period_doubling(n, restitution):
     """Eq. 8: Λ = √(1 + [nπ (1 - r)/(1 + r)]²)."""
     return np.sqrt(1 + saddle_node(n, restitution) ** 2)
+
+
+def restitution_threshold():
+    """Eq. 9: the largest Λ of permanent contact, Λ_CR = 1."""
+    return 1.0
 
 
 def contact(time, frequency_ratio, damping_ratio, amplitude, phase, a, b):
@@ -80,6 +91,11 @@ def damping_ratio(restitution):
     return -loss / np.sqrt(np.pi**2 + loss**2)
 
 
+def bounce_velocity(impact_velocity, n, duration):
+    """Eq. 27: z′_b = z′_i + 2πn - τ_b."""
+    return impact_velocity + 2 * np.pi * n - duration
+
+
 def steady_displacement(time, frequency_ratio, damping_ratio, amplitude):
     """Eq. 31: relative displacement in permanent contact, with τ + φ as the time."""
     detuning, loss = frequency_ratio**2 - 1, 2 * damping_ratio * frequency_ratio
@@ -105,7 +121,7 @@ def permanent_contact_minimum(damping_ratio):
 
     Examples
     --------
-    >>> round(permanent_contact_minimum(0.6), 15)
+    >>> round(float(permanent_contact_minimum(0.6)), 15)
     0.96
     """
     return 2 * damping_ratio * np.sqrt(1 - damping_ratio**2)

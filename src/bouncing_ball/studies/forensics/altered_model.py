@@ -118,7 +118,7 @@ def _forms(time, model: Altered) -> _Forms:
         (0j, sag, 0.0),
     ):
         # A cos + B sin from δ = 0 and δ′ = u at the start of contact.
-        a = -(np.imag(steady) + level)
+        a = np.asarray(-(np.imag(steady) + level))
         b = (push - np.real(steady) + decay * a) / wave
         k, forced = (a - 1j * b) * free, steady * turn
         out.displacement.append(np.real(k) + np.imag(forced) + level)

@@ -77,7 +77,7 @@ def bifurcations(model: Altered) -> Bifurcations:
         node[found] = find_minimum(
             lambda excess, *fields: altered_orbit(excess, Altered(*fields)).amplitude,
             bracket,
-            args=tuple(x[found] for x in model),
+            args=tuple(np.asarray(x)[found] for x in model),
         ).x
     # On the stable side; the points beyond collapse on the saddle-node.
     side = np.minimum(grid, np.where(found, node, grid[-1]))
@@ -90,6 +90,6 @@ def bifurcations(model: Altered) -> Bifurcations:
         doubling[exists] = find_root(
             lambda excess, *fields: criterion(excess, Altered(*fields)),
             (_at(side, last)[exists], _at(side, last + 1)[exists]),
-            args=tuple(x[exists] for x in model),
+            args=tuple(np.asarray(x)[exists] for x in model),
         ).x
     return Bifurcations(node, doubling)

@@ -43,7 +43,7 @@ def nearby(excess: np.ndarray, model: Altered, reach: float) -> tuple[np.ndarray
 
 
 def attainable(
-    arc: np.ndarray, amplitude: np.ndarray, step: float
+    arc: np.ndarray, amplitude: np.ndarray, step: float | np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Smallest and largest Λ within half a step of the bifurcation.
 

@@ -85,7 +85,7 @@ def _continued(
     printed, half = np.array(parameters["printed"]["values"]), parameters["last_digit"] / 2
     values, needed = np.full((2, *model.n.shape, len(BOUNDS)), np.nan)
     which = np.array([k for k, reading in enumerate(chosen) if reading.step], dtype=int)
-    part = Altered(*(x[which] for x in model))
+    part = Altered(*(np.asarray(x)[which] for x in model))
     for bound, excess in enumerate(found):
         wanted = printed[..., bound]
         arc, amplitude = nearby(excess[which], part, parameters["step_reach"])

@@ -39,8 +39,10 @@ rule all:
         tables=expand("results/figures/{table}.{kind}", table=TABLES, kind=["csv", "md", "tex"]),
         paper="results/paper.md",
         tally="results/tally.txt",
+    log:
+        "results/logs/all.log",
     shell:
-        "cat {input.tally}"
+        "tee {log} < {input.tally}"
 
 
 localrules:

@@ -179,6 +179,25 @@ def _check_existence(config: Mapping[str, Any]) -> None:
             )
 
 
+def check_schema(content: Any, schema: Mapping[str, Any]) -> None:
+    """Raise on the first thing in a parsed file that its schema does not allow.
+
+    Raises
+    ------
+    ConfigurationError
+        One line that names the key, the value and what is allowed.
+    """
+    for path, value in _numbers(content):
+        if not math.isfinite(value):
+            raise ConfigurationError(f"{_dotted(path)} = {value} must be a finite number")
+    errors = sorted(
+        _Validator(schema).iter_errors(content),
+        key=lambda error: [str(part) for part in error.absolute_path],
+    )
+    if errors:
+        raise ConfigurationError(_message(errors[0]))
+
+
 def check_configuration(config: Mapping[str, Any], schema: Mapping[str, Any]) -> None:
     """Raise on the first mistake in a configuration.
 
@@ -195,14 +214,6 @@ def check_configuration(config: Mapping[str, Any], schema: Mapping[str, Any]) ->
     ...
     bouncing_ball.pipeline.configuration.ConfigurationError: n = 0 must be at least 1
     """
-    for path, value in _numbers(config):
-        if not math.isfinite(value):
-            raise ConfigurationError(f"{_dotted(path)} = {value} must be a finite number")
-    errors = sorted(
-        _Validator(schema).iter_errors(config),
-        key=lambda error: [str(part) for part in error.absolute_path],
-    )
-    if errors:
-        raise ConfigurationError(_message(errors[0]))
+    check_schema(config, schema)
     _check_consistency(config)
     _check_existence(config)

@@ -7,6 +7,7 @@ problem", ASME IDETC/CIE 2011, DETC2011-47870.
 The layers, each importing only what lies above it in this list (and the errors):
 
 ``datasets``      names, symbols, units and netCDF files
+``comparison``    whether two folders of artifacts say the same
 ``models``        the impact: restitution map, spring-damper contact, permanent contact
 ``continuation``  pseudo-arclength continuation; knows nothing of balls
 ``simulation``    event-driven simulation of both models, from any initial state
@@ -14,8 +15,8 @@ The layers, each importing only what lies above it in this list (and the errors)
 ``studies``       the stages of the pipeline: parameters in, arrays out
 ``figures``       pictures of datasets; they compute nothing
 ``tables``        tables of datasets
-``cli``           the command line, ``bouncing-ball``
 ``pipeline``      what the Snakefile needs of Python
+``cli``           the command line, ``bouncing-ball``
 """
 
 __version__ = "0.1.0"

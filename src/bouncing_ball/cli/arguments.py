@@ -162,6 +162,27 @@ def parser() -> Parser:
         type=_number(-math.inf, math.inf),
         help="absolute velocity of the ball before the first impact (default: -π)",
     )
+
+    diff = commands.add_parser(
+        "diff",
+        help="whether two folders of artifacts say the same",
+        description="Compare figures/ and paper.md of two folders, variable by variable, within "
+        "the budgets of the tolerance file. Exit status: 0 the same, 1 differs, 2 something could "
+        "not be compared.",
+    )
+    diff.add_argument("record", metavar="RECORD", help="folder with the accepted artifacts")
+    diff.add_argument("results", metavar="RESULTS", help="folder with the new artifacts")
+    diff.add_argument(
+        "--tolerances",
+        metavar="FILE",
+        help="default: RECORD/config/tolerances.yaml, else config/tolerances.yaml",
+    )
+    for name, what in (
+        ("json", "everything that was found, as JSON"),
+        ("markdown", "a summary for continuous integration"),
+        ("html", "one page with all pictures"),
+    ):
+        diff.add_argument(f"--{name}", metavar="FILE", help=what)
     return top
 
 

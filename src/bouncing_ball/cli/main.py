@@ -41,8 +41,15 @@ def _table(rows: dict[str, list]) -> list[str]:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Answer one subcommand; exit 1 where there is no answer, 2 on a mistake."""
+    """Answer one subcommand; exit 1 where there is no answer, 2 on a mistake.
+
+    For ``diff`` see :mod:`bouncing_ball.cli.diff`.
+    """
     args = parse(arguments)
+    if args.command == "diff":
+        from bouncing_ball.cli import diff
+
+        diff.run(args)
     # Imported here, so that --help and a mistyped argument need no numpy.
     import numpy as np
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 import xarray as xr
 
 from bouncing_ball.comparison.datasets import drifts
-from bouncing_ball.comparison.tolerances import Mode, Tolerances
+from bouncing_ball.comparison.tolerances import Tolerances
 
 # Ten times the largest change seen: the study tries a handful of variations.
 _MARGIN = 10

@@ -41,7 +41,7 @@ def changes(
 
     Examples
     --------
-    >>> from bouncing_ball.comparison.tolerances import Tolerance
+    >>> from bouncing_ball.comparison.tolerances import Mode, Tolerance
     >>> rule = Tolerance(Mode.POINTWISE, MEASURED, budget=1e-9)
     >>> base = xr.Dataset({"x": ("t", [0.0, 4.0])})
     >>> changes("fig", base, base + 1.0, Tolerances({"x": rule}, rule))

@@ -30,10 +30,19 @@ def span(values: ArrayLike) -> float:
     return float(np.ptp(finite)) or float(np.max(np.abs(finite))) or 1.0
 
 
-def _infinite_unless_alike(record, new, distance):
-    """The distance where both are finite; elsewhere 0 for what is alike, else ∞."""
-    finite = np.isfinite(record) & np.isfinite(new)
-    alike = (record == new) | (np.isnan(record) & np.isnan(new))
+def _alike(record, new):
+    """Whether both are finite, or not finite in the same way."""
+    return (
+        (np.isfinite(record) & np.isfinite(new))
+        | (record == new)
+        | (np.isnan(record) & np.isnan(new))
+    )
+
+
+def _measured(distance, *pairs):
+    """The distance where all of it is finite; elsewhere 0 for what is alike, else ∞."""
+    finite = np.all([np.isfinite(part) for pair in pairs for part in pair], axis=0)
+    alike = np.all([_alike(*pair) for pair in pairs], axis=0)
     return np.where(finite, distance, np.where(alike, 0.0, np.inf))
 
 
@@ -52,14 +61,15 @@ def pointwise(record: ArrayLike, new: ArrayLike, scale: ArrayLike) -> np.ndarray
         distance = np.abs(new - record) / scale
     # 0/0, or a scale that is not a number, is no measure: alike or not.
     distance = np.where(np.isnan(distance), np.where(record == new, 0.0, np.inf), distance)
-    return _infinite_unless_alike(record, new, distance)
+    return _measured(distance, (record, new))
 
 
 def _to_polyline(x, y, line_x, line_y) -> np.ndarray:
     """Distance of point k to the segments k - 1 - reach … k + reach of a polyline."""
     count = x.shape[-1]
-    best = np.full(x.shape, np.inf)
-    for offset in range(-_REACH - 1, _REACH + 1):
+    # Between gaps a vertex may have no segment.
+    best = np.hypot(x - line_x, y - line_y)
+    for offset in range(-_REACH - 1, _REACH + 1) if count > 1 else ():
         left = np.clip(np.arange(count) + offset, 0, count - 2)
         ax, ay = line_x[..., left], line_y[..., left]
         dx, dy = line_x[..., left + 1] - ax, line_y[..., left + 1] - ay
@@ -94,12 +104,5 @@ def curve(x: ArrayLike, y: ArrayLike, new_x: ArrayLike, new_y: ArrayLike) -> np.
     """
     x, y, new_x, new_y = (np.asarray(part, dtype=float) for part in (x, y, new_x, new_y))
     with np.errstate(invalid="ignore", over="ignore"):
-        if x.shape[-1] < 2:
-            distance = np.hypot(new_x - x, new_y - y)
-        else:
-            distance = np.maximum(
-                _to_polyline(new_x, new_y, x, y), _to_polyline(x, y, new_x, new_y)
-            )
-    return np.maximum(
-        _infinite_unless_alike(x, new_x, distance), _infinite_unless_alike(y, new_y, distance)
-    )
+        distance = np.maximum(_to_polyline(new_x, new_y, x, y), _to_polyline(x, y, new_x, new_y))
+    return _measured(distance, (x, new_x), (y, new_y))

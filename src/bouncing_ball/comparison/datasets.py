@@ -181,10 +181,14 @@ def _measured(name: str, record: xr.Dataset, new: xr.Dataset, rule: Tolerance) -
     index = np.unravel_index(int(np.argmax(drift.values)), drift.shape)
     largest = float(drift.values[index])
     share = largest / rule.budget
+    note = ""
     if rule.mode is Mode.INVARIANT:
         shown = [_text(_statistics(data[name], rule).values[index]) for data in (record, new)]
     else:
-        shown = [_text(data[name].transpose(*drift.dims).values[index]) for data in (record, new)]
+        shown = [_value(data[name], record[name], drift, index) for data in (record, new)]
+    if rule.mode is Mode.CURVE:
+        axis = [_value(data[rule.abscissa], record[name], drift, index) for data in (record, new)]
+        note = f"over {rule.abscissa}: {' → '.join(dict.fromkeys(axis))}"
     return VariableResult(
         name,
         Verdict.WITHIN if share <= 1 else Verdict.DRIFTED,
@@ -194,7 +198,15 @@ def _measured(name: str, record: xr.Dataset, new: xr.Dataset, rule: Tolerance) -
         share,
         _place(drift, index),
         *shown,
+        note,
     )
+
+
+def _value(
+    values: xr.DataArray, like: xr.DataArray, drift: xr.DataArray, index: tuple[int, ...]
+) -> str:
+    """What stands at the place of a drift."""
+    return _text(values.broadcast_like(like).transpose(*drift.dims).values[index])
 
 
 def _exactly(

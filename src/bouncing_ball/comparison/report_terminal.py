@@ -11,16 +11,16 @@ SENTENCES = {
 
 
 def share_text(share: float | None) -> str:
-    """A share of a budget in three digits.
+    """A share of a budget in three digits, nothing for what has no budget.
 
     Examples
     --------
     >>> [share_text(share) for share in (None, 0.0, 0.0123, 2.0, 12345.0, float("inf"))]
-    ['', '0', '0.012', '2', '1.2e+04', '∞']
+    ['', '0', '0.0123', '2', '1.23e+04', '∞']
     """
     if share is None:
         return ""
-    return "∞" if share == float("inf") else f"{share:.2g}"
+    return "∞" if share == float("inf") else f"{share:.3g}"
 
 
 def remarks(artifact: Artifact) -> list[str]:

@@ -7,7 +7,9 @@ import pytest
 import xarray as xr
 from PIL import Image
 
+from bouncing_ball.comparison.datasets import compare_datasets
 from bouncing_ball.comparison.drift import span
+from bouncing_ball.comparison.tolerances import Mode, Tolerance, Tolerances
 from bouncing_ball.comparison.verdicts import Verdict, status
 from bouncing_ball.datasets.netcdf import write_dataset
 
@@ -86,6 +88,32 @@ def test_invariant(pair, part):
 
 
 @pytest.mark.parametrize("part", [HALF, TWICE])
+def logistic(start, count=20_000):
+    """x → 4 x (1 - x): chaotic, so that a rounding is all after fifty steps."""
+    values = np.empty(count)
+    for k in range(count):
+        values[k] = start
+        start = 4 * start * (1 - start)
+    return xr.Dataset({"x": ("step", values)})
+
+
+def test_beyond_the_predictability_horizon():
+    # Mean and deviation of the invariant density are 1/2 and 1/√8; over N steps
+    # they are known to about 1/√N, 0.007 here, and the budget is thrice that.
+    record, new = logistic(0.3), logistic(0.3 + 1e-15)
+    invariant = Tolerance(
+        Mode.INVARIANT, "a test", budget=0.02, along="step", statistics=("mean", "std")
+    )
+    verdicts = {}
+    for rule in (Tolerance(Mode.POINTWISE, "a test", budget=0.02), invariant):
+        (result,) = compare_datasets("chaos", record, new, Tolerances({"x": rule}, rule))
+        verdicts[rule.mode] = result.verdict
+    assert verdicts == {"pointwise": Verdict.DRIFTED, "invariant": Verdict.WITHIN}
+    # Another map is another density.
+    (result,) = compare_datasets("chaos", record, record**2, Tolerances({"x": invariant}, rule))
+    assert result.verdict is Verdict.DRIFTED and result.place.startswith("statistic = ")
+
+
 def test_scale_by_another_variable(pair, part):
     data = pair.dataset("witness")
     index = ("fig08", "continuation and formula")
@@ -251,6 +279,13 @@ def test_attributes_that_matter_and_others(pair):
 
 
 # NaN, infinity, files.
+
+
+def test_attributes_of_another_kind(pair):
+    data = pair.dataset("fig05")
+    for value in ("1", [1, 2], 2):
+        other = data.assign_attrs(n=value)
+        structure(pair, "fig05", other, "(global attributes)", f"attribute n: 1 → {value}")
 
 
 def test_nan_and_infinity(pair):

@@ -10,7 +10,8 @@ import xarray as xr
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
-from bouncing_ball.comparison.folders import Artifact, Comparison, Part, compare_folders
+from bouncing_ball.comparison.folders import Artifact, Comparison, compare_folders
+from bouncing_ball.comparison.parts import Part
 from bouncing_ball.comparison.tolerances import Tolerances
 from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
 from bouncing_ball.pipeline.tolerances import read_tolerances

@@ -87,7 +87,6 @@ def test_invariant(pair, part):
     assert pair.variable("fig08", "residual").share == 0
 
 
-@pytest.mark.parametrize("part", [HALF, TWICE])
 def logistic(start, count=20_000):
     """x → 4 x (1 - x): chaotic, so that a rounding is all after fifty steps."""
     values = np.empty(count)
@@ -114,6 +113,7 @@ def test_beyond_the_predictability_horizon():
     assert result.verdict is Verdict.DRIFTED and result.place.startswith("statistic = ")
 
 
+@pytest.mark.parametrize("part", [HALF, TWICE])
 def test_scale_by_another_variable(pair, part):
     data = pair.dataset("witness")
     index = ("fig08", "continuation and formula")

@@ -285,9 +285,9 @@ def compare_datasets(
         results.append(
             VariableResult("(global attributes)", Verdict.STRUCTURE, note="; ".join(changes))
         )
-    return sorted(results, key=severity)
+    return sorted(results, key=_severity)
 
 
-def severity(result: Any) -> tuple:
+def _severity(result: Any) -> tuple:
     """Sorting key: the worst verdict first, then the largest share, then the name."""
     return -result.verdict.rank, -(result.share or 0.0), result.name

@@ -6,7 +6,8 @@ from dataclasses import asdict
 from typing import Any
 
 from bouncing_ball.comparison.datasets import VariableResult
-from bouncing_ball.comparison.folders import Artifact, Comparison, Part
+from bouncing_ball.comparison.folders import Artifact, Comparison
+from bouncing_ball.comparison.parts import Part
 from bouncing_ball.comparison.verdicts import status
 
 

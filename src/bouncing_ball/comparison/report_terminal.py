@@ -1,6 +1,7 @@
 """The short table for a terminal."""
 
-from bouncing_ball.comparison.folders import Artifact, Comparison, Part
+from bouncing_ball.comparison.folders import Artifact, Comparison
+from bouncing_ball.comparison.parts import Part
 from bouncing_ball.comparison.verdicts import Verdict, status
 
 SENTENCES = {

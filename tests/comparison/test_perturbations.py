@@ -73,6 +73,24 @@ def test_curve(pair, part):
 
 
 @pytest.mark.parametrize("part", [HALF, TWICE])
+def test_curve_along_its_abscissa(part):
+    # Up at x = 0, then level to x = 1: moved to the right, the part that goes
+    # up is off by the shift, measured by the budget of the abscissa.
+    x, y = np.zeros(21), np.ones(21)
+    x[10:], y[:11] = np.linspace(0.0, 1.0, 11), np.linspace(0.0, 1.0, 11)
+    record = xr.Dataset({"y": ("k", y)}, coords={"x": ("k", x)})
+    new = record.assign_coords(x=("k", x + part * 0.01))
+    # Not the same numbers, so that the curves are looked at.
+    new["y"] = new.y + 1e-12
+    rule = Tolerance(Mode.CURVE, "a test", budget=1e-6, along="k", abscissa="x", axis_budget=0.01)
+    loose = Tolerance(Mode.POINTWISE, "a test", budget=1.0)
+    rules = Tolerances({"x": loose, "y": rule}, loose)
+    found = {result.name: result for result in compare_datasets("", record, new, rules)}
+    assert found["y"].verdict is (Verdict.WITHIN if part < 1 else Verdict.DRIFTED)
+    assert found["y"].share == pytest.approx(part, rel=1e-9)
+
+
+@pytest.mark.parametrize("part", [HALF, TWICE])
 def test_invariant(pair, part):
     data = pair.dataset("fig08")
     rule = pair.rules.of("fig08", "residual")

@@ -5,7 +5,7 @@
 
 rule convergence:
     message:
-        "Convergence study of all stages: about two minutes"
+        "Convergence study of all stages: about a minute"
     input:
         tolerances="config/tolerances.yaml",
         source=modules(

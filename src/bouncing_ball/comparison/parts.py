@@ -124,13 +124,13 @@ def dataset(file: str, artifact: str, folders: tuple[Path, Path], rules: Toleran
 
 def _picture(file: str, record: bytes, new: bytes, rules: Tolerances, own: bool | None) -> Part:
     found = compare_pictures(record, new, rules.pictures.budget)
-    if own is None:
+    if own is None and record != new:
         # A figure without a dataset tells by itself.
         own = same_versions(versions_of(record), versions_of(new))
     return Part(
         file,
         found.verdict,
-        decides=own,
+        decides=bool(own),
         share=found.share,
         note=found.note,
         picture=found,

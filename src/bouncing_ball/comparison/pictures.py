@@ -89,10 +89,9 @@ def compare_pictures(record: bytes, new: bytes, budget: float) -> PictureResult:
     Raises
     ------
     PictureError
-        If one of them is no whole PNG file.
+        If they differ and one of them is no whole PNG file.
     """
     if record == new:
-        _opened(new)
         return PictureResult(Verdict.IDENTICAL, 0.0, 0.0)
     before, after = _pixels(_opened(record)), _pixels(_opened(new))
     if before.shape != after.shape:

@@ -88,16 +88,18 @@ ULPS = (-2, -1, 1, 2)
 
 
 def stages(config: Parameters) -> dict[str, Stage]:
-    """The stages of all datasets, from the configuration."""
+    """The stages of all datasets that the configuration has parameters for."""
+    parameters = {
+        name: part
+        for section in ("figures", "tables", "extensions")
+        for name, part in config.get(section, {}).items()
+    }
     made = {}
-    for name, study in _STUDIES.items():
-        section = next(
-            config[key] for key in ("figures", "tables", "extensions") if name in config[key]
-        )
+    for name in (name for name in _STUDIES if name in parameters):
         arguments = () if name in _BARE else (config["release"],)
         if name in _CONTINUED:
             arguments = (config["release"], config["continuation"])
-        made[name] = Stage(study, section[name], arguments)
+        made[name] = Stage(_STUDIES[name], parameters[name], arguments)
     return made
 
 

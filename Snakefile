@@ -51,3 +51,6 @@ localrules:
 
 # The accepted record in git.
 include: "workflow/rules/record.smk"
+# The results against the record, and what the budgets of that come from.
+include: "workflow/rules/diff.smk"
+include: "workflow/rules/convergence.smk"

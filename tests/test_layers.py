@@ -19,6 +19,8 @@ ALLOWED = {
     "simulation": ({"models"}, {"numpy"}),
     "orbits": ({"models", "continuation", "simulation"}, {"numpy", "scipy"}),
     "datasets": (set(), {"numpy", "xarray"}),
+    # Pillow reads pictures for matplotlib.
+    "comparison": ({"datasets"}, {"numpy", "xarray", "matplotlib", "PIL", "jinja2"}),
     "studies": (
         {"models", "continuation", "orbits", "simulation", "datasets"},
         {"numpy", "scipy", "xarray"},
@@ -101,6 +103,7 @@ def test_layer_imports_only_what_it_may(layer):
         ("figures", "from scipy.optimize import brentq"),
         ("figures", "import importlib\nimportlib.import_module('bouncing_ball.models')"),
         ("figures", "from .. import studies"),
+        ("comparison", "from bouncing_ball.studies import convergence"),
     ],
 )
 def test_the_check_sees_violations(layer, source):

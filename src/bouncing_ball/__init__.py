@@ -7,6 +7,7 @@ problem", ASME IDETC/CIE 2011, DETC2011-47870.
 The layers, each importing only what lies above it in this list (and the errors):
 
 ``datasets``      names, symbols, units and netCDF files
+``comparison``    whether two folders of artifacts say the same
 ``models``        the impact: restitution map, spring-damper contact, permanent contact
 ``continuation``  pseudo-arclength continuation; knows nothing of balls
 ``simulation``    event-driven simulation of both models, from any initial state

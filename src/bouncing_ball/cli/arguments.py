@@ -168,6 +168,27 @@ def parser() -> Parser:
     explain = commands.add_parser("explain", help=text, description=text)
     explain.add_argument("file", type=Path, metavar="FILE", help="an artifact, or a copy of one")
     explain.add_argument("--json", action="store_true", help="one JSON object, whole checksums")
+
+    diff = commands.add_parser(
+        "diff",
+        help="whether two folders of artifacts say the same",
+        description="Compare figures/ and paper.md of two folders, variable by variable, within "
+        "the budgets of the tolerance file. Exit status: 0 the same, 1 differs, 2 something could "
+        "not be compared.",
+    )
+    diff.add_argument("record", metavar="RECORD", help="folder with the accepted artifacts")
+    diff.add_argument("results", metavar="RESULTS", help="folder with the new artifacts")
+    diff.add_argument(
+        "--tolerances",
+        metavar="FILE",
+        help="default: RECORD/config/tolerances.yaml, else config/tolerances.yaml",
+    )
+    for name, what in (
+        ("json", "everything that was found, as JSON"),
+        ("markdown", "a summary for continuous integration"),
+        ("html", "one page with all pictures"),
+    ):
+        diff.add_argument(f"--{name}", metavar="FILE", help=what)
     return top
 
 

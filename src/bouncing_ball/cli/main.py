@@ -50,8 +50,15 @@ def _readable(answer: dict[str, Any]) -> list[str]:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Answer one subcommand; exit 1 where there is no answer, 2 on a mistake."""
+    """Answer one subcommand; exit 1 where there is no answer, 2 on a mistake.
+
+    For ``diff`` see :mod:`bouncing_ball.cli.diff`.
+    """
     args = parse(arguments)
+    if args.command == "diff":
+        from bouncing_ball.cli import diff
+
+        diff.run(args)
     try:
         answer, readable = (_explained if args.command == "explain" else _answered)(args)
     except ValueError as error:

@@ -7,6 +7,16 @@ from matplotlib.figure import Figure
 from bouncing_ball.figures.style import COLOURS, RESTITUTION, TABLE, canvas, number
 
 
+def _three_cycles(phase, ball, cycle):
+    """The orbit repeats: the cycles before and after are drawn as well, in turns.
+
+    Each point once: where a cycle ends and the next begins, rounding would
+    make a segment without direction, and the dashes of the line start anew.
+    """
+    shifted = np.concatenate([phase[:-1] - cycle, phase[:-1], phase + cycle])
+    return shifted / (2 * np.pi), np.concatenate([ball[:-1], ball[:-1], ball])
+
+
 def draw(data: xr.Dataset) -> Figure:
     """Height against the phase of the table, which is the same for all curves."""
     figure, axes = canvas(5.0, 3.2)
@@ -21,22 +31,15 @@ def draw(data: xr.Dataset) -> Figure:
     for k, ratio in enumerate(data.frequency_ratio.values):
         curve = data.sel(frequency_ratio=ratio)
         phase, ball = curve.table_phase.values, curve.ball.values
-        # The orbit repeats: the cycles before and after are drawn as well.
-        shifted = np.concatenate([phase - cycle, phase, phase + cycle]) / (2 * np.pi)
         axes.plot(
-            shifted,
-            np.concatenate([ball, ball, ball]),
+            *_three_cycles(phase, ball, cycle),
             color=colours[k % len(colours)],
             linestyle=looks[k % len(looks)],
             label=rf"$\varpi={number(ratio)}$",
         )
-    start = (data.time.values + float(data.restitution_phase)) / (2 * np.pi)
-    ball = data.restitution_ball.values
-    turn = cycle / (2 * np.pi)
-    shifted = np.concatenate([start - turn, start, start + turn])
+    phase = data.time.values + float(data.restitution_phase)
     axes.plot(
-        shifted,
-        np.concatenate([ball, ball, ball]),
+        *_three_cycles(phase, data.restitution_ball.values, cycle),
         color=RESTITUTION,
         label="restitution",
         linewidth=1.0,

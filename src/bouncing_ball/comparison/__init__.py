@@ -1,0 +1,1 @@
+"""Whether two folders of artifacts say the same: drifts, budgets, verdicts, reports."""

@@ -1,0 +1,108 @@
+"""How far numbers have moved: pure functions of arrays, one for each mode.
+
+A drift is dimensionless: a difference over a scale. Two values that are both
+NaN, or infinite with the same sign, have drifted by nothing; a value that is
+not finite against one that is has drifted by infinity.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+# Along a curve a point may slide by so many samples and still be found.
+_REACH = 2
+
+
+def span(values: ArrayLike) -> float:
+    """The scale of a variable: max - min over its finite values.
+
+    A constant has no range, and its magnitude takes the place; for 0 it is 1.
+    Never the single value: next to a zero of the variable that would be tiny.
+
+    Examples
+    --------
+    >>> span([-1.0, 3.0, np.nan]), span([5.0, 5.0]), span([0.0])
+    (4.0, 5.0, 1.0)
+    """
+    values = np.asarray(values, dtype=float)
+    finite = values[np.isfinite(values)]
+    if not finite.size:
+        return 1.0
+    return float(np.ptp(finite)) or float(np.max(np.abs(finite))) or 1.0
+
+
+def _alike(record, new):
+    """Whether both are finite, or not finite in the same way."""
+    return (
+        (np.isfinite(record) & np.isfinite(new))
+        | (record == new)
+        | (np.isnan(record) & np.isnan(new))
+    )
+
+
+def _measured(distance, *pairs):
+    """The distance where all of it is finite; elsewhere 0 for what is alike, else ∞."""
+    finite = np.all([np.isfinite(part) for pair in pairs for part in pair], axis=0)
+    alike = np.all([_alike(*pair) for pair in pairs], axis=0)
+    return np.where(finite, distance, np.where(alike, 0.0, np.inf))
+
+
+def pointwise(record: ArrayLike, new: ArrayLike, scale: ArrayLike) -> np.ndarray:
+    """|new - record| / scale, element by element.
+
+    Examples
+    --------
+    >>> pointwise([0.0, 1.0, np.nan], [0.5, 1.0, np.nan], 2.0).tolist()
+    [0.25, 0.0, 0.0]
+    >>> pointwise([1.0], [np.nan], 1.0).tolist()
+    [inf]
+    """
+    record, new = np.asarray(record, dtype=float), np.asarray(new, dtype=float)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        distance = np.abs(new - record) / scale
+    # 0/0, or a scale that is not a number, is no measure: alike or not.
+    distance = np.where(np.isnan(distance), np.where(record == new, 0.0, np.inf), distance)
+    return _measured(distance, (record, new))
+
+
+def _to_polyline(x, y, line_x, line_y) -> np.ndarray:
+    """Distance of point k to the segments k - 1 - reach … k + reach of a polyline."""
+    count = x.shape[-1]
+    # Between gaps a vertex may have no segment.
+    best = np.hypot(x - line_x, y - line_y)
+    for offset in range(-_REACH - 1, _REACH + 1) if count > 1 else ():
+        left = np.clip(np.arange(count) + offset, 0, count - 2)
+        ax, ay = line_x[..., left], line_y[..., left]
+        dx, dy = line_x[..., left + 1] - ax, line_y[..., left + 1] - ay
+        square = dx * dx + dy * dy
+        along = ((x - ax) * dx + (y - ay) * dy) / np.where(square > 0, square, 1.0)
+        along = np.clip(along, 0.0, 1.0)
+        # fmin, as a segment with an end that is not finite is no segment.
+        best = np.fmin(best, np.hypot(x - ax - along * dx, y - ay - along * dy))
+    return best
+
+
+def curve(x: ArrayLike, y: ArrayLike, new_x: ArrayLike, new_y: ArrayLike) -> np.ndarray:
+    """Distance between two sampled curves, at each sample, along the last axis.
+
+    All coordinates are shares of their scales. The larger of the distances of
+    the new sample to the record's polyline and of the record's sample to the
+    new one: samples that slide along the curve cost nothing but the sagitta of
+    a chord, and a tube of radius ε around both curves is a drift of at most ε.
+
+    Parameters
+    ----------
+    x, y, new_x, new_y : array_like, shape (..., N)
+
+    Examples
+    --------
+    A straight line, its inner sample moved along it, and then off it:
+
+    >>> curve([0, 1, 2], [0, 0, 0], [0.0, 1.5, 2.0], [0, 0, 0]).tolist()
+    [0.0, 0.0, 0.0]
+    >>> curve([0, 1, 2], [0, 0, 0], [0, 1, 2], [0.0, 0.25, 0.0]).max().item()
+    0.25
+    """
+    x, y, new_x, new_y = (np.asarray(part, dtype=float) for part in (x, y, new_x, new_y))
+    with np.errstate(invalid="ignore", over="ignore"):
+        distance = np.maximum(_to_polyline(new_x, new_y, x, y), _to_polyline(x, y, new_x, new_y))
+    return _measured(distance, (x, new_x), (y, new_y))

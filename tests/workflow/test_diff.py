@@ -1,0 +1,43 @@
+"""The target ``diff``: the results of a run against the accepted record."""
+
+import json
+
+from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
+
+
+def test_a_run_against_its_record(complete):
+    complete.run("--cores", "1", "accept")
+    done = complete.run("--cores", "1", "diff")
+    assert done.stdout.splitlines()[-1].endswith("The new artifacts say what the record says.")
+    reports = complete.path / "results" / "diff"
+    assert {path.name for path in reports.iterdir()} == {"diff.json", "diff.md", "index.html"}
+    content = json.loads((reports / "diff.json").read_text(encoding="utf-8"))
+    assert {found["verdict"] for found in content["artifacts"]} == {"identical"}
+    files = {part["file"] for found in content["artifacts"] for part in found["parts"]}
+    made = complete.contents("results")
+    assert files == {name for name in made if name.startswith("figures/") or name == "paper.md"}
+    before = {path.name: path.read_bytes() for path in reports.iterdir()}
+
+    # Nothing is to be made, and it compares anew: the record has changed.
+    path = complete.path / "figures" / "fig11.nc"
+    data = read_dataset(path)
+    data.threshold_amplitude.values[7] += 1e-3
+    write_dataset(data, path)
+    (complete.path / "figures" / "fig12.svg").unlink()
+    done = complete.run("--cores", "1", "diff", check=False)
+    assert done.returncode == 1
+    lines = done.stdout.splitlines()
+    assert [line.split()[0] for line in lines[-3:-1]] == ["fig12", "fig11"]
+    assert lines[-1].startswith("1 extra, 1 drifted, ")
+    said = [line for line in done.stderr.splitlines() if line.startswith("diff: ")]
+    assert said == ["diff: see results/diff/index.html, or diff.md and diff.json beside it"]
+    assert "Traceback" not in done.stderr
+    # The reports outlive the job that failed, and tell what has changed.
+    content = json.loads((reports / "diff.json").read_text(encoding="utf-8"))
+    assert content["status"] == 1
+    after = {path.name: path.read_bytes() for path in reports.iterdir()}
+    assert before.keys() == after.keys() and not any(before[n] == after[n] for n in after)
+    assert str(complete.path).encode() not in b"".join(after.values())
+
+    # The record is no input: what has changed there makes nothing again.
+    assert complete.planned() == set()

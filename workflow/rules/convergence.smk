@@ -1,0 +1,31 @@
+# How far numbers move with tolerances, grids and rounding: what the budgets in
+# config/tolerances.yaml are made from. Not part of a run; accepted by hand,
+# `cp results/convergence.csv config/`, and then a test says which budgets change.
+
+
+rule convergence:
+    message:
+        "Convergence study of all stages: about a minute"
+    input:
+        tolerances="config/tolerances.yaml",
+        source=modules(
+            "studies.convergence",
+            "comparison.budgets",
+            "comparison.pictures",
+            "figures.style",
+            "pipeline.files",
+            "pipeline.tolerances",
+            "tables.formats",
+            *(f"figures.{name}" for name in FIGURES if name not in SCHEMATICS),
+        ),
+    output:
+        changes="results/convergence.csv",
+    params:
+        config=config,
+        figures=[name for name in FIGURES if name not in SCHEMATICS],
+    log:
+        "results/logs/convergence.log",
+    benchmark:
+        "results/benchmarks/convergence.tsv"
+    script:
+        "../scripts/convergence.py"

@@ -1,0 +1,18 @@
+# Whether the results still say what the accepted record says. Without outputs
+# that Snakemake knows of: so it compares each time it is asked to, and the
+# reports stay where they are when a difference ends the job with status 1. The
+# record is read where it lies and is no input, as nothing here is made from it.
+
+
+rule diff:
+    message:
+        "Comparing the results with the record; reports in results/diff/"
+    input:
+        rules.accept.input,
+        tolerances="config/tolerances.yaml",
+    params:
+        record=workflow.basedir,
+    log:
+        "results/logs/diff.log",
+    script:
+        "../scripts/diff.py"

@@ -22,6 +22,8 @@ rule convergence:
         changes="results/convergence.csv",
     params:
         config=config,
+        printed=TABLE1,
+        evidence=EVIDENCE,
         figures=[name for name in FIGURES if name not in SCHEMATICS],
     log:
         "results/logs/convergence.log",

@@ -9,7 +9,7 @@ rule forensics_stage:
     output:
         data="results/figures/forensics.nc",
     params:
-        parameters=config["studies"]["forensics"] | {"printed": printed(LEDGER, "Table 1")},
+        parameters=config["studies"]["forensics"] | {"printed": TABLE1},
     log:
         "results/logs/forensics_stage.log",
     benchmark:

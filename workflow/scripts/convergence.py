@@ -27,9 +27,10 @@ def picture(name, stage, data):
 
 
 with logged(snakemake) as lines:
+    made = stages(snakemake.params.config, snakemake.params.printed, snakemake.params.evidence)
     rules = read_tolerances(snakemake.input.tolerances)
-    rows, budget = [], rules.pictures.budget
-    for name, stage in stages(snakemake.params.config).items():
+    rows, budget = [], rules.pictures.allowed
+    for name, stage in made.items():
         drawn = {}
 
         def measure(base, data, name=name, stage=stage, drawn=drawn):

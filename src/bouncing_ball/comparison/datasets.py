@@ -81,7 +81,8 @@ def _attributes(
 
 def _structure(record: xr.DataArray, new: xr.DataArray, rules: Tolerances) -> Iterator[str]:
     if record.dims != new.dims:
-        yield f"dimensions: {', '.join(record.dims) or 'none'} → {', '.join(new.dims) or 'none'}"
+        before, after = (", ".join(map(str, side.dims)) or "none" for side in (record, new))
+        yield f"dimensions: {before} → {after}"
     elif record.shape != new.shape:
         for name in record.dims:
             if record.sizes[name] != new.sizes[name]:
@@ -94,9 +95,9 @@ def _structure(record: xr.DataArray, new: xr.DataArray, rules: Tolerances) -> It
 def _statistics(values: xr.DataArray, rule: Tolerance) -> xr.DataArray:
     numbers = values.astype(float)
     taken = [
-        np.isfinite(numbers).sum(rule.along).astype(float)
+        numbers.notnull().sum(dim=rule.along).astype(float)
         if name == "count"
-        else getattr(numbers, name)(rule.along)
+        else getattr(numbers, name)(dim=rule.along)
         for name in rule.statistics
     ]
     return xr.concat(taken, xr.Variable("statistic", list(rule.statistics)), coords="minimal")
@@ -161,7 +162,7 @@ def drifts(name: str, record: xr.Dataset, new: xr.Dataset, rule: Tolerance) -> x
     if rule.mode is Mode.CURVE:
         axis = record[rule.abscissa]
         # In the tube's own measure: the abscissa shrunk to the other axis.
-        width = span(axis) * (rule.axis_budget or rule.budget) / rule.budget
+        width = span(axis) * (rule.axis_budget or rule.allowed) / rule.allowed
         height = span(a)
         sides = [
             (_along_last(data[rule.abscissa], rule, a) / width, _along_last(data[name], rule, a))
@@ -178,9 +179,10 @@ def _measured(name: str, record: xr.Dataset, new: xr.Dataset, rule: Tolerance) -
         drift = drifts(name, record, new, rule)
     except ToleranceError as error:
         return VariableResult(name, Verdict.STRUCTURE, rule.mode, note=str(error))
-    index = np.unravel_index(int(np.argmax(drift.values)), drift.shape)
+    place = np.unravel_index(int(np.argmax(drift.values)), drift.shape)
+    index = tuple(int(k) for k in place)
     largest = float(drift.values[index])
-    share = largest / rule.budget
+    share = largest / rule.allowed
     note = ""
     if rule.mode is Mode.INVARIANT:
         shown = [_text(_statistics(data[name], rule).values[index]) for data in (record, new)]
@@ -197,7 +199,8 @@ def _measured(name: str, record: xr.Dataset, new: xr.Dataset, rule: Tolerance) -
         rule.budget,
         share,
         _place(drift, index),
-        *shown,
+        shown[0],
+        shown[1],
         note,
     )
 
@@ -248,7 +251,7 @@ def _compare_variable(
         return VariableResult(name, Verdict.IDENTICAL, mode, 0.0, budget, 0.0, note=note)
     if mode is Mode.IGNORED:
         return VariableResult(name, Verdict.WITHIN, mode, note="differs, and is not compared")
-    if mode is Mode.EXACT or _kind(a) == "text":
+    if rule is None or mode is Mode.EXACT or _kind(a) == "text":
         return _exactly(name, a, b, same, note)
     return _measured(name, record, new, rule)
 
@@ -273,7 +276,7 @@ def compare_datasets(
     [('phase', 'within budget', 0.488)]
     """
     results = []
-    for name in sorted({*record.variables, *new.variables}, key=str):
+    for name in sorted({str(name) for name in (*record.variables, *new.variables)}):
         if name not in new.variables:
             results.append(VariableResult(name, Verdict.STRUCTURE, note="is gone"))
         elif name not in record.variables:

@@ -123,7 +123,7 @@ def dataset(file: str, artifact: str, folders: tuple[Path, Path], rules: Toleran
 
 
 def _picture(file: str, record: bytes, new: bytes, rules: Tolerances, own: bool | None) -> Part:
-    found = compare_pictures(record, new, rules.pictures.budget)
+    found = compare_pictures(record, new, rules.pictures.allowed)
     if own is None and record != new:
         # A figure without a dataset tells by itself.
         own = same_versions(versions_of(record), versions_of(new))

@@ -75,6 +75,13 @@ class Tolerance:
     statistics: tuple[str, ...] = ()
     scale: float | str | None = None
 
+    @property
+    def allowed(self) -> float:
+        """The budget, of a mode that measures a drift."""
+        if self.budget is None:
+            raise ToleranceError(f"mode {self.mode} has no budget")
+        return self.budget
+
     def __post_init__(self) -> None:
         needed = {
             Mode.POINTWISE: {"budget"},

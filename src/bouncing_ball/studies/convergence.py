@@ -13,22 +13,26 @@ The largest change of each variable is what the budgets of the comparison with
 the accepted record are made from.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from enum import StrEnum
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.datasets.netcdf import parameter_attributes
 from bouncing_ball.studies import (
     continuation,
     error_thresholds,
+    evidence,
+    formulas,
     frequency_sweeps,
     permanent_contact,
     release_rules,
     restitution_orbits,
     time_histories,
 )
+from bouncing_ball.studies.forensics import study as forensics
 
 Parameters = Mapping[str, Any]
 
@@ -53,7 +57,7 @@ class Stage(NamedTuple):
         return self.study(self.parameters, *self.arguments)
 
 
-_STUDIES = {
+_STUDIES: dict[str, Callable[..., xr.Dataset]] = {
     "fig02": restitution_orbits.restitution_history,
     "fig03": restitution_orbits.restitution_orbits,
     "fig05": frequency_sweeps.apparent_restitution,
@@ -71,14 +75,18 @@ _STUDIES = {
     "table1": continuation.stability_ranges,
     "thresholds": error_thresholds.error_thresholds,
     "ext_release": release_rules.release_rules,
+    "formulas": formulas.formulas,
+    "forensics": forensics.forensics,
 }
 # Those that know neither release rule nor settings, and those that know both.
-_BARE = ("fig02", "fig03", "ext_release")
+_BARE = ("fig02", "fig03", "ext_release", "formulas", "forensics")
 _CONTINUED = ("fig08", "fig09", "fig15", "table1")
 # A cycle is split at the release, with half of the samples on either side, so
 # that a finer cycle has none of the old times. Each sample is the orbit's
-# formula at its own time, and other samples change nothing about it.
-_NOT_NESTED = ("fig07", "fig12")
+# formula at its own time, and other samples change nothing about it. Other
+# samples of the formulas are other parameters, and steps from sample to sample,
+# of which some evidence consists, are other steps.
+_NOT_NESTED = ("fig07", "fig12", "formulas", "evidence")
 
 # Sizes that become 2N - 1.
 _SIZES = ("samples", "points")
@@ -87,19 +95,53 @@ _MOVED = ("restitution", "amplitude", "amplitude_max")
 ULPS = (-2, -1, 1, 2)
 
 
-def stages(config: Parameters) -> dict[str, Stage]:
-    """The stages of all datasets that the configuration has parameters for."""
+def _simple_stages(config: Parameters, printed: Parameters) -> dict[str, Stage]:
+    """The stages of the datasets that are made from parameters alone."""
     parameters = {
         name: part
-        for section in ("figures", "tables", "extensions")
+        for section in ("figures", "tables", "extensions", "studies")
         for name, part in config.get(section, {}).items()
     }
     made = {}
     for name in (name for name in _STUDIES if name in parameters):
-        arguments = () if name in _BARE else (config["release"],)
+        own, arguments = parameters[name], () if name in _BARE else (config["release"],)
         if name in _CONTINUED:
             arguments = (config["release"], config["continuation"])
-        made[name] = Stage(_STUDIES[name], parameters[name], arguments)
+        if name == "table1":
+            arguments += (printed,)
+        if name == "forensics":
+            own = {**own, "printed": printed}
+        made[name] = Stage(_STUDIES[name], own, arguments)
+    return made
+
+
+def _evidence_from_scratch(
+    config: Parameters, printed: Parameters, sources: Sequence[str]
+) -> xr.Dataset:
+    """The evidence, with all the datasets that it is read from."""
+    made = _simple_stages(config, printed)
+    data = {
+        name: made[name].run().assign_attrs(parameter_attributes(made[name].parameters))
+        for name in sources
+    }
+    return evidence.evidence(data, config["studies"]["evidence"])
+
+
+def stages(config: Parameters, printed: Parameters, sources: Sequence[str]) -> dict[str, Stage]:
+    """The stages of all datasets that the configuration has parameters for.
+
+    Parameters
+    ----------
+    config : mapping
+        The configuration.
+    printed : mapping
+        Table 1 as printed.
+    sources : sequence of str
+        The datasets that the evidence is read from.
+    """
+    made = _simple_stages(config, printed)
+    if set(sources) <= set(made):
+        made["evidence"] = Stage(_evidence_from_scratch, config, (printed, sources))
     return made
 
 
@@ -187,9 +229,15 @@ def on_the_old_grid(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
 def variations(name: str, stage: Stage, base: xr.Dataset) -> Iterator[tuple[Variation, xr.Dataset]]:
     """The datasets of a stage under each variation, on the grid of its own ``base``."""
     if name in _CONTINUED:
-        release, settings = stage.arguments
-        varied = stage._replace(arguments=(release, tighter(settings)))
-        yield Variation.TOLERANCES, varied.run()
+        release, settings, *more = stage.arguments
+        yield (
+            Variation.TOLERANCES,
+            stage._replace(arguments=(release, tighter(settings), *more)).run(),
+        )
+    if name == "evidence":
+        settings = tighter(stage.parameters["continuation"])
+        varied = {**stage.parameters, "continuation": settings}
+        yield Variation.TOLERANCES, stage._replace(parameters=varied).run()
     fine = finer_grid(stage.parameters)
     if name not in _NOT_NESTED and fine != stage.parameters:
         yield Variation.GRID, on_the_old_grid(stage._replace(parameters=fine).run(), base)

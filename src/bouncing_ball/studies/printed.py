@@ -109,6 +109,11 @@ def permanent_contact_threshold(frequency_ratio, damping_ratio):
     return np.sqrt(1 + (4 * damping_ratio**2 - 2) / frequency_ratio**2 + frequency_ratio**-4.0)
 
 
+def resonant_threshold(damping_ratio):
+    """After Eq. 33: Λ_SD = 2ζ at ϖ = 1."""
+    return 2 * damping_ratio
+
+
 def permanent_contact_frequency_ratio(threshold, damping_ratio, sign):
     """Eqs. 34 (sign +1) and 35 (sign -1): the ϖ at which Λ_SD has a value."""
     centre = 1 - 2 * damping_ratio**2

@@ -128,7 +128,7 @@ def orbit_checks(rng, samples) -> dict[str, Check]:
 def _measured_restitution(r, frequency_ratio, velocity, gravity):
     """-δ′ at release over δ′ at impact on a table at rest, by root finding.
 
-    NaN where the ball does not come off within one and a half weightless contacts.
+    NaN where the ball has not come off after one and a half weightless contacts.
     """
     zeta = printed.damping_ratio(r)
     m = contact_matrix(frequency_ratio, zeta, 0.0, gravity)
@@ -168,7 +168,8 @@ def damping_checks(rng, samples) -> dict[str, Check]:
 def static_error(static: Mapping[str, Any]) -> xr.DataArray:
     """|r_static - r|/r of a heavy ball on a table at rest, over r and ϖ.
 
-    NaN where the contact is so soft that the ball does not come off again.
+    NaN where the contact is so soft, or the impact so weak, that the weight
+    holds the ball for more than half as long again as without.
     """
     r, ratio = (np.array(static[key], dtype=float) for key in ("restitution", "frequency_ratio"))
     rows, columns = (x.ravel() for x in np.meshgrid(r, ratio, indexing="ij"))

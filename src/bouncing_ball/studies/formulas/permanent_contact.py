@@ -76,7 +76,9 @@ def permanent_contact_checks(rng, samples) -> dict[str, Check]:
             "period of the flow",
         ),
         "Eq. 33, ϖ = 1": Check(
-            largest(2 * zeta * _steady_amplitude(1.0, zeta) - 1), ROUNDING, "period of the flow"
+            largest(printed.resonant_threshold(zeta) * _steady_amplitude(1.0, zeta) - 1),
+            ROUNDING,
+            "period of the flow",
         ),
         # Λ_SD grows as 1/ϖ², with a next term of relative order ϖ².
         "Eq. 33, ϖ → 0": Check(

@@ -94,6 +94,8 @@ def restitution_checks(rng, samples) -> dict[str, Check]:
     # A ball at rest on tables a little below and above the threshold.
     edge = printed.restitution_threshold() + np.array([-1, 1]) * ROUNDING
     stays = np.isnan(lift_off_phase(edge))
+    # The orbit at which both sides of the fold meet, φ = 0, exists at this Λ only.
+    met = impact_cycle(r, fold, 0.0 * r, n * np.pi)
     trace, det = _stability(_exact_cycle, 0.0 * r, n * np.pi, r, fold)
     doubling = printed.period_doubling(n, r)
     exact, holmes = (_located_doubling(cycle, n, r) for cycle in (_exact_cycle, _holmes_cycle))
@@ -105,7 +107,11 @@ def restitution_checks(rng, samples) -> dict[str, Check]:
             largest(defect, bounced - cycle.velocity), ROUNDING, "simulated flight and impact"
         ),
         "Eq. 6": Check(largest(*returned), ROUNDING, "one simulated cycle"),
-        "Eq. 7": Check(largest(1 - trace + det), DIFFERENCES, "a Floquet multiplier at 1"),
+        "Eq. 7": Check(
+            largest(1 - trace + det, met.phase, met.velocity - n * np.pi),
+            DIFFERENCES,
+            "one simulated cycle, and a Floquet multiplier at 1",
+        ),
         "Eq. 8": Check(
             largest(doubling / exact - 1), DIFFERENCES, "multiplier at -1 of the map of Eq. 5"
         ),

@@ -12,6 +12,7 @@ import yaml
 
 from bouncing_ball.comparison.budgets import changes
 from bouncing_ball.datasets.netcdf import read_dataset
+from bouncing_ball.pipeline.ledger import printed, read_ledger
 from bouncing_ball.pipeline.tolerances import read_tolerances
 from bouncing_ball.studies.convergence import (
     Stage,
@@ -24,6 +25,9 @@ from bouncing_ball.studies.convergence import (
 )
 
 ROOT = Path(__file__).resolve().parents[2]
+# What the evidence is read from, as the rule says.
+SOURCES = [f"fig{number:02d}" for number in (3, 5, 6, 8, 9, 10, 13, 14, 15, 16)]
+SOURCES += ["table1", "thresholds", "ext_release"]
 
 
 @pytest.fixture(scope="module")
@@ -31,17 +35,23 @@ def config():
     return yaml.safe_load((ROOT / "config" / "config.yaml").read_text(encoding="utf-8"))
 
 
-def test_every_stage_of_the_configuration_is_varied(config):
-    named = {name for part in ("figures", "tables", "extensions") for name in config[part]}
-    assert set(stages(config)) == named
+@pytest.fixture(scope="module")
+def made(config):
+    table = printed(read_ledger(ROOT / "config"), "Table 1")
+    return stages(config, table, SOURCES)
 
 
-def test_a_stage_is_what_the_pipeline_runs(config):
+def test_every_stage_of_the_configuration_is_varied(config, made):
+    parts = ("figures", "tables", "extensions", "studies")
+    assert set(made) == {name for part in parts for name in config[part]}
+
+
+def test_a_stage_is_what_the_pipeline_runs(made):
     # The accepted dataset again, but for what another processor rounds.
     rules = read_tolerances(ROOT / "config" / "tolerances.yaml")
-    for name in ("fig02", "fig05", "fig07", "fig11", "fig16"):
+    for name in ("fig02", "fig05", "fig07", "fig11", "fig16", "forensics", "formulas"):
         record = read_dataset(ROOT / "figures" / f"{name}.nc")
-        for variable, change in changes(name, record, stages(config)[name].run(), rules).items():
+        for variable, change in changes(name, record, made[name].run(), rules).items():
             assert change <= rules.of(name, variable).budget, (name, variable)
 
 
@@ -54,8 +64,7 @@ def test_tighter_settings(config):
     )
 
 
-def test_what_is_varied_for_which_stage(config):
-    made = stages(config)
+def test_what_is_varied_for_which_stage(made):
     for name, kinds in (
         ("fig11", [Variation.GRID, *[Variation.ROUNDING] * 4]),
         ("fig07", [Variation.ROUNDING] * 4),
@@ -68,8 +77,8 @@ def test_what_is_varied_for_which_stage(config):
             assert {k: v.shape for k, v in data.items()} == {k: v.shape for k, v in base.items()}
 
 
-def test_the_old_grid_is_every_other_point_of_a_nested_one(config):
-    stage = stages(config)["fig11"]
+def test_the_old_grid_is_every_other_point_of_a_nested_one(made):
+    stage = made["fig11"]
     base = stage.run()
     finer = dict(stage.parameters["frequency_ratio"], samples=801)
     fine = stage._replace(parameters=stage.parameters | {"frequency_ratio": finer}).run()
@@ -106,7 +115,7 @@ def test_the_script_writes_the_table(config, tmp_path, monkeypatch):
         wildcards=(),
         input=SimpleNamespace(tolerances=ROOT / "config" / "tolerances.yaml"),
         output=SimpleNamespace(changes=tmp_path / "convergence.csv"),
-        params=SimpleNamespace(config=one, figures=["fig11"]),
+        params=SimpleNamespace(config=one, figures=["fig11"], printed={}, evidence=["none"]),
         log=[tmp_path / "log"],
     )
     # An interrupted job ends at once, but the tests are not to.

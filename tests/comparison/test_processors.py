@@ -30,10 +30,13 @@ from pathlib import Path
 import yaml
 from numpy._core._multiarray_umath import __cpu_features__
 from bouncing_ball.datasets.netcdf import write_dataset
+from bouncing_ball.pipeline.ledger import printed, read_ledger
 from bouncing_ball.studies.convergence import stages
-config = yaml.safe_load(Path(sys.argv[1]).read_text(encoding="utf-8"))
+folder = Path(sys.argv[1])
+config = yaml.safe_load((folder / "config.yaml").read_text(encoding="utf-8"))
+made = stages(config, printed(read_ledger(folder), "Table 1"), ["table1"])
 for name in sys.argv[3:]:
-    write_dataset(stages(config)[name].run(), Path(sys.argv[2], f"{name}.nc"))
+    write_dataset(made[name].run(), Path(sys.argv[2], f"{name}.nc"))
 print(json.dumps([name for name, there in __cpu_features__.items() if there]))
 """
 
@@ -43,7 +46,7 @@ def made(folder: Path, switches: dict[str, str]) -> set[str]:
     path = os.pathsep.join([str(ROOT / "src"), os.environ.get("PYTHONPATH", "")])
     kept = {name: value for name, value in os.environ.items() if name not in OLDER}
     environment = kept | switches | {"PYTHONPATH": path}
-    config = ROOT / "config" / "config.yaml"
+    config = ROOT / "config"
     done = subprocess.run(
         [sys.executable, "-c", PROGRAM, config, folder, *STAGES],
         env=environment,

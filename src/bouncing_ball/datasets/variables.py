@@ -197,14 +197,6 @@ VARIABLES: dict[str, Variable] = {
         "Λ",
         equation="Table 1",
     ),
-    "printed_soft_distance": Variable(
-        "largest difference of a softer printed row from the computed one", "Λ", equation="Table 1"
-    ),
-    "printed_release_distance": Variable(
-        "largest difference of the printed softest row from a release rule's",
-        "Λ",
-        equation="Table 1",
-    ),
     "soft_range_shift": Variable(
         "relative shift of the ends of the softest row from the restitution model", ""
     ),

@@ -207,13 +207,6 @@ def _table(data: Datasets) -> Found:
         "frequency_ratio"
     )
     found["period_doubling_drop"] = curve.isel(frequency_ratio=-1, drop=True) - lowest
-    # How far the printed softest row is from that of either release rule.
-    ratio = table.frequency_ratio.values[-1]
-    at = np.abs(curves.frequency_ratio - ratio) <= _GRID * ratio
-    distance = np.abs(table.printed.isel(frequency_ratio=-1, drop=True) - curves.where(at))
-    found["printed_release_distance"] = distance.max(["frequency_ratio", "n", "bound"])
-    distance = np.abs(table.computed - table.printed).isel(frequency_ratio=slice(1, None))
-    found["printed_soft_distance"] = _softer_rows(distance.max(["n", "bound"]), table)
     return found
 
 

@@ -15,7 +15,6 @@ from bouncing_ball.pipeline.record import (
     check_results,
     check_tree,
     commits,
-    different_files,
     log_with,
     replace_record,
 )
@@ -67,15 +66,6 @@ def test_a_copy_that_fails_leaves_the_record_as_it_was(folders, monkeypatch):
     with pytest.raises(OSError, match="no space left"):
         replace_record(record, results, FILES, "after")
     assert contents(record) == before
-
-
-def test_what_differs(folders):
-    record, results = folders
-    (record / FILES[0]).write_bytes((results / FILES[0]).read_bytes())
-    (record / "paper.md").unlink()
-    (record / "figures" / "fig99.nc").write_text("stale", encoding="utf-8")
-    expected = {"fig02": "changed", "paper": "new", "fig99": "removed"}
-    assert different_files(record, results, FILES) == expected
 
 
 def test_the_log_grows_and_can_be_read_back():

@@ -12,11 +12,15 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
+from bouncing_ball.comparison.folders import ComparisonError, artifacts_in, compare_folders
+from bouncing_ball.comparison.report_terminal import to_terminal
+from bouncing_ball.comparison.verdicts import Verdict
 from bouncing_ball.datasets.atomic import replacing
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.artifacts import CARRIERS, read_provenance
 from bouncing_ball.pipeline.provenance import Provenance
 from bouncing_ball.pipeline.repository import Revision, revision
+from bouncing_ball.pipeline.tolerances import read_tolerances
 
 LOG = "accepted.csv"
 COLUMNS = ("number", "commit", "reason", "changes")
@@ -71,26 +75,6 @@ def stale(folder: Path, wanted: Iterable[Path]) -> list[Path]:
     return sorted(kept - set(wanted))
 
 
-def different_files(record: Path, results: Path, files: Sequence[str]) -> dict[str, str]:
-    """Artifacts whose bytes differ, each with what became of it.
-
-    Examples
-    --------
-    >>> different_files(Path("nowhere"), Path("results"), ["figures/fig01.png"])
-    {'fig01': 'new'}
-    """
-    verdicts: dict[str, str] = {}
-    for file in files:
-        old = record / file
-        if not old.is_file():
-            verdicts.setdefault(old.stem, "new")
-        elif old.read_bytes() != (results / file).read_bytes():
-            verdicts[old.stem] = "changed"
-    for path in stale(record / "figures", [record / file for file in files]):
-        verdicts.setdefault(path.stem, "removed")
-    return verdicts
-
-
 def log_with(text: str, commit: str, reason: str, changes: Mapping[str, str]) -> str:
     """The log with one entry more.
 
@@ -125,14 +109,29 @@ def replace_record(record: Path, results: Path, files: Sequence[str], log: str) 
     return [*files, *(f"removed figures/{path.name}" for path in removed)]
 
 
-def _show_difference(record: Path, results: Path, files: Sequence[str]) -> dict[str, str]:
-    """Print how the results differ from the record; the artifacts that do, with verdicts."""
-    # To be replaced by the comparison of both folders, within the tolerances,
-    # once that is there.
-    verdicts = different_files(record, results, files)
-    for name, verdict in sorted(verdicts.items()):
-        print(f"{name:<24}{verdict}")
-    return verdicts
+# In the log, what the comparison calls missing goes, and what is extra comes.
+_IN_THE_LOG = {Verdict.MISSING: "removed", Verdict.EXTRA: "new"}
+
+
+def show_difference(record: Path, results: Path) -> dict[str, str]:
+    """Print how the results differ from the record; the artifacts that do, with verdicts.
+
+    Files that say the same in other bytes, another commit of the provenance for
+    one, do not differ.
+    """
+    try:
+        artifacts_in(record)
+    except ComparisonError:
+        print("There is no record yet.")
+        return {name: _IN_THE_LOG[Verdict.EXTRA] for name in artifacts_in(results)}
+    rules = read_tolerances(record / "config" / "tolerances.yaml")
+    comparison = compare_folders(record, results, rules)
+    print(to_terminal(comparison), end="", flush=True)
+    return {
+        artifact.name: _IN_THE_LOG.get(artifact.verdict, str(artifact.verdict))
+        for artifact in comparison.artifacts
+        if artifact.verdict is not Verdict.IDENTICAL
+    }
 
 
 def accept(record: Path, results: Path, files: Sequence[str], reason: str) -> list[str]:
@@ -155,7 +154,7 @@ def accept(record: Path, results: Path, files: Sequence[str], reason: str) -> li
     made = {file: read_provenance(results / file) for file in carriers}
     check_results(made)
     print(*commits(made.values(), now), sep="\n")
-    changes = _show_difference(record, results, files)
+    changes = show_difference(record, results)
     if not changes:
         print("Nothing to accept: the results are the record.")
         return ["nothing to accept"]

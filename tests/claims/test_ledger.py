@@ -47,14 +47,14 @@ def parsed(ledger, *claims):
 def test_a_table_becomes_one_claim_for_each_number(ledger, table):
     claims = parsed(ledger, table).claims
     assert [claim.id for claim in claims] == [
-        "ranges 10000 1 low",
-        "ranges 10000 1 high",
-        "ranges 10000 2 low",
-        "ranges 10000 2 high",
-        "ranges 2 1 low",
-        "ranges 2 1 high",
-        "ranges 2 2 low",
-        "ranges 2 2 high",
+        "ranges: 10000, 1, low",
+        "ranges: 10000, 1, high",
+        "ranges: 10000, 2, low",
+        "ranges: 10000, 2, high",
+        "ranges: 2, 1, low",
+        "ranges: 2, 1, high",
+        "ranges: 2, 2, low",
+        "ranges: 2, 2, high",
     ]
     assert [claim.printed for claim in claims] == [f"0.{k}0" for k in range(1, 9)]
     last = claims[-1]
@@ -156,8 +156,8 @@ def test_names_stand_once(ledger, number, statement, table, one_line):
         ledger(number, statement | {"id": "height"})
     one_line(error, "claim 'height' stands twice in the ledger")
     with pytest.raises(ModelError) as error:
-        parsed(ledger, table, number | {"id": "ranges 2 1 low"})
-    one_line(error, "claim 'ranges 2 1 low' stands twice")
+        parsed(ledger, table, number | {"id": "ranges: 2, 1, low"})
+    one_line(error, "claim 'ranges: 2, 1, low' stands twice")
     # The rest of two tables of one name may differ; the name may not.
     other = copy.deepcopy(table) | {"over": {"n": [5]}, "printed": ["1"], "statement": "{n}"}
     other["explanation"] = []

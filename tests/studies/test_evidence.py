@@ -242,7 +242,6 @@ def test_the_places_of_the_answers(found):
     assert found.computed_softening.dims == ("frequency_ratio", "n", "bound")
     assert found.computed_stiff_difference.dims == ("n", "bound", "impact_map")
     assert found.figure.values.tolist() == ["fig08", "fig09"]
-    assert found.release.values.tolist() == ["displacement", "force"]
     # Families of the extension that Table 1 has not are left out.
     assert found.n.values.tolist() == [1]
 

@@ -173,8 +173,8 @@ def test_baseline_is_the_closed_form(release):
 
 def test_baseline_is_table_1_by_continuation(study, continuation_settings):
     table = {key: TABLE[key] for key in ("frequency_ratio", "n")}
-    table |= {"restitution": R, "amplitude_max": 1.5, "printed": TABLE["values"]}
-    expected = stability_ranges(table, "displacement", continuation_settings).computed
+    table |= {"restitution": R, "amplitude_max": 1.5}
+    expected = stability_ranges(table, "displacement", continuation_settings, TABLE).computed
     found = study.computed.sel(reading=BASELINE)
     assert found.values == pytest.approx(expected.values, abs=1e-9)
 

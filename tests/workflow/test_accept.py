@@ -38,7 +38,7 @@ def test_the_results_become_the_record(complete):
     done = tree.run("--cores", "1", "accept", "--config", f"reason={REASON}")
     # First what there is to accept, and where it was made.
     commit = tree.git("rev-parse", "HEAD")
-    assert f"52 files made at commit {commit}\n" in done.stdout
+    assert f"56 files made at commit {commit}\n" in done.stdout
     assert "stale" in done.stdout and f"Accepted, reason: {REASON}" in done.stdout
     assert tree.contents("figures") == tree.contents("results/figures")
     assert (tree.path / "paper.md").read_bytes() == (results / "paper.md").read_bytes()
@@ -107,7 +107,7 @@ def test_results_of_several_commits_are_reported(complete):
     second = complete.commit("Other words")
     complete.run("--cores", "1", "--force", "fig01")
     done = complete.run("--cores", "1", "accept", "--config", f"reason={REASON}")
-    assert f"50 files made at commit {first}, up to date but not the one checked out" in done.stdout
+    assert f"54 files made at commit {first}, up to date but not the one checked out" in done.stdout
     assert f"2 files made at commit {second}\n" in done.stdout
     assert log(complete)[-1]["commit"] == second
 

@@ -15,8 +15,8 @@ def artifacts(tree):
 
 def test_every_artifact_says_where_it_comes_from(pristine):
     paths = artifacts(pristine)
-    # 17 pictures twice, and 18 datasets.
-    assert len(paths) == 2 * 17 + 18
+    # 17 pictures twice, and 22 datasets.
+    assert len(paths) == 2 * 17 + 22
     commit = pristine.git("rev-parse", "HEAD")
     lock = file_digest(pristine.path / "requirements.lock")
     for path in paths:

@@ -149,16 +149,23 @@ def test_stability_ranges(continuation_settings, described, release):
         "restitution": 0.85,
         "frequency_ratio": [1e4, 2.0],
         "amplitude_max": 1.5,
-        "printed": [[[0.255, 1.032], [0.509, 1.122]], [[0.187, 1.082], [0.463, 1.170]]],
     }
-    data = described(stability_ranges(parameters, release, continuation_settings))
+    # In another order than computed, one family more and one contact less.
+    printed = {
+        "frequency_ratio": [2.0],
+        "n": [3, 2, 1],
+        "bound": [PERIOD_DOUBLING, SADDLE_NODE],
+        "values": [[[1.298, 0.733], [1.170, 0.463], [1.082, 0.187]]],
+    }
+    data = described(stability_ranges(parameters, release, continuation_settings, printed))
     assert data.computed.dims == data.printed.dims == ("frequency_ratio", "n", "bound")
     assert data.bound.values.tolist() == [SADDLE_NODE, PERIOD_DOUBLING]
     for omega in (1e4, 2.0):
         for n in (1, 2):
             found = data.computed.sel(frequency_ratio=omega, n=n).values
             assert found == pytest.approx(bifurcations(n, 0.85, omega, release), abs=1e-12)
-    assert data.printed.sel(frequency_ratio=2.0, n=2).values.tolist() == [0.463, 1.170]
+    assert data.printed.sel(frequency_ratio=2.0).values.tolist() == [[0.187, 1.082], [0.463, 1.170]]
+    assert np.isnan(data.printed.sel(frequency_ratio=1e4)).all()
     limit = data.restitution_range.sel(impact_map="exact").values
     assert limit == pytest.approx(np.array([[0.2547, 1.0383], [0.5094, 1.1281]]), abs=6e-5)
     if release == "displacement":
@@ -235,10 +242,15 @@ def test_a_window_without_a_period_doubling(continuation_settings, one_line):
         "restitution": 0.85,
         "frequency_ratio": [10.0],
         "amplitude_max": 0.9,
-        "printed": [[[0.238, 1.035]]],
+    }
+    printed = {
+        "frequency_ratio": [10.0],
+        "n": [1],
+        "bound": [SADDLE_NODE, PERIOD_DOUBLING],
+        "values": [[[0.238, 1.035]]],
     }
     with pytest.raises(NoOrbitError) as error:
-        stability_ranges(parameters, "displacement", continuation_settings)
+        stability_ranges(parameters, "displacement", continuation_settings, printed)
     one_line(error, "no period doubling", "left the window at amplitude 0.9")
 
 

@@ -3,8 +3,17 @@
 import pytest
 
 PAPER = "Writing results/paper.md"
-# Every change of an orbit is followed by the comparison of the three routes.
-WITNESS = {"Comparing continuation, formula and simulation for witness", "Setting witness"}
+# Every change of a dataset that decides a claim is followed by the verdicts,
+CLAIMS = {"Verdicts on the paper's claims", "Setting claims"}
+# of one that statements rest on by their evidence,
+EVIDENCE = {"Evidence for the paper's statements", *CLAIMS}
+# and of an orbit by the comparison of the three routes, which decides one too.
+WITNESS = {
+    "Comparing continuation, formula and simulation for witness",
+    "Setting witness",
+    *CLAIMS,
+}
+FORMULAS = {"Checking the printed formulas", "Setting formulas", *CLAIMS}
 
 
 def drawing(*names):
@@ -17,27 +26,46 @@ def drawing(*names):
         (
             ("figures", "fig06", "cases"),
             [{"restitution": 0.6, "amplitude": 1.0}],
-            {"Apparent restitution for fig06", *drawing("fig06"), *WITNESS},
+            {"Apparent restitution for fig06", *drawing("fig06"), *WITNESS, *EVIDENCE},
         ),
         (
             ("figures", "fig08", "points"),
             101,
-            {"Continuation of the n-T orbits for fig08", *drawing("fig08"), *WITNESS},
+            {
+                "Continuation of the n-T orbits for fig08",
+                *drawing("fig08"),
+                *WITNESS,
+                *EVIDENCE,
+            },
         ),
         (
             ("extensions", "ext_release", "restitution"),
             0.9,
-            {"Release rules for ext_release", *drawing("ext_release"), *WITNESS},
+            {"Release rules for ext_release", *drawing("ext_release"), *WITNESS, *EVIDENCE},
         ),
         (
             ("figures", "fig16", "tolerance"),
             0.02,
-            {"Error thresholds for fig16", *drawing("fig16")},
+            {"Error thresholds for fig16", *drawing("fig16"), *EVIDENCE},
         ),
+        # Decides two claims by its damping alone.
+        (
+            ("figures", "fig11", "restitution"),
+            0.7,
+            {"Permanent contact threshold for fig11", *drawing("fig11"), *CLAIMS},
+        ),
+        # Decides none.
+        (
+            ("figures", "fig12", "amplitude"),
+            1.1,
+            {"Time histories for fig12", *drawing("fig12"), *WITNESS},
+        ),
+        (("studies", "formulas", "seed"), 1, FORMULAS),
+        (("studies", "evidence", "stiff_frequency_ratio"), 90.0, EVIDENCE),
         (
             ("tables", "table1", "amplitude_max"),
             1.6,
-            {"Continuation of the n-T orbits for table1", "Setting table1", *WITNESS},
+            {"Continuation of the n-T orbits for table1", "Setting table1", *WITNESS, *EVIDENCE},
         ),
         (
             ("studies", "forensics", "steps"),
@@ -53,6 +81,7 @@ def drawing(*names):
                 *drawing("fig08", "fig09", "fig15"),
                 "Setting table1",
                 *WITNESS,
+                *EVIDENCE,
             },
         ),
     ],
@@ -71,6 +100,7 @@ def test_a_changed_parameter(complete, keys, value, expected):
                 *(f"Orbits of the restitution model for {x}" for x in ("fig02", "fig03")),
                 *drawing("fig02", "fig03"),
                 *WITNESS,
+                *EVIDENCE,
                 PAPER,
             },
         ),
@@ -84,6 +114,7 @@ def test_a_changed_parameter(complete, keys, value, expected):
                 *drawing("fig11", "fig14", "fig16", "ext_release"),
                 "Setting thresholds",
                 *WITNESS,
+                *EVIDENCE,
                 PAPER,
             },
         ),
@@ -99,11 +130,46 @@ def test_a_changed_parameter(complete, keys, value, expected):
         ),
         ("figures/style.py", drawing("ext_release", *(f"fig{k:02d}" for k in range(1, 17)))),
         ("tables/table1.py", {"Setting table1", PAPER}),
+        ("tables/claims.py", {"Setting claims", PAPER}),
+        ("claims/verdict.py", {*CLAIMS, PAPER}),
+        ("claims/tally.py", {*CLAIMS, PAPER}),
+        ("studies/evidence.py", {*EVIDENCE, PAPER}),
+        ("studies/formulas/permanent_contact.py", {*FORMULAS, PAPER}),
+        # Eq. 34 as printed is among the evidence.
+        ("studies/printed.py", {*FORMULAS, *EVIDENCE, PAPER}),
     ],
 )
 def test_a_changed_module(complete, file, expected):
     complete.edit(file)
     assert complete.planned() == expected
+
+
+def test_a_reworded_claim_runs_the_verdicts_only(complete):
+    complete.rewrite("config/claims.yaml", "the greatest height rises", "the height rises")
+    assert complete.planned() == {*CLAIMS, PAPER}
+
+
+def test_a_printed_number_of_table_1_runs_the_table_too(complete):
+    complete.rewrite("config/claims.yaml", '"1.032"', '"1.033"')
+    assert complete.planned() == {
+        "Continuation of the n-T orbits for table1",
+        "Setting table1",
+        *WITNESS,
+        *EVIDENCE,
+        PAPER,
+    }
+
+
+def test_another_printed_number_runs_the_verdicts_only(complete):
+    complete.rewrite("config/claims.yaml", 'printed: "82"', 'printed: "83"')
+    assert complete.planned() == {*CLAIMS, PAPER}
+
+
+def test_the_last_rule_prints_the_tally(complete):
+    # Also when nothing else is to do.
+    tally = (complete.path / "results" / "tally.txt").read_text(encoding="utf-8")
+    done = complete.run("--cores", "1")
+    assert tally in done.stdout + done.stderr
 
 
 def test_the_modules_of_a_stage_are_those_it_imports(pristine):

@@ -23,12 +23,13 @@ def test_a_run_makes_every_figure_and_table(pristine):
     made = set(pristine.contents("results"))
     pictures = {f"figures/{name}.{kind}" for name in FIGURES for kind in ("png", "svg")}
     data = {f"figures/{name}.nc" for name in FIGURES if name not in ("fig01", "fig04")}
+    data |= {"figures/evidence.nc"}
     tables = {
         f"figures/{name}.{kind}"
-        for name in ("table1", "thresholds", "witness", "forensics")
+        for name in ("table1", "thresholds", "witness", "forensics", "formulas", "claims")
         for kind in ("nc", "csv", "md", "tex")
     }
-    assert made == pictures | data | tables | {"paper.md"}
+    assert made == pictures | data | tables | {"paper.md", "tally.txt"}
 
 
 def test_a_run_touches_no_tracked_file(pristine, fresh):

@@ -1,0 +1,569 @@
+"""The shipped ledger: complete, decided, explained; and what happens to mistakes in it."""
+
+import copy
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from bouncing_ball.claims.ledger import parse_ledger
+from bouncing_ball.datasets.netcdf import parameter_attributes, read_dataset
+from bouncing_ball.pipeline.configuration import ConfigurationError, check_schema
+from bouncing_ball.pipeline.ledger import check_datasets, datasets_of, printed, read_ledger
+from bouncing_ball.studies.evidence import evidence
+
+ROOT = Path(__file__).resolve().parents[2]
+MAPPING, SCHEMA, CONFIG = (
+    yaml.safe_load((ROOT / "config" / name).read_text(encoding="utf-8"))
+    for name in ("claims.yaml", "claims.schema.yaml", "config.yaml")
+)
+LEDGER = parse_ledger(MAPPING)
+CLAIMS = {claim.id: claim for claim in LEDGER.claims}
+
+# Numbers in print, by where they stand; those of Table 1 are below.
+NUMBERS = {
+    "damping of 0.85": "0.052",
+    "damping of 0.65": "0.136",
+    "damping of 0.65, four digits": "0.1359",
+    "soft end of 1.2": "0.81",
+    "departure from nπ": "100",
+    "height threshold": "82",
+    "permanent contact threshold": "6",
+}
+TABLE1 = {
+    1e4: ["0.255 1.032", "0.509 1.122", "0.764 1.259"],
+    10.0: ["0.238 1.035", "0.495 1.126", "0.750 1.262"],
+    2.0: ["0.187 1.082", "0.463 1.170", "0.733 1.298"],
+}
+# Equations that can be wrong, each by the row of the dataset that decides it;
+# Eqs. 2, 3, 10, 17-20, 28, 37 and 38 are definitions, Eq. 32 is Eq. 33 written
+# otherwise.
+EQUATIONS = {
+    "Eqs. 1 and 4": "Eq. 4",
+    "Eq. 5": "Eq. 5",
+    "Eq. 6": "Eq. 6",
+    "Eq. 7": "Eq. 7",
+    "Eq. 8": "Eq. 8",
+    "Eq. 9": "Eq. 9",
+    "Eqs. 10-11": "definition of ϖ, inverted",
+    "Eqs. 12-13": "Eqs. 12-13",
+    "Eqs. 14-15": "Eqs. 14-15",
+    "Eq. 16": "Eq. 16",
+    "Eqs. 18-26": "Eqs. 21-26",
+    "Eq. 27": "Eq. 27",
+    "Eqs. 29-31": "Eq. 31",
+    "Eqs. 32-33": "Eq. 33",
+    "Eq. 34": "Eq. 34",
+    "Eq. 35": "Eq. 35",
+    "Eq. 36, Fig. 11": "Eq. 36",
+}
+LIMITS = {
+    "no damping": ("formulas", "Eq. 16, r = 1"),
+    "critical damping": ("formulas", "Eq. 16, r → 0"),
+    "soft threshold": ("formulas", "Eq. 33, ϖ → 0"),
+    "resonant threshold": ("formulas", "Eq. 33, ϖ = 1"),
+    "stiff threshold": ("evidence", "permanent_contact"),
+}
+# What the text says in words, in its order.
+STATEMENTS = [
+    "stiff limit",
+    "soft divergence",
+    "contact shortens",
+    "no closed form",
+    "existence changes",
+    "stable between",
+    "frequency ratio",
+    "static table",
+    "moving table",
+    "closer with stiffness",
+    "depends on amplitude",
+    "dip at 1.2",
+    "negligible above 100",
+    "one impact per period",
+    "superimposed when stiff",
+    "apart when soft",
+    "saddle-node falls",
+    "period doubling rises",
+    "range widens",
+    "stiff row",
+    "velocity is not nπ",
+    "amplitude does not matter",
+    "stiff threshold",
+    "velocity rises",
+    "height rises",
+    "impact phase converges",
+    "release phase converges",
+    "representative",
+    "permanent contact above 6",
+    "safe above 100",
+]
+
+
+def test_the_shipped_ledger_is_accepted():
+    assert read_ledger(ROOT / "config") == MAPPING
+
+
+# That nothing is left out.
+
+
+def test_the_printed_numbers():
+    numbers = {name: claim.printed for name, claim in CLAIMS.items() if claim.kind == "number"}
+    table = {name: text for name, text in numbers.items() if name.startswith("Table 1 ")}
+    assert {k: v for k, v in numbers.items() if k not in table} == NUMBERS
+    assert len(table) == 18
+
+
+def test_the_numbers_of_table_1_at_their_places():
+    for ratio, families in TABLE1.items():
+        for n, row in enumerate(families, 1):
+            for bound, text in zip(("saddle-node", "period doubling"), row.split(), strict=True):
+                claim = CLAIMS[f"Table 1 {ratio:g} {n} {bound}"]
+                assert claim.printed == text
+                (criterion,) = claim.criteria
+                assert criterion.measure.dataset == "table1"
+                assert dict(criterion.measure.at) == {
+                    "frequency_ratio": ratio,
+                    "n": n,
+                    "bound": bound,
+                }
+    assert printed(MAPPING, "Table 1")["values"][2][1] == [0.463, 1.17]
+
+
+def test_the_equations():
+    found = {}
+    for claim in LEDGER.claims:
+        measure = claim.criteria[0].measure
+        if claim.kind == "formula" and not claim.item.startswith("after"):
+            assert (measure.dataset, measure.variable) == ("formulas", "disagreement")
+            assert claim.criteria[0].condition.bound == "budget"
+            found[claim.item] = dict(measure.at)["formula"]
+    assert found == EQUATIONS
+
+
+def test_the_limits():
+    for name, (dataset, place) in LIMITS.items():
+        (criterion,) = CLAIMS[name].criteria
+        assert criterion.measure.dataset == dataset
+        assert place in dict(criterion.measure.at).values()
+
+
+def test_the_statements():
+    assert [claim.id for claim in LEDGER.claims if claim.kind == "statement"] == STATEMENTS
+
+
+def test_all_kinds_together_are_the_ledger():
+    formulas = [claim for claim in LEDGER.claims if claim.kind == "formula"]
+    in_words = set(LIMITS) - set(STATEMENTS)
+    assert len(formulas) == len(EQUATIONS) + len(in_words)
+    assert len(LEDGER.claims) == len(formulas) + len(NUMBERS) + 18 + len(STATEMENTS)
+
+
+# What each claim rests on.
+
+
+def test_every_formula_is_claimed_or_explains(pristine):
+    rows = read_dataset(pristine.path / "results/figures/formulas.nc").formula.values
+    criteria = [c for part in (*LEDGER.claims, *LEDGER.explanations) for c in part.criteria]
+    named = {dict(c.measure.at)["formula"] for c in criteria if c.measure.variable == "disagreement"
+             and c.measure.dataset == "formulas"}  # fmt: skip
+    assert named == set(rows)
+
+
+def test_every_explanation_is_used():
+    used = {claim.explanation for claim in LEDGER.claims} - {""}
+    assert used == {explanation.id for explanation in LEDGER.explanations}
+
+
+@pytest.fixture(scope="module")
+def datasets(pristine):
+    """All datasets that the evidence may be made of."""
+    names = [name for name in datasets_of(MAPPING) if name not in ("evidence", "formulas")]
+    folder = pristine.path / "results" / "figures"
+    return {name: read_dataset(folder / f"{name}.nc") for name in names}
+
+
+def moved(dataset):
+    """A dataset whose numbers all differ, each by another share, and whose flags are turned."""
+    other = dataset.copy(deep=True)
+    for name, values in other.data_vars.items():
+        if values.dtype.kind == "f":
+            share = 1 + 0.1 * np.resize(np.arange(1, 8), values.shape)
+            other[name] = values * share
+        elif values.dtype.kind == "b":
+            other[name] = ~values
+    if "tolerance" in other.dims:
+        other = other.assign_coords(tolerance=other.tolerance * 1.1)
+    return other
+
+
+def test_claims_name_all_datasets_behind_their_evidence(datasets):
+    settings = CONFIG["studies"]["evidence"]
+    before = evidence(datasets, settings)
+    with np.errstate(all="ignore"):
+        after = {
+            name: evidence(datasets | {name: moved(dataset)}, settings)
+            for name, dataset in datasets.items()
+        }
+    for part in (*LEDGER.claims, *LEDGER.explanations):
+        for measure in (c.measure for c in part.criteria if c.measure.dataset == "evidence"):
+            values = before[measure.variable]
+            place = tuple(
+                values[dim].values.tolist().index(dict(measure.at)[dim])
+                if dim in dict(measure.at)
+                else slice(None)
+                for dim in values.dims
+            )
+            behind = {
+                name
+                for name, other in after.items()
+                if not np.array_equal(
+                    values.values[place], other[measure.variable].values[place], equal_nan=True
+                )
+            }
+            assert behind and behind <= set(part.uses), f"{part.id}: {measure}"
+
+
+# Parameters that no verdict depends on: how finely a branch is drawn or how far,
+# how the continuation steps, and what else a study computes.
+HARMLESS = {
+    "fig03": {"amplitude_max", "points"},
+    "fig08": {"amplitude_max", "points"},
+    "fig09": {"amplitude_max", "points"},
+    "fig11": {"frequency_ratio.min", "frequency_ratio.max", "frequency_ratio.samples"},
+    "fig13": {"frequency_ratio.min", "frequency_ratio.samples"},
+    "fig14": {"frequency_ratio.min", "frequency_ratio.samples"},
+    "fig15": {"points"},
+    "table1": {"amplitude_max"},
+    "ext_release": {
+        f"thresholds.{key}"
+        for key in (
+            *("n", "restitution", "amplitude", "tolerance", "quantities"),
+            *("frequency_ratio.min", "frequency_ratio.max", "frequency_ratio.samples"),
+        )
+    },
+    "formulas": {"samples", "seed"},
+}
+
+
+def test_every_parameter_is_the_papers_or_harmless():
+    sections = {
+        name: parameters
+        for section in ("figures", "tables", "extensions", "studies")
+        for name, parameters in CONFIG[section].items()
+    }
+    for name in datasets_of(MAPPING):
+        if name == "witness":  # holds for all orbits, whatever they are
+            continue
+        asked = {
+            key
+            for place, group in MAPPING["parameters"].items()
+            if place.partition(".")[0] == name
+            for key in group
+        }
+        given = set(parameter_attributes(sections[name]))
+        assert given == asked | HARMLESS.get(name, set()), name
+        assert not asked & HARMLESS.get(name, set()), name
+
+
+# The verdicts of the shipped configuration.
+
+
+@pytest.fixture(scope="module")
+def verdicts(pristine):
+    return read_dataset(pristine.path / "results/figures/claims.nc")
+
+
+def test_nothing_that_differs_is_without_explanation(verdicts):
+    assert verdicts.claim.values.tolist() == list(CLAIMS)
+    open_ones = verdicts.claim.values[~verdicts.explained.values.astype(bool)].tolist()
+    assert open_ones == []
+    assert verdicts.explanation_holds.values.astype(bool).all()
+    # None is left open by parameters.
+    assert [text for text in verdicts.reason.values.tolist() if "computed with" in text] == []
+
+
+def test_the_tally_counts_the_verdicts(pristine, verdicts):
+    line = (pristine.path / "results" / "tally.txt").read_text(encoding="utf-8")
+    kinds = ["reproduced", "close", "contradicted", "undecidable"]
+    counts = ", ".join(f"{int((verdicts.verdict == kind).sum())} {kind}" for kind in kinds)
+    figures = len(list((pristine.path / "results" / "figures").glob("fig??.png")))
+    assert line == f"{figures} figures, Table 1, {len(CLAIMS)} claims: {counts}\n"
+
+
+@pytest.mark.parametrize(
+    ("claim", "verdict"),
+    [
+        ("height threshold", "reproduced"),
+        ("permanent contact threshold", "contradicted"),
+        ("soft end of 1.2", "reproduced"),
+        ("damping of 0.85", "reproduced"),
+        ("damping of 0.65, four digits", "reproduced"),
+        ("departure from nπ", "undecidable"),
+        ("period doubling", "contradicted"),
+        ("period doubling rises", "contradicted"),
+        ("saddle-node falls", "reproduced"),
+        ("Table 1 10000 1 saddle-node", "reproduced"),
+        ("Table 1 10000 1 period doubling", "close"),
+        ("Table 1 2 1 period doubling", "close"),
+        ("frequency ratio", "undecidable"),
+        ("contact equation", "reproduced"),
+        ("moving table", "reproduced"),
+        ("orbit equations", "reproduced"),
+    ],
+)
+def test_verdicts(verdicts, claim, verdict):
+    assert verdicts.verdict.sel(claim=claim).item() == verdict
+
+
+def test_the_tables_show_every_claim_and_formula(pristine, verdicts):
+    folder = pristine.path / "results" / "figures"
+    lines = (folder / "claims.md").read_text(encoding="utf-8").splitlines()[2:]
+    assert [line.split(" | ")[0].removeprefix("| ") for line in lines] == list(CLAIMS)
+    rows = read_dataset(folder / "formulas.nc").sizes["formula"]
+    assert len((folder / "formulas.csv").read_text(encoding="utf-8").splitlines()) == rows + 1
+
+
+# Mistakes.
+
+
+def entry(mapping, name):
+    return next(claim for claim in mapping["claims"] if claim["id"] == name)
+
+
+def changed(change):
+    mapping = copy.deepcopy(MAPPING)
+    change(mapping)
+    return mapping
+
+
+def on(name, **values):
+    return lambda mapping: entry(mapping, name).update(values)
+
+
+def without(name, key):
+    return lambda mapping: entry(mapping, name).pop(key)
+
+
+SOURCE = {"dataset": "fig14", "variable": "error_threshold"}
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (on("sticking", claim=1), "unknown key claims['sticking'].claim = 1; allowed here: id, "),
+        (
+            lambda m: entry(m, "sticking")["decided_by"].update(place={}),
+            "unknown key claims['sticking'].decided_by.place = {}; allowed here: dataset, ",
+        ),
+        (lambda m: m.update(notes=""), "unknown key notes = ''; allowed here: close_within, "),
+        (without("sticking", "statement"), "missing key claims['sticking'].statement"),
+        (without("sticking", "kind"), "missing key claims['sticking'].kind"),
+        (without("sticking", "id"), "].id"),
+        (without("height threshold", "printed"), "missing key claims['height threshold'].printed"),
+        (
+            on("height threshold", printed=82),
+            "claims['height threshold'].printed = 82 must be a text (a number as printed",
+        ),
+        (
+            on("height threshold", printed="about 82"),
+            "claims['height threshold'].printed = 'about 82' must be a number as printed",
+        ),
+        (
+            lambda m: entry(m, "departure from nπ").update(decided_by=SOURCE),
+            "claims['departure from nπ'] must have one of decided_by, readings; it has "
+            "decided_by and readings",
+        ),
+        (
+            without("height threshold", "decided_by"),
+            "claims['height threshold'] must have one of decided_by, readings; it has none",
+        ),
+        (
+            lambda m: entry(m, "departure from nπ")["readings"].__delitem__(slice(1, None)),
+            "claims['departure from nπ'].readings = ",
+        ),
+        (
+            on("sticking", condition={}),
+            "claims['sticking'].condition must have one of at_most, at_least, below, above; "
+            "it has none",
+        ),
+        (
+            on("stiff row", condition={"text": "they agree"}),
+            "claims['stiff row'].condition must have one of at_most, at_least, below, above; "
+            "it has none",
+        ),
+        (
+            on("stiff row", condition={"at_most": "1"}),
+            "missing key claims['stiff row'].condition.text",
+        ),
+        (
+            on("sticking", condition={"at_most": "1", "below": "2"}),
+            "claims['sticking'].condition must have one of at_most, at_least, below, above; "
+            "it has at_most and below",
+        ),
+        (
+            on("sticking", condition={"at_most": 1}),
+            "claims['sticking'].condition.at_most = 1 must be a number as a text, or {variable}",
+        ),
+        (
+            lambda m: entry(m, "representative")["readings"][1].pop("condition"),
+            "missing key claims['representative'].readings[1].condition",
+        ),
+        (on("sticking", kind="guess"), "claims['sticking'].kind = 'guess' must be one of number,"),
+        (on("sticking", legibility="bad"), "legibility = 'bad' must be one of clear, damaged,"),
+        (on("sticking", statement=""), "claims['sticking'].statement = '' must not be empty"),
+        (
+            lambda m: entry(m, "stiff row")["decided_by"].update(reduce="mean"),
+            "claims['stiff row'].decided_by.reduce = 'mean' must be one of max, min, sum",
+        ),
+        (
+            lambda m: entry(m, "Table 1")["printed"][0][1].__setitem__(0, 0.509),
+            "printed at frequency_ratio = 10000.0, n = 2, bound = saddle-node is 0.509, not a",
+        ),
+        (
+            lambda m: entry(m, "Table 1")["printed"].pop(),
+            "table 'Table 1': printed is not a list of 3, one for each frequency_ratio",
+        ),
+        (
+            on("period doubling", explanation="Holmes"),
+            "claim 'period doubling' names the explanation 'Holmes', which is not one of ",
+        ),
+        (on("sticking", id="damping"), "claim 'damping' stands twice in the ledger"),
+        (
+            lambda m: m["explanations"][1].update(id=m["explanations"][0]["id"]),
+            "stands twice in the ledger",
+        ),
+        (
+            lambda m: m["explanations"][0].update(checks=[]),
+            "explanations['linear at fixed duration'].checks = [] must have at least 1 item",
+        ),
+        (
+            lambda m: m["explanations"][0]["checks"][0].update(condition={}),
+            "explanations['linear at fixed duration'].checks[0].condition must have one of ",
+        ),
+        (lambda m: m.update(close_within=1), "close_within = 1 must be less than 1"),
+        (lambda m: m["parameters"].update(fig03=1), "parameters.fig03 = 1 must be a mapping"),
+        (
+            lambda m: m["parameters"]["fig14"].update(n={"least": 1}),
+            "unknown key parameters.fig14.n.least = 1; allowed here: at_least, at_most, includes",
+        ),
+    ],
+)
+def test_a_mistake_is_one_line_that_names_the_claim(change, message, one_line, tmp_path):
+    text = yaml.safe_dump(changed(change), allow_unicode=True, sort_keys=False)
+    (tmp_path / "claims.yaml").write_text(text, encoding="utf-8")
+    (tmp_path / "claims.schema.yaml").write_text(
+        yaml.safe_dump(SCHEMA, sort_keys=False), encoding="utf-8"
+    )
+    with pytest.raises(ConfigurationError) as error:
+        read_ledger(tmp_path)
+    one_line(error, message)
+    assert len(str(error.value)) < 500
+
+
+def test_a_file_that_is_not_yaml(tmp_path, one_line):
+    (tmp_path / "claims.schema.yaml").write_text("{}", encoding="utf-8")
+    (tmp_path / "claims.yaml").write_text("claims:\n  - id: [1\nb: 2\n", encoding="utf-8")
+    with pytest.raises(ConfigurationError) as error:
+        read_ledger(tmp_path)
+    one_line(error, "not YAML in line 3")
+
+
+def test_numbers_are_finite(one_line):
+    with pytest.raises(ConfigurationError) as error:
+        check_schema(changed(lambda m: m.update(close_within=float("nan"))), SCHEMA)
+    one_line(error, "close_within = nan must be a finite number")
+
+
+def test_datasets_that_the_pipeline_does_not_make(one_line):
+    made = {*datasets_of(MAPPING), "fig02"}
+    check_datasets(MAPPING, made)
+    with pytest.raises(ConfigurationError) as error:
+        check_datasets(MAPPING, made - {"fig16"})
+    one_line(error, "there is no dataset fig16, only ")
+    with pytest.raises(ConfigurationError) as error:
+        check_datasets(changed(lambda m: m["parameters"].update({"fig99.x": {"n": 1}})), made)
+    one_line(error, "there is no dataset fig99, only ")
+
+
+def test_a_table_that_there_is_not(one_line):
+    with pytest.raises(ConfigurationError) as error:
+        printed(MAPPING, "Table 2")
+    one_line(error, "there is no table 'Table 2' among the claims")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            'printed: "82"',
+            "printed: 82",
+            "config/claims.yaml: claims['height threshold'].printed = 82 must be a text",
+        ),
+        ("id: Table 1", "id: Table 2", "config/claims.yaml: there is no table 'Table 1' among"),
+        ("dataset: fig14", "dataset: fig99", "config/claims.yaml: there is no dataset fig99, only"),
+    ],
+)
+def test_snakemake_stops_at_once_with_that_line(fresh, old, new, message):
+    path = fresh.path / "config" / "claims.yaml"
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new), encoding="utf-8")
+    done = fresh.run("--cores", "1", check=False)
+    assert done.returncode == 1
+    said = [line for line in done.stderr.splitlines() if not line.startswith("Using ")]
+    assert len(said) == 1 and said[0].startswith(message)
+    assert not (fresh.path / "results").exists()
+
+
+def test_a_missing_place_fails_the_stage_in_one_line(complete):
+    path = complete.path / "config" / "claims.yaml"
+    text = path.read_text(encoding="utf-8")
+    path.write_text(text.replace("at: { case: 2, freq", "at: { case: 3, freq"), encoding="utf-8")
+    done = complete.run("--cores", "1", "results/tally.txt", check=False)
+    assert done.returncode == 1 and "Traceback" not in done.stderr
+    said = [line for line in done.stderr.splitlines() if line.startswith("claims_stage: ")]
+    assert len(said) == 1
+    assert "fig06: apparent_restitution at case = 3" in said[0]
+    assert "case = 3 is not among 0, 1, 2" in said[0]
+    # The verdicts of the last good run are not taken for those of this one.
+    assert not (complete.path / "results" / "tally.txt").exists()
+
+
+def test_a_run_with_other_parameters_leaves_claims_open(complete):
+    """All that a user may change at once: nothing fails, and what is left is decided."""
+    for keys, value in {
+        ("figures", "fig03", "n"): [2],
+        ("figures", "fig05", "frequency_ratio"): {"min": 2.0, "max": 50.0, "samples": 11},
+        ("figures", "fig06", "cases"): [{"restitution": 0.6, "amplitude": 1.0}],
+        ("figures", "fig08", "frequency_ratio"): [5.0],
+        ("figures", "fig10", "amplitude"): [1.0],
+        ("figures", "fig14", "n"): 2,
+        ("figures", "fig14", "amplitude"): 1.4,
+        ("figures", "fig15", "amplitude_max"): 1.5,
+        ("figures", "fig16", "tolerance"): 0.02,
+        ("figures", "fig16", "frequency_ratio"): {"min": 7.0, "max": 8.0, "samples": 11},
+        ("tables", "table1", "n"): [1],
+        ("tables", "table1", "frequency_ratio"): [10.0],
+        ("tables", "thresholds", "tolerances"): [0.03],
+        ("tables", "thresholds", "quantities"): ["max_height", "phase"],
+        ("extensions", "ext_release", "n"): [2, 3],
+        ("studies", "formulas", "static", "frequency_ratio"): [3.0],
+        ("studies", "evidence", "stiff_frequency_ratio"): 1e5,
+        ("release",): "force",
+    }.items():
+        complete.configure(*keys, value=value)
+    complete.run("--cores", "2", "claims", "formulas", "results/tally.txt")
+    result = read_dataset(complete.path / "results/figures/claims.nc")
+    decided = set(result.claim.values[(result.verdict != "undecidable").values].tolist())
+    # The formulas do not depend on any of this, nor do the three routes.
+    formulas = {claim.id for claim in LEDGER.claims if claim.kind == "formula"}
+    assert decided == formulas | {"no closed form"}
+    reasons = result.reason.values[(result.verdict == "undecidable").values].tolist()
+    other = re.compile(r"\w+ was computed with \S+ = .*, needed is .*")
+    assert [text for text in reasons if not other.fullmatch(text)] == [
+        text for text in reasons if text.startswith("depends on the reading: Ω is the table's")
+    ]
+    assert result.explained.values.astype(bool).all()
+    assert "without explanation" not in (complete.path / "results/tally.txt").read_text("utf-8")

@@ -20,7 +20,7 @@ def found_text(claim: xr.Dataset) -> str:
 def deviation_text(claim: xr.Dataset) -> str:
     """In units of the last printed digit, and in per cent."""
     units, share = float(claim.deviation_units), float(claim.deviation)
-    return "" if np.isnan(units) else f"{units:+.2f} ({100 * share:+.2g} %)"
+    return "" if np.isnan(units) else f"{units:+.2f} ({100 * share:+.3g} %)"
 
 
 def rows(data: xr.Dataset) -> tuple[Sequence[str], list[list[str]]]:

@@ -110,7 +110,7 @@ def test_the_shipped_ledger_is_accepted():
 
 def test_the_printed_numbers():
     numbers = {name: claim.printed for name, claim in CLAIMS.items() if claim.kind == "number"}
-    table = {name: text for name, text in numbers.items() if name.startswith("Table 1 ")}
+    table = {name: text for name, text in numbers.items() if name.startswith("Table 1:")}
     assert {k: v for k, v in numbers.items() if k not in table} == NUMBERS
     assert len(table) == 18
 
@@ -119,7 +119,7 @@ def test_the_numbers_of_table_1_at_their_places():
     for ratio, families in TABLE1.items():
         for n, row in enumerate(families, 1):
             for bound, text in zip(("saddle-node", "period doubling"), row.split(), strict=True):
-                claim = CLAIMS[f"Table 1 {ratio:g} {n} {bound}"]
+                claim = CLAIMS[f"Table 1: {ratio:g}, {n}, {bound}"]
                 assert claim.printed == text
                 (criterion,) = claim.criteria
                 assert criterion.measure.dataset == "table1"
@@ -244,6 +244,10 @@ HARMLESS = {
         )
     },
     "formulas": {"samples", "seed"},
+    # Other readings may be nearer to the printed table; the explanation asks.
+    "forensics": {
+        *("printed_damping_ratio", "stiff_exponents", "steps", "step_reach", "last_digit"),
+    },
 }
 
 
@@ -304,9 +308,9 @@ def test_the_tally_counts_the_verdicts(pristine, verdicts):
         ("period doubling", "contradicted"),
         ("period doubling rises", "contradicted"),
         ("saddle-node falls", "reproduced"),
-        ("Table 1 10000 1 saddle-node", "reproduced"),
-        ("Table 1 10000 1 period doubling", "close"),
-        ("Table 1 2 1 period doubling", "close"),
+        ("Table 1: 10000, 1, saddle-node", "reproduced"),
+        ("Table 1: 10000, 1, period doubling", "close"),
+        ("Table 1: 2, 1, period doubling", "close"),
         ("frequency ratio", "undecidable"),
         ("contact equation", "reproduced"),
         ("moving table", "reproduced"),
@@ -554,7 +558,7 @@ def test_a_run_with_other_parameters_leaves_claims_open(complete):
         ("release",): "force",
     }.items():
         complete.configure(*keys, value=value)
-    complete.run("--cores", "2", "claims", "formulas", "results/tally.txt")
+    complete.run("--cores", "2")
     result = read_dataset(complete.path / "results/figures/claims.nc")
     decided = set(result.claim.values[(result.verdict != "undecidable").values].tolist())
     # The formulas do not depend on any of this, nor do the three routes.

@@ -72,7 +72,7 @@ FIG08, FIG05 = ("figures", "fig08"), ("figures", "fig05")
         (("tables", "thresholds", "quantities"), ["height"], "'height' must be one of max_height"),
         (("figures", "fig11", "restitution"), 0.04, "= 0.04 must be greater than 0.0433"),
         (("reason",), "", "reason = '' must be why the record changes, one line"),
-        (("reason",), "one\ntwo", "reason = 'one\\ntwo' must be one line"),
+        (("reason",), "one\ntwo", "reason = 'one\\ntwo' must be why the record"),
         (
             ("reason",),
             {"Eq. 8": "wrong"},

@@ -13,6 +13,7 @@ WITNESS = {
     "Setting witness",
     *CLAIMS,
 }
+FORENSICS = {"Readings of Table 1 for forensics", "Setting forensics", *CLAIMS}
 FORMULAS = {"Checking the printed formulas", "Setting formulas", *CLAIMS}
 
 
@@ -70,7 +71,7 @@ def drawing(*names):
         (
             ("studies", "forensics", "steps"),
             [0.01],
-            {"Readings of Table 1 for forensics", "Setting forensics"},
+            FORENSICS,
         ),
         (
             ("continuation", "max_angle"),
@@ -120,7 +121,7 @@ def test_a_changed_parameter(complete, keys, value, expected):
         ),
         (
             "studies/forensics/readings.py",
-            {"Readings of Table 1 for forensics", "Setting forensics", PAPER},
+            {*FORENSICS, PAPER},
         ),
         # A plotting change does not run the science again.
         ("figures/fig12.py", drawing("fig12")),
@@ -156,6 +157,7 @@ def test_a_printed_number_of_table_1_runs_the_table_too(complete):
         "Setting table1",
         *WITNESS,
         *EVIDENCE,
+        *FORENSICS,
         PAPER,
     }
 

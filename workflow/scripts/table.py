@@ -7,15 +7,10 @@ from bouncing_ball.pipeline.files import write_text
 from bouncing_ball.pipeline.job import logged
 from bouncing_ball.tables.formats import to_csv, to_latex, to_markdown
 
-LATEX = {"ϖ": r"$\varpi$", "n": "$n$"}
-
 with logged(snakemake) as lines:
     rows = import_module(f"bouncing_ball.tables.{snakemake.params.table}").rows
     header, body = rows(read_dataset(snakemake.input.data))
     write_text(snakemake.output.csv, to_csv(header, body))
     write_text(snakemake.output.md, to_markdown(header, body))
-    latex = [[cell.replace("%", r"\%") for cell in line] for line in (header, *body)]
-    write_text(
-        snakemake.output.tex, to_latex([LATEX.get(cell, cell) for cell in latex[0]], latex[1:])
-    )
+    write_text(snakemake.output.tex, to_latex(header, body))
     lines += snakemake.output

@@ -1,5 +1,6 @@
 """Numbers of datasets as text."""
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -11,15 +12,22 @@ from bouncing_ball.errors import ModelError
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
+def _not_finite(value: float) -> str:
+    return "–" if math.isnan(value) else f"{value:+.0f}".replace("+inf", "∞").replace("-inf", "−∞")
+
+
 def decimal(value: float, digits: int) -> str:
-    """A number with so many decimals.
+    """A number with so many decimals; a dash where there is none.
 
     Examples
     --------
-    >>> decimal(82.1774, 2)
-    '82.18'
+    >>> decimal(82.1774, 2), decimal(float("nan"), 2), decimal(float("inf"), 2)
+    ('82.18', '–', '∞')
     """
-    return f"{float(value):.{digits}f}".replace("-", "−")
+    value = float(value)
+    if not math.isfinite(value):
+        return _not_finite(value)
+    return f"{value:.{digits}f}".replace("-", "−")
 
 
 def short(value: float, digits: int = 6) -> str:
@@ -31,6 +39,8 @@ def short(value: float, digits: int = 6) -> str:
     ('0.85', '10⁴', '2.5·10⁻¹³')
     """
     value = float(value)
+    if not math.isfinite(value):
+        return _not_finite(value)
     if value and not 1e-3 <= abs(value) < 1e4:
         mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
         factor = f"{float(mantissa):g}"

@@ -4,6 +4,8 @@ import csv
 import io
 from collections.abc import Sequence
 
+from bouncing_ball.errors import ModelError
+
 Rows = Sequence[Sequence[str]]
 
 
@@ -36,12 +38,40 @@ def to_markdown(header: Sequence[str], rows: Rows) -> str:
     return "".join("| " + " | ".join(line) + " |\n" for line in lines)
 
 
+_LATEX = {
+    **{"%": r"\%", "&": r"\&", "_": r"\_", "#": r"\#", "<": "$<$", ">": "$>$"},
+    **{"≤": r"$\le$", "≥": r"$\ge$", "→": r"$\to$", "–": "--", "×": r"$\times$"},
+    **{"ϖ": r"$\varpi$", "Λ": r"$\Lambda$", "ζ": r"$\zeta$", "φ": r"$\varphi$"},
+    **{"π": r"$\pi$", "Ω": r"$\Omega$", "ω": r"$\omega$", "τ": r"$\tau$", "δ": r"$\delta$"},
+}
+
+
+def latex_text(text: str) -> str:
+    """Plain text for LaTeX, signs and Greek letters as mathematics.
+
+    Raises
+    ------
+    ModelError
+        If a character has no LaTeX here.
+
+    Examples
+    --------
+    >>> latex_text("ϖ ≤ 10 %")
+    '$\\varpi$ $\\le$ 10 \\%'
+    """
+    parts = [_LATEX.get(character, character) for character in text]
+    for part in parts:
+        if not part.isascii():
+            raise ModelError(f"no LaTeX for {part!r} in {text!r}")
+    return "".join(parts)
+
+
 def to_latex(header: Sequence[str], rows: Rows) -> str:
     """A tabular environment with rules of the booktabs package.
 
     Examples
     --------
-    >>> print(to_latex(["$n$"], [["1"]]), end="")
+    >>> print(to_latex(["n"], [["1"]]), end="")
     \\begin{tabular}{l}
     \\toprule
     $n$ \\\\
@@ -50,7 +80,10 @@ def to_latex(header: Sequence[str], rows: Rows) -> str:
     \\bottomrule
     \\end{tabular}
     """
-    body = [" & ".join(line) + r" \\" for line in (header, *rows)]
+    # A column that is called n is called by its symbol.
+    names = ["$n$" if cell == "n" else latex_text(cell) for cell in header]
+    cells = [names, *([latex_text(cell) for cell in line] for line in rows)]
+    body = [" & ".join(line) + r" \\" for line in cells]
     lines = [
         rf"\begin{{tabular}}{{{'l' * len(header)}}}",
         r"\toprule",

@@ -56,8 +56,8 @@ def latex_text(text: str) -> str:
 
     Examples
     --------
-    >>> latex_text("ϖ ≤ 10 %")
-    '$\\varpi$ $\\le$ 10 \\%'
+    >>> print(latex_text("ϖ ≤ 10 %"))
+    $\\varpi$ $\\le$ 10 \\%
     """
     parts = [_LATEX.get(character, character) for character in text]
     for part in parts:

@@ -6,7 +6,6 @@ from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
 
 
 def test_a_run_against_its_record(complete):
-    complete.run("--cores", "1", "accept")
     done = complete.run("--cores", "1", "diff")
     assert done.stdout.splitlines()[-1].endswith("The new artifacts say what the record says.")
     reports = complete.path / "results" / "diff"

@@ -1,7 +1,7 @@
 # Stages: what statements in words are decided by, and the verdict on each claim.
 
 
-rule evidence:
+rule evidence_stage:
     message:
         "Evidence for the paper's statements"
     input:
@@ -12,9 +12,9 @@ rule evidence:
     params:
         parameters=config["studies"]["evidence"],
     log:
-        "results/logs/evidence.log",
+        "results/logs/evidence_stage.log",
     benchmark:
-        "results/benchmarks/evidence.tsv"
+        "results/benchmarks/evidence_stage.tsv"
     script:
         "../scripts/evidence.py"
 

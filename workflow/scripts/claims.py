@@ -5,7 +5,7 @@ from pathlib import Path
 from bouncing_ball.claims.assessment import assess
 from bouncing_ball.claims.ledger import parse_ledger
 from bouncing_ball.claims.tally import tally
-from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
+from bouncing_ball.datasets.netcdf import parameter_attributes, read_dataset, write_dataset
 from bouncing_ball.pipeline.files import write_text
 from bouncing_ball.pipeline.job import REFERENCE, logged, provenance
 
@@ -17,7 +17,8 @@ with logged(snakemake) as lines:
     verdicts.attrs = {
         "title": snakemake.rule,
         "references": REFERENCE,
-        "close_within": ledger.close_within,
+        "close_units": ledger.close_units,
+        **parameter_attributes(ledger.parameters, "paper."),
         **provenance(snakemake, dict(snakemake.params.items())).attributes(),
     }
     write_dataset(verdicts, snakemake.output.data)

@@ -1,11 +1,12 @@
 """Numbers of datasets as text."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError
 
@@ -81,6 +82,28 @@ def largest(values: xr.DataArray) -> float:
     3.0
     """
     return float(np.abs(values).max())
+
+
+def pairs(left: Iterable[float], right: Iterable[float]) -> list[str]:
+    """Pairs of parameters in brackets.
+
+    Examples
+    --------
+    >>> pairs([0.85, 0.65], [1.0, 1.2])
+    ['(0.85, 1)', '(0.65, 1.2)']
+    """
+    return [f"({short(a)}, {short(b)})" for a, b in zip(left, right, strict=True)]
+
+
+def distinct(values: ArrayLike, digits: int = 9) -> int:
+    """How many values differ, to so many decimals.
+
+    Examples
+    --------
+    >>> distinct([1.0, 1.0 + 1e-12, 2.0])
+    2
+    """
+    return len(np.unique(np.round(np.asarray(values, dtype=float), digits)))
 
 
 def value_at(data: Mapping[str, xr.Dataset], dataset: str, variable: str, **where: Any) -> float:

@@ -1,6 +1,7 @@
 """The article as Markdown, from templates, datasets, tables and references."""
 
-from collections.abc import Mapping
+import json
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -8,9 +9,32 @@ import xarray as xr
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from bouncing_ball.article.citations import Citations
-from bouncing_ball.article.numbers import decimal, largest, listed, percent, short, value_at
+from bouncing_ball.article.numbers import (
+    decimal,
+    distinct,
+    largest,
+    listed,
+    pairs,
+    percent,
+    short,
+    value_at,
+)
 from bouncing_ball.article.verdicts import Claims
 from bouncing_ball.errors import ModelError
+
+
+def paper_parameter(claims: xr.Dataset) -> Callable[[str, str], Any]:
+    """Access to the paper's own parameters, as the claims were judged with them."""
+
+    def parameter(dataset: str, key: str) -> Any:
+        return claims.attrs[f"paper.{dataset}.{key}"]
+
+    return parameter
+
+
+def versions(dataset: xr.Dataset) -> dict[str, str]:
+    """What a dataset says of the versions that made it; nothing if it does not."""
+    return json.loads(dataset.attrs.get("provenance_versions", "{}"))
 
 
 def render_article(
@@ -54,10 +78,14 @@ def render_article(
         cite=citations.cite,
         references=citations.listing,
         decimal=decimal,
+        distinct=distinct,
         largest=largest,
         listed=listed,
+        pairs=pairs,
+        paper=paper_parameter(data["claims"]),
         percent=percent,
         short=short,
+        versions=versions,
     )
     text = environment.get_template("article.md.j2").render()
     if citations.uncited():

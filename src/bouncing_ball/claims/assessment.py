@@ -77,6 +77,8 @@ def assess(ledger: Ledger, data: Mapping[str, xr.Dataset]) -> xr.Dataset:
             "deviation": finding.relative if finding else np.nan,
             "verdict": str(decision.verdict),
             "reason": decision.reason,
+            "foreign": decision.foreign,
+            "printed_table": claim.table,
             "explained_by": claim.explanation,
             # Other parameters than the paper's are a reason of their own.
             "explained": decision.verdict is Verdict.REPRODUCED

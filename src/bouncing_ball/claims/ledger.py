@@ -98,6 +98,8 @@ class Claim:
         Datasets that must have been computed with the paper's parameters.
     explanation : str
         Name of the explanation if it is not reproduced; empty if none.
+    table : str
+        The printed table whose entry it is; empty if none.
     """
 
     id: str
@@ -113,6 +115,7 @@ class Claim:
     criteria: tuple[Criterion, ...]
     uses: tuple[str, ...]
     explanation: str
+    table: str = ""
 
 
 @dataclass(frozen=True)
@@ -129,7 +132,7 @@ class Explanation:
 class Ledger:
     """All claims and explanations, and the paper's parameters by dataset."""
 
-    close_within: float
+    close_units: float
     parameters: Mapping[str, Mapping[str, Any]]
     claims: tuple[Claim, ...]
     explanations: tuple[Explanation, ...]
@@ -179,6 +182,7 @@ def _claim(entry: Mapping[str, Any]) -> Claim:
         criteria=criteria,
         uses=_uses(entry, criteria),
         explanation=entry.get("explanation", ""),
+        table=entry.get("table", ""),
     )
 
 
@@ -237,6 +241,7 @@ def _cells(entry: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
         yield {
             **{key: entry[key] for key in ("section", "item", "legibility")},
             "id": f"{entry['id']}: {', '.join(labels)}",
+            "table": entry["id"],
             "kind": "number",
             "statement": statement,
             "printed": _entry(entry, place),
@@ -297,4 +302,4 @@ def parse_ledger(mapping: Mapping[str, Any]) -> Ledger:
                 f"claim {claim.id!r} names the explanation {claim.explanation!r}, which is not one "
                 f"of {', '.join(sorted(known))}"
             )
-    return Ledger(mapping["close_within"], mapping["parameters"], tuple(claims), explanations)
+    return Ledger(mapping["close_units"], mapping["parameters"], tuple(claims), explanations)

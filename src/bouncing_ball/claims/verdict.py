@@ -19,7 +19,7 @@ from bouncing_ball.claims.ledger import (
     Relation,
 )
 from bouncing_ball.claims.measure import measured
-from bouncing_ball.claims.printed import distance_in_units, last_unit
+from bouncing_ball.claims.printed import distance_in_units
 from bouncing_ball.errors import ModelError
 
 # Rounding must not decide what stands exactly on a bound.
@@ -34,8 +34,7 @@ class Verdict(StrEnum):
     REPRODUCED = "reproduced"
     """Within half a unit of the last printed digit; a condition that holds."""
     CLOSE = "close"
-    """A number farther away, but within the ledger's ``close_within``; a bound
-    missed by less than half a unit of its last digit."""
+    """A number farther away, by no more units than the ledger's ``close_units``."""
     CONTRADICTED = "contradicted"
     UNDECIDABLE = "undecidable"
 
@@ -44,10 +43,9 @@ class Verdict(StrEnum):
 class Finding:
     """What one criterion of a claim gave.
 
-    ``units`` and ``relative`` are the deviation from the printed number, or
-    from the bound of a condition that is missed, in units of its last digit and
-    as a share of it; NaN where that has no meaning (a bound of zero, a bound
-    from a dataset). ``required`` is the printed number, or the bound in words.
+    ``units`` and ``relative`` are the deviation from a printed number, in units
+    of its last digit and as a share of it; NaN for a condition, which holds or
+    does not. ``required`` is the printed number, or the bound in words.
     """
 
     verdict: Verdict
@@ -74,23 +72,23 @@ def _relative(difference: float, reference: float) -> float:
     return difference / abs(reference) if reference else float("nan")
 
 
-def judge_number(value: float, printed: str, unit: float | None, close_within: float) -> Finding:
+def judge_number(value: float, printed: str, unit: float | None, close_units: float) -> Finding:
     """A computed number against a printed one.
 
     Examples
     --------
-    >>> str(judge_number(82.177, "82", None, 0.01).verdict)
+    >>> str(judge_number(82.177, "82", None, 2).verdict)
     'reproduced'
-    >>> str(judge_number(0.2400, "0.238", None, 0.01).verdict)
+    >>> str(judge_number(0.2395, "0.238", None, 2).verdict)
     'close'
-    >>> str(judge_number(9.81, "6", None, 0.01).verdict)
+    >>> str(judge_number(9.81, "6", None, 2).verdict)
     'contradicted'
     """
     units = distance_in_units(value, printed, unit)
     relative = _relative(value - float(printed), float(printed))
     if abs(units) <= _HALF:
         verdict = Verdict.REPRODUCED
-    elif abs(relative) <= close_within * (1 + _ROUNDING):
+    elif abs(units) <= close_units + _ROUNDING:
         verdict = Verdict.CLOSE
     else:
         verdict = Verdict.CONTRADICTED
@@ -98,32 +96,25 @@ def judge_number(value: float, printed: str, unit: float | None, close_within: f
 
 
 def judge_condition(value: float, condition: Condition, bound: float) -> Finding:
-    """A computed number against the bound of a condition.
+    """A computed number against the bound of a condition, which holds or does not.
 
     Examples
     --------
     >>> one_percent = Condition(Relation.AT_MOST, "0.01")
-    >>> [str(judge_condition(x, one_percent, 0.01).verdict) for x in (0.009, 0.011, 0.02)]
-    ['reproduced', 'close', 'contradicted']
+    >>> [str(judge_condition(x, one_percent, 0.01).verdict) for x in (0.009, 0.011)]
+    ['reproduced', 'contradicted']
     """
+    slack = _ROUNDING * abs(bound)
     holds = {
-        Relation.AT_MOST: value <= bound,
-        Relation.AT_LEAST: value >= bound,
+        Relation.AT_MOST: value <= bound + slack,
+        Relation.AT_LEAST: value >= bound - slack,
         Relation.BELOW: value < bound,
         Relation.ABOVE: value > bound,
     }[condition.relation]
-    units = relative = float("nan")
-    graded = condition.relation in (Relation.AT_MOST, Relation.AT_LEAST)
-    if graded and not (holds or condition.bound_is_variable or bound == 0 or np.isinf(value)):
-        units = (value - bound) / last_unit(condition.bound)
-        relative = _relative(value - bound, bound)
-    if holds:
-        verdict = Verdict.REPRODUCED
-    elif abs(units) <= _HALF:
-        verdict = Verdict.CLOSE
-    else:
-        verdict = Verdict.CONTRADICTED
-    return Finding(verdict, value, units, relative, f"{condition.relation.sign} {bound:g}")
+    verdict = Verdict.REPRODUCED if holds else Verdict.CONTRADICTED
+    nothing = float("nan")
+    required = f"{condition.relation.sign} {bound:g}"
+    return Finding(verdict, value, nothing, nothing, required)
 
 
 def _beside(measure: Measure, variable: str, data: Mapping[str, xr.Dataset]) -> Measure:
@@ -144,7 +135,7 @@ def find(criterion: Criterion, claim: Claim | None, ledger: Ledger, data: Mappin
     value = measured(criterion.measure, data)
     if criterion.condition is None:
         assert claim is not None
-        return judge_number(value, claim.printed, claim.unit, ledger.close_within)
+        return judge_number(value, claim.printed, claim.unit, ledger.close_units)
     if criterion.condition.bound_is_variable:
         beside = _beside(criterion.measure, criterion.condition.bound, data)
         bound = measured(beside, data)
@@ -220,6 +211,13 @@ def foreign_parameter(
     return ""
 
 
+def _number(criterion: Criterion, finding: Finding) -> str:
+    """The number found, but where only its being rounding says anything."""
+    if criterion.condition is not None and criterion.condition.bound_is_variable:
+        return ""
+    return f" ({finding.value:.4g})"
+
+
 def decide(claim: Claim, ledger: Ledger, data: Mapping[str, xr.Dataset]) -> Decision:
     """The decision on a claim.
 
@@ -237,9 +235,9 @@ def decide(claim: Claim, ledger: Ledger, data: Mapping[str, xr.Dataset]) -> Deci
     findings = [find(criterion, claim, ledger, data) for criterion in claim.criteria]
     verdicts = {finding.verdict for finding in findings}
     if len(verdicts) > 1:
+        pairs = zip(claim.criteria, findings, strict=True)
         readings = "; ".join(
-            f"{criterion.reading}: {finding.verdict} ({finding.value:.4g})"
-            for criterion, finding in zip(claim.criteria, findings, strict=True)
+            f"{c.reading}: {finding.verdict}{_number(c, finding)}" for c, finding in pairs
         )
         return Decision(Verdict.UNDECIDABLE, None, f"depends on the reading: {readings}")
     return Decision(findings[0].verdict, findings[0])

@@ -147,13 +147,13 @@ VARIABLES: dict[str, Variable] = {
     "curve": Variable("curve of a figure", ""),
     "figure": Variable("figure", ""),
     "apparent_restitution_error": Variable(
-        "largest |r_a - r|/r among stiff contacts", "", equation="Eq. 17"
+        "largest |r_a - r| among stiff contacts", "", equation="Eq. 17"
     ),
     "apparent_restitution_difference": Variable("largest |r_a - r|/r", "", equation="Eq. 17"),
     "apparent_restitution_rebound": Variable(
-        "largest growth of |r_a - r|/r above its value at a softer contact", "", equation="Eq. 17"
+        "largest growth of |r_a - r| above its value at a softer contact", "", equation="Eq. 17"
     ),
-    "apparent_restitution_dip": Variable("largest (r - r_a)/r", "", equation="Eq. 17"),
+    "apparent_restitution_dip": Variable("largest r - r_a", "", equation="Eq. 17"),
     "apparent_restitution_spread": Variable("largest spread of r_a over Λ", "", equation="Eq. 17"),
     "bounce_velocity_error": Variable("largest |z′_b - nπ|/(nπ) among stiff contacts", ""),
     "bounce_velocity_error_soft": Variable("smallest |z′_b - nπ|/(nπ) at the softest contact", ""),
@@ -179,7 +179,6 @@ VARIABLES: dict[str, Variable] = {
     ),
     "inadmissible_orbits": Variable("orbits drawn that do not have one impact per period", ""),
     "contact_duration_stiffest": Variable("longest contact of the stiffest branch", "τ_b"),
-    "contact_duration_softest": Variable("longest contact of the softest branch", "τ_b"),
     "range_error": Variable("relative error of the ends of the stability range", ""),
     "computed_softening": Variable("change of an end of the range with the next softer ϖ", "Λ"),
     "printed_softening": Variable(
@@ -200,6 +199,14 @@ VARIABLES: dict[str, Variable] = {
     "soft_range_shift": Variable(
         "relative shift of the ends of the softest row from the restitution model", ""
     ),
+    "period_doubling_turn": Variable("frequency ratio at which the period doubling is lowest", "ϖ"),
+    "orbit": Variable("orbit along the frequency ratio, curve of a figure", ""),
+    "measure": Variable("quantity compared along these orbits", ""),
+    "stiff_orbit_error": Variable("largest relative error of an orbit among stiff contacts", ""),
+    "branch_end_gap": Variable(
+        "distance of the end of the softest branch from the threshold of permanent contact", "Λ"
+    ),
+    "contact_duration_fold": Variable("contact at the saddle-node of the softest branch", "τ_b"),
     "period_doubling_lowest": Variable("ϖ at which the period doubling is lowest", "ϖ"),
     "period_doubling_drop": Variable(
         "how far the period doubling sinks below that of the stiffest contact", "Λ"
@@ -226,6 +233,8 @@ VARIABLES: dict[str, Variable] = {
     "deviation_units": Variable("deviation in units of the last printed digit", ""),
     "deviation": Variable("relative deviation", ""),
     "verdict": Variable("reproduced, close, contradicted or undecidable", ""),
+    "foreign": Variable("whether parameters other than the paper's leave the claim open", ""),
+    "printed_table": Variable("the printed table whose entry the claim is", ""),
     "reason": Variable("why a claim is undecidable", ""),
     "explained_by": Variable("name of the explanation", ""),
     "explained": Variable("reproduced, or explained by checks that hold", ""),

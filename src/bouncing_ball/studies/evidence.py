@@ -37,7 +37,7 @@ def last_crossing(error: np.ndarray, ratio: np.ndarray, tolerance: float) -> flo
     >>> round(last_crossing(1 / ratio, ratio, 0.05), 10)
     20.0
     """
-    outside = np.flatnonzero(error > tolerance)
+    outside = np.flatnonzero(~(error <= tolerance))
     if not outside.size or outside[-1] == len(ratio) - 1:
         return float("nan")
     pair = slice(outside[-1], outside[-1] + 2)
@@ -69,20 +69,19 @@ def _apparent_restitution(data: Datasets, stiff: float) -> Found:
     }
     for name in ("fig05", "fig06"):
         sweep = data[name]
-        signed = (sweep.apparent_restitution - sweep.restitution) / sweep.restitution
-        signed = signed.reset_coords(drop=True)
+        signed = (sweep.apparent_restitution - sweep.restitution).reset_coords(drop=True)
         error = np.abs(signed)
         # How much farther from r than some softer contact is.
         axis = error.get_axis_num("frequency_ratio")
         closest = error.copy(data=np.fmin.accumulate(error.values, axis=axis))
         for key, values in (
             ("error", _worst_when_stiff(error, stiff)),
-            ("difference", error.max("frequency_ratio")),
+            ("difference", (error / sweep.restitution).max("frequency_ratio")),
             ("rebound", (error - closest).max("frequency_ratio")),
             ("dip", -signed.min("frequency_ratio")),
         ):
-            labels = [f"{name} r={r:g} Λ={lam:g}" for r, lam in _cases(sweep)]
-            found[key].append(values.rename(case="curve").assign_coords(curve=labels))
+            named = values.reset_coords(drop=True).rename(case="curve")
+            found[key].append(named.assign_coords(curve=_curves(name, sweep)))
     drawn = data["fig06"].apparent_restitution
     return {
         **{
@@ -92,8 +91,30 @@ def _apparent_restitution(data: Datasets, stiff: float) -> Found:
     }
 
 
-def _cases(sweep: xr.Dataset):
-    return zip(sweep.restitution.values, sweep.amplitude.values, strict=True)
+def _curves(name: str, sweep: xr.Dataset) -> list[str]:
+    """Names of the curves of a figure."""
+    pairs = zip(sweep.restitution.values, sweep.amplitude.values, strict=True)
+    return [f"{name} r={r:g} Λ={lam:g}" for r, lam in pairs]
+
+
+def _stiff_orbits(data: Datasets, stiff: float) -> Found:
+    """Figs. 5, 6 and 10: relative errors of the restitution model among stiff contacts."""
+    parts = []
+    for name in ("fig05", "fig06", "fig10"):
+        sweep = data[name]
+        phase, velocity = printed.fixed_point(sweep.attrs["n"], sweep.restitution, sweep.amplitude)
+        rigid = {
+            "phase": phase,
+            "bounce_velocity": velocity,
+            "apparent_restitution": sweep.restitution,
+        }
+        errors = [
+            np.abs(sweep[key] / value - 1).reset_coords(drop=True) for key, value in rigid.items()
+        ]
+        joined = xr.concat(errors, xr.Variable("measure", list(rigid)))
+        worst = _worst_when_stiff(joined, stiff).rename(case="orbit")
+        parts.append(worst.assign_coords(orbit=_curves(name, sweep)))
+    return {"stiff_orbit_error": xr.concat(parts, "orbit")}
 
 
 def _bounce(data: Datasets, stiff: float) -> Found:
@@ -144,23 +165,37 @@ def _domains(data: Datasets) -> Found:
         & (orbits.amplitude < doubling)
     )
     found = {"stability_exceptions": (orbits.stable != between).sum()}
-    drawn = [data[name].admissible for name in ("fig03", "fig05", "fig06", "fig10", "fig13")]
-    drawn.append(data["fig14"].admissible)
+    drawn = [data[f"fig{k:02d}"].admissible for k in (3, 5, 6, 8, 9, 10, 13, 14, 15)]
     found["inadmissible_orbits"] = xr.DataArray(sum(int((~x.astype(bool)).sum()) for x in drawn))
     names = ["fig08", "fig09"]
-    for key, pick in (("stiffest", "argmax"), ("softest", "argmin")):
-        longest = []
-        for name in names:
-            ratio = data[name].frequency_ratio.values
-            at = int(getattr(ratio, pick)())
-            longest.append(float(data[name].contact_duration.isel(frequency_ratio=at).max()))
-        found[f"contact_duration_{key}"] = xr.DataArray(longest, {"figure": names})
+    # All of the stiffest branch, and the saddle-node of the softest one.
+    longest, at_fold = [], []
+    for name in names:
+        branches = data[name].sortby("frequency_ratio")
+        longest.append(float(branches.contact_duration.isel(frequency_ratio=-1).max()))
+        soft = branches.isel(frequency_ratio=0)
+        folds = soft.special_kind.values == BOUNDS[0]
+        # A soft branch may fold again, at a higher Λ.
+        lowest = np.argmin(np.where(folds, soft.special_amplitude.values, np.inf))
+        there = soft.special_contact_duration.values[lowest]
+        at_fold.append(there if folds.any() else np.nan)
+    found["contact_duration_stiffest"] = xr.DataArray(longest, {"figure": names})
+    found["contact_duration_fold"] = xr.DataArray(at_fold, {"figure": names})
+    found["branch_end_gap"] = _end_of_softest(data["fig08"])
 
     both = data["fig15"].isel(frequency_ratio=0)
     rigid = np.array([both.saddle_node_amplitude, both.period_doubling_amplitude])
     soft = _first_range(both.special_kind.values, both.special_amplitude.values)
     found["range_error"] = xr.DataArray(np.abs(soft / rigid - 1), {"bound": list(BOUNDS)})
     return found
+
+
+def _end_of_softest(branches: xr.Dataset) -> xr.DataArray:
+    """How far the softest branch of Fig. 8 ends from the threshold of permanent contact."""
+    soft = branches.sortby("frequency_ratio").isel(frequency_ratio=0)
+    zeta = printed.damping_ratio(branches.attrs["restitution"])
+    threshold = printed.permanent_contact_threshold(soft.frequency_ratio, zeta)
+    return np.abs(soft.amplitude.isel(point=0) - threshold)
 
 
 def _first_range(kinds: np.ndarray, amplitudes: np.ndarray) -> np.ndarray:
@@ -203,9 +238,8 @@ def _table(data: Datasets) -> Found:
     curves = data["ext_release"].bifurcation_amplitude.reindex(n=table.n)
     curve = curves.sel(release="displacement", bound=doubling)
     lowest = curve.min("frequency_ratio")
-    found["period_doubling_lowest"] = curve.frequency_ratio.where(curve == lowest).min(
-        "frequency_ratio"
-    )
+    turns = data["ext_release"].period_doubling_turn.reindex(n=table.n)
+    found["period_doubling_lowest"] = turns.sel(release="displacement")
     found["period_doubling_drop"] = curve.isel(frequency_ratio=-1, drop=True) - lowest
     return found
 
@@ -247,7 +281,7 @@ def evidence(data: Datasets, parameters: Mapping[str, Any]) -> xr.Dataset:
     """
     stiff = parameters["stiff_frequency_ratio"]
     parts: list[Callable[[Datasets], Found]] = [_convergence, _domains, _table]
-    found = _apparent_restitution(data, stiff) | _bounce(data, stiff)
+    found = _apparent_restitution(data, stiff) | _bounce(data, stiff) | _stiff_orbits(data, stiff)
     for part in parts:
         found |= part(data)
     errors = data["thresholds"].relative_error

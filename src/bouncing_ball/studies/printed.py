@@ -1,4 +1,4 @@
-r"""The paper's equations exactly as it prints them, right or wrong.
+r"""The paper's equations as it prints them, as far as they are legible, right or wrong.
 
 Used only to be checked (:mod:`bouncing_ball.studies.formulas`); nothing else is
 computed from them. All quantities are dimensionless; the functions broadcast.

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from scipy.optimize.elementwise import find_minimum
 
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.models.contact import Contact, Release
@@ -29,6 +30,22 @@ READINGS = (
 )
 
 
+def _lowest_doubling(
+    ratios: np.ndarray, amplitude: np.ndarray, zeta: float, rule: Release, n: int
+) -> float:
+    """The ϖ at which the period doubling is lowest; NaN if that is an end of the scan."""
+    at = int(np.argmin(np.where(np.isnan(amplitude), np.inf, amplitude)))
+    if at in (0, len(ratios) - 1) or np.isnan(amplitude[at - 1 : at + 2]).any():
+        return np.nan
+
+    def doubling(log_ratio):
+        contact = Contact(np.exp(log_ratio), zeta, rule)
+        return branch_point(period_doubling(contact, n), contact, n).amplitude
+
+    bracket = tuple(np.log(ratios[at + k]) for k in (-1, 0, 1))
+    return float(np.exp(find_minimum(doubling, bracket).x))
+
+
 def release_rules(parameters: Mapping[str, Any]) -> xr.Dataset:
     """Bifurcations and thresholds under both rules, from ``n``, ``restitution``,
     ``frequency_ratio``, and ``thresholds`` with its own parameters."""
@@ -37,12 +54,14 @@ def release_rules(parameters: Mapping[str, Any]) -> xr.Dataset:
     zeta = float(damping_ratio(parameters["restitution"]))
     rules = list(Release)
     bifurcations = np.empty((len(rules), len(families), len(ratios), 2))
+    turns = np.empty((len(rules), len(families)))
     for i, rule in enumerate(rules):
         contact = Contact(ratios, zeta, rule)
         for j, n in enumerate(families):
             for k, find in enumerate((saddle_node, period_doubling)):
                 point = branch_point(find(contact, n), contact, n)
                 bifurcations[i, j, :, k] = point.amplitude
+            turns[i, j] = _lowest_doubling(ratios, bifurcations[i, j, :, 1], zeta, rule, n)
 
     wanted = parameters["thresholds"]
     n, lam, r = wanted["n"], wanted["amplitude"], wanted["restitution"]
@@ -68,6 +87,7 @@ def release_rules(parameters: Mapping[str, Any]) -> xr.Dataset:
                     ("release", "n", "frequency_ratio", "bound"),
                     bifurcations,
                 ),
+                "period_doubling_turn": (("release", "n"), turns),
                 "error_threshold": (("reading", "quantity"), found),
                 "threshold_status": (("reading", "quantity"), statuses.astype(str)),
                 "damping_ratio": ((), zeta),

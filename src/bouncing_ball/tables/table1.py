@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+import numpy as np
 import xarray as xr
 
 
@@ -17,14 +18,15 @@ def rows(data: xr.Dataset) -> tuple[Sequence[str], list[list[str]]]:
             for bound in data.bound.values:
                 at = {"frequency_ratio": ratio, "n": n, "bound": bound}
                 computed, printed = float(data.computed.sel(at)), float(data.printed.sel(at))
+                known = not np.isnan(printed)
                 body.append(
                     [
                         f"{ratio:g}",
                         f"{n}",
                         str(bound),
                         f"{computed:.5f}",
-                        f"{printed:.3f}",
-                        f"{computed - printed:+.5f}",
+                        f"{printed:.3f}" if known else "",
+                        f"{computed - printed:+.5f}" if known else "",
                     ]
                 )
     for kind in data.impact_map.values:

@@ -31,7 +31,7 @@ def at_step(step: float) -> str:
     >>> at_step(0.01)
     'nearest point at step 0.01'
     """
-    return f"nearest point at step {step:g}"
+    return f"nearest point at step {step!r}"
 
 
 @dataclass(frozen=True)
@@ -159,6 +159,14 @@ def single_readings(parameters: Mapping[str, Any]) -> dict[str, Reading]:
                 {"share": share},
             ),
         ]
+    for other in parameters["other_damping_ratios"]:
+        found.append(
+            Reading(
+                f"damping {other!r}",
+                f"ζ = {other!r}, whatever formula or rounding may have given it",
+                {"damping_ratio": other},
+            )
+        )
     for exponent in parameters["stiff_exponents"]:
         found.append(
             Reading(

@@ -95,10 +95,14 @@ def _continued(
     return values, needed
 
 
-def _order(rms: np.ndarray, in_range: np.ndarray) -> np.ndarray:
-    """The closest first; those that choose their values from a range, and those
-    that lack an orbit, behind the others."""
-    return np.lexsort((np.where(np.isnan(rms), np.inf, rms), in_range, np.isnan(rms)))
+def _order(distance: xr.DataArray, in_range: np.ndarray) -> np.ndarray:
+    """The closest to the softer rows first, then to all rows; those that choose their
+    values from a range, and those that lack an orbit, behind the others."""
+    softer, every = (distance.sel(rows=name).values for name in (SOFTER_ROWS, ALL_ROWS))
+    missing = np.isnan(softer)
+    # Readings of the stiffest row alone are equal in the softer ones, but for rounding.
+    keys = (np.where(np.isnan(x), np.inf, x).round(9) for x in (every, softer))
+    return np.lexsort((*keys, in_range, missing))
 
 
 def forensics(parameters: Mapping[str, Any]) -> xr.Dataset:
@@ -108,18 +112,20 @@ def forensics(parameters: Mapping[str, Any]) -> xr.Dataset:
     ----------
     parameters : mapping
         ``restitution`` r; ``printed_damping_ratio``, ζ as the paper rounds it;
-        ``stiff_exponents`` to try for the stiffest row; ``steps`` of a
-        continuation, and the arclength ``step_reach`` in which a step that
-        would do is looked for; ``last_digit``, the unit of the last printed
-        digit; and ``printed``, the table with its ``frequency_ratio``, ``n``,
-        ``bound`` and ``values`` of shape (frequency_ratio, n, bound).
+        ``other_damping_ratios`` to try; ``stiff_exponents`` to try for the
+        stiffest row; ``steps`` of a continuation, and the arclength
+        ``step_reach`` in which a step that would do is looked for;
+        ``last_digit``, the unit of the last printed digit; and ``printed``, the
+        table with its ``frequency_ratio``, ``n``, ``bound`` and ``values`` of
+        shape (frequency_ratio, n, bound).
 
     Returns
     -------
     xarray.Dataset
         ``computed`` and ``difference`` (in last digits) over (reading,
         frequency_ratio, n, bound), sorted by ``rank``: the rms difference over
-        all rows, but behind the others those readings that choose their values
+        the softer rows, as a reading of the stiffest row alone explains nothing of
+        the others, then over all; but behind the others those readings that choose their values
         from a range, with the printed ones in view.
 
     Raises
@@ -169,7 +175,5 @@ def forensics(parameters: Mapping[str, Any]) -> xr.Dataset:
             "rows": list(groups),
         },
     )
-    dataset = dataset.isel(
-        reading=_order(dataset.rms_difference.sel(rows=ALL_ROWS).values, in_range)
-    )
+    dataset = dataset.isel(reading=_order(dataset.rms_difference, in_range))
     return describe(dataset.assign(rank=("reading", np.arange(1, len(chosen) + 1))))

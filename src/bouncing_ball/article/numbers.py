@@ -74,14 +74,14 @@ def listed(values, word: str = "and") -> str:
 
 
 def largest(values: xr.DataArray) -> float:
-    """The largest absolute entry.
+    """The largest absolute entry that is finite.
 
     Examples
     --------
-    >>> largest(xr.DataArray([1.0, -3.0, np.nan]))
+    >>> largest(xr.DataArray([1.0, -3.0, np.nan, np.inf]))
     3.0
     """
-    return float(np.abs(values).max())
+    return float(np.abs(values).where(np.isfinite(values)).max())
 
 
 def pairs(left: Iterable[float], right: Iterable[float]) -> list[str]:

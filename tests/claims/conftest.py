@@ -66,7 +66,7 @@ def ledger():
     def build(*claims, explanations=(TURNS,), parameters=None):
         return parse_ledger(
             {
-                "close_within": 0.01,
+                "close_units": 2,
                 "parameters": parameters or {},
                 "claims": list(claims),
                 "explanations": list(explanations),

@@ -184,7 +184,7 @@ def test_measures_in_words():
 
 def test_the_mapping_is_not_changed(number, turns):
     mapping = {
-        "close_within": 0.02,
+        "close_units": 3,
         "parameters": {"fig": {"n": 1}},
         "claims": [number, copy.deepcopy(TABLE) | {"explanation": []}],
         "explanations": [turns],
@@ -192,4 +192,4 @@ def test_the_mapping_is_not_changed(number, turns):
     before = copy.deepcopy(mapping)
     book = parse_ledger(mapping)
     assert mapping == before
-    assert book.close_within == 0.02 and book.parameters == {"fig": {"n": 1}}
+    assert book.close_units == 3 and book.parameters == {"fig": {"n": 1}}

@@ -361,7 +361,7 @@ SOURCE = {"dataset": "fig14", "variable": "error_threshold"}
             lambda m: entry(m, "sticking")["decided_by"].update(place={}),
             "unknown key claims['sticking'].decided_by.place = {}; allowed here: dataset, ",
         ),
-        (lambda m: m.update(notes=""), "unknown key notes = ''; allowed here: close_within, "),
+        (lambda m: m.update(notes=""), "unknown key notes = ''; allowed here: close_units, "),
         (without("sticking", "statement"), "missing key claims['sticking'].statement"),
         (without("sticking", "kind"), "missing key claims['sticking'].kind"),
         (without("sticking", "id"), "].id"),
@@ -446,7 +446,7 @@ SOURCE = {"dataset": "fig14", "variable": "error_threshold"}
             lambda m: m["explanations"][0]["checks"][0].update(condition={}),
             "explanations['linear at fixed duration'].checks[0].condition must have one of ",
         ),
-        (lambda m: m.update(close_within=1), "close_within = 1 must be less than 1"),
+        (lambda m: m.update(close_units=0.1), "close_units = 0.1 must be at least 0.5"),
         (lambda m: m["parameters"].update(fig03=1), "parameters.fig03 = 1 must be a mapping"),
         (
             lambda m: m["parameters"]["fig14"].update(n={"least": 1}),
@@ -476,8 +476,8 @@ def test_a_file_that_is_not_yaml(tmp_path, one_line):
 
 def test_numbers_are_finite(one_line):
     with pytest.raises(ConfigurationError) as error:
-        check_schema(changed(lambda m: m.update(close_within=float("nan"))), SCHEMA)
-    one_line(error, "close_within = nan must be a finite number")
+        check_schema(changed(lambda m: m.update(close_units=float("nan"))), SCHEMA)
+    one_line(error, "close_units = nan must be a finite number")
 
 
 def test_datasets_that_the_pipeline_does_not_make(one_line):

@@ -34,6 +34,8 @@ def test_what_is_said_of_each_claim(ledger, number, statement, data, described):
         "found": 82.18,
         "verdict": "reproduced",
         "reason": "",
+        "foreign": False,
+        "printed_table": "",
         "explained_by": "",
         "explained": True,
     }

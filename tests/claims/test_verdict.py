@@ -27,42 +27,43 @@ REPRODUCED, CLOSE, CONTRADICTED, UNDECIDABLE = Verdict
         (82.5, REPRODUCED),
         (81.5, REPRODUCED),
         (np.nextafter(82.5, 83) + 1e-6, CLOSE),
-        # Exactly one per cent.
-        (82.82, CLOSE),
-        (81.18, CLOSE),
-        (82.82 + 1e-6, CONTRADICTED),
-        (81.18 - 1e-6, CONTRADICTED),
+        # Exactly two units.
+        (84.0, CLOSE),
+        (80.0, CLOSE),
+        (84.0 + 1e-6, CONTRADICTED),
+        (80.0 - 1e-6, CONTRADICTED),
         (-82.0, CONTRADICTED),
         (np.inf, CONTRADICTED),
         (-np.inf, CONTRADICTED),
     ],
 )
 def test_a_number_against_82(value, verdict):
-    assert judge_number(value, "82", None, 0.01).verdict is verdict
+    assert judge_number(value, "82", None, 2).verdict is verdict
 
 
 @pytest.mark.parametrize(("value", "verdict"), [(0.2555, REPRODUCED), (0.2545, REPRODUCED)])
 def test_half_a_unit_in_decimals_that_binary_numbers_miss(value, verdict):
-    assert judge_number(value, "0.255", None, 0.01).verdict is verdict
-    # One per cent of 0.5 is not 0.005 in binary; it still is on the bound.
-    assert judge_number(0.505, "0.500", None, 0.01).verdict is CLOSE
+    assert judge_number(value, "0.255", None, 2).verdict is verdict
+    # Two units are not 0.002 in binary; they still are on the bound.
+    assert judge_number(0.502, "0.500", None, 2).verdict is CLOSE
 
 
 def test_the_deviations_of_a_number():
-    finding = judge_number(0.2400, "0.238", None, 0.01)
+    finding = judge_number(0.2400, "0.238", None, 2)
     assert finding.units == pytest.approx(2.0, abs=1e-10)
     assert finding.relative == pytest.approx(0.002 / 0.238, rel=1e-12)
     assert (finding.value, finding.required) == (0.24, "0.238")
-    below = judge_number(-1.5, "-1", None, 0.01)
+    below = judge_number(-1.5, "-1", None, 2)
     assert (below.units, below.relative) == (-0.5, -0.5)
 
 
 def test_a_given_unit_and_a_printed_zero():
-    assert judge_number(54.2, "100", 100, 0.01).verdict is REPRODUCED
-    assert judge_number(49.9, "100", 100, 0.01).verdict is CONTRADICTED
-    zero = judge_number(0.7, "0", None, 0.01)
+    assert judge_number(54.2, "100", 100, 2).verdict is REPRODUCED
+    assert judge_number(49.9, "100", 100, 2).verdict is CLOSE
+    assert judge_number(-101.0, "100", 100, 2).verdict is CONTRADICTED
+    zero = judge_number(2.7, "0", None, 2)
     assert zero.verdict is CONTRADICTED and np.isnan(zero.relative)
-    assert judge_number(0.5, "0", None, 0.01).verdict is REPRODUCED
+    assert judge_number(0.5, "0", None, 2).verdict is REPRODUCED
 
 
 @pytest.mark.parametrize(
@@ -83,21 +84,23 @@ def test_strict_and_other_bounds(relation, below, on, above):
 @pytest.mark.parametrize(
     ("relation", "value", "verdict"),
     [
-        (Relation.AT_MOST, 0.0149, CLOSE),
-        (Relation.AT_MOST, 0.015, CLOSE),
-        (Relation.AT_MOST, 0.0151, CONTRADICTED),
-        (Relation.AT_LEAST, 0.005, CLOSE),
-        (Relation.AT_LEAST, 0.0049, CONTRADICTED),
-        # A strict bound is not missed by a little.
+        # A condition holds or does not; nothing is close to it.
+        (Relation.AT_MOST, 0.010001, CONTRADICTED),
+        (Relation.AT_LEAST, 0.009999, CONTRADICTED),
         (Relation.BELOW, 0.011, CONTRADICTED),
         (Relation.ABOVE, 0.009, CONTRADICTED),
         (Relation.AT_MOST, np.inf, CONTRADICTED),
         (Relation.AT_LEAST, np.inf, REPRODUCED),
         (Relation.AT_LEAST, -np.inf, CONTRADICTED),
+        # What stands on the bound is not decided by rounding.
+        (Relation.AT_MOST, 0.01 * (1 + 1e-12), REPRODUCED),
+        (Relation.AT_LEAST, 0.01 * (1 - 1e-12), REPRODUCED),
     ],
 )
-def test_a_bound_missed_by_less_than_half_its_last_digit(relation, value, verdict):
-    assert judge_condition(value, Condition(relation, "0.01"), 0.01).verdict is verdict
+def test_a_condition_holds_or_does_not(relation, value, verdict):
+    finding = judge_condition(value, Condition(relation, "0.01"), 0.01)
+    assert finding.verdict is verdict
+    assert np.isnan(finding.units) and np.isnan(finding.relative)
 
 
 def test_a_bound_of_zero_is_exact_and_gives_no_deviation():

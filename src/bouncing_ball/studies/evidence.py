@@ -97,6 +97,7 @@ def _curves(name: str, sweep: xr.Dataset) -> list[str]:
     return [f"{name} r={r:g} Λ={lam:g}" for r, lam in pairs]
 
 
+@np.errstate(divide="ignore", invalid="ignore")  # the phase is 0 at the saddle-node
 def _stiff_orbits(data: Datasets, stiff: float) -> Found:
     """Figs. 5, 6 and 10: relative errors of the restitution model among stiff contacts."""
     parts = []
@@ -114,7 +115,7 @@ def _stiff_orbits(data: Datasets, stiff: float) -> Found:
         joined = xr.concat(errors, xr.Variable("measure", list(rigid)))
         worst = _worst_when_stiff(joined, stiff).rename(case="orbit")
         parts.append(worst.assign_coords(orbit=_curves(name, sweep)))
-    return {"stiff_orbit_error": xr.concat(parts, "orbit")}
+    return {"stiff_orbit_error": xr.concat(parts, "orbit").transpose("orbit", "measure")}
 
 
 def _bounce(data: Datasets, stiff: float) -> Found:

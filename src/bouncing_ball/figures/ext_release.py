@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from bouncing_ball.figures.style import COLOURS, GUIDE, WIDE, canvas, logarithmic, number
+from bouncing_ball.figures.style import COLOURS, GUIDE, TABLE, WIDE, canvas, logarithmic, number
 
 _LOOKS = {"saddle-node": "-", "period doubling": (0, (4, 1.5))}
 _MARKS = ("o", "x", "s")
@@ -71,11 +71,16 @@ def draw(data: xr.Dataset) -> Figure:
         yticks=rows,
         ylim=(-0.7, len(rows) - 0.3),
     )
-    right.set_yticklabels([str(name).replace("_", " ") for name in data.quantity.values])
+    names = {"saddle_node": "saddle-node", "bounce_velocity": "bouncing-off velocity"}
+    right.set_yticklabels(
+        [names.get(str(name), str(name).replace("_", " ")) for name in data.quantity.values]
+    )
     right.set_title(
         rf"$n={data.attrs['thresholds.n']}$, $r={number(data.attrs['thresholds.restitution'])}$, "
         rf"$\Lambda={number(data.attrs['thresholds.amplitude'])}$",
         fontsize=9,
     )
-    figure.legend(*right.get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    # What the arrows mean, in the colour of none of the readings.
+    right.plot([], [], ">", color=TABLE, markersize=6, label="never within the range")
+    figure.legend(*right.get_legend_handles_labels(), loc="outside lower center", ncols=4)
     return figure

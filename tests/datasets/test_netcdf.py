@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from bouncing_ball.datasets.netcdf import parameter_attributes, read_dataset, write_dataset
+from bouncing_ball.datasets.netcdf import (
+    DatasetError,
+    parameter_attributes,
+    read_dataset,
+    write_dataset,
+)
 from bouncing_ball.datasets.variables import describe
 
 
@@ -145,3 +150,15 @@ def test_parameters_as_attributes(tmp_path):
     assert list(again) == list(flat)
     assert again["amplitude"].tolist() == [1.1, 1.0, 0.6]
     assert again["cases"] == flat["cases"]
+
+
+def test_a_damaged_file_is_one_line(tmp_path, one_line):
+    path = tmp_path / "fig08.nc"
+    with pytest.raises(DatasetError) as error:
+        read_dataset(path)
+    one_line(error, "no dataset", "fig08.nc")
+    write_dataset(xr.Dataset({"phase": ("point", [0.0] * 1000)}), path)
+    path.write_bytes(path.read_bytes()[:2000])
+    with pytest.raises(DatasetError) as error:
+        read_dataset(path)
+    one_line(error, "fig08.nc is damaged: remove it")

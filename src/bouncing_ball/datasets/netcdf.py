@@ -10,6 +10,10 @@ import xarray as xr
 from bouncing_ball.datasets.atomic import replacing
 
 
+class DatasetError(ValueError):
+    """A file that is not there, or not a whole dataset, in one line."""
+
+
 def parameter_attributes(parameters: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
     """Nested parameters as flat netCDF attributes.
 
@@ -40,6 +44,19 @@ def write_dataset(dataset: xr.Dataset, path: str | Path) -> None:
 
 
 def read_dataset(path: str | Path) -> xr.Dataset:
-    """Read a dataset whole and close its file."""
-    with xr.open_dataset(path, engine="netcdf4") as dataset:
-        return dataset.load()
+    """Read a dataset whole and close its file.
+
+    Raises
+    ------
+    DatasetError
+        If there is no such file, or it is damaged.
+    """
+    try:
+        with xr.open_dataset(path, engine="netcdf4") as dataset:
+            return dataset.load()
+    except FileNotFoundError:
+        raise DatasetError(f"no dataset {path}") from None
+    except (OSError, ValueError) as error:
+        raise DatasetError(
+            f"{path} is damaged: remove it, and the next run makes it again"
+        ) from error

@@ -11,7 +11,7 @@ from typing import Any
 
 from jsonschema import Draft202012Validator, ValidationError, validators
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball.pipeline.yaml_file import ConfigurationError
 
 # JSON takes 801.0 for an integer; a number of samples is written 801.
 _Validator = validators.extend(
@@ -20,10 +20,6 @@ _Validator = validators.extend(
         "integer", lambda _, value: type(value) is int
     ),
 )
-
-
-class ConfigurationError(ModelError):
-    """A wrong key, type or value in the configuration, in one line."""
 
 
 def _dotted(path, root: Any = None) -> str:
@@ -254,7 +250,7 @@ def check_configuration(config: Mapping[str, Any], schema: Mapping[str, Any]) ->
     >>> check_configuration({"n": 0}, schema)
     Traceback (most recent call last):
     ...
-    bouncing_ball.pipeline.configuration.ConfigurationError: n = 0 must be at least 1
+    bouncing_ball.pipeline.yaml_file.ConfigurationError: n = 0 must be at least 1
     """
     check_schema(config, schema)
     _check_consistency(config)

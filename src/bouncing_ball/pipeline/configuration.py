@@ -95,20 +95,28 @@ def _allowed(error: ValidationError) -> str:
     return f"{words} ({'; '.join(notes)})" if notes else words
 
 
-def _resolved(schema: Mapping[str, Any], root: Mapping[str, Any]) -> Mapping[str, Any]:
-    """A schema with what it refers to by ``$ref``."""
+def resolved(schema: Mapping[str, Any], root: Mapping[str, Any]) -> dict[str, Any]:
+    """A schema with what it refers to by ``$ref`` filled in; its own entries win.
+
+    Examples
+    --------
+    >>> root = {"$defs": {"ratio": {"type": "number", "minimum": 0}}}
+    >>> resolved({"$ref": "#/$defs/ratio", "minimum": 1}, root)
+    {'type': 'number', 'minimum': 1}
+    """
+    own = {key: value for key, value in schema.items() if key != "$ref"}
     if "$ref" not in schema:
-        return schema
+        return own
     target: Any = root
     for part in schema["$ref"].removeprefix("#/").split("/"):
         target = target[part]
-    return {**_resolved(target, root), **schema}
+    return resolved(target, root) | own
 
 
 def _known_keys(schema: Mapping[str, Any], root: Mapping[str, Any]) -> list[str]:
     """The keys that a schema allows, those of the schema it extends first."""
     extended = {"$ref": schema["$ref"]} if "$ref" in schema else {}
-    base = _resolved(extended, root).get("properties", {})
+    base = resolved(extended, root).get("properties", {})
     return list(dict.fromkeys([*base, *schema.get("properties", {})]))
 
 

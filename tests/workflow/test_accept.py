@@ -3,7 +3,9 @@
 import csv
 import os
 import shutil
+import subprocess
 from importlib.metadata import version
+from pathlib import Path
 
 import pytest
 
@@ -149,6 +151,26 @@ def test_results_of_several_commits_are_reported(complete):
     assert f"54 files made at commit {first}, up to date but not the one checked out" in done.stdout
     assert f"2 files made at commit {second}\n" in done.stdout
     assert log(complete)[-1]["commit"] == second
+
+
+@pytest.mark.skipif(shutil.which("make") is None, reason="no make on this machine")
+@pytest.mark.parametrize("reason", ['the "new" form; it\'s', "`false` \\ $$(false)", ""])
+def test_make_hands_the_reason_over_as_it_is(tmp_path, reason):
+    # In place of Snakemake, what says with which arguments it was called.
+    program = tmp_path / "bin" / "snakemake"
+    program.parent.mkdir()
+    program.write_text('#!/bin/sh\nprintf "%s\\n" "$@"\n', encoding="utf-8")
+    program.chmod(0o755)
+    makefile = Path(__file__).resolve().parents[2] / "Makefile"
+    done = subprocess.run(
+        ["make", "--silent", "-f", makefile, "accept", "SETUP=", "VENV=.", f"REASON={reason}"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    expected = f"reason={reason.replace('$$', '$')}"
+    assert done.stdout.splitlines() == ["--cores", "1", "accept", "--config", expected]
 
 
 @pytest.mark.parametrize("reason", ["", "Eq. 8: sign"])

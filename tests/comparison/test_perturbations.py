@@ -1,6 +1,8 @@
 """The diff tests itself: a known change of each kind gives the verdict it should."""
 
 import json
+import struct
+import zlib
 
 import numpy as np
 import pytest
@@ -446,6 +448,27 @@ def test_truncated_picture(pair):
     path.write_bytes(path.read_bytes()[:5000])
     part = pair.part("figures/fig01.png")
     assert part.verdict is Verdict.UNREADABLE and "PNG" in part.note
+    assert status(pair.compare().verdict) == 2
+
+
+@pytest.mark.parametrize("content", [b"", b"text", b"\x89PNG\r\n\x1a\n"])
+def test_a_picture_that_is_none(pair, content):
+    (pair.new / "figures" / "fig01.png").write_bytes(content)
+    part = pair.part("figures/fig01.png")
+    # Twice the same words: nothing of this process in them.
+    assert part.verdict is Verdict.UNREADABLE and part.note == "not a PNG file"
+
+
+@pytest.mark.parametrize("size", [10_000, 20_000])
+def test_a_picture_too_large_to_be_opened(pair, size):
+    # Pillow warns above 9e7 pixels and refuses twice as many.
+    head = b"IHDR" + struct.pack(">IIBBBBB", size, size, 8, 0, 0, 0, 0)
+    crc = struct.pack(">I", zlib.crc32(head))
+    path = pair.new / "figures" / "fig01.png"
+    begun = struct.pack(">I", 1000) + b"IDAT"
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + struct.pack(">I", 13) + head + crc + begun)
+    part = pair.part("figures/fig01.png")
+    assert part.verdict is Verdict.UNREADABLE and part.note == "too large a picture"
     assert status(pair.compare().verdict) == 2
 
 

@@ -2,6 +2,8 @@
 
 import hashlib
 import json
+import struct
+import zlib
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -28,6 +30,17 @@ from bouncing_ball.pipeline.sources import sources
 from bouncing_ball.pipeline.yaml_file import read_yaml
 
 ROOT = Path(bouncing_ball.__file__).resolve().parents[2]
+
+
+def blank(width, height):
+    """A PNG file up to where its pixels begin."""
+    head = b"IHDR" + struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)
+    length, crc, begun = struct.pack(">I", 13), struct.pack(">I", zlib.crc32(head)), b"\0\0\1\0IDAT"
+    return b"\x89PNG\r\n\x1a\n" + length + head + crc + begun
+
+
+# Pillow warns above 9e7 pixels and refuses twice as many.
+LARGE, TOO_LARGE = blank(10_000, 10_000), blank(20_000, 20_000)
 
 
 class Files(list):
@@ -158,6 +171,17 @@ def test_attributes_and_back():
             b"</d:description></svg>",
             "damaged, or not ours",
         ),
+        *(
+            (
+                "a.svg",
+                b'<svg xmlns:d="http://purl.org/dc/elements/1.1/"><d:description>%b'
+                b"</d:description></svg>" % text,
+                "damaged, or not ours",
+            )
+            for text in (b"[1, 2]", b"3", b"null", b'"text"')
+        ),
+        ("a.png", LARGE, "cannot be read: too large a picture"),
+        ("a.png", TOO_LARGE, "cannot be read: too large a picture"),
         ("a.jpg", b"", "is not one of .nc, .png, .svg"),
         ("a.svg", b"<svg/>", "carries no provenance: no attribute provenance_commit"),
     ],

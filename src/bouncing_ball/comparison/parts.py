@@ -15,6 +15,7 @@ from pathlib import Path
 
 from bouncing_ball.comparison.datasets import VariableResult, compare_datasets
 from bouncing_ball.comparison.pictures import (
+    VERSIONS,
     PictureError,
     PictureResult,
     compare_pictures,
@@ -29,9 +30,6 @@ from bouncing_ball.comparison.texts import (
 from bouncing_ball.comparison.tolerances import Tolerances
 from bouncing_ball.comparison.verdicts import Verdict, worst
 from bouncing_ball.datasets.netcdf import read_dataset
-
-# Global attribute of a dataset, text chunk of a picture.
-VERSIONS = "provenance_versions"
 
 
 @dataclass(frozen=True)

@@ -36,3 +36,6 @@ def read_yaml(path: str | Path) -> Any:
     except yaml.YAMLError as error:
         # A character that no YAML file may hold.
         raise ConfigurationError(f"not YAML: {' '.join(str(error).split())}") from None
+    except ValueError as error:
+        # What looks like a date and is none.
+        raise ConfigurationError(f"not YAML: {error}") from None

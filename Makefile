@@ -10,6 +10,8 @@ NEWEST := .venv-newest
 SETUP ?= setup
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
+# One thing after another: clean, run and compare share results/.
+.NOTPARALLEL:
 .PHONY: all setup lint test diff accept report clean ci setup-newest newest config-docs lock
 
 all: $(SETUP)
@@ -41,8 +43,10 @@ diff: $(SETUP)
 	$(BIN)/snakemake --cores 2 diff
 
 # make accept REASON="why the record moves"
+# Through the environment, so that the shell reads no quote in it.
+export REASON
 accept: $(SETUP)
-	$(BIN)/snakemake --cores 1 accept --config reason="$(REASON)"
+	$(BIN)/snakemake --cores 1 accept --config reason="$$REASON"
 
 report: all
 	$(BIN)/snakemake --report results/report.html

@@ -4,8 +4,10 @@ Both derive from :class:`ValueError`, so that callers who do not care for the
 distinction can catch that.
 """
 
-import numpy as np
-from numpy.typing import ArrayLike
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 
 class ModelError(ValueError):
@@ -16,7 +18,7 @@ class NoOrbitError(ValueError):
     """The requested periodic orbit does not exist, with the reason why."""
 
 
-def require(valid: ArrayLike, value: ArrayLike, name: str, allowed: str) -> None:
+def require(valid: "ArrayLike", value: "ArrayLike", name: str, allowed: str) -> None:
     """Raise :class:`ModelError` with the first value that is not valid.
 
     Examples
@@ -26,6 +28,9 @@ def require(valid: ArrayLike, value: ArrayLike, name: str, allowed: str) -> None
     ...
     bouncing_ball.errors.ModelError: restitution coefficient r = 1.5 is not in (0, 1]
     """
+    # Imported here: the command line needs the errors, and for --help no numpy.
+    import numpy as np
+
     valid, value = np.broadcast_arrays(valid, value)
     if not np.all(valid):
         first = value[~valid][0]

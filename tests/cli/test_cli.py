@@ -2,6 +2,8 @@
 
 import json
 import math
+import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -14,6 +16,7 @@ from bouncing_ball.models.contact import Contact, Release
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.orbits import limits, restitution
 
+ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = Path(sys.executable).with_name("bouncing-ball")
 
 
@@ -146,7 +149,11 @@ def test_a_missing_orbit_exits_1_with_the_reason(capsys):
         (("orbit", "--restitution", "nan", "--amplitude", "1"), "'nan' is not a number in (0, 1]"),
         (("orbit", "--restitution", "r", "--amplitude", "1"), "'r' is not a number in (0, 1]"),
         (("orbit", "--restitution", "0.5", "--amplitude", "inf"), "'inf' is not a number in"),
-        ((*ORBIT, "--frequency-ratio", "0"), "'0' is not a number in (0, 1e+08]"),
+        ((*ORBIT, "--frequency-ratio", "0"), "'0' is not a number in [1e-08, 1e+08]"),
+        (
+            ("permanent-contact", "--restitution", "0.5", "--frequency-ratio", "1e-300"),
+            "'1e-300' is not a number in [1e-08, 1e+08]",
+        ),
         (("orbit", "--damping-ratio", "1", "--amplitude", "1"), "'1' is not a number in [0, 1)"),
         (("orbit", "--damping-ratio", "0.1", "--amplitude", "1"), "needs --restitution"),
         ((*ORBIT, "--n", "0"), "'0' is not a whole number"),
@@ -195,11 +202,58 @@ def test_no_traceback_and_no_warning_ever(capsys, arguments, r, amplitude):
     json.loads(out)
 
 
+@pytest.mark.parametrize("ratio", ["1e-8", "1e8"])
+def test_permanent_contact_at_the_limits_of_the_frequency_ratio(capsys, ratio):
+    call = ("permanent-contact", "--restitution", "0.65", "--frequency-ratio", ratio)
+    for release in ("displacement", "force"):
+        assert math.isfinite(ask(capsys, *call, "--release", release)["threshold"])
+
+
+@pytest.mark.parametrize(
+    "arguments", [["--help"], ["orbit", "--help"], ["orbit", "--side", "left"]]
+)
+def test_help_and_a_mistake_need_no_numpy(arguments):
+    program = (
+        "import sys\n"
+        "from bouncing_ball.cli.main import main\n"
+        "try:\n"
+        "    main(sys.argv[1:])\n"
+        "except SystemExit:\n"
+        "    sys.exit(sorted({'numpy', 'xarray'} & set(sys.modules)) or None)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program, *arguments], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert "usage" in done.stdout or "invalid choice" in done.stderr
+
+
 def test_readable_tables(capsys):
     main([*ORBIT])
     out = capsys.readouterr().out
     assert "phase                           1.31323433" in out
     assert "is stable                       yes" in out
+
+
+def test_diff_for_nobody_who_reads(tmp_path):
+    # Python on this end, and on the other nobody: the status is the diff's all the same.
+    for side in ("record", "results"):
+        (tmp_path / side).mkdir()
+        (tmp_path / side / "paper.md").write_text(side if side == "record" else "", "utf-8")
+    shutil.copytree(ROOT / "config", tmp_path / "record" / "config")
+    reader, writer = os.pipe()
+    os.close(reader)
+    done = subprocess.run(
+        [PROGRAM, "diff", "record", "results"],
+        cwd=tmp_path,
+        stdout=writer,
+        stderr=subprocess.PIPE,
+        text=True,
+        check=False,
+    )
+    os.close(writer)
+    # A text that differs without data of the same versions is only reported.
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_the_installed_program():

@@ -1,6 +1,8 @@
 """The diff tests itself: a known change of each kind gives the verdict it should."""
 
 import json
+import struct
+import zlib
 
 import numpy as np
 import pytest
@@ -449,6 +451,27 @@ def test_truncated_picture(pair):
     assert status(pair.compare().verdict) == 2
 
 
+@pytest.mark.parametrize("content", [b"", b"text", b"\x89PNG\r\n\x1a\n"])
+def test_a_picture_that_is_none(pair, content):
+    (pair.new / "figures" / "fig01.png").write_bytes(content)
+    part = pair.part("figures/fig01.png")
+    # Twice the same words: nothing of this process in them.
+    assert part.verdict is Verdict.UNREADABLE and part.note == "not a PNG file"
+
+
+@pytest.mark.parametrize("size", [10_000, 20_000])
+def test_a_picture_too_large_to_be_opened(pair, size):
+    # Pillow warns above 9e7 pixels and refuses twice as many.
+    head = b"IHDR" + struct.pack(">IIBBBBB", size, size, 8, 0, 0, 0, 0)
+    crc = struct.pack(">I", zlib.crc32(head))
+    path = pair.new / "figures" / "fig01.png"
+    begun = struct.pack(">I", 1000) + b"IDAT"
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + struct.pack(">I", 13) + head + crc + begun)
+    part = pair.part("figures/fig01.png")
+    assert part.verdict is Verdict.UNREADABLE and part.note == "too large a picture"
+    assert status(pair.compare().verdict) == 2
+
+
 def test_vector_graphics_are_reported_and_their_metadata_is_not(pair):
     pair.stamp(VERSIONS, VERSIONS)
     path = pair.new / "figures" / "fig05.svg"
@@ -488,6 +511,43 @@ def test_a_table_moves_with_its_data(pair):
 
 
 @pytest.mark.parametrize(
+    ("name", "old", "new", "verdict"),
+    [
+        # One unit of the last digit, and two.
+        ("table1", "0.23999", "0.24000", Verdict.WITHIN),
+        ("table1", "0.23999", "0.24001", Verdict.DRIFTED),
+        # The size of rounding, and the number of orbits behind it.
+        ("witness", "4.5e-13 (1812)", "9.1e-15 (1812)", Verdict.WITHIN),
+        ("witness", "4.5e-13 (1812)", "4.5e-13 (1811)", Verdict.DRIFTED),
+        ("witness", "4.5e-13 (1812)", "4.5e-03 (1812)", Verdict.DRIFTED),
+        ("witness", "4.5e-13 (1812)", "4.5e-13 of 1812", Verdict.STRUCTURE),
+        ("witness", "4.5e-13 (1812)", "–", Verdict.STRUCTURE),
+    ],
+)
+def test_how_far_a_table_moves_with_its_data(pair, name, old, new, verdict):
+    variable = {"table1": "computed", "witness": "disagreement"}[name]
+    data = pair.dataset(name)
+    index = tuple(int(k) for k in np.argwhere(np.isfinite(data[variable].values))[0])
+    pair.write(name, moved(data, variable, index, 1e-15))
+    assert pair.part(f"figures/{name}.nc").verdict is Verdict.WITHIN
+    path = pair.new / "figures" / f"{name}.csv"
+    text = path.read_text(encoding="utf-8")
+    assert text.count(old) == 1
+    path.write_text(text.replace(old, new), encoding="utf-8")
+    part = pair.part(f"figures/{name}.csv")
+    assert part.verdict is verdict and part.decides
+    assert pair.artifact(name).verdict is verdict
+
+
+@pytest.mark.parametrize("cell", ["a\rb", "x" * 131_073])
+def test_a_table_that_is_none(pair, cell):
+    (pair.new / "figures" / "table1.csv").write_text(cell, encoding="utf-8", newline="")
+    part = pair.part("figures/table1.csv")
+    assert part.verdict is Verdict.UNREADABLE and part.note.startswith("not a CSV table: ")
+    assert status(pair.compare().verdict) == 2
+
+
+@pytest.mark.parametrize(
     ("old", "new", "note"),
     [
         ("computed", "calculated", "row 1, column 4"),
@@ -517,6 +577,24 @@ def test_texts_decide_among_the_same_versions(pair, file):
     pair.write("fig05", data)
     expected = Verdict.WITHIN if name == "paper" else Verdict.DRIFTED
     assert pair.artifact(name).verdict is expected
+
+
+@pytest.mark.parametrize("file", ["figures/table1.md", "figures/table1.tex", "paper.md"])
+def test_texts_move_with_their_data(pair, file):
+    pair.stamp(VERSIONS, VERSIONS)
+    change_digit(pair.new / file)
+    data = pair.dataset("table1")
+    budget = pair.rules.of("table1", "computed").budget
+    step = budget * span(data.computed)
+    pair.write("table1", moved(data, "computed", (1, 0, 0), HALF * step))
+    part = pair.part(file)
+    assert part.verdict is Verdict.WITHIN and not part.decides
+    assert pair.compare().verdict is Verdict.WITHIN
+    # Beyond its budget the dataset decides, and the text is no more than reported.
+    pair.write("table1", moved(data, "computed", (1, 0, 0), TWICE * step))
+    part = pair.part(file)
+    assert part.verdict is Verdict.DRIFTED and not part.decides
+    assert pair.artifact("table1").verdict is Verdict.DRIFTED
 
 
 def test_a_variable_without_an_entry_is_compared_exactly(pair):

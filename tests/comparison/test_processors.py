@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -10,6 +11,9 @@ import pytest
 from numpy._core._multiarray_umath import __cpu_dispatch__, __cpu_features__
 
 from bouncing_ball.comparison.datasets import compare_datasets
+from bouncing_ball.comparison.folders import compare_folders
+from bouncing_ball.comparison.report_terminal import to_terminal
+from bouncing_ball.comparison.verdicts import Verdict
 from bouncing_ball.datasets.netcdf import read_dataset
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -41,15 +45,24 @@ print(json.dumps([name for name, there in __cpu_features__.items() if there]))
 """
 
 
+needs_switches = pytest.mark.skipif(
+    not FEATURES, reason="numpy has no fast path for this processor to switch off"
+)
+
+
+def environment(root: Path, switches: dict[str, str]) -> dict[str, str]:
+    """Of a process with these switches only, and with the package from a folder."""
+    path = os.pathsep.join([str(root / "src"), os.environ.get("PYTHONPATH", "")])
+    kept = {name: value for name, value in os.environ.items() if name not in OLDER}
+    return kept | switches | {"PYTHONPATH": path}
+
+
 def made(folder: Path, switches: dict[str, str]) -> set[str]:
     """Run the stages in a process of its own; the features that it had."""
-    path = os.pathsep.join([str(ROOT / "src"), os.environ.get("PYTHONPATH", "")])
-    kept = {name: value for name, value in os.environ.items() if name not in OLDER}
-    environment = kept | switches | {"PYTHONPATH": path}
     config = ROOT / "config"
     done = subprocess.run(
         [sys.executable, "-c", PROGRAM, config, folder, *STAGES],
-        env=environment,
+        env=environment(ROOT, switches),
         capture_output=True,
         text=True,
         check=True,
@@ -57,7 +70,7 @@ def made(folder: Path, switches: dict[str, str]) -> set[str]:
     return set(json.loads(done.stdout))
 
 
-@pytest.mark.skipif(not FEATURES, reason="numpy has no fast path for this processor to switch off")
+@needs_switches
 def test_two_sets_of_processor_features_agree(rules, tmp_path):
     folders = tmp_path / "all", tmp_path / "fewer"
     everything, fewer = made(folders[0], {}), made(folders[1], OLDER)
@@ -66,3 +79,28 @@ def test_two_sets_of_processor_features_agree(rules, tmp_path):
         record, new = (read_dataset(folder / f"{name}.nc") for folder in folders)
         for result in compare_datasets(name, record, new, rules):
             assert result.verdict.agrees, result
+
+
+# Slow: everything is made once, in about 40 s.
+@needs_switches
+def test_a_whole_run_with_fewer_features_says_what_the_record_says(rules, tmp_path):
+    tree = tmp_path / "tree"
+    tree.mkdir()
+    for name in ("Snakefile", "requirements.lock"):
+        shutil.copyfile(ROOT / name, tree / name)
+    for name in ("config", "profiles", "src", "workflow"):
+        ignored = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(ROOT / name, tree / name, ignore=ignored)
+    done = subprocess.run(
+        [Path(sys.executable).with_name("snakemake"), "--cores", "2", "--quiet"],
+        cwd=tree,
+        env=environment(tree, OLDER),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    comparison = compare_folders(ROOT, tree / "results", rules)
+    # Else the switches have switched nothing, and this says nothing.
+    assert any(found.verdict is not Verdict.IDENTICAL for found in comparison.artifacts)
+    assert comparison.verdict.agrees, to_terminal(comparison)

@@ -2,6 +2,8 @@
 
 import hashlib
 import json
+import struct
+import zlib
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -10,20 +12,35 @@ import xarray as xr
 
 import bouncing_ball
 from bouncing_ball.datasets.netcdf import write_dataset
+from bouncing_ball.pipeline import provenance as provenance_module
 from bouncing_ball.pipeline.artifacts import read_attributes, read_provenance
 from bouncing_ball.pipeline.job import provenance
 from bouncing_ball.pipeline.provenance import (
     LIBRARIES,
     Provenance,
     ProvenanceError,
+    departure,
     dependent_digest,
     digest,
     file_digest,
     sources_digest,
 )
+from bouncing_ball.pipeline.repository import Revision
 from bouncing_ball.pipeline.sources import sources
+from bouncing_ball.pipeline.yaml_file import read_yaml
 
 ROOT = Path(bouncing_ball.__file__).resolve().parents[2]
+
+
+def blank(width, height):
+    """A PNG file up to where its pixels begin."""
+    head = b"IHDR" + struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)
+    length, crc, begun = struct.pack(">I", 13), struct.pack(">I", zlib.crc32(head)), b"\0\0\1\0IDAT"
+    return b"\x89PNG\r\n\x1a\n" + length + head + crc + begun
+
+
+# Pillow warns above 9e7 pixels and refuses twice as many.
+LARGE, TOO_LARGE = blank(10_000, 10_000), blank(20_000, 20_000)
 
 
 class Files(list):
@@ -44,6 +61,7 @@ def job(folder, rule="fig11", output="results/figures/fig11.png", inputs=()):
         scriptdir=str(folder / "workflow" / "scripts"),
         input=Files(modules, inputs),
         output=[output],
+        config=read_yaml(ROOT / "config" / "config.yaml"),
     )
 
 
@@ -102,6 +120,33 @@ def test_a_folder_without_git_and_lock_is_unknown(tmp_path):
     assert (made.commit, made.dirty, made.lock) == ("unknown", "unknown", "unknown")
 
 
+def test_what_a_run_rests_on_besides_the_commit(tmp_path):
+    (tmp_path / "config").mkdir()
+    (tmp_path / "config" / "config.yaml").write_text("release: force\nratio: 1.0e+4\n")
+    (tmp_path / "other" / "src").mkdir(parents=True)
+    own = [str(tmp_path / "src" / "bouncing_ball" / "errors.py")]
+    config = {"ratio": 1e4, "release": "force"}
+    assert departure(tmp_path, config, own) == ""
+    # A reason to accept decides nothing.
+    assert departure(tmp_path, config | {"reason": "why"}, own) == ""
+    for other in ({"release": "force"}, config | {"ratio": 10000}, config | {"release": "f"}):
+        assert departure(tmp_path, other, own) == "the configuration is not config/config.yaml"
+    for place in ("other/src/a.py", ".venv/lib/site-packages/bouncing_ball/a.py", "srcs/a.py"):
+        said = departure(tmp_path, config, [*own, str(tmp_path / place)])
+        assert said == "the package is not imported from src/ of the repository"
+
+
+@pytest.mark.parametrize("found", ["no", "yes", "unknown"])
+@pytest.mark.parametrize("changed", [False, True])
+def test_a_departure_is_dirt(monkeypatch, found, changed):
+    monkeypatch.setattr(provenance_module, "revision", lambda _: Revision("1f0e", found))
+    one = job(ROOT)
+    if changed:
+        one.config["release"] = "force"
+    expected = "yes" if changed and found == "no" else found
+    assert provenance(one, {}).dirty == expected
+
+
 def test_attributes_and_back():
     made = Provenance(*"abcdefgh")
     attributes = made.attributes()
@@ -126,6 +171,17 @@ def test_attributes_and_back():
             b"</d:description></svg>",
             "damaged, or not ours",
         ),
+        *(
+            (
+                "a.svg",
+                b'<svg xmlns:d="http://purl.org/dc/elements/1.1/"><d:description>%b'
+                b"</d:description></svg>" % text,
+                "damaged, or not ours",
+            )
+            for text in (b"[1, 2]", b"3", b"null", b'"text"')
+        ),
+        ("a.png", LARGE, "cannot be read: too large a picture"),
+        ("a.png", TOO_LARGE, "cannot be read: too large a picture"),
         ("a.jpg", b"", "is not one of .nc, .png, .svg"),
         ("a.svg", b"<svg/>", "carries no provenance: no attribute provenance_commit"),
     ],

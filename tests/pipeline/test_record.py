@@ -2,18 +2,21 @@
 
 import csv
 import io
+import json
 import shutil
 
 import pytest
 
 from bouncing_ball.pipeline import record as record_module
-from bouncing_ball.pipeline.provenance import Provenance
+from bouncing_ball.pipeline.provenance import LIBRARIES, Provenance
 from bouncing_ball.pipeline.record import (
     COLUMNS,
     LOG,
     RefusedError,
     check_results,
+    check_run,
     check_tree,
+    check_versions,
     commits,
     log_with,
     replace_record,
@@ -95,6 +98,28 @@ def test_what_is_refused(one_line):
         with pytest.raises(RefusedError) as error:
             check_results({"a.png": made("1f0e"), "b.png": made("1f0e", dirty)})
         one_line(error, "b.png made from a dirty or unknown tree", "--forceall")
+
+
+def test_a_run_on_more_than_the_commit_is_refused(tmp_path, one_line):
+    with pytest.raises(RefusedError) as error:
+        check_run(tmp_path, {})
+    one_line(error, "the package is not imported from src/", "accept what the commit alone makes")
+
+
+def test_versions_that_are_not_locked_are_refused(one_line):
+    versions = {name: f"1.{number}" for number, name in enumerate(LIBRARIES)}
+    lines = [f"{name.lower()}=={version} \\" for name, version in versions.items()]
+    one = {"a.png": Provenance(*"abcdefg", versions=json.dumps({"python": "3.11"} | versions))}
+    check_versions(one, "\n".join(lines))
+    # Another version for another system.
+    check_versions(one, "\n".join([*lines, "numpy==0.9 ; sys_platform == 'win32'"]))
+    for lock, said in (
+        ([*lines[1:], "numpy==1.00"], "a.png made with numpy 1.0, requirements.lock has 1.00: "),
+        (lines[:-1], "a.png made with matplotlib 1.4, requirements.lock has none: "),
+    ):
+        with pytest.raises(RefusedError) as error:
+            check_versions(one, "\n".join(lock))
+        one_line(error, said, "make setup")
 
 
 def test_commits_the_most_frequent_first():

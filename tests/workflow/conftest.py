@@ -8,10 +8,13 @@ import subprocess
 import sys
 import time
 from dataclasses import dataclass
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
 import yaml
+
+from bouncing_ball.pipeline.provenance import LIBRARIES
 
 ROOT = Path(__file__).resolve().parents[2]
 # A fresh clone: neither results nor the state of earlier runs.
@@ -83,6 +86,19 @@ class Tree:
         section[keys[-1]] = value
         path.write_text(yaml.safe_dump(config, sort_keys=False), encoding="utf-8")
 
+    def lock_what_runs(self) -> None:
+        """Pin the libraries at work, of which only pinned ones may make a record.
+
+        Changes nothing in the locked environment; the tests run in newer ones too.
+        """
+        path = self.path / "requirements.lock"
+        text = path.read_text(encoding="utf-8")
+        for name in LIBRARIES:
+            pin = rf"^({re.escape(name)}==)[^\s;\\]+"
+            text, count = re.subn(pin, rf"\g<1>{version(name)}", text, flags=re.M | re.I)
+            assert count, f"no pin of {name}"
+        path.write_text(text, encoding="utf-8")
+
     def edit(self, file: str) -> None:
         """Change a source file without changing what it does."""
         path = self.path / "src" / "bouncing_ball" / file
@@ -139,6 +155,7 @@ def copy_tree(source: Path, target: Path, *, with_results: bool = False) -> Tree
 def clone(target: Path) -> Tree:
     """A copy of the repository, in a repository of its own with one commit."""
     tree = copy_tree(ROOT, target)
+    tree.lock_what_runs()
     tree.git("init", "--quiet")
     tree.commit("All")
     return tree

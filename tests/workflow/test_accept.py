@@ -1,7 +1,11 @@
 """``accept``: what may become the record, and what is refused."""
 
 import csv
+import os
 import shutil
+import subprocess
+from importlib.metadata import version
+from pathlib import Path
 
 import pytest
 
@@ -88,6 +92,41 @@ def test_refused_with_results_of_a_dirty_tree(complete):
     assert "figures/fig01.png and 1 more made from a dirty or unknown tree" in said
 
 
+def test_refused_with_another_configuration(complete, tmp_path):
+    mine = tmp_path / "mine.yaml"
+    mine.write_text("figures:\n  fig11:\n    restitution: 0.7\n", encoding="utf-8")
+    assert refused(complete, "--configfile", str(mine), "--config", f"reason={REASON}") == (
+        "accept: the configuration is not config/config.yaml: accept what the commit alone makes "
+        "(details in results/logs/accept.log)"
+    )
+
+
+def test_refused_with_results_of_another_configuration(complete):
+    # No parameter of this figure, so that it is up to date without the option.
+    complete.run("--cores", "1", "--force", "fig01", "--config", "release=force")
+    said = refused(complete, "--config", f"reason={REASON}")
+    assert "figures/fig01.png and 1 more made from a dirty or unknown tree, or with anoth" in said
+
+
+def test_refused_with_another_package(complete, tmp_path, monkeypatch):
+    shutil.copytree(complete.path / "src", tmp_path / "src")
+    monkeypatch.setattr(
+        type(complete), "environment", lambda _: os.environ | {"PYTHONPATH": str(tmp_path / "src")}
+    )
+    said = refused(complete, "--config", f"reason={REASON}")
+    assert "the package is not imported from src/ of the repository: accept" in said
+
+
+def test_refused_with_versions_that_are_not_locked(complete):
+    path = complete.path / "requirements.lock"
+    text = path.read_text(encoding="utf-8")
+    pin = f"scipy=={version('scipy')}"
+    path.write_text(text.replace(pin, "scipy==0.1"), encoding="utf-8")
+    complete.commit("Another lock")
+    said = refused(complete, "--config", f"reason={REASON}")
+    assert f"made with scipy {version('scipy')}, requirements.lock has 0.1: make setup" in said
+
+
 def test_refused_with_a_file_that_nothing_makes(complete):
     (complete.path / "results" / "figures" / "mine.png").write_bytes(b"")
     said = refused(complete, "--config", f"reason={REASON}")
@@ -112,6 +151,26 @@ def test_results_of_several_commits_are_reported(complete):
     assert f"54 files made at commit {first}, up to date but not the one checked out" in done.stdout
     assert f"2 files made at commit {second}\n" in done.stdout
     assert log(complete)[-1]["commit"] == second
+
+
+@pytest.mark.skipif(shutil.which("make") is None, reason="no make on this machine")
+@pytest.mark.parametrize("reason", ['the "new" form; it\'s', "`false` \\ $$(false)", ""])
+def test_make_hands_the_reason_over_as_it_is(tmp_path, reason):
+    # In place of Snakemake, what says with which arguments it was called.
+    program = tmp_path / "bin" / "snakemake"
+    program.parent.mkdir()
+    program.write_text('#!/bin/sh\nprintf "%s\\n" "$@"\n', encoding="utf-8")
+    program.chmod(0o755)
+    makefile = Path(__file__).resolve().parents[2] / "Makefile"
+    done = subprocess.run(
+        ["make", "--silent", "-f", makefile, "accept", "SETUP=", "VENV=.", f"REASON={reason}"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    expected = f"reason={reason.replace('$$', '$')}"
+    assert done.stdout.splitlines() == ["--cores", "1", "accept", "--config", expected]
 
 
 @pytest.mark.parametrize("reason", ["", "Eq. 8: sign"])

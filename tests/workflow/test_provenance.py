@@ -1,6 +1,7 @@
 """Every artifact says where it comes from, and nothing of when and on which machine."""
 
 import json
+import os
 import re
 import shutil
 
@@ -84,6 +85,25 @@ def test_a_dirty_tree_is_said_to_be_dirty(pristine, fresh):
     fresh.git("checkout", "--", ".")
     fresh.edit("models/permanent_contact.py")
     assert made_by(fresh).sources != clean.sources
+
+
+def test_options_of_the_command_line_are_dirt(pristine, fresh):
+    clean = read_provenance(pristine.path / "results" / "figures" / "fig11.nc")
+    made = made_by(fresh, "--config", "release=force")
+    assert (made.commit, made.dirty) == (clean.commit, "yes")
+    # Back to the commit: made again, as its parameters are others.
+    assert made_by(fresh) == clean
+    # A reason is no parameter.
+    assert made_by(fresh, "--forceall", "--config", "reason=Why") == clean
+
+
+def test_a_package_from_elsewhere_is_dirt(fresh, tmp_path, monkeypatch):
+    shutil.copytree(fresh.path / "src", tmp_path / "src")
+    monkeypatch.setattr(
+        type(fresh), "environment", lambda _: os.environ | {"PYTHONPATH": str(tmp_path / "src")}
+    )
+    made = made_by(fresh)
+    assert (made.commit, made.dirty) == (fresh.git("rev-parse", "HEAD"), "yes")
 
 
 def test_a_copy_without_git_is_unknown(fresh):

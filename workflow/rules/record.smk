@@ -14,7 +14,6 @@ rule accept:
         data=expand("results/figures/{name}.nc", name=DATASETS),
     params:
         record=workflow.basedir,
-        reason=config.get("reason", ""),
     log:
         "results/logs/accept.log",
     script:

@@ -8,4 +8,4 @@ from bouncing_ball.pipeline.record import accept
 with logged(snakemake) as lines:
     results = Path("results")
     files = sorted({Path(path).relative_to(results).as_posix() for path in snakemake.input})
-    lines += accept(Path(snakemake.params.record), results, files, snakemake.params.reason)
+    lines += accept(Path(snakemake.params.record), results, files, snakemake.config)

@@ -2,12 +2,13 @@
 
 import argparse
 import math
-import sys
 from pathlib import Path
 from typing import NoReturn
 
 # Of frequency ratio and amplitude: beyond, their squares leave no digits.
 _LARGEST = 1e8
+# Of the frequency ratio, for the same reason.
+_SMALLEST = 1e-8
 
 
 class Parser(argparse.ArgumentParser):
@@ -75,7 +76,7 @@ def _add_damping(parser: argparse.ArgumentParser) -> None:
 def _add_contact(parser: argparse.ArgumentParser, *, required: bool) -> None:
     parser.add_argument(
         "--frequency-ratio",
-        type=_number(0, _LARGEST, high_open=False),
+        type=_number(_SMALLEST, _LARGEST, low_open=False, high_open=False),
         required=required,
         metavar="W",
         help="frequency ratio ϖ > 0 of the spring-damper contact",
@@ -211,9 +212,3 @@ def parse(arguments: list[str] | None = None) -> argparse.Namespace:
     elif args.frequency_ratio is None:
         top.error("--model spring-damper needs --frequency-ratio")
     return args
-
-
-def fail(message: str, status: int) -> NoReturn:
-    """One line on standard error and the exit status."""
-    print(f"bouncing-ball: {message}", file=sys.stderr)
-    sys.exit(status)

@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 from typing import NoReturn
 
-from bouncing_ball.cli.arguments import fail
+from bouncing_ball.cli.output import fail, print_lines
 
 _TOLERANCES = Path("config", "tolerances.yaml")
 
@@ -46,5 +46,5 @@ def run(args: argparse.Namespace) -> NoReturn:
         write_reports(comparison, json=args.json, markdown=args.markdown, html=args.html)
     except (OSError, ValueError) as error:
         fail(str(error), status=2)
-    print(to_terminal(comparison), end="", flush=True)
+    print_lines(to_terminal(comparison).splitlines())
     sys.exit(status(comparison.verdict))

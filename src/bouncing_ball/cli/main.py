@@ -2,12 +2,11 @@
 
 import argparse
 import json
-import os
-import sys
 from collections.abc import Callable
 from typing import Any
 
-from bouncing_ball.cli.arguments import fail, parse
+from bouncing_ball.cli.arguments import parse
+from bouncing_ball.cli.output import fail, print_lines
 from bouncing_ball.errors import NoOrbitError
 
 
@@ -63,9 +62,9 @@ def main(arguments: list[str] | None = None) -> None:
         answer, readable = (_explained if args.command == "explain" else _answered)(args)
     except ValueError as error:
         if args.json:
-            _print([json.dumps({"error": str(error)}, ensure_ascii=False)])
+            print_lines([json.dumps({"error": str(error)}, ensure_ascii=False)])
         fail(str(error), status=1 if isinstance(error, NoOrbitError) else 2)
-    _print([json.dumps(answer, allow_nan=False)] if args.json else readable(answer))
+    print_lines([json.dumps(answer, allow_nan=False)] if args.json else readable(answer))
 
 
 Answered = tuple[dict[str, Any], Callable[[dict[str, Any]], list[str]]]
@@ -89,14 +88,6 @@ def _explained(args: argparse.Namespace) -> Answered:
     from bouncing_ball.cli.explain import explain, lines
 
     return explain(args.file), lines
-
-
-def _print(lines: list[str]) -> None:
-    """Print, and end quietly if nobody reads on (``| head``)."""
-    try:
-        print("\n".join(lines), flush=True)
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 if __name__ == "__main__":

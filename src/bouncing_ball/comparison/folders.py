@@ -5,7 +5,6 @@ A folder holds ``figures/`` with datasets, pictures and tables, and
 suffixes are one artifact.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -81,11 +80,15 @@ def _artifact(
     files: tuple[set[str], set[str]],
     folders: tuple[Path, Path],
     rules: Tolerances,
-    own: bool | None,
+    own: bool | None = None,
+    data: Verdict | None = None,
 ) -> Artifact:
-    """An artifact; ``own``: whether the versions are the same, None if its dataset tells."""
+    """An artifact and its files.
+
+    ``own``, whether the versions are the same, and ``data``, the verdict on what
+    it is made from, are told by its dataset, if it has one.
+    """
     parts: list[Part] = []
-    data: Verdict | None = None
     ordered = sorted(files[0] | files[1], key=lambda file: _SUFFIXES.index(Path(file).suffix))
     for file in ordered:
         if file not in files[1]:
@@ -114,21 +117,21 @@ def compare_folders(record: Path, new: Path, rules: Tolerances) -> Comparison:
     before, after = artifacts_in(record), artifacts_in(new)
     paper = Path(_PAPER).stem
 
-    def compare(name: str, own: bool | None = None) -> Artifact:
-        files = before.get(name, set()), after.get(name, set())
-        return _artifact(name, files, (record, new), rules, own)
+    def files(name: str) -> tuple[set[str], set[str]]:
+        return before.get(name, set()), after.get(name, set())
 
     names = before.keys() | after.keys()
-    artifacts = [compare(name) for name in sorted(names - {paper})]
+    folders = record, new
+    artifacts = [_artifact(name, files(name), folders, rules) for name in sorted(names - {paper})]
     if paper in names:
         # The text is made from all datasets.
-        artifacts.append(compare(paper, own=_all_same_versions(artifacts)))
+        made_from = [
+            part for found in artifacts for part in found.parts if part.file.endswith(".nc")
+        ]
+        own = bool(made_from) and all(part.same_versions for part in made_from)
+        data = worst(part.verdict for part in made_from) if made_from else None
+        artifacts.append(_artifact(paper, files(paper), folders, rules, own, data))
     return Comparison(tuple(sorted(artifacts, key=_severity)))
-
-
-def _all_same_versions(artifacts: Sequence[Artifact]) -> bool:
-    parts = [part for found in artifacts for part in found.parts if part.file.endswith(".nc")]
-    return bool(parts) and all(part.same_versions for part in parts)
 
 
 def _severity(artifact: Artifact) -> tuple:

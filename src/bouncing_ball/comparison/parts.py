@@ -2,7 +2,11 @@
 
 Data decide. A picture or a text is made from data: where it differs, that is
 reported, and it decides only if both sides were made with the same versions of
-everything. Then nothing but the code can be the reason.
+everything. That leaves the code as the reason, or the processor: another one
+rounds otherwise. So a picture has a budget, a digit of a table may move with
+its data (:func:`~bouncing_ball.comparison.texts.compare_tables`), and any other
+text decides only while its data are identical. Where they have drifted within
+their budgets, the text may follow, and the table beside it says how far.
 """
 
 import json
@@ -11,18 +15,21 @@ from pathlib import Path
 
 from bouncing_ball.comparison.datasets import VariableResult, compare_datasets
 from bouncing_ball.comparison.pictures import (
+    VERSIONS,
     PictureError,
     PictureResult,
     compare_pictures,
     versions_of,
 )
-from bouncing_ball.comparison.texts import compare_tables, compare_texts, without_metadata
+from bouncing_ball.comparison.texts import (
+    TableError,
+    compare_tables,
+    compare_texts,
+    without_metadata,
+)
 from bouncing_ball.comparison.tolerances import Tolerances
 from bouncing_ball.comparison.verdicts import Verdict, worst
 from bouncing_ball.datasets.netcdf import read_dataset
-
-# Global attribute of a dataset, text chunk of a picture.
-VERSIONS = "provenance_versions"
 
 
 @dataclass(frozen=True)
@@ -148,7 +155,9 @@ def _text(file: str, record: str, new: str, data: Verdict | None, own: bool | No
             return Part(file, verdict, decides=False)
         case _:
             verdict, note = compare_texts(record, new)
-            return Part(file, verdict, decides=bool(own), note=note)
+            if verdict is Verdict.DRIFTED and data is Verdict.WITHIN:
+                verdict = Verdict.WITHIN
+            return Part(file, verdict, decides=bool(own) and data is Verdict.IDENTICAL, note=note)
 
 
 def rendering(
@@ -167,7 +176,7 @@ def rendering(
         That of the record and the new one.
     rules : Tolerances
     data : Verdict or None
-        The verdict on the dataset it is made from.
+        The verdict on the dataset it is made from; the worst one, of several.
     own : bool or None
         Whether both sides were made with the same versions of everything;
         None if no dataset tells.
@@ -179,7 +188,7 @@ def rendering(
         return _text(file, record.decode("utf-8"), new.decode("utf-8"), data, own)
     except UnicodeDecodeError:
         return Part(file, Verdict.UNREADABLE, note="not UTF-8 text")
-    except PictureError as error:
+    except (PictureError, TableError) as error:
         return Part(file, Verdict.UNREADABLE, note=str(error))
     except OSError as error:
         return Part(file, Verdict.UNREADABLE, note=str(error.strerror))

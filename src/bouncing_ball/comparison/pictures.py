@@ -6,14 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.testing.compare import calculate_rms
-from PIL import Image
+from PIL import Image, UnidentifiedImageError
 
 from bouncing_ball.comparison.verdicts import Verdict
 
 # Grey levels of a pixel.
 _LEVELS = 255
-# Names of the software a picture was made with, among its text chunks.
-_VERSIONS = "provenance_versions"
+VERSIONS = "provenance_versions"
+"""Under which name a file holds the versions of the software it was made with: text
+chunk of a picture, global attribute of a dataset."""
 
 
 class PictureError(ValueError):
@@ -42,8 +43,15 @@ def _opened(content: bytes) -> Image.Image:
         with warnings.catch_warnings():
             # A damaged file is an error here, whatever else is said about it.
             warnings.simplefilter("ignore")
+            # A picture so large that to open it may take all memory.
+            warnings.simplefilter("error", Image.DecompressionBombWarning)
             picture = Image.open(io.BytesIO(content), formats=["PNG"])
             picture.load()
+    except (Image.DecompressionBombError, Image.DecompressionBombWarning):
+        raise PictureError("too large a picture") from None
+    except UnidentifiedImageError:
+        # Its own message holds an address in memory.
+        raise PictureError("not a PNG file") from None
     except (OSError, SyntaxError, ValueError) as error:
         raise PictureError(f"not a whole PNG file: {' '.join(str(error).split())[:80]}") from None
     return picture
@@ -64,7 +72,7 @@ def versions_of(content: bytes) -> str | None:
     PictureError
         If it is no PNG file.
     """
-    return _opened(content).info.get(_VERSIONS)
+    return _opened(content).info.get(VERSIONS)
 
 
 def _difference(record: np.ndarray, new: np.ndarray) -> tuple[bytes, int]:

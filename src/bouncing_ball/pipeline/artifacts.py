@@ -1,6 +1,7 @@
 """What the artifacts say of themselves: attributes of datasets, metadata of pictures."""
 
 import json
+import warnings
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -20,14 +21,22 @@ def _of_dataset(path: Path) -> dict[str, Any]:
 def _of_png(path: Path) -> dict[str, Any]:
     from PIL import Image
 
-    with Image.open(path, formats=["PNG"]) as picture:
-        return {str(key): value for key, value in picture.info.items()}
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", Image.DecompressionBombWarning)
+            with Image.open(path, formats=["PNG"]) as picture:
+                return {str(key): value for key, value in picture.info.items()}
+    except (Image.DecompressionBombError, Image.DecompressionBombWarning):
+        raise ProvenanceError(f"{path} cannot be read: too large a picture") from None
 
 
 def _of_svg(path: Path) -> dict[str, Any]:
     for _, element in ElementTree.iterparse(path):
         if element.tag == _DESCRIPTION:
-            return json.loads(element.text or "")
+            attributes = json.loads(element.text or "")
+            if not isinstance(attributes, dict):
+                raise ValueError("not a mapping")
+            return attributes
     return {}
 
 
@@ -50,6 +59,8 @@ def read_attributes(path: Path) -> dict[str, Any]:
         raise ProvenanceError(f"{path} is not one of {', '.join(CARRIERS)}")
     try:
         return reader(path)
+    except ProvenanceError:
+        raise
     # A damaged SVG is a SyntaxError, one with another description a ValueError.
     except (OSError, SyntaxError, ValueError) as error:
         why = "no such file" if isinstance(error, FileNotFoundError) else "damaged, or not ours"

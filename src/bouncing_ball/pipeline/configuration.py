@@ -11,7 +11,7 @@ from typing import Any
 
 from jsonschema import Draft202012Validator, ValidationError, validators
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball.pipeline.yaml_file import ConfigurationError
 
 # JSON takes 801.0 for an integer; a number of samples is written 801.
 _Validator = validators.extend(
@@ -20,10 +20,6 @@ _Validator = validators.extend(
         "integer", lambda _, value: type(value) is int
     ),
 )
-
-
-class ConfigurationError(ModelError):
-    """A wrong key, type or value in the configuration, in one line."""
 
 
 def _dotted(path, root: Any = None) -> str:
@@ -99,20 +95,28 @@ def _allowed(error: ValidationError) -> str:
     return f"{words} ({'; '.join(notes)})" if notes else words
 
 
-def _resolved(schema: Mapping[str, Any], root: Mapping[str, Any]) -> Mapping[str, Any]:
-    """A schema with what it refers to by ``$ref``."""
+def resolved(schema: Mapping[str, Any], root: Mapping[str, Any]) -> dict[str, Any]:
+    """A schema with what it refers to by ``$ref`` filled in; its own entries win.
+
+    Examples
+    --------
+    >>> root = {"$defs": {"ratio": {"type": "number", "minimum": 0}}}
+    >>> resolved({"$ref": "#/$defs/ratio", "minimum": 1}, root)
+    {'type': 'number', 'minimum': 1}
+    """
+    own = {key: value for key, value in schema.items() if key != "$ref"}
     if "$ref" not in schema:
-        return schema
+        return own
     target: Any = root
     for part in schema["$ref"].removeprefix("#/").split("/"):
         target = target[part]
-    return {**_resolved(target, root), **schema}
+    return resolved(target, root) | own
 
 
 def _known_keys(schema: Mapping[str, Any], root: Mapping[str, Any]) -> list[str]:
     """The keys that a schema allows, those of the schema it extends first."""
     extended = {"$ref": schema["$ref"]} if "$ref" in schema else {}
-    base = _resolved(extended, root).get("properties", {})
+    base = resolved(extended, root).get("properties", {})
     return list(dict.fromkeys([*base, *schema.get("properties", {})]))
 
 
@@ -254,7 +258,7 @@ def check_configuration(config: Mapping[str, Any], schema: Mapping[str, Any]) ->
     >>> check_configuration({"n": 0}, schema)
     Traceback (most recent call last):
     ...
-    bouncing_ball.pipeline.configuration.ConfigurationError: n = 0 must be at least 1
+    bouncing_ball.pipeline.yaml_file.ConfigurationError: n = 0 must be at least 1
     """
     check_schema(config, schema)
     _check_consistency(config)

@@ -10,6 +10,8 @@ from typing import Any
 
 import yaml
 
+from bouncing_ball.pipeline.configuration import resolved
+
 _HEAD = """# The configuration
 
 Every key of `config.yaml`, with what is allowed. This page is made from
@@ -29,19 +31,11 @@ that change into another file and name it last,
 """
 
 
-def _resolved(schema: Mapping[str, Any], definitions: Mapping[str, Any]) -> dict[str, Any]:
-    """A schema with its reference filled in; its own entries win."""
-    own = {key: value for key, value in schema.items() if key != "$ref"}
-    if "$ref" in schema:
-        return _resolved(definitions[schema["$ref"].rsplit("/", 1)[1]], definitions) | own
-    return own
-
-
-def _allowed(schema: Mapping[str, Any], definitions: Mapping[str, Any]) -> str:
+def _allowed(schema: Mapping[str, Any], root: Mapping[str, Any]) -> str:
     if "enum" in schema:
         return ", ".join(f"`{value}`" for value in schema["enum"])
     if schema["type"] == "array":
-        return f"list of {_allowed(_resolved(schema['items'], definitions), definitions)}"
+        return f"list of {_allowed(resolved(schema['items'], root), root)}"
     if schema["type"] == "object":
         return "{" + ", ".join(schema["properties"]) + "}"
     words = {"integer": "whole number", "string": "text"}.get(schema["type"], schema["type"])
@@ -50,14 +44,14 @@ def _allowed(schema: Mapping[str, Any], definitions: Mapping[str, Any]) -> str:
     return ", ".join([words, *limits])
 
 
-def _rows(schema, definitions, default, path) -> Iterator[tuple[str, str, str, str]]:
-    schema = _resolved(schema, definitions)
+def _rows(schema, root, default, path) -> Iterator[tuple[str, str, str, str]]:
+    schema = resolved(schema, root)
     if schema.get("type") == "object":
         for key, part in schema["properties"].items():
-            yield from _rows(part, definitions, default.get(key), [*path, key])
+            yield from _rows(part, root, default.get(key), [*path, key])
         return
     if default is None:
-        yield ".".join(path), _allowed(schema, definitions), schema["description"], "not set"
+        yield ".".join(path), _allowed(schema, root), schema["description"], "not set"
         return
     shown = yaml.safe_dump(default, default_flow_style=True, width=10_000)
     shown = shown.removesuffix("\n").removesuffix("\n...")
@@ -65,12 +59,12 @@ def _rows(schema, definitions, default, path) -> Iterator[tuple[str, str, str, s
         shown = "see `config.yaml`"
     else:
         shown = f"`{shown}`"
-    yield ".".join(path), _allowed(schema, definitions), schema.get("description", ""), shown
+    yield ".".join(path), _allowed(schema, root), schema.get("description", ""), shown
 
 
 def configuration_page(schema: Mapping[str, Any], config: Mapping[str, Any]) -> str:
     """The page as Markdown."""
-    rows = _rows(schema, schema["$defs"], config, [])
+    rows = _rows(schema, schema, config, [])
     return _HEAD + "".join("| `{}` | {} | {} | {} |\n".format(*row) for row in rows)
 
 

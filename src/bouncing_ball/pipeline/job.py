@@ -41,7 +41,7 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
     except Exception as error:
         log.write_text(traceback.format_exc(), encoding="utf-8")
         kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
-        sys.exit(f"{name}: {kind}{error} (details in {log})")
+        sys.exit(f"{name}: {kind}{' '.join(str(error).split())} (details in {log})")
     log.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
 
 

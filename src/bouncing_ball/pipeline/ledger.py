@@ -4,19 +4,10 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from bouncing_ball.claims.ledger import parse_ledger, printed_table
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.configuration import ConfigurationError, check_schema
-
-
-def _parsed(path: Path) -> Any:
-    try:
-        return yaml.safe_load(path.read_text(encoding="utf-8"))
-    except yaml.MarkedYAMLError as error:
-        line = f" in line {error.problem_mark.line + 1}" if error.problem_mark else ""
-        raise ConfigurationError(f"not YAML{line}: {error.problem}") from error
+from bouncing_ball.pipeline.configuration import check_schema
+from bouncing_ball.pipeline.yaml_file import ConfigurationError, read_yaml
 
 
 def read_ledger(folder: str | Path) -> dict[str, Any]:
@@ -28,7 +19,7 @@ def read_ledger(folder: str | Path) -> dict[str, Any]:
         One line for the first mistake.
     """
     names = ("claims.yaml", "claims.schema.yaml")
-    mapping, schema = (_parsed(Path(folder, name)) for name in names)
+    mapping, schema = (read_yaml(Path(folder, name)) for name in names)
     check_schema(mapping, schema)
     try:
         parse_ledger(mapping)

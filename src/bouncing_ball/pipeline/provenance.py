@@ -19,10 +19,12 @@ from typing import Any, Self
 import bouncing_ball
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.repository import revision
+from bouncing_ball.pipeline.yaml_file import read_yaml
 
 PREFIX = "provenance_"
 """How the names of the attributes begin."""
 
+CONFIGURATION = "config/config.yaml"
 LOCK = "requirements.lock"
 LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib")
 
@@ -38,7 +40,8 @@ class Provenance:
     commit: str
     """Full hash of the commit, or unknown."""
     dirty: str
-    """Whether the tree differed from the commit: yes, no or unknown."""
+    """Whether more than the commit decided: a changed tree, another configuration or
+    package (:func:`departure`). yes, no or unknown."""
     target: str
     """What to ask Snakemake for to have the artifact made again."""
     parameters: str
@@ -134,6 +137,37 @@ def versions() -> dict[str, str]:
     return {"python": platform.python_version(), **{name: version(name) for name in LIBRARIES}}
 
 
+def departure(repository: Path, config: Mapping[str, Any], files: Iterable[str]) -> str:
+    """What a run rests on that the tree of a repository does not hold, in words.
+
+    Parameters
+    ----------
+    repository : Path
+    config : mapping
+        The configuration in effect, in which Snakemake's options count.
+    files : iterable of str
+        Modules of this package that are at work.
+
+    Returns
+    -------
+    str
+        Empty if there is nothing.
+
+    Raises
+    ------
+    ConfigurationError
+        If the repository's own configuration cannot be read.
+    """
+    package = repository.resolve() / "src"
+    if not all(Path(file).resolve().is_relative_to(package) for file in files):
+        return "the package is not imported from src/ of the repository"
+    given, written = (
+        {key: value for key, value in mapping.items() if key != "reason"}
+        for mapping in (config, read_yaml(repository / CONFIGURATION))
+    )
+    return "" if digest(given) == digest(written) else f"the configuration is not {CONFIGURATION}"
+
+
 def gather(snakemake: Any, parameters: Mapping[str, Any], inherited: Iterable[str]) -> Provenance:
     """The provenance of what a job is about to write.
 
@@ -148,9 +182,14 @@ def gather(snakemake: Any, parameters: Mapping[str, Any], inherited: Iterable[st
     modules = set(sources)
     inputs = {path: file_digest(path) for path in snakemake.input if path not in modules}
     output = snakemake.output[0]
+    dirty = now.dirty
+    if dirty == "no" and departure(
+        repository, snakemake.config, [*sources, str(bouncing_ball.__file__)]
+    ):
+        dirty = "yes"
     return Provenance(
         commit=now.commit,
-        dirty=now.dirty,
+        dirty=dirty,
         # A figure is called by its name, which is its rule's.
         target=snakemake.rule if snakemake.rule == Path(output).stem else output,
         parameters=dependent_digest(parameters, inherited),

@@ -6,19 +6,23 @@ are, and ``accepted.csv``, in which every acceptance says why the record moved.
 
 import csv
 import io
+import json
+import re
 import shutil
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
+from typing import Any
 
+import bouncing_ball
 from bouncing_ball.comparison.folders import ComparisonError, artifacts_in, compare_folders
 from bouncing_ball.comparison.report_terminal import to_terminal
 from bouncing_ball.comparison.verdicts import Verdict
 from bouncing_ball.datasets.atomic import replacing
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.artifacts import CARRIERS, read_provenance
-from bouncing_ball.pipeline.provenance import Provenance
+from bouncing_ball.pipeline.provenance import LIBRARIES, LOCK, Provenance, departure
 from bouncing_ball.pipeline.repository import Revision, revision
 from bouncing_ball.pipeline.tolerances import read_tolerances
 
@@ -54,9 +58,48 @@ def check_results(made: Mapping[str, Provenance]) -> None:
     if bad:
         more = f" and {len(bad) - 1} more" if len(bad) > 1 else ""
         raise RefusedError(
-            f"{bad[0]}{more} made from a dirty or unknown tree: make them again from the "
-            "commit, snakemake --cores 2 --forceall"
+            f"{bad[0]}{more} made from a dirty or unknown tree, or with another configuration or "
+            "package: make them again from the commit, snakemake --cores 2 --forceall"
         )
+
+
+def check_run(record: Path, config: Mapping[str, Any]) -> None:
+    """Raise :class:`RefusedError` if this run rests on more than the commit's tree."""
+    reason = departure(record, config, [str(bouncing_ball.__file__)])
+    if reason:
+        raise RefusedError(f"{reason}: accept what the commit alone makes")
+
+
+def pins(lock: str) -> dict[str, set[str]]:
+    """The versions that a lock file asks for, by the names of the packages.
+
+    Several, where they depend on the system.
+
+    Examples
+    --------
+    >>> lock = ["numpy==2.4.1 ; sys_platform == 'linux'", "    --hash=sha256:1f0e", "scipy==1.17.0"]
+    >>> pins("\\n".join(lock))
+    {'numpy': {'2.4.1'}, 'scipy': {'1.17.0'}}
+    """
+    found: dict[str, set[str]] = {}
+    for name, version in re.findall(r"^([\w.-]+)==([^\s;\\]+)", lock, re.MULTILINE):
+        found.setdefault(name.lower(), set()).add(version)
+    return found
+
+
+def check_versions(made: Mapping[str, Provenance], lock: str) -> None:
+    """Raise :class:`RefusedError` if a result was made with versions that are not locked."""
+    pinned = pins(lock)
+    for name, provenance in made.items():
+        versions = json.loads(provenance.versions)
+        for library in LIBRARIES:
+            wanted, used = pinned.get(library.lower(), set()), versions.get(library)
+            if used not in wanted:
+                locked = " or ".join(sorted(wanted)) or "none"
+                raise RefusedError(
+                    f"{name} made with {library} {used}, {LOCK} has {locked}: make setup, then "
+                    "snakemake --cores 2 --forceall"
+                )
 
 
 def commits(made: Iterable[Provenance], now: Revision) -> list[str]:
@@ -134,32 +177,41 @@ def show_difference(record: Path, results: Path) -> dict[str, str]:
     }
 
 
-def accept(record: Path, results: Path, files: Sequence[str], reason: str) -> list[str]:
+def accept(
+    record: Path, results: Path, files: Sequence[str], config: Mapping[str, Any]
+) -> list[str]:
     """Make the results the record; the lines of the job's log.
+
+    ``config`` is the configuration in effect, with the reason in it.
 
     Raises
     ------
     RefusedError
-        If there is no reason, the tree is dirty or unknown, a result was made
-        from such a tree, or is not one of the files that the workflow makes.
-        Nothing is touched then.
+        If there is no reason, the tree is dirty or unknown, the configuration
+        or the package is not that of the tree, a result was made in such a
+        state or with versions that are not locked, or is not one of the files
+        that the workflow makes. Nothing is touched then.
     """
+    reason = config.get("reason", "")
     check_reason(reason)
     now = revision(record)
     check_tree(now)
+    check_run(record, config)
     foreign = stale(results / "figures", [results / file for file in files])
     if foreign:
         raise RefusedError(f"{foreign[0]} is not made by this workflow: remove it")
     carriers = [file for file in files if Path(file).suffix in CARRIERS]
     made = {file: read_provenance(results / file) for file in carriers}
     check_results(made)
+    lock = record / LOCK
+    check_versions(made, lock.read_text(encoding="utf-8") if lock.is_file() else "")
     print(*commits(made.values(), now), sep="\n")
     changes = show_difference(record, results)
     if not changes:
         print("Nothing to accept: the results are the record.")
         return ["nothing to accept"]
     log = record / LOG
-    text = log.read_text(encoding="utf-8") if log.is_file() else ""
-    lines = replace_record(record, results, files, log_with(text, now.commit, reason, changes))
+    before = log.read_text(encoding="utf-8") if log.is_file() else ""
+    lines = replace_record(record, results, files, log_with(before, now.commit, reason, changes))
     print(f"Accepted, reason: {reason.strip()}", flush=True)
     return lines

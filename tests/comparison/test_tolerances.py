@@ -194,3 +194,31 @@ def test_a_file_that_is_no_tolerance_file(content, tmp_path, one_line):
     with pytest.raises(ConfigurationError) as error:
         read_tolerances(tmp_path / "none.yaml")
     one_line(error, "none.yaml: No such file")
+
+
+@pytest.mark.parametrize(
+    ("entry", "said"),
+    [
+        (
+            {"variables": {"phaze": {"mode": "exact", "source": "x"}}},
+            "no dataset has a variable phaze",
+        ),
+        (
+            {
+                "variables": {
+                    "phase": {
+                        **{"mode": "curve", "budget": 1.0, "source": "x"},
+                        **{"along": "pont", "abscissa": "amplitude"},
+                    }
+                }
+            },
+            "variables.phase: no dataset has a variable pont",
+        ),
+    ],
+)
+def test_a_misspelt_name_is_refused(entry, said, tmp_path, one_line):
+    path = tmp_path / "tolerances.yaml"
+    path.write_text(yaml.safe_dump(MINIMAL | entry), encoding="utf-8")
+    with pytest.raises(ConfigurationError) as error:
+        read_tolerances(path)
+    one_line(error, said, path.name)

@@ -179,3 +179,15 @@ def test_a_reason_that_is_no_line_is_a_mistake_of_the_configuration(complete, re
     done = complete.run("--cores", "1", "accept", "--config", f"reason={reason}", check=False)
     assert done.returncode == 1 and "configuration: reason = " in done.stderr
     assert record(complete) == before
+
+
+@pytest.mark.parametrize("file", ["figures/fig12.nc", "figures/table1.md", "paper.md"])
+def test_refused_with_a_file_changed_by_hand(complete, file):
+    (complete.path / "figures" / "fig05.png").unlink()
+    path = complete.path / "results" / file
+    path.write_bytes(path.read_bytes() + b" ")
+    # Nothing looks newer than it is, so that nothing is made again.
+    times = (complete.path / "results" / "figures" / "fig12.png").stat()
+    os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns - 10**9))
+    said = refused(complete, "--config", f"reason={REASON}")
+    assert f"results/{file} is not what its job wrote: remove it" in said

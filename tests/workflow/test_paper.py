@@ -70,7 +70,7 @@ def test_verdicts_follow_the_data(run):
     changed["reason"].values[:] = "for the test"
     text = render_article(folder, data | {"claims": changed}, {k: "" for k in tables}, references)
     bullets = re.findall(r"\*\*(\w+)\*\*; ", text)
-    assert len(bullets) > 30 and set(bullets) == {str(Verdict.UNDECIDABLE)}
+    assert len(bullets) > 20 and set(bullets) == {str(Verdict.UNDECIDABLE)}
     # In prose the other verdicts are defined or counted, and their count is 0.
     words = " ".join(text.split())
     assert "0 are reproduced, 0 are close, 0 are contradicted" in words

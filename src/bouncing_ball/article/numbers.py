@@ -81,7 +81,7 @@ def largest(values: xr.DataArray) -> float:
     >>> largest(xr.DataArray([1.0, -3.0, np.nan, np.inf]))
     3.0
     """
-    return float(np.abs(values).where(np.isfinite(values)).max())
+    return float(np.abs(values.where(np.isfinite(values))).max())
 
 
 def pairs(left: Iterable[float], right: Iterable[float]) -> list[str]:

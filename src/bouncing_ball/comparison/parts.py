@@ -22,7 +22,9 @@ from bouncing_ball.comparison.pictures import (
     versions_of,
 )
 from bouncing_ball.comparison.texts import (
+    PictureTextError,
     TableError,
+    check_svg,
     compare_tables,
     compare_texts,
     without_metadata,
@@ -151,6 +153,8 @@ def _text(file: str, record: str, new: str, data: Verdict | None, own: bool | No
             verdict, note = compare_tables(record, new, data)
             return Part(file, verdict, note=note)
         case ".svg":
+            for text in (record, new):
+                check_svg(text)
             verdict, _ = compare_texts(without_metadata(record), without_metadata(new))
             return Part(file, verdict, decides=False)
         case _:
@@ -188,7 +192,7 @@ def rendering(
         return _text(file, record.decode("utf-8"), new.decode("utf-8"), data, own)
     except UnicodeDecodeError:
         return Part(file, Verdict.UNREADABLE, note="not UTF-8 text")
-    except (PictureError, TableError) as error:
+    except (PictureError, PictureTextError, TableError) as error:
         return Part(file, Verdict.UNREADABLE, note=str(error))
     except OSError as error:
         return Part(file, Verdict.UNREADABLE, note=str(error.strerror))

@@ -4,6 +4,7 @@ import csv
 import io
 import re
 from decimal import Decimal
+from xml.etree import ElementTree
 
 from bouncing_ball.comparison.verdicts import Verdict
 
@@ -14,6 +15,10 @@ _NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 # to one number, that of the witness's rate of departure (studies/witness.py).
 _ROUNDING_LEVEL = Decimal("1e-5")
 _METADATA = re.compile(r"<metadata\b.*?</metadata>\s*", re.DOTALL)
+
+
+class PictureTextError(ValueError):
+    """A text that is no vector graphic."""
 
 
 class TableError(ValueError):
@@ -29,6 +34,14 @@ def without_metadata(svg: str) -> str:
     '<svg><g/></svg>'
     """
     return _METADATA.sub("", svg)
+
+
+def check_svg(text: str) -> None:
+    """Raise :class:`PictureTextError` unless a text is a whole vector graphic."""
+    try:
+        ElementTree.fromstring(text)
+    except ElementTree.ParseError as error:
+        raise PictureTextError(f"not a whole SVG file: {error}") from None
 
 
 def compare_texts(record: str, new: str) -> tuple[Verdict, str]:

@@ -7,6 +7,8 @@ from enum import StrEnum
 from fnmatch import fnmatchcase
 from typing import Any
 
+from bouncing_ball.datasets.variables import VARIABLES
+
 
 class ToleranceError(ValueError):
     """A tolerance that makes no sense, in one line."""
@@ -163,6 +165,11 @@ def tolerances_from(content: Mapping[str, Any]) -> Tolerances:
     """
 
     def entries(path: str, part: Mapping[str, Any]) -> dict[str, Tolerance]:
+        for name, entry in part.items():
+            used = (name, *(entry[key] for key in ("along", "abscissa", "scale") if key in entry))
+            for word in used:
+                if isinstance(word, str) and word not in VARIABLES:
+                    raise ToleranceError(f"{path}.{name}: no dataset has a variable {word}")
         return {name: _tolerance(f"{path}.{name}", entry) for name, entry in part.items()}
 
     return Tolerances(

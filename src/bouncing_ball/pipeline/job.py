@@ -14,7 +14,7 @@ from typing import Any
 
 from bouncing_ball.datasets.netcdf import parameter_attributes, write_dataset
 from bouncing_ball.pipeline.artifacts import read_attributes
-from bouncing_ball.pipeline.provenance import PREFIX, Provenance, gather
+from bouncing_ball.pipeline.provenance import PREFIX, SUM, Provenance, file_digest, gather
 
 REFERENCE = (
     "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient "
@@ -42,7 +42,9 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
         log.write_text(traceback.format_exc(), encoding="utf-8")
         kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
         sys.exit(f"{name}: {kind}{' '.join(str(error).split())} (details in {log})")
-    log.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
+    # What a job wrote is known by its checksum, so that a file changed by hand is seen.
+    written = [f"{SUM} {file_digest(path)} {path}" for path in snakemake.output]
+    log.write_text("".join(f"{line}\n" for line in [*lines, *written]), encoding="utf-8")
 
 
 def provenance(snakemake: Any, parameters: Mapping[str, Any]) -> Provenance:

@@ -25,6 +25,9 @@ PREFIX = "provenance_"
 """How the names of the attributes begin."""
 
 CONFIGURATION = "config/config.yaml"
+SUM = "sha256"
+"""How the lines of a job's log begin that tell the checksum of what it wrote."""
+
 LOCK = "requirements.lock"
 LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib")
 

@@ -22,7 +22,14 @@ from bouncing_ball.comparison.verdicts import Verdict
 from bouncing_ball.datasets.atomic import replacing
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.artifacts import CARRIERS, read_provenance
-from bouncing_ball.pipeline.provenance import LIBRARIES, LOCK, Provenance, departure
+from bouncing_ball.pipeline.provenance import (
+    LIBRARIES,
+    LOCK,
+    SUM,
+    Provenance,
+    departure,
+    file_digest,
+)
 from bouncing_ball.pipeline.repository import Revision, revision
 from bouncing_ball.pipeline.tolerances import read_tolerances
 
@@ -100,6 +107,29 @@ def check_versions(made: Mapping[str, Provenance], lock: str) -> None:
                     f"{name} made with {library} {used}, {LOCK} has {locked}: make setup, then "
                     "snakemake --cores 2 --forceall"
                 )
+
+
+def written(logs: Path) -> dict[str, str]:
+    """Checksums of what the jobs wrote, by path, from their logs."""
+    found = {}
+    for log in sorted(logs.rglob("*.log")):
+        for line in log.read_text(encoding="utf-8").splitlines():
+            start, _, rest = line.partition(" ")
+            if start == SUM:
+                checksum, _, path = rest.partition(" ")
+                found[path] = checksum
+    return found
+
+
+def check_untouched(results: Path, files: Sequence[str]) -> None:
+    """Raise :class:`RefusedError` if a result is not what its job wrote."""
+    sums = written(results / "logs")
+    for file in files:
+        if sums.get((results / file).as_posix()) != file_digest(results / file):
+            raise RefusedError(
+                f"{results / file} is not what its job wrote: remove it, and the next run makes it "
+                "again"
+            )
 
 
 def commits(made: Iterable[Provenance], now: Revision) -> list[str]:
@@ -200,6 +230,7 @@ def accept(
     foreign = stale(results / "figures", [results / file for file in files])
     if foreign:
         raise RefusedError(f"{foreign[0]} is not made by this workflow: remove it")
+    check_untouched(results, files)
     carriers = [file for file in files if Path(file).suffix in CARRIERS]
     made = {file: read_provenance(results / file) for file in carriers}
     check_results(made)

@@ -107,6 +107,14 @@ def test_a_known_sensitivity():
     }
 
 
+class Outputs(list):
+    """A job's outputs, in order and by name."""
+
+    def __init__(self, **named):
+        super().__init__(named.values())
+        self.__dict__.update(named)
+
+
 def test_the_script_writes_the_table(config, tmp_path, monkeypatch):
     one = {key: config[key] for key in ("release", "continuation")}
     one["figures"] = {"fig11": config["figures"]["fig11"]}
@@ -114,7 +122,7 @@ def test_the_script_writes_the_table(config, tmp_path, monkeypatch):
         rule="convergence",
         wildcards=(),
         input=SimpleNamespace(tolerances=ROOT / "config" / "tolerances.yaml"),
-        output=SimpleNamespace(changes=tmp_path / "convergence.csv"),
+        output=Outputs(changes=tmp_path / "convergence.csv"),
         params=SimpleNamespace(config=one, figures=["fig11"], printed={}, evidence=["none"]),
         log=[tmp_path / "log"],
     )

@@ -231,7 +231,7 @@ def test_help_and_a_mistake_need_no_numpy(arguments):
 def test_readable_tables(capsys):
     main([*ORBIT])
     out = capsys.readouterr().out
-    assert "phase                           1.31323433" in out
+    assert "phase                                   1.31323433" in out
     assert "is stable                       yes" in out
 
 

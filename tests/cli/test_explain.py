@@ -197,3 +197,10 @@ def test_a_mistake_is_answered_before_anything_large_is_imported():
         [sys.executable, "-c", program], capture_output=True, text=True, check=True
     )
     assert done.stdout.strip() == ""
+
+
+def test_a_folder_is_called_one(tmp_path, capsys):
+    with pytest.raises(SystemExit) as stop:
+        main(["explain", str(tmp_path)])
+    assert stop.value.code == 2
+    assert capsys.readouterr().err.strip().endswith("cannot be read: a folder")

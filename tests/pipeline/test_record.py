@@ -48,9 +48,19 @@ def contents(folder):
 def test_everything_is_copied_and_what_is_stale_removed(folders):
     record, results = folders
     (record / "figures" / "fig99.png").write_text("stale", encoding="utf-8")
-    lines = replace_record(record, results, FILES, "the log")
+    lines = replace_record(record, results, FILES, FILES, "the log")
     assert contents(record) == contents(results) | {LOG: "the log"}
     assert lines == [*FILES, "removed figures/fig99.png"]
+
+
+def test_what_has_not_moved_stays(folders):
+    record, results = folders
+    lines = replace_record(record, results, FILES, FILES[:1], "the log")
+    assert lines == FILES[:1]
+    for file in FILES:
+        side = results if file == FILES[0] else record
+        expected = f"{'new' if side is results else 'old'} {file}"
+        assert (record / file).read_text(encoding="utf-8") == expected
 
 
 def test_a_copy_that_fails_leaves_the_record_as_it_was(folders, monkeypatch):
@@ -67,7 +77,7 @@ def test_a_copy_that_fails_leaves_the_record_as_it_was(folders, monkeypatch):
 
     monkeypatch.setattr(record_module.shutil, "copyfile", full)
     with pytest.raises(OSError, match="no space left"):
-        replace_record(record, results, FILES, "after")
+        replace_record(record, results, FILES, FILES, "after")
     assert contents(record) == before
 
 

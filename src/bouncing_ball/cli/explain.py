@@ -105,7 +105,8 @@ def explain(path: Path) -> dict[str, Any]:
         If the file is not one of this workflow, or says nothing of it.
     """
     if not path.is_file():
-        raise ProvenanceError(f"{path} cannot be read: no such file")
+        why = "a folder" if path.is_dir() else "no such file"
+        raise ProvenanceError(f"{path} cannot be read: {why}")
     carriers = _carriers(path)
     made = _common([read_provenance(carrier) for carrier in carriers])
     repository = checkout(Path.cwd(), Path(bouncing_ball.__file__).resolve())

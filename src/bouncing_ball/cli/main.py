@@ -19,15 +19,15 @@ def _lines(answer: dict[str, Any], prefix: str = "") -> list[str]:
             lines += _lines(value, f"{name}, ")
         elif key == "multipliers":
             shown = "   ".join(f"{re:.10g} {im:+.10g}i" for re, im in value)
-            lines.append(f"{name:<32}{shown}")
+            lines.append(f"{name:<40}{shown}")
         elif isinstance(value, bool):
-            lines.append(f"{name:<32}{'yes' if value else 'no'}")
+            lines.append(f"{name:<40}{'yes' if value else 'no'}")
         elif isinstance(value, float):
-            lines.append(f"{name:<32}{value:.10g}")
+            lines.append(f"{name:<40}{value:.10g}")
         elif value is None:
-            lines.append(f"{name:<32}none")
+            lines.append(f"{name:<40}none")
         else:
-            lines.append(f"{name:<32}{value}")
+            lines.append(f"{name:<40}{value}")
     return lines
 
 

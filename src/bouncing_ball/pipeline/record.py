@@ -165,21 +165,24 @@ def log_with(text: str, commit: str, reason: str, changes: Mapping[str, str]) ->
     return out.getvalue()
 
 
-def replace_record(record: Path, results: Path, files: Sequence[str], log: str) -> list[str]:
-    """Copy the results over the record and remove what is no longer made.
+def replace_record(
+    record: Path, results: Path, files: Sequence[str], moved: Sequence[str], log: str
+) -> list[str]:
+    """Copy what has moved over the record and remove what is no longer made.
 
     Everything is copied under temporary names first: if that fails, the record
-    is as it was.
+    is as it was. A file that says the same as the record's stays, with the
+    commit that it names, so that git does not grow by what has not changed.
     """
     with ExitStack() as stack:
         # Entered first, so renamed last.
         stack.enter_context(replacing(record / LOG)).write_text(log, encoding="utf-8", newline="\n")
-        for file in files:
+        for file in moved:
             shutil.copyfile(results / file, stack.enter_context(replacing(record / file)))
     removed = stale(record / "figures", [record / file for file in files])
     for path in removed:
         path.unlink()
-    return [*files, *(f"removed figures/{path.name}" for path in removed)]
+    return [*moved, *(f"removed figures/{path.name}" for path in removed)]
 
 
 # In the log, what the comparison calls missing goes, and what is extra comes.
@@ -243,6 +246,8 @@ def accept(
         return ["nothing to accept"]
     log = record / LOG
     before = log.read_text(encoding="utf-8") if log.is_file() else ""
-    lines = replace_record(record, results, files, log_with(before, now.commit, reason, changes))
+    moved = [file for file in files if Path(file).stem in changes]
+    after = log_with(before, now.commit, reason, changes)
+    lines = replace_record(record, results, files, moved, after)
     print(f"Accepted, reason: {reason.strip()}", flush=True)
     return lines

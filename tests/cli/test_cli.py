@@ -232,7 +232,7 @@ def test_readable_tables(capsys):
     main([*ORBIT])
     out = capsys.readouterr().out
     assert "phase                                   1.31323433" in out
-    assert "is stable                       yes" in out
+    assert "is stable                               yes" in out
 
 
 def test_diff_for_nobody_who_reads(tmp_path):

@@ -161,7 +161,7 @@ def test_another_commit_dirt_and_other_versions(results, capsys):
     ("file", "said"),
     [
         ("nothing.png", "cannot be read: no such file"),
-        ("results", "cannot be read: no such file"),
+        ("results", "cannot be read: a folder"),
         ("foreign.png", "carries no provenance: no attribute provenance_commit"),
         ("notes.md", "is no artifact of this workflow: no notes.nc next to it"),
         ("paper.md", "is no artifact of this workflow: no figures/*.nc next to it"),
@@ -197,10 +197,3 @@ def test_a_mistake_is_answered_before_anything_large_is_imported():
         [sys.executable, "-c", program], capture_output=True, text=True, check=True
     )
     assert done.stdout.strip() == ""
-
-
-def test_a_folder_is_called_one(tmp_path, capsys):
-    with pytest.raises(SystemExit) as stop:
-        main(["explain", str(tmp_path)])
-    assert stop.value.code == 2
-    assert capsys.readouterr().err.strip().endswith("cannot be read: a folder")

@@ -28,7 +28,7 @@ def _checks(
         return False, foreign
     findings = [find(criterion, None, ledger, data) for criterion in explanation.criteria]
     words = [
-        f"{criterion.measure} = {finding.value:.4g} {finding.required}"
+        f"{criterion.measure} = {finding.value:.4g} (required {finding.required})"
         for criterion, finding in zip(explanation.criteria, findings, strict=True)
     ]
     met = all(finding.verdict is Verdict.REPRODUCED for finding in findings)

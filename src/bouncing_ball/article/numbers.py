@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from bouncing_ball.datasets.selection import index_of
 from bouncing_ball.errors import ModelError
 
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -121,14 +122,10 @@ def value_at(data: Mapping[str, xr.Dataset], dataset: str, variable: str, **wher
     """
     chosen = data[dataset][variable]
     for name, wanted in where.items():
-        labels = chosen[name].values
-        if isinstance(wanted, str):
-            there = np.flatnonzero(labels == wanted)
-        else:
-            there = np.flatnonzero(np.isclose(labels.astype(float), wanted, rtol=1e-9, atol=0))
-        if there.size != 1:
-            raise ModelError(f"{dataset}: {variable} has no {name} = {wanted}")
-        chosen = chosen.isel({name: int(there[0])})
+        try:
+            chosen = chosen.isel({name: index_of(chosen, name, wanted)})
+        except ModelError as error:
+            raise ModelError(f"{dataset}: {variable}: {error}") from None
     if chosen.size != 1:
         raise ModelError(f"{dataset}: {variable} at {where} is {chosen.size} numbers, not one")
     return chosen.item()

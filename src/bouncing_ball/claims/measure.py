@@ -6,10 +6,9 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.claims.ledger import Measure
+from bouncing_ball.datasets.selection import index_of
 from bouncing_ball.errors import ModelError
 
-# Coordinates are computed from the numbers of the configuration.
-_MATCH = 1e-9
 _REDUCTIONS: dict[str, Callable[[np.ndarray], float]] = {
     "max": np.max,
     "min": np.min,
@@ -42,7 +41,10 @@ def measured(measure: Measure, datasets: Mapping[str, xr.Dataset]) -> float:
     if values.dtype.kind not in "biuf":
         raise ModelError(f"{measure}: {measure.variable} does not hold numbers")
     for name, wanted in measure.at:
-        values = values.isel({name: _index(values, name, wanted, measure)})
+        try:
+            values = values.isel({name: index_of(values, name, wanted)})
+        except ModelError as error:
+            raise ModelError(f"{measure}: {error}") from None
     numbers = values.values.astype(float).ravel()
     if not numbers.size:
         raise ModelError(f"{measure}: no numbers over {', '.join(map(str, values.dims))}")
@@ -54,18 +56,3 @@ def measured(measure: Measure, datasets: Mapping[str, xr.Dataset]) -> float:
         dims = ", ".join(map(str, values.dims))
         raise ModelError(f"{measure}: {numbers.size} numbers over {dims}, not 1")
     return float(numbers[0])
-
-
-def _index(values: xr.DataArray, name: str, wanted, measure: Measure) -> int:
-    if name not in values.dims:
-        raise ModelError(f"{measure}: {measure.variable} has no coordinate {name}")
-    labels = values[name].values
-    if isinstance(wanted, str) or labels.dtype.kind not in "iuf":
-        there = np.flatnonzero([label == wanted for label in labels.tolist()])
-    else:
-        there = np.flatnonzero(np.isclose(labels, wanted, rtol=_MATCH, atol=0))
-    if there.size != 1:
-        known = ", ".join(map(str, labels.tolist()))
-        often = "is not among" if not there.size else f"stands {there.size} times among"
-        raise ModelError(f"{measure}: {name} = {wanted} {often} {known}")
-    return int(there[0])

@@ -1,0 +1,38 @@
+"""Places of a variable by the labels of its coordinates."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.errors import ModelError
+
+# Coordinates are computed from the numbers of the configuration.
+_MATCH = 1e-9
+
+
+def index_of(values: xr.DataArray, name: str, wanted: Any) -> int:
+    """Index of a label along a dimension; numbers are matched to rounding.
+
+    Raises
+    ------
+    ModelError
+        If there is no such dimension, no such label, or more than one.
+
+    Examples
+    --------
+    >>> index_of(xr.DataArray([5.0, 6.0], {"r": [0.1 + 0.2, 0.5]}), "r", 0.3)
+    0
+    """
+    if name not in values.dims:
+        raise ModelError(f"{values.name} has no coordinate {name}")
+    labels = values[name].values
+    if isinstance(wanted, str) or labels.dtype.kind not in "iuf":
+        there = np.flatnonzero([label == wanted for label in labels.tolist()])
+    else:
+        there = np.flatnonzero(np.isclose(labels, wanted, rtol=_MATCH, atol=0))
+    if there.size != 1:
+        known = ", ".join(map(str, labels.tolist()))
+        often = "is not among" if not there.size else f"stands {there.size} times among"
+        raise ModelError(f"{name} = {wanted} {often} {known}")
+    return int(there[0])

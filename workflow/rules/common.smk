@@ -4,13 +4,12 @@ import os
 import sys
 from pathlib import Path
 
-import yaml
-
 from bouncing_ball.pipeline.configuration import ConfigurationError, check_configuration
 from bouncing_ball.pipeline.ledger import check_datasets, datasets_of, printed, read_ledger
 from bouncing_ball.pipeline.sources import sources
+from bouncing_ball.pipeline.yaml_file import read_yaml
 
-schema = yaml.safe_load(Path(workflow.basedir, "config/schema.yaml").read_text(encoding="utf-8"))
+schema = read_yaml(Path(workflow.basedir, "config/schema.yaml"))
 try:
     check_configuration(config, schema)
 except ConfigurationError as error:

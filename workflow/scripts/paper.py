@@ -2,12 +2,11 @@
 
 from pathlib import Path
 
-import yaml
-
 from bouncing_ball.article.render import render_article
 from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.pipeline.files import write_text
 from bouncing_ball.pipeline.job import logged
+from bouncing_ball.pipeline.yaml_file import read_yaml
 
 
 def text_of(path):
@@ -17,7 +16,7 @@ def text_of(path):
 with logged(snakemake) as lines:
     data = {Path(path).stem: read_dataset(path) for path in snakemake.input.data}
     tables = {Path(path).stem: text_of(path) for path in snakemake.input.tables}
-    references = yaml.safe_load(text_of(snakemake.input.references))
+    references = read_yaml(snakemake.input.references)
     folder = Path(snakemake.input.templates[0]).parent
     write_text(snakemake.output.paper, render_article(folder, data, tables, references))
     lines.append(snakemake.output.paper)

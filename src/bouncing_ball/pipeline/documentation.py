@@ -11,6 +11,7 @@ from typing import Any
 import yaml
 
 from bouncing_ball.pipeline.configuration import resolved
+from bouncing_ball.pipeline.yaml_file import read_yaml
 
 _HEAD = """# The configuration
 
@@ -71,10 +72,7 @@ def configuration_page(schema: Mapping[str, Any], config: Mapping[str, Any]) -> 
 def main() -> None:
     """Write config/README.md in the working directory."""
     folder = Path("config")
-    schema, config = (
-        yaml.safe_load((folder / name).read_text(encoding="utf-8"))
-        for name in ("schema.yaml", "config.yaml")
-    )
+    schema, config = (read_yaml(folder / name) for name in ("schema.yaml", "config.yaml"))
     page = configuration_page(schema, config)
     (folder / "README.md").write_text(page, encoding="utf-8")
 

@@ -68,7 +68,7 @@ newest: setup-newest clean
 	$(MAKE) test all diff VENV=$(NEWEST) SETUP=
 
 config-docs: setup
-	$(BIN)/python -m bouncing_ball.pipeline.documentation
+	$(BIN)/python -m bouncing_ball.configuration.documentation
 
 # For maintainers; needs uv.
 lock:

@@ -12,28 +12,33 @@ ROOT = Path(bouncing_ball.__file__).parent
 PACKAGE = "bouncing_ball"
 STANDARD = set(sys.stdlib_module_names)
 
-# For each layer: other layers of the package, and packages from outside.
+# For each layer, from the bottom: other layers of the package, and packages from outside.
 ALLOWED = {
-    "models": (set(), {"numpy"}),
-    "continuation": (set(), {"numpy", "scipy"}),
-    "simulation": ({"models"}, {"numpy"}),
-    "orbits": ({"models", "continuation", "simulation"}, {"numpy", "scipy"}),
     "datasets": (set(), {"numpy", "xarray"}),
-    # Pillow reads pictures for matplotlib.
-    "comparison": ({"datasets"}, {"numpy", "xarray", "matplotlib", "PIL", "jinja2"}),
+    "impacts": (set(), {"numpy"}),
+    "continuation": (set(), {"numpy"}),
+    "motion": ({"impacts"}, {"numpy"}),
+    "orbits": ({"impacts", "continuation", "motion"}, {"numpy", "scipy"}),
     "studies": (
-        {"models", "continuation", "orbits", "simulation", "datasets"},
+        {"datasets", "impacts", "continuation", "motion", "orbits"},
         {"numpy", "scipy", "xarray"},
     ),
-    "claims": ({"datasets"}, {"numpy", "xarray"}),
-    "figures": ({"datasets"}, {"numpy", "xarray", "matplotlib"}),
-    "tables": ({"datasets"}, {"numpy", "xarray"}),
-    "article": ({"datasets", "tables"}, {"numpy", "xarray", "jinja2"}),
-    "pipeline": (
-        {"datasets", "orbits", "claims", "comparison"},
-        {"netCDF4", "PIL", "yaml", "jsonschema"},
+    "configuration": ({"orbits"}, {"yaml", "jsonschema"}),
+    "audit": (
+        {"datasets", "impacts", "continuation", "motion", "orbits", "studies", "configuration"},
+        {"numpy", "scipy", "xarray"},
     ),
-    "cli": ({"models", "orbits", "simulation", "comparison", "pipeline"}, {"numpy"}),
+    "render": ({"datasets"}, {"numpy", "xarray", "matplotlib", "jinja2"}),
+    # Pillow reads pictures for matplotlib.
+    "record": (
+        {"datasets", "configuration"},
+        {"numpy", "xarray", "netCDF4", "matplotlib", "PIL", "jinja2"},
+    ),
+    "pipeline": ({"datasets", "configuration", "record"}, set()),
+    "cli": (
+        {"datasets", "impacts", "motion", "orbits", "configuration", "record"},
+        {"numpy"},
+    ),
 }
 
 
@@ -97,25 +102,24 @@ def test_layer_imports_only_what_it_may(layer):
 @pytest.mark.parametrize(
     ("layer", "source"),
     [
-        ("models", "import scipy"),
-        ("models", "from bouncing_ball.orbits import limits"),
-        ("models", "from bouncing_ball import orbits"),
-        ("models", "from ..orbits.limits import orbit_at"),
-        ("continuation", "import bouncing_ball.models.contact"),
-        ("continuation", "def f():\n    from bouncing_ball.models import damping"),
+        ("impacts", "import scipy"),
+        ("impacts", "from bouncing_ball.orbits import limits"),
+        ("impacts", "from bouncing_ball import orbits"),
+        ("impacts", "from ..orbits.limits import orbit_at"),
+        ("continuation", "import bouncing_ball.impacts.spring_damper"),
+        ("continuation", "def f():\n    from bouncing_ball.impacts import damping"),
         ("orbits", "from bouncing_ball.studies.parameters import grid"),
-        ("datasets", "from bouncing_ball.models import contact"),
-        ("studies", "from bouncing_ball.figures import style"),
+        ("datasets", "from bouncing_ball.impacts import spring_damper"),
+        ("studies", "from bouncing_ball.render.figures import style"),
         ("studies", "import matplotlib.pyplot as plt"),
-        ("figures", "from bouncing_ball.orbits import limits"),
-        ("figures", "from scipy.optimize import brentq"),
-        ("figures", "import importlib\nimportlib.import_module('bouncing_ball.models')"),
-        ("figures", "from .. import studies"),
-        ("comparison", "from bouncing_ball.studies import convergence"),
-        ("comparison", "import bouncing_ball\nbouncing_ball.studies.convergence.stages"),
+        ("render", "from bouncing_ball.orbits import limits"),
+        ("render", "from scipy.optimize import brentq"),
+        ("render", "import importlib\nimportlib.import_module('bouncing_ball.impacts')"),
+        ("render", "from .. import studies"),
+        ("record", "from bouncing_ball.audit import convergence"),
+        ("record", "import bouncing_ball\nbouncing_ball.audit.convergence.stages"),
         ("pipeline", "from bouncing_ball.cli.output import fail"),
-        ("pipeline", "from bouncing_ball.studies.evidence import evidence"),
-        ("cli", "from bouncing_ball.studies.evidence import evidence"),
+        ("cli", "from bouncing_ball.audit.evidence import evidence"),
         ("cli", "import matplotlib"),
     ],
 )
@@ -126,10 +130,10 @@ def test_the_check_sees_violations(layer, source):
 @pytest.mark.parametrize(
     ("layer", "source"),
     [
-        ("models", "import numpy as np\nfrom bouncing_ball.errors import ModelError"),
-        ("models", "from .damping import damping_ratio\nimport dataclasses"),
-        ("orbits", "from bouncing_ball.models.contact import Contact"),
-        ("figures", "import matplotlib.pyplot as plt\nfrom bouncing_ball.datasets import netcdf"),
+        ("impacts", "import numpy as np\nfrom bouncing_ball.errors import ModelError"),
+        ("impacts", "from .damping import damping_ratio\nimport dataclasses"),
+        ("orbits", "from bouncing_ball.impacts.spring_damper import Contact"),
+        ("render", "import matplotlib.pyplot as plt\nfrom bouncing_ball.datasets import netcdf"),
         ("pipeline", "import bouncing_ball\nbouncing_ball.__file__"),
     ],
 )

@@ -7,16 +7,15 @@ problem", ASME IDETC/CIE 2011, DETC2011-47870.
 The layers, each importing only what lies above it in this list (and the errors):
 
 ``datasets``      names, symbols, units and netCDF files
-``comparison``    whether two folders of artifacts say the same
-``models``        the impact: restitution map, spring-damper contact, permanent contact
+``impacts``       the impact: restitution map, spring-damper contact, permanent contact
 ``continuation``  pseudo-arclength continuation; knows nothing of balls
-``simulation``    event-driven simulation of both models, from any initial state
-``orbits``        n-T orbits of both models, their stability and bifurcations
-``studies``       the stages of the pipeline: parameters in, arrays out
-``claims``        the ledger of the paper's claims and the verdict on each
-``figures``       pictures of datasets; they compute nothing
-``tables``        tables of datasets
-``article``       the replication article from its templates
+``motion``        event-driven simulation, from any initial state
+``orbits``        n-T orbits, their stability and bifurcations
+``studies``       the stages of the pipeline: parameters in, datasets out
+``configuration`` the parameters of a run, read and checked
+``audit``         the paper under audit: claims, formulas, Table 1, every orbit by three routes
+``render``        figures, tables and the article; they compute nothing
+``record``        provenance, the accepted record, and the comparison with it
 ``pipeline``      what the Snakefile needs of Python
 ``cli``           the command line, ``bouncing-ball``
 """

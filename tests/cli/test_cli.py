@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 
 from bouncing_ball.cli.main import main
-from bouncing_ball.models.contact import Contact, Release
-from bouncing_ball.models.damping import damping_ratio
-from bouncing_ball.orbits import limits, restitution
+from bouncing_ball.impacts.damping import damping_ratio
+from bouncing_ball.impacts.spring_damper import Contact, Release
+from bouncing_ball.orbits import limits
+from bouncing_ball.orbits import restitution_orbit as restitution
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = Path(sys.executable).with_name("bouncing-ball")

@@ -19,8 +19,8 @@ from bouncing_ball.continuation.events import (
     parameter_bound,
 )
 from bouncing_ball.continuation.step_control import StepControl
-from bouncing_ball.models.restitution import bounce, exact_map_jacobian, landing_gap
-from bouncing_ball.orbits import restitution as exact_orbits
+from bouncing_ball.impacts.restitution_map import bounce, exact_map_jacobian, landing_gap
+from bouncing_ball.orbits import restitution_orbit as exact_orbits
 from bouncing_ball.orbits.stability import period_doubling_function, trace_and_determinant
 
 # Newton's last step is below 1e-12 and converges quadratically, so points are

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from bouncing_ball.continuation.corrector import NewtonSettings
-from bouncing_ball.models.contact import Contact, Release, contact_flow
-from bouncing_ball.models.flight import clearance, gap
+from bouncing_ball.impacts.spring_damper import Contact, Release, contact_flow
+from bouncing_ball.motion.gap import clearance, gap
 from bouncing_ball.orbits.admissibility import is_admissible, restitution_is_admissible
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
 from bouncing_ball.orbits.grazing import grazing_points
 from bouncing_ball.orbits.limits import Side, orbit_at
-from bouncing_ball.orbits.system import OrbitSystem, Parameter
 
 SHARES = np.linspace(0, 1, 2001)[1:-1, np.newaxis]
 

@@ -6,13 +6,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.models.contact import Contact, Release, responses
-from bouncing_ball.models.permanent_contact import permanent_contact_threshold
+from bouncing_ball.impacts.permanent_contact import permanent_contact_threshold
+from bouncing_ball.impacts.spring_damper import Contact, Release, responses
 from bouncing_ball.orbits.closed_form import branch_point, free_release_angle
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
 from bouncing_ball.orbits.monodromy import monodromy
 from bouncing_ball.orbits.stability import trace_and_determinant
-from bouncing_ball.orbits.system import OrbitSystem, Parameter
 
 EPS = np.finfo(float).eps
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from bouncing_ball.models.contact import Contact, Release, contact_force
-from bouncing_ball.models.damping import damping_ratio
+from bouncing_ball.impacts.damping import damping_ratio
+from bouncing_ball.impacts.spring_damper import Contact, Release, contact_force
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.limits import orbit_at

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.models.contact import Contact, Release
-from bouncing_ball.models.damping import damping_ratio
+from bouncing_ball.impacts.damping import damping_ratio
+from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.explicit_branch import explicit_branch
 from bouncing_ball.orbits.limits import period_doubling, saddle_node

@@ -8,11 +8,12 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.models.contact import Contact, Release, responses
-from bouncing_ball.models.damping import damping_ratio
-from bouncing_ball.orbits import restitution as restitution_orbits
+from bouncing_ball.impacts.damping import damping_ratio
+from bouncing_ball.impacts.spring_damper import Contact, Release, responses
+from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.closed_form import branch_point, free_release_angle
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
 from bouncing_ball.orbits.limits import (
     Absence,
     Side,
@@ -29,7 +30,6 @@ from bouncing_ball.orbits.stability import (
     saddle_node_function,
     trace_and_determinant,
 )
-from bouncing_ball.orbits.system import OrbitSystem, Parameter
 
 EPS = np.finfo(float).eps
 

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from bouncing_ball.models.contact import Contact, Release
-from bouncing_ball.models.damping import damping_ratio
-from bouncing_ball.orbits import restitution as restitution_orbits
+from bouncing_ball.impacts.damping import damping_ratio
+from bouncing_ball.impacts.spring_damper import Contact, Release
+from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.limits import Side, orbit_at

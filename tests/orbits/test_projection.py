@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.models.contact import Contact, Release
+from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.limits import saddle_node

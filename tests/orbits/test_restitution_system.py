@@ -5,7 +5,7 @@ import pytest
 
 from bouncing_ball.continuation.branch import continue_both_ways
 from bouncing_ball.continuation.events import fold, parameter_bound
-from bouncing_ball.orbits import restitution
+from bouncing_ball.orbits import restitution_orbit as restitution
 from bouncing_ball.orbits.restitution_system import RestitutionSystem
 
 

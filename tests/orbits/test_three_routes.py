@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane
-from bouncing_ball.models.contact import Contact, Release
-from bouncing_ball.models.damping import damping_ratio
-from bouncing_ball.orbits import restitution
+from bouncing_ball.impacts.damping import damping_ratio
+from bouncing_ball.impacts.spring_damper import Contact, Release
+from bouncing_ball.motion.contacts import contact_cycle
+from bouncing_ball.orbits import restitution_orbit as restitution
 from bouncing_ball.orbits.admissibility import is_admissible
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
 from bouncing_ball.orbits.limits import Absence, Side, absence, orbit_at
 from bouncing_ball.orbits.monodromy import monodromy
-from bouncing_ball.orbits.system import OrbitSystem, Parameter
-from bouncing_ball.simulation.spring_damper import contact_cycle
 
 SIZE = 25_000  # for each of two rules and two sides
 

@@ -12,9 +12,10 @@ import time
 
 import numpy as np
 
-from bouncing_ball.models.contact import Contact, Release
-from bouncing_ball.models.damping import damping_ratio
-from bouncing_ball.simulation import restitution, spring_damper
+from bouncing_ball.impacts.damping import damping_ratio
+from bouncing_ball.impacts.spring_damper import Contact, Release
+from bouncing_ball.motion import contacts as spring_damper
+from bouncing_ball.motion import instants as restitution
 
 CASES = [
     # r, ϖ, Λ, release

@@ -8,10 +8,10 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, fsolve
 
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.models.contact import Contact, Release
-from bouncing_ball.models.damping import damping_ratio
-from bouncing_ball.models.permanent_contact import permanent_contact_frequency_ratios
-from bouncing_ball.orbits import restitution as restitution_orbits
+from bouncing_ball.impacts.damping import damping_ratio
+from bouncing_ball.impacts.permanent_contact import permanent_contact_frequency_ratios
+from bouncing_ball.impacts.spring_damper import Contact, Release
+from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.limits import orbit_at
 from bouncing_ball.studies.error_thresholds import (
     Quantity,

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.models.contact import Contact, Release
-from bouncing_ball.models.damping import damping_ratio
+from bouncing_ball.impacts.damping import damping_ratio
+from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits.limits import orbit_at
 from bouncing_ball.orbits.monodromy import monodromy
 from bouncing_ball.studies.frequency_sweeps import apparent_restitution, frequency_sweep, sweep

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.models.contact import Release
+from bouncing_ball.impacts.spring_damper import Release
 from bouncing_ball.studies.parameters import contact, grid
 
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.models.contact import Contact, Release
-from bouncing_ball.models.damping import damping_ratio, restitution_coefficient
-from bouncing_ball.models.oscillator import impulse_response
+from bouncing_ball.impacts.damping import damping_ratio, restitution_coefficient
+from bouncing_ball.impacts.oscillator import impulse_response
+from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.limits import saddle_node
 from bouncing_ball.studies.release_rules import release_rules

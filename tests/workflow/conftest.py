@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from bouncing_ball.pipeline.provenance import LIBRARIES
+from bouncing_ball.record.provenance import LIBRARIES
 
 ROOT = Path(__file__).resolve().parents[2]
 # A fresh clone: neither results nor the state of earlier runs.

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from bouncing_ball.comparison.folders import compare_folders
-from bouncing_ball.comparison.verdicts import Verdict
-from bouncing_ball.pipeline.tolerances import read_tolerances
+from bouncing_ball.record.diff.folders import compare_folders
+from bouncing_ball.record.diff.outcome import Verdict
+from bouncing_ball.record.diff.tolerance_file import read_tolerances
 
 REASON = "The reason, in a few words"
 

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 import yaml
 
-from bouncing_ball.claims.ledger import parse_ledger
+from bouncing_ball.audit.claims.ledger import parse_ledger
+from bouncing_ball.audit.claims.ledger_file import check_datasets, datasets_of, printed, read_ledger
+from bouncing_ball.audit.evidence import evidence
+from bouncing_ball.configuration.check import ConfigurationError, check_schema
 from bouncing_ball.datasets.netcdf import parameter_attributes, read_dataset
-from bouncing_ball.pipeline.configuration import ConfigurationError, check_schema
-from bouncing_ball.pipeline.ledger import check_datasets, datasets_of, printed, read_ledger
-from bouncing_ball.studies.evidence import evidence
 
 ROOT = Path(__file__).resolve().parents[2]
 MAPPING, SCHEMA, CONFIG = (

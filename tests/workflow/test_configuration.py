@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from bouncing_ball.pipeline.configuration import ConfigurationError, check_configuration
+from bouncing_ball.configuration.check import ConfigurationError, check_configuration
 
 ROOT = Path(__file__).resolve().parents[2]
 CONFIG = yaml.safe_load((ROOT / "config" / "config.yaml").read_text(encoding="utf-8"))

@@ -5,8 +5,8 @@ import os
 import re
 import shutil
 
-from bouncing_ball.pipeline.artifacts import CARRIERS, read_provenance
-from bouncing_ball.pipeline.provenance import LIBRARIES, Provenance, file_digest
+from bouncing_ball.record.carriers import CARRIERS, read_provenance
+from bouncing_ball.record.provenance import LIBRARIES, Provenance, file_digest
 
 
 def artifacts(tree):
@@ -83,7 +83,7 @@ def test_a_dirty_tree_is_said_to_be_dirty(pristine, fresh):
     assert (made.commit, made.dirty) == (clean.commit, "yes")
     assert made.parameters != clean.parameters and made.sources == clean.sources
     fresh.git("checkout", "--", ".")
-    fresh.edit("models/permanent_contact.py")
+    fresh.edit("impacts/permanent_contact.py")
     assert made_by(fresh).sources != clean.sources
 
 

@@ -96,7 +96,7 @@ def test_a_changed_parameter(complete, keys, value, expected):
     ("file", "expected"),
     [
         (
-            "studies/restitution_orbits.py",
+            "studies/restitution_families.py",
             {
                 *(f"Orbits of the restitution model for {x}" for x in ("fig02", "fig03")),
                 *drawing("fig02", "fig03"),
@@ -107,7 +107,7 @@ def test_a_changed_parameter(complete, keys, value, expected):
         ),
         # The table of thresholds and Figs. 14 and 16 use the permanent contact too.
         (
-            "models/permanent_contact.py",
+            "impacts/permanent_contact.py",
             {
                 "Permanent contact threshold for fig11",
                 *(f"Error thresholds for {x}" for x in ("fig14", "fig16", "thresholds")),
@@ -120,24 +120,24 @@ def test_a_changed_parameter(complete, keys, value, expected):
             },
         ),
         (
-            "studies/forensics/readings.py",
+            "audit/forensics/readings.py",
             {*FORENSICS, PAPER},
         ),
         # A plotting change does not run the science again.
-        ("figures/fig12.py", drawing("fig12")),
+        ("render/figures/fig12.py", drawing("fig12")),
         (
-            "figures/branches.py",
+            "render/figures/branches.py",
             drawing(*(f"fig{k:02d}" for k in (3, 5, 6, 8, 9, 10, 13, 14, 15))),
         ),
-        ("figures/style.py", drawing("ext_release", *(f"fig{k:02d}" for k in range(1, 17)))),
-        ("tables/table1.py", {"Setting table1", PAPER}),
-        ("tables/claims.py", {"Setting claims", PAPER}),
-        ("claims/verdict.py", {*CLAIMS, PAPER}),
-        ("claims/tally.py", {*CLAIMS, PAPER}),
-        ("studies/evidence.py", {*EVIDENCE, PAPER}),
-        ("studies/formulas/permanent_contact.py", {*FORMULAS, PAPER}),
+        ("render/figures/style.py", drawing("ext_release", *(f"fig{k:02d}" for k in range(1, 17)))),
+        ("render/tables/table1.py", {"Setting table1", PAPER}),
+        ("render/tables/claims.py", {"Setting claims", PAPER}),
+        ("audit/claims/verdict.py", {*CLAIMS, PAPER}),
+        ("audit/claims/tally.py", {*CLAIMS, PAPER}),
+        ("audit/evidence.py", {*EVIDENCE, PAPER}),
+        ("audit/formulas/permanent_contact_equations.py", {*FORMULAS, PAPER}),
         # Eq. 34 as printed is among the evidence.
-        ("studies/printed.py", {*FORMULAS, *EVIDENCE, PAPER}),
+        ("audit/formulas/as_printed.py", {*FORMULAS, *EVIDENCE, PAPER}),
     ],
 )
 def test_a_changed_module(complete, file, expected):
@@ -180,7 +180,7 @@ def test_the_modules_of_a_stage_are_those_it_imports(pristine):
     import sys
 
     code = (
-        "import sys, bouncing_ball.studies.continuation, bouncing_ball.pipeline.job\n"
+        "import sys, bouncing_ball.studies.orbit_branches, bouncing_ball.pipeline.job\n"
         "print(*sorted(m.__file__ for n, m in sys.modules.items()"
         " if n.split('.')[0] == 'bouncing_ball'), sep='\\n')"
     )
@@ -196,7 +196,7 @@ def test_the_modules_of_a_stage_are_those_it_imports(pristine):
             sys.executable,
             "-c",
             "from bouncing_ball.pipeline.sources import sources\n"
-            "print(*sources('bouncing_ball.studies.continuation',"
+            "print(*sources('bouncing_ball.studies.orbit_branches',"
             " 'bouncing_ball.pipeline.job'), sep='\\n')",
         ],
         env=pristine.environment(),

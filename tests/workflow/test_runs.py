@@ -90,7 +90,7 @@ def test_an_orbit_that_does_not_exist_is_one_line(fresh):
 
 
 def test_configuration_page_is_the_schemas(fresh):
-    from bouncing_ball.pipeline.documentation import configuration_page
+    from bouncing_ball.configuration.documentation import configuration_page
 
     folder = fresh.path / "config"
     schema, config = (

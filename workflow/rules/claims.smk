@@ -6,7 +6,7 @@ rule evidence_stage:
         "Evidence for the paper's statements"
     input:
         data=[f"results/figures/{name}.nc" for name in EVIDENCE],
-        source=modules("studies.evidence", "datasets.netcdf"),
+        source=modules("audit.evidence", "datasets.netcdf"),
     output:
         data="results/figures/evidence.nc",
     params:
@@ -24,7 +24,7 @@ rule claims_stage:
         "Verdicts on the paper's claims"
     input:
         data=[f"results/figures/{name}.nc" for name in datasets_of(LEDGER)],
-        source=modules("claims.assessment", "claims.tally", "datasets.netcdf", "pipeline.files"),
+        source=modules("audit.claims.assessment", "audit.claims.tally", "datasets.netcdf", "datasets.files"),
     output:
         data="results/figures/claims.nc",
         tally="results/tally.txt",

@@ -4,10 +4,10 @@ import os
 import sys
 from pathlib import Path
 
-from bouncing_ball.pipeline.configuration import ConfigurationError, check_configuration
-from bouncing_ball.pipeline.ledger import check_datasets, datasets_of, printed, read_ledger
+from bouncing_ball.configuration.check import ConfigurationError, check_configuration
+from bouncing_ball.audit.claims.ledger_file import check_datasets, datasets_of, printed, read_ledger
 from bouncing_ball.pipeline.sources import sources
-from bouncing_ball.pipeline.yaml_file import read_yaml
+from bouncing_ball.configuration.yaml_file import read_yaml
 
 schema = read_yaml(Path(workflow.basedir, "config/schema.yaml"))
 try:

@@ -5,7 +5,7 @@ rule continuation:
     message:
         "Continuation of the n-T orbits for {wildcards.figure}"
     input:
-        source=modules("studies.continuation"),
+        source=modules("studies.orbit_branches"),
     output:
         data="results/figures/{figure}.nc",
     wildcard_constraints:

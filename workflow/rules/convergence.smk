@@ -9,14 +9,14 @@ rule convergence:
     input:
         tolerances="config/tolerances.yaml",
         source=modules(
-            "studies.convergence",
-            "comparison.budgets",
-            "comparison.pictures",
-            "figures.style",
-            "pipeline.files",
-            "pipeline.tolerances",
-            "tables.formats",
-            *(f"figures.{name}" for name in FIGURES if name not in SCHEMATICS),
+            "audit.convergence",
+            "record.diff.budgets",
+            "record.diff.pictures",
+            "render.figures.style",
+            "datasets.files",
+            "record.diff.tolerance_file",
+            "render.tables.formats",
+            *(f"render.figures.{name}" for name in FIGURES if name not in SCHEMATICS),
         ),
     output:
         changes="results/convergence.csv",

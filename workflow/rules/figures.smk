@@ -9,7 +9,7 @@ for name in FIGURES:
             f"Drawing {name}"
         input:
             data=[] if name in SCHEMATICS else [f"results/figures/{name}.nc"],
-            source=modules(f"figures.{name}", "figures.style", "datasets.netcdf"),
+            source=modules(f"render.figures.{name}", "render.figures.style", "datasets.netcdf"),
         output:
             png=report(
                 f"results/figures/{name}.png",

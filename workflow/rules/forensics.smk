@@ -5,7 +5,7 @@ rule forensics_stage:
     message:
         "Readings of Table 1 for forensics"
     input:
-        source=modules("studies.forensics.study"),
+        source=modules("audit.forensics.study"),
     output:
         data="results/figures/forensics.nc",
     params:

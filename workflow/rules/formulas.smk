@@ -5,7 +5,7 @@ rule formulas_stage:
     message:
         "Checking the printed formulas"
     input:
-        source=modules("studies.formulas"),
+        source=modules("audit.formulas"),
     output:
         data="results/figures/formulas.nc",
     params:

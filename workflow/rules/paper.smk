@@ -11,7 +11,7 @@ rule paper:
         references=os.path.relpath(ARTICLE / "references.yaml"),
         data=expand("results/figures/{name}.nc", name=DATASETS),
         tables=expand("results/figures/{table}.md", table=TABLES),
-        source=modules("article.render", "pipeline.files", "datasets.netcdf", "pipeline.yaml_file"),
+        source=modules("render.article.render", "datasets.files", "datasets.netcdf", "configuration.yaml_file"),
     output:
         paper="results/paper.md",
     log:

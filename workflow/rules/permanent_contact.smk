@@ -5,7 +5,7 @@ rule permanent_contact:
     message:
         "Permanent contact threshold for {wildcards.figure}"
     input:
-        source=modules("studies.permanent_contact"),
+        source=modules("studies.permanent_contact_curve"),
     output:
         data="results/figures/{figure}.nc",
     wildcard_constraints:

@@ -5,7 +5,7 @@ rule restitution_orbits:
     message:
         "Orbits of the restitution model for {wildcards.figure}"
     input:
-        source=modules("studies.restitution_orbits"),
+        source=modules("studies.restitution_families"),
     output:
         data="results/figures/{figure}.nc",
     wildcard_constraints:

@@ -9,7 +9,7 @@ for name in TABLES:
             f"Setting {name}"
         input:
             data=f"results/figures/{name}.nc",
-            source=modules(f"tables.{name}", "tables.formats", "datasets.netcdf", "pipeline.files"),
+            source=modules(f"render.tables.{name}", "render.tables.formats", "datasets.netcdf", "datasets.files"),
         output:
             csv=f"results/figures/{name}.csv",
             md=f"results/figures/{name}.md",

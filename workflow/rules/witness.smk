@@ -6,7 +6,7 @@ rule witness_stage:
         "Comparing continuation, formula and simulation for witness"
     input:
         data=[f"results/figures/{name}.nc" for name in WITNESSED],
-        source=modules("studies.witness", "datasets.netcdf"),
+        source=modules("audit.cross_check", "datasets.netcdf"),
     output:
         data="results/figures/witness.nc",
     params:

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from bouncing_ball.pipeline.job import logged
-from bouncing_ball.pipeline.record import accept
+from bouncing_ball.record.accept import accept
 
 with logged(snakemake) as lines:
     results = Path("results")

@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
-from bouncing_ball.claims.assessment import assess
-from bouncing_ball.claims.ledger import parse_ledger
-from bouncing_ball.claims.tally import tally
+from bouncing_ball.audit.claims.assessment import assess
+from bouncing_ball.audit.claims.ledger import parse_ledger
+from bouncing_ball.audit.claims.tally import tally
+from bouncing_ball.datasets.files import write_text
 from bouncing_ball.datasets.netcdf import parameter_attributes, read_dataset, write_dataset
-from bouncing_ball.pipeline.files import write_text
 from bouncing_ball.pipeline.job import REFERENCE, logged, provenance
 
 with logged(snakemake) as lines:

@@ -3,7 +3,7 @@
 from functools import partial
 
 from bouncing_ball.pipeline.job import make_dataset
-from bouncing_ball.studies import continuation
+from bouncing_ball.studies import orbit_branches as continuation
 
 study = {
     "fig08": continuation.orbit_branches,

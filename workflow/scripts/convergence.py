@@ -3,15 +3,15 @@
 import io
 from importlib import import_module
 
-from bouncing_ball.comparison.budgets import changes
-from bouncing_ball.comparison.pictures import compare_pictures
+from bouncing_ball.audit.convergence import Variation, sensitivity, stages
+from bouncing_ball.datasets.files import write_text
 from bouncing_ball.datasets.netcdf import parameter_attributes
-from bouncing_ball.figures.style import style
-from bouncing_ball.pipeline.files import write_text
 from bouncing_ball.pipeline.job import logged
-from bouncing_ball.pipeline.tolerances import read_tolerances
-from bouncing_ball.studies.convergence import Variation, sensitivity, stages
-from bouncing_ball.tables.formats import to_csv
+from bouncing_ball.record.diff.budgets import changes
+from bouncing_ball.record.diff.pictures import compare_pictures
+from bouncing_ball.record.diff.tolerance_file import read_tolerances
+from bouncing_ball.render.figures.style import style
+from bouncing_ball.render.tables.formats import to_csv
 
 
 def picture(name, stage, data):
@@ -21,7 +21,7 @@ def picture(name, stage, data):
         {**stage.parameters, "release": snakemake.params.config["release"]}
     )
     with style():
-        draw = import_module(f"bouncing_ball.figures.{name}").draw
+        draw = import_module(f"bouncing_ball.render.figures.{name}").draw
         draw(data.assign_attrs(labels)).savefig(file, format="png")
     return file.getvalue()
 

@@ -3,12 +3,12 @@
 import sys
 from pathlib import Path
 
-from bouncing_ball.comparison.folders import compare_folders
-from bouncing_ball.comparison.report_terminal import to_terminal
-from bouncing_ball.comparison.verdicts import status
 from bouncing_ball.pipeline.job import logged
-from bouncing_ball.pipeline.reports import write_reports
-from bouncing_ball.pipeline.tolerances import read_tolerances
+from bouncing_ball.record.diff.folders import compare_folders
+from bouncing_ball.record.diff.outcome import status
+from bouncing_ball.record.diff.report_terminal import to_terminal
+from bouncing_ball.record.diff.reports import write_reports
+from bouncing_ball.record.diff.tolerance_file import read_tolerances
 
 with logged(snakemake) as lines:
     reports = Path("results", "diff")

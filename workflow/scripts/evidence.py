@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
+from bouncing_ball.audit.evidence import evidence
 from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.pipeline.job import make_dataset
-from bouncing_ball.studies.evidence import evidence
 
 
 def study(parameters):

@@ -3,11 +3,11 @@
 from importlib import import_module
 
 from bouncing_ball.datasets.netcdf import read_dataset
-from bouncing_ball.figures.style import save, style
 from bouncing_ball.pipeline.job import logged, provenance
+from bouncing_ball.render.figures.style import save, style
 
 with logged(snakemake) as lines, style():
-    draw = import_module(f"bouncing_ball.figures.{snakemake.params.figure}").draw
+    draw = import_module(f"bouncing_ball.render.figures.{snakemake.params.figure}").draw
     data = [read_dataset(path) for path in snakemake.input.get("data", [])]
     figure = draw(*data)
     # Laid out once, for both files.

@@ -1,6 +1,6 @@
 """Printed formulas against a second computation."""
 
+from bouncing_ball.audit.formulas import formulas
 from bouncing_ball.pipeline.job import make_dataset
-from bouncing_ball.studies.formulas import formulas
 
 make_dataset(snakemake, formulas)

@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
-from bouncing_ball.article.render import render_article
+from bouncing_ball.configuration.yaml_file import read_yaml
+from bouncing_ball.datasets.files import write_text
 from bouncing_ball.datasets.netcdf import read_dataset
-from bouncing_ball.pipeline.files import write_text
 from bouncing_ball.pipeline.job import logged
-from bouncing_ball.pipeline.yaml_file import read_yaml
+from bouncing_ball.render.article.render import render_article
 
 
 def text_of(path):

@@ -2,13 +2,13 @@
 
 from importlib import import_module
 
+from bouncing_ball.datasets.files import write_text
 from bouncing_ball.datasets.netcdf import read_dataset
-from bouncing_ball.pipeline.files import write_text
 from bouncing_ball.pipeline.job import logged
-from bouncing_ball.tables.formats import to_csv, to_latex, to_markdown
+from bouncing_ball.render.tables.formats import to_csv, to_latex, to_markdown
 
 with logged(snakemake) as lines:
-    rows = import_module(f"bouncing_ball.tables.{snakemake.params.table}").rows
+    rows = import_module(f"bouncing_ball.render.tables.{snakemake.params.table}").rows
     header, body = rows(read_dataset(snakemake.input.data))
     write_text(snakemake.output.csv, to_csv(header, body))
     write_text(snakemake.output.md, to_markdown(header, body))

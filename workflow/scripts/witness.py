@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
+from bouncing_ball.audit.cross_check import witness
 from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.pipeline.job import make_dataset
-from bouncing_ball.studies.witness import witness
 
 
 def study(settings):

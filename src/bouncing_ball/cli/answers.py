@@ -7,20 +7,20 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.models.contact import Contact, Release
-from bouncing_ball.models.damping import damping_ratio
-from bouncing_ball.models.permanent_contact import (
+from bouncing_ball.impacts.damping import damping_ratio
+from bouncing_ball.impacts.permanent_contact import (
     permanent_contact_minimum,
     permanent_contact_threshold,
 )
+from bouncing_ball.impacts.spring_damper import Contact, Release
+from bouncing_ball.motion.sequence import Status
 from bouncing_ball.orbits import limits as contact_limits
-from bouncing_ball.orbits import restitution as restitution_orbits
+from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.admissibility import is_admissible, restitution_is_admissible
 from bouncing_ball.orbits.closed_form import branch_point
+from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
 from bouncing_ball.orbits.monodromy import trace_and_contraction
 from bouncing_ball.orbits.stability import is_stable, multipliers
-from bouncing_ball.orbits.system import OrbitSystem, Parameter
-from bouncing_ball.simulation.sequence import Status
 
 Answer = dict[str, Any]
 
@@ -173,7 +173,7 @@ def simulate(args: argparse.Namespace) -> Answer:
     """
     velocity = -math.pi if args.velocity is None else args.velocity
     if args.model == "restitution":
-        from bouncing_ball.simulation.restitution import simulate as of_instants
+        from bouncing_ball.motion.instants import simulate as of_instants
 
         r, table = args.restitution, args.amplitude * math.cos(args.phase)
         if velocity > table:
@@ -181,7 +181,7 @@ def simulate(args: argparse.Namespace) -> Answer:
         after = -r * velocity + (1 + r) * table
         sequence = of_instants(r, args.amplitude, args.phase, after, args.impacts)
     else:
-        from bouncing_ball.simulation.spring_damper import simulate as of_contacts
+        from bouncing_ball.motion.contacts import simulate as of_contacts
 
         sequence = of_contacts(_contact(args), args.amplitude, args.phase, velocity, args.impacts)
     status = Status(int(sequence.status)).name.lower().replace("_", " ")

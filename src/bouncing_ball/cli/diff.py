@@ -33,11 +33,11 @@ def run(args: argparse.Namespace) -> NoReturn:
     something could not be compared.
     """
     # Imported here, so that --help and a mistyped argument need none of it.
-    from bouncing_ball.comparison.folders import compare_folders
-    from bouncing_ball.comparison.report_terminal import to_terminal
-    from bouncing_ball.comparison.verdicts import status
-    from bouncing_ball.pipeline.reports import write_reports
-    from bouncing_ball.pipeline.tolerances import read_tolerances
+    from bouncing_ball.record.diff.folders import compare_folders
+    from bouncing_ball.record.diff.outcome import status
+    from bouncing_ball.record.diff.report_terminal import to_terminal
+    from bouncing_ball.record.diff.reports import write_reports
+    from bouncing_ball.record.diff.tolerance_file import read_tolerances
 
     record, results = Path(args.record), Path(args.results)
     try:

@@ -85,7 +85,7 @@ def _answered(args: argparse.Namespace) -> Answered:
 
 def _explained(args: argparse.Namespace) -> Answered:
     """Where an artifact comes from."""
-    from bouncing_ball.cli.explain import explain, lines
+    from bouncing_ball.record.explain import explain, lines
 
     return explain(args.file), lines
 

@@ -10,10 +10,10 @@ fixed point of its return map. The limits of admissibility are grazing orbits.
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.models.contact import Contact, Release, contact_flow
-from bouncing_ball.models.flight import clearance
+from bouncing_ball.impacts.spring_damper import Contact, Release, contact_flow
+from bouncing_ball.motion.contacts import contact_cycle
+from bouncing_ball.motion.gap import clearance
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
-from bouncing_ball.simulation.spring_damper import contact_cycle
 
 # An event that the equations do not know of shifts the next impact by a good
 # part of a period; rounding, amplified by one unstable cycle, by far less.

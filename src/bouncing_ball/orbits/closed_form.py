@@ -6,7 +6,7 @@ At a fixed contact duration D they are *linear* in ::
     X = Λ cos φ,    Y = Λ sin φ,    u = δ′ at impact
 
 With T = 2πn - D the flight time, and g, G, h the responses of the contact at
-time D (see :mod:`bouncing_ball.models.contact`), they read
+time D (see :mod:`bouncing_ball.impacts.spring_damper`), they read
 
 * release (Eq. 23): ``u g + X Im h + Y Re h = G``, or the same combination of
   the contact force for the force release;
@@ -40,7 +40,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import require
-from bouncing_ball.models.contact import Contact, Release, responses
+from bouncing_ball.impacts.spring_damper import Contact, Release, responses
 
 # Points computed at once: as many as keep the intermediate arrays in the cache.
 _BLOCK = 2048
@@ -116,7 +116,7 @@ def _release_angle(zeta, rule: Release):
 def _responses(duration, sin_angle, cos_angle, sin_d, cos_d, decay, omega, zeta, root):
     """Responses at time D, from the sine and cosine of ϖ_d D and of D.
 
-    The closed quotients of :mod:`bouncing_ball.models.oscillator` in real
+    The closed quotients of :mod:`bouncing_ball.impacts.oscillator` in real
     arithmetic; where they lose digits (short or resonant contacts) the values
     are taken from there.
     """

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bouncing_ball.models.contact import Contact, Release, contact_flow
+from bouncing_ball.impacts.spring_damper import Contact, Release, contact_flow
 from bouncing_ball.orbits.closed_form import BranchPoint
 
 # Samples of a contact among which its highest point is looked for, and Newton

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from bouncing_ball.models.contact import Contact
+from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits.closed_form import BranchPoint, branch_point
 from bouncing_ball.orbits.stability import period_doubling_function
 

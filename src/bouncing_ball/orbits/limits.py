@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize.elementwise import find_root
 
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.models.contact import Contact
+from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits.closed_form import branch_point, free_release_angle
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.stability import period_doubling_function, saddle_node_function

@@ -10,7 +10,7 @@ e^{-2ζϖ s} and the flight preserves it, so that on an n-T orbit
 
 import numpy as np
 
-from bouncing_ball.models.contact import Release, contact_flow
+from bouncing_ball.impacts.spring_damper import Release, contact_flow
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.stability import trace_and_determinant
 
@@ -69,7 +69,7 @@ def trace_and_contraction(orbit: ContactOrbit) -> tuple[np.ndarray, np.ndarray]:
 
     Examples
     --------
-    >>> from bouncing_ball.models.contact import Contact
+    >>> from bouncing_ball.impacts.spring_damper import Contact
     >>> from bouncing_ball.orbits.limits import orbit_at
     >>> float(trace_and_contraction(orbit_at(Contact(5.0, 0.0), 1, 0.5))[1])
     1.0

@@ -1,7 +1,7 @@
 """The equations of the restitution model's n-T orbits for a continuation.
 
 The exact map (Eq. 5) with a flight of 2πn: unknowns (φ, v), parameter Λ. They
-have the closed form of :mod:`bouncing_ball.orbits.restitution`; continued,
+have the closed form of :mod:`bouncing_ball.orbits.restitution_orbit`; continued,
 they check both the continuation and the formula.
 """
 
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bouncing_ball.continuation.events import Event
-from bouncing_ball.models.restitution import bounce, exact_map_jacobian, landing_gap
+from bouncing_ball.impacts.restitution_map import bounce, exact_map_jacobian, landing_gap
 from bouncing_ball.orbits.stability import (
     period_doubling_function,
     saddle_node_function,

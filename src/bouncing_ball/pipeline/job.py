@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from bouncing_ball.datasets.netcdf import parameter_attributes, write_dataset
-from bouncing_ball.pipeline.artifacts import read_attributes
-from bouncing_ball.pipeline.provenance import PREFIX, SUM, Provenance, file_digest, gather
+from bouncing_ball.record.carriers import read_attributes
+from bouncing_ball.record.provenance import PREFIX, SUM, Provenance, file_digest, gather
 
 REFERENCE = (
     "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient "

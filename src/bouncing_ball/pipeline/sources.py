@@ -53,7 +53,7 @@ def sources(*modules: str) -> list[str]:
 
     Examples
     --------
-    >>> [Path(file).name for file in sources("bouncing_ball.models.damping")]
+    >>> [Path(file).name for file in sources("bouncing_ball.impacts.damping")]
     ['__init__.py', 'errors.py', '__init__.py', 'damping.py', 'release.py']
     """
     for module in modules:

@@ -16,18 +16,18 @@ from numpy.typing import ArrayLike
 from scipy.optimize.elementwise import find_root
 
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.models.contact import Contact, Release
-from bouncing_ball.models.damping import damping_ratio
-from bouncing_ball.models.permanent_contact import (
+from bouncing_ball.impacts.damping import damping_ratio
+from bouncing_ball.impacts.permanent_contact import (
     RESTITUTION_THRESHOLD,
     permanent_contact_threshold,
 )
+from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits import limits
-from bouncing_ball.orbits import restitution as restitution_orbits
+from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.admissibility import is_admissible
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.studies.parameters import grid
-from bouncing_ball.studies.permanent_contact import permanent_contact
+from bouncing_ball.studies.permanent_contact_curve import permanent_contact
 
 
 class Quantity(StrEnum):

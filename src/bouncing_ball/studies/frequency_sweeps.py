@@ -7,9 +7,9 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.models.contact import Contact, Release
-from bouncing_ball.models.damping import damping_ratio
-from bouncing_ball.orbits import restitution as restitution_orbits
+from bouncing_ball.impacts.damping import damping_ratio
+from bouncing_ball.impacts.spring_damper import Contact, Release
+from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.admissibility import is_admissible
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.limits import orbit_at

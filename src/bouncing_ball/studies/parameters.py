@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.models.contact import Contact, Release
-from bouncing_ball.models.damping import damping_ratio
+from bouncing_ball.impacts.damping import damping_ratio
+from bouncing_ball.impacts.spring_damper import Contact, Release
 
 
 def grid(span: Mapping[str, Any]) -> np.ndarray:

@@ -16,8 +16,8 @@ import xarray as xr
 from scipy.optimize.elementwise import find_minimum
 
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.models.contact import Contact, Release
-from bouncing_ball.models.damping import damping_ratio, restitution_coefficient
+from bouncing_ball.impacts.damping import damping_ratio, restitution_coefficient
+from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.limits import period_doubling, saddle_node
 from bouncing_ball.studies.error_thresholds import Quantity, relative_error, thresholds

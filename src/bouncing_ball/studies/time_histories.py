@@ -8,8 +8,8 @@ import xarray as xr
 
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.models.contact import Contact
-from bouncing_ball.orbits import restitution as restitution_orbits
+from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.admissibility import is_admissible
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.limits import require_orbit

@@ -1,0 +1,1 @@
+"""The paper under audit: its claims, its formulas, its table, and every orbit by three routes."""

@@ -1,0 +1,106 @@
+"""Every claim with its verdict, as a dataset."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.audit.claims.ledger import Claim, Criterion, Explanation, Ledger
+from bouncing_ball.audit.claims.verdict import Verdict, decide, find, foreign_parameter
+from bouncing_ball.datasets.variables import describe
+
+
+def _condition(claim: Claim, criterion: Criterion) -> str:
+    if criterion.condition is None:
+        return f"{criterion.measure} is {claim.printed}"
+    bound = criterion.condition.bound
+    if criterion.condition.bound_is_variable:
+        bound = f"its {bound}"
+    return f"{criterion.measure} {criterion.condition.relation.sign} {bound}"
+
+
+def _checks(
+    explanation: Explanation, ledger: Ledger, data: Mapping[str, xr.Dataset]
+) -> tuple[bool, str]:
+    """Whether every check of an explanation is met, and each in words with its number."""
+    foreign = foreign_parameter(explanation, ledger, data)
+    if foreign:
+        return False, foreign
+    findings = [find(criterion, None, ledger, data) for criterion in explanation.criteria]
+    words = [
+        f"{criterion.measure} = {finding.value:.4g} (required {finding.required})"
+        for criterion, finding in zip(explanation.criteria, findings, strict=True)
+    ]
+    met = all(finding.verdict is Verdict.REPRODUCED for finding in findings)
+    return met, "; ".join(words)
+
+
+def assess(ledger: Ledger, data: Mapping[str, xr.Dataset]) -> xr.Dataset:
+    """The verdict on each claim of a ledger.
+
+    Parameters
+    ----------
+    ledger : Ledger
+    data : mapping of str to xarray.Dataset
+        Every dataset that the ledger names.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``claim`` what the ledger says of it, the number found, its
+        deviation and the verdict; over ``explanation`` whether its checks hold.
+
+    Raises
+    ------
+    ModelError
+        If an input of a claim or of an explanation is missing.
+    """
+    checks = {part.id: _checks(part, ledger, data) for part in ledger.explanations}
+    holds = {name: met for name, (met, _) in checks.items()}
+    rows: dict[str, list] = {}
+    for claim in ledger.claims:
+        decision = decide(claim, ledger, data)
+        finding = decision.finding
+        row = {
+            "section": claim.section,
+            "item": claim.item,
+            "kind": claim.kind,
+            "statement": claim.statement,
+            "printed_text": claim.printed,
+            "legibility": claim.legibility,
+            "remark": claim.remark,
+            "condition": claim.condition_text,
+            "decided_by": "; ".join(_condition(claim, criterion) for criterion in claim.criteria),
+            "required": finding.required if finding else claim.printed,
+            "found": finding.value if finding else np.nan,
+            "deviation_units": finding.units if finding else np.nan,
+            "deviation": finding.relative if finding else np.nan,
+            "verdict": str(decision.verdict),
+            "reason": decision.reason,
+            "foreign": decision.foreign,
+            "printed_table": claim.table,
+            "explained_by": claim.explanation,
+            # Other parameters than the paper's are a reason of their own.
+            "explained": decision.verdict is Verdict.REPRODUCED
+            or decision.foreign
+            or holds.get(claim.explanation, False),
+        }
+        for key, value in row.items():
+            rows.setdefault(key, []).append(value)
+    return describe(
+        xr.Dataset(
+            {
+                **{key: ("claim", np.array(values)) for key, values in rows.items()},
+                "explanation_text": (
+                    "explanation",
+                    [explanation.text for explanation in ledger.explanations],
+                ),
+                "explanation_holds": ("explanation", list(holds.values())),
+                "explanation_checks": ("explanation", [words for _, words in checks.values()]),
+            },
+            coords={
+                "claim": [claim.id for claim in ledger.claims],
+                "explanation": list(holds),
+            },
+        )
+    )

@@ -1,0 +1,291 @@
+"""What the paper's statements are decided by, read off the figures' datasets.
+
+Each variable turns a statement in words into numbers; the ledger of claims says
+which bound they must meet. Only what no dataset holds already is here. Nothing
+is simulated or solved: datasets in, a dataset out.
+
+A *rise* is the change from one sampled contact to the next stiffer one, a
+*softening* the change from one row of Table 1 to the next softer one.
+"""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.audit.formulas import as_printed as printed
+from bouncing_ball.datasets.variables import describe
+
+Datasets = Mapping[str, xr.Dataset]
+Found = dict[str, xr.DataArray]
+BOUNDS = ("saddle-node", "period doubling")
+# A logarithmic grid meets its round numbers but for rounding.
+_GRID = 1e-9
+
+
+def last_crossing(error: np.ndarray, ratio: np.ndarray, tolerance: float) -> float:
+    """The ϖ above which a sampled error stays within a tolerance.
+
+    Between the last sample outside and the next one the error is taken for a
+    power of ϖ. NaN if no sample, or the last one, is outside, or if a sample
+    that is needed has no finite error.
+
+    Examples
+    --------
+    >>> ratio = np.array([1.0, 10.0, 100.0])
+    >>> round(last_crossing(1 / ratio, ratio, 0.05), 10)
+    20.0
+    """
+    outside = np.flatnonzero(~(error <= tolerance))
+    if not outside.size or outside[-1] == len(ratio) - 1:
+        return float("nan")
+    pair = slice(outside[-1], outside[-1] + 2)
+    if not np.isfinite(error[pair]).all():
+        return float("nan")
+    x, y = np.log(ratio[pair]), np.log(np.maximum(error[pair], np.finfo(float).tiny))
+    share = (np.log(tolerance) - y[0]) / (y[1] - y[0])
+    return float(np.exp(x[0] + share * (x[1] - x[0])))
+
+
+def _worst_when_stiff(values: xr.DataArray, limit: float) -> xr.DataArray:
+    """Largest value among contacts at least as stiff as a limit, NaN if none is."""
+    stiff = values.frequency_ratio >= limit * (1 - _GRID)
+    return values.where(stiff).max("frequency_ratio")
+
+
+def _smallest_rise(values: xr.DataArray) -> xr.DataArray:
+    return values.diff("frequency_ratio").min("frequency_ratio")
+
+
+def _largest_rise(values: xr.DataArray) -> xr.DataArray:
+    return values.diff("frequency_ratio").max("frequency_ratio")
+
+
+def _apparent_restitution(data: Datasets, stiff: float) -> Found:
+    """Figs. 5 and 6: how far r_a is from r, and whether it only comes closer."""
+    found: dict[str, list[xr.DataArray]] = {
+        key: [] for key in ("error", "difference", "rebound", "dip")
+    }
+    for name in ("fig05", "fig06"):
+        sweep = data[name]
+        signed = (sweep.apparent_restitution - sweep.restitution).reset_coords(drop=True)
+        error = np.abs(signed)
+        # How much farther from r than some softer contact is.
+        axis = error.get_axis_num("frequency_ratio")
+        closest = error.copy(data=np.fmin.accumulate(error.values, axis=axis))
+        for key, values in (
+            ("error", _worst_when_stiff(error, stiff)),
+            ("difference", (error / sweep.restitution).max("frequency_ratio")),
+            ("rebound", (error - closest).max("frequency_ratio")),
+            ("dip", -signed.min("frequency_ratio")),
+        ):
+            named = values.reset_coords(drop=True).rename(case="curve")
+            found[key].append(named.assign_coords(curve=_curves(name, sweep)))
+    drawn = data["fig06"].apparent_restitution
+    return {
+        **{
+            f"apparent_restitution_{key}": xr.concat(parts, "curve") for key, parts in found.items()
+        },
+        "apparent_restitution_spread": (drawn.max("case") - drawn.min("case")).max(),
+    }
+
+
+def _curves(name: str, sweep: xr.Dataset) -> list[str]:
+    """Names of the curves of a figure."""
+    pairs = zip(sweep.restitution.values, sweep.amplitude.values, strict=True)
+    return [f"{name} r={r:g} Λ={lam:g}" for r, lam in pairs]
+
+
+@np.errstate(divide="ignore", invalid="ignore")  # the phase is 0 at the saddle-node
+def _stiff_orbits(data: Datasets, stiff: float) -> Found:
+    """Figs. 5, 6 and 10: relative errors of the restitution model among stiff contacts."""
+    parts = []
+    for name in ("fig05", "fig06", "fig10"):
+        sweep = data[name]
+        phase, velocity = printed.fixed_point(sweep.attrs["n"], sweep.restitution, sweep.amplitude)
+        rigid = {
+            "phase": phase,
+            "bounce_velocity": velocity,
+            "apparent_restitution": sweep.restitution,
+        }
+        errors = [
+            np.abs(sweep[key] / value - 1).reset_coords(drop=True) for key, value in rigid.items()
+        ]
+        joined = xr.concat(errors, xr.Variable("measure", list(rigid)))
+        worst = _worst_when_stiff(joined, stiff).rename(case="orbit")
+        parts.append(worst.assign_coords(orbit=_curves(name, sweep)))
+    return {"stiff_orbit_error": xr.concat(parts, "orbit").transpose("orbit", "measure")}
+
+
+def _bounce(data: Datasets, stiff: float) -> Found:
+    """Fig. 10: the bouncing-off velocity against nπ."""
+    sweep, tolerances = data["fig10"], data["thresholds"].tolerance
+    velocity, limit = sweep.bounce_velocity, sweep.restitution_bounce_velocity
+    ratio = sweep.frequency_ratio.values
+    error = np.abs(velocity - limit) / limit
+    spread = (velocity.max("case") - velocity.min("case")) / limit
+
+    def crossings(values: xr.DataArray) -> xr.DataArray:
+        found = [last_crossing(values.values, ratio, x) for x in tolerances.values]
+        return xr.DataArray(found, {"tolerance": tolerances.values})
+
+    return {
+        "bounce_velocity_error": _worst_when_stiff(error, stiff).max(),
+        "bounce_velocity_error_soft": error.isel(frequency_ratio=0).min(),
+        "bounce_velocity_departure": crossings(error.max("case")),
+        "bounce_velocity_spread": spread.max(),
+        "bounce_velocity_spread_end": crossings(spread),
+        "bounce_velocity_rise": _smallest_rise(velocity).min(),
+    }
+
+
+def _convergence(data: Datasets) -> Found:
+    """Figs. 13 and 14 and the thresholds: what happens with rising ϖ."""
+    sweep, errors = data["fig13"], data["thresholds"].relative_error
+    found = {
+        "contact_duration_rise": _largest_rise(sweep.contact_duration).max(),
+        "max_height_rise": _smallest_rise(data["fig14"].max_height),
+        "stiffest_error": errors.isel(frequency_ratio=-1),
+        "softest_error": errors.isel(frequency_ratio=0),
+    }
+    for name in ("phase", "release_phase"):
+        error = np.abs(sweep[name] - sweep.restitution_phase) / sweep.restitution_phase
+        found[f"{name}_error"] = error.isel(frequency_ratio=-1).max()
+        found[f"{name}_error_rise"] = _largest_rise(error).max()
+    return found
+
+
+def _domains(data: Datasets) -> Found:
+    """Figs. 3, 8, 9 and 15: existence and stability along Λ."""
+    orbits = data["fig03"]
+    doubling = orbits.period_doubling_amplitude.sel(impact_map="exact")
+    between = (
+        (orbits.phase > 0)
+        & (orbits.amplitude > orbits.saddle_node_amplitude)
+        & (orbits.amplitude < doubling)
+    )
+    found = {"stability_exceptions": (orbits.stable != between).sum()}
+    drawn = [data[f"fig{k:02d}"].admissible for k in (3, 5, 6, 8, 9, 10, 13, 14, 15)]
+    found["inadmissible_orbits"] = xr.DataArray(sum(int((~x.astype(bool)).sum()) for x in drawn))
+    names = ["fig08", "fig09"]
+    # All of the stiffest branch, and the saddle-node of the softest one.
+    longest, at_fold = [], []
+    for name in names:
+        branches = data[name].sortby("frequency_ratio")
+        longest.append(float(branches.contact_duration.isel(frequency_ratio=-1).max()))
+        soft = branches.isel(frequency_ratio=0)
+        folds = soft.special_kind.values == BOUNDS[0]
+        # A soft branch may fold again, at a higher Λ.
+        lowest = np.argmin(np.where(folds, soft.special_amplitude.values, np.inf))
+        there = soft.special_contact_duration.values[lowest]
+        at_fold.append(there if folds.any() else np.nan)
+    found["contact_duration_stiffest"] = xr.DataArray(longest, {"figure": names})
+    found["contact_duration_fold"] = xr.DataArray(at_fold, {"figure": names})
+    found["branch_end_gap"] = _end_of_softest(data["fig08"])
+
+    both = data["fig15"].isel(frequency_ratio=0)
+    rigid = np.array([both.saddle_node_amplitude, both.period_doubling_amplitude])
+    soft = _first_range(both.special_kind.values, both.special_amplitude.values)
+    found["range_error"] = xr.DataArray(np.abs(soft / rigid - 1), {"bound": list(BOUNDS)})
+    return found
+
+
+def _end_of_softest(branches: xr.Dataset) -> xr.DataArray:
+    """How far the softest branch of Fig. 8 ends from the threshold of permanent contact."""
+    soft = branches.sortby("frequency_ratio").isel(frequency_ratio=0)
+    zeta = printed.damping_ratio(branches.attrs["restitution"])
+    threshold = printed.permanent_contact_threshold(soft.frequency_ratio, zeta)
+    return np.abs(soft.amplitude.isel(point=0) - threshold)
+
+
+def _first_range(kinds: np.ndarray, amplitudes: np.ndarray) -> np.ndarray:
+    """Ends of the stable range next to the saddle-node, NaN where there is none.
+
+    The special points stand in the branch's order, which ends on the stable
+    side: the last saddle-node, and the first period doubling after it.
+    """
+    node, doubling = (np.flatnonzero(kinds == kind) for kind in BOUNDS)
+    doubling = doubling[doubling > node[-1]] if node.size else doubling[:0]
+    ends = (node[-1:], doubling[:1])
+    return np.array([amplitudes[part[0]] if part.size else np.nan for part in ends])
+
+
+def _softer_rows(values: xr.DataArray, table: xr.Dataset) -> xr.DataArray:
+    """Values of all rows but the stiffest; a table of one row has one, which is NaN."""
+    if values.sizes["frequency_ratio"]:
+        return values
+    return values.reindex(frequency_ratio=table.frequency_ratio)
+
+
+def _table(data: Datasets) -> Found:
+    """Table 1: how its ranges move from the stiffest contact to softer ones."""
+    # From stiff to soft, so that a difference is what softening does.
+    table = data["table1"].sortby("frequency_ratio", ascending=False)
+    node, doubling = BOUNDS
+    found = {}
+    for source in ("computed", "printed"):
+        ends = table[source]
+        width = ends.sel(bound=doubling) - ends.sel(bound=node)
+        found[f"{source}_softening"] = _softer_rows(ends.diff("frequency_ratio"), table)
+        found[f"{source}_widening"] = _softer_rows(width.diff("frequency_ratio"), table)
+        stiffest = ends.isel(frequency_ratio=0, drop=True)
+        found[f"{source}_stiff_difference"] = np.abs(stiffest - table.restitution_range)
+    exact = table.restitution_range.sel(impact_map="exact")
+    softest = table.computed.isel(frequency_ratio=-1, drop=True)
+    found["soft_range_shift"] = np.abs(softest - exact) / exact
+
+    # The families of the table only, so that its rows stay complete.
+    curves = data["ext_release"].bifurcation_amplitude.reindex(n=table.n)
+    curve = curves.sel(release="displacement", bound=doubling)
+    lowest = curve.min("frequency_ratio")
+    turns = data["ext_release"].period_doubling_turn.reindex(n=table.n)
+    found["period_doubling_lowest"] = turns.sel(release="displacement")
+    found["period_doubling_drop"] = curve.isel(frequency_ratio=-1, drop=True) - lowest
+    return found
+
+
+def _permanent_contact(figure: xr.Dataset, asked: float) -> Found:
+    """Fig. 16: the error at the printed threshold, and the threshold by Eq. 34."""
+    error = figure.relative_error.isel(quantity=0)
+    grid = np.log(figure.frequency_ratio.values)
+    threshold = figure.error_threshold.isel(quantity=0, tolerance=0, drop=True)
+    # The error is one-sided there: Λ_SD comes from below.
+    level = (1 - figure.tolerance.values[0]) * figure.restitution_threshold
+    with np.errstate(invalid="ignore"):
+        # NaN where the threshold takes that value nowhere.
+        by_formula = printed.permanent_contact_frequency_ratio(level, figure.damping_ratio, 1)
+    return {
+        "permanent_contact_error": xr.DataArray(
+            np.interp(np.log(asked), grid, error.values, left=np.nan, right=np.nan)
+        ),
+        "permanent_contact_inverse": np.abs(by_formula / threshold - 1),
+    }
+
+
+def evidence(data: Datasets, parameters: Mapping[str, Any]) -> xr.Dataset:
+    """All numbers by which statements of the paper are decided.
+
+    Parameters
+    ----------
+    data : mapping of str to xarray.Dataset
+        Figs. 3, 5, 6, 8, 9, 10, 13, 14, 15, 16, Table 1, the table of
+        thresholds and the extension on release rules, by name.
+    parameters : mapping
+        ``stiff_frequency_ratio``, from which on the paper takes both models for
+        the same, and ``permanent_contact_frequency_ratio``, its own threshold.
+
+    Raises
+    ------
+    KeyError
+        If a dataset is missing.
+    """
+    stiff = parameters["stiff_frequency_ratio"]
+    parts: list[Callable[[Datasets], Found]] = [_convergence, _domains, _table]
+    found = _apparent_restitution(data, stiff) | _bounce(data, stiff) | _stiff_orbits(data, stiff)
+    for part in parts:
+        found |= part(data)
+    errors = data["thresholds"].relative_error
+    found["stiff_error"] = _worst_when_stiff(errors, stiff)
+    found |= _permanent_contact(data["fig16"], parameters["permanent_contact_frequency_ratio"])
+    return describe(xr.Dataset({k: v.reset_coords(drop=True) for k, v in found.items()}))

@@ -1,0 +1,60 @@
+"""Every formula of the paper that can be wrong, against a second computation.
+
+Each row of the dataset gives the largest disagreement over a sample of
+parameters and what rounding accounts for. The formulas are those of
+:mod:`bouncing_ball.audit.formulas.as_printed`; what they are compared with uses none of
+them.
+"""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.audit.formulas.check import Check
+from bouncing_ball.audit.formulas.contact_equations import (
+    damping_checks,
+    motion_checks,
+    orbit_checks,
+    static_error,
+)
+from bouncing_ball.audit.formulas.permanent_contact_equations import permanent_contact_checks
+from bouncing_ball.audit.formulas.restitution_equations import restitution_checks
+from bouncing_ball.datasets.variables import describe
+
+# In the order of the paper.
+_PARTS: tuple[Callable[..., dict[str, Check]], ...] = (
+    restitution_checks,
+    motion_checks,
+    damping_checks,
+    orbit_checks,
+    permanent_contact_checks,
+)
+
+
+def formulas(parameters: Mapping[str, Any]) -> xr.Dataset:
+    """Disagreement of every printed formula, over ``samples`` random parameters.
+
+    Parameters
+    ----------
+    parameters : mapping
+        ``samples``, ``seed``, and ``static`` with the ``restitution``,
+        ``frequency_ratio`` and ``velocity`` of an impact on a table at rest.
+    """
+    rng = np.random.default_rng(parameters["seed"])
+    checks: dict[str, Check] = {}
+    for part in _PARTS:
+        checks |= part(rng, parameters["samples"])
+    disagreement, budget, comparison = zip(*checks.values(), strict=True)
+    return describe(
+        xr.Dataset(
+            {
+                "disagreement": ("formula", np.array(disagreement)),
+                "budget": ("formula", np.array(budget)),
+                "compared_with": ("formula", np.array(comparison)),
+                "static_error": static_error(parameters["static"]),
+            },
+            coords={"formula": list(checks)},
+        )
+    )

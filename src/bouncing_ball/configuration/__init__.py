@@ -1,0 +1,1 @@
+"""The configuration: one reader of YAML, one checker, one description."""

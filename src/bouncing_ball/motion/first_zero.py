@@ -1,0 +1,209 @@
+r"""The first upward zero of a smooth function, which no step can pass over.
+
+Let y(s) < 0, with y″ ≤ K and \|y‴\| ≤ J from s on. Then ::
+
+    y(s + h) ≤ y + y′ h + K h²/2
+
+so that no zero lies before the positive root h₀ of this parabola. Within any
+H ≥ h the bound may be replaced by a local one, with \|y⁗\| ≤ L ::
+
+    K_H = min(K, y″ + H max(y‴, 0)/3 + L H²/12)
+
+and the step is as long as the best H = 4h₀, 16h₀, ... allows. Such steps
+approach a simple zero from the left with third order, and slow down, but do
+not fail, where two zeros lie close together or the function only touches
+zero. They are taken until
+
+* ``2K \|y\| ≤ θ y′²``, y′ > 0: the next zero is then simple and near (Newton
+  and Kantorovich), and
+* ``(\|y‴\| + L h₀) h₀² ≤ κ y′``: one more step, by the function's own parabola
+  and without the safeguard, reaches the last digit; its error is of order κ⁴ h₀.
+
+Flight and contact are both *motions* of this kind, see :class:`Motion`.
+"""
+
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from bouncing_ball.motion.ensembles import pick
+
+# θ and κ above.
+_SIMPLE = 0.25
+_CLOSE = 3e-4
+# Ratio of successive H.
+_REACH = 4.0
+# Steps after which a zero is given up as undecided. Each is a good part of the
+# shorter of the function's time scales, so this is hundreds of oscillations.
+_MAX_STEPS = 3000
+_TINY = 1e-300
+
+
+class State(NamedTuple):
+    """y and its derivatives at one time, and K, J, L from this time on.
+
+    ``ended`` marks where the search may stop without a zero, ``None`` for
+    nowhere.
+    """
+
+    value: np.ndarray
+    rate: np.ndarray
+    second: np.ndarray
+    third: np.ndarray
+    second_bound: np.ndarray
+    third_bound: np.ndarray
+    fourth_bound: np.ndarray
+    ended: np.ndarray | None = None
+
+
+class Motion(Protocol):
+    """An array of functions of time whose first upward zeros are wanted."""
+
+    def __call__(self, time: np.ndarray) -> State: ...
+
+    def take(self, which: np.ndarray) -> "Motion":
+        """The motions at some positions of the array."""
+        ...
+
+    def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
+        """A later time up to which there is certainly no zero, or the time itself.
+
+        ``steps`` have been taken before; what is dear may wait for a few.
+        """
+        ...
+
+
+class Zero(NamedTuple):
+    """First upward zeros: time and y′ there, and where there is none.
+
+    ``ended`` are those whose motion said so, ``undecided`` those given up.
+    """
+
+    time: np.ndarray
+    rate: np.ndarray
+    ended: np.ndarray
+    undecided: np.ndarray
+
+
+class _Reading(NamedTuple):
+    """What the length of a step depends on."""
+
+    v: np.ndarray
+    rising: np.ndarray
+    square: np.ndarray
+    twice: np.ndarray
+    second: np.ndarray
+    third: np.ndarray
+    second_bound: np.ndarray
+    fourth_bound: np.ndarray
+
+    def take(self, which: np.ndarray) -> "_Reading":
+        return _Reading(*(pick(x, which) for x in self))
+
+    def root(self, bound):
+        """Positive root of y + y′ h + (bound) h²/2; long if there is none."""
+        root = np.sqrt(np.maximum(self.square + bound * self.twice, 0.0))
+        falling = (root - self.v) / np.maximum(bound, _TINY)
+        return np.where(self.rising, self.twice / (self.v + root + _TINY), falling)
+
+    def root_within(self, reach):
+        """The same with the bound that holds up to ``reach``."""
+        growth = np.maximum(self.third, 0.0) + 0.25 * self.fourth_bound * reach
+        return self.root(np.minimum(self.second + reach * growth * (1 / 3), self.second_bound))
+
+
+def safe_step(state: State) -> tuple[np.ndarray, np.ndarray]:
+    """The longest certified step, and whether the zero is within reach after it.
+
+    Examples
+    --------
+    Exact for a parabola, here y = s² - 1 seen from s = 0:
+
+    >>> one = np.ones(1)
+    >>> step, _ = safe_step(State(-one, 0 * one, 2 * one, 0 * one, 2.0, 0.0, 0.0))
+    >>> step.tolist()
+    [1.0]
+    """
+    v, jerk = state.rate, state.third_bound
+    # Rounding may put y above zero where it touches it from below.
+    twice = -2 * np.minimum(state.value, 0.0)
+    reading = _Reading(
+        v, v > 0, v * v, twice, state.second, state.third, state.second_bound, state.fourth_bound
+    )
+    first = reading.root(state.second_bound)
+    step = _prolonged(first, reading)
+    # Falling faster and faster from y = y′ = 0: y ≤ y″ h²/2 + J h³/6.
+    sinking = -3 * state.second / (jerk + _TINY)
+    step = np.maximum(step, np.where(reading.rising, 0.0, sinking))
+    bend = (np.abs(state.third) + state.fourth_bound * first) * (first * first)
+    simple = state.second_bound * twice <= _SIMPLE * reading.square
+    return step, (bend <= _CLOSE * v) & simple & reading.rising
+
+
+def _prolonged(first, reading: _Reading):
+    """Steps at least as long as the certified ``first`` ones."""
+    step, which = first, None
+    now = first
+    while True:
+        reach = _REACH * now
+        longer = np.minimum(reading.root_within(reach), reach)
+        # Where only the reach was in the way, it is worth another try.
+        further = np.flatnonzero((longer == reach) & (longer > now))
+        now = np.maximum(now, longer)
+        if which is None:
+            step = now
+        else:
+            step[which] = now
+        if not further.size:
+            return step
+        which = further if which is None else which[further]
+        now, reading = now[further], reading.take(further)
+
+
+def first_zero(motion: Motion, start: np.ndarray) -> Zero:
+    """First upward zero of each motion after a time that precedes it.
+
+    There is no zero between 0 and ``start``, where the function may be zero
+    itself: if it rises there, that is the zero. One-dimensional arrays.
+    """
+    time = np.array(start, dtype=float)
+    ended = np.zeros(time.shape, dtype=bool)
+    active, part, now = slice(None), motion, time
+    for steps in range(_MAX_STEPS):
+        state = part(now)
+        step, done = safe_step(state)
+        later = part.skip(now + step, steps)
+        # Zeros that are here: at the start, or where y touches zero to rounding.
+        rate = state.rate
+        here = (state.value >= 0) & ((rate > 0) | ((rate == 0) & (state.second >= 0)))
+        if state.ended is not None:
+            stop = state.ended & ~(done | here)
+            ended[active] = stop
+            here |= stop
+        later = np.where(here, now, later)
+        done |= later == now
+        time[active] = later
+        left = np.flatnonzero(~done)
+        if left.size == 0:
+            break
+        active = left if isinstance(active, slice) else active[left]
+        part, now = part.take(left), later[left]
+    undecided = np.zeros(time.shape, dtype=bool)
+    if left.size:
+        undecided[active] = True
+    time, rate = _to_the_last_digit(motion, time)
+    return Zero(np.maximum(time, start), rate, ended, undecided)
+
+
+def _to_the_last_digit(motion, time):
+    """One step of the function's own parabola, and the rate of change after it."""
+    state = motion(time)
+    v, acceleration = state.rate, state.second
+    twice = -2 * state.value
+    square = v * v
+    root = np.sqrt(np.maximum(square + acceleration * twice, 0.0))
+    # Where the zero is not certainly simple (a touch), the time stays as it is.
+    simple = (v > 0) & (state.second_bound * np.abs(twice) <= square)
+    step = np.where(simple, twice / (v + root + _TINY), 0.0)
+    rate = v + step * (acceleration + 0.5 * step * state.third)
+    return time + step, rate

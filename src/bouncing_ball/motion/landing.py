@@ -1,0 +1,100 @@
+r"""Free flight and the landing that ends it.
+
+Measured from the moment the ball leaves, with relative displacement δ_b and
+velocity v, and with X = Λ cos φ_b, Y = Λ sin φ_b of the table's phase then::
+
+    δ(s) = δ_b + v s - s²/2 + Y (1 - cos s) + X (s - sin s)
+    δ″   = -1 + Λ sin(φ_b + s) ≥ -(1 + Λ),    |δ‴| ≤ Λ
+
+which loses no digits in a short flight. The ball cannot land while it is
+above the table's highest point, z > Λ: that part is skipped.
+"""
+
+import numpy as np
+
+from bouncing_ball.errors import ModelError
+from bouncing_ball.motion.angles import sine_and_versine
+from bouncing_ball.motion.ensembles import pick
+from bouncing_ball.motion.first_zero import State, Zero, first_zero
+
+
+class Flight:
+    """The motion y = -δ, whose first upward zero is the landing.
+
+    Parameters
+    ----------
+    displacement, velocity : array
+        δ_b and v, relative to the table.
+    x, y : array
+        Λ cos φ_b and Λ sin φ_b.
+    amplitude : float or array
+        Λ.
+    """
+
+    def __init__(self, displacement, velocity, x, y, amplitude):
+        self.displacement, self.velocity = displacement, velocity
+        self.x, self.y, self.amplitude = x, y, amplitude
+        self.thrown = velocity + x
+        over = self.thrown * self.thrown + 2 * (displacement + (y - amplitude))
+        root = np.sqrt(np.maximum(over, 0.0))
+        # z > Λ between these two times; the second is the first or less if never.
+        self.above, self.below = self.thrown - root, self.thrown + root
+
+    def gap(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """δ, δ′, δ″, δ‴ after a time of flight."""
+        sine, versine = sine_and_versine(time)
+        x, y = self.x, self.y
+        late = time - sine
+        displacement = self.displacement + time * (self.velocity - 0.5 * time)
+        displacement = displacement + (y * versine + x * late)
+        rise = y * sine + x * versine
+        lift = y + (x * sine - y * versine)
+        push = x - rise
+        return displacement, (self.velocity - time) + rise, lift - 1, push
+
+    def __call__(self, time: np.ndarray) -> State:
+        displacement, rate, second, third = self.gap(time)
+        lam = self.amplitude
+        return State(-displacement, -rate, -second, -third, 1 + lam, lam, lam)
+
+    def take(self, which: np.ndarray) -> "Flight":
+        part = object.__new__(Flight)
+        for name, value in vars(self).items():
+            setattr(part, name, pick(value, which))
+        return part
+
+    def skip(self, time: np.ndarray, steps: int = 0) -> np.ndarray:
+        return np.where((time >= self.above) & (time < self.below), self.below, time)
+
+    def sure(self) -> np.ndarray:
+        """A time by which the ball has not landed: the flight of a ball that is
+        thrown with v from δ_b against the strongest relative gravity, 1 + Λ."""
+        gravity = 1 + self.amplitude
+        inside = self.velocity * self.velocity + 2 * gravity * self.displacement
+        return (self.velocity + np.sqrt(np.maximum(inside, 0.0))) / gravity
+
+
+def land(flight: Flight, start: np.ndarray) -> Zero:
+    """The landing after a time ``start`` by which there is none.
+
+    ``rate`` of the result is minus the relative impact velocity.
+
+    Raises
+    ------
+    ModelError
+        If the numbers are too large for floating point.
+
+    Examples
+    --------
+    A ball thrown up at 3 from a table at rest comes back after s = 6:
+
+    >>> zero, three = np.zeros(1), np.full(1, 3.0)
+    >>> flight = Flight(zero, three, zero, zero, 0.0)
+    >>> landing = land(flight, flight.sure())
+    >>> landing.time.tolist(), landing.rate.tolist()
+    ([6.0], [3.0])
+    """
+    landing = first_zero(flight, flight.skip(start))
+    if landing.undecided.any():
+        raise ModelError("a landing was not found: the flight is out of floating-point range")
+    return landing

@@ -1,0 +1,99 @@
+"""Sequences of impacts of many balls, as arrays."""
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+
+from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.motion.angles import reduce_angle
+
+
+class Status(IntEnum):
+    """What a ball is doing after its last recorded impact."""
+
+    BOUNCING = 0
+    """More impacts follow."""
+    PERMANENT_CONTACT = 1
+    """The last contact never ends."""
+    UNDECIDED = 2
+    """The last contact lasts for hundreds of oscillations, without proof that it never ends."""
+
+
+@dataclass(frozen=True)
+class ImpactSequence:
+    """Impacts in order, shape (impacts, ...) with one entry per ball behind.
+
+    An impact is the start of a contact. After a contact that does not end the
+    rows are NaN. Everything is dimensionless, and relative means relative to
+    the table.
+
+    Parameters
+    ----------
+    amplitude : array
+        Λ of each ball.
+    contact : Contact or None
+        The spring-damper, or None for the restitution model.
+    time, phase : array
+        Time of the impact since the first one, and the table's phase, in [-π, π].
+    displacement, relative_velocity : array
+        δ and δ′ at the impact. δ = 0 but where a contact that ended by its
+        force resumes below the table's level, with δ′ > 0.
+    contact_duration : array
+        Time until the ball leaves; 0 for an impact with a restitution coefficient
+        unless the ball sticks; infinite for permanent contact.
+    release_displacement, relative_release_velocity : array
+        δ and δ′ when the ball leaves.
+    status : array of int
+        :class:`Status` of each ball.
+    settling : array or None
+        Restitution model: the part of ``contact_duration`` taken by the
+        infinitely many impacts that are left out before the ball sticks.
+    """
+
+    amplitude: np.ndarray
+    contact: Contact | None
+    time: np.ndarray
+    phase: np.ndarray
+    displacement: np.ndarray
+    relative_velocity: np.ndarray
+    contact_duration: np.ndarray
+    release_displacement: np.ndarray
+    relative_release_velocity: np.ndarray
+    status: np.ndarray
+    settling: np.ndarray | None = None
+
+    @property
+    def impact_velocity(self) -> np.ndarray:
+        """Absolute velocity z′_i of the ball at the impact."""
+        return self.relative_velocity + self.amplitude * np.cos(self.phase)
+
+    @property
+    def release_phase(self) -> np.ndarray:
+        """Phase of the table when the ball leaves, in [-π, π]; NaN if it never does."""
+        finite = np.isfinite(self.contact_duration)
+        return reduce_angle(self.phase + np.where(finite, self.contact_duration, np.nan))
+
+    @property
+    def release_velocity(self) -> np.ndarray:
+        """Absolute velocity z′_b of the ball when it leaves."""
+        return self.relative_release_velocity + self.amplitude * np.cos(self.release_phase)
+
+    @property
+    def apparent_restitution(self) -> np.ndarray:
+        """r_a of each impact (Eq. 17)."""
+        return -self.relative_release_velocity / self.relative_velocity
+
+    @property
+    def impacts(self) -> np.ndarray:
+        """Number of recorded impacts of each ball."""
+        return np.sum(np.isfinite(self.time), axis=0)
+
+    def section(self, skip: int = 0) -> tuple[np.ndarray, np.ndarray]:
+        """Poincaré section at the impacts: all (phase, relative velocity), flat.
+
+        Without the first ``skip`` impacts of each ball.
+        """
+        phase, velocity = self.phase[skip:], self.relative_velocity[skip:]
+        there = np.isfinite(phase)
+        return phase[there], velocity[there]

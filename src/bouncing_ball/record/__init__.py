@@ -1,0 +1,1 @@
+"""Provenance of artifacts, the accepted record and the comparison with it."""

@@ -1,0 +1,296 @@
+"""Two datasets, variable by variable: structure first, then numbers."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.record.diff.drift import curve, pointwise, span
+from bouncing_ball.record.diff.outcome import Verdict
+from bouncing_ball.record.diff.tolerances import Mode, Tolerance, ToleranceError, Tolerances
+
+
+@dataclass(frozen=True)
+class VariableResult:
+    """What became of one variable, coordinate or attribute.
+
+    ``drift`` and ``budget`` are shares of the variable's scale, ``share`` is
+    the one over the other. ``place``, ``record`` and ``new`` tell where the
+    drift is largest and what stands there. Without numbers they are None.
+    """
+
+    name: str
+    verdict: Verdict
+    mode: Mode | None = None
+    drift: float | None = None
+    budget: float | None = None
+    share: float | None = None
+    place: str = ""
+    record: str = ""
+    new: str = ""
+    note: str = ""
+
+
+def _text(value: Any) -> str:
+    """A value in few characters, so that neighbouring numbers look different."""
+    value = value.item() if isinstance(value, np.generic) else value
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    text = repr(value) if isinstance(value, float) else str(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _kind(variable: xr.DataArray) -> str:
+    """The type as it matters: texts of any length are texts."""
+    return "text" if variable.dtype.kind in "OSUT" else str(variable.dtype)
+
+
+def _same_values(record: xr.DataArray, new: xr.DataArray) -> np.ndarray:
+    a, b = record.values, new.values
+    if _kind(record) == "text":
+        return np.asarray(a.astype(str) == b.astype(str))
+    return np.asarray((a == b) | ((a != a) & (b != b)))
+
+
+def _place(variable: xr.DataArray, index: tuple[int, ...]) -> str:
+    """Coordinates of an entry, or its indices where a dimension has none."""
+    parts = []
+    for name, position in zip(variable.dims, index, strict=True):
+        label = variable[name].values[position] if name in variable.coords else position
+        parts.append(f"{name} = {label:.6g}" if isinstance(label, float) else f"{name} = {label}")
+    return ", ".join(parts)
+
+
+def _attributes(
+    record: xr.Dataset | xr.DataArray, new: xr.Dataset | xr.DataArray, rules: Tolerances
+) -> Iterator[str]:
+    """One sentence for each attribute that matters and is not the same."""
+    for name in sorted({*record.attrs, *new.attrs}, key=str):
+        if rules.ignores(str(name)):
+            continue
+        if name not in new.attrs:
+            yield f"attribute {name} is gone"
+        elif name not in record.attrs:
+            yield f"attribute {name} is new"
+        elif not np.array_equal(np.asarray(record.attrs[name]), np.asarray(new.attrs[name])):
+            yield f"attribute {name}: {_text(record.attrs[name])} → {_text(new.attrs[name])}"
+
+
+def _structure(record: xr.DataArray, new: xr.DataArray, rules: Tolerances) -> Iterator[str]:
+    if record.dims != new.dims:
+        before, after = (", ".join(map(str, side.dims)) or "none" for side in (record, new))
+        yield f"dimensions: {before} → {after}"
+    elif record.shape != new.shape:
+        for name in record.dims:
+            if record.sizes[name] != new.sizes[name]:
+                yield f"size of {name}: {record.sizes[name]} → {new.sizes[name]}"
+    if _kind(record) != _kind(new):
+        yield f"type: {_kind(record)} → {_kind(new)}"
+    yield from _attributes(record, new, rules)
+
+
+def _statistics(values: xr.DataArray, rule: Tolerance) -> xr.DataArray:
+    numbers = values.astype(float)
+    taken = [
+        numbers.notnull().sum(dim=rule.along).astype(float)
+        if name == "count"
+        else getattr(numbers, name)(dim=rule.along)
+        for name in rule.statistics
+    ]
+    return xr.concat(taken, xr.Variable("statistic", list(rule.statistics)), coords="minimal")
+
+
+def _scale(rule: Tolerance, values: xr.DataArray, data: xr.Dataset) -> Any:
+    if isinstance(rule.scale, str):
+        return data[rule.scale].broadcast_like(values).transpose(*values.dims).values
+    return span(values) if rule.scale is None else rule.scale
+
+
+def _along_last(values: xr.DataArray, rule: Tolerance, like: xr.DataArray) -> np.ndarray:
+    """The values broadcast to the shape of another variable, the curve's dimension last."""
+    return values.broadcast_like(like).transpose(..., rule.along).values
+
+
+def drifts(name: str, record: xr.Dataset, new: xr.Dataset, rule: Tolerance) -> xr.DataArray:
+    """Drift of a variable at every place where the mode measures one.
+
+    Parameters
+    ----------
+    name : str
+        A variable of both datasets, of the same shape and of numbers.
+    record, new : Dataset
+    rule : Tolerance
+        Of mode pointwise, curve or invariant.
+
+    Returns
+    -------
+    DataArray
+        Dimensions of the variable; for the mode invariant ``along`` is gone and
+        ``statistic`` is there.
+
+    Raises
+    ------
+    ToleranceError
+        If the rule names a dimension or variable that is not there.
+
+    Examples
+    --------
+    >>> record = xr.Dataset({"x": ("t", [0.0, 1.0, 2.0])})
+    >>> shuffled = record.isel(t=[2, 0, 1])
+    >>> invariant = Tolerance(
+    ...     Mode.INVARIANT, "an example", budget=1e-9, along="t", statistics=("mean", "max")
+    ... )
+    >>> drifts("x", record, shuffled, invariant).values.tolist()
+    [0.0, 0.0]
+    """
+    a, b = record[name], new[name]
+    if rule.along is not None and rule.along not in a.dims:
+        raise ToleranceError(f"mode {rule.mode} needs the dimension {rule.along}")
+    for other in (rule.abscissa, rule.scale):
+        if isinstance(other, str) and not all(
+            other in data.variables and set(data[other].dims) <= set(a.dims)
+            for data in (record, new)
+        ):
+            raise ToleranceError(f"mode {rule.mode} needs {other}, on dimensions of {name}")
+    if rule.mode is Mode.INVARIANT:
+        scale = _scale(rule, a, record)
+        before, after = _statistics(a, rule), _statistics(b, rule)
+        return before.copy(data=pointwise(before.values, after.values, scale))
+    if rule.mode is Mode.CURVE:
+        axis = record[rule.abscissa]
+        # In the tube's own measure: the abscissa shrunk to the other axis.
+        width = span(axis) * (rule.axis_budget or rule.allowed) / rule.allowed
+        height = span(a)
+        sides = [
+            (_along_last(data[rule.abscissa], rule, a) / width, _along_last(data[name], rule, a))
+            for data in (record, new)
+        ]
+        (x, y), (new_x, new_y) = sides
+        values = curve(x, y / height, new_x, new_y / height)
+        return a.transpose(..., rule.along).copy(data=values)
+    return a.copy(data=pointwise(a.values, b.values, _scale(rule, a, record)))
+
+
+def _measured(name: str, record: xr.Dataset, new: xr.Dataset, rule: Tolerance) -> VariableResult:
+    try:
+        drift = drifts(name, record, new, rule)
+    except ToleranceError as error:
+        return VariableResult(name, Verdict.STRUCTURE, rule.mode, note=str(error))
+    place = np.unravel_index(int(np.argmax(drift.values)), drift.shape)
+    index = tuple(int(k) for k in place)
+    largest = float(drift.values[index])
+    share = largest / rule.allowed
+    note = ""
+    if rule.mode is Mode.INVARIANT:
+        shown = [_text(_statistics(data[name], rule).values[index]) for data in (record, new)]
+    else:
+        shown = [_value(data[name], record[name], drift, index) for data in (record, new)]
+    if rule.mode is Mode.CURVE:
+        axis = [_value(data[rule.abscissa], record[name], drift, index) for data in (record, new)]
+        note = f"over {rule.abscissa}: {' → '.join(dict.fromkeys(axis))}"
+    return VariableResult(
+        name,
+        Verdict.WITHIN if share <= 1 else Verdict.DRIFTED,
+        rule.mode,
+        largest,
+        rule.budget,
+        share,
+        _place(drift, index),
+        shown[0],
+        shown[1],
+        note,
+    )
+
+
+def _value(
+    values: xr.DataArray, like: xr.DataArray, drift: xr.DataArray, index: tuple[int, ...]
+) -> str:
+    """What stands at the place of a drift."""
+    return _text(values.broadcast_like(like).transpose(*drift.dims).values[index])
+
+
+def _exactly(
+    name: str, record: xr.DataArray, new: xr.DataArray, same: np.ndarray, note: str
+) -> VariableResult:
+    different = np.argwhere(~same)
+    index = tuple(int(k) for k in different[0])
+    count = f"{len(different)} of {same.size} entries differ"
+    return VariableResult(
+        name,
+        # Labels say what the data are: under other labels they are other data.
+        Verdict.STRUCTURE if name in record.dims else Verdict.DRIFTED,
+        Mode.EXACT,
+        math.inf,
+        0.0,
+        math.inf,
+        _place(record, index),
+        _text(record.values[index]),
+        _text(new.values[index]),
+        f"{count}; {note}" if note else count,
+    )
+
+
+def _compare_variable(
+    name: str, artifact: str, record: xr.Dataset, new: xr.Dataset, rules: Tolerances
+) -> VariableResult:
+    a, b = record[name], new[name]
+    rule = rules.of(artifact, name)
+    mode = Mode.EXACT if rule is None else rule.mode
+    note = "no entry in the tolerance file" if rule is None else ""
+    changes = list(_structure(a, b, rules))
+    if (name in record.coords) != (name in new.coords):
+        changes.append("coordinate → data" if name in record.coords else "data → coordinate")
+    if changes:
+        return VariableResult(name, Verdict.STRUCTURE, mode, note="; ".join(changes))
+    same = _same_values(a, b)
+    if same.all():
+        budget = None if rule is None else rule.budget
+        return VariableResult(name, Verdict.IDENTICAL, mode, 0.0, budget, 0.0, note=note)
+    if mode is Mode.IGNORED:
+        return VariableResult(name, Verdict.WITHIN, mode, note="differs, and is not compared")
+    if rule is None or mode is Mode.EXACT or _kind(a) == "text":
+        return _exactly(name, a, b, same, note)
+    return _measured(name, record, new, rule)
+
+
+def compare_datasets(
+    artifact: str, record: xr.Dataset, new: xr.Dataset, rules: Tolerances
+) -> list[VariableResult]:
+    """All variables, coordinates and attributes of two datasets, worst first.
+
+    A variable without an entry among the tolerances is compared exactly, and
+    its note says so. Parameters, the global attributes, are always exact.
+
+    Examples
+    --------
+    >>> rules = Tolerances(
+    ...     {"phase": Tolerance(Mode.POINTWISE, "an example", budget=1e-3)},
+    ...     Tolerance(Mode.POINTWISE, "an example", budget=1.0),
+    ... )
+    >>> record = xr.Dataset({"phase": ("point", [0.0, 1.0])})
+    >>> found = compare_datasets("fig", record, record + 2.0**-11, rules)
+    >>> [(each.name, str(each.verdict), round(each.share, 3)) for each in found]
+    [('phase', 'within budget', 0.488)]
+    """
+    results = []
+    for name in sorted({str(name) for name in (*record.variables, *new.variables)}):
+        if name not in new.variables:
+            results.append(VariableResult(name, Verdict.STRUCTURE, note="is gone"))
+        elif name not in record.variables:
+            results.append(VariableResult(name, Verdict.STRUCTURE, note="is new"))
+        else:
+            results.append(_compare_variable(name, artifact, record, new, rules))
+    changes = list(_attributes(record, new, rules))
+    if changes:
+        results.append(
+            VariableResult("(global attributes)", Verdict.STRUCTURE, note="; ".join(changes))
+        )
+    return sorted(results, key=_severity)
+
+
+def _severity(result: Any) -> tuple:
+    """Sorting key: the worst verdict first, then the largest share, then the name."""
+    return -result.verdict.rank, -(result.share or 0.0), result.name

@@ -1,0 +1,52 @@
+"""One page with everything, which needs neither a network nor a script."""
+
+import base64
+import math
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from bouncing_ball.record.diff.folders import Comparison
+from bouncing_ball.record.diff.outcome import Verdict, status
+from bouncing_ball.record.diff.report_terminal import SENTENCES, counts, remarks, share_text
+
+
+def _colour(verdict: Verdict) -> str:
+    """Class of a verdict on the page."""
+    return ("ok", "bad", "broken")[status(verdict)]
+
+
+def _small(value: float | None) -> str:
+    if value is None:
+        return ""
+    return f"{value:.2g}" if math.isfinite(value) else "∞"
+
+
+def to_html(comparison: Comparison) -> str:
+    """The page: artifacts worst first; record, new and difference of each picture.
+
+    All pictures are part of the page; one that is the same on both sides is
+    there once.
+
+    Examples
+    --------
+    >>> "<h1>Artifacts against the record</h1>" in to_html(Comparison(()))
+    True
+    """
+    environment = Environment(
+        loader=PackageLoader("bouncing_ball.record.diff", "."),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    return environment.get_template("page.html.j2").render(
+        comparison=comparison,
+        sentence=SENTENCES[status(comparison.verdict)],
+        counts=counts(comparison) or "No artifacts",
+        remarks=remarks,
+        share=share_text,
+        small=_small,
+        colour=_colour,
+        base64=lambda content: base64.b64encode(content).decode("ascii"),
+    )

@@ -1,0 +1,1 @@
+"""Datasets turned into figures, tables and the article; nothing is computed here."""

@@ -1,0 +1,69 @@
+"""Figure 15: existence and stability of the n-T orbit in both models."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from bouncing_ball.render.figures.branches import (
+    draw_branch,
+    draw_period_doublings,
+    draw_saddle_nodes,
+    legend_handles,
+)
+from bouncing_ball.render.figures.domains import draw_special
+from bouncing_ball.render.figures.style import COLOURS, RESTITUTION, canvas, number
+
+
+def draw(data: xr.Dataset) -> Figure:
+    """Phases of both models against Λ."""
+    figure, axes = canvas(4.6, 3.4)
+    draw_branch(
+        axes,
+        data.restitution_amplitude,
+        data.restitution_phase / np.pi,
+        data.restitution_stable,
+        data.restitution_admissible,
+        RESTITUTION,
+    )
+    draw_saddle_nodes(
+        axes, float(data.saddle_node_amplitude), float(data.saddle_node_phase) / np.pi, RESTITUTION
+    )
+    draw_period_doublings(
+        axes,
+        float(data.period_doubling_amplitude),
+        float(data.period_doubling_phase) / np.pi,
+        RESTITUTION,
+    )
+    curve = data.squeeze("frequency_ratio")
+    start, end = COLOURS[1], COLOURS[2]
+    release = curve.special_phase + curve.special_contact_duration
+    draw_branch(axes, curve.amplitude, curve.phase / np.pi, curve.stable, curve.admissible, start)
+    draw_branch(
+        axes, curve.amplitude, curve.release_phase / np.pi, curve.stable, curve.admissible, end
+    )
+    draw_special(axes, curve, curve.special_phase, start)
+    draw_special(axes, curve, release, end)
+    models = [
+        Line2D([], [], color=RESTITUTION, label=r"restitution, $\varphi$"),
+        Line2D([], [], color=start, label=r"spring-damper, $\varphi$"),
+        Line2D([], [], color=end, label=r"spring-damper, $\varphi+\tau_b$"),
+    ]
+    axes.set(
+        xlabel=r"amplitude $\Lambda$",
+        ylabel="phase of the table over $\\pi$",
+        xlim=(0.9 * float(curve.amplitude.min()), data.attrs["amplitude_max"]),
+    )
+    axes.set_title(
+        rf"$n={data.attrs['n']}$, $r={number(data.attrs['restitution'])}$, "
+        rf"$\varpi={number(float(curve.frequency_ratio))}$",
+        fontsize=9,
+    )
+    figure.legend(
+        handles=[*models, *legend_handles("#5f5f5f", inadmissible=not bool(data.admissible.all()))],
+        loc="outside lower center",
+        ncols=3,
+        columnspacing=1.0,
+        handletextpad=0.5,
+    )
+    return figure

@@ -1,0 +1,39 @@
+"""Figure 16: permanent-contact threshold of both models against ϖ."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from bouncing_ball.render.figures.style import CONTACT, RESTITUTION, canvas
+from bouncing_ball.render.figures.thresholds import draw_threshold, mark_error_threshold
+
+
+def draw(data: xr.Dataset) -> Figure:
+    """Fig. 11 with the restitution model and the threshold of the relative error."""
+    figure, axes = canvas(height=2.6)
+    draw_threshold(axes, data)
+    high = axes.get_xlim()[1]
+    limit = float(data.restitution_threshold)
+    axes.axhline(limit, color=RESTITUTION, linewidth=1.0)
+    axes.annotate(
+        r"$\Lambda_{CR}$",
+        (high, limit),
+        xytext=(0, 3),
+        textcoords="offset points",
+        ha="right",
+        fontsize=8,
+    )
+    # Named where it has left the line of the restitution model behind.
+    ratio, curve = data.frequency_ratio.values, data.threshold_amplitude.values
+    at = int(np.argmin(np.abs(np.log(ratio / ratio[int(np.argmin(curve))]) - 0.7)))
+    axes.annotate(
+        axes.get_ylabel().split()[-1],
+        (ratio[at], curve[at]),
+        xytext=(4, -9),
+        textcoords="offset points",
+        color=CONTACT,
+        fontsize=8,
+    )
+    axes.set_ylabel(r"threshold amplitude $\Lambda$")
+    mark_error_threshold(axes, data, "PC", digits=2, height=0.82, side="right")
+    return figure

@@ -1,0 +1,98 @@
+"""Orbits of the restitution model: time history and domains (Figs. 2 and 3)."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.datasets.variables import describe
+from bouncing_ball.orbits import restitution_orbit as orbits
+from bouncing_ball.orbits.admissibility import restitution_is_admissible
+from bouncing_ball.orbits.restitution_orbit import ImpactMap
+from bouncing_ball.orbits.stability import is_stable
+
+
+def _grazing(n: int, r: float, top: float) -> tuple[float, float]:
+    """Λ and φ at which the unstable orbit grazes the table, NaN beyond ``top``.
+
+    Bisection of Λ on the unstable side, down to neighbouring numbers.
+    """
+    low, high = float(orbits.saddle_node(n, r)), top
+
+    def admissible(amplitude):
+        phase = orbits.phase(n, r, amplitude, stable_side=False)
+        return bool(restitution_is_admissible(n, amplitude, phase))
+
+    if admissible(high):
+        return np.nan, np.nan
+    while low < (middle := (low + high) / 2) < high:
+        low, high = (middle, high) if admissible(middle) else (low, middle)
+    return low, float(orbits.phase(n, r, low, stable_side=False))
+
+
+def restitution_orbits(parameters: Mapping[str, Any]) -> xr.Dataset:
+    """φ against Λ for several families, from ``n``, ``restitution``,
+    ``amplitude_max`` and ``points``.
+
+    The branch of each family runs from the unstable side to the stable one,
+    out to Λ = ``amplitude_max``.
+
+    Raises
+    ------
+    NoOrbitError
+        If a family does not exist up to ``amplitude_max``.
+    """
+    n = np.array(parameters["n"])
+    r, top = parameters["restitution"], parameters["amplitude_max"]
+    fold = orbits.saddle_node(n, r)
+    amplitude, phase = orbits.branch(n, r, top, parameters["points"])
+    stable = is_stable(*orbits.trace_and_determinant(r, amplitude, phase))
+    admissible = restitution_is_admissible(n[:, np.newaxis], amplitude, phase)
+    grazing = np.array([_grazing(int(k), r, top) for k in n])
+    maps = list(ImpactMap)
+    doubling = np.array([orbits.period_doubling(n, r, kind) for kind in maps])
+    lift = np.array([[float(orbits.period_doubling_lift(r, kind))] for kind in maps])
+    return describe(
+        xr.Dataset(
+            {
+                "amplitude": (("n", "point"), amplitude),
+                "phase": (("n", "point"), phase),
+                "stable": (("n", "point"), stable),
+                "admissible": (("n", "point"), admissible),
+                "grazing_amplitude": ("n", grazing[:, 0]),
+                "grazing_phase": ("n", grazing[:, 1]),
+                "saddle_node_amplitude": ("n", fold),
+                "saddle_node_phase": ("n", np.zeros_like(fold)),
+                "period_doubling_amplitude": (("impact_map", "n"), doubling),
+                "period_doubling_phase": (("impact_map", "n"), np.arctan2(lift, fold)),
+            },
+            coords={"n": n, "impact_map": [str(kind) for kind in maps]},
+        )
+    )
+
+
+def restitution_history(parameters: Mapping[str, Any]) -> xr.Dataset:
+    """Ball and table over ``periods`` of the orbit, restitution model (Fig. 2).
+
+    Raises
+    ------
+    NoOrbitError
+        If Λ lies below the saddle-node.
+    """
+    n, lam = parameters["n"], parameters["amplitude"]
+    phase = orbits.phase(n, parameters["restitution"], lam)
+    period = 2 * np.pi * n
+    time = np.linspace(0.0, parameters["periods"] * period, parameters["samples"])
+    height, velocity = orbits.path(n, lam, phase, time)
+    return describe(
+        xr.Dataset(
+            {
+                "time": ("sample", time),
+                "ball": ("sample", height),
+                "ball_velocity": ("sample", velocity),
+                "table": ("sample", lam * np.sin(time + phase)),
+                "phase": ((), float(phase)),
+            }
+        )
+    )

@@ -1,0 +1,142 @@
+"""The convergence study: what it varies, and its script on one figure."""
+
+import csv
+import runpy
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import xarray as xr
+import yaml
+
+from bouncing_ball.audit.claims.ledger_file import printed, read_ledger
+from bouncing_ball.audit.convergence import (
+    Stage,
+    Variation,
+    on_the_old_grid,
+    sensitivity,
+    stages,
+    tighter,
+    variations,
+)
+from bouncing_ball.datasets.netcdf import read_dataset
+from bouncing_ball.record.diff.budgets import changes
+from bouncing_ball.record.diff.tolerance_file import read_tolerances
+
+ROOT = Path(__file__).resolve().parents[2]
+# What the evidence is read from, as the rule says.
+SOURCES = [f"fig{number:02d}" for number in (3, 5, 6, 8, 9, 10, 13, 14, 15, 16)]
+SOURCES += ["table1", "thresholds", "ext_release"]
+
+
+@pytest.fixture(scope="module")
+def config():
+    return yaml.safe_load((ROOT / "config" / "config.yaml").read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="module")
+def made(config):
+    table = printed(read_ledger(ROOT / "config"), "Table 1")
+    return stages(config, table, SOURCES)
+
+
+def test_every_stage_of_the_configuration_is_varied(config, made):
+    parts = ("figures", "tables", "extensions", "studies")
+    assert set(made) == {name for part in parts for name in config[part]}
+
+
+def test_a_stage_is_what_the_pipeline_runs(made):
+    # The accepted dataset again, but for what another processor rounds.
+    rules = read_tolerances(ROOT / "config" / "tolerances.yaml")
+    for name in ("fig02", "fig05", "fig07", "fig11", "fig16", "forensics", "formulas"):
+        record = read_dataset(ROOT / "figures" / f"{name}.nc")
+        for variable, change in changes(name, record, made[name].run(), rules).items():
+            assert change <= rules.of(name, variable).budget, (name, variable)
+
+
+def test_tighter_settings(config):
+    loose = config["continuation"]
+    tight = tighter(loose)
+    changed = {key: tight[key] / loose[key] for key in loose if tight[key] != loose[key]}
+    assert changed == pytest.approx(
+        {"newton_tolerance": 0.1, "initial_step": 0.5, "largest_step": 0.5, "max_angle": 0.5}
+    )
+
+
+def test_what_is_varied_for_which_stage(made):
+    for name, kinds in (
+        ("fig11", [Variation.GRID, *[Variation.ROUNDING] * 4]),
+        ("fig07", [Variation.ROUNDING] * 4),
+        ("fig15", [Variation.TOLERANCES, Variation.GRID, *[Variation.ROUNDING] * 4]),
+    ):
+        base = made[name].run()
+        found = list(variations(name, made[name], base))
+        assert [kind for kind, _ in found] == kinds
+        for _, data in found:
+            assert {k: v.shape for k, v in data.items()} == {k: v.shape for k, v in base.items()}
+
+
+def test_the_old_grid_is_every_other_point_of_a_nested_one(made):
+    stage = made["fig11"]
+    base = stage.run()
+    finer = dict(stage.parameters["frequency_ratio"], samples=801)
+    fine = stage._replace(parameters=stage.parameters | {"frequency_ratio": finer}).run()
+    assert fine.sizes["frequency_ratio"] == 2 * base.sizes["frequency_ratio"] - 1
+    again = on_the_old_grid(fine, base)
+    # Powers of a ratio: a rounding or two.
+    np.testing.assert_allclose(again.frequency_ratio, base.frequency_ratio, rtol=1e-15)
+
+
+def test_a_known_sensitivity():
+    # x = r on a grid, which rounding moves by two units of 2^-53, and a curve
+    # of a grid that is not nested, which the finer grid moves.
+    def study(parameters):
+        count = parameters["samples"]
+        return xr.Dataset(
+            {"x": ("t", np.full(count, parameters["restitution"])), "y": float(count)}
+        )
+
+    stage = Stage(study, {"restitution": 0.75, "samples": 11})
+    found = sensitivity(
+        "any", stage, lambda base, data: {k: float(np.abs(data[k] - base[k]).max()) for k in base}
+    )
+    assert found == {
+        "x": {Variation.GRID: 0.0, Variation.ROUNDING: 2 * 2.0**-53},
+        "y": {Variation.GRID: 10.0, Variation.ROUNDING: 0.0},
+    }
+
+
+class Outputs(list):
+    """A job's outputs, in order and by name."""
+
+    def __init__(self, **named):
+        super().__init__(named.values())
+        self.__dict__.update(named)
+
+
+def test_the_script_writes_the_table(config, tmp_path, monkeypatch):
+    one = {key: config[key] for key in ("release", "continuation")}
+    one["figures"] = {"fig11": config["figures"]["fig11"]}
+    job = SimpleNamespace(
+        rule="convergence",
+        wildcards=(),
+        input=SimpleNamespace(tolerances=ROOT / "config" / "tolerances.yaml"),
+        output=Outputs(changes=tmp_path / "convergence.csv"),
+        params=SimpleNamespace(config=one, figures=["fig11"], printed={}, evidence=["none"]),
+        log=[tmp_path / "log"],
+    )
+    # An interrupted job ends at once, but the tests are not to.
+    monkeypatch.setattr("signal.signal", lambda *_: None)
+    runpy.run_path(str(ROOT / "workflow/scripts/convergence.py"), {"snakemake": job})
+    with job.output.changes.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert list(rows[0]) == ["artifact", "variable", "tolerances", "grid", "rounding"]
+    with (ROOT / "config" / "convergence.csv").open(encoding="utf-8", newline="") as file:
+        accepted = [row for row in csv.DictReader(file) if row["artifact"] == "fig11"]
+    assert [row["variable"] for row in rows] == [row["variable"] for row in accepted]
+    assert "picture" in [row["variable"] for row in rows]
+    for row in rows:
+        assert row["tolerances"] == "" and float(row["grid"]) >= 0
+        # A formula: a few roundings, of which no pixel knows.
+        assert 0 <= float(row["rounding"]) < (1.0 if row["variable"] == "picture" else 1e-13)

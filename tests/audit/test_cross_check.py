@@ -1,0 +1,119 @@
+"""The witness agrees with itself, and sees what is wrong."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.audit.cross_check import BUDGETS, FORMULA, HOLDS, LEAVES, WitnessError, witness
+from bouncing_ball.studies.frequency_sweeps import frequency_sweep
+from bouncing_ball.studies.orbit_branches import both_domains, orbit_branches, stability_ranges
+from bouncing_ball.studies.restitution_families import restitution_history, restitution_orbits
+
+
+def with_attributes(data, parameters, release=None):
+    data.attrs = parameters | ({"release": release} if release else {})
+    return data
+
+
+@pytest.fixture(params=["displacement", "force"])
+def branches(request, continuation_settings):
+    parameters = {
+        "n": 1,
+        "restitution": 0.85,
+        "frequency_ratio": [10.0, 2.0],
+        "amplitude_max": 1.5,
+        "points": 41,
+    }
+    data = orbit_branches(parameters, request.param, continuation_settings)
+    return with_attributes(data, parameters, request.param)
+
+
+def test_branches_agree(branches, continuation_settings):
+    result = witness({"fig08": branches}, continuation_settings)
+    assert np.all(result.disagreement <= result.budget)
+    # Every kind of comparison is made on some orbits.
+    assert np.all(result.orbits > 0)
+    assert int(result.orbits.sel(artifact="fig08", comparison=FORMULA)) == 82 + 7
+
+
+@pytest.mark.parametrize(
+    ("variable", "shift"),
+    [
+        ("phase", 1e-10),
+        ("amplitude", 1e-10),
+        ("impact_velocity", 1e-10),
+        ("special_amplitude", 1e-10),
+    ],
+)
+def test_a_wrong_point_is_named(branches, continuation_settings, variable, shift):
+    branches[variable][0, 1] += shift
+    with pytest.raises(WitnessError) as error:
+        witness({"fig08": branches}, continuation_settings)
+    assert "fig08: continuation and formula disagree by" in str(error.value)
+    assert "ϖ = 10" in str(error.value) and "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("release", ["displacement", "force"])
+def test_sweeps_agree(continuation_settings, release):
+    parameters = {
+        "n": 2,
+        "restitution": 0.85,
+        "amplitude": [1.0, 0.6],
+        "frequency_ratio": {"min": 1.0, "max": 1e3, "samples": 15},
+    }
+    data = with_attributes(frequency_sweep(parameters, release), parameters, release)
+    result = witness({"fig10": data}, continuation_settings)
+    assert float(result.disagreement.sel(comparison=FORMULA).squeeze()) < 1e-12
+    data["impact_velocity"][0, 3] += 1e-9
+    with pytest.raises(WitnessError, match="Λ = 1, ϖ ="):
+        witness({"fig10": data}, continuation_settings)
+
+
+def test_restitution_model_agrees(continuation_settings):
+    domains = {"n": [1, 4], "restitution": 0.85, "amplitude_max": 2.0, "points": 31}
+    history = {"n": 1, "restitution": 0.85, "amplitude": 1.0, "periods": 1, "samples": 11}
+    datasets = {
+        "fig02": with_attributes(restitution_history(history), history),
+        "fig03": with_attributes(restitution_orbits(domains), domains),
+    }
+    result = witness(datasets, continuation_settings)
+    assert np.nanmax(result.disagreement.sel(comparison=HOLDS)) < 1e-12
+    assert int(result.orbits.sel(artifact="fig03", comparison=LEAVES)) > 10
+    datasets["fig03"]["phase"][1, 2] += 1e-9
+    with pytest.raises(WitnessError, match=r"4-T orbit .* restitution model"):
+        witness(datasets, continuation_settings)
+
+
+def test_both_models_in_one_dataset_and_the_table(continuation_settings):
+    domains = {
+        "n": 2,
+        "restitution": 0.65,
+        "frequency_ratio": 10.0,
+        "amplitude_max": 2.2,
+        "points": 21,
+    }
+    ranges = {
+        "n": [1, 2],
+        "restitution": 0.85,
+        "frequency_ratio": [10.0],
+        "amplitude_max": 1.5,
+    }
+    printed = {
+        "frequency_ratio": [10.0],
+        "n": [1, 2],
+        "bound": ["saddle-node", "period doubling"],
+        "values": [[[0.238, 1.035], [0.495, 1.126]]],
+    }
+    datasets = {
+        "fig15": with_attributes(
+            both_domains(domains, "displacement", continuation_settings), domains, "displacement"
+        ),
+        "table1": with_attributes(
+            stability_ranges(ranges, "displacement", continuation_settings, printed),
+            ranges,
+            "displacement",
+        ),
+    }
+    result = witness(datasets, continuation_settings)
+    # 21 points and 2 bifurcations of each model; 4 bifurcations of the table.
+    assert result.orbits.sel(comparison=FORMULA).values.tolist() == [46, 4]
+    assert set(BUDGETS) == set(result.comparison.values)

@@ -1,0 +1,276 @@
+"""Impacts on the spring-damper against exact answers, orbits and a Taylor integrator."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bouncing_ball.errors import ModelError
+from bouncing_ball.impacts.damping import damping_ratio
+from bouncing_ball.impacts.permanent_contact import permanent_contact_threshold
+from bouncing_ball.impacts.spring_damper import Contact, Release
+from bouncing_ball.motion.contacts import contact_cycle, simulate
+from bouncing_ball.motion.history import history
+from bouncing_ball.motion.sequence import Status
+from bouncing_ball.orbits.limits import Side, orbit_at
+from bouncing_ball.orbits.monodromy import monodromy
+
+CASES = [
+    # n, r, ϖ, Λ
+    (1, 0.85, 10.0, 0.8),
+    (1, 0.65, 2.0, 0.9),
+    (2, 0.65, 10.0, 1.5),
+    (1, 0.85, 100.0, 0.9),
+    (1, 0.5, 1.5, 1.1),
+    (3, 0.85, 3.0, 1.0),
+]
+RELEASES = list(Release)
+
+
+def build(case, release, side=Side.STABLE):
+    n, r, omega, lam = case
+    contact = Contact(omega, float(damping_ratio(r)), release)
+    return contact, lam, orbit_at(contact, n, lam, side)
+
+
+def turn(angle):
+    """The angle reduced to [-π, π]."""
+    return (angle + np.pi) % (2 * np.pi) - np.pi
+
+
+@pytest.mark.parametrize("release", RELEASES)
+@pytest.mark.parametrize("case", CASES)
+def test_twenty_impacts_of_a_taylor_integrator(case, release, taylor_ball):
+    contact, lam, orbit = build(case, release)
+    phase, velocity = float(orbit.phase) + 0.1, float(orbit.impact_velocity) - 0.05
+    reference = taylor_ball(release is Release.FORCE)
+    expected = reference.impacts(lam, case[2], contact.damping_ratio, phase, velocity, 20)
+    got = simulate(contact, lam, phase, velocity, 20)
+    found = (got.time, got.impact_velocity, got.contact_duration, got.release_velocity)
+    # Measured: below 6e-13. The clock of the integrator is absolute: its rounding, 1e-14,
+    # is a velocity error of ϖ times that and the impact velocity.
+    for a, b in zip(expected, found, strict=True):
+        np.testing.assert_allclose(b, a, rtol=0, atol=2e-12)
+
+
+@pytest.mark.parametrize(
+    ("omega", "zeta", "factor"), [(1.4, 0.3, 1.03), (0.7, 0.5, 1.1), (2.0, 0.5, 1.01)]
+)
+def test_contacts_that_resume_below_the_level(omega, zeta, factor, taylor_ball):
+    """Force release, little above the threshold of permanent contact: the table loses the
+    ball and gets it back before it has come up to its level."""
+    contact = Contact(omega, zeta, Release.FORCE)
+    lam = factor * float(permanent_contact_threshold(omega, zeta, Release.FORCE))
+    got = simulate(contact, lam, 0.3, -0.2 + lam * np.cos(0.3), 20)
+    resumed = got.displacement < 0
+    assert resumed.sum() > 10 and np.all(got.relative_velocity[resumed] > 0)
+    rows = taylor_ball(True).impacts(lam, omega, zeta, 0.3, -0.2 + lam * np.cos(0.3), 20)
+    for a, b in zip(rows, (got.time, got.impact_velocity, got.contact_duration), strict=False):
+        # The start of a resumed contact is a crossing of low speed.
+        np.testing.assert_allclose(b, a, rtol=0, atol=1e-11)
+
+
+# The branch of the fifth does not turn round below its Λ.
+SIDES = [(case, Side.STABLE) for case in CASES]
+SIDES += [(case, Side.UNSTABLE) for case in CASES if case != CASES[4]]
+
+
+@pytest.mark.parametrize("release", RELEASES)
+@pytest.mark.parametrize(("case", "side"), SIDES)
+def test_orbits_are_fixed_points(case, side, release):
+    contact, lam, orbit = build(case, release, side)
+    cycle = contact_cycle(contact, lam, orbit.phase, orbit.relative_impact_velocity)
+    # The orbit is known to 1e-14; the map enlarges that by its multipliers, below 30.
+    assert abs(turn(cycle.phase - orbit.phase)) < 1e-12
+    assert abs(cycle.relative_velocity - orbit.relative_impact_velocity) < 1e-12
+    assert abs(cycle.time - 2 * np.pi * case[0]) < 1e-12
+
+
+@pytest.mark.parametrize("release", RELEASES)
+@pytest.mark.parametrize("case", CASES)
+def test_jacobian_is_the_monodromy(case, release):
+    contact, lam, orbit = build(case, release)
+    step = 1e-5
+    state = np.array([orbit.phase, orbit.relative_impact_velocity])
+    offsets = step * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]])
+    cycle = contact_cycle(contact, lam, *(state + offsets).T)
+    after = np.array([cycle.phase, cycle.relative_velocity])
+    columns = [(after[:, k] - after[:, k + 1]) / (2 * step) for k in (0, 2)]
+    # Central differences: step² times third derivatives, up to 100, and rounding over step.
+    np.testing.assert_allclose(np.transpose(columns), monodromy(orbit), rtol=0, atol=1e-7)
+
+
+@pytest.mark.parametrize("case", CASES[:3])
+def test_the_stable_orbit_holds_and_the_unstable_one_is_left(case):
+    contact, lam, orbit = build(case, Release.DISPLACEMENT)
+    sequence = simulate(contact, lam, orbit.phase, orbit.impact_velocity, 51)
+    # A contraction: errors of 1e-14 in each impact do not add up. The time does.
+    assert np.max(np.abs(turn(sequence.phase - orbit.phase))) < 1e-12
+    assert abs(sequence.time[-1] - 100 * np.pi * case[0]) < 1e-11
+
+    contact, lam, orbit = build(case, Release.DISPLACEMENT, Side.UNSTABLE)
+    values, vectors = np.linalg.eig(monodromy(orbit))
+    k = np.argmax(np.abs(values))
+    multiplier, direction = values[k].real, vectors[:, k].real
+    assert multiplier > 1
+    start = 1e-9 * direction / np.abs(direction[0])
+    relative = orbit.relative_impact_velocity + start[1]
+    phase = orbit.phase + start[0]
+    steps = int(np.log(1e4) / np.log(multiplier)) + 1
+    left = simulate(contact, lam, phase, relative + lam * np.cos(phase), steps)
+    grown = np.abs(turn(left.phase - orbit.phase)) / 1e-9
+    # Linear up to the size of the deviation, 1e-5; at its start known to 1e-14/1e-9.
+    np.testing.assert_allclose(grown, multiplier ** np.arange(steps), rtol=1e-3)
+
+
+def test_an_elastic_ball_on_a_table_at_rest_keeps_its_energy():
+    """The only exact answer with many impacts: equal velocities and equal times."""
+    omega, speed = 7.0, 1.5
+    sequence = simulate(Contact(omega, 0.0), 0.0, 0.0, -speed, 1000)
+    assert sequence.status == Status.BOUNCING
+    # 1000 impacts with an error of a unit in the last place each.
+    np.testing.assert_allclose(sequence.impact_velocity, -speed, rtol=1e-13)
+    np.testing.assert_allclose(sequence.release_velocity, speed, rtol=1e-13)
+    # Symmetric about the deepest point: tan(ϖ D/2) = -ϖ u, on the far side of π/2.
+    duration = 2 / omega * (np.pi - np.arctan(omega * speed))
+    np.testing.assert_allclose(sequence.contact_duration, duration, rtol=1e-13)
+    np.testing.assert_allclose(np.diff(sequence.time), duration + 2 * speed, rtol=1e-12)
+
+
+@pytest.mark.parametrize("release", RELEASES)
+@pytest.mark.parametrize(("omega", "zeta"), [(0.7, 0.3), (2.0, 0.1), (10.0, 0.05), (30.0, 0.2)])
+def test_permanent_contact_begins_and_ends_at_its_threshold(omega, zeta, release):
+    contact = Contact(omega, zeta, release)
+    threshold = float(permanent_contact_threshold(omega, zeta, release))
+    below, above = threshold * (1 - 1e-9), threshold * (1 + 1e-6)
+    lam = np.array([below, above])
+    sequence = simulate(contact, lam, 0.2, lam * np.cos(0.2) - 1e-3, 300)
+    assert sequence.status.tolist() == [Status.PERMANENT_CONTACT, Status.BOUNCING]
+    last = sequence.impacts[0] - 1
+    assert sequence.contact_duration[last, 0] == np.inf
+    assert np.all(np.isnan(sequence.time[last + 1 :, 0]))
+    assert sequence.impacts[1] == 300
+
+
+def test_cycle_of_a_permanent_contact():
+    cycle = contact_cycle(Contact(10.0, 0.1), 0.2, [0.0, 1.0], [0.0, -50.0])
+    assert np.isnan(cycle.phase[0]) and cycle.time[0] == np.inf
+    assert np.isfinite(cycle.phase[1])
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_ensembles_equal_single_runs_exactly(release):
+    rng = np.random.default_rng(3)
+    size = 40
+    lam, omega = rng.uniform(0.5, 4.0, size), rng.uniform(1.5, 50.0, size)
+    zeta, phase = rng.uniform(0.0, 0.4, size), rng.uniform(-3.0, 3.0, size)
+    velocity = lam * np.cos(phase) - rng.uniform(0.0, 5.0, size)
+    many = simulate(Contact(omega, zeta, release), lam, phase, velocity, 30)
+    for k in range(size):
+        contact = Contact(float(omega[k]), float(zeta[k]), release)
+        one = simulate(contact, float(lam[k]), float(phase[k]), float(velocity[k]), 30)
+        assert one.status == many.status[k]
+        for name in ("time", "phase", "relative_velocity", "contact_duration", "displacement"):
+            np.testing.assert_array_equal(getattr(one, name), getattr(many, name)[:, k], name)
+
+
+def test_blocks_make_no_difference():
+    """More balls than a block holds, in a shape of two dimensions."""
+    rng = np.random.default_rng(4)
+    phase = rng.uniform(-3.0, 3.0, (2, 9000))
+    contact = Contact(10.0, 0.05)
+    many = simulate(contact, 1.5, phase, -4.0, 5)
+    assert many.phase.shape == (5, 2, 9000)
+    few = simulate(contact, 1.5, phase[1, -3:], -4.0, 5)
+    np.testing.assert_array_equal(many.phase[:, 1, -3:], few.phase)
+    cycle = contact_cycle(contact, 1.5, many.phase[0], many.relative_velocity[0])
+    np.testing.assert_array_equal(cycle.phase, many.phase[1])
+
+
+@settings(max_examples=40)
+@given(
+    lam=st.floats(0.0, 6.0),
+    omega=st.floats(0.3, 200.0),
+    zeta=st.floats(0.02, 0.9),
+    phase=st.floats(-3.2, 3.2),
+    speed=st.floats(0.0, 8.0),
+    release=st.sampled_from(RELEASES),
+)
+def test_the_ball_is_where_its_state_says(lam, omega, zeta, phase, speed, release):
+    """In flight above the table or, after a release by force, unloaded; in contact below
+    it or, by force, loaded."""
+    contact = Contact(omega, zeta, release)
+    velocity = lam * np.cos(phase) - speed
+    sequence = simulate(contact, lam, phase, velocity, 15)
+    last = np.max(sequence.time[np.isfinite(sequence.time)])
+    dense = history(sequence, np.linspace(0, last, 3000))
+    lag = 2 * zeta / omega if release is Release.FORCE else 0.0
+    relative = dense.velocity - lam * np.cos(phase + dense.time)
+    loaded = dense.gap + lag * relative
+    # δ is known to the rounding of its parts, z up to 50 and Λ/ϖ²; over a long run the
+    # clock, up to 1000, moves samples near an event by 1e-13 times a velocity of 10.
+    noise = 1e-12
+    flying = ~dense.touching
+    assert np.all(np.maximum(dense.gap, loaded)[flying] >= -noise)
+    assert np.all(loaded[~flying] <= noise)
+
+
+def test_history_is_continuous_and_knows_its_end():
+    contact = Contact(5.0, 0.1)
+    sequence = simulate(contact, 1.2, 0.5, -3.0, 6)
+    event = np.concatenate([sequence.time[1:], (sequence.time + sequence.contact_duration)[:-1]])
+    before, after = (history(sequence, event + x) for x in (-1e-9, 1e-9))
+    # Twice 1e-9 at a velocity below 10.
+    assert np.max(np.abs(before.height - after.height)) < 2e-8
+    assert np.max(np.abs(before.velocity - after.velocity)) < 1e-6
+    outside = history(sequence, [-1.0, sequence.time[-1] + 100.0])
+    assert np.all(np.isnan(outside.height)) and np.all(np.isfinite(outside.table))
+    resting = simulate(contact, 0.1, 0.5, 0.0, 50)
+    # The steady state 1/ϖ² below a table that hardly moves.
+    late = history(resting, float(np.nanmax(resting.time)) + 500.0)
+    assert late.touching and abs(float(late.gap) + 1 / 25) < 0.1 / 20
+
+
+def test_section_collects_the_impacts():
+    sequence = simulate(Contact(10.0, 0.05), [0.9, 0.1], 0.8, -3.0, 200)
+    phase, velocity = sequence.section(skip=50)
+    there = np.isfinite(sequence.phase[50:])
+    assert phase.shape == velocity.shape == (there.sum(),)
+    assert sequence.status.tolist() == [Status.BOUNCING, Status.PERMANENT_CONTACT]
+
+
+def test_errors_are_one_line(one_line):
+    for arguments, part in (
+        ((Contact(1.0, 1.0), 1.0, 0.0, -1.0, 2), "underdamped"),
+        ((Contact(1.0, 0.0), 1.0, 0.0, -1.0, 2), "resonance"),
+        ((Contact(2.0, 0.1), -1.0, 0.0, -1.0, 2), "amplitude"),
+        ((Contact(2.0, 0.1), 1.0, 0.0, 1.5, 2), "rises"),
+        ((Contact(2.0, 0.1), 1.0, np.nan, 1.5, 2), "finite"),
+    ):
+        with pytest.raises(ModelError) as error:
+            simulate(*arguments)
+        one_line(error, part)
+
+
+def test_a_stiff_undamped_contact_ends_in_the_end():
+    """A ball that hardly moves rides the table for thousands of oscillations of the contact,
+    in which nothing decays, before it leaves; no zero is passed over on the way."""
+    omega, lam, phase = 3000.0, 0.999, 2.0
+    ride = simulate(Contact(omega, 0.0), lam, phase, lam * np.cos(phase), 1)
+    assert ride.status == Status.BOUNCING and 1.0 < ride.contact_duration[0] < 10.0
+    s = np.linspace(0.0, float(ride.contact_duration[0]), 400_001)[1:-1]
+    steady = -1 / omega**2 + lam * np.sin(s + phase) / (omega**2 - 1)
+    start = -1 / omega**2 + lam * np.sin(phase) / (omega**2 - 1)
+    rate = lam * np.cos(phase) / (omega**2 - 1)
+    free = -start * np.cos(omega * s) - rate / omega * np.sin(omega * s)
+    # In units of the static compression; the phase ϖ s is known to 1e-12.
+    assert np.all((steady + free) * omega**2 < 1e-11)
+
+
+def test_nearly_critical_damping():
+    """ζ → 1: the bound by half a free period is of no use, and not needed."""
+    zeta = np.array([0.99, 0.99999, 1 - 1e-9])
+    cycle = contact_cycle(Contact(3.0, zeta), 2.0, -0.5, -3.0)
+    # A smooth limit: the cycle changes by as little as ζ, times 100.
+    assert np.all(np.isfinite(cycle.time))
+    assert abs(cycle.time[1] - cycle.time[2]) < 1e-3

@@ -1,0 +1,284 @@
+"""The paper's equations as a problem of the continuation."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bouncing_ball.continuation.branch import (
+    continue_both_ways,
+    continue_branch,
+    resample,
+    solve_at,
+)
+from bouncing_ball.continuation.events import fold, parameter_bound
+from bouncing_ball.continuation.step_control import StepControl
+from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.impacts.damping import damping_ratio
+from bouncing_ball.impacts.permanent_contact import permanent_contact_threshold
+from bouncing_ball.impacts.spring_damper import Contact, Release
+from bouncing_ball.orbits.closed_form import branch_point
+from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
+from bouncing_ball.orbits.limits import orbit_at, period_doubling, saddle_node
+
+releases = st.sampled_from(list(Release))
+parameters = st.sampled_from(list(Parameter))
+
+
+def build(n, zeta, parameter, omega, lam, release):
+    """A system and the last entry of y that gives (ϖ, Λ)."""
+    if parameter is Parameter.AMPLITUDE:
+        return OrbitSystem(n, zeta, parameter, omega, release), lam
+    return OrbitSystem(n, zeta, parameter, lam, release), np.log(omega)
+
+
+anywhere = st.tuples(
+    st.integers(1, 3),
+    st.one_of(st.just(0.0), st.floats(0.0, 0.9)),
+    parameters,
+    st.floats(np.log(0.7), np.log(1e4)).map(lambda x: float(np.exp(x))),
+    st.floats(0.1, 3.0),
+    releases,
+    st.floats(-3, 3),
+    st.floats(-12, -0.5),
+    st.floats(0.5, 4.0),
+)
+
+
+@given(anywhere)
+def test_residual_against_the_papers_solution(reference, values):
+    n, zeta, parameter, omega, lam, release, phase, impact, angle = values
+    if abs(omega - 1) < 0.05:  # the paper's form is singular at the resonance
+        omega = 1.1
+    system, p = build(n, zeta, parameter, omega, lam, release)
+    duration = angle / omega
+    state = reference.paper_contact(impact - lam * np.cos(phase), phase, lam, omega, zeta)
+    d, v = state(duration)
+    flight = 2 * np.pi * n - duration
+    z = d + lam * np.sin(phase + duration)
+    bounce = impact + flight
+    expected = [
+        omega * d + (2 * zeta * v if release is Release.FORCE else 0.0),
+        v + lam * np.cos(phase + duration) - bounce,
+        z + bounce * flight - flight**2 / 2 - lam * np.sin(phase),
+    ]
+    # The paper's constants lose 1/√γ at ϖ ≈ 1: some hundred roundings of
+    # velocities of order 20 and heights of order 400.
+    computed = system.residual(np.array([phase, impact, angle, p]))
+    assert computed == pytest.approx(np.array(expected), abs=3e-11)
+
+
+@given(anywhere)
+def test_jacobian_against_differences(values):
+    n, zeta, parameter, omega, lam, release, phase, impact, angle = values
+    system, p = build(n, zeta, parameter, omega, lam, release)
+    y = np.array([phase, impact, angle, p])
+    h = 1e-3
+    columns = []
+    for k in range(4):
+        offset = np.zeros(4)
+        offset[k] = h
+        steps = np.array([system.residual(y + m * offset) for m in (-2, -1, 1, 2)])
+        columns.append(np.array([1, -8, 8, -1]) / 12 @ steps / h)
+    computed = system.jacobian(y)
+    # h⁴/30 times fifth derivatives of order 4⁵ at most in these scaled
+    # unknowns, times the size of the row; roundings 1e-13/h.
+    size = np.abs(computed).max(axis=1, keepdims=True) + 20
+    assert np.all(np.abs(computed - np.array(columns).T) <= 1e-9 * size)
+
+
+def test_broadcasting():
+    system = OrbitSystem(1, 0.05, Parameter.AMPLITUDE, 10.0)
+    y = np.array([0.5, -3.0, 3.2, 1.0]) + np.linspace(0, 0.1, 6).reshape(2, 3, 1)
+    assert system.residual(y).shape == (2, 3, 3)
+    assert system.jacobian(y).shape == (2, 3, 3, 4)
+    assert system.residual(y)[1, 2] == pytest.approx(system.residual(y[1, 2]), abs=1e-14)
+    assert system.jacobian(y)[1, 2] == pytest.approx(system.jacobian(y[1, 2]), abs=1e-13)
+
+
+@pytest.mark.parametrize("release", list(Release))
+@pytest.mark.parametrize("omega", [2.0, 10.0, 1e4])
+@pytest.mark.parametrize("n", [1, 2, 3])
+def test_continuation_finds_the_bifurcations_of_the_closed_form(n, omega, release):
+    zeta = float(damping_ratio(0.85))
+    contact = Contact(omega, zeta, release)
+    node = branch_point(saddle_node(contact, n), contact, n)
+    doubling = branch_point(period_doubling(contact, n), contact, n)
+    lam = float(node.amplitude + doubling.amplitude) / 2
+    orbit = orbit_at(contact, n, lam)
+    start = np.array([orbit.phase, orbit.impact_velocity, omega * orbit.duration, lam])
+    system = OrbitSystem(n, zeta, Parameter.AMPLITUDE, omega, release)
+    # Far enough to pass both; the window ends the stable side, and the
+    # amplitude of the start the unstable one.
+    top = 1.05 * float(doubling.amplitude)
+    events = (*system.events(), fold(system), parameter_bound(top, True, "window"))
+    branch = continue_both_ways(system, start, events=events)
+    assert branch.end_reason == "window"
+    names = [special.name for special in branch.special]
+    last = len(names) - 1 - names[::-1].index("saddle-node")
+    for point, index in (
+        (node, last),
+        (doubling, names.index("period doubling", last)),
+    ):
+        found = branch.special[index].point
+        # Newton's stop at 1e-12, relative to 1 + |y| ≤ 20, is converged
+        # quadratically; what is left are roundings of residuals of that size.
+        expected = [point.phase, point.u + point.x, omega * point.duration, point.amplitude]
+        assert found == pytest.approx(np.array(expected, dtype=float), abs=1e-11)
+        assert found[3] == pytest.approx(float(point.amplitude), abs=1e-12)
+    # The turning point of the branch is the saddle-node of the map.
+    folds = np.array(branch.named("fold"))[:, 3]
+    assert np.abs(folds - float(node.amplitude)).min() < 1e-12
+    # All of the branch is on the explicit curve, at its own durations.
+    y = resample(system, branch, 41)
+    assert np.abs(system.residual(y)).max() < 1e-11
+    excess = y[:, 2] * np.sqrt(1 - zeta**2)
+    excess = excess - (np.pi - 2 * np.arcsin(zeta) * (release is Release.FORCE))
+    curve = branch_point(excess, contact, n)
+    # ε carries the rounding of ϖD, 1e-15, and Λ changes by ϖ² over ε: only
+    # where that is below the tolerance is the comparison sharp.
+    assert curve.amplitude == pytest.approx(y[:, 3], abs=1e-12 * (1 + omega**2))
+
+
+@pytest.mark.parametrize("release", list(Release))
+@pytest.mark.parametrize(("n", "r", "lam"), [(1, 0.85, 0.7), (2, 0.65, 1.5)])
+def test_continuation_along_the_frequency_ratio(n, r, lam, release):
+    zeta = float(damping_ratio(r))
+    system = OrbitSystem(n, zeta, Parameter.LOG_FREQUENCY_RATIO, lam, release)
+    start = solve_at(system, system.guess(lam, 1e4))
+    target = parameter_bound(np.log(2.0), False, "there")
+    way = continue_branch(system, start, increasing=False, events=(*system.events(), target))
+    assert way.end_reason == "there"
+    expected = orbit_at(Contact(2.0, zeta, release), n, lam)
+    # As in the comparison above.
+    assert way.points[-1] == pytest.approx(
+        np.array(
+            [expected.phase, expected.impact_velocity, 2 * expected.duration, np.log(2.0)],
+            dtype=float,
+        ),
+        abs=1e-11,
+    )
+
+
+def test_orbit_reads_both_parametrisations():
+    along = OrbitSystem(2, 0.1, Parameter.AMPLITUDE, 8.0, Release.FORCE)
+    orbit = along.orbit(np.array([0.3, -6.0, 3.2, 1.4]))
+    assert (orbit.n, orbit.contact.release) == (2, Release.FORCE)
+    assert [float(x) for x in (orbit.phase, orbit.impact_velocity, orbit.amplitude)] == [
+        0.3,
+        -6.0,
+        1.4,
+    ]
+    assert float(orbit.contact.frequency_ratio) == 8.0
+    assert float(orbit.duration) == 0.4
+    across = OrbitSystem(2, 0.1, Parameter.LOG_FREQUENCY_RATIO, 1.4)
+    orbit = across.orbit(np.array([0.3, -6.0, 3.2, np.log(8.0)]))
+    assert float(orbit.amplitude) == 1.4
+    assert float(orbit.contact.frequency_ratio) == pytest.approx(8.0, rel=1e-15)
+    assert float(orbit.duration) == pytest.approx(0.4, rel=1e-15)
+
+
+def test_guess_is_first_order_in_the_contact_time():
+    system = OrbitSystem(1, 0.05, Parameter.LOG_FREQUENCY_RATIO, 0.7)
+    distances = []
+    for omega in (1e3, 1e4):
+        guess = system.guess(0.7, omega)
+        distances.append(np.linalg.norm(solve_at(system, guess) - guess))
+    assert distances[1] / distances[0] == pytest.approx(0.1, abs=2e-3)
+
+
+def test_guess_where_there_is_no_orbit(one_line):
+    system = OrbitSystem(1, float(damping_ratio(0.85)), Parameter.AMPLITUDE, 1e4)
+    with pytest.raises(NoOrbitError) as error:
+        system.guess(0.2, 1e4)
+    one_line(error, "no 1-T orbit at Λ = 0.2", "saddle-node at Λ = 0.254724")
+    with pytest.raises(ModelError) as error:
+        OrbitSystem(1, 1.0, Parameter.AMPLITUDE, 1e4).guess(0.5, 1e4)
+    one_line(error, "ζ = 1.0", "[0, 1)")
+
+
+def test_guess_of_a_strongly_damped_contact_released_at_zero_force():
+    # r = 0.3, half way between the bifurcations of the restitution orbit: the
+    # study starts from here for every contact.
+    n, zeta, lam = 3, float(damping_ratio(0.3)), 5.155
+    system = OrbitSystem(n, zeta, Parameter.LOG_FREQUENCY_RATIO, lam, Release.FORCE)
+    assert float(orbit_at(Contact(1e4, zeta, Release.FORCE), n, lam).duration) > 0
+    solve_at(system, system.guess(lam, 1e4))
+
+
+def follow_unstable_side(n, omega, r, lam, largest=0.2):
+    zeta = float(damping_ratio(r))
+    system = OrbitSystem(n, zeta, Parameter.AMPLITUDE, omega)
+    orbit = orbit_at(Contact(omega, zeta), n, lam)
+    start = np.array([orbit.phase, orbit.impact_velocity, omega * orbit.duration, lam])
+    events = (*system.events(), fold(system), parameter_bound(10.0, True, "window"))
+    control = StepControl(largest=largest)
+    return system, continue_branch(system, start, increasing=False, events=events, control=control)
+
+
+CONTACT_LOST = "contact lost: the ball no longer closes in on the table at impact"
+FLIGHT_LOST = "flight lost: the contact fills the whole cycle"
+
+
+@pytest.mark.parametrize(
+    ("omega", "r", "largest", "reasons"),
+    [
+        (1.5, 0.65, 0.2, {CONTACT_LOST}),
+        (2.0, 0.85, 0.1, {CONTACT_LOST}),
+        # Both vanish together there: which is met first is a matter of 1e-4.
+        (2.0, 0.85, 0.2, {CONTACT_LOST, FLIGHT_LOST}),
+    ],
+)
+def test_the_branch_ends_in_permanent_contact(omega, r, largest, reasons):
+    system, branch = follow_unstable_side(1, omega, r, 2.0 if r == 0.3 else 0.9, largest)
+    assert branch.end_reason in reasons
+    # Where impact velocity and flight vanish the ball just stays on the table.
+    # Λ is off by the square of the flight left: up to 4e-5 at ϖ = 10, where
+    # the impact velocity meets its margin of 1e-4.
+    end = system.orbit(branch.points[-1])
+    expected = float(permanent_contact_threshold(omega, system.damping_ratio))
+    assert branch.points[-1, 3] == pytest.approx(expected, abs=float(end.flight_time) ** 2 + 1e-12)
+    assert float(end.flight_time) < 1e-2
+    if branch.end_reason == CONTACT_LOST:
+        assert float(end.relative_impact_velocity) == pytest.approx(-1e-4, abs=1e-10)
+
+
+def test_flight_lost():
+    # ϖ = 0.6, n = 2: a branch that reaches contacts as long as the cycle.
+    zeta, n, omega = float(damping_ratio(0.3)), 2, 0.6
+    system = OrbitSystem(n, zeta, Parameter.AMPLITUDE, omega)
+    contact = Contact(omega, zeta)
+    fill = (2 * np.pi * n - 0.1) * omega
+    point = branch_point(fill * np.sqrt(1 - zeta**2) - np.pi, contact, n)
+    start = np.array([point.phase, point.u + point.x, fill, point.amplitude])
+    reasons = {
+        continue_branch(
+            system, start, increasing=up, events=system.events(), max_points=400
+        ).end_reason
+        for up in (True, False)
+    }
+    assert FLIGHT_LOST in reasons
+
+
+def test_terminal_events_are_positive_on_an_orbit():
+    system = OrbitSystem(1, 0.05, Parameter.AMPLITUDE, 10.0)
+    orbit = orbit_at(Contact(10.0, 0.05), 1, 0.9)
+    y = np.array([orbit.phase, orbit.impact_velocity, 10.0 * orbit.duration, 0.9])
+    events = {event.name: event for event in system.events()}
+    assert list(events) == [
+        "saddle-node",
+        "period doubling",
+        "contact lost",
+        "release lost",
+        "flight lost",
+    ]
+    assert [event.terminal for event in events.values()] == [False, False, True, True, True]
+    assert all(float(event.function(y)) > 0 for event in events.values())
+
+
+def test_the_branch_ends_where_the_ball_is_no_longer_thrown_off():
+    # Far up the unstable side the relative velocity at release falls to zero;
+    # beyond, the contact would have ended earlier and r_a is negative. The
+    # branch then turns in Λ without a saddle-node of the return map.
+    system, branch = follow_unstable_side(1, 10.0, 0.85, 0.9)
+    assert np.all(system.orbit(branch.points).apparent_restitution >= -1e-6)

@@ -1,0 +1,203 @@
+"""The n-T orbits of the restitution model in closed form (Eqs. 6-8)."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.impacts.restitution_map import (
+    bounce,
+    exact_map_jacobian,
+    holmes_map,
+    holmes_map_jacobian,
+    landing_gap,
+)
+from bouncing_ball.orbits.restitution_orbit import (
+    ImpactMap,
+    branch,
+    max_height,
+    path,
+    period_doubling,
+    period_doubling_lift,
+    phase,
+    saddle_node,
+    trace_and_determinant,
+)
+from bouncing_ball.orbits.stability import is_stable
+
+EPS = np.finfo(float).eps
+
+families = st.integers(1, 5)
+coefficients = st.floats(0.05, 1.0)
+excesses = st.floats(0.0, 2.0)
+sides = st.booleans()
+
+
+@given(families, coefficients, excesses, sides)
+def test_fixed_points_of_both_maps(n, r, excess, stable):
+    lam = float(saddle_node(n, r)) + excess
+    phi, v, s = float(phase(n, r, lam, stable)), n * np.pi, 2 * np.pi * n
+    assert (phi >= 0) if stable else (phi <= 0)
+    # The sine of a full turn is good to eps · 2πn, times Λ.
+    scale = EPS * (1 + lam) * s
+    assert abs(float(landing_gap(s, phi, v, lam))) <= 4 * s * scale
+    assert abs(float(bounce(s, phi, v, lam, r)) - v) <= 8 * scale
+    landing, after = holmes_map(phi, v, lam, r)
+    assert abs(float(landing) - phi - s) <= 4 * EPS * s
+    assert abs(float(after) - v) <= 8 * scale
+
+
+@given(families, coefficients, excesses, sides)
+def test_trace_and_determinant_are_those_of_the_jacobians(n, r, excess, stable):
+    lam = float(saddle_node(n, r)) + excess
+    phi, v, s = float(phase(n, r, lam, stable)), n * np.pi, 2 * np.pi * n
+    jacobians = {
+        ImpactMap.EXACT: exact_map_jacobian(s, phi, v, lam, r),
+        ImpactMap.HOLMES: holmes_map_jacobian(phi, v, lam, r),
+    }
+    for kind, jacobian in jacobians.items():
+        trace, det = trace_and_determinant(r, lam, phi, kind)
+        # Entries of the matrix, at most of order s²Λ, cancel in the determinant.
+        size = np.abs(jacobian).max() ** 2 + 1
+        assert float(trace) == pytest.approx(float(np.trace(jacobian)), abs=20 * EPS * size * s)
+        assert float(det) == pytest.approx(float(np.linalg.det(jacobian)), abs=20 * EPS * size * s)
+    # The determinants of the two maps: r² and r.
+    assert float(trace_and_determinant(r, lam, phi)[1]) == r * r
+    assert float(trace_and_determinant(r, lam, phi, ImpactMap.HOLMES)[1]) == r
+
+
+@given(families, coefficients)
+def test_bifurcations_are_where_they_are_said_to_be(n, r):
+    node = float(saddle_node(n, r))
+    for kind in ImpactMap:
+        trace, det = trace_and_determinant(r, node, phase(n, r, node), kind)
+        assert abs(float(1 - trace + det)) <= 8 * EPS
+        doubling = float(period_doubling(n, r, kind))
+        phi = float(phase(n, r, doubling))
+        trace, det = trace_and_determinant(r, doubling, phi, kind)
+        # Λ sin φ = √(Λ² - Λ_SN²) amplifies the rounding of Λ by Λ²/(Λ sin φ).
+        allowed = 20 * EPS * (1 + doubling**2)
+        assert abs(float(1 + trace + det)) <= allowed
+        assert doubling * np.sin(phi) == pytest.approx(
+            float(period_doubling_lift(r, kind)), abs=allowed
+        )
+
+
+@given(families, st.floats(0.05, 0.99), st.floats(0.01, 0.99))
+def test_stable_between_and_only_between(n, r, share):
+    node, doubling = float(saddle_node(n, r)), float(period_doubling(n, r))
+    between = node + share * (doubling - node)
+    beyond = doubling * (1 + share)
+
+    def stable(lam, side):
+        return bool(is_stable(*trace_and_determinant(r, lam, phase(n, r, lam, side))))
+
+    assert stable(between, True)
+    assert not stable(between, False)
+    assert not stable(beyond, True)
+
+
+def test_values():
+    # Eqs. 7 and 8 worked out by hand for r = 1/2: nπ/3 and 2(5/4)/(9/4) = 10/9.
+    assert float(saddle_node(3, 0.5)) == pytest.approx(np.pi, rel=4 * EPS)
+    assert float(period_doubling(3, 0.5)) == pytest.approx(np.hypot(10 / 9, np.pi), rel=4 * EPS)
+    assert float(period_doubling(3, 0.5, ImpactMap.HOLMES)) == pytest.approx(
+        np.hypot(1, np.pi), rel=4 * EPS
+    )
+    # Table 1's first row is Holmes' map.
+    assert period_doubling(np.array([1, 2, 3]), 0.85, ImpactMap.HOLMES) == pytest.approx(
+        [1.032, 1.122, 1.259], abs=5e-4
+    )
+    assert saddle_node(np.array([1, 2, 3]), 0.85) == pytest.approx([0.255, 0.509, 0.764], abs=5e-4)
+
+
+@pytest.mark.parametrize(("n", "lam", "r"), [(1, 1.0, 0.85), (3, 2.0, 0.7)])
+def test_path_flies_from_impact_to_impact(n, lam, r):
+    phi = float(phase(n, r, lam))
+    period = 2 * np.pi * n
+    time = np.linspace(0.0, 2 * period, 2001)[:-1]
+    height, velocity = path(n, lam, phi, time)
+    # Free flight: the second difference of a parabola is exact.
+    h = time[1]
+    inner = height[:1000]
+    assert np.diff(inner, 2) / h**2 == pytest.approx(np.full(998, -1.0), abs=1e-8)
+    assert velocity[:1000] == pytest.approx(n * np.pi - time[:1000], abs=1e-12)
+    # On the table at every impact, the second cycle like the first. The
+    # phase of the second cycle is known to eps · 2 · period.
+    assert height[[0, 1000]] == pytest.approx(np.full(2, lam * np.sin(phi)), abs=1e-12)
+    assert height[1000:] == pytest.approx(height[:1000], abs=1e-12)
+    # The greatest height, sampled with a step h: off by h²/8 at most.
+    top = float(max_height(n, lam, phi))
+    assert top - h**2 / 8 <= height.max() <= top + 1e-12
+    # Just before an impact the velocity is -nπ, and the impact returns nπ.
+    before = float(path(n, lam, phi, period * (1 - 1e-15))[1])
+    assert before == pytest.approx(-n * np.pi, abs=1e-12)
+    table = lam * np.cos(phi)
+    assert table - r * (before - table) == pytest.approx(n * np.pi, abs=1e-12)
+
+
+@pytest.mark.parametrize(("n", "r", "top"), [(1, 0.85, 2.0), (5, 0.85, 1.4), (2, 1.0, 1.5)])
+def test_whole_branch(n, r, top):
+    amplitude, angle = branch(n, r, top, 41)
+    assert amplitude[[0, -1]] == pytest.approx([top, top], rel=10 * EPS)
+    # Every point solves Λ cos φ = Λ_SN, at equal steps of Λ sin φ.
+    node = float(saddle_node(n, r))
+    assert amplitude * np.cos(angle) == pytest.approx(np.full(41, node), abs=10 * EPS)
+    lift = amplitude * np.sin(angle)
+    assert np.diff(lift) == pytest.approx(np.full(40, (lift[-1] - lift[0]) / 40), abs=20 * EPS)
+    assert angle[20] == 0 and amplitude[20] == pytest.approx(node, rel=4 * EPS, abs=0)
+    assert angle[0] == -angle[-1] < 0
+    assert amplitude[-1] == pytest.approx(top) and angle[-1] == pytest.approx(
+        float(phase(n, r, top)), rel=10 * EPS
+    )
+
+
+def test_branches_of_several_families():
+    amplitude, angle = branch(np.array([1, 2, 3]), 0.85, 2.0, 7)
+    assert amplitude.shape == angle.shape == (3, 7)
+    single = branch(2, 0.85, 2.0, 7)
+    assert amplitude[1] == pytest.approx(single[0], rel=4 * EPS)
+    assert angle[1] == pytest.approx(single[1], abs=4 * EPS)
+
+
+def test_no_branch_below_the_saddle_node(one_line):
+    with pytest.raises(NoOrbitError) as error:
+        branch(2, 0.85, 0.5, 7)
+    one_line(error, "no 2-T orbit at Λ = 0.5", "saddle-node at Λ = 0.509447")
+
+
+@pytest.mark.parametrize("n", [0, -1, 1.5, np.nan, np.inf, [1, 0]])
+def test_family_outside_its_range(n, one_line):
+    with pytest.raises(ModelError) as error:
+        saddle_node(n, 0.85)
+    # Of several the first bad one is named.
+    one_line(error, f"n = {np.ravel(n)[-1]}", "positive integer")
+
+
+@pytest.mark.parametrize("r", [0.0, 1.01, np.nan])
+def test_restitution_outside_its_range(r, one_line):
+    for call in (
+        lambda: saddle_node(1, r),
+        lambda: period_doubling(1, r),
+        lambda: period_doubling_lift(r),
+        lambda: phase(1, r, 1.0),
+    ):
+        with pytest.raises(ModelError) as error:
+            call()
+        one_line(error, f"r = {r}", "(0, 1]")
+
+
+@pytest.mark.parametrize("lam", [0.2, -1.0, np.nan, [1.0, 0.2]])
+def test_no_orbit_below_the_saddle_node(lam, one_line):
+    with pytest.raises(NoOrbitError) as error:
+        phase(1, 0.85, lam)
+    # Of several Λ the first one without an orbit is named.
+    one_line(error, f"no 1-T orbit at Λ = {np.ravel(lam)[-1]:g}", "saddle-node at Λ = 0.254724")
+
+
+def test_no_orbit_of_one_of_several_families(one_line):
+    # The saddle-nodes are an array then.
+    with pytest.raises(NoOrbitError) as error:
+        phase(np.array([1, 3]), 0.85, 0.5)
+    one_line(error, "0.5", "saddle-node")

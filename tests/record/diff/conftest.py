@@ -1,0 +1,104 @@
+"""A small record and a copy of it that a test may change."""
+
+import io
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+import xarray as xr
+from PIL import Image
+from PIL.PngImagePlugin import PngInfo
+
+from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
+from bouncing_ball.record.diff.folders import Artifact, Comparison, compare_folders
+from bouncing_ball.record.diff.parts import Part
+from bouncing_ball.record.diff.tolerance_file import read_tolerances
+from bouncing_ball.record.diff.tolerances import Tolerances
+
+ROOT = Path(__file__).resolve().parents[3]
+# A sweep, two branches whose pictures are of one size, a schematic, two tables.
+NAMES = ("fig01", "fig05", "fig08", "fig09", "table1", "witness")
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A record, new artifacts, and the tolerances between them."""
+
+    record: Path
+    new: Path
+    rules: Tolerances
+
+    def compare(self) -> Comparison:
+        return compare_folders(self.record, self.new, self.rules)
+
+    def artifact(self, name: str) -> Artifact:
+        return next(found for found in self.compare().artifacts if found.name == name)
+
+    def part(self, file: str) -> Part:
+        parts = (part for found in self.compare().artifacts for part in found.parts)
+        return next(part for part in parts if part.file == file)
+
+    def dataset(self, name: str) -> xr.Dataset:
+        return read_dataset(self.record / "figures" / f"{name}.nc")
+
+    def write(self, name: str, data: xr.Dataset) -> None:
+        """Put a changed dataset among the new artifacts."""
+        write_dataset(data, self.new / "figures" / f"{name}.nc")
+
+    def variable(self, name: str, variable: str):
+        """The result for one variable, everything else being as it was."""
+        part = self.part(f"figures/{name}.nc")
+        found = {result.name: result for result in part.variables}
+        others = {key: result.verdict for key, result in found.items() if key != variable}
+        assert set(others.values()) <= {"identical"}, others
+        return found[variable]
+
+    def stamp(self, record: str | None, new: str | None) -> None:
+        """Write on both sides with which versions they were made."""
+        for folder, versions in ((self.record, record), (self.new, new)):
+            stamp(folder, versions)
+
+
+def stamp(folder: Path, versions: str | None) -> None:
+    for path in sorted((folder / "figures").glob("*.nc")):
+        data = read_dataset(path)
+        kept = {k: v for k, v in data.attrs.items() if not k.startswith("provenance_")}
+        extra = {} if versions is None else {"provenance_versions": versions}
+        data.attrs = kept | extra
+        write_dataset(data, path)
+    for path in sorted((folder / "figures").glob("*.png")):
+        text = PngInfo()
+        if versions is not None:
+            text.add_text("provenance_versions", versions)
+        file = io.BytesIO()
+        with Image.open(path) as picture:
+            picture.info.clear()
+            picture.save(file, "PNG", pnginfo=text)
+        path.write_bytes(file.getvalue())
+
+
+@pytest.fixture(scope="session")
+def rules() -> Tolerances:
+    """The tolerances of the repository."""
+    return read_tolerances(ROOT / "config" / "tolerances.yaml")
+
+
+@pytest.fixture(scope="session")
+def _record(tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("record")
+    (folder / "figures").mkdir()
+    for name in NAMES:
+        for path in (ROOT / "figures").glob(f"{name}.*"):
+            shutil.copyfile(path, folder / "figures" / path.name)
+    shutil.copyfile(ROOT / "paper.md", folder / "paper.md")
+    stamp(folder, None)
+    return folder
+
+
+@pytest.fixture
+def pair(_record, rules, tmp_path) -> Pair:
+    """Two equal folders, of unknown versions."""
+    for side in ("record", "new"):
+        shutil.copytree(_record, tmp_path / side)
+    return Pair(tmp_path / "record", tmp_path / "new", rules)

@@ -1,0 +1,174 @@
+"""The page as a real browser shows it: Chromium without a window and without a network.
+
+The page holds no script. Another page, made here, shows it in a frame and
+writes down what the browser made of it.
+"""
+
+import json
+import re
+import shutil
+import subprocess
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from bouncing_ball.record.diff.report_html import to_html
+
+CHROMIUM = next(
+    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome", "chrome"))),
+    None,
+)
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")
+
+OBSERVER = """<!doctype html>
+<meta charset="utf-8">
+<iframe id="page" src="page.html" width="WIDTH" height="3000"></iframe>
+<pre id="seen"></pre>
+<script>
+// Whether a picture has both white and other pixels, as the browser decodes it.
+function drawn(image) {
+  if (!image.complete || !image.naturalWidth) return false;
+  const canvas = document.createElement("canvas");
+  [canvas.width, canvas.height] = [image.naturalWidth, image.naturalHeight];
+  const context = canvas.getContext("2d");
+  context.drawImage(image, 0, 0);
+  const red = context.getImageData(0, 0, canvas.width, canvas.height).data
+    .filter((_, k) => k % 4 === 0);
+  return red.includes(255) && red.some(value => value < 128);
+}
+addEventListener("load", () => {
+  const page = document.getElementById("page").contentDocument;
+  const view = document.getElementById("page").contentWindow;
+  const seen = {
+    images: [...page.images].map(image => ({
+      alt: image.alt, drawn: drawn(image),
+      width: image.naturalWidth, height: image.naturalHeight,
+    })),
+    sections: [...page.querySelectorAll("section")].map(section => ({
+      name: section.id, verdict: section.dataset.verdict,
+      open: section.querySelector("details").open,
+      top: section.getBoundingClientRect().top,
+    })),
+    cells: [...page.querySelectorAll("td")].map(cell => cell.textContent),
+    fetched: view.performance.getEntriesByType("resource").map(entry => entry.name),
+    overflow: page.documentElement.scrollWidth - page.documentElement.clientWidth,
+    title: page.title,
+    ink: view.getComputedStyle(page.body).color,
+    paper: view.getComputedStyle(page.body).backgroundColor,
+  };
+  document.getElementById("seen").textContent = JSON.stringify(seen);
+});
+</script>
+"""
+
+
+def browse(folder, url, *options):
+    """Run the browser once, in a folder of its own for what it keeps."""
+    done = subprocess.run(
+        [
+            CHROMIUM,
+            "--headless",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--disable-quic",
+            "--no-first-run",
+            "--disable-background-networking",
+            "--disable-component-update",
+            "--disable-sync",
+            "--hide-scrollbars",
+            "--host-resolver-rules=MAP * ~NOTFOUND",
+            # The frame is a file as well, and is to be looked into.
+            "--allow-file-access-from-files",
+            f"--user-data-dir={folder / 'profile'}",
+            *options,
+            url.as_uri(),
+        ],
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def observe(folder, width):
+    """What the browser made of page.html in a window so wide."""
+    observer = folder / "observer.html"
+    observer.write_text(OBSERVER.replace("WIDTH", str(width)), encoding="utf-8")
+    text = browse(folder, observer, "--virtual-time-budget=20000", "--dump-dom")
+    found = re.search(r'<pre id="seen">(\{.*\})</pre>', text, re.DOTALL)
+    assert found, "the page did not load"
+    unescaped = found[1].replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")
+    return json.loads(unescaped)
+
+
+@pytest.fixture
+def page(pair, tmp_path):
+    """A page with a drifted, a missing, a within-budget and a swapped figure."""
+    data = pair.dataset("fig05")
+    data.phase.values[1, 40] += 1e-3
+    pair.write("fig05", data)
+    shutil.copyfile(pair.new / "figures" / "fig08.png", pair.new / "figures" / "fig09.png")
+    (pair.new / "figures" / "fig01.svg").unlink()
+    folder = tmp_path / "browser"
+    folder.mkdir()
+    (folder / "page.html").write_text(to_html(pair.compare()), encoding="utf-8")
+    return folder
+
+
+def test_the_browser_shows_every_picture_and_the_worst_first(page, pair):
+    seen = observe(page, 1200)
+    assert seen["title"] == "Artifacts against the record"
+    found = {image["alt"]: image for image in seen["images"]}
+    assert set(found) == {
+        "fig01, record and new",
+        "fig05, record and new",
+        "fig08, record and new",
+        "fig09, record",
+        "fig09, new",
+        "fig09, difference",
+    }
+    for image in found.values():
+        assert image["drawn"] and image["width"] > 0 and image["height"] > 0, image
+    for name in ("fig09, record", "fig09, new", "fig09, difference"):
+        with Image.open(pair.record / "figures" / "fig09.png") as picture:
+            assert (found[name]["width"], found[name]["height"]) == picture.size
+    sections = [(part["name"], part["verdict"], part["open"]) for part in seen["sections"]]
+    assert sections[:3] == [
+        ("fig01", "missing", True),
+        ("fig05", "drifted", True),
+        ("fig09", "within budget", False),
+    ]
+    assert {verdict for _, verdict, _ in sections[3:]} == {"identical"}
+    tops = [part["top"] for part in seen["sections"]]
+    assert tops == sorted(tops)
+    assert "case = 1, frequency_ratio = 2.51189" in seen["cells"]
+    assert seen["ink"] == "rgb(26, 26, 26)" and seen["paper"] == "rgb(255, 255, 255)"
+    # Nothing came from anywhere but the page itself.
+    assert [name for name in seen["fetched"] if not name.startswith("data:")] == []
+
+
+def test_the_browser_would_see_a_picture_that_is_broken(page):
+    path = page / "page.html"
+    text = path.read_text(encoding="utf-8")
+    start = text.index("data:image/png;base64,") + len("data:image/png;base64,")
+    path.write_text(text[:start] + "AAAA" + text[start + 4 :], encoding="utf-8")
+    seen = observe(page, 1200)
+    assert [image["drawn"] for image in seen["images"]].count(False) == 1
+
+
+def test_the_page_fits_a_telephone(page):
+    assert observe(page, 360)["overflow"] == 0
+
+
+def test_the_page_is_painted(page):
+    target = page / "page.png"
+    browse(page, page / "page.html", f"--screenshot={target}", "--window-size=1000,1400")
+    with Image.open(target) as picture:
+        grey = np.asarray(picture.convert("L"))
+    assert grey.shape == (1400, 1000)
+    # Dark text on white: mostly white, and ink in the upper and the lower half.
+    assert np.mean(grey == 255) > 0.7
+    for half in np.split(grey, 2):
+        assert np.count_nonzero(half < 100) > 1000

@@ -1,0 +1,622 @@
+"""The diff tests itself: a known change of each kind gives the verdict it should."""
+
+import json
+import struct
+import zlib
+
+import numpy as np
+import pytest
+import xarray as xr
+from PIL import Image
+
+from bouncing_ball.datasets.netcdf import write_dataset
+from bouncing_ball.record.diff.data import compare_datasets
+from bouncing_ball.record.diff.drift import span
+from bouncing_ball.record.diff.outcome import Verdict, status
+from bouncing_ball.record.diff.tolerances import Mode, Tolerance, Tolerances
+
+HALF, TWICE = 0.5, 2.0
+VERSIONS = json.dumps({"numpy": "2.4.0", "matplotlib": "3.11.0"})
+OTHER_VERSIONS = json.dumps({"numpy": "2.4.1", "matplotlib": "3.11.0"})
+
+
+def moved(data: xr.Dataset, name: str, index: tuple, by: float) -> xr.Dataset:
+    """The dataset with one value of one variable changed."""
+    changed = data.copy(deep=True)
+    changed[name].values[index] += by
+    return changed
+
+
+def test_equal_folders_are_identical(pair):
+    comparison = pair.compare()
+    assert {found.verdict for found in comparison.artifacts} == {Verdict.IDENTICAL}
+    assert status(comparison.verdict) == 0
+    names = {"fig01", "fig05", "fig08", "fig09", "table1", "witness", "paper"}
+    assert {found.name for found in comparison.artifacts} == names
+    # Every file of both sides was compared.
+    files = {part.file for found in comparison.artifacts for part in found.parts}
+    paths = (path for path in pair.record.rglob("*") if path.is_file())
+    assert files == {path.relative_to(pair.record).as_posix() for path in paths}
+
+
+# One value of one variable, by 0.5× and 2× its budget, for each mode.
+
+
+@pytest.mark.parametrize("part", [HALF, TWICE])
+def test_pointwise(pair, part):
+    data = pair.dataset("fig05")
+    budget = pair.rules.of("fig05", "phase").budget
+    # Where the phase is next to 0, and a relative error would be meaningless.
+    index = tuple(int(k) for k in np.argwhere(np.abs(data.phase.values) < 0.01)[0])
+    pair.write("fig05", moved(data, "phase", index, part * budget * span(data.phase)))
+    result = pair.variable("fig05", "phase")
+    assert result.verdict == (Verdict.WITHIN if part < 1 else Verdict.DRIFTED)
+    # One rounding of a phase up to 1.6 against a budget of 1e-13 of the range.
+    assert result.share == pytest.approx(part, abs=2e-3)
+    ratio = data.frequency_ratio.values[index[1]]
+    assert result.place == f"case = {index[0]}, frequency_ratio = {ratio:.6g}"
+    artifact = pair.artifact("fig05")
+    assert artifact.verdict == result.verdict and artifact.share == result.share
+
+
+@pytest.mark.parametrize("part", [HALF, TWICE])
+def test_curve(pair, part):
+    data = pair.dataset("fig08")
+    budget = pair.rules.of("fig08", "bounce_velocity").budget
+    # On the stiff branch the velocity is nπ everywhere, so that the curve over
+    # Λ is level: moved up, a point is as far from it as it has moved.
+    index = (0, 300)
+    height = part * budget * span(data.bounce_velocity)
+    pair.write("fig08", moved(data, "bounce_velocity", index, height))
+    result = pair.variable("fig08", "bounce_velocity")
+    assert result.verdict == (Verdict.WITHIN if part < 1 else Verdict.DRIFTED)
+    # The slope of the level curve, 1e-4, is what is missing to the right angle.
+    assert result.share == pytest.approx(part, rel=1e-3)
+
+
+@pytest.mark.parametrize("part", [HALF, TWICE])
+def test_curve_along_its_abscissa(part):
+    # Up at x = 0, then level to x = 1: moved to the right, the part that goes
+    # up is off by the shift, measured by the budget of the abscissa.
+    x, y = np.zeros(21), np.ones(21)
+    x[10:], y[:11] = np.linspace(0.0, 1.0, 11), np.linspace(0.0, 1.0, 11)
+    record = xr.Dataset({"y": ("k", y)}, coords={"x": ("k", x)})
+    new = record.assign_coords(x=("k", x + part * 0.01))
+    # Not the same numbers, so that the curves are looked at.
+    new["y"] = new.y + 1e-12
+    rule = Tolerance(Mode.CURVE, "a test", budget=1e-6, along="k", abscissa="x", axis_budget=0.01)
+    loose = Tolerance(Mode.POINTWISE, "a test", budget=1.0)
+    rules = Tolerances({"x": loose, "y": rule}, loose)
+    found = {result.name: result for result in compare_datasets("", record, new, rules)}
+    assert found["y"].verdict is (Verdict.WITHIN if part < 1 else Verdict.DRIFTED)
+    assert found["y"].share == pytest.approx(part, rel=1e-9)
+
+
+@pytest.mark.parametrize("part", [HALF, TWICE])
+def test_invariant(pair, part):
+    data = pair.dataset("fig08")
+    rule = pair.rules.of("fig08", "residual")
+    index = (1, int(np.argmax(data.residual.values[1])))
+    pair.write("fig08", moved(data, "residual", index, part * rule.budget * rule.scale))
+    result = pair.variable("fig08", "residual")
+    assert result.verdict == (Verdict.WITHIN if part < 1 else Verdict.DRIFTED)
+    assert result.share == pytest.approx(part, rel=1e-12)
+    assert result.place == "statistic = max, frequency_ratio = 10"
+    # A smaller residual elsewhere is no derived number, whatever it does.
+    pair.write("fig08", moved(data, "residual", (1, 0), -float(data.residual[1, 0])))
+    assert pair.variable("fig08", "residual").share == 0
+
+
+def logistic(start, count=20_000):
+    """x → 4 x (1 - x): chaotic, so that a rounding is all after fifty steps."""
+    values = np.empty(count)
+    for k in range(count):
+        values[k] = start
+        start = 4 * start * (1 - start)
+    return xr.Dataset({"x": ("step", values)})
+
+
+def test_beyond_the_predictability_horizon():
+    # Mean and deviation of the invariant density are 1/2 and 1/√8; over N steps
+    # they are known to about 1/√N, 0.007 here, and the budget is thrice that.
+    record, new = logistic(0.3), logistic(0.3 + 1e-15)
+    invariant = Tolerance(
+        Mode.INVARIANT, "a test", budget=0.02, along="step", statistics=("mean", "std")
+    )
+    verdicts = {}
+    for rule in (Tolerance(Mode.POINTWISE, "a test", budget=0.02), invariant):
+        (result,) = compare_datasets("chaos", record, new, Tolerances({"x": rule}, rule))
+        verdicts[rule.mode] = result.verdict
+    assert verdicts == {"pointwise": Verdict.DRIFTED, "invariant": Verdict.WITHIN}
+    # Another map is another density.
+    (result,) = compare_datasets("chaos", record, record**2, Tolerances({"x": invariant}, rule))
+    assert result.verdict is Verdict.DRIFTED and result.place.startswith("statistic = ")
+
+
+@pytest.mark.parametrize("part", [HALF, TWICE])
+def test_scale_by_another_variable(pair, part):
+    data = pair.dataset("witness")
+    index = ("fig08", "continuation and formula")
+    at = tuple(
+        list(data[dim].values).index(x) for dim, x in zip(data.worst.dims, index, strict=True)
+    )
+    before = float(data.disagreement.values[at])
+    changed = data.copy(deep=True)
+    changed.disagreement.values[at] = before + part * float(data.budget.values[at[1]])
+    pair.write("witness", changed)
+    result = pair.variable("witness", "disagreement")
+    assert result.verdict == (Verdict.WITHIN if part < 1 else Verdict.DRIFTED)
+    assert result.share == pytest.approx(part, rel=1e-12)
+
+
+def test_exact(pair):
+    data = pair.dataset("witness")
+    pair.write("witness", moved(data, "orbits", (0, 0), 1))
+    result = pair.variable("witness", "orbits")
+    assert result.verdict is Verdict.DRIFTED and result.share == np.inf
+    assert f"1 of {data.orbits.size} entries differ" in result.note
+
+
+def test_words(pair):
+    data = pair.dataset("fig08")
+    changed = data.copy(deep=True)
+    changed["special_kind"] = data.special_kind.dims, data.special_kind.values.astype("U32")
+    changed.special_kind.attrs = data.special_kind.attrs
+    changed.special_kind.values[0, 1] = "Neimark-Sacker bifurcation"
+    pair.write("fig08", changed)
+    result = pair.variable("fig08", "special_kind")
+    assert result.verdict is Verdict.DRIFTED
+    assert (result.record, result.new) == ("period doubling", "Neimark-Sacker bifurcation")
+
+
+def test_ignored(pair):
+    data = pair.dataset("witness")
+    changed = data.assign(worst=data.worst.copy(data=np.full(data.worst.shape, "nowhere")))
+    pair.write("witness", changed)
+    assert pair.variable("witness", "worst").verdict is Verdict.WITHIN
+    assert pair.artifact("witness").verdict is Verdict.WITHIN
+
+
+def test_stability_at_the_edge_and_elsewhere(pair):
+    data = pair.dataset("fig08")
+    row = data.stable.values[0]
+    edge = int(np.argmax(row != row[0]))
+    for sample, verdict in ((edge, Verdict.WITHIN), (edge // 2, Verdict.DRIFTED)):
+        changed = data.copy(deep=True)
+        changed.stable.values[0, sample] ^= True
+        pair.write("fig08", changed)
+        assert pair.variable("fig08", "stable").verdict is verdict
+
+
+# Structure.
+
+
+def test_points_that_slide_along_the_curve(pair):
+    data = pair.dataset("fig09")
+    curves = [
+        name
+        for name in map(str, data.data_vars)
+        if (rule := pair.rules.of("fig09", name)).mode == "curve" and rule.abscissa != "point"
+    ]
+    changed = data.copy(deep=True)
+    for name in curves:
+        # A ten-thousandth of the way to the next sample, on the parabola through
+        # three of them.
+        before, middle, after = (data[name].values[:, k] for k in (299, 300, 301))
+        t, bend = 1e-4, (after - 2 * middle + before) / 2
+        changed[name].values[:, 300] = middle + t * (after - before) / 2 + t * t * bend
+    pair.write("fig09", changed)
+    found = {result.name: result for result in pair.part("figures/fig09.nc").variables}
+    for name in curves:
+        assert found[name].verdict.agrees, name
+    # Point by point the phase has moved by far more than it may.
+    slid = float(np.abs(changed.phase - data.phase).max()) / span(data.phase)
+    assert slid > 10 * found["phase"].budget > 10 * found["phase"].drift
+
+
+def test_shifted_abscissa(pair):
+    data = pair.dataset("fig05")
+    budget = pair.rules.of("fig05", "frequency_ratio").budget
+    for part, verdict in ((HALF, Verdict.WITHIN), (TWICE, Verdict.DRIFTED)):
+        ratios = data.frequency_ratio.values.copy()
+        ratios[-1] += part * budget * np.ptp(ratios)
+        shifted = data.assign_coords(frequency_ratio=data.frequency_ratio.copy(data=ratios))
+        shifted.frequency_ratio.attrs = data.frequency_ratio.attrs
+        pair.write("fig05", shifted)
+        assert pair.variable("fig05", "frequency_ratio").verdict is verdict
+
+
+def test_other_labels_are_other_data(pair):
+    data = pair.dataset("table1")
+    pair.write("table1", data.assign_coords(n=data.n.copy(data=[1, 2, 4])))
+    result = pair.variable("table1", "n")
+    assert result.verdict is Verdict.STRUCTURE and (result.record, result.new) == ("3", "4")
+
+
+def structure(pair, name, data, variable, note):
+    pair.write(name, data)
+    part = pair.part(f"figures/{name}.nc")
+    found = {result.name: result for result in part.variables}
+    assert found[variable].verdict is Verdict.STRUCTURE
+    assert note in found[variable].note
+    assert part.verdict is Verdict.STRUCTURE
+    assert part.variables[0].verdict is Verdict.STRUCTURE
+    assert status(pair.compare().verdict) == 1
+
+
+def test_dropped_coordinate(pair):
+    dropped = pair.dataset("fig05").drop_vars("frequency_ratio")
+    structure(pair, "fig05", dropped, "frequency_ratio", "is gone")
+
+
+def test_coordinate_turned_into_data(pair):
+    data = pair.dataset("table1")
+    structure(
+        pair, "table1", data.assign_coords(printed=data.printed), "printed", "data → coordinate"
+    )
+    write_dataset(data.assign_coords(printed=data.printed), pair.record / "figures" / "table1.nc")
+    structure(pair, "table1", data, "printed", "coordinate → data")
+
+
+def test_dropped_and_new_variable(pair):
+    data = pair.dataset("fig05")
+    structure(pair, "fig05", data.drop_vars("phase"), "phase", "is gone")
+    structure(pair, "fig05", data.assign(angle=data.phase), "angle", "is new")
+
+
+@pytest.mark.parametrize(
+    ("variable", "dtype", "note"),
+    [("phase", "f4", "float64 → float32"), ("case", "i4", "int64 → int32")],
+)
+def test_changed_dtype(pair, variable, dtype, note):
+    data = pair.dataset("fig05")
+    changed = data.assign({variable: data[variable].astype(dtype, keep_attrs=True)})
+    structure(pair, "fig05", changed, variable, note)
+
+
+def test_changed_dimensions(pair):
+    data = pair.dataset("fig05")
+    shorter = data.isel(frequency_ratio=slice(0, 300))
+    structure(pair, "fig05", shorter, "phase", "size of frequency_ratio: 301 → 300")
+    turned = data.assign(phase=data.phase.transpose())
+    structure(pair, "fig05", turned, "phase", "case, frequency_ratio → frequency_ratio, case")
+
+
+def test_attributes_that_matter_and_others(pair):
+    data = pair.dataset("fig05")
+    other = data.assign_attrs({"frequency_ratio.max": 1001.0})
+    note = "attribute frequency_ratio.max: 1000.0 → 1001.0"
+    structure(pair, "fig05", other, "(global attributes)", note)
+    without = data.copy()
+    del without.attrs["release"]
+    structure(pair, "fig05", without, "(global attributes)", "attribute release is gone")
+    units = data.copy(deep=True)
+    units.phase.attrs["units"] = "degree"
+    structure(pair, "fig05", units, "phase", "attribute units: rad → degree")
+    made = {"provenance_commit": "0123abc", "title": "another_rule"}
+    pair.write("fig05", data.assign_attrs(made))
+    assert pair.artifact("fig05").verdict is Verdict.IDENTICAL
+
+
+# NaN, infinity, files.
+
+
+def test_attributes_of_another_kind(pair):
+    data = pair.dataset("fig05")
+    for value in ("1", [1, 2], 2):
+        other = data.assign_attrs(n=value)
+        structure(pair, "fig05", other, "(global attributes)", f"attribute n: 1 → {value}")
+
+
+def test_nan_and_infinity(pair):
+    data = pair.dataset("fig05")
+    for value, text in ((np.nan, "nan"), (np.inf, "inf")):
+        pair.write("fig05", moved(data, "phase", (2, 17), value))
+        result = pair.variable("fig05", "phase")
+        assert result.verdict is Verdict.DRIFTED and result.drift == np.inf
+        assert result.new == text and result.place.startswith("case = 2")
+    data = pair.dataset("fig08")
+    pair.write("fig08", moved(data, "phase", (1, 17), np.nan))
+    found = {result.name: result for result in pair.part("figures/fig08.nc").variables}
+    assert found["phase"].verdict is Verdict.DRIFTED
+    assert found["phase"].place == "frequency_ratio = 10, point = 17"
+
+
+def test_nan_in_the_record_that_is_gone(pair):
+    data = pair.dataset("fig08")
+    there = tuple(int(k) for k in np.argwhere(np.isnan(data.special_phase.values))[0])
+    changed = data.copy(deep=True)
+    changed.special_phase.values[there] = 0.0
+    pair.write("fig08", changed)
+    assert pair.variable("fig08", "special_phase").verdict is Verdict.DRIFTED
+
+
+@pytest.mark.parametrize("kept", [0.0, 0.01, 0.5, 0.95])
+def test_truncated_netcdf(pair, kept, capfd):
+    path = pair.new / "figures" / "fig05.nc"
+    content = path.read_bytes()
+    path.write_bytes(content[: int(kept * len(content))])
+    part = pair.part("figures/fig05.nc")
+    assert part.verdict is Verdict.UNREADABLE and part.note.startswith("new:")
+    assert str(pair.new) not in part.note and "\n" not in part.note
+    comparison = pair.compare()
+    assert comparison.artifacts[0].name == "fig05"
+    assert status(comparison.verdict) == 2
+    # The others are compared all the same.
+    assert {found.verdict for found in comparison.artifacts[1:]} == {Verdict.IDENTICAL}
+
+
+def test_truncated_record(pair):
+    path = pair.record / "figures" / "fig08.nc"
+    path.write_bytes(path.read_bytes()[:1000])
+    assert pair.part("figures/fig08.nc").note.startswith("record:")
+
+
+def test_missing_and_extra(pair):
+    (pair.new / "figures" / "fig08.png").unlink()
+    (pair.record / "figures" / "fig05.svg").unlink()
+    (pair.new / "paper.md").unlink()
+    for path in (pair.record / "figures").glob("fig09.*"):
+        path.unlink()
+    for path in (pair.new / "figures").glob("table1.*"):
+        path.unlink()
+    comparison = pair.compare()
+    verdicts = {found.name: found.verdict for found in comparison.artifacts}
+    expected = dict.fromkeys(("fig08", "paper", "table1"), Verdict.MISSING)
+    expected |= dict.fromkeys(("fig05", "fig09"), Verdict.EXTRA)
+    expected |= dict.fromkeys(("fig01", "witness"), Verdict.IDENTICAL)
+    assert verdicts == expected
+    assert status(comparison.verdict) == 1
+
+
+# Pictures and texts.
+
+
+def swap(pair, one, two):
+    paths = [pair.new / "figures" / name for name in (one, two)]
+    contents = [path.read_bytes() for path in paths]
+    for path, content in zip(paths, reversed(contents), strict=True):
+        path.write_bytes(content)
+
+
+@pytest.mark.parametrize(
+    ("versions", "decides", "verdict"),
+    [
+        ((None, None), False, Verdict.WITHIN),
+        ((VERSIONS, None), False, Verdict.WITHIN),
+        ((VERSIONS, OTHER_VERSIONS), False, Verdict.WITHIN),
+        ((VERSIONS, VERSIONS), True, Verdict.DRIFTED),
+        # The same versions, written in another order.
+        ((VERSIONS, json.dumps(dict(reversed(json.loads(VERSIONS).items())))), True, "drifted"),
+    ],
+)
+def test_swapped_figures(pair, versions, decides, verdict):
+    pair.stamp(*versions)
+    swap(pair, "fig08.png", "fig09.png")
+    found = {each.name: each for each in pair.compare().artifacts}
+    part = next(part for part in found["fig08"].parts if part.file == "figures/fig08.png")
+    assert part.verdict is Verdict.DRIFTED and part.decides is decides
+    assert part.picture.rms > 10 * pair.rules.pictures.budget
+    assert found["fig08"].verdict == found["fig09"].verdict == verdict
+
+
+@pytest.mark.parametrize("versions", [None, VERSIONS])
+def test_swapped_figures_of_different_sizes(pair, versions):
+    pair.stamp(versions, versions)
+    swap(pair, "fig01.png", "fig08.png")
+    part = pair.part("figures/fig01.png")
+    sizes = []
+    for name in ("fig01", "fig08"):
+        with Image.open(pair.record / "figures" / f"{name}.png") as picture:
+            sizes.append(" × ".join(map(str, picture.size)))
+    assert part.verdict is Verdict.STRUCTURE
+    assert part.note == f"size in pixels: {' → '.join(sizes)}"
+    # A figure without a dataset says in its own text with what it was made. Swapped,
+    # that text comes along.
+    expected = Verdict.WITHIN if versions is None else Verdict.STRUCTURE
+    assert pair.artifact("fig01").verdict is pair.artifact("fig08").verdict is expected
+
+
+def test_a_picture_by_half_and_twice_its_budget(pair):
+    pair.stamp(VERSIONS, VERSIONS)
+    path = pair.new / "figures" / "fig08.png"
+    with Image.open(path) as picture:
+        size = picture.size
+        pixels = np.array(picture.convert("RGB"), dtype=int)
+    for part, verdict in ((HALF, Verdict.WITHIN), (TWICE, Verdict.DRIFTED)):
+        # So many pixels of the upper edge by 16 levels that the rms is as wanted.
+        step = 16
+        count = round((part * pair.rules.pictures.budget / step) ** 2 * size[0] * size[1])
+        changed = pixels.copy()
+        flat = changed.reshape(-1, 3)
+        flat[:count] += np.where(flat[:count] > 127, -step, step)
+        Image.fromarray(changed.astype(np.uint8)).save(path)
+        result = pair.part("figures/fig08.png")
+        assert result.verdict is verdict
+        assert result.share == pytest.approx(part, rel=1e-2)
+
+
+def test_pixels_count_and_not_bytes(pair):
+    pair.stamp(VERSIONS, OTHER_VERSIONS)
+    paths = [folder / "figures" / "fig08.png" for folder in (pair.record, pair.new)]
+    assert paths[0].read_bytes() != paths[1].read_bytes()
+    assert pair.part("figures/fig08.png").verdict is Verdict.IDENTICAL
+
+
+def test_truncated_picture(pair):
+    path = pair.new / "figures" / "fig01.png"
+    path.write_bytes(path.read_bytes()[:5000])
+    part = pair.part("figures/fig01.png")
+    assert part.verdict is Verdict.UNREADABLE and "PNG" in part.note
+    assert status(pair.compare().verdict) == 2
+
+
+@pytest.mark.parametrize("content", [b"", b"text", b"\x89PNG\r\n\x1a\n"])
+def test_a_picture_that_is_none(pair, content):
+    (pair.new / "figures" / "fig01.png").write_bytes(content)
+    part = pair.part("figures/fig01.png")
+    # Twice the same words: nothing of this process in them.
+    assert part.verdict is Verdict.UNREADABLE and part.note == "not a PNG file"
+
+
+@pytest.mark.parametrize("size", [10_000, 20_000])
+def test_a_picture_too_large_to_be_opened(pair, size):
+    # Pillow warns above 9e7 pixels and refuses twice as many.
+    head = b"IHDR" + struct.pack(">IIBBBBB", size, size, 8, 0, 0, 0, 0)
+    crc = struct.pack(">I", zlib.crc32(head))
+    path = pair.new / "figures" / "fig01.png"
+    begun = struct.pack(">I", 1000) + b"IDAT"
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + struct.pack(">I", 13) + head + crc + begun)
+    part = pair.part("figures/fig01.png")
+    assert part.verdict is Verdict.UNREADABLE and part.note == "too large a picture"
+    assert status(pair.compare().verdict) == 2
+
+
+def test_vector_graphics_are_reported_and_their_metadata_is_not(pair):
+    pair.stamp(VERSIONS, VERSIONS)
+    path = pair.new / "figures" / "fig05.svg"
+    text = path.read_text(encoding="utf-8")
+    assert text.count("</svg>") == 1
+    path.write_text(text.replace("<defs>", "<metadata>\n made by\n</metadata>\n <defs>", 1))
+    record = pair.record / "figures" / "fig05.svg"
+    record.write_text(
+        text.replace("<defs>", "<metadata>\n made elsewhere\n</metadata>\n <defs>", 1)
+    )
+    assert pair.part("figures/fig05.svg").verdict is Verdict.IDENTICAL
+    path.write_text(text.replace("</svg>", "<g/></svg>"))
+    assert pair.part("figures/fig05.svg").verdict is Verdict.DRIFTED
+    assert pair.artifact("fig05").verdict is Verdict.WITHIN
+
+
+def change_digit(path):
+    text = path.read_text(encoding="utf-8")
+    assert "0.23999" in text
+    path.write_text(text.replace("0.23999", "0.24000", 1), encoding="utf-8")
+
+
+def test_a_table_moves_with_its_data(pair):
+    change_digit(pair.new / "figures" / "table1.csv")
+    # The data are the same: then the printed digit has another reason.
+    assert pair.part("figures/table1.csv").verdict is Verdict.DRIFTED
+    data = pair.dataset("table1")
+    budget = pair.rules.of("table1", "computed").budget
+    pair.write("table1", moved(data, "computed", (1, 0, 0), HALF * budget * span(data.computed)))
+    assert pair.part("figures/table1.csv").verdict is Verdict.WITHIN
+    assert pair.artifact("table1").verdict is Verdict.WITHIN
+    pair.write("table1", moved(data, "computed", (1, 0, 0), TWICE * budget * span(data.computed)))
+    assert pair.part("figures/table1.csv").verdict is Verdict.DRIFTED
+    for folder in (pair.record, pair.new):
+        (folder / "figures" / "table1.nc").unlink()
+    assert pair.part("figures/table1.csv").verdict is Verdict.DRIFTED
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "verdict"),
+    [
+        # One unit of the last digit, and two.
+        ("table1", "0.23999", "0.24000", Verdict.WITHIN),
+        ("table1", "0.23999", "0.24001", Verdict.DRIFTED),
+        # The size of rounding, and the number of orbits behind it.
+        ("witness", "4.5e-13 (1812)", "9.1e-15 (1812)", Verdict.WITHIN),
+        ("witness", "4.5e-13 (1812)", "4.5e-13 (1811)", Verdict.DRIFTED),
+        ("witness", "4.5e-13 (1812)", "4.5e-03 (1812)", Verdict.DRIFTED),
+        ("witness", "4.5e-13 (1812)", "4.5e-13 of 1812", Verdict.STRUCTURE),
+        ("witness", "4.5e-13 (1812)", "–", Verdict.STRUCTURE),
+    ],
+)
+def test_how_far_a_table_moves_with_its_data(pair, name, old, new, verdict):
+    variable = {"table1": "computed", "witness": "disagreement"}[name]
+    data = pair.dataset(name)
+    index = tuple(int(k) for k in np.argwhere(np.isfinite(data[variable].values))[0])
+    pair.write(name, moved(data, variable, index, 1e-15))
+    assert pair.part(f"figures/{name}.nc").verdict is Verdict.WITHIN
+    path = pair.new / "figures" / f"{name}.csv"
+    text = path.read_text(encoding="utf-8")
+    assert text.count(old) == 1
+    path.write_text(text.replace(old, new), encoding="utf-8")
+    part = pair.part(f"figures/{name}.csv")
+    assert part.verdict is verdict and part.decides
+    assert pair.artifact(name).verdict is verdict
+
+
+@pytest.mark.parametrize("cell", ["a\rb", "x" * 131_073])
+def test_a_table_that_is_none(pair, cell):
+    (pair.new / "figures" / "table1.csv").write_text(cell, encoding="utf-8", newline="")
+    part = pair.part("figures/table1.csv")
+    assert part.verdict is Verdict.UNREADABLE and part.note.startswith("not a CSV table: ")
+    assert status(pair.compare().verdict) == 2
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "note"),
+    [
+        ("computed", "calculated", "row 1, column 4"),
+        ("ϖ,n", "ϖ,n,m", "columns of row 1: 6 → 7"),
+        ("\n2,1,", "\n2,1,saddle-node,,,\n2,1,", "rows"),
+    ],
+)
+def test_the_shape_and_the_words_of_a_table(pair, old, new, note):
+    path = pair.new / "figures" / "table1.csv"
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+    part = pair.part("figures/table1.csv")
+    assert part.verdict is Verdict.STRUCTURE and note in part.note
+
+
+@pytest.mark.parametrize("file", ["figures/table1.md", "figures/table1.tex", "paper.md"])
+def test_texts_decide_among_the_same_versions(pair, file):
+    change_digit(pair.new / file)
+    name = file.removeprefix("figures/").split(".")[0]
+    assert pair.part(file).verdict is Verdict.DRIFTED
+    assert pair.artifact(name).verdict is Verdict.WITHIN
+    pair.stamp(VERSIONS, VERSIONS)
+    assert pair.artifact(name).verdict is Verdict.DRIFTED
+    # One dataset made with other versions, and the paper is made from all.
+    data = pair.dataset("fig05").assign_attrs(provenance_versions=OTHER_VERSIONS)
+    pair.write("fig05", data)
+    expected = Verdict.WITHIN if name == "paper" else Verdict.DRIFTED
+    assert pair.artifact(name).verdict is expected
+
+
+@pytest.mark.parametrize("file", ["figures/table1.md", "figures/table1.tex", "paper.md"])
+def test_texts_move_with_their_data(pair, file):
+    pair.stamp(VERSIONS, VERSIONS)
+    change_digit(pair.new / file)
+    data = pair.dataset("table1")
+    budget = pair.rules.of("table1", "computed").budget
+    step = budget * span(data.computed)
+    pair.write("table1", moved(data, "computed", (1, 0, 0), HALF * step))
+    part = pair.part(file)
+    assert part.verdict is Verdict.WITHIN and not part.decides
+    assert pair.compare().verdict is Verdict.WITHIN
+    # Beyond its budget the dataset decides, and the text is no more than reported.
+    pair.write("table1", moved(data, "computed", (1, 0, 0), TWICE * step))
+    part = pair.part(file)
+    assert part.verdict is Verdict.DRIFTED and not part.decides
+    assert pair.artifact("table1").verdict is Verdict.DRIFTED
+
+
+def test_a_variable_without_an_entry_is_compared_exactly(pair):
+    data = pair.dataset("fig05")
+    both = data.assign(novelty=data.phase.drop_attrs())
+    write_dataset(both, pair.record / "figures" / "fig05.nc")
+    pair.write("fig05", both)
+    part = pair.part("figures/fig05.nc")
+    assert part.verdict is Verdict.IDENTICAL and part.note == "no entry for novelty"
+    pair.write("fig05", moved(both, "novelty", (0, 0), 1e-15))
+    part = pair.part("figures/fig05.nc")
+    assert part.verdict is Verdict.DRIFTED
+    assert part.variables[0].name == "novelty"
+    note = f"1 of {both.novelty.size} entries differ; no entry in the tolerance file"
+    assert part.variables[0].note == note
+
+
+def test_the_worst_comes_first(pair):
+    data = pair.dataset("fig05")
+    pair.write("fig05", moved(data, "phase", (0, 0), 1e-3))
+    pair.write("fig09", moved(pair.dataset("fig09"), "phase", (0, 300), 1.0))
+    (pair.new / "figures" / "fig01.svg").unlink()
+    names = [found.name for found in pair.compare().artifacts]
+    # fig05 has drifted by 1e-3 with a budget of 1e-13, fig09 by 1 with 1e-8.
+    assert names[:3] == ["fig01", "fig05", "fig09"]

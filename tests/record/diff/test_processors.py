@@ -1,0 +1,106 @@
+"""Another processor: fast paths switched off, the numbers stay within the budgets."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from numpy._core._multiarray_umath import __cpu_dispatch__, __cpu_features__
+
+from bouncing_ball.datasets.netcdf import read_dataset
+from bouncing_ball.record.diff.data import compare_datasets
+from bouncing_ball.record.diff.folders import compare_folders
+from bouncing_ball.record.diff.outcome import Verdict
+from bouncing_ball.record.diff.report_terminal import to_terminal
+
+ROOT = Path(__file__).resolve().parents[3]
+STAGES = ("fig05", "fig08")
+# Those that numpy has code for and this processor offers.
+FEATURES = [name for name in __cpu_dispatch__ if __cpu_features__.get(name)]
+# The same for linear algebra and for the C library, which have their own
+# switches; where these mean nothing they change nothing.
+OLDER = {
+    "NPY_DISABLE_CPU_FEATURES": " ".join(FEATURES),
+    "OPENBLAS_CORETYPE": "Prescott",
+    "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F",
+}
+
+PROGRAM = """
+import json, sys
+from pathlib import Path
+import yaml
+from numpy._core._multiarray_umath import __cpu_features__
+from bouncing_ball.datasets.netcdf import write_dataset
+from bouncing_ball.audit.claims.ledger_file import printed, read_ledger
+from bouncing_ball.audit.convergence import stages
+folder = Path(sys.argv[1])
+config = yaml.safe_load((folder / "config.yaml").read_text(encoding="utf-8"))
+made = stages(config, printed(read_ledger(folder), "Table 1"), ["table1"])
+for name in sys.argv[3:]:
+    write_dataset(made[name].run(), Path(sys.argv[2], f"{name}.nc"))
+print(json.dumps([name for name, there in __cpu_features__.items() if there]))
+"""
+
+
+needs_switches = pytest.mark.skipif(
+    not FEATURES, reason="numpy has no fast path for this processor to switch off"
+)
+
+
+def environment(root: Path, switches: dict[str, str]) -> dict[str, str]:
+    """Of a process with these switches only, and with the package from a folder."""
+    path = os.pathsep.join([str(root / "src"), os.environ.get("PYTHONPATH", "")])
+    kept = {name: value for name, value in os.environ.items() if name not in OLDER}
+    return kept | switches | {"PYTHONPATH": path}
+
+
+def made(folder: Path, switches: dict[str, str]) -> set[str]:
+    """Run the stages in a process of its own; the features that it had."""
+    config = ROOT / "config"
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM, config, folder, *STAGES],
+        env=environment(ROOT, switches),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return set(json.loads(done.stdout))
+
+
+@needs_switches
+def test_two_sets_of_processor_features_agree(rules, tmp_path):
+    folders = tmp_path / "all", tmp_path / "fewer"
+    everything, fewer = made(folders[0], {}), made(folders[1], OLDER)
+    assert everything.issuperset(FEATURES) and not fewer & set(FEATURES)
+    for name in STAGES:
+        record, new = (read_dataset(folder / f"{name}.nc") for folder in folders)
+        for result in compare_datasets(name, record, new, rules):
+            assert result.verdict.agrees, result
+
+
+# Slow: everything is made once, in about 40 s.
+@needs_switches
+def test_a_whole_run_with_fewer_features_says_what_the_record_says(rules, tmp_path):
+    tree = tmp_path / "tree"
+    tree.mkdir()
+    for name in ("Snakefile", "requirements.lock"):
+        shutil.copyfile(ROOT / name, tree / name)
+    for name in ("config", "profiles", "src", "workflow"):
+        ignored = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(ROOT / name, tree / name, ignore=ignored)
+    done = subprocess.run(
+        [Path(sys.executable).with_name("snakemake"), "--cores", "2", "--quiet"],
+        cwd=tree,
+        env=environment(tree, OLDER),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    comparison = compare_folders(ROOT, tree / "results", rules)
+    # Else the switches have switched nothing, and this says nothing.
+    assert any(found.verdict is not Verdict.IDENTICAL for found in comparison.artifacts)
+    assert comparison.verdict.agrees, to_terminal(comparison)

@@ -1,0 +1,201 @@
+"""The reports: complete, escaped, reproducible, and the exit status of the command."""
+
+import json
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from bouncing_ball.cli.main import main
+from bouncing_ball.record.diff.report_html import to_html
+from bouncing_ball.record.diff.report_json import to_json
+from bouncing_ball.record.diff.report_markdown import to_markdown
+from bouncing_ball.record.diff.report_terminal import to_terminal
+
+ROOT = Path(__file__).resolve().parents[3]
+TOLERANCES = ROOT / "config" / "tolerances.yaml"
+
+
+def command(capsys, *arguments):
+    """Exit status, standard output and standard error of ``bouncing-ball diff``."""
+    with pytest.raises(SystemExit) as exit_:
+        main(["diff", *map(str, arguments)])
+    out, err = capsys.readouterr()
+    return exit_.value.code, out, err
+
+
+@pytest.fixture
+def changed(pair):
+    """One artifact of each verdict but the last."""
+    data = pair.dataset("fig05")
+    data.phase.values[1, 40] += 1e-3
+    pair.write("fig05", data)
+    data = pair.dataset("fig08")
+    data.phase.values[0, 40] += 1e-9
+    pair.write("fig08", data)
+    pair.write("fig09", pair.dataset("fig09").drop_vars("admissible"))
+    (pair.new / "figures" / "table1.tex").unlink()
+    shutil.copyfile(pair.new / "figures" / "fig01.png", pair.new / "figures" / "fig99.png")
+    return pair
+
+
+def test_the_terminal_in_short(changed):
+    lines = to_terminal(changed.compare()).splitlines()
+    assert lines[0].split() == ["artifact", "verdict", "share", "what"]
+    assert [line.split()[0] for line in lines[1:-1]] == [
+        "fig99",
+        "table1",
+        "fig09",
+        "fig05",
+        "fig08",
+    ]
+    assert lines[1].split()[1:] == ["extra", "figures/fig99.png", "extra"]
+    assert "changed structure" in lines[3] and "admissible: is gone" in lines[3]
+    assert "phase at case = 1, frequency_ratio = 2.51189" in lines[4]
+    assert lines[-1] == (
+        "1 extra, 1 missing, 1 changed structure, 1 drifted, 1 within budget, 3 identical. "
+        "The new artifacts differ from the record."
+    )
+
+
+def test_json_holds_everything(changed):
+    comparison = changed.compare()
+    content = json.loads(to_json(comparison))
+    assert content["status"] == 1 and content["verdict"] == "extra"
+    assert [found["name"] for found in content["artifacts"]][:2] == ["fig99", "table1"]
+    found = {each["name"]: each for each in content["artifacts"]}
+    variables = {each["name"]: each for each in found["fig05"]["parts"][0]["variables"]}
+    phase = variables["phase"]
+    assert phase["verdict"] == "drifted" and phase["mode"] == "pointwise"
+    assert phase["share"] == pytest.approx(phase["drift"] / phase["budget"])
+    assert float(phase["new"]) - float(phase["record"]) == pytest.approx(1e-3)
+    assert set(variables) == {str(name) for name in changed.dataset("fig05").variables}
+    files = {part["file"] for each in content["artifacts"] for part in each["parts"]}
+    assert {"paper.md", "figures/fig99.png", "figures/witness.csv"} <= files
+
+
+def test_markdown_is_one_table(changed):
+    text = to_markdown(changed.compare())
+    rows = [line for line in text.splitlines() if line.startswith("|")]
+    # Header, rule, and one row for each artifact that is not identical.
+    assert len(rows) == 2 + 5
+    assert all(len(re.findall(r"(?<!\\)\|", row)) == 5 for row in rows)
+    assert "**drifted**" in text and "| within budget |" in text
+    assert "frequency\\_ratio" in text
+
+
+def test_all_text_is_escaped(pair):
+    path = pair.new / "figures" / "table1.csv"
+    text = path.read_text(encoding="utf-8")
+    bad = "<script>alert('|')</script>`*"
+    path.write_text(text.replace("computed", bad, 1), encoding="utf-8")
+    comparison = pair.compare()
+    page, summary = to_html(comparison), to_markdown(comparison)
+    assert "<script" not in page and "&lt;script&gt;" in page
+    assert bad not in summary and "\\<script\\>" in summary and "\\|" in summary
+    assert json.loads(to_json(comparison))["verdict"] == "changed structure"
+
+
+def test_the_page_fetches_nothing(changed):
+    page = to_html(changed.compare())
+    assert re.findall(r"(?:src|href|action|data|poster)\s*=\s*[\"'](?!data:image/png;)", page) == []
+    assert "url(" not in page and "@import" not in page and "<script" not in page
+    assert not re.search(r"https?:", page)
+
+
+def test_pictures_that_are_the_same_are_there_once(changed):
+    page = to_html(changed.compare())
+    assert page.count("<img") == 5
+    shutil.copyfile(changed.new / "figures" / "fig08.png", changed.new / "figures" / "fig09.png")
+    page = to_html(changed.compare())
+    # Record, new and difference of that one.
+    assert page.count("<img") == 7
+    assert "difference, × 1" in page
+
+
+def test_reports_are_the_same_every_time_and_name_no_folder(changed, capsys, tmp_path):
+    for run in ("one", "two"):
+        (tmp_path / run).mkdir()
+        files = {kind: tmp_path / run / f"report.{kind}" for kind in ("json", "markdown", "html")}
+        options = [part for kind, path in files.items() for part in (f"--{kind}", path)]
+        call = (changed.record, changed.new, "--tolerances", TOLERANCES, *options)
+        code, out, err = command(capsys, *call)
+        assert (code, err) == (1, "")
+        (tmp_path / run / "terminal").write_text(out, encoding="utf-8")
+    written = sorted(path.name for path in (tmp_path / "one").iterdir())
+    assert written == ["report.html", "report.json", "report.markdown", "terminal"]
+    for name in written:
+        content = (tmp_path / "one" / name).read_bytes()
+        assert content == (tmp_path / "two" / name).read_bytes()
+        assert str(tmp_path).encode() not in content
+
+
+def test_exit_status(pair, capsys):
+    call = (pair.record, pair.new, "--tolerances", TOLERANCES)
+    assert command(capsys, *call)[0] == 0
+    (pair.new / "paper.md").write_text("another text\n", encoding="utf-8")
+    # Of unknown versions: reported, and it does not decide.
+    code, out, _ = command(capsys, *call)
+    assert code == 0 and "paper.md drifted: line 1" in out and "(reported only)" in out
+    (pair.new / "paper.md").unlink()
+    assert command(capsys, *call)[0] == 1
+    (pair.new / "figures" / "fig05.nc").write_bytes(b"no dataset")
+    assert command(capsys, *call)[0] == 2
+
+
+def test_where_the_tolerances_come_from(pair, capsys, monkeypatch):
+    monkeypatch.chdir(pair.record.parent)
+    code, _, err = command(capsys, pair.record, pair.new)
+    assert code == 2 and "name one with --tolerances" in err
+    here = pair.record.parent / "config"
+    here.mkdir()
+    shutil.copyfile(TOLERANCES, here / "tolerances.yaml")
+    assert command(capsys, pair.record, pair.new)[0] == 0
+    # The record's own come first.
+    (pair.record / "config").mkdir()
+    (pair.record / "config" / "tolerances.yaml").write_text("variables: 1\n")
+    code, _, err = command(capsys, "record", "new")
+    assert code == 2 and "record/config/tolerances.yaml" in err
+
+
+def test_what_cannot_be_compared_at_all_is_one_line(pair, capsys, tmp_path):
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    known = ("--tolerances", TOLERANCES)
+    for arguments, said in (
+        ((tmp_path / "nowhere", pair.new, *known), "no folder"),
+        ((pair.record, empty, *known), "nothing to compare"),
+        ((pair.record, pair.new / "paper.md", *known), "no folder"),
+        ((pair.record, pair.new, "--tolerances", tmp_path / "none.yaml"), "No such file"),
+        ((pair.record, pair.new, *known, "--json", pair.new / "paper.md" / "x"), "paper.md"),
+    ):
+        code, out, err = command(capsys, *arguments)
+        assert (code, out) == (2, "")
+        assert err.count("\n") == 1 and err.startswith("bouncing-ball: ") and said in err
+
+
+def test_only_artifacts_are_compared(pair, capsys):
+    for name in ("README.md", "figures/notes.txt", "figures/.fig05.part.nc", "logs/fig05.log"):
+        path = pair.new / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text("something else", encoding="utf-8")
+    (pair.new / "figures" / "folder.png").mkdir()
+    code, out, _ = command(capsys, pair.record, pair.new, "--tolerances", TOLERANCES)
+    assert code == 0 and out.startswith("7 identical.")
+
+
+def test_help_needs_neither_numpy_nor_the_comparison():
+    code = (
+        "import sys\n"
+        "from bouncing_ball.cli.main import main\n"
+        "try:\n    main(['diff', '--help'])\n"
+        "except SystemExit as done:\n    assert done.code == 0\n"
+        "slow = {'xarray', 'matplotlib', 'jinja2', 'yaml', 'PIL', 'bouncing_ball.record.diff'}\n"
+        "assert not slow & set(sys.modules), slow & set(sys.modules)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert "Exit status: 0 the same" in done.stdout

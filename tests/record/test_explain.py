@@ -1,0 +1,199 @@
+"""``bouncing-ball explain``: where a file comes from, and how to make it again."""
+
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import xarray as xr
+from matplotlib.figure import Figure
+
+import bouncing_ball
+from bouncing_ball.cli.main import main
+from bouncing_ball.datasets.netcdf import write_dataset
+from bouncing_ball.record import explain as explain_module
+from bouncing_ball.record.provenance import Provenance, digest, file_digest, versions
+from bouncing_ball.record.revision import Revision
+from bouncing_ball.render.figures.style import save
+
+ROOT = Path(bouncing_ball.__file__).resolve().parents[2]
+COMMIT, OTHER = "a" * 40, "b" * 40
+
+
+def provenance(target, *, commit=COMMIT, dirty="no", inputs=None, python="3.11.7"):
+    return Provenance(
+        commit=commit,
+        dirty=dirty,
+        target=target,
+        parameters=digest({"restitution": 0.85}),
+        sources=digest({}),
+        lock=file_digest(ROOT / "requirements.lock"),
+        inputs=json.dumps(inputs or {}),
+        versions=json.dumps(versions() | {"python": python}),
+    ).attributes()
+
+
+@pytest.fixture
+def results(tmp_path, monkeypatch):
+    """A folder with a dataset, its figure, its table and the paper."""
+    monkeypatch.setattr(explain_module, "revision", lambda _: Revision(COMMIT, "no"))
+    monkeypatch.chdir(tmp_path)
+    figures = tmp_path / "results" / "figures"
+    attributes = {"title": "stage", "references": "paper", "restitution": 0.85, "n": [1, 2]}
+    made = provenance("results/figures/fig08.nc")
+    write_dataset(xr.Dataset(attrs=attributes | made), figures / "fig08.nc")
+    inputs = {"results/figures/fig08.nc": file_digest(figures / "fig08.nc")}
+    for kind in ("png", "svg"):
+        save(Figure(), figures / f"fig08.{kind}", provenance("fig08", inputs=inputs))
+    (figures / "fig08.csv").write_text("r\n0.85\n", encoding="utf-8")
+    (tmp_path / "results" / "paper.md").write_text("# Text\n", encoding="utf-8")
+    return tmp_path / "results"
+
+
+def asked(capsys, file):
+    main(["explain", str(file), "--json"])
+    out, err = capsys.readouterr()
+    assert err == "" and out.count("\n") == 1
+    return json.loads(out)
+
+
+def test_a_picture(results, capsys):
+    answer = asked(capsys, "results/figures/fig08.png")
+    assert answer == asked(capsys, "results/figures/fig08.svg") | {
+        "file": "results/figures/fig08.png",
+        "told_by": "results/figures/fig08.png",
+    }
+    assert answer["artifact"] == "fig08, a picture"
+    assert answer["commit"] == COMMIT and answer["checked_out"] is True
+    assert answer["dirty"] == "no" and answer["lock"]["unchanged"] is True
+    assert answer["parameters"]["values"] == {"restitution": 0.85, "n": [1, 2]}
+    assert [(item["path"], item["state"]) for item in answer["inputs"]] == [
+        ("results/figures/fig08.nc", "unchanged")
+    ]
+    running = versions()
+    assert answer["versions"] == {
+        name: {"made_with": made, "running": running[name]}
+        for name, made in (running | {"python": "3.11.7"}).items()
+    }
+    assert answer["make_again"] == ["snakemake --cores 2 --force fig08"]
+
+
+def test_readable(results, capsys):
+    main(["explain", "results/figures/fig08.png"])
+    out = capsys.readouterr().out
+    assert f"commit                          {COMMIT} (checked out)\n" in out
+    assert "tree                            clean\n" in out
+    assert "  restitution                   0.85\n" in out
+    assert "make it again                   snakemake --cores 2 --force fig08\n" in out
+
+
+@pytest.mark.parametrize(
+    ("file", "artifact", "target"),
+    [
+        ("figures/fig08.nc", "fig08, a dataset", "results/figures/fig08.nc"),
+        ("figures/fig08.csv", "fig08, a table", "fig08"),
+        ("paper.md", "paper, a text", "paper"),
+    ],
+)
+def test_other_artifacts(results, capsys, file, artifact, target):
+    answer = asked(capsys, results / file)
+    assert answer["artifact"] == artifact and answer["commit"] == COMMIT
+    assert answer["make_again"] == [f"snakemake --cores 2 --force {target}"]
+
+
+def test_the_paper_of_several_commits(results, capsys):
+    write_dataset(
+        xr.Dataset(attrs=provenance("results/figures/fig09.nc", commit=OTHER)),
+        results / "figures" / "fig09.nc",
+    )
+    answer = asked(capsys, results / "paper.md")
+    assert answer["told_by"] == "2 datasets" and answer["commit"] == "several"
+    assert answer["make_again"] == ["snakemake --cores 2 --force paper"]
+
+
+def test_the_accepted_record(results, capsys):
+    # figures/ in place of results/figures/: the dataset is the one next to it.
+    shutil.move(results / "figures", results.parent / "figures")
+    answer = asked(capsys, results.parent / "figures" / "fig08.png")
+    assert answer["inputs"][0]["state"] == "unchanged"
+    assert answer["parameters"]["values"]["restitution"] == 0.85
+
+
+def test_a_file_copied_elsewhere(results, capsys, tmp_path_factory, monkeypatch):
+    elsewhere = tmp_path_factory.mktemp("elsewhere")
+    shutil.copy(results / "figures" / "fig08.png", elsewhere / "renamed.png")
+    monkeypatch.chdir(elsewhere)
+    monkeypatch.setattr(explain_module, "checkout", lambda *starts: None)
+    answer = asked(capsys, "renamed.png")
+    assert answer["artifact"] == "fig08, a picture" and answer["commit"] == COMMIT
+    assert answer["checked_out"] is None and answer["lock"]["unchanged"] is None
+    assert answer["inputs"][0]["state"] == "not found"
+    assert answer["parameters"]["values"] == {}
+    assert answer["make_again"][0] == f"git checkout {COMMIT}"
+
+
+def test_a_dataset_that_has_changed_since(results, capsys):
+    data = results / "figures" / "fig08.nc"
+    write_dataset(xr.Dataset(attrs={"restitution": 0.9}), data)
+    answer = asked(capsys, results / "figures" / "fig08.png")
+    assert answer["inputs"][0]["state"] == "changed"
+    # Its parameters are not those of the picture.
+    assert answer["parameters"]["values"] == {}
+
+
+def test_another_commit_dirt_and_other_versions(results, capsys):
+    path = results / "figures" / "fig01.png"
+    save(Figure(), path, provenance("fig01", commit=OTHER, dirty="yes", python="3.99.0"))
+    answer = asked(capsys, path)
+    assert answer["checked_out"] is False
+    make = "snakemake --cores 2 --force fig01"
+    assert answer["make_again"] == [f"git checkout {OTHER}", "make setup", make]
+    main(["explain", str(path)])
+    out = capsys.readouterr().out
+    assert f"{OTHER} (not checked out)" in out and "3.99.0 (running: " in out
+    assert "dirty: the commit alone does not give this file" in out
+    assert f"git checkout {OTHER} && make setup && {make}\n" in out
+
+
+@pytest.mark.parametrize(
+    ("file", "said"),
+    [
+        ("nothing.png", "cannot be read: no such file"),
+        ("results", "cannot be read: a folder"),
+        ("foreign.png", "carries no provenance: no attribute provenance_commit"),
+        ("notes.md", "is no artifact of this workflow: no notes.nc next to it"),
+        ("paper.md", "is no artifact of this workflow: no figures/*.nc next to it"),
+        ("cut.nc", "cannot be read: damaged, or not ours"),
+    ],
+)
+def test_a_file_that_is_not_ours_exits_2_with_one_line(results, capsys, file, said):
+    Figure().savefig("foreign.png")
+    for name in ("notes.md", "paper.md", "cut.nc"):
+        Path(name).write_bytes(b"text")
+    with pytest.raises(SystemExit) as exit_:
+        main(["explain", file])
+    lines = capsys.readouterr().err.splitlines()
+    assert exit_.value.code == 2 and len(lines) == 1
+    assert lines[0].startswith(f"bouncing-ball: {file} ") and said in lines[0]
+
+
+def test_a_truncated_dataset_is_one_line(results, capsys):
+    path = results / "figures" / "fig08.nc"
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    with pytest.raises(SystemExit):
+        main(["explain", str(path)])
+    assert "damaged" in capsys.readouterr().err
+
+
+def test_a_mistake_is_answered_before_anything_large_is_imported():
+    program = (
+        "import sys\nfrom bouncing_ball.cli.main import main\n"
+        "try:\n    main(['explain', 'nothing.png'])\nexcept SystemExit:\n    pass\n"
+        "print(*{'scipy', 'matplotlib', 'xarray'} & set(sys.modules))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == ""

@@ -1,0 +1,99 @@
+"""No number is typed into the article where a dataset has it."""
+
+import re
+from pathlib import Path
+
+import pytest
+import yaml
+
+ROOT = Path(__file__).resolve().parents[3]
+FOLDER = ROOT / "workflow" / "report" / "paper"
+TEMPLATES = sorted(FOLDER.glob("*.md.j2"))
+
+JINJA = re.compile(r"\{\{.*?\}\}|\{%.*?%\}|\{#.*?#\}", re.DOTALL)
+DISPLAY = re.compile(r"\$\$.*?\$\$", re.DOTALL)
+INLINE = re.compile(r"\$[^$]+\$")
+CODE = re.compile(r"`[^`\n]*`")
+SPAN = r"\d+(?:[-–]\d+)?"
+NAMED = re.compile(rf"\b(?:Eq|Fig|Figure|Table|Eqs|Figs)s?\.? {SPAN}(?:(?:,| and|, and) {SPAN})*")
+FAMILY = re.compile(r"\b\d-T\b")
+HEADING = re.compile(r"^#+ .*$", re.MULTILINE)
+
+
+def prose(text: str) -> str:
+    """What is left of a template when all that may hold a digit is gone."""
+    for pattern in (JINJA, DISPLAY, INLINE, CODE, NAMED, FAMILY):
+        text = pattern.sub(" ", text)
+    return text
+
+
+def mathematics(text: str) -> list[str]:
+    text = JINJA.sub(" ", text)
+    display = DISPLAY.findall(text)
+    return [NAMED.sub(" ", part) for part in (*display, *INLINE.findall(DISPLAY.sub(" ", text)))]
+
+
+def typed_numbers(text: str) -> list[str]:
+    """Numbers in the prose, and numbers in formulas that no formula needs."""
+    found = re.findall(r"\S*\d\S*", prose(text))
+    for formula in mathematics(text):
+        # Exponents and factors are single digits; numbers of equations stand in \text.
+        bare = re.sub(r"\\text\{[^}]*\}", " ", formula)
+        found += re.findall(r"\d+\.\d+|\d{2,}|[5-9]", bare)
+    return found
+
+
+def literals(text: str) -> list[str]:
+    """Decimal numbers written inside expressions, but for labels in quotes."""
+    code = [re.sub(r"\"[^\"]*\"", " ", part) for part in JINJA.findall(text)]
+    return [number for part in code for number in re.findall(r"\d+\.\d+|\d+e-?\d+", part)]
+
+
+@pytest.mark.parametrize("template", TEMPLATES, ids=lambda path: path.name)
+def test_no_number_is_typed(template):
+    text = template.read_text(encoding="utf-8")
+    assert typed_numbers(text) == []
+    assert literals(text) == []
+
+
+def test_no_number_is_typed_into_an_explanation():
+    ledger = yaml.safe_load((ROOT / "config" / "claims.yaml").read_text(encoding="utf-8"))
+    for explanation in ledger["explanations"]:
+        assert typed_numbers(explanation["text"]) == [], explanation["id"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "the threshold is 9.81",
+        "found at ϖ = 82",
+        "about 1 % of it",
+        "two of 16 figures",
+        r"at $\varpi = 9.81$",
+        r"$$\Lambda = 1.0383$$",
+        "in 2011",
+        "Fig. 3 shows 5 curves",
+    ],
+)
+def test_a_typed_number_is_seen(text):
+    assert typed_numbers(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "the 1-T orbit of Fig. 8 (Eqs. 21–26)",
+        "Figs. 5–7, 10, 12–14 and Table 1",
+        r"$z = -\tfrac{1}{2} T^2$",
+        r"$$u = 1 + r^2 && \text{release, Eq. 23}$$",
+        "{{ at('fig14', 'error_threshold', 2) }}",
+        "run `snakemake --cores 2`",
+    ],
+)
+def test_what_may_be_typed_is_let_through(text):
+    assert typed_numbers(text) == []
+
+
+def test_a_literal_in_an_expression_is_seen():
+    assert literals("{{ decimal(9.81, 2) }}") == ["9.81"]
+    assert literals('{{ at("fig14", "x", 2, n=1) }}') == []

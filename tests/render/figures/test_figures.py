@@ -1,0 +1,171 @@
+"""The figures are drawn from their datasets, and from all that they should show."""
+
+from importlib import import_module
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from bouncing_ball.record.carriers import read_attributes
+from bouncing_ball.render.figures.style import INADMISSIBLE, STABLE, UNSTABLE, number, save, style
+from bouncing_ball.studies import (
+    error_thresholds,
+    frequency_sweeps,
+    release_rules,
+    time_histories,
+)
+from bouncing_ball.studies import (
+    orbit_branches as continuation,
+)
+from bouncing_ball.studies import (
+    permanent_contact_curve as permanent_contact,
+)
+from bouncing_ball.studies import (
+    restitution_families as restitution_orbits,
+)
+
+ROOT = Path(__file__).resolve().parents[3]
+CONFIG = yaml.safe_load((ROOT / "config" / "config.yaml").read_text(encoding="utf-8"))
+RELEASE, SETTINGS = "displacement", CONFIG["continuation"]
+STUDIES = {
+    "fig02": (restitution_orbits.restitution_history, ()),
+    "fig03": (restitution_orbits.restitution_orbits, ()),
+    "fig05": (frequency_sweeps.apparent_restitution, (RELEASE,)),
+    "fig06": (frequency_sweeps.apparent_restitution, (RELEASE,)),
+    "fig07": (time_histories.contact_history, (RELEASE,)),
+    "fig08": (continuation.orbit_branches, (RELEASE, SETTINGS)),
+    "fig09": (continuation.orbit_branches, (RELEASE, SETTINGS)),
+    "fig10": (frequency_sweeps.frequency_sweep, (RELEASE,)),
+    "fig11": (permanent_contact.permanent_contact, (RELEASE,)),
+    "fig12": (time_histories.both_histories, (RELEASE,)),
+    "fig13": (frequency_sweeps.frequency_sweep, (RELEASE,)),
+    "fig14": (error_thresholds.height_error, (RELEASE,)),
+    "fig15": (continuation.both_domains, (RELEASE, SETTINGS)),
+    "fig16": (error_thresholds.permanent_contact_error, (RELEASE,)),
+    "ext_release": (release_rules.release_rules, ()),
+}
+# The variable that each figure is about.
+SHOWN = {
+    "fig02": "ball",
+    "fig03": "phase",
+    "fig05": "apparent_restitution",
+    "fig06": "apparent_restitution",
+    "fig07": "ball",
+    "fig08": "phase",
+    "fig09": "release_phase",
+    "fig10": "bounce_velocity",
+    "fig11": "threshold_amplitude",
+    "fig12": "ball",
+    "fig13": "impact_velocity",
+    "fig14": "max_height",
+    "fig15": "restitution_phase",
+    "fig16": "threshold_amplitude",
+    "ext_release": "error_threshold",
+}
+
+
+@pytest.fixture(scope="module")
+def datasets():
+    from bouncing_ball.datasets.netcdf import parameter_attributes
+
+    made = {}
+    for name, (study, arguments) in STUDIES.items():
+        section = "extensions" if name.startswith("ext") else "figures"
+        parameters = CONFIG[section][name]
+        made[name] = study(parameters, *arguments)
+        made[name].attrs = parameter_attributes(parameters | {"release": RELEASE})
+    return made
+
+
+def drawn(name, *data):
+    with style():
+        return import_module(f"bouncing_ball.render.figures.{name}").draw(*data)
+
+
+def lines(figure):
+    return [line for axes in figure.axes for line in axes.lines]
+
+
+@pytest.mark.parametrize("name", SHOWN)
+def test_a_figure_follows_its_data(datasets, name):
+    data = datasets[name]
+    before = [np.concatenate(line.get_data()) for line in lines(drawn(name, data))]
+    moved = data.assign({SHOWN[name]: data[SHOWN[name]] * 1.5 + 0.1})
+    after = [np.concatenate(line.get_data()) for line in lines(drawn(name, moved))]
+    assert len(before) == len(after)
+    pairs = zip(before, after, strict=True)
+    assert not all(len(a) == len(b) and np.array_equal(a, b, True) for a, b in pairs)
+
+
+@pytest.mark.parametrize("name", SHOWN)
+def test_axes_have_labels(datasets, name):
+    figure = drawn(name, datasets[name])
+    assert any(axes.get_xlabel() for axes in figure.axes)
+    assert any(axes.get_ylabel() or axes.get_yticklabels() for axes in figure.axes)
+
+
+@pytest.mark.parametrize("name", ["fig01", "fig04"])
+def test_schematics_are_drawn(name):
+    (axes,) = drawn(name).axes
+    words = {text.get_text() for text in axes.texts}
+    assert {"$m$", "$g$", r"$M=\infty$"} <= words
+    if name == "fig04":
+        assert {"$k$", "$c$"} <= words
+
+
+def test_figure_7_marks_the_instants_and_velocities(datasets):
+    (axes,) = drawn("fig07", datasets["fig07"]).axes
+    words = " ".join(text.get_text() for text in axes.texts)
+    for symbol in (r"\tau_i", r"\tau_b", r"\tau_2", "z_i", "z_b", "z_2"):
+        assert symbol in words
+
+
+def test_stability_is_drawn_solid_dashed_and_dotted(datasets):
+    data = datasets["fig03"]
+    looks = {line.get_linestyle() for line in lines(drawn("fig03", data))}
+    assert {"-", "--"} <= looks or len(looks) > 1
+    # Length in each look, in points of the dataset: stable orbits are solid.
+    stable = int(data.stable.sum())
+    solid = [
+        line
+        for line in lines(drawn("fig03", data))
+        if line.get_linestyle() == STABLE["linestyle"] and len(line.get_xdata()) > 1
+    ]
+    # Each solid run shares one more point with its dashed neighbour.
+    assert sum(len(line.get_xdata()) for line in solid) == stable + len(solid)
+    hidden = data.assign(admissible=data.admissible & False)
+    dotted = [line for line in lines(drawn("fig03", hidden)) if len(line.get_xdata()) > 1]
+    widths = {line.get_linewidth() for line in dotted}
+    assert widths == {INADMISSIBLE["linewidth"]} != {UNSTABLE["linewidth"]}
+
+
+def test_markers_stand_at_the_bifurcations(datasets):
+    data = datasets["fig08"].sel(frequency_ratio=10.0)
+    marks = [line for line in lines(drawn("fig08", datasets["fig08"])) if line.get_marker() == "s"]
+    shown = np.concatenate([line.get_xdata() for line in marks])
+    at = data.special_amplitude.values[data.special_kind.values == "period doubling"]
+    assert np.all(np.isin(at, shown))
+
+
+@pytest.mark.parametrize("kind", ["png", "svg"])
+def test_files_are_the_same_every_time(datasets, tmp_path, kind):
+    contents = []
+    for run in ("first", "second"):
+        path = tmp_path / run / f"fig11.{kind}"
+        with style():
+            figure = import_module("bouncing_ball.render.figures.fig11").draw(datasets["fig11"])
+            save(figure, path, {"provenance_commit": 'of <"ϖ">'})
+        contents.append(path.read_bytes())
+        assert read_attributes(path)["provenance_commit"] == 'of <"ϖ">'
+        assert [p.name for p in path.parent.iterdir()] == [path.name]
+    assert contents[0] == contents[1] and len(contents[0]) > 5000
+
+
+def test_numbers_in_labels():
+    assert [number(x) for x in (1.0, 0.1, 1e4, 2.5e5)] == [
+        "1",
+        "0.1",
+        "10^{4}",
+        r"2.5\times 10^{5}",
+    ]

@@ -1,0 +1,274 @@
+"""Figures 8, 9, 15 and Table 1: branches by continuation."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.continuation.branch import ContinuationError
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.impacts.damping import damping_ratio
+from bouncing_ball.impacts.permanent_contact import permanent_contact_threshold
+from bouncing_ball.impacts.spring_damper import Contact, Release
+from bouncing_ball.orbits.closed_form import branch_point
+from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.limits import period_doubling, saddle_node
+from bouncing_ball.orbits.monodromy import monodromy
+from bouncing_ball.studies.orbit_branches import (
+    PERIOD_DOUBLING,
+    SADDLE_NODE,
+    both_domains,
+    branch_along_amplitude,
+    controls,
+    first_limits,
+    orbit_branches,
+    stability_ranges,
+)
+
+FIGURE_8 = {
+    "n": 1,
+    "restitution": 0.85,
+    "frequency_ratio": [10.0, 2.0],
+    "amplitude_max": 1.5,
+    "points": 61,
+}
+
+
+def bifurcations(n, r, omega, release="displacement"):
+    contact = Contact(omega, float(damping_ratio(r)), Release(release))
+    return [
+        float(branch_point(find(contact, n), contact, n).amplitude)
+        for find in (saddle_node, period_doubling)
+    ]
+
+
+@pytest.fixture(scope="module")
+def figure_8(continuation_settings):
+    return orbit_branches(FIGURE_8, "displacement", continuation_settings)
+
+
+def test_settings_reach_the_parts(continuation_settings):
+    control, newton = controls(
+        continuation_settings | {"largest_step": 0.07, "max_newton_iterations": 5}
+    )
+    assert (control.initial, control.smallest, control.largest, control.max_angle) == (
+        0.02,
+        1e-8,
+        0.07,
+        0.2,
+    )
+    assert newton == (1e-12, 5)
+
+
+def test_branches_are_described(figure_8, described):
+    data = described(figure_8)
+    assert data.phase.dims == ("frequency_ratio", "point") and data.phase.shape == (2, 61)
+    assert data.multiplier_real.dims == ("frequency_ratio", "point", "multiplier")
+    assert data.special_kind.dims == ("frequency_ratio", "special")
+    assert data.end.values.tolist() == ["unstable side", "stable side"]
+
+
+def test_points_are_orbits(figure_8):
+    zeta = float(damping_ratio(0.85))
+    assert float(figure_8.residual.max()) < 1e-12
+    for omega in FIGURE_8["frequency_ratio"]:
+        row = figure_8.sel(frequency_ratio=omega)
+        orbit = ContactOrbit(
+            1,
+            Contact(omega, zeta),
+            row.amplitude.values,
+            row.phase.values,
+            row.contact_duration.values,
+            row.impact_velocity.values,
+        )
+        # The explicit formula at the same contact duration: ε carries the
+        # rounding of ϖD, and Λ changes by ϖ² over ε.
+        excess = row.contact_duration.values * omega * np.sqrt(1 - zeta**2) - np.pi
+        point = branch_point(excess, Contact(omega, zeta), 1)
+        assert point.amplitude == pytest.approx(row.amplitude.values, abs=1e-12 * (1 + omega**2))
+        turn = np.angle(np.exp(1j * (point.phase - row.phase.values)))
+        # Next to permanent contact the equations are nearly singular: 1e-9.
+        assert np.abs(turn).max() < 1e-9
+        end = row.phase.values + row.contact_duration.values
+        assert row.release_phase.values == pytest.approx(end, abs=1e-14)
+        assert row.bounce_velocity.values == pytest.approx(
+            row.impact_velocity.values + 2 * np.pi - row.contact_duration.values, abs=1e-13
+        )
+        assert row.apparent_restitution.values == pytest.approx(
+            orbit.apparent_restitution, rel=1e-12
+        )
+        # Multipliers and stability from the matrix itself. At the end of the
+        # soft branch the impact velocity vanishes, and the map is singular.
+        inner = np.abs(orbit.relative_impact_velocity) > 1e-3
+        eigenvalues = np.linalg.eigvals(monodromy(orbit))
+        largest = np.abs(eigenvalues).max(axis=-1)
+        far = inner & (np.abs(largest - 1) > 1e-6)
+        assert far.sum() > 50
+        assert np.array_equal(row.stable.values[far], largest[far] < 1)
+        multipliers = (row.multiplier_real + 1j * row.multiplier_imag).values
+        assert np.abs(multipliers[inner][:, 0]) == pytest.approx(largest[inner], rel=1e-6)
+
+
+def test_branches_start_and_end_where_they_should(figure_8):
+    window = "left the window at amplitude 1.5"
+    assert figure_8.end_reason.sel(frequency_ratio=10.0).values.tolist() == [window, window]
+    # The soft branch comes from permanent contact, where the impact velocity
+    # and the flight vanish together; which is seen first is a matter of 1e-4.
+    start, end = figure_8.end_reason.sel(frequency_ratio=2.0).values.tolist()
+    assert start.startswith(("contact lost", "flight lost")) and end == window
+    threshold = float(permanent_contact_threshold(2.0, damping_ratio(0.85)))
+    # Λ is off by the square of the flight left, about 1e-4 there, and some.
+    assert float(figure_8.amplitude.sel(frequency_ratio=2.0)[0]) == pytest.approx(
+        threshold, abs=1e-6
+    )
+    assert figure_8.amplitude.sel(frequency_ratio=10.0).values[[0, -1]] == pytest.approx(
+        [1.5, 1.5], abs=1e-12
+    )
+    # The unstable side comes first.
+    assert figure_8.phase.values[0, 0] < figure_8.phase.values[0, -1]
+
+
+def test_special_points(figure_8):
+    row = figure_8.sel(frequency_ratio=10.0)
+    kinds = [kind for kind in row.special_kind.values.tolist() if kind]
+    assert kinds == [SADDLE_NODE, PERIOD_DOUBLING]
+    found = row.special_amplitude.values[:2]
+    assert found == pytest.approx(bifurcations(1, 0.85, 10.0), abs=1e-12)
+    assert np.isnan(row.special_amplitude.values[2:]).all()
+    # Two more doublings and one more saddle-node on the soft branch.
+    row = figure_8.sel(frequency_ratio=2.0)
+    kinds = row.special_kind.values.tolist()
+    assert kinds.count(SADDLE_NODE) == 2 and kinds.count(PERIOD_DOUBLING) == 3
+    assert float(figure_8.special_residual.max()) < 1e-12
+    durations = row.special_contact_duration.values
+    assert np.all(np.diff(durations[:5]) < 0)  # in order of the branch
+
+
+@pytest.mark.parametrize("release", ["displacement", "force"])
+def test_stability_ranges(continuation_settings, described, release):
+    parameters = {
+        "n": [1, 2],
+        "restitution": 0.85,
+        "frequency_ratio": [1e4, 2.0],
+        "amplitude_max": 1.5,
+    }
+    # In another order than computed, one family more and one contact less.
+    printed = {
+        "frequency_ratio": [2.0],
+        "n": [3, 2, 1],
+        "bound": [PERIOD_DOUBLING, SADDLE_NODE],
+        "values": [[[1.298, 0.733], [1.170, 0.463], [1.082, 0.187]]],
+    }
+    data = described(stability_ranges(parameters, release, continuation_settings, printed))
+    assert data.computed.dims == data.printed.dims == ("frequency_ratio", "n", "bound")
+    assert data.bound.values.tolist() == [SADDLE_NODE, PERIOD_DOUBLING]
+    for omega in (1e4, 2.0):
+        for n in (1, 2):
+            found = data.computed.sel(frequency_ratio=omega, n=n).values
+            assert found == pytest.approx(bifurcations(n, 0.85, omega, release), abs=1e-12)
+    assert data.printed.sel(frequency_ratio=2.0).values.tolist() == [[0.187, 1.082], [0.463, 1.170]]
+    assert np.isnan(data.printed.sel(frequency_ratio=1e4)).all()
+    limit = data.restitution_range.sel(impact_map="exact").values
+    assert limit == pytest.approx(np.array([[0.2547, 1.0383], [0.5094, 1.1281]]), abs=6e-5)
+    if release == "displacement":
+        # The model notes' values for the soft contact.
+        assert data.computed.sel(frequency_ratio=2.0).values == pytest.approx(
+            np.array([[0.1877, 1.0871], [0.4609, 1.1646]]), abs=5.1e-5
+        )
+
+
+def test_both_domains(continuation_settings, described):
+    parameters = {
+        "n": 2,
+        "restitution": 0.65,
+        "frequency_ratio": 10.0,
+        "amplitude_max": 2.2,
+        "points": 41,
+    }
+    data = described(both_domains(parameters, "displacement", continuation_settings))
+    assert data.amplitude.shape == (1, 41) and data.restitution_amplitude.shape == (41,)
+    node = 2 * np.pi * 0.35 / 1.65
+    assert float(data.saddle_node_amplitude) == pytest.approx(node, rel=1e-14)
+    along = data.restitution_amplitude.values * np.cos(data.restitution_phase.values)
+    assert along == pytest.approx(np.full(41, node), rel=1e-13)
+    doubling = float(data.period_doubling_amplitude)
+    inside = (data.restitution_phase > 0) & (data.restitution_amplitude < doubling)
+    assert np.array_equal(data.restitution_stable.values, inside.values)
+    assert doubling * np.sin(float(data.period_doubling_phase)) == pytest.approx(
+        2 * (1 + 0.65**2) / 1.65**2, rel=1e-12
+    )
+
+
+def test_a_contact_stiffer_than_the_start(continuation_settings):
+    # The continuation then starts at that contact itself.
+    _, branch = branch_along_amplitude(1, 0.85, 1e5, 1.2, "displacement", continuation_settings)
+    limits = first_limits(branch)
+    found = [limits[SADDLE_NODE][-1], limits[PERIOD_DOUBLING][-1]]
+    assert found == pytest.approx(bifurcations(1, 0.85, 1e5), abs=1e-12)
+
+
+def test_both_ends_in_contact_with_each_other(continuation_settings):
+    # ϖ = 0.6, n = 2: the branch lies between permanent contact at both ends.
+    _, branch = branch_along_amplitude(2, 0.3, 0.6, 10.0, "displacement", continuation_settings)
+    reasons = (branch.start_reason, branch.end_reason)
+    assert all(reason.startswith(("flight lost", "contact lost")) for reason in reasons)
+
+
+def test_blocked_ways_are_reported(continuation_settings, one_line):
+    # At ϖ = 0.6 and this Λ the ball stays on the table.
+    with pytest.raises(ContinuationError) as error:
+        branch_along_amplitude(1, 0.85, 0.6, 1.5, "displacement", continuation_settings)
+    one_line(error, "1-T orbit at Λ = 0.6465", "ϖ = 10000", "before 0.6", "lost: the")
+
+
+@pytest.mark.parametrize(("n", "r", "top"), [(1, 0.3, 10.0), (2, 0.85, 1.5)])
+def test_another_way_round_a_blocked_one(continuation_settings, n, r, top):
+    # Half way between the bifurcations the branch along ϖ turns, or ends, before
+    # 0.6; at another Λ it gets there.
+    system, branch = branch_along_amplitude(n, r, 0.6, top, "displacement", continuation_settings)
+    assert np.max(np.abs(system.residual(branch.points))) < 1e-10
+    assert branch.points[:, -1].min() >= 0 and branch.points[:, -1].max() <= top * (1 + 1e-12)
+
+
+@pytest.mark.parametrize("release", ["displacement", "force"])
+def test_strong_damping(continuation_settings, release):
+    _, branch = branch_along_amplitude(3, 0.3, 1e4, 6.0, release, continuation_settings)
+    limits = first_limits(branch)
+    found = [limits[SADDLE_NODE][-1], limits[PERIOD_DOUBLING][-1]]
+    assert found == pytest.approx(bifurcations(3, 0.3, 1e4, release), abs=1e-11)
+
+
+def test_a_window_without_a_period_doubling(continuation_settings, one_line):
+    parameters = {
+        "n": [1],
+        "restitution": 0.85,
+        "frequency_ratio": [10.0],
+        "amplitude_max": 0.9,
+    }
+    printed = {
+        "frequency_ratio": [10.0],
+        "n": [1],
+        "bound": [SADDLE_NODE, PERIOD_DOUBLING],
+        "values": [[[0.238, 1.035]]],
+    }
+    with pytest.raises(NoOrbitError) as error:
+        stability_ranges(parameters, "displacement", continuation_settings, printed)
+    one_line(error, "no period doubling", "left the window at amplitude 0.9")
+
+
+def test_a_branch_without_a_saddle_node(continuation_settings, one_line):
+    _, branch = branch_along_amplitude(1, 0.85, 1.0, 1.5, "displacement", continuation_settings)
+    with pytest.raises(NoOrbitError) as error:
+        first_limits(branch)
+    one_line(error, "no saddle-node")
+
+
+def test_a_window_below_the_start(continuation_settings):
+    # The branch is followed from Λ = 0.646: a smaller window holds part of the
+    # branch all the same, or is refused; nothing outside it is returned.
+    try:
+        _, branch = branch_along_amplitude(
+            1, 0.85, 10.0, 0.5, "displacement", continuation_settings
+        )
+    except (NoOrbitError, ContinuationError) as error:
+        assert "0.5" in str(error)
+    else:
+        assert branch.points[:, -1].max() <= 0.5 * (1 + 1e-9)

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from bouncing_ball.record.diff.folders import compare_folders
-from bouncing_ball.record.diff.outcome import Verdict
+from bouncing_ball.record.diff.outcome import Outcome
 from bouncing_ball.record.diff.tolerance_file import read_tolerances
 
 REASON = "The reason, in a few words"
@@ -33,8 +33,8 @@ def says_the_same(tree):
     """Whether the record has every file of the results, and says the same."""
     files = [set(tree.contents(folder)) for folder in ("figures", "results/figures")]
     rules = read_tolerances(tree.path / "config" / "tolerances.yaml")
-    verdict = compare_folders(tree.path, tree.path / "results", rules).verdict
-    return files[0] == files[1] and verdict is Verdict.IDENTICAL
+    outcome = compare_folders(tree.path, tree.path / "results", rules).outcome
+    return files[0] == files[1] and outcome is Outcome.IDENTICAL
 
 
 def refused(tree, *arguments):

@@ -11,7 +11,7 @@ def test_a_run_against_its_record(complete):
     reports = complete.path / "results" / "diff"
     assert {path.name for path in reports.iterdir()} == {"diff.json", "diff.md", "index.html"}
     content = json.loads((reports / "diff.json").read_text(encoding="utf-8"))
-    assert {found["verdict"] for found in content["artifacts"]} == {"identical"}
+    assert {found["outcome"] for found in content["artifacts"]} == {"identical"}
     files = {part["file"] for found in content["artifacts"] for part in found["parts"]}
     made = complete.contents("results")
     assert files == {name for name in made if name.startswith("figures/") or name == "paper.md"}

@@ -23,5 +23,5 @@ with logged(snakemake) as lines:
     table = to_terminal(comparison)
     lines += table.splitlines()
     print(table, end="", flush=True)
-if status(comparison.verdict):
+if status(comparison.outcome):
     sys.exit(f"diff: see {reports / 'index.html'}, or diff.md and diff.json beside it")

@@ -47,4 +47,4 @@ def run(args: argparse.Namespace) -> NoReturn:
     except (OSError, ValueError) as error:
         fail(str(error), status=2)
     print_lines(to_terminal(comparison).splitlines())
-    sys.exit(status(comparison.verdict))
+    sys.exit(status(comparison.outcome))

@@ -20,7 +20,7 @@ from bouncing_ball.datasets.atomic import replacing
 from bouncing_ball.errors import ModelError
 from bouncing_ball.record.carriers import CARRIERS, read_provenance
 from bouncing_ball.record.diff.folders import ComparisonError, artifacts_in, compare_folders
-from bouncing_ball.record.diff.outcome import Verdict
+from bouncing_ball.record.diff.outcome import Outcome
 from bouncing_ball.record.diff.report_terminal import to_terminal
 from bouncing_ball.record.diff.tolerance_file import read_tolerances
 from bouncing_ball.record.provenance import (
@@ -158,7 +158,7 @@ def log_with(text: str, commit: str, reason: str, changes: Mapping[str, str]) ->
     1,1f0e,"Eq. 8, exact",fig03 drifted
     """
     rows = list(csv.reader(io.StringIO(text))) or [list(COLUMNS)]
-    said = "; ".join(f"{name} {verdict}" for name, verdict in sorted(changes.items()))
+    said = "; ".join(f"{name} {outcome}" for name, outcome in sorted(changes.items()))
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerows([*rows, [len(rows), commit, reason.strip(), said]])
@@ -186,11 +186,11 @@ def replace_record(
 
 
 # In the log, what the comparison calls missing goes, and what is extra comes.
-_IN_THE_LOG = {Verdict.MISSING: "removed", Verdict.EXTRA: "new"}
+_IN_THE_LOG = {Outcome.MISSING: "removed", Outcome.EXTRA: "new"}
 
 
 def show_difference(record: Path, results: Path) -> dict[str, str]:
-    """Print how the results differ from the record; the artifacts that do, with verdicts.
+    """Print how the results differ from the record; the artifacts that do, with outcomes.
 
     Files that say the same in other bytes, another commit of the provenance for
     one, do not differ.
@@ -199,14 +199,14 @@ def show_difference(record: Path, results: Path) -> dict[str, str]:
         artifacts_in(record)
     except ComparisonError:
         print("There is no record yet.")
-        return {name: _IN_THE_LOG[Verdict.EXTRA] for name in artifacts_in(results)}
+        return {name: _IN_THE_LOG[Outcome.EXTRA] for name in artifacts_in(results)}
     rules = read_tolerances(record / "config" / "tolerances.yaml")
     comparison = compare_folders(record, results, rules)
     print(to_terminal(comparison), end="", flush=True)
     return {
-        artifact.name: _IN_THE_LOG.get(artifact.verdict, str(artifact.verdict))
+        artifact.name: _IN_THE_LOG.get(artifact.outcome, str(artifact.outcome))
         for artifact in comparison.artifacts
-        if artifact.verdict is not Verdict.IDENTICAL
+        if artifact.outcome is not Outcome.IDENTICAL
     }
 
 

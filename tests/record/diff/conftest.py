@@ -50,7 +50,7 @@ class Pair:
         """The result for one variable, everything else being as it was."""
         part = self.part(f"figures/{name}.nc")
         found = {result.name: result for result in part.variables}
-        others = {key: result.verdict for key, result in found.items() if key != variable}
+        others = {key: result.outcome for key, result in found.items() if key != variable}
         assert set(others.values()) <= {"identical"}, others
         return found[variable]
 

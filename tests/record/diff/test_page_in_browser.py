@@ -46,7 +46,7 @@ addEventListener("load", () => {
       width: image.naturalWidth, height: image.naturalHeight,
     })),
     sections: [...page.querySelectorAll("section")].map(section => ({
-      name: section.id, verdict: section.dataset.verdict,
+      name: section.id, outcome: section.dataset.outcome,
       open: section.querySelector("details").open,
       top: section.getBoundingClientRect().top,
     })),
@@ -134,13 +134,13 @@ def test_the_browser_shows_every_picture_and_the_worst_first(page, pair):
     for name in ("fig09, record", "fig09, new", "fig09, difference"):
         with Image.open(pair.record / "figures" / "fig09.png") as picture:
             assert (found[name]["width"], found[name]["height"]) == picture.size
-    sections = [(part["name"], part["verdict"], part["open"]) for part in seen["sections"]]
+    sections = [(part["name"], part["outcome"], part["open"]) for part in seen["sections"]]
     assert sections[:3] == [
         ("fig01", "missing", True),
         ("fig05", "drifted", True),
         ("fig09", "within budget", False),
     ]
-    assert {verdict for _, verdict, _ in sections[3:]} == {"identical"}
+    assert {outcome for _, outcome, _ in sections[3:]} == {"identical"}
     tops = [part["top"] for part in seen["sections"]]
     assert tops == sorted(tops)
     assert "case = 1, frequency_ratio = 2.51189" in seen["cells"]

@@ -1,4 +1,4 @@
-"""The diff tests itself: a known change of each kind gives the verdict it should."""
+"""The diff tests itself: a known change of each kind gives the outcome it should."""
 
 import json
 import struct
@@ -12,7 +12,7 @@ from PIL import Image
 from bouncing_ball.datasets.netcdf import write_dataset
 from bouncing_ball.record.diff.data import compare_datasets
 from bouncing_ball.record.diff.drift import span
-from bouncing_ball.record.diff.outcome import Verdict, status
+from bouncing_ball.record.diff.outcome import Outcome, status
 from bouncing_ball.record.diff.tolerances import Mode, Tolerance, Tolerances
 
 HALF, TWICE = 0.5, 2.0
@@ -29,8 +29,8 @@ def moved(data: xr.Dataset, name: str, index: tuple, by: float) -> xr.Dataset:
 
 def test_equal_folders_are_identical(pair):
     comparison = pair.compare()
-    assert {found.verdict for found in comparison.artifacts} == {Verdict.IDENTICAL}
-    assert status(comparison.verdict) == 0
+    assert {found.outcome for found in comparison.artifacts} == {Outcome.IDENTICAL}
+    assert status(comparison.outcome) == 0
     names = {"fig01", "fig05", "fig08", "fig09", "table1", "witness", "paper"}
     assert {found.name for found in comparison.artifacts} == names
     # Every file of both sides was compared.
@@ -50,13 +50,13 @@ def test_pointwise(pair, part):
     index = tuple(int(k) for k in np.argwhere(np.abs(data.phase.values) < 0.01)[0])
     pair.write("fig05", moved(data, "phase", index, part * budget * span(data.phase)))
     result = pair.variable("fig05", "phase")
-    assert result.verdict == (Verdict.WITHIN if part < 1 else Verdict.DRIFTED)
+    assert result.outcome == (Outcome.WITHIN if part < 1 else Outcome.DRIFTED)
     # One rounding of a phase up to 1.6 against a budget of 1e-13 of the range.
     assert result.share == pytest.approx(part, abs=2e-3)
     ratio = data.frequency_ratio.values[index[1]]
     assert result.place == f"case = {index[0]}, frequency_ratio = {ratio:.6g}"
     artifact = pair.artifact("fig05")
-    assert artifact.verdict == result.verdict and artifact.share == result.share
+    assert artifact.outcome == result.outcome and artifact.share == result.share
 
 
 @pytest.mark.parametrize("part", [HALF, TWICE])
@@ -69,7 +69,7 @@ def test_curve(pair, part):
     height = part * budget * span(data.bounce_velocity)
     pair.write("fig08", moved(data, "bounce_velocity", index, height))
     result = pair.variable("fig08", "bounce_velocity")
-    assert result.verdict == (Verdict.WITHIN if part < 1 else Verdict.DRIFTED)
+    assert result.outcome == (Outcome.WITHIN if part < 1 else Outcome.DRIFTED)
     # The slope of the level curve, 1e-4, is what is missing to the right angle.
     assert result.share == pytest.approx(part, rel=1e-3)
 
@@ -88,7 +88,7 @@ def test_curve_along_its_abscissa(part):
     loose = Tolerance(Mode.POINTWISE, "a test", budget=1.0)
     rules = Tolerances({"x": loose, "y": rule}, loose)
     found = {result.name: result for result in compare_datasets("", record, new, rules)}
-    assert found["y"].verdict is (Verdict.WITHIN if part < 1 else Verdict.DRIFTED)
+    assert found["y"].outcome is (Outcome.WITHIN if part < 1 else Outcome.DRIFTED)
     assert found["y"].share == pytest.approx(part, rel=1e-9)
 
 
@@ -99,7 +99,7 @@ def test_invariant(pair, part):
     index = (1, int(np.argmax(data.residual.values[1])))
     pair.write("fig08", moved(data, "residual", index, part * rule.budget * rule.scale))
     result = pair.variable("fig08", "residual")
-    assert result.verdict == (Verdict.WITHIN if part < 1 else Verdict.DRIFTED)
+    assert result.outcome == (Outcome.WITHIN if part < 1 else Outcome.DRIFTED)
     assert result.share == pytest.approx(part, rel=1e-12)
     assert result.place == "statistic = max, frequency_ratio = 10"
     # A smaller residual elsewhere is no derived number, whatever it does.
@@ -123,14 +123,14 @@ def test_beyond_the_predictability_horizon():
     invariant = Tolerance(
         Mode.INVARIANT, "a test", budget=0.02, along="step", statistics=("mean", "std")
     )
-    verdicts = {}
+    outcomes = {}
     for rule in (Tolerance(Mode.POINTWISE, "a test", budget=0.02), invariant):
         (result,) = compare_datasets("chaos", record, new, Tolerances({"x": rule}, rule))
-        verdicts[rule.mode] = result.verdict
-    assert verdicts == {"pointwise": Verdict.DRIFTED, "invariant": Verdict.WITHIN}
+        outcomes[rule.mode] = result.outcome
+    assert outcomes == {"pointwise": Outcome.DRIFTED, "invariant": Outcome.WITHIN}
     # Another map is another density.
     (result,) = compare_datasets("chaos", record, record**2, Tolerances({"x": invariant}, rule))
-    assert result.verdict is Verdict.DRIFTED and result.place.startswith("statistic = ")
+    assert result.outcome is Outcome.DRIFTED and result.place.startswith("statistic = ")
 
 
 @pytest.mark.parametrize("part", [HALF, TWICE])
@@ -145,7 +145,7 @@ def test_scale_by_another_variable(pair, part):
     changed.disagreement.values[at] = before + part * float(data.budget.values[at[1]])
     pair.write("witness", changed)
     result = pair.variable("witness", "disagreement")
-    assert result.verdict == (Verdict.WITHIN if part < 1 else Verdict.DRIFTED)
+    assert result.outcome == (Outcome.WITHIN if part < 1 else Outcome.DRIFTED)
     assert result.share == pytest.approx(part, rel=1e-12)
 
 
@@ -153,7 +153,7 @@ def test_exact(pair):
     data = pair.dataset("witness")
     pair.write("witness", moved(data, "orbits", (0, 0), 1))
     result = pair.variable("witness", "orbits")
-    assert result.verdict is Verdict.DRIFTED and result.share == np.inf
+    assert result.outcome is Outcome.DRIFTED and result.share == np.inf
     assert f"1 of {data.orbits.size} entries differ" in result.note
 
 
@@ -165,7 +165,7 @@ def test_words(pair):
     changed.special_kind.values[0, 1] = "Neimark-Sacker bifurcation"
     pair.write("fig08", changed)
     result = pair.variable("fig08", "special_kind")
-    assert result.verdict is Verdict.DRIFTED
+    assert result.outcome is Outcome.DRIFTED
     assert (result.record, result.new) == ("period doubling", "Neimark-Sacker bifurcation")
 
 
@@ -173,19 +173,19 @@ def test_ignored(pair):
     data = pair.dataset("witness")
     changed = data.assign(worst=data.worst.copy(data=np.full(data.worst.shape, "nowhere")))
     pair.write("witness", changed)
-    assert pair.variable("witness", "worst").verdict is Verdict.WITHIN
-    assert pair.artifact("witness").verdict is Verdict.WITHIN
+    assert pair.variable("witness", "worst").outcome is Outcome.WITHIN
+    assert pair.artifact("witness").outcome is Outcome.WITHIN
 
 
 def test_stability_at_the_edge_and_elsewhere(pair):
     data = pair.dataset("fig08")
     row = data.stable.values[0]
     edge = int(np.argmax(row != row[0]))
-    for sample, verdict in ((edge, Verdict.WITHIN), (edge // 2, Verdict.DRIFTED)):
+    for sample, outcome in ((edge, Outcome.WITHIN), (edge // 2, Outcome.DRIFTED)):
         changed = data.copy(deep=True)
         changed.stable.values[0, sample] ^= True
         pair.write("fig08", changed)
-        assert pair.variable("fig08", "stable").verdict is verdict
+        assert pair.variable("fig08", "stable").outcome is outcome
 
 
 # Structure.
@@ -208,7 +208,7 @@ def test_points_that_slide_along_the_curve(pair):
     pair.write("fig09", changed)
     found = {result.name: result for result in pair.part("figures/fig09.nc").variables}
     for name in curves:
-        assert found[name].verdict.agrees, name
+        assert found[name].outcome.agrees, name
     # Point by point the phase has moved by far more than it may.
     slid = float(np.abs(changed.phase - data.phase).max()) / span(data.phase)
     assert slid > 10 * found["phase"].budget > 10 * found["phase"].drift
@@ -217,31 +217,31 @@ def test_points_that_slide_along_the_curve(pair):
 def test_shifted_abscissa(pair):
     data = pair.dataset("fig05")
     budget = pair.rules.of("fig05", "frequency_ratio").budget
-    for part, verdict in ((HALF, Verdict.WITHIN), (TWICE, Verdict.DRIFTED)):
+    for part, outcome in ((HALF, Outcome.WITHIN), (TWICE, Outcome.DRIFTED)):
         ratios = data.frequency_ratio.values.copy()
         ratios[-1] += part * budget * np.ptp(ratios)
         shifted = data.assign_coords(frequency_ratio=data.frequency_ratio.copy(data=ratios))
         shifted.frequency_ratio.attrs = data.frequency_ratio.attrs
         pair.write("fig05", shifted)
-        assert pair.variable("fig05", "frequency_ratio").verdict is verdict
+        assert pair.variable("fig05", "frequency_ratio").outcome is outcome
 
 
 def test_other_labels_are_other_data(pair):
     data = pair.dataset("table1")
     pair.write("table1", data.assign_coords(n=data.n.copy(data=[1, 2, 4])))
     result = pair.variable("table1", "n")
-    assert result.verdict is Verdict.STRUCTURE and (result.record, result.new) == ("3", "4")
+    assert result.outcome is Outcome.STRUCTURE and (result.record, result.new) == ("3", "4")
 
 
 def structure(pair, name, data, variable, note):
     pair.write(name, data)
     part = pair.part(f"figures/{name}.nc")
     found = {result.name: result for result in part.variables}
-    assert found[variable].verdict is Verdict.STRUCTURE
+    assert found[variable].outcome is Outcome.STRUCTURE
     assert note in found[variable].note
-    assert part.verdict is Verdict.STRUCTURE
-    assert part.variables[0].verdict is Verdict.STRUCTURE
-    assert status(pair.compare().verdict) == 1
+    assert part.outcome is Outcome.STRUCTURE
+    assert part.variables[0].outcome is Outcome.STRUCTURE
+    assert status(pair.compare().outcome) == 1
 
 
 def test_dropped_coordinate(pair):
@@ -295,7 +295,7 @@ def test_attributes_that_matter_and_others(pair):
     structure(pair, "fig05", units, "phase", "attribute units: rad → degree")
     made = {"provenance_commit": "0123abc", "title": "another_rule"}
     pair.write("fig05", data.assign_attrs(made))
-    assert pair.artifact("fig05").verdict is Verdict.IDENTICAL
+    assert pair.artifact("fig05").outcome is Outcome.IDENTICAL
 
 
 # NaN, infinity, files.
@@ -313,12 +313,12 @@ def test_nan_and_infinity(pair):
     for value, text in ((np.nan, "nan"), (np.inf, "inf")):
         pair.write("fig05", moved(data, "phase", (2, 17), value))
         result = pair.variable("fig05", "phase")
-        assert result.verdict is Verdict.DRIFTED and result.drift == np.inf
+        assert result.outcome is Outcome.DRIFTED and result.drift == np.inf
         assert result.new == text and result.place.startswith("case = 2")
     data = pair.dataset("fig08")
     pair.write("fig08", moved(data, "phase", (1, 17), np.nan))
     found = {result.name: result for result in pair.part("figures/fig08.nc").variables}
-    assert found["phase"].verdict is Verdict.DRIFTED
+    assert found["phase"].outcome is Outcome.DRIFTED
     assert found["phase"].place == "frequency_ratio = 10, point = 17"
 
 
@@ -328,7 +328,7 @@ def test_nan_in_the_record_that_is_gone(pair):
     changed = data.copy(deep=True)
     changed.special_phase.values[there] = 0.0
     pair.write("fig08", changed)
-    assert pair.variable("fig08", "special_phase").verdict is Verdict.DRIFTED
+    assert pair.variable("fig08", "special_phase").outcome is Outcome.DRIFTED
 
 
 @pytest.mark.parametrize("kept", [0.0, 0.01, 0.5, 0.95])
@@ -337,13 +337,13 @@ def test_truncated_netcdf(pair, kept, capfd):
     content = path.read_bytes()
     path.write_bytes(content[: int(kept * len(content))])
     part = pair.part("figures/fig05.nc")
-    assert part.verdict is Verdict.UNREADABLE and part.note.startswith("new:")
+    assert part.outcome is Outcome.UNREADABLE and part.note.startswith("new:")
     assert str(pair.new) not in part.note and "\n" not in part.note
     comparison = pair.compare()
     assert comparison.artifacts[0].name == "fig05"
-    assert status(comparison.verdict) == 2
+    assert status(comparison.outcome) == 2
     # The others are compared all the same.
-    assert {found.verdict for found in comparison.artifacts[1:]} == {Verdict.IDENTICAL}
+    assert {found.outcome for found in comparison.artifacts[1:]} == {Outcome.IDENTICAL}
 
 
 def test_truncated_record(pair):
@@ -361,12 +361,12 @@ def test_missing_and_extra(pair):
     for path in (pair.new / "figures").glob("table1.*"):
         path.unlink()
     comparison = pair.compare()
-    verdicts = {found.name: found.verdict for found in comparison.artifacts}
-    expected = dict.fromkeys(("fig08", "paper", "table1"), Verdict.MISSING)
-    expected |= dict.fromkeys(("fig05", "fig09"), Verdict.EXTRA)
-    expected |= dict.fromkeys(("fig01", "witness"), Verdict.IDENTICAL)
-    assert verdicts == expected
-    assert status(comparison.verdict) == 1
+    outcomes = {found.name: found.outcome for found in comparison.artifacts}
+    expected = dict.fromkeys(("fig08", "paper", "table1"), Outcome.MISSING)
+    expected |= dict.fromkeys(("fig05", "fig09"), Outcome.EXTRA)
+    expected |= dict.fromkeys(("fig01", "witness"), Outcome.IDENTICAL)
+    assert outcomes == expected
+    assert status(comparison.outcome) == 1
 
 
 # Pictures and texts.
@@ -380,24 +380,24 @@ def swap(pair, one, two):
 
 
 @pytest.mark.parametrize(
-    ("versions", "decides", "verdict"),
+    ("versions", "decides", "outcome"),
     [
-        ((None, None), False, Verdict.WITHIN),
-        ((VERSIONS, None), False, Verdict.WITHIN),
-        ((VERSIONS, OTHER_VERSIONS), False, Verdict.WITHIN),
-        ((VERSIONS, VERSIONS), True, Verdict.DRIFTED),
+        ((None, None), False, Outcome.WITHIN),
+        ((VERSIONS, None), False, Outcome.WITHIN),
+        ((VERSIONS, OTHER_VERSIONS), False, Outcome.WITHIN),
+        ((VERSIONS, VERSIONS), True, Outcome.DRIFTED),
         # The same versions, written in another order.
         ((VERSIONS, json.dumps(dict(reversed(json.loads(VERSIONS).items())))), True, "drifted"),
     ],
 )
-def test_swapped_figures(pair, versions, decides, verdict):
+def test_swapped_figures(pair, versions, decides, outcome):
     pair.stamp(*versions)
     swap(pair, "fig08.png", "fig09.png")
     found = {each.name: each for each in pair.compare().artifacts}
     part = next(part for part in found["fig08"].parts if part.file == "figures/fig08.png")
-    assert part.verdict is Verdict.DRIFTED and part.decides is decides
+    assert part.outcome is Outcome.DRIFTED and part.decides is decides
     assert part.picture.rms > 10 * pair.rules.pictures.budget
-    assert found["fig08"].verdict == found["fig09"].verdict == verdict
+    assert found["fig08"].outcome == found["fig09"].outcome == outcome
 
 
 @pytest.mark.parametrize("versions", [None, VERSIONS])
@@ -409,12 +409,12 @@ def test_swapped_figures_of_different_sizes(pair, versions):
     for name in ("fig01", "fig08"):
         with Image.open(pair.record / "figures" / f"{name}.png") as picture:
             sizes.append(" × ".join(map(str, picture.size)))
-    assert part.verdict is Verdict.STRUCTURE
+    assert part.outcome is Outcome.STRUCTURE
     assert part.note == f"size in pixels: {' → '.join(sizes)}"
     # A figure without a dataset says in its own text with what it was made. Swapped,
     # that text comes along.
-    expected = Verdict.WITHIN if versions is None else Verdict.STRUCTURE
-    assert pair.artifact("fig01").verdict is pair.artifact("fig08").verdict is expected
+    expected = Outcome.WITHIN if versions is None else Outcome.STRUCTURE
+    assert pair.artifact("fig01").outcome is pair.artifact("fig08").outcome is expected
 
 
 def test_a_picture_by_half_and_twice_its_budget(pair):
@@ -423,7 +423,7 @@ def test_a_picture_by_half_and_twice_its_budget(pair):
     with Image.open(path) as picture:
         size = picture.size
         pixels = np.array(picture.convert("RGB"), dtype=int)
-    for part, verdict in ((HALF, Verdict.WITHIN), (TWICE, Verdict.DRIFTED)):
+    for part, outcome in ((HALF, Outcome.WITHIN), (TWICE, Outcome.DRIFTED)):
         # So many pixels of the upper edge by 16 levels that the rms is as wanted.
         step = 16
         count = round((part * pair.rules.pictures.budget / step) ** 2 * size[0] * size[1])
@@ -432,7 +432,7 @@ def test_a_picture_by_half_and_twice_its_budget(pair):
         flat[:count] += np.where(flat[:count] > 127, -step, step)
         Image.fromarray(changed.astype(np.uint8)).save(path)
         result = pair.part("figures/fig08.png")
-        assert result.verdict is verdict
+        assert result.outcome is outcome
         assert result.share == pytest.approx(part, rel=1e-2)
 
 
@@ -440,15 +440,15 @@ def test_pixels_count_and_not_bytes(pair):
     pair.stamp(VERSIONS, OTHER_VERSIONS)
     paths = [folder / "figures" / "fig08.png" for folder in (pair.record, pair.new)]
     assert paths[0].read_bytes() != paths[1].read_bytes()
-    assert pair.part("figures/fig08.png").verdict is Verdict.IDENTICAL
+    assert pair.part("figures/fig08.png").outcome is Outcome.IDENTICAL
 
 
 def test_truncated_picture(pair):
     path = pair.new / "figures" / "fig01.png"
     path.write_bytes(path.read_bytes()[:5000])
     part = pair.part("figures/fig01.png")
-    assert part.verdict is Verdict.UNREADABLE and "PNG" in part.note
-    assert status(pair.compare().verdict) == 2
+    assert part.outcome is Outcome.UNREADABLE and "PNG" in part.note
+    assert status(pair.compare().outcome) == 2
 
 
 @pytest.mark.parametrize("content", [b"", b"text", b"\x89PNG\r\n\x1a\n"])
@@ -456,7 +456,7 @@ def test_a_picture_that_is_none(pair, content):
     (pair.new / "figures" / "fig01.png").write_bytes(content)
     part = pair.part("figures/fig01.png")
     # Twice the same words: nothing of this process in them.
-    assert part.verdict is Verdict.UNREADABLE and part.note == "not a PNG file"
+    assert part.outcome is Outcome.UNREADABLE and part.note == "not a PNG file"
 
 
 @pytest.mark.parametrize("size", [10_000, 20_000])
@@ -468,8 +468,8 @@ def test_a_picture_too_large_to_be_opened(pair, size):
     begun = struct.pack(">I", 1000) + b"IDAT"
     path.write_bytes(b"\x89PNG\r\n\x1a\n" + struct.pack(">I", 13) + head + crc + begun)
     part = pair.part("figures/fig01.png")
-    assert part.verdict is Verdict.UNREADABLE and part.note == "too large a picture"
-    assert status(pair.compare().verdict) == 2
+    assert part.outcome is Outcome.UNREADABLE and part.note == "too large a picture"
+    assert status(pair.compare().outcome) == 2
 
 
 def test_vector_graphics_are_reported_and_their_metadata_is_not(pair):
@@ -482,10 +482,10 @@ def test_vector_graphics_are_reported_and_their_metadata_is_not(pair):
     record.write_text(
         text.replace("<defs>", "<metadata>\n made elsewhere\n</metadata>\n <defs>", 1)
     )
-    assert pair.part("figures/fig05.svg").verdict is Verdict.IDENTICAL
+    assert pair.part("figures/fig05.svg").outcome is Outcome.IDENTICAL
     path.write_text(text.replace("</svg>", "<g/></svg>"))
-    assert pair.part("figures/fig05.svg").verdict is Verdict.DRIFTED
-    assert pair.artifact("fig05").verdict is Verdict.WITHIN
+    assert pair.part("figures/fig05.svg").outcome is Outcome.DRIFTED
+    assert pair.artifact("fig05").outcome is Outcome.WITHIN
 
 
 def change_digit(path):
@@ -497,54 +497,54 @@ def change_digit(path):
 def test_a_table_moves_with_its_data(pair):
     change_digit(pair.new / "figures" / "table1.csv")
     # The data are the same: then the printed digit has another reason.
-    assert pair.part("figures/table1.csv").verdict is Verdict.DRIFTED
+    assert pair.part("figures/table1.csv").outcome is Outcome.DRIFTED
     data = pair.dataset("table1")
     budget = pair.rules.of("table1", "computed").budget
     pair.write("table1", moved(data, "computed", (1, 0, 0), HALF * budget * span(data.computed)))
-    assert pair.part("figures/table1.csv").verdict is Verdict.WITHIN
-    assert pair.artifact("table1").verdict is Verdict.WITHIN
+    assert pair.part("figures/table1.csv").outcome is Outcome.WITHIN
+    assert pair.artifact("table1").outcome is Outcome.WITHIN
     pair.write("table1", moved(data, "computed", (1, 0, 0), TWICE * budget * span(data.computed)))
-    assert pair.part("figures/table1.csv").verdict is Verdict.DRIFTED
+    assert pair.part("figures/table1.csv").outcome is Outcome.DRIFTED
     for folder in (pair.record, pair.new):
         (folder / "figures" / "table1.nc").unlink()
-    assert pair.part("figures/table1.csv").verdict is Verdict.DRIFTED
+    assert pair.part("figures/table1.csv").outcome is Outcome.DRIFTED
 
 
 @pytest.mark.parametrize(
-    ("name", "old", "new", "verdict"),
+    ("name", "old", "new", "outcome"),
     [
         # One unit of the last digit, and two.
-        ("table1", "0.23999", "0.24000", Verdict.WITHIN),
-        ("table1", "0.23999", "0.24001", Verdict.DRIFTED),
+        ("table1", "0.23999", "0.24000", Outcome.WITHIN),
+        ("table1", "0.23999", "0.24001", Outcome.DRIFTED),
         # The size of rounding, and the number of orbits behind it.
-        ("witness", "4.5e-13 (1812)", "9.1e-15 (1812)", Verdict.WITHIN),
-        ("witness", "4.5e-13 (1812)", "4.5e-13 (1811)", Verdict.DRIFTED),
-        ("witness", "4.5e-13 (1812)", "4.5e-03 (1812)", Verdict.DRIFTED),
-        ("witness", "4.5e-13 (1812)", "4.5e-13 of 1812", Verdict.STRUCTURE),
-        ("witness", "4.5e-13 (1812)", "–", Verdict.STRUCTURE),
+        ("witness", "4.5e-13 (1812)", "9.1e-15 (1812)", Outcome.WITHIN),
+        ("witness", "4.5e-13 (1812)", "4.5e-13 (1811)", Outcome.DRIFTED),
+        ("witness", "4.5e-13 (1812)", "4.5e-03 (1812)", Outcome.DRIFTED),
+        ("witness", "4.5e-13 (1812)", "4.5e-13 of 1812", Outcome.STRUCTURE),
+        ("witness", "4.5e-13 (1812)", "–", Outcome.STRUCTURE),
     ],
 )
-def test_how_far_a_table_moves_with_its_data(pair, name, old, new, verdict):
+def test_how_far_a_table_moves_with_its_data(pair, name, old, new, outcome):
     variable = {"table1": "computed", "witness": "disagreement"}[name]
     data = pair.dataset(name)
     index = tuple(int(k) for k in np.argwhere(np.isfinite(data[variable].values))[0])
     pair.write(name, moved(data, variable, index, 1e-15))
-    assert pair.part(f"figures/{name}.nc").verdict is Verdict.WITHIN
+    assert pair.part(f"figures/{name}.nc").outcome is Outcome.WITHIN
     path = pair.new / "figures" / f"{name}.csv"
     text = path.read_text(encoding="utf-8")
     assert text.count(old) == 1
     path.write_text(text.replace(old, new), encoding="utf-8")
     part = pair.part(f"figures/{name}.csv")
-    assert part.verdict is verdict and part.decides
-    assert pair.artifact(name).verdict is verdict
+    assert part.outcome is outcome and part.decides
+    assert pair.artifact(name).outcome is outcome
 
 
 @pytest.mark.parametrize("cell", ["a\rb", "x" * 131_073])
 def test_a_table_that_is_none(pair, cell):
     (pair.new / "figures" / "table1.csv").write_text(cell, encoding="utf-8", newline="")
     part = pair.part("figures/table1.csv")
-    assert part.verdict is Verdict.UNREADABLE and part.note.startswith("not a CSV table: ")
-    assert status(pair.compare().verdict) == 2
+    assert part.outcome is Outcome.UNREADABLE and part.note.startswith("not a CSV table: ")
+    assert status(pair.compare().outcome) == 2
 
 
 @pytest.mark.parametrize(
@@ -561,22 +561,22 @@ def test_the_shape_and_the_words_of_a_table(pair, old, new, note):
     assert old in text
     path.write_text(text.replace(old, new, 1), encoding="utf-8")
     part = pair.part("figures/table1.csv")
-    assert part.verdict is Verdict.STRUCTURE and note in part.note
+    assert part.outcome is Outcome.STRUCTURE and note in part.note
 
 
 @pytest.mark.parametrize("file", ["figures/table1.md", "figures/table1.tex", "paper.md"])
 def test_texts_decide_among_the_same_versions(pair, file):
     change_digit(pair.new / file)
     name = file.removeprefix("figures/").split(".")[0]
-    assert pair.part(file).verdict is Verdict.DRIFTED
-    assert pair.artifact(name).verdict is Verdict.WITHIN
+    assert pair.part(file).outcome is Outcome.DRIFTED
+    assert pair.artifact(name).outcome is Outcome.WITHIN
     pair.stamp(VERSIONS, VERSIONS)
-    assert pair.artifact(name).verdict is Verdict.DRIFTED
+    assert pair.artifact(name).outcome is Outcome.DRIFTED
     # One dataset made with other versions, and the paper is made from all.
     data = pair.dataset("fig05").assign_attrs(provenance_versions=OTHER_VERSIONS)
     pair.write("fig05", data)
-    expected = Verdict.WITHIN if name == "paper" else Verdict.DRIFTED
-    assert pair.artifact(name).verdict is expected
+    expected = Outcome.WITHIN if name == "paper" else Outcome.DRIFTED
+    assert pair.artifact(name).outcome is expected
 
 
 @pytest.mark.parametrize("file", ["figures/table1.md", "figures/table1.tex", "paper.md"])
@@ -588,13 +588,13 @@ def test_texts_move_with_their_data(pair, file):
     step = budget * span(data.computed)
     pair.write("table1", moved(data, "computed", (1, 0, 0), HALF * step))
     part = pair.part(file)
-    assert part.verdict is Verdict.WITHIN and not part.decides
-    assert pair.compare().verdict is Verdict.WITHIN
+    assert part.outcome is Outcome.WITHIN and not part.decides
+    assert pair.compare().outcome is Outcome.WITHIN
     # Beyond its budget the dataset decides, and the text is no more than reported.
     pair.write("table1", moved(data, "computed", (1, 0, 0), TWICE * step))
     part = pair.part(file)
-    assert part.verdict is Verdict.DRIFTED and not part.decides
-    assert pair.artifact("table1").verdict is Verdict.DRIFTED
+    assert part.outcome is Outcome.DRIFTED and not part.decides
+    assert pair.artifact("table1").outcome is Outcome.DRIFTED
 
 
 def test_a_variable_without_an_entry_is_compared_exactly(pair):
@@ -603,10 +603,10 @@ def test_a_variable_without_an_entry_is_compared_exactly(pair):
     write_dataset(both, pair.record / "figures" / "fig05.nc")
     pair.write("fig05", both)
     part = pair.part("figures/fig05.nc")
-    assert part.verdict is Verdict.IDENTICAL and part.note == "no entry for novelty"
+    assert part.outcome is Outcome.IDENTICAL and part.note == "no entry for novelty"
     pair.write("fig05", moved(both, "novelty", (0, 0), 1e-15))
     part = pair.part("figures/fig05.nc")
-    assert part.verdict is Verdict.DRIFTED
+    assert part.outcome is Outcome.DRIFTED
     assert part.variables[0].name == "novelty"
     note = f"1 of {both.novelty.size} entries differ; no entry in the tolerance file"
     assert part.variables[0].note == note

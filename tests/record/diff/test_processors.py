@@ -13,7 +13,7 @@ from numpy._core._multiarray_umath import __cpu_dispatch__, __cpu_features__
 from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.record.diff.data import compare_datasets
 from bouncing_ball.record.diff.folders import compare_folders
-from bouncing_ball.record.diff.outcome import Verdict
+from bouncing_ball.record.diff.outcome import Outcome
 from bouncing_ball.record.diff.report_terminal import to_terminal
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -78,7 +78,7 @@ def test_two_sets_of_processor_features_agree(rules, tmp_path):
     for name in STAGES:
         record, new = (read_dataset(folder / f"{name}.nc") for folder in folders)
         for result in compare_datasets(name, record, new, rules):
-            assert result.verdict.agrees, result
+            assert result.outcome.agrees, result
 
 
 # Slow: everything is made once, in about 40 s.
@@ -102,5 +102,5 @@ def test_a_whole_run_with_fewer_features_says_what_the_record_says(rules, tmp_pa
     assert done.returncode == 0, done.stderr
     comparison = compare_folders(ROOT, tree / "results", rules)
     # Else the switches have switched nothing, and this says nothing.
-    assert any(found.verdict is not Verdict.IDENTICAL for found in comparison.artifacts)
-    assert comparison.verdict.agrees, to_terminal(comparison)
+    assert any(found.outcome is not Outcome.IDENTICAL for found in comparison.artifacts)
+    assert comparison.outcome.agrees, to_terminal(comparison)

@@ -29,7 +29,7 @@ def command(capsys, *arguments):
 
 @pytest.fixture
 def changed(pair):
-    """One artifact of each verdict but the last."""
+    """One artifact of each outcome but the last."""
     data = pair.dataset("fig05")
     data.phase.values[1, 40] += 1e-3
     pair.write("fig05", data)
@@ -44,7 +44,7 @@ def changed(pair):
 
 def test_the_terminal_in_short(changed):
     lines = to_terminal(changed.compare()).splitlines()
-    assert lines[0].split() == ["artifact", "verdict", "share", "what"]
+    assert lines[0].split() == ["artifact", "outcome", "share", "what"]
     assert [line.split()[0] for line in lines[1:-1]] == [
         "fig99",
         "table1",
@@ -64,12 +64,12 @@ def test_the_terminal_in_short(changed):
 def test_json_holds_everything(changed):
     comparison = changed.compare()
     content = json.loads(to_json(comparison))
-    assert content["status"] == 1 and content["verdict"] == "extra"
+    assert content["status"] == 1 and content["outcome"] == "extra"
     assert [found["name"] for found in content["artifacts"]][:2] == ["fig99", "table1"]
     found = {each["name"]: each for each in content["artifacts"]}
     variables = {each["name"]: each for each in found["fig05"]["parts"][0]["variables"]}
     phase = variables["phase"]
-    assert phase["verdict"] == "drifted" and phase["mode"] == "pointwise"
+    assert phase["outcome"] == "drifted" and phase["mode"] == "pointwise"
     assert phase["share"] == pytest.approx(phase["drift"] / phase["budget"])
     assert float(phase["new"]) - float(phase["record"]) == pytest.approx(1e-3)
     assert set(variables) == {str(name) for name in changed.dataset("fig05").variables}
@@ -96,7 +96,7 @@ def test_all_text_is_escaped(pair):
     page, summary = to_html(comparison), to_markdown(comparison)
     assert "<script" not in page and "&lt;script&gt;" in page
     assert bad not in summary and "\\<script\\>" in summary and "\\|" in summary
-    assert json.loads(to_json(comparison))["verdict"] == "changed structure"
+    assert json.loads(to_json(comparison))["outcome"] == "changed structure"
 
 
 def test_the_page_fetches_nothing(changed):

@@ -106,7 +106,7 @@ def test_every_variation_is_within_budget(name, rules):
         for result in compare_datasets(name, base, data, rules):
             # The study moves r itself, a parameter, which is exact.
             if result.name != "restitution":
-                assert result.verdict.agrees, (kind, result)
+                assert result.outcome.agrees, (kind, result)
                 seen += 1
     assert seen > len(base.variables)
 

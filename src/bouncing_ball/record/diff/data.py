@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.record.diff.drift import curve, pointwise, span
-from bouncing_ball.record.diff.outcome import Verdict
+from bouncing_ball.record.diff.outcome import Outcome
 from bouncing_ball.record.diff.tolerances import Mode, Tolerance, ToleranceError, Tolerances
 
 
@@ -23,7 +23,7 @@ class VariableResult:
     """
 
     name: str
-    verdict: Verdict
+    outcome: Outcome
     mode: Mode | None = None
     drift: float | None = None
     budget: float | None = None
@@ -178,7 +178,7 @@ def _measured(name: str, record: xr.Dataset, new: xr.Dataset, rule: Tolerance) -
     try:
         drift = drifts(name, record, new, rule)
     except ToleranceError as error:
-        return VariableResult(name, Verdict.STRUCTURE, rule.mode, note=str(error))
+        return VariableResult(name, Outcome.STRUCTURE, rule.mode, note=str(error))
     place = np.unravel_index(int(np.argmax(drift.values)), drift.shape)
     index = tuple(int(k) for k in place)
     largest = float(drift.values[index])
@@ -193,7 +193,7 @@ def _measured(name: str, record: xr.Dataset, new: xr.Dataset, rule: Tolerance) -
         note = f"over {rule.abscissa}: {' → '.join(dict.fromkeys(axis))}"
     return VariableResult(
         name,
-        Verdict.WITHIN if share <= 1 else Verdict.DRIFTED,
+        Outcome.WITHIN if share <= 1 else Outcome.DRIFTED,
         rule.mode,
         largest,
         rule.budget,
@@ -221,7 +221,7 @@ def _exactly(
     return VariableResult(
         name,
         # Labels say what the data are: under other labels they are other data.
-        Verdict.STRUCTURE if name in record.dims else Verdict.DRIFTED,
+        Outcome.STRUCTURE if name in record.dims else Outcome.DRIFTED,
         Mode.EXACT,
         math.inf,
         0.0,
@@ -244,13 +244,13 @@ def _compare_variable(
     if (name in record.coords) != (name in new.coords):
         changes.append("coordinate → data" if name in record.coords else "data → coordinate")
     if changes:
-        return VariableResult(name, Verdict.STRUCTURE, mode, note="; ".join(changes))
+        return VariableResult(name, Outcome.STRUCTURE, mode, note="; ".join(changes))
     same = _same_values(a, b)
     if same.all():
         budget = None if rule is None else rule.budget
-        return VariableResult(name, Verdict.IDENTICAL, mode, 0.0, budget, 0.0, note=note)
+        return VariableResult(name, Outcome.IDENTICAL, mode, 0.0, budget, 0.0, note=note)
     if mode is Mode.IGNORED:
-        return VariableResult(name, Verdict.WITHIN, mode, note="differs, and is not compared")
+        return VariableResult(name, Outcome.WITHIN, mode, note="differs, and is not compared")
     if rule is None or mode is Mode.EXACT or _kind(a) == "text":
         return _exactly(name, a, b, same, note)
     return _measured(name, record, new, rule)
@@ -272,25 +272,25 @@ def compare_datasets(
     ... )
     >>> record = xr.Dataset({"phase": ("point", [0.0, 1.0])})
     >>> found = compare_datasets("fig", record, record + 2.0**-11, rules)
-    >>> [(each.name, str(each.verdict), round(each.share, 3)) for each in found]
+    >>> [(each.name, str(each.outcome), round(each.share, 3)) for each in found]
     [('phase', 'within budget', 0.488)]
     """
     results = []
     for name in sorted({str(name) for name in (*record.variables, *new.variables)}):
         if name not in new.variables:
-            results.append(VariableResult(name, Verdict.STRUCTURE, note="is gone"))
+            results.append(VariableResult(name, Outcome.STRUCTURE, note="is gone"))
         elif name not in record.variables:
-            results.append(VariableResult(name, Verdict.STRUCTURE, note="is new"))
+            results.append(VariableResult(name, Outcome.STRUCTURE, note="is new"))
         else:
             results.append(_compare_variable(name, artifact, record, new, rules))
     changes = list(_attributes(record, new, rules))
     if changes:
         results.append(
-            VariableResult("(global attributes)", Verdict.STRUCTURE, note="; ".join(changes))
+            VariableResult("(global attributes)", Outcome.STRUCTURE, note="; ".join(changes))
         )
     return sorted(results, key=_severity)
 
 
 def _severity(result: Any) -> tuple:
-    """Sorting key: the worst verdict first, then the largest share, then the name."""
-    return -result.verdict.rank, -(result.share or 0.0), result.name
+    """Sorting key: the worst outcome first, then the largest share, then the name."""
+    return -result.outcome.rank, -(result.share or 0.0), result.name

@@ -8,7 +8,7 @@ suffixes are one artifact.
 from dataclasses import dataclass
 from pathlib import Path
 
-from bouncing_ball.record.diff.outcome import Verdict, worst
+from bouncing_ball.record.diff.outcome import Outcome, worst
 from bouncing_ball.record.diff.parts import Part, dataset, one_sided, rendering
 from bouncing_ball.record.diff.tolerances import Tolerances
 
@@ -29,11 +29,11 @@ class Artifact:
     parts: tuple[Part, ...]
 
     @property
-    def verdict(self) -> Verdict:
-        """The worst verdict of what decides; what is only reported costs identity."""
-        decided = worst(part.verdict for part in self.parts if part.decides)
-        same = all(part.verdict is Verdict.IDENTICAL for part in self.parts)
-        return decided if same else worst([decided, Verdict.WITHIN])
+    def outcome(self) -> Outcome:
+        """The worst outcome of what decides; what is only reported costs identity."""
+        decided = worst(part.outcome for part in self.parts if part.decides)
+        same = all(part.outcome is Outcome.IDENTICAL for part in self.parts)
+        return decided if same else worst([decided, Outcome.WITHIN])
 
     @property
     def share(self) -> float | None:
@@ -49,9 +49,9 @@ class Comparison:
     artifacts: tuple[Artifact, ...]
 
     @property
-    def verdict(self) -> Verdict:
-        """The worst verdict."""
-        return worst(artifact.verdict for artifact in self.artifacts)
+    def outcome(self) -> Outcome:
+        """The worst outcome."""
+        return worst(artifact.outcome for artifact in self.artifacts)
 
 
 def artifacts_in(folder: Path) -> dict[str, set[str]]:
@@ -81,27 +81,27 @@ def _artifact(
     folders: tuple[Path, Path],
     rules: Tolerances,
     own: bool | None = None,
-    data: Verdict | None = None,
+    data: Outcome | None = None,
 ) -> Artifact:
     """An artifact and its files.
 
-    ``own``, whether the versions are the same, and ``data``, the verdict on what
+    ``own``, whether the versions are the same, and ``data``, the outcome on what
     it is made from, are told by its dataset, if it has one.
     """
     parts: list[Part] = []
     ordered = sorted(files[0] | files[1], key=lambda file: _SUFFIXES.index(Path(file).suffix))
     for file in ordered:
         if file not in files[1]:
-            part = one_sided(file, folders[0], Verdict.MISSING)
+            part = one_sided(file, folders[0], Outcome.MISSING)
         elif file not in files[0]:
-            part = one_sided(file, folders[1], Verdict.EXTRA)
+            part = one_sided(file, folders[1], Outcome.EXTRA)
         elif file.endswith(".nc"):
             part = dataset(file, name, folders, rules)
             own = bool(part.same_versions)
         else:
             part = rendering(file, folders, rules, data, own)
         if file.endswith(".nc"):
-            data = part.verdict
+            data = part.outcome
         parts.append(part)
     return Artifact(name, tuple(parts))
 
@@ -129,10 +129,10 @@ def compare_folders(record: Path, new: Path, rules: Tolerances) -> Comparison:
             part for found in artifacts for part in found.parts if part.file.endswith(".nc")
         ]
         own = bool(made_from) and all(part.same_versions for part in made_from)
-        data = worst(part.verdict for part in made_from) if made_from else None
+        data = worst(part.outcome for part in made_from) if made_from else None
         artifacts.append(_artifact(paper, files(paper), folders, rules, own, data))
     return Comparison(tuple(sorted(artifacts, key=_severity)))
 
 
 def _severity(artifact: Artifact) -> tuple:
-    return -artifact.verdict.rank, -(artifact.share or 0.0), artifact.name
+    return -artifact.outcome.rank, -(artifact.share or 0.0), artifact.name

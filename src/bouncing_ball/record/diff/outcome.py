@@ -1,10 +1,10 @@
-"""The ladder of verdicts, from the best to the worst."""
+"""The ladder of outcomes, from the best to the worst."""
 
 from collections.abc import Iterable
 from enum import StrEnum
 
 
-class Verdict(StrEnum):
+class Outcome(StrEnum):
     """What the comparison of one thing with its counterpart in the record says.
 
     In order: a whole is as good as its worst part.
@@ -21,33 +21,33 @@ class Verdict(StrEnum):
     @property
     def rank(self) -> int:
         """Place on the ladder, 0 for ``IDENTICAL``."""
-        return list(Verdict).index(self)
+        return list(Outcome).index(self)
 
     @property
     def agrees(self) -> bool:
         """Whether the new thing still says what the record says."""
-        return self.rank <= Verdict.WITHIN.rank
+        return self.rank <= Outcome.WITHIN.rank
 
 
-def worst(verdicts: Iterable[Verdict]) -> Verdict:
-    """The worst of some verdicts, ``IDENTICAL`` if there are none.
+def worst(outcomes: Iterable[Outcome]) -> Outcome:
+    """The worst of some outcomes, ``IDENTICAL`` if there are none.
 
     Examples
     --------
-    >>> str(worst([Verdict.WITHIN, Verdict.MISSING, Verdict.DRIFTED]))
+    >>> str(worst([Outcome.WITHIN, Outcome.MISSING, Outcome.DRIFTED]))
     'missing'
     """
-    return max(verdicts, key=lambda verdict: verdict.rank, default=Verdict.IDENTICAL)
+    return max(outcomes, key=lambda outcome: outcome.rank, default=Outcome.IDENTICAL)
 
 
-def status(verdict: Verdict) -> int:
+def status(outcome: Outcome) -> int:
     """Exit status: 0 the same, 1 differs, 2 could not be compared.
 
     Examples
     --------
-    >>> [status(verdict) for verdict in Verdict]
+    >>> [status(outcome) for outcome in Outcome]
     [0, 0, 1, 1, 1, 1, 2]
     """
-    if verdict is Verdict.UNREADABLE:
+    if outcome is Outcome.UNREADABLE:
         return 2
-    return 0 if verdict.agrees else 1
+    return 0 if outcome.agrees else 1

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.record.diff.data import VariableResult, compare_datasets
-from bouncing_ball.record.diff.outcome import Verdict, worst
+from bouncing_ball.record.diff.outcome import Outcome, worst
 from bouncing_ball.record.diff.pictures import (
     VERSIONS,
     PictureError,
@@ -42,7 +42,7 @@ class Part:
     ----------
     file : str
         Relative to either folder.
-    verdict : Verdict
+    outcome : Outcome
     decides : bool
         False where a difference is only reported.
     share : float, optional
@@ -59,7 +59,7 @@ class Part:
     """
 
     file: str
-    verdict: Verdict
+    outcome: Outcome
     decides: bool = True
     share: float | None = None
     note: str = ""
@@ -87,17 +87,17 @@ def same_versions(record: str | None, new: str | None) -> bool:
         return False
 
 
-def one_sided(file: str, folder: Path, verdict: Verdict) -> Part:
+def one_sided(file: str, folder: Path, outcome: Outcome) -> Part:
     """A file that only one of the folders has, missing or extra."""
     content = (folder / file).read_bytes() if file.endswith(".png") else None
-    images = (content, None) if verdict is Verdict.MISSING else (None, content)
-    return Part(file, verdict, images=images)
+    images = (content, None) if outcome is Outcome.MISSING else (None, content)
+    return Part(file, outcome, images=images)
 
 
 def _summary(results: tuple[VariableResult, ...], unknown: list[str]) -> str:
     """The worst variable and where it is, and those without an entry."""
     notes = []
-    if results and results[0].verdict is not Verdict.IDENTICAL:
+    if results and results[0].outcome is not Outcome.IDENTICAL:
         first = results[0]
         where = f" at {first.place}" if first.place else ""
         notes.append(f"{first.name}{where}" + (f": {first.note}" if first.note else ""))
@@ -115,7 +115,7 @@ def dataset(file: str, artifact: str, folders: tuple[Path, Path], rules: Toleran
         # What netCDF4 and xarray raise on a damaged file.
         except (OSError, RuntimeError, ValueError, KeyError) as error:
             reason = " ".join(str(error).split()).replace(str(folder), "…")
-            return Part(file, Verdict.UNREADABLE, note=f"{side}: {reason[:120]}")
+            return Part(file, Outcome.UNREADABLE, note=f"{side}: {reason[:120]}")
     record, new = sides
     results = tuple(compare_datasets(artifact, record, new, rules))
     shares = [result.share for result in results if result.share is not None]
@@ -123,7 +123,7 @@ def dataset(file: str, artifact: str, folders: tuple[Path, Path], rules: Toleran
     unknown = [name for name in names if rules.of(artifact, name) is None]
     return Part(
         file,
-        worst(result.verdict for result in results),
+        worst(result.outcome for result in results),
         share=max(shares, default=None),
         note=_summary(results, unknown),
         variables=results,
@@ -138,7 +138,7 @@ def _picture(file: str, record: bytes, new: bytes, rules: Tolerances, own: bool 
         own = same_versions(versions_of(record), versions_of(new))
     return Part(
         file,
-        found.verdict,
+        found.outcome,
         decides=bool(own),
         share=found.share,
         note=found.note,
@@ -147,28 +147,28 @@ def _picture(file: str, record: bytes, new: bytes, rules: Tolerances, own: bool 
     )
 
 
-def _text(file: str, record: str, new: str, data: Verdict | None, own: bool | None) -> Part:
+def _text(file: str, record: str, new: str, data: Outcome | None, own: bool | None) -> Part:
     match Path(file).suffix:
         case ".csv":
-            verdict, note = compare_tables(record, new, data)
-            return Part(file, verdict, note=note)
+            outcome, note = compare_tables(record, new, data)
+            return Part(file, outcome, note=note)
         case ".svg":
             for text in (record, new):
                 check_svg(text)
-            verdict, _ = compare_texts(without_metadata(record), without_metadata(new))
-            return Part(file, verdict, decides=False)
+            outcome, _ = compare_texts(without_metadata(record), without_metadata(new))
+            return Part(file, outcome, decides=False)
         case _:
-            verdict, note = compare_texts(record, new)
-            if verdict is Verdict.DRIFTED and data is Verdict.WITHIN:
-                verdict = Verdict.WITHIN
-            return Part(file, verdict, decides=bool(own) and data is Verdict.IDENTICAL, note=note)
+            outcome, note = compare_texts(record, new)
+            if outcome is Outcome.DRIFTED and data is Outcome.WITHIN:
+                outcome = Outcome.WITHIN
+            return Part(file, outcome, decides=bool(own) and data is Outcome.IDENTICAL, note=note)
 
 
 def rendering(
     file: str,
     folders: tuple[Path, Path],
     rules: Tolerances,
-    data: Verdict | None,
+    data: Outcome | None,
     own: bool | None,
 ) -> Part:
     """A picture, table or text that both folders have.
@@ -179,8 +179,8 @@ def rendering(
     folders : tuple of Path
         That of the record and the new one.
     rules : Tolerances
-    data : Verdict or None
-        The verdict on the dataset it is made from; the worst one, of several.
+    data : Outcome or None
+        The outcome on the dataset it is made from; the worst one, of several.
     own : bool or None
         Whether both sides were made with the same versions of everything;
         None if no dataset tells.
@@ -191,8 +191,8 @@ def rendering(
             return _picture(file, record, new, rules, own)
         return _text(file, record.decode("utf-8"), new.decode("utf-8"), data, own)
     except UnicodeDecodeError:
-        return Part(file, Verdict.UNREADABLE, note="not UTF-8 text")
+        return Part(file, Outcome.UNREADABLE, note="not UTF-8 text")
     except (PictureError, PictureTextError, TableError) as error:
-        return Part(file, Verdict.UNREADABLE, note=str(error))
+        return Part(file, Outcome.UNREADABLE, note=str(error))
     except OSError as error:
-        return Part(file, Verdict.UNREADABLE, note=str(error.strerror))
+        return Part(file, Outcome.UNREADABLE, note=str(error.strerror))

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.testing.compare import calculate_rms
 from PIL import Image, UnidentifiedImageError
 
-from bouncing_ball.record.diff.outcome import Verdict
+from bouncing_ball.record.diff.outcome import Outcome
 
 # Grey levels of a pixel.
 _LEVELS = 255
@@ -30,7 +30,7 @@ class PictureResult:
     the differences multiplied by ``amplified``.
     """
 
-    verdict: Verdict
+    outcome: Outcome
     rms: float | None = None
     share: float | None = None
     difference: bytes | None = None
@@ -100,14 +100,14 @@ def compare_pictures(record: bytes, new: bytes, budget: float) -> PictureResult:
         If they differ and one of them is no whole PNG file.
     """
     if record == new:
-        return PictureResult(Verdict.IDENTICAL, 0.0, 0.0)
+        return PictureResult(Outcome.IDENTICAL, 0.0, 0.0)
     before, after = _pixels(_opened(record)), _pixels(_opened(new))
     if before.shape != after.shape:
         sizes = " → ".join(f"{shape[1]} × {shape[0]}" for shape in (before.shape, after.shape))
-        return PictureResult(Verdict.STRUCTURE, note=f"size in pixels: {sizes}")
+        return PictureResult(Outcome.STRUCTURE, note=f"size in pixels: {sizes}")
     rms = float(calculate_rms(before, after))
     if rms == 0:
-        return PictureResult(Verdict.IDENTICAL, 0.0, 0.0)
-    verdict = Verdict.WITHIN if rms <= budget else Verdict.DRIFTED
+        return PictureResult(Outcome.IDENTICAL, 0.0, 0.0)
+    outcome = Outcome.WITHIN if rms <= budget else Outcome.DRIFTED
     note = f"rms {rms:.2g} of 255"
-    return PictureResult(verdict, rms, rms / budget, *_difference(before, after), note)
+    return PictureResult(outcome, rms, rms / budget, *_difference(before, after), note)

@@ -6,13 +6,13 @@ import math
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from bouncing_ball.record.diff.folders import Comparison
-from bouncing_ball.record.diff.outcome import Verdict, status
+from bouncing_ball.record.diff.outcome import Outcome, status
 from bouncing_ball.record.diff.report_terminal import SENTENCES, counts, remarks, share_text
 
 
-def _colour(verdict: Verdict) -> str:
-    """Class of a verdict on the page."""
-    return ("ok", "bad", "broken")[status(verdict)]
+def _colour(outcome: Outcome) -> str:
+    """Class of a outcome on the page."""
+    return ("ok", "bad", "broken")[status(outcome)]
 
 
 def _small(value: float | None) -> str:
@@ -42,7 +42,7 @@ def to_html(comparison: Comparison) -> str:
     )
     return environment.get_template("page.html.j2").render(
         comparison=comparison,
-        sentence=SENTENCES[status(comparison.verdict)],
+        sentence=SENTENCES[status(comparison.outcome)],
         counts=counts(comparison) or "No artifacts",
         remarks=remarks,
         share=share_text,

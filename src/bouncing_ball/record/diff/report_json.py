@@ -26,7 +26,7 @@ def _variable(result: VariableResult) -> dict[str, Any]:
 def _part(part: Part) -> dict[str, Any]:
     found = {
         "file": part.file,
-        "verdict": part.verdict,
+        "outcome": part.outcome,
         "decides": part.decides,
         "share": _number(part.share),
         "note": part.note,
@@ -41,14 +41,14 @@ def _part(part: Part) -> dict[str, Any]:
 def _artifact(artifact: Artifact) -> dict[str, Any]:
     return {
         "name": artifact.name,
-        "verdict": artifact.verdict,
+        "outcome": artifact.outcome,
         "share": _number(artifact.share),
         "parts": [_part(part) for part in artifact.parts],
     }
 
 
 def to_json(comparison: Comparison) -> str:
-    """One object: exit status, verdict, and the artifacts, worst first.
+    """One object: exit status, outcome, and the artifacts, worst first.
 
     Numbers that are infinite are the text "inf".
 
@@ -57,13 +57,13 @@ def to_json(comparison: Comparison) -> str:
     >>> print(to_json(Comparison(())), end="")
     {
       "status": 0,
-      "verdict": "identical",
+      "outcome": "identical",
       "artifacts": []
     }
     """
     content = {
-        "status": status(comparison.verdict),
-        "verdict": comparison.verdict,
+        "status": status(comparison.outcome),
+        "outcome": comparison.outcome,
         "artifacts": [_artifact(artifact) for artifact in comparison.artifacts],
     }
     return json.dumps(content, ensure_ascii=False, indent=2, allow_nan=False) + "\n"

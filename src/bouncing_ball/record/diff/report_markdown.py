@@ -1,7 +1,7 @@
 """The summary for continuous integration, as Markdown."""
 
 from bouncing_ball.record.diff.folders import Comparison
-from bouncing_ball.record.diff.outcome import Verdict, status
+from bouncing_ball.record.diff.outcome import Outcome, status
 from bouncing_ball.record.diff.report_terminal import SENTENCES, counts, remarks, share_text
 
 # Characters that would end a cell, or be taken for markup.
@@ -29,7 +29,7 @@ def to_markdown(comparison: Comparison) -> str:
     <BLANKLINE>
     **The new artifacts say what the record says.** No artifacts.
     """
-    sentence = SENTENCES[status(comparison.verdict)]
+    sentence = SENTENCES[status(comparison.outcome)]
     lines = [
         "## Artifacts against the record",
         "",
@@ -37,17 +37,17 @@ def to_markdown(comparison: Comparison) -> str:
         f"{(counts(comparison) or 'No artifacts')[1:]}.",
     ]
     shown = [
-        artifact for artifact in comparison.artifacts if artifact.verdict is not Verdict.IDENTICAL
+        artifact for artifact in comparison.artifacts if artifact.outcome is not Outcome.IDENTICAL
     ]
     if shown:
         lines += [
             "",
-            "| artifact | verdict | share of budget | what |",
+            "| artifact | outcome | share of budget | what |",
             "| --- | --- | ---: | --- |",
         ]
     for artifact in shown:
         name, share = escaped(artifact.name), share_text(artifact.share)
         what = "<br>".join(escaped(remark) for remark in remarks(artifact))
-        verdict = f"**{artifact.verdict}**" if not artifact.verdict.agrees else artifact.verdict
-        lines.append(f"| {name} | {verdict} | {share} | {what} |")
+        outcome = f"**{artifact.outcome}**" if not artifact.outcome.agrees else artifact.outcome
+        lines.append(f"| {name} | {outcome} | {share} | {what} |")
     return "".join(f"{line}\n" for line in lines)

@@ -1,7 +1,7 @@
 """The short table for a terminal."""
 
 from bouncing_ball.record.diff.folders import Artifact, Comparison
-from bouncing_ball.record.diff.outcome import Verdict, status
+from bouncing_ball.record.diff.outcome import Outcome, status
 from bouncing_ball.record.diff.parts import Part
 
 SENTENCES = {
@@ -32,26 +32,26 @@ def remarks(artifact: Artifact) -> list[str]:
 
     def sentence(part: Part) -> str:
         note = f": {part.note}" if part.note else ""
-        return f"{part.file} {part.verdict}{note}" + ("" if part.decides else " (reported only)")
+        return f"{part.file} {part.outcome}{note}" + ("" if part.decides else " (reported only)")
 
     different = [
-        part for part in artifact.parts if part.verdict is not Verdict.IDENTICAL or part.note
+        part for part in artifact.parts if part.outcome is not Outcome.IDENTICAL or part.note
     ]
-    ordered = sorted(different, key=lambda part: (not part.decides, -part.verdict.rank))
+    ordered = sorted(different, key=lambda part: (not part.decides, -part.outcome.rank))
     return [sentence(part) for part in ordered]
 
 
 def counts(comparison: Comparison) -> str:
-    """How many artifacts have which verdict, the worst first.
+    """How many artifacts have which outcome, the worst first.
 
     Examples
     --------
     >>> counts(Comparison((Artifact("fig01", ()), Artifact("fig02", ()))))
     '2 identical'
     """
-    verdicts = [artifact.verdict for artifact in comparison.artifacts]
-    found = [(verdicts.count(verdict), verdict) for verdict in reversed(Verdict)]
-    return ", ".join(f"{count} {verdict}" for count, verdict in found if count)
+    outcomes = [artifact.outcome for artifact in comparison.artifacts]
+    found = [(outcomes.count(outcome), outcome) for outcome in reversed(Outcome)]
+    return ", ".join(f"{count} {outcome}" for count, outcome in found if count)
 
 
 def to_terminal(comparison: Comparison) -> str:
@@ -64,18 +64,18 @@ def to_terminal(comparison: Comparison) -> str:
     """
     lines = []
     shown = [
-        artifact for artifact in comparison.artifacts if artifact.verdict is not Verdict.IDENTICAL
+        artifact for artifact in comparison.artifacts if artifact.outcome is not Outcome.IDENTICAL
     ]
     if shown:
         width = max(len(artifact.name) for artifact in shown)
-        lines.append(f"{'artifact':<{max(width, 8)}}  {'verdict':<17}  {'share':>7}  what")
+        lines.append(f"{'artifact':<{max(width, 8)}}  {'outcome':<17}  {'share':>7}  what")
         for artifact in shown:
             first, *rest = [*remarks(artifact), ""]
             more = f" (+{len(rest) - 1})" if len(rest) > 1 else ""
             share = share_text(artifact.share)
             lines.append(
-                f"{artifact.name:<{max(width, 8)}}  {artifact.verdict:<17}  {share:>7}  "
+                f"{artifact.name:<{max(width, 8)}}  {artifact.outcome:<17}  {share:>7}  "
                 f"{first}{more}"
             )
-    lines.append(f"{counts(comparison)}. {SENTENCES[status(comparison.verdict)]}")
+    lines.append(f"{counts(comparison)}. {SENTENCES[status(comparison.outcome)]}")
     return "".join(f"{line}\n" for line in lines)

@@ -6,7 +6,7 @@ import re
 from decimal import Decimal
 from xml.etree import ElementTree
 
-from bouncing_ball.record.diff.outcome import Verdict
+from bouncing_ball.record.diff.outcome import Outcome
 
 # A number as it is printed, with its sign and exponent.
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
@@ -44,17 +44,17 @@ def check_svg(text: str) -> None:
         raise PictureTextError(f"not a whole SVG file: {error}") from None
 
 
-def compare_texts(record: str, new: str) -> tuple[Verdict, str]:
-    """Verdict and the first line that differs.
+def compare_texts(record: str, new: str) -> tuple[Outcome, str]:
+    """Outcome and the first line that differs.
 
     Examples
     --------
-    >>> verdict, note = compare_texts("a\\nb\\n", "a\\nc\\n")
-    >>> str(verdict), note
+    >>> outcome, note = compare_texts("a\\nb\\n", "a\\nc\\n")
+    >>> str(outcome), note
     ('drifted', 'line 2: b → c')
     """
     if record == new:
-        return Verdict.IDENTICAL, ""
+        return Outcome.IDENTICAL, ""
     before, after = record.splitlines(), new.splitlines()
     for number, (old, line) in enumerate(zip(before, after, strict=False), start=1):
         if old != line:
@@ -65,10 +65,10 @@ def compare_texts(record: str, new: str) -> tuple[Verdict, str]:
             )
             start = max(0, same - 10)
             shown = " → ".join(part[start : start + 40].strip() for part in (old, line))
-            return Verdict.DRIFTED, f"line {number}: {shown}"
+            return Outcome.DRIFTED, f"line {number}: {shown}"
     if len(before) == len(after):
-        return Verdict.DRIFTED, "ends of lines"
-    return Verdict.DRIFTED, f"{len(before)} lines → {len(after)} lines"
+        return Outcome.DRIFTED, "ends of lines"
+    return Outcome.DRIFTED, f"{len(before)} lines → {len(after)} lines"
 
 
 def _last_digit(number: str) -> Decimal:
@@ -106,8 +106,8 @@ def _same_to_the_last_digit(old: str, new: str) -> bool:
     return abs(a - b) <= unit or max(abs(a), abs(b)) < _ROUNDING_LEVEL
 
 
-def compare_tables(record: str, new: str, data: Verdict | None) -> tuple[Verdict, str]:
-    """Verdict on two CSV tables, and the first cell that differs.
+def compare_tables(record: str, new: str, data: Outcome | None) -> tuple[Outcome, str]:
+    """Outcome on two CSV tables, and the first cell that differs.
 
     A table prints a dataset. Where the data have drifted within their budget,
     the last printed digit may move with them by one, and numbers of the size of
@@ -117,8 +117,8 @@ def compare_tables(record: str, new: str, data: Verdict | None) -> tuple[Verdict
     Parameters
     ----------
     record, new : str
-    data : Verdict or None
-        The verdict on the dataset of the same name.
+    data : Outcome or None
+        The outcome on the dataset of the same name.
 
     Raises
     ------
@@ -128,11 +128,11 @@ def compare_tables(record: str, new: str, data: Verdict | None) -> tuple[Verdict
     Examples
     --------
     >>> [str(compare_tables("x\\n0.25\\n", "x\\n0.26\\n", data)[0])
-    ...  for data in (Verdict.WITHIN, Verdict.IDENTICAL)]
+    ...  for data in (Outcome.WITHIN, Outcome.IDENTICAL)]
     ['within budget', 'drifted']
-    >>> str(compare_tables("x\\n0.25\\n", "x\\n0.31\\n", Verdict.WITHIN)[0])
+    >>> str(compare_tables("x\\n0.25\\n", "x\\n0.31\\n", Outcome.WITHIN)[0])
     'drifted'
-    >>> compare_tables("x\\n0.25\\n", "x,y\\n0.25,1\\n", Verdict.IDENTICAL)[1]
+    >>> compare_tables("x\\n0.25\\n", "x,y\\n0.25,1\\n", Outcome.IDENTICAL)[1]
     'columns of row 1: 1 → 2'
     """
     try:
@@ -140,26 +140,26 @@ def compare_tables(record: str, new: str, data: Verdict | None) -> tuple[Verdict
     except csv.Error as error:
         raise TableError(f"not a CSV table: {error}") from None
     if before == after:
-        return Verdict.IDENTICAL, ""
+        return Outcome.IDENTICAL, ""
     if len(before) != len(after):
-        return Verdict.STRUCTURE, f"rows: {len(before)} → {len(after)}"
+        return Outcome.STRUCTURE, f"rows: {len(before)} → {len(after)}"
     moved, too_far = [], []
     for row, (old, line) in enumerate(zip(before, after, strict=True), start=1):
         if len(old) != len(line):
-            return Verdict.STRUCTURE, f"columns of row {row}: {len(old)} → {len(line)}"
+            return Outcome.STRUCTURE, f"columns of row {row}: {len(old)} → {len(line)}"
         for column, (cell, other) in enumerate(zip(old, line, strict=True), start=1):
             if cell == other:
                 continue
             place = f"row {row}, column {column}: {cell} → {other}"
             if _NUMBER.split(cell) != _NUMBER.split(other):
-                return Verdict.STRUCTURE, place
+                return Outcome.STRUCTURE, place
             moved.append(place)
             pairs = zip(_NUMBER.findall(cell), _NUMBER.findall(other), strict=True)
             if not all(_same_to_the_last_digit(*pair) for pair in pairs):
                 too_far.append(place)
-    if data is Verdict.WITHIN and not too_far:
-        return Verdict.WITHIN, _first_of(moved)
-    return Verdict.DRIFTED, _first_of(too_far if data is Verdict.WITHIN else moved)
+    if data is Outcome.WITHIN and not too_far:
+        return Outcome.WITHIN, _first_of(moved)
+    return Outcome.DRIFTED, _first_of(too_far if data is Outcome.WITHIN else moved)
 
 
 def _first_of(places: list[str]) -> str:

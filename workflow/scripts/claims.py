@@ -6,7 +6,7 @@ from bouncing_ball.audit.claims.assessment import assess
 from bouncing_ball.audit.claims.ledger import parse_ledger
 from bouncing_ball.audit.claims.tally import tally
 from bouncing_ball.datasets.files import write_text
-from bouncing_ball.datasets.netcdf import parameter_attributes, read_dataset, write_dataset
+from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
 from bouncing_ball.pipeline.job import REFERENCE, logged, provenance
 
 with logged(snakemake) as lines:
@@ -14,11 +14,9 @@ with logged(snakemake) as lines:
     data = {path.stem: read_dataset(path) for path in paths}
     ledger = parse_ledger(snakemake.params.ledger)
     verdicts = assess(ledger, data)
-    verdicts.attrs = {
+    verdicts.attrs |= {
         "title": snakemake.rule,
         "references": REFERENCE,
-        "close_units": ledger.close_units,
-        **parameter_attributes(ledger.parameters, "paper."),
         **provenance(snakemake, dict(snakemake.params.items())).attributes(),
     }
     write_dataset(verdicts, snakemake.output.data)

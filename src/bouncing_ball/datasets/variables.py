@@ -229,6 +229,7 @@ VARIABLES: dict[str, Variable] = {
     "condition": Variable("condition that decides a statement in words", ""),
     "decided_by": Variable("dataset, variable and bound that decide", ""),
     "required": Variable("the number as printed, or the bound to be met", ""),
+    "limit": Variable("the bound to be met, as a number", ""),
     "found": Variable("the number found", ""),
     "deviation_units": Variable("deviation in units of the last printed digit", ""),
     "deviation": Variable("relative deviation", ""),

@@ -19,7 +19,8 @@ def test_what_is_said_of_each_claim(ledger, number, statement, data, described):
     height, rises = row(result, "height"), row(result, "rises")
     assert height["deviation_units"] == pytest.approx(0.18, abs=1e-12)
     assert height["deviation"] == pytest.approx(0.18 / 82, rel=1e-9)
-    del height["deviation_units"], height["deviation"]
+    assert np.isnan(height["limit"]) and rises["limit"] == 0
+    del height["deviation_units"], height["deviation"], height["limit"]
     assert height == {
         "section": "Results",
         "item": "Fig. 14",

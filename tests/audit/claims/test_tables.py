@@ -43,6 +43,13 @@ def test_nothing_found_is_a_dash(ledger, number, data):
     assert rows["height"]["printed or required"] == "82"
 
 
+def test_a_number_of_the_size_of_rounding_is_its_bound(ledger, statement, data):
+    statement["condition"] = {"at_most": {"variable": "budget"}}
+    for found, text in ((1e-16, "≤ 1e-12"), (9e-13, "≤ 1e-12"), (2e-12, "2e-12")):
+        data["fig"] = data["fig"].assign(rise=("n", [found] * 3), budget=1e-12)
+        assert table(assess(ledger(statement), data))["rises"]["found"] == text
+
+
 def test_an_infinite_error_is_shown(ledger, statement, data):
     data["fig"]["rise"] = ("n", [np.inf, np.inf, np.inf])
     assert table(assess(ledger(statement), data))["rises"]["found"] == "inf"
@@ -60,6 +67,6 @@ def test_formulas():
     header, body = formulas.rows(data)
     assert header == ["formula", "compared with", "largest disagreement", "allowed"]
     assert body == [
-        ["Eq. 5", "simulation", "1.6e-14", "1e-12"],
+        ["Eq. 5", "simulation", "≤ 1e-12", "1e-12"],
         ["Eq. 8", "a multiplier", "8.8e-02", "1e-08"],
     ]

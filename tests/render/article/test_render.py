@@ -37,6 +37,7 @@ def claims(**changes):
         "reason": ["", ""],
         "explained_by": ["", "by Eq. 34"],
         "found": [82.177, 9.8118],
+        "limit": [np.nan, np.nan],
         "deviation_units": [0.177, 3.81],
         "deviation": [0.0022, 0.635],
     } | changes

@@ -6,7 +6,15 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.audit.claims.ledger import Claim, Criterion, Explanation, Ledger
-from bouncing_ball.audit.claims.verdict import Verdict, decide, find, foreign_parameter
+from bouncing_ball.audit.claims.verdict import (
+    Finding,
+    Verdict,
+    decide,
+    find,
+    foreign_parameter,
+)
+from bouncing_ball.datasets.netcdf import parameter_attributes
+from bouncing_ball.datasets.rounding import compared_text
 from bouncing_ball.datasets.variables import describe
 
 
@@ -19,6 +27,11 @@ def _condition(claim: Claim, criterion: Criterion) -> str:
     return f"{criterion.measure} {criterion.condition.relation.sign} {bound}"
 
 
+def _compared(finding: Finding) -> str:
+    found = compared_text(finding.value, finding.bound)
+    return found if found.startswith("≤") else f"= {found}"
+
+
 def _checks(
     explanation: Explanation, ledger: Ledger, data: Mapping[str, xr.Dataset]
 ) -> tuple[bool, str]:
@@ -28,7 +41,7 @@ def _checks(
         return False, foreign
     findings = [find(criterion, None, ledger, data) for criterion in explanation.criteria]
     words = [
-        f"{criterion.measure} = {finding.value:.4g} (required {finding.required})"
+        f"{criterion.measure} {_compared(finding)} (required {finding.required})"
         for criterion, finding in zip(explanation.criteria, findings, strict=True)
     ]
     met = all(finding.verdict is Verdict.REPRODUCED for finding in findings)
@@ -49,6 +62,7 @@ def assess(ledger: Ledger, data: Mapping[str, xr.Dataset]) -> xr.Dataset:
     xarray.Dataset
         Over ``claim`` what the ledger says of it, the number found, its
         deviation and the verdict; over ``explanation`` whether its checks hold.
+        The attributes are the paper's parameters and what counts as close.
 
     Raises
     ------
@@ -72,6 +86,7 @@ def assess(ledger: Ledger, data: Mapping[str, xr.Dataset]) -> xr.Dataset:
             "condition": claim.condition_text,
             "decided_by": "; ".join(_condition(claim, criterion) for criterion in claim.criteria),
             "required": finding.required if finding else claim.printed,
+            "limit": finding.bound if finding else np.nan,
             "found": finding.value if finding else np.nan,
             "deviation_units": finding.units if finding else np.nan,
             "deviation": finding.relative if finding else np.nan,
@@ -101,6 +116,10 @@ def assess(ledger: Ledger, data: Mapping[str, xr.Dataset]) -> xr.Dataset:
             coords={
                 "claim": [claim.id for claim in ledger.claims],
                 "explanation": list(holds),
+            },
+            attrs={
+                "close_units": ledger.close_units,
+                **parameter_attributes(ledger.parameters, "paper."),
             },
         )
     )

@@ -45,13 +45,15 @@ class Finding:
 
     ``units`` and ``relative`` are the deviation from a printed number, in units
     of its last digit and as a share of it; NaN for a condition, which holds or
-    does not. ``required`` is the printed number, or the bound in words.
+    does not. ``bound`` is that of the condition, NaN for a printed number;
+    ``required`` is the printed number, or the condition in signs.
     """
 
     verdict: Verdict
     value: float
     units: float
     relative: float
+    bound: float
     required: str
 
 
@@ -92,7 +94,7 @@ def judge_number(value: float, printed: str, unit: float | None, close_units: fl
         verdict = Verdict.CLOSE
     else:
         verdict = Verdict.CONTRADICTED
-    return Finding(verdict, value, units, relative, printed)
+    return Finding(verdict, value, units, relative, float("nan"), printed)
 
 
 def judge_condition(value: float, condition: Condition, bound: float) -> Finding:
@@ -114,7 +116,7 @@ def judge_condition(value: float, condition: Condition, bound: float) -> Finding
     verdict = Verdict.REPRODUCED if holds else Verdict.CONTRADICTED
     nothing = float("nan")
     required = f"{condition.relation.sign} {bound:g}"
-    return Finding(verdict, value, nothing, nothing, required)
+    return Finding(verdict, value, nothing, nothing, bound, required)
 
 
 def _beside(measure: Measure, variable: str, data: Mapping[str, xr.Dataset]) -> Measure:

@@ -10,6 +10,7 @@ from bouncing_ball.audit.forensics.altered_model import Altered, altered_orbit
 from bouncing_ball.audit.forensics.bifurcations import Bifurcations, bifurcations
 from bouncing_ball.audit.forensics.readings import Reading, readings
 from bouncing_ball.audit.forensics.steps import attainable, nearby, step_needed
+from bouncing_ball.datasets.rounding import levels
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import ModelError
 from bouncing_ball.impacts.damping import damping_ratio
@@ -101,7 +102,7 @@ def _order(distance: xr.DataArray, in_range: np.ndarray) -> np.ndarray:
     softer, every = (distance.sel(rows=name).values for name in (SOFTER_ROWS, ALL_ROWS))
     missing = np.isnan(softer)
     # Readings of the stiffest row alone are equal in the softer ones, but for rounding.
-    keys = (np.where(np.isnan(x), np.inf, x).round(9) for x in (every, softer))
+    keys = (levels(np.where(np.isnan(x), np.inf, x)) for x in (every, softer))
     return np.lexsort((*keys, in_range, missing))
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from bouncing_ball.datasets.rounding import levels
 from bouncing_ball.datasets.selection import index_of
 from bouncing_ball.errors import ModelError
 
@@ -96,15 +97,15 @@ def pairs(left: Iterable[float], right: Iterable[float]) -> list[str]:
     return [f"({short(a)}, {short(b)})" for a, b in zip(left, right, strict=True)]
 
 
-def distinct(values: ArrayLike, digits: int = 9) -> int:
-    """How many values differ, to so many decimals.
+def distinct(values: ArrayLike) -> int:
+    """How many values differ by more than rounding.
 
     Examples
     --------
     >>> distinct([1.0, 1.0 + 1e-12, 2.0])
     2
     """
-    return len(np.unique(np.round(np.asarray(values, dtype=float), digits)))
+    return int(levels(values).max()) + 1
 
 
 def value_at(data: Mapping[str, xr.Dataset], dataset: str, variable: str, **where: Any) -> float:

@@ -5,14 +5,17 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.datasets.rounding import compared_text
+
 
 def found_text(claim: xr.Dataset) -> str:
-    """The number found: two digits more than printed, or four in all."""
+    """The number found: two digits more than printed, or four in all, or its bound
+    where that is of the size of rounding."""
     value, printed = float(claim.found), str(claim.printed_text.values)
     if np.isnan(value):
         return "–"
     if not printed:
-        return f"{value:.4g}"
+        return compared_text(value, float(claim.limit))
     decimals = len(printed.partition(".")[2])
     return f"{value:.{decimals + 2}f}"
 

@@ -1,0 +1,114 @@
+"""Files of a folder that nobody vouches for: what is read, and what is refused."""
+
+import os
+import socket
+
+import pytest
+from netCDF4 import Dataset
+
+from bouncing_ball.record.reading import (
+    MAX_BYTES,
+    MAX_FILES,
+    MAX_VALUES,
+    UnreadableError,
+    names_in,
+    no_file_opened,
+    opened_dataset,
+    printable,
+    read_file,
+)
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "private").write_text("a secret")
+    inside = tmp_path / "folder"
+    (inside / "figures").mkdir(parents=True)
+    (inside / "figures" / "a.csv").write_text("1,2\n")
+    return inside
+
+
+def test_a_file_is_read_whole_also_through_a_link_to_the_folder(folder, tmp_path):
+    (tmp_path / "link").symlink_to(folder)
+    for way in (folder, tmp_path / "link"):
+        assert read_file(way, "figures/a.csv") == b"1,2\n"
+
+
+def test_what_is_no_regular_file_is_refused(folder, tmp_path, one_line):
+    figures = folder / "figures"
+    (figures / "link.csv").symlink_to(tmp_path / "private")
+    (figures / "inner.csv").symlink_to("a.csv")
+    (folder / "other").symlink_to(tmp_path)
+    os.mkfifo(figures / "pipe.csv")
+    (figures / "folder.csv").mkdir()
+    with open(figures / "large.csv", "wb") as large:
+        large.truncate(50 * 10**9)
+    for file, said in (
+        ("figures/link.csv", "a link"),
+        ("figures/inner.csv", "a link"),
+        ("other/private", "a link"),
+        ("../private", "outside the folder"),
+        (str(tmp_path / "private"), "outside the folder"),
+        ("figures/pipe.csv", "not a regular file"),
+        ("figures/folder.csv", "Is a directory"),
+        ("figures/large.csv", f"larger than {MAX_BYTES} bytes"),
+        ("figures/none.csv", "No such file"),
+    ):
+        with pytest.raises(UnreadableError) as error:
+            read_file(folder, file)
+        one_line(error, said)
+
+
+def test_a_socket_is_refused(folder, monkeypatch):
+    # By a short name: a socket's may have a hundred characters.
+    monkeypatch.chdir(folder)
+    with socket.socket(socket.AF_UNIX) as server:
+        server.bind("socket.csv")
+        with pytest.raises(UnreadableError):
+            read_file(folder, "socket.csv")
+
+
+def test_names_of_a_folder(folder, one_line):
+    for name in ("b", os.fsdecode(b"\xff"), "\x1b[2J"):
+        (folder / "figures" / name).touch()
+    assert names_in(folder / "figures") == ["\x1b[2J", "a.csv", "b", "\udcff"]
+    (folder / "link").symlink_to("figures")
+    many = folder / "many"
+    many.mkdir()
+    for number in range(MAX_FILES + 1):
+        (many / str(number)).touch()
+    for name, said in (("link", "a link"), ("many", "more than"), ("none", "No such file")):
+        with pytest.raises(UnreadableError) as error:
+            names_in(folder / name)
+        one_line(error, said)
+
+
+def test_nothing_raw_is_printed():
+    text = "a\r\n\x1b]8;;x\x07\u202e\u2028\udc80\x9b"
+    shown = printable(text)
+    assert shown.isprintable() and shown.encode("utf-8")
+    assert shown == "a\\r\\n\\x1b]8;;x\\x07\\u202e\\u2028\\udc80\\x9b"
+
+
+def test_no_file_is_opened_and_afterwards_again(folder):
+    with no_file_opened(), pytest.raises(OSError):
+        open(folder / "figures" / "a.csv")
+    with open(folder / "figures" / "a.csv") as file:
+        assert file.read()
+
+
+def netcdf(folder, size):
+    with Dataset(folder / "a.nc", "w") as dataset:
+        dataset.createDimension("t", size)
+        dataset.createVariable("x", "f8", ("t",), chunksizes=(10,), compression="zlib")
+    return read_file(folder, "a.nc")
+
+
+def test_a_dataset_of_bounded_size(folder, one_line):
+    with opened_dataset(netcdf(folder, 20)) as dataset:
+        assert dataset["x"].shape == (20,)
+    content = netcdf(folder, 10**12)
+    assert MAX_VALUES > len(content)
+    with pytest.raises(UnreadableError) as error, opened_dataset(content):
+        pass
+    one_line(error, "values")

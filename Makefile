@@ -1,5 +1,6 @@
 # make        set up and make every figure, table and the paper in results/
 # make test   set up and run the tests
+# make quick  the tests that matter while one works
 # The environment is .venv/, from the hashed lock files.
 
 PYTHON ?= python3
@@ -12,7 +13,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
 # One thing after another: clean, run and compare share results/.
 .NOTPARALLEL:
-.PHONY: all setup lint test diff accept report clean ci setup-newest newest config-docs lock
+.PHONY: all setup lint test quick test-long attack diff accept report clean ci setup-newest newest config-docs lock
 
 all: $(SETUP)
 	$(BIN)/snakemake --cores 2
@@ -35,8 +36,24 @@ lint: $(SETUP)
 	$(BIN)/mypy
 	$(BIN)/python -m bouncing_ball.pipeline.lint
 
+# A worker for each processor; all share one run of the pipeline. More threads
+# than workers only hinder each other.
+PYTEST := OMP_NUM_THREADS=1 $(BIN)/python -m pytest --numprocesses logical --maxprocesses 8 --dist worksteal
+
 test: $(SETUP)
-	$(BIN)/python -m pytest
+	$(PYTEST)
+
+# No run of the pipeline, and nothing that takes a second.
+quick: $(SETUP)
+	$(PYTEST) --ignore tests/workflow -m "not long and not slow"
+
+# Whole runs on a processor without its fast paths, large samples; on schedule in CI.
+test-long: $(SETUP)
+	$(PYTEST) -m long --durations 20
+
+# Ten minutes of random attacks; the table of the result is docs/attacks.md.
+attack: $(SETUP)
+	$(BIN)/python -m tests.attack --seconds 600 --table docs/attacks.md
 
 # The results against the accepted record; reports in results/diff/.
 diff: $(SETUP)
@@ -59,13 +76,14 @@ ci:
 	.ci/run
 
 # The newest versions that pyproject.toml allows, without the lock: a venv of
-# their own, then tests, the pipeline from clean and the diff in it.
+# their own, then the pipeline from clean, the diff and the tests in it, each
+# whatever the others say.
 setup-newest:
 	$(PYTHON) -m venv --clear $(NEWEST)
 	$(NEWEST)/bin/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
 
 newest: setup-newest clean
-	$(MAKE) test all diff VENV=$(NEWEST) SETUP=
+	$(MAKE) --keep-going all diff test VENV=$(NEWEST) SETUP=
 
 config-docs: setup
 	$(BIN)/python -m bouncing_ball.configuration.documentation

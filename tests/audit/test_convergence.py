@@ -64,6 +64,7 @@ def test_tighter_settings(config):
     )
 
 
+@pytest.mark.slow
 def test_what_is_varied_for_which_stage(made):
     for name, kinds in (
         ("fig11", [Variation.GRID, *[Variation.ROUNDING] * 4]),
@@ -115,6 +116,7 @@ class Outputs(list):
         self.__dict__.update(named)
 
 
+@pytest.mark.slow
 def test_the_script_writes_the_table(config, tmp_path, monkeypatch):
     one = {key: config[key] for key in ("release", "continuation")}
     one["figures"] = {"fig11": config["figures"]["fig11"]}

@@ -35,6 +35,7 @@ def test_branches_agree(branches, continuation_settings):
     assert int(result.orbits.sel(artifact="fig08", comparison=FORMULA)) == 82 + 7
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("variable", "shift"),
     [

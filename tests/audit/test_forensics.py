@@ -172,6 +172,7 @@ def test_baseline_is_the_closed_form(release):
         assert altered_orbit(excess, m).amplitude == pytest.approx(expected, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_baseline_is_table_1_by_continuation(study, continuation_settings):
     table = {key: TABLE[key] for key in ("frequency_ratio", "n")}
     table |= {"restitution": R, "amplitude_max": 1.5}

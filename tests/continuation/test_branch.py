@@ -215,6 +215,7 @@ def jump(terminal, reason=""):
     return Event("jump", lambda y: np.where(y[..., 1] < 0.3, 1.0, -1.0), terminal, reason)
 
 
+@pytest.mark.slow
 def test_a_terminal_event_without_a_zero_ends_the_branch_close_to_it():
     control = StepControl(smallest=1e-6)
     for event, reason in ((jump(True), "jump"), (jump(True, "the edge"), "the edge")):
@@ -227,6 +228,7 @@ def test_a_terminal_event_without_a_zero_ends_the_branch_close_to_it():
         assert branch.special == ()
 
 
+@pytest.mark.slow
 def test_another_event_without_a_zero_is_an_error(one_line):
     with pytest.raises(LocationError) as error:
         continue_branch(LINE, np.array([0.0, 0.0]), increasing=True, events=[jump(False)])

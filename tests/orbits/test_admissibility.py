@@ -34,6 +34,7 @@ def sampled(orbit):
     return possible & (signal.max(axis=0) < 0) & (over.min(axis=0) > 0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("release", Release)
 def test_random_orbits_against_samples(release):
     # Contacts from short to as long as the cycle; samples can only miss events

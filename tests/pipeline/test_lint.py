@@ -4,8 +4,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 import bouncing_ball
 from bouncing_ball.pipeline.lint import ANSWERED, findings
+
+pytestmark = pytest.mark.slow
 
 ROOT = Path(bouncing_ball.__file__).resolve().parents[2]
 

@@ -142,6 +142,7 @@ def test_special_points(figure_8):
     assert np.all(np.diff(durations[:5]) < 0)  # in order of the branch
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("release", ["displacement", "force"])
 def test_stability_ranges(continuation_settings, described, release):
     parameters = {
@@ -212,6 +213,7 @@ def test_both_ends_in_contact_with_each_other(continuation_settings):
     assert all(reason.startswith(("flight lost", "contact lost")) for reason in reasons)
 
 
+@pytest.mark.slow
 def test_blocked_ways_are_reported(continuation_settings, one_line):
     # At ϖ = 0.6 and this Λ the ball stays on the table.
     with pytest.raises(ContinuationError) as error:
@@ -219,6 +221,7 @@ def test_blocked_ways_are_reported(continuation_settings, one_line):
     one_line(error, "1-T orbit at Λ = 0.6465", "ϖ = 10000", "before 0.6", "lost: the")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("n", "r", "top"), [(1, 0.3, 10.0), (2, 0.85, 1.5)])
 def test_another_way_round_a_blocked_one(continuation_settings, n, r, top):
     # Half way between the bifurcations the branch along ϖ turns, or ends, before

@@ -25,6 +25,7 @@ PARAMETERS = {
 }
 
 
+@pytest.mark.slow
 def test_values_are_those_of_the_orbits():
     data = release_rules(PARAMETERS)
     contact = Contact(1e3, float(damping_ratio(0.85)), Release.FORCE)

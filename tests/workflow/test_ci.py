@@ -2,8 +2,6 @@
 
 import os
 import re
-import shutil
-import stat
 import subprocess
 from pathlib import Path
 
@@ -12,105 +10,91 @@ import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 WORKFLOW = ROOT / ".github" / "workflows" / "ci.yml"
-STEPS = ["setup", "lint", "test", "clean", "all", "diff"]
+JOBS = yaml.safe_load(WORKFLOW.read_text(encoding="utf-8"))["jobs"]
 
 
-@pytest.fixture(scope="module")
-def workflow():
-    return yaml.safe_load(WORKFLOW.read_text(encoding="utf-8"))
+def without_make() -> dict[str, str]:
+    """The environment, whatever make has started these tests."""
+    ours = ("MAKE", "MFLAGS", "CI")
+    return {name: value for name, value in os.environ.items() if not name.startswith(ours)}
 
 
-def dry(*arguments: str) -> subprocess.CompletedProcess:
-    """What make would do, whatever make has started these tests."""
-    environment = {
-        key: value for key, value in os.environ.items() if not key.startswith(("MAKE", "MFLAGS"))
-    }
+def dry(*arguments: str) -> str:
+    """What make would do."""
     return subprocess.run(
-        ["make", "--dry-run", *arguments],
+        ["make", "--dry-run", "--always-make", *arguments],
         cwd=ROOT,
-        env=environment,
+        env=without_make(),
         capture_output=True,
         text=True,
-        check=False,
+        check=True,
+    ).stdout
+
+
+def run_script(tmp_path, failing: str) -> tuple[int, list[str], str]:
+    """Exit status, make's targets in order, and the last line, if some of the targets fail."""
+    program = tmp_path / "make"
+    program.write_text(
+        f'#!/bin/sh\necho "$@" >> "{tmp_path}/called"\n'
+        f'case " {failing} " in *" $1 "*) exit 2;; esac\n',
+        encoding="utf-8",
     )
+    program.chmod(0o755)
+    environment = without_make()
+    environment["PATH"] = f"{tmp_path}{os.pathsep}{environment['PATH']}"
+    done = subprocess.run(
+        [ROOT / ".ci" / "run"], env=environment, capture_output=True, text=True, check=False
+    )
+    called = (tmp_path / "called").read_text(encoding="utf-8").split()
+    return done.returncode, called, done.stdout.splitlines()[-1] if done.stdout else ""
 
 
-def made(job) -> list[str]:
-    """The make targets of a job, in order."""
-    commands = [step.get("run", "") for step in job["steps"]]
-    return [command.removeprefix("make ") for command in commands if command.startswith("make ")]
+@pytest.mark.parametrize("failing", ["", "lint", "all", "diff", "test", "lint test"])
+def test_every_step_runs_and_the_diff_before_the_tests(tmp_path, failing):
+    status, called, last = run_script(tmp_path, failing)
+    assert sorted(called) == sorted(["setup", "lint", "clean", "all", "diff", "test"])
+    assert called.index("clean") < called.index("all") < called.index("diff") < called.index("test")
+    assert (status, last.startswith("Failed: ")) == ((1, True) if failing else (0, False))
+    assert set(failing.split()) <= set(last.split())
 
 
-def test_both_ways_take_the_same_steps(workflow):
-    script = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
-    assert re.findall(r"^make (\S+)$", script, re.MULTILINE) == STEPS
-    assert made(workflow["jobs"]["locked"]) == STEPS
-    assert made(workflow["jobs"]["newest"]) == ["newest"]
-
-
-@pytest.mark.parametrize("target", [*STEPS, "newest", "setup-newest", "ci", "accept", "lock"])
-def test_every_target_exists(target):
-    # A folder or file of that name would hide a target that is not declared.
-    make = (ROOT / "Makefile").read_text(encoding="utf-8")
-    phony = re.search(r"^\.PHONY: (.*)$", make, re.MULTILINE)
-    assert phony and target in phony[1].split()
-    done = dry("--always-make", target)
-    assert done.returncode == 0, done.stderr
-    assert "Nothing to be done" not in done.stdout
+def test_without_the_set_up_nothing_runs(tmp_path):
+    status, called, _ = run_script(tmp_path, "setup")
+    assert status != 0 and called == ["setup"]
 
 
 def test_the_newest_versions_run_what_the_locked_ones_do():
-    done = dry("newest")
-    commands = [line for line in done.stdout.splitlines() if not line.startswith("make[")]
-    assert "requirements" not in done.stdout
-    order = ["--editable", "rm -rf results", "pytest", "snakemake --cores 2", "--cores 2 diff"]
-    found = [next(k for k, line in enumerate(commands) if part in line) for part in order]
+    lines = [line for line in dry("newest").splitlines() if not line.startswith("make[")]
+    assert not any("requirements" in line for line in lines)
+    order = ["--editable", "rm -rf results", "snakemake --cores 2", "--cores 2 diff", "pytest"]
+    found = [next(k for k, line in enumerate(lines) if part in line) for part in order]
     assert found == sorted(found)
-    assert all(".venv-newest/bin/" in commands[k] for k in found if k != found[1])
+    assert all(".venv-newest/bin/" in lines[k] for k in found if k != found[1])
 
 
-def test_the_script_is_a_program():
-    assert (ROOT / ".ci" / "run").stat().st_mode & stat.S_IXUSR
-    subprocess.run([shutil.which("bash"), "-n", ROOT / ".ci" / "run"], check=True)
+@pytest.mark.parametrize("job", JOBS)
+def test_a_job_runs_what_exists_and_keeps_it_even_on_failure(job):
+    steps = JOBS[job]["steps"]
+    commands = [step.get("run", "") for step in steps]
+    targets = [name for text in commands for name in re.findall(r"^make (\S+)$", text, re.M)]
+    for target in targets:
+        assert dry(target)
+    assert targets or ".ci/run" in commands
+    last = max(k for k, text in enumerate(commands) if text.startswith(("make ", ".ci/run")))
+    kept = [step for step in steps[last + 1 :] if "upload-artifact" in step.get("uses", "")]
+    assert kept and all(step["if"] == "${{ always() }}" for step in kept)
 
 
-def test_the_workflow_reads_only_and_holds_no_secret(workflow):
-    assert workflow["permissions"] == {"contents": "read"}
-    assert "secrets" not in WORKFLOW.read_text(encoding="utf-8")
-    assert all("permissions" not in job for job in workflow["jobs"].values())
+def test_a_folder_hides_no_target():
+    make = (ROOT / "Makefile").read_text(encoding="utf-8")
+    phony = re.search(r"^\.PHONY: (.*)$", make, re.MULTILINE)[1].split()
+    targets = set(re.findall(r"^([a-z-]+):", make, re.MULTILINE))
+    assert set(phony) == targets
 
 
-def test_when_it_runs(workflow):
-    # YAML 1.1 takes the key `on` for true.
-    when = workflow[True]
-    assert {"push", "pull_request", "schedule"} <= set(when)
-    minute, hour, day, month, weekday = when["schedule"][0]["cron"].split()
-    assert (day, month) == ("*", "*") and 0 <= int(weekday) <= 6
-    assert 0 <= int(minute) < 60 and 0 <= int(hour) < 24
-    matrix = workflow["jobs"]["locked"]["strategy"]["matrix"]
-    assert matrix["python"] == ["3.11", "3.13"]
-    assert "continue-on-error" not in workflow["jobs"]["locked"]
-    # Red on schedule only.
-    blocking = workflow["jobs"]["newest"]["continue-on-error"]
-    assert blocking == "${{ github.event_name != 'schedule' }}"
-
-
-def test_actions_are_pinned_by_major_version(workflow):
-    steps = [step for job in workflow["jobs"].values() for step in job["steps"]]
-    used = [step["uses"] for step in steps if "uses" in step]
+def test_the_workflow_reads_only_and_holds_no_secret():
+    text = WORKFLOW.read_text(encoding="utf-8")
+    assert re.findall(r"permissions:\n((?:  .*\n)+)", text) == ["  contents: read\n"]
+    assert "secrets" not in text
+    used = re.findall(r"uses: (\S+)", text)
     assert used and all(re.fullmatch(r"actions/[a-z-]+@v\d+", name) for name in used)
-
-
-@pytest.mark.parametrize("name", ["locked", "newest"])
-def test_page_and_results_are_kept_even_on_failure(workflow, name):
-    steps = workflow["jobs"][name]["steps"]
-    kept = [step for step in steps if step.get("uses", "").startswith("actions/upload-artifact@")]
-    assert [step["with"]["path"] for step in kept] == ["results/diff/index.html", "results/"]
-    summary = next(step for step in steps if step.get("name") == "Summary")
-    assert "results/diff/diff.md" in summary["run"]
-    for step in [*kept, summary]:
-        assert step["if"] == "${{ !cancelled() }}"
-        # After everything that may fail.
-        assert steps.index(step) > max(
-            index for index, one in enumerate(steps) if one.get("run", "").startswith("make ")
-        )

@@ -15,6 +15,9 @@ from bouncing_ball.record.diff.drift import span
 from bouncing_ball.record.diff.outcome import Outcome, status
 from bouncing_ball.record.diff.tolerances import Mode, Tolerance, Tolerances
 
+# Most compare whole folders.
+pytestmark = pytest.mark.slow
+
 HALF, TWICE = 0.5, 2.0
 VERSIONS = json.dumps({"numpy": "2.4.0", "matplotlib": "3.11.0"})
 OTHER_VERSIONS = json.dumps({"numpy": "2.4.1", "matplotlib": "3.11.0"})

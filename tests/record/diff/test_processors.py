@@ -70,6 +70,7 @@ def made(folder: Path, switches: dict[str, str]) -> set[str]:
     return set(json.loads(done.stdout))
 
 
+@pytest.mark.slow
 @needs_switches
 def test_two_sets_of_processor_features_agree(rules, tmp_path):
     folders = tmp_path / "all", tmp_path / "fewer"
@@ -81,7 +82,8 @@ def test_two_sets_of_processor_features_agree(rules, tmp_path):
             assert result.outcome.agrees, result
 
 
-# Slow: everything is made once, in about 40 s.
+# Everything is made once, in about 40 s.
+@pytest.mark.long
 @needs_switches
 def test_a_whole_run_with_fewer_features_says_what_the_record_says(rules, tmp_path):
     tree = tmp_path / "tree"

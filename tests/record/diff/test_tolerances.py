@@ -94,6 +94,7 @@ def test_yes_or_no_may_change_at_one_sample(rules):
 
 
 # Stages that take less than two seconds for all their variations.
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", ["fig02", "fig03", "fig07", "fig10", "fig11", "fig12", "fig15", "fig16"]
 )

@@ -25,6 +25,8 @@ from bouncing_ball.studies import (
     restitution_families as restitution_orbits,
 )
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).resolve().parents[3]
 CONFIG = yaml.safe_load((ROOT / "config" / "config.yaml").read_text(encoding="utf-8"))
 RELEASE, SETTINGS = "displacement", CONFIG["continuation"]

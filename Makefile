@@ -53,7 +53,7 @@ test-long: $(SETUP)
 
 # Ten minutes of random attacks; the table of the result is docs/attacks.md.
 attack: $(SETUP)
-	$(BIN)/python -m tests.attack --seconds 600 --table docs/attacks.md
+	$(BIN)/python tests/attack --seconds 600 --table docs/attacks.md
 
 # The results against the accepted record; reports in results/diff/.
 diff: $(SETUP)

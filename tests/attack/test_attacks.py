@@ -1,0 +1,49 @@
+"""Each attack for a second, and what the runner makes of those that fall."""
+
+import re
+import runpy
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+HERE = Path(__file__).resolve().parent
+RUNNER = runpy.run_path(str(HERE / "__main__.py"))
+
+pytestmark = pytest.mark.slow
+
+
+def run(*arguments, folder=HERE):
+    return subprocess.run(
+        [sys.executable, str(folder), *arguments], capture_output=True, text=True, check=False
+    )
+
+
+@pytest.mark.parametrize("name", RUNNER["attacks"]())
+def test_nothing_falls_in_a_second(name):
+    done = run("--seed", "1", "--seconds", "1", name)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert int(re.search(r"(\d+) tried", done.stdout)[1]) > 0
+
+
+@pytest.mark.parametrize(
+    ("body", "said"),
+    [
+        ("return 3, 2, ['seed 7: case 2']", "seed 7: case 2"),
+        ("return 0, 0, []", "seed 7: nothing was tried in 1 s"),
+        ("raise ValueError('no')", "seed 7: ended with 1: ValueError: no"),
+    ],
+)
+def test_what_falls_is_said_and_ends_in_failure(tmp_path, body, said):
+    folder = tmp_path / "tests" / "attack"
+    folder.mkdir(parents=True)
+    (folder / "__main__.py").write_bytes((HERE / "__main__.py").read_bytes())
+    (folder / "walls.py").write_text(
+        f'"""Walls, knocked at."""\n\n\ndef attack(seed, seconds):\n    {body}\n', encoding="utf-8"
+    )
+    table = tmp_path / "attacks.md"
+    done = run("--seed", "7", "--seconds", "1", "--table", str(table), folder=folder)
+    assert done.returncode == 1 and said in done.stdout
+    text = table.read_text(encoding="utf-8")
+    assert said in text and "| walls | Walls, knocked at |" in text

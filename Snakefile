@@ -11,23 +11,14 @@ configfile: "config/config.yaml"
 
 
 include: "workflow/rules/common.smk"
-# Stages: parameters in, datasets out.
-include: "workflow/rules/time_histories.smk"
-include: "workflow/rules/restitution_orbits.smk"
-include: "workflow/rules/apparent_restitution.smk"
-include: "workflow/rules/continuation.smk"
-include: "workflow/rules/frequency_sweeps.smk"
-include: "workflow/rules/permanent_contact.smk"
-include: "workflow/rules/error_thresholds.smk"
-include: "workflow/rules/release_rules.smk"
-include: "workflow/rules/witness.smk"
-include: "workflow/rules/forensics.smk"
-include: "workflow/rules/formulas.smk"
-include: "workflow/rules/claims.smk"
-# Renderings: datasets in, figures, tables and text out.
+# Parameters in, datasets out.
+include: "workflow/rules/stages.smk"
+# Datasets in, figures, tables and text out.
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/tables.smk"
 include: "workflow/rules/paper.smk"
+# Each artifact by its name, with its dataset.
+include: "workflow/rules/artifacts.smk"
 
 
 rule all:
@@ -35,14 +26,12 @@ rule all:
     message:
         "All figures, tables and the paper are up to date"
     input:
-        figures=expand("results/figures/{figure}.{kind}", figure=FIGURES, kind=["png", "svg"]),
-        tables=expand("results/figures/{table}.{kind}", table=TABLES, kind=["csv", "md", "tex"]),
-        paper="results/paper.md",
-        tally="results/tally.txt",
+        artifacts=files(STAGES),
+        paper=rules.paper.output,
     log:
         "results/logs/all.log",
     shell:
-        "tee {log} < {input.tally}"
+        "tee {log} < results/tally.txt"
 
 
 localrules:

@@ -10,24 +10,23 @@ import pytest
 import xarray as xr
 import yaml
 
+from bouncing_ball.audit import convergence
 from bouncing_ball.audit.claims.ledger_file import printed, read_ledger
 from bouncing_ball.audit.convergence import (
-    Stage,
+    Computation,
     Variation,
+    computations,
     on_the_old_grid,
     sensitivity,
-    stages,
     tighter,
     variations,
 )
+from bouncing_ball.configuration.stages import STAGES
 from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.record.diff.budgets import changes
 from bouncing_ball.record.diff.tolerance_file import read_tolerances
 
 ROOT = Path(__file__).resolve().parents[2]
-# What the evidence is read from, as the rule says.
-SOURCES = [f"fig{number:02d}" for number in (3, 5, 6, 8, 9, 10, 13, 14, 15, 16)]
-SOURCES += ["table1", "thresholds", "ext_release"]
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +37,7 @@ def config():
 @pytest.fixture(scope="module")
 def made(config):
     table = printed(read_ledger(ROOT / "config"), "Table 1")
-    return stages(config, table, SOURCES)
+    return computations(config | {"printed": table})
 
 
 def test_every_stage_of_the_configuration_is_varied(config, made):
@@ -98,7 +97,7 @@ def test_a_known_sensitivity():
             {"x": ("t", np.full(count, parameters["restitution"])), "y": float(count)}
         )
 
-    stage = Stage(study, {"restitution": 0.75, "samples": 11})
+    stage = Computation(study, {"restitution": 0.75, "samples": 11}, {})
     found = sensitivity(
         "any", stage, lambda base, data: {k: float(np.abs(data[k] - base[k]).max()) for k in base}
     )
@@ -118,14 +117,14 @@ class Outputs(list):
 
 @pytest.mark.slow
 def test_the_script_writes_the_table(config, tmp_path, monkeypatch):
-    one = {key: config[key] for key in ("release", "continuation")}
-    one["figures"] = {"fig11": config["figures"]["fig11"]}
+    # Only one stage: the others take their time.
+    monkeypatch.setattr(convergence, "studied", lambda: [STAGES["fig11"]])
     job = SimpleNamespace(
         rule="convergence",
         wildcards=(),
         input=SimpleNamespace(tolerances=ROOT / "config" / "tolerances.yaml"),
         output=Outputs(changes=tmp_path / "convergence.csv"),
-        params=SimpleNamespace(config=one, figures=["fig11"], printed={}, evidence=["none"]),
+        params=SimpleNamespace(run=config | {"printed": {}}, figures=["fig11"]),
         log=[tmp_path / "log"],
     )
     # An interrupted job ends at once, but the tests are not to.

@@ -68,7 +68,7 @@ ALTERATIONS = {
 
 @pytest.fixture(scope="module")
 def study():
-    return forensics(PARAMETERS)
+    return forensics(PARAMETERS, TABLE)
 
 
 def model(omega, n, **changes):
@@ -311,7 +311,7 @@ def test_distances(study):
 def test_a_table_printed_under_a_reading_is_recognised(study, name, written):
     exact = study.computed.sel(reading=BASELINE).values
     table = TABLE | {"values": (written(exact / 0.001) * 0.001).tolist()}
-    found = forensics(PARAMETERS | {"printed": table})
+    found = forensics(PARAMETERS, table)
     best = found.isel(reading=0)
     assert str(best.reading.values) == name
     assert int(best.reproduced.sel(rows=ALL_ROWS)) == 18 and int(best.unreachable) == 0
@@ -319,7 +319,7 @@ def test_a_table_printed_under_a_reading_is_recognised(study, name, written):
 
 def test_a_table_with_other_bounds_is_refused(one_line):
     with pytest.raises(ModelError) as error:
-        forensics(PARAMETERS | {"printed": TABLE | {"bound": ["from", "to"]}})
+        forensics(PARAMETERS, TABLE | {"bound": ["from", "to"]})
     one_line(error, "printed.bound", "saddle-node", "period doubling")
 
 

@@ -93,7 +93,7 @@ def test_readable(results, capsys):
     ("file", "artifact", "target"),
     [
         ("figures/fig08.nc", "fig08, a dataset", "results/figures/fig08.nc"),
-        ("figures/fig08.csv", "fig08, a table", "fig08"),
+        ("figures/fig08.csv", "fig08, a table", "results/figures/fig08.csv"),
         ("paper.md", "paper, a text", "paper"),
     ],
 )

@@ -102,7 +102,7 @@ def test_what_a_job_gathers(tmp_path):
     data = tmp_path / "fig11.nc"
     write_dataset(xr.Dataset(attrs={"provenance_parameters": "ab12"}), data)
     made = provenance(job(ROOT, inputs=[str(data)]), {})
-    assert made.target == "fig11" and made.parameters == "ab12"
+    assert made.target == "results/figures/fig11.png" and made.parameters == "ab12"
     assert json.loads(made.inputs) == {str(data): file_digest(data)}
     assert list(json.loads(made.versions)) == ["python", *LIBRARIES]
     assert made.lock == file_digest(ROOT / "requirements.lock")

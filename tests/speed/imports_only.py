@@ -35,9 +35,13 @@ def reduce_to_imports(script: Path) -> None:
     tree = ast.parse(script.read_text(encoding="utf-8"))
     imports = [node for node in tree.body if isinstance(node, ast.Import | ast.ImportFrom)]
     text = "".join(ast.unparse(node) + "\n" for node in imports) + LATE_DATA
+    if script.stem == "stage":
+        text += (
+            "from bouncing_ball.configuration.stages import load\nload(snakemake.params.study)\n"
+        )
     if script.stem in ("figure", "table"):
-        package = "figures" if script.stem == "figure" else "tables"
-        text += f'import_module(f"bouncing_ball.{package}.{{snakemake.rule}}")\n'
+        name = f"bouncing_ball.render.{script.stem}s.{{snakemake.params.{script.stem}}}"
+        text += f'import_module(f"{name}")\n'
     if script.stem == "figure":
         text += LATE_FIGURE
     script.write_text(text + FINISH, encoding="utf-8")

@@ -6,8 +6,10 @@ import signal
 import pytest
 import yaml
 
-PAPER_FIGURES = [f"fig{number:02d}" for number in range(1, 17)]
-FIGURES = [*PAPER_FIGURES, "ext_release"]
+from bouncing_ball.configuration.stages import Kind, names, studied
+
+PAPER_FIGURES = names(Kind.FIGURE)
+FIGURES = names(Kind.FIGURE, Kind.EXTENSION)
 
 
 def test_one_figure_by_its_name_makes_that_figure_only(fresh):
@@ -22,12 +24,9 @@ def test_one_figure_by_its_name_makes_that_figure_only(fresh):
 def test_a_run_makes_every_figure_and_table(pristine):
     made = set(pristine.contents("results"))
     pictures = {f"figures/{name}.{kind}" for name in FIGURES for kind in ("png", "svg")}
-    data = {f"figures/{name}.nc" for name in FIGURES if name not in ("fig01", "fig04")}
-    data |= {"figures/evidence.nc"}
+    data = {f"figures/{stage.name}.nc" for stage in studied()}
     tables = {
-        f"figures/{name}.{kind}"
-        for name in ("table1", "thresholds", "witness", "forensics", "formulas", "claims")
-        for kind in ("nc", "csv", "md", "tex")
+        f"figures/{name}.{kind}" for name in names(Kind.TABLE) for kind in ("csv", "md", "tex")
     }
     assert made == pictures | data | tables | {"paper.md", "tally.txt"}
 
@@ -83,7 +82,7 @@ def test_an_orbit_that_does_not_exist_is_one_line(fresh):
     fresh.configure("figures", "fig07", "frequency_ratio", value=0.2)
     done = fresh.run("--cores", "1", "fig07", check=False)
     assert done.returncode == 1
-    said = [line for line in done.stderr.splitlines() if line.startswith("time_histories/fig07:")]
+    said = [line for line in done.stderr.splitlines() if line.startswith("stage/fig07:")]
     assert len(said) == 1 and "no 1-T orbit" in said[0]
     assert "Traceback" not in done.stderr
     assert not (fresh.path / "results" / "figures" / "fig07.nc").exists()

@@ -16,15 +16,14 @@ rule convergence:
             "datasets.files",
             "record.diff.tolerance_file",
             "render.tables.formats",
-            *(f"render.figures.{name}" for name in FIGURES if name not in SCHEMATICS),
+            *(f"render.figures.{name}" for name in FIGURES),
+            *(stage.module for stage in studied()),
         ),
     output:
         changes="results/convergence.csv",
     params:
-        config=config,
-        printed=TABLE1,
-        evidence=EVIDENCE,
-        figures=[name for name in FIGURES if name not in SCHEMATICS],
+        run={key: part for key, part in RUN.items() if key != "ledger"},
+        figures=FIGURES,
     log:
         "results/logs/convergence.log",
     benchmark:

@@ -1,20 +1,20 @@
-# Renderings: one rule for each figure, called by its name.
+# Datasets in, figures out.
 
 for name in FIGURES:
 
     rule:
         name:
-            name
+            f"draw_{name}"
         message:
             f"Drawing {name}"
         input:
-            data=[] if name in SCHEMATICS else [f"results/figures/{name}.nc"],
+            data=datasets([name] if STAGES[name].study else []),
             source=modules(f"render.figures.{name}", "render.figures.style", "datasets.netcdf"),
         output:
             png=report(
                 f"results/figures/{name}.png",
                 caption=f"../report/{name}.rst",
-                category="Beyond the paper" if name in EXTENSIONS else "Figures",
+                category="Figures" if STAGES[name].kind is Kind.FIGURE else "Beyond the paper",
                 labels={"figure": name},
             ),
             svg=f"results/figures/{name}.svg",

@@ -1,4 +1,4 @@
-# Rendering: the replication article, every number from a dataset.
+# The replication article, every number from a dataset, and the tally of the claims.
 
 ARTICLE = Path(workflow.basedir, "workflow/report/paper")
 
@@ -9,11 +9,20 @@ rule paper:
     input:
         templates=sorted(os.path.relpath(path) for path in ARTICLE.glob("*.md.j2")),
         references=os.path.relpath(ARTICLE / "references.yaml"),
-        data=expand("results/figures/{name}.nc", name=DATASETS),
+        data=datasets(DATASETS),
         tables=expand("results/figures/{table}.md", table=TABLES),
-        source=modules("render.article.render", "datasets.files", "datasets.netcdf", "configuration.yaml_file"),
+        source=modules(
+            "render.article.render",
+            "audit.claims.tally",
+            "datasets.files",
+            "datasets.netcdf",
+            "configuration.yaml_file",
+        ),
     output:
         paper="results/paper.md",
+        tally="results/tally.txt",
+    params:
+        figures=len(names(Kind.FIGURE)),
     log:
         "results/logs/paper.log",
     benchmark:

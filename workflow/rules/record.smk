@@ -8,10 +8,8 @@ rule accept:
     message:
         "Copying the results over the record in figures/ and paper.md"
     input:
-        figures=rules.all.input.figures,
-        tables=rules.all.input.tables,
-        paper=rules.all.input.paper,
-        data=expand("results/figures/{name}.nc", name=DATASETS),
+        artifacts=rules.all.input.artifacts,
+        paper=rules.paper.output.paper,
     params:
         record=workflow.basedir,
     log:

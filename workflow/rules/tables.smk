@@ -1,15 +1,20 @@
-# Renderings: tables as CSV, Markdown and LaTeX.
+# Datasets in, tables out: CSV, Markdown and LaTeX.
 
 for name in TABLES:
 
     rule:
         name:
-            name
+            f"set_{name}"
         message:
             f"Setting {name}"
         input:
             data=f"results/figures/{name}.nc",
-            source=modules(f"render.tables.{name}", "render.tables.formats", "datasets.netcdf", "datasets.files"),
+            source=modules(
+                f"render.tables.{name}",
+                "render.tables.formats",
+                "datasets.netcdf",
+                "datasets.files",
+            ),
         output:
             csv=f"results/figures/{name}.csv",
             md=f"results/figures/{name}.md",

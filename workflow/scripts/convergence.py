@@ -3,7 +3,7 @@
 import io
 from importlib import import_module
 
-from bouncing_ball.audit.convergence import Variation, sensitivity, stages
+from bouncing_ball.audit.convergence import Variation, computations, sensitivity
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.datasets.netcdf import parameter_attributes
 from bouncing_ball.pipeline.job import logged
@@ -14,11 +14,11 @@ from bouncing_ball.render.figures.style import style
 from bouncing_ball.render.tables.formats import to_csv
 
 
-def picture(name, stage, data):
+def picture(name, computation, data):
     """The figure as PNG, labelled with the parameters of the stage itself."""
     file = io.BytesIO()
     labels = parameter_attributes(
-        {**stage.parameters, "release": snakemake.params.config["release"]}
+        {**computation.parameters, "release": snakemake.params.run["release"]}
     )
     with style():
         draw = import_module(f"bouncing_ball.render.figures.{name}").draw
@@ -27,22 +27,22 @@ def picture(name, stage, data):
 
 
 with logged(snakemake) as lines:
-    made = stages(snakemake.params.config, snakemake.params.printed, snakemake.params.evidence)
+    made = computations(snakemake.params.run)
     rules = read_tolerances(snakemake.input.tolerances)
     rows, budget = [], rules.pictures.allowed
-    for name, stage in made.items():
+    for name, computation in made.items():
         drawn = {}
 
-        def measure(base, data, name=name, stage=stage, drawn=drawn):
+        def measure(base, data, name=name, computation=computation, drawn=drawn):
             found = changes(name, base, data, rules)
             if name in snakemake.params.figures:
                 if not drawn:
-                    drawn["base"] = picture(name, stage, base)
-                again = picture(name, stage, data)
+                    drawn["base"] = picture(name, computation, base)
+                again = picture(name, computation, data)
                 found["picture"] = compare_pictures(drawn["base"], again, budget).rms
             return found
 
-        for variable, row in sensitivity(name, stage, measure).items():
+        for variable, row in sensitivity(name, computation, measure).items():
             cells = [f"{row[kind]:.1e}" if kind in row else "" for kind in Variation]
             rows.append([name, variable, *cells])
         lines.append(name)

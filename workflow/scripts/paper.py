@@ -1,7 +1,8 @@
-"""The replication article from its templates and the datasets."""
+"""The replication article from its templates and the datasets, and the tally."""
 
 from pathlib import Path
 
+from bouncing_ball.audit.claims.tally import tally
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.datasets.netcdf import read_dataset
@@ -19,4 +20,6 @@ with logged(snakemake) as lines:
     references = read_yaml(snakemake.input.references)
     folder = Path(snakemake.input.templates[0]).parent
     write_text(snakemake.output.paper, render_article(folder, data, tables, references))
-    lines.append(snakemake.output.paper)
+    last = tally(data["claims"], snakemake.params.figures)
+    write_text(snakemake.output.tally, last + "\n")
+    lines.append(last)

@@ -13,31 +13,16 @@ The largest change of each variable is what the budgets of the comparison with
 the accepted record are made from.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from enum import StrEnum
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.audit import evidence, formulas
-from bouncing_ball.audit.forensics import study as forensics
+from bouncing_ball.configuration.stages import STAGES, Stage, load, studied
 from bouncing_ball.datasets.netcdf import parameter_attributes
-from bouncing_ball.studies import (
-    error_thresholds,
-    frequency_sweeps,
-    release_rules,
-    time_histories,
-)
-from bouncing_ball.studies import (
-    orbit_branches as continuation,
-)
-from bouncing_ball.studies import (
-    permanent_contact_curve as permanent_contact,
-)
-from bouncing_ball.studies import (
-    restitution_families as restitution_orbits,
-)
 
 Parameters = Mapping[str, Any]
 
@@ -50,42 +35,18 @@ class Variation(StrEnum):
     ROUNDING = "rounding"
 
 
-class Stage(NamedTuple):
-    """How a dataset is made: ``study(parameters, *arguments)``."""
+class Computation(NamedTuple):
+    """How a dataset is made: ``study(parameters, *settings)``."""
 
     study: Callable[..., xr.Dataset]
     parameters: Parameters
-    arguments: tuple = ()
+    settings: Parameters
 
     def run(self) -> xr.Dataset:
         """The dataset."""
-        return self.study(self.parameters, *self.arguments)
+        return self.study(self.parameters, *self.settings.values())
 
 
-_STUDIES: dict[str, Callable[..., xr.Dataset]] = {
-    "fig02": restitution_orbits.restitution_history,
-    "fig03": restitution_orbits.restitution_orbits,
-    "fig05": frequency_sweeps.apparent_restitution,
-    "fig06": frequency_sweeps.apparent_restitution,
-    "fig07": time_histories.contact_history,
-    "fig08": continuation.orbit_branches,
-    "fig09": continuation.orbit_branches,
-    "fig10": frequency_sweeps.frequency_sweep,
-    "fig11": permanent_contact.permanent_contact,
-    "fig12": time_histories.both_histories,
-    "fig13": frequency_sweeps.frequency_sweep,
-    "fig14": error_thresholds.height_error,
-    "fig15": continuation.both_domains,
-    "fig16": error_thresholds.permanent_contact_error,
-    "table1": continuation.stability_ranges,
-    "thresholds": error_thresholds.error_thresholds,
-    "ext_release": release_rules.release_rules,
-    "formulas": formulas.formulas,
-    "forensics": forensics.forensics,
-}
-# Those that know neither release rule nor settings, and those that know both.
-_BARE = ("fig02", "fig03", "ext_release", "formulas", "forensics")
-_CONTINUED = ("fig08", "fig09", "fig15", "table1")
 # A cycle is split at the release, with half of the samples on either side, so
 # that a finer cycle has none of the old times. Each sample is the orbit's
 # formula at its own time, and other samples change nothing about it. Other
@@ -100,54 +61,36 @@ _MOVED = ("restitution", "amplitude", "amplitude_max")
 ULPS = (-2, -1, 1, 2)
 
 
-def _simple_stages(config: Parameters, printed: Parameters) -> dict[str, Stage]:
-    """The stages of the datasets that are made from parameters alone."""
-    parameters = {
-        name: part
-        for section in ("figures", "tables", "extensions", "studies")
-        for name, part in config.get(section, {}).items()
-    }
-    made = {}
-    for name in (name for name in _STUDIES if name in parameters):
-        own, arguments = parameters[name], () if name in _BARE else (config["release"],)
-        if name in _CONTINUED:
-            arguments = (config["release"], config["continuation"])
-        if name == "table1":
-            arguments += (printed,)
-        if name == "forensics":
-            own = {**own, "printed": printed}
-        made[name] = Stage(_STUDIES[name], own, arguments)
-    return made
+def _from_scratch(stage: Stage, config: Parameters, **given: Any) -> xr.Dataset:
+    """The dataset of a stage, with all the datasets that it reads."""
+    run = {**config, **given}
+    data = {}
+    for name in stage.reads:
+        made = _computation(STAGES[name], run)
+        data[name] = made.run().assign_attrs(parameter_attributes(made.parameters))
+    return load(stage.study)(data, stage.parameters(run), *stage.settings(run).values())
 
 
-def _evidence_from_scratch(
-    config: Parameters, printed: Parameters, sources: Sequence[str]
-) -> xr.Dataset:
-    """The evidence, with all the datasets that it is read from."""
-    made = _simple_stages(config, printed)
-    data = {
-        name: made[name].run().assign_attrs(parameter_attributes(made[name].parameters))
-        for name in sources
-    }
-    return evidence.evidence(data, config["studies"]["evidence"])
+def _computation(stage: Stage, run: Parameters) -> Computation:
+    if stage.reads:
+        given = {"printed": run["printed"]}
+        config = {key: value for key, value in run.items() if key not in ("printed", "ledger")}
+        return Computation(partial(_from_scratch, stage, **given), config, {})
+    return Computation(load(stage.study), stage.parameters(run), stage.settings(run))
 
 
-def stages(config: Parameters, printed: Parameters, sources: Sequence[str]) -> dict[str, Stage]:
-    """The stages of all datasets that the configuration has parameters for.
+def computations(run: Parameters) -> dict[str, Computation]:
+    """How each dataset is made that has parameters of its own.
+
+    A stage that reads other datasets varies with the whole configuration.
 
     Parameters
     ----------
-    config : mapping
-        The configuration.
-    printed : mapping
-        Table 1 as printed.
-    sources : sequence of str
-        The datasets that the evidence is read from.
+    run : mapping
+        The configuration, and with it ``printed``, Table 1 as printed.
     """
-    made = _simple_stages(config, printed)
-    if set(sources) <= set(made):
-        made["evidence"] = Stage(_evidence_from_scratch, config, (printed, sources))
-    return made
+    own = (stage for stage in studied() if stage.section.endswith(f".{stage.name}"))
+    return {stage.name: _computation(stage, run) for stage in own}
 
 
 def _mapped(value: Any, change: Callable[[str, Any], Any], key: str = "") -> Any:
@@ -231,28 +174,27 @@ def on_the_old_grid(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
     return thinned.assign_coords({name: coarse[name] for name in counted})
 
 
-def variations(name: str, stage: Stage, base: xr.Dataset) -> Iterator[tuple[Variation, xr.Dataset]]:
+def variations(
+    name: str, made: Computation, base: xr.Dataset
+) -> Iterator[tuple[Variation, xr.Dataset]]:
     """The datasets of a stage under each variation, on the grid of its own ``base``."""
-    if name in _CONTINUED:
-        release, settings, *more = stage.arguments
-        yield (
-            Variation.TOLERANCES,
-            stage._replace(arguments=(release, tighter(settings), *more)).run(),
-        )
-    if name == "evidence":
-        settings = tighter(stage.parameters["continuation"])
-        varied = {**stage.parameters, "continuation": settings}
-        yield Variation.TOLERANCES, stage._replace(parameters=varied).run()
-    fine = finer_grid(stage.parameters)
-    if name not in _NOT_NESTED and fine != stage.parameters:
-        yield Variation.GRID, on_the_old_grid(stage._replace(parameters=fine).run(), base)
+    # Among the settings of a stage, or in the whole configuration.
+    if "continuation" in made.settings:
+        tight = {**made.settings, "continuation": tighter(made.settings["continuation"])}
+        yield Variation.TOLERANCES, made._replace(settings=tight).run()
+    elif "continuation" in made.parameters:
+        tight = {**made.parameters, "continuation": tighter(made.parameters["continuation"])}
+        yield Variation.TOLERANCES, made._replace(parameters=tight).run()
+    fine = finer_grid(made.parameters)
+    if name not in _NOT_NESTED and fine != made.parameters:
+        yield Variation.GRID, on_the_old_grid(made._replace(parameters=fine).run(), base)
     for ulps in ULPS:
-        other = other_rounding(stage.parameters, ulps)
-        yield Variation.ROUNDING, stage._replace(parameters=other).run()
+        other = other_rounding(made.parameters, ulps)
+        yield Variation.ROUNDING, made._replace(parameters=other).run()
 
 
 def sensitivity(
-    name: str, stage: Stage, measure: Callable[[xr.Dataset, xr.Dataset], Mapping[str, float]]
+    name: str, made: Computation, measure: Callable[[xr.Dataset, xr.Dataset], Mapping[str, float]]
 ) -> dict[str, dict[Variation, float]]:
     """Largest change of each variable of a stage, by variation.
 
@@ -260,13 +202,13 @@ def sensitivity(
     ----------
     name : str
         Of the figure or table.
-    stage : Stage
+    made : Computation
     measure : callable
         The change of each variable between two datasets.
     """
-    base = stage.run()
+    base = made.run()
     largest: dict[str, dict[Variation, float]] = {}
-    for variation, data in variations(name, stage, base):
+    for variation, data in variations(name, made, base):
         for variable, change in measure(base, data).items():
             row = largest.setdefault(variable, {})
             row[variation] = max(change, row.get(variation, 0.0))

@@ -7,12 +7,13 @@ object that Snakemake gives them.
 import signal
 import sys
 import traceback
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from bouncing_ball.datasets.netcdf import parameter_attributes, write_dataset
+from bouncing_ball.configuration.stages import load
+from bouncing_ball.datasets.netcdf import parameter_attributes, read_dataset, write_dataset
 from bouncing_ball.record.carriers import read_attributes
 from bouncing_ball.record.provenance import PREFIX, SUM, Provenance, file_digest, gather
 
@@ -55,21 +56,22 @@ def provenance(snakemake: Any, parameters: Mapping[str, Any]) -> Provenance:
     return gather(snakemake, parameters, inherited)
 
 
-def make_dataset(snakemake: Any, study: Callable, *arguments: Any) -> None:
-    """Run a study on the job's parameters and write its dataset.
+def make_dataset(snakemake: Any) -> None:
+    """Run the study of the job and write its dataset.
 
-    The parameters, all arguments included, become global attributes, and so
-    does the provenance.
+    The parameters and the settings of the run become global attributes, unless
+    the study says itself what is worth recording, and so does the provenance.
     """
     with logged(snakemake) as lines:
-        parameters = snakemake.params.parameters
-        dataset = study(parameters, *arguments)
-        more = {key: value for key, value in snakemake.params.items() if key != "parameters"}
+        job = snakemake.params
+        data = {Path(path).stem: read_dataset(path) for path in snakemake.input.data}
+        inputs = [data] if data else []
+        dataset = load(job.study)(*inputs, job.parameters, *job.settings.values())
         dataset.attrs = {
-            "title": snakemake.rule,
+            "title": job.title,
             "references": REFERENCE,
-            **parameter_attributes(parameters | more),
-            **provenance(snakemake, dict(snakemake.params.items())).attributes(),
+            **(dataset.attrs or parameter_attributes(job.parameters | job.settings)),
+            **provenance(snakemake, {"parameters": job.parameters, **job.settings}).attributes(),
         }
         write_dataset(dataset, snakemake.output.data)
         sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())

@@ -115,7 +115,8 @@ def explain(path: Path) -> dict[str, Any]:
     checked_out = made.commit == now.commit if known else None
     lock = lock_digest(repository) if repository else "unknown"
     running = versions()
-    target = made.target if carriers == [path] else path.stem
+    whole = f"results/figures/{path.name}" if path.suffix != ".md" else path.stem
+    target = made.target if carriers == [path] else whole
     return {
         "file": str(path),
         "artifact": f"{Path(target).stem}, a {_KINDS.get(path.suffix, 'text')}",

@@ -193,8 +193,7 @@ def gather(snakemake: Any, parameters: Mapping[str, Any], inherited: Iterable[st
     return Provenance(
         commit=now.commit,
         dirty=dirty,
-        # A figure is called by its name, which is its rule's.
-        target=snakemake.rule if snakemake.rule == Path(output).stem else output,
+        target=output,
         parameters=dependent_digest(parameters, inherited),
         sources=sources_digest(sources),
         lock=lock_digest(repository),

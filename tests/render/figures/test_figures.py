@@ -7,46 +7,15 @@ import numpy as np
 import pytest
 import yaml
 
+from bouncing_ball.configuration.stages import STAGES, Kind, load, names
 from bouncing_ball.record.carriers import read_attributes
 from bouncing_ball.render.figures.style import INADMISSIBLE, STABLE, UNSTABLE, number, save, style
-from bouncing_ball.studies import (
-    error_thresholds,
-    frequency_sweeps,
-    release_rules,
-    time_histories,
-)
-from bouncing_ball.studies import (
-    orbit_branches as continuation,
-)
-from bouncing_ball.studies import (
-    permanent_contact_curve as permanent_contact,
-)
-from bouncing_ball.studies import (
-    restitution_families as restitution_orbits,
-)
 
 pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).resolve().parents[3]
 CONFIG = yaml.safe_load((ROOT / "config" / "config.yaml").read_text(encoding="utf-8"))
-RELEASE, SETTINGS = "displacement", CONFIG["continuation"]
-STUDIES = {
-    "fig02": (restitution_orbits.restitution_history, ()),
-    "fig03": (restitution_orbits.restitution_orbits, ()),
-    "fig05": (frequency_sweeps.apparent_restitution, (RELEASE,)),
-    "fig06": (frequency_sweeps.apparent_restitution, (RELEASE,)),
-    "fig07": (time_histories.contact_history, (RELEASE,)),
-    "fig08": (continuation.orbit_branches, (RELEASE, SETTINGS)),
-    "fig09": (continuation.orbit_branches, (RELEASE, SETTINGS)),
-    "fig10": (frequency_sweeps.frequency_sweep, (RELEASE,)),
-    "fig11": (permanent_contact.permanent_contact, (RELEASE,)),
-    "fig12": (time_histories.both_histories, (RELEASE,)),
-    "fig13": (frequency_sweeps.frequency_sweep, (RELEASE,)),
-    "fig14": (error_thresholds.height_error, (RELEASE,)),
-    "fig15": (continuation.both_domains, (RELEASE, SETTINGS)),
-    "fig16": (error_thresholds.permanent_contact_error, (RELEASE,)),
-    "ext_release": (release_rules.release_rules, ()),
-}
+RELEASE = "displacement"
 # The variable that each figure is about.
 SHOWN = {
     "fig02": "ball",
@@ -72,11 +41,12 @@ def datasets():
     from bouncing_ball.datasets.netcdf import parameter_attributes
 
     made = {}
-    for name, (study, arguments) in STUDIES.items():
-        section = "extensions" if name.startswith("ext") else "figures"
-        parameters = CONFIG[section][name]
-        made[name] = study(parameters, *arguments)
-        made[name].attrs = parameter_attributes(parameters | {"release": RELEASE})
+    for name in names(Kind.FIGURE, Kind.EXTENSION):
+        stage = STAGES[name]
+        if stage.study:
+            parameters = stage.parameters(CONFIG)
+            made[name] = load(stage.study)(parameters, *stage.settings(CONFIG).values())
+            made[name].attrs = parameter_attributes(parameters | {"release": RELEASE})
     return made
 
 

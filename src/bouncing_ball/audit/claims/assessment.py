@@ -1,11 +1,12 @@
 """Every claim with its verdict, as a dataset."""
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.audit.claims.ledger import Claim, Criterion, Explanation, Ledger
+from bouncing_ball.audit.claims.ledger import Claim, Criterion, Explanation, Ledger, parse_ledger
 from bouncing_ball.audit.claims.verdict import (
     Finding,
     Verdict,
@@ -123,3 +124,8 @@ def assess(ledger: Ledger, data: Mapping[str, xr.Dataset]) -> xr.Dataset:
             },
         )
     )
+
+
+def verdicts(data: Mapping[str, xr.Dataset], mapping: Mapping[str, Any]) -> xr.Dataset:
+    """:func:`assess` as a stage, from the mapping of the ledger's file."""
+    return assess(parse_ledger(mapping), data)

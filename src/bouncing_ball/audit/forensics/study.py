@@ -106,7 +106,7 @@ def _order(distance: xr.DataArray, in_range: np.ndarray) -> np.ndarray:
     return np.lexsort((*keys, in_range, missing))
 
 
-def forensics(parameters: Mapping[str, Any]) -> xr.Dataset:
+def forensics(parameters: Mapping[str, Any], printed: Mapping[str, Any]) -> xr.Dataset:
     """Table 1 under every reading, the closest reading first.
 
     Parameters
@@ -116,9 +116,10 @@ def forensics(parameters: Mapping[str, Any]) -> xr.Dataset:
         ``other_damping_ratios`` to try; ``stiff_exponents`` to try for the
         stiffest row; ``steps`` of a continuation, and the arclength
         ``step_reach`` in which a step that would do is looked for;
-        ``last_digit``, the unit of the last printed digit; and ``printed``, the
-        table with its ``frequency_ratio``, ``n``, ``bound`` and ``values`` of
-        shape (frequency_ratio, n, bound).
+        ``last_digit``, the unit of the last printed digit.
+    printed : mapping
+        Table 1 as printed: its ``frequency_ratio``, ``n``, ``bound`` and
+        ``values`` of shape (frequency_ratio, n, bound).
 
     Returns
     -------
@@ -134,11 +135,11 @@ def forensics(parameters: Mapping[str, Any]) -> xr.Dataset:
     ModelError
         If the bounds are not a saddle-node and a period doubling, in this order.
     """
-    table, unit = parameters["printed"], parameters["last_digit"]
-    if list(table["bound"]) != BOUNDS:
-        raise ModelError(f"printed.bound = {table['bound']} must be {BOUNDS}")
-    printed = np.array(table["values"], dtype=float)
-    ratios = np.array(table["frequency_ratio"], dtype=float)
+    if list(printed["bound"]) != BOUNDS:
+        raise ModelError(f"printed.bound = {printed['bound']} must be {BOUNDS}")
+    parameters, unit = {**parameters, "printed": printed}, parameters["last_digit"]
+    entries = np.array(printed["values"], dtype=float)
+    ratios = np.array(printed["frequency_ratio"], dtype=float)
     chosen = readings(parameters)
     model = _model(chosen, parameters)
     found = bifurcations(model)
@@ -149,18 +150,18 @@ def forensics(parameters: Mapping[str, Any]) -> xr.Dataset:
     best = np.where(in_range[:, None, None, None], values, exact)
     exact, best = (_rewritten(chosen, x, parameters) for x in (exact, best))
     computed = np.where(truncated, np.floor(best / unit) * unit, best)
-    difference = (computed - printed) / unit
+    difference = (computed - entries) / unit
     # No orbit has a smaller Λ than the fold: what is printed below it, by more
     # than its digits can hide, is no point of the branch, whatever is called stable.
     hidden = np.where(truncated[..., 0], 1.0, 0.5)
-    unreachable = np.sum((exact - printed)[..., 0] / unit > hidden, axis=(1, 2))
+    unreachable = np.sum((exact - entries)[..., 0] / unit > hidden, axis=(1, 2))
     groups = _groups(ratios)
     distances = _distances(difference, groups)
     dims = ("reading", "frequency_ratio", "n", "bound")
     dataset = xr.Dataset(
         {
             "computed": (dims, computed),
-            "printed": (dims[1:], printed),
+            "printed": (dims[1:], entries),
             "difference": (dims, difference),
             "step_needed": (dims, needed),
             "unreachable": ("reading", unreachable),
@@ -171,7 +172,7 @@ def forensics(parameters: Mapping[str, Any]) -> xr.Dataset:
         coords={
             "reading": [reading.name for reading in chosen],
             "frequency_ratio": ratios,
-            "n": np.array(table["n"]),
+            "n": np.array(printed["n"]),
             "bound": BOUNDS,
             "rows": list(groups),
         },

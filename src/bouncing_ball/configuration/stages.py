@@ -1,0 +1,316 @@
+"""The stages: each artifact once, with all that the pipeline needs to know of it.
+
+An artifact is a figure, a table or a dataset behind them. Its entry says which
+study makes the dataset, from which section of the configuration, with which
+settings of the whole run, and from which other datasets. The rules, the
+convergence study, the check of the configuration and the tests read these
+entries; studies are named and not imported, so that reading them is quick.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from enum import Enum
+from importlib import import_module
+from typing import Any
+
+
+class Kind(Enum):
+    """What is made from the dataset."""
+
+    FIGURE = "figure"
+    """A figure of the paper."""
+    EXTENSION = "extension"
+    """A figure beyond the paper."""
+    TABLE = "table"
+    DATASET = "dataset"
+    """Nothing: other datasets and the article are made from it."""
+
+
+@dataclass(frozen=True)
+class Stage:
+    """How one artifact is made: ``study([data,] parameters, *arguments)``."""
+
+    name: str
+    kind: Kind
+    title: str
+    study: str = ""
+    """Function within the package, ``module.function``; none for a drawing without data."""
+    section: str = ""
+    """Where its parameters stand in the configuration, ``figures.fig08``."""
+    arguments: tuple[str, ...] = ()
+    """Settings of the whole run: ``release``, ``continuation``, ``printed`` (Table 1)."""
+    reads: tuple[str, ...] = ()
+    """Artifacts whose datasets the study takes first, as a mapping by name."""
+    cross_checked: bool = False
+    """Whether it shows orbits or bifurcations, which other routes must confirm."""
+    evidence: bool = False
+    """Whether statements of the paper in words are decided by it."""
+
+    @property
+    def module(self) -> str:
+        """Module of the study, within the package.
+
+        Examples
+        --------
+        >>> STAGES["fig08"].module
+        'studies.orbit_branches'
+        """
+        return self.study.rpartition(".")[0]
+
+    def parameters(self, run: Mapping[str, Any]) -> Any:
+        """Its section of what a run is given: configuration, Table 1 and ledger.
+
+        Examples
+        --------
+        >>> STAGES["fig02"].parameters({"figures": {"fig02": {"n": 1}}})
+        {'n': 1}
+        """
+        part: Any = run
+        for key in self.section.split("."):
+            part = part[key]
+        return part
+
+    def settings(self, run: Mapping[str, Any]) -> dict[str, Any]:
+        """The settings of the whole run that the study takes, by name.
+
+        Examples
+        --------
+        >>> STAGES["fig05"].settings({"release": "force", "figures": {}})
+        {'release': 'force'}
+        """
+        return {name: run[name] for name in self.arguments}
+
+
+def _figure(
+    number: int,
+    title: str,
+    study: str = "",
+    *arguments: str,
+    cross_checked: bool = False,
+    evidence: bool = False,
+) -> Stage:
+    name = f"fig{number:02d}"
+    return Stage(
+        name,
+        Kind.FIGURE,
+        f"Figure {number}: {title}",
+        study,
+        f"figures.{name}" if study else "",
+        arguments,
+        cross_checked=cross_checked,
+        evidence=evidence,
+    )
+
+
+_MODELS: tuple[Stage, ...] = (
+    _figure(1, "the restitution model"),
+    _figure(
+        2,
+        "n-T response of the restitution model",
+        "studies.restitution_families.restitution_history",
+        cross_checked=True,
+    ),
+    _figure(
+        3,
+        "existence and stability domains of the restitution model",
+        "studies.restitution_families.restitution_orbits",
+        cross_checked=True,
+        evidence=True,
+    ),
+    _figure(4, "the spring-damper model"),
+    _figure(
+        5,
+        "apparent restitution along the frequency ratio, by restitution and amplitude",
+        "studies.frequency_sweeps.apparent_restitution",
+        "release",
+        cross_checked=True,
+        evidence=True,
+    ),
+    _figure(
+        6,
+        "apparent restitution along the frequency ratio, by amplitude",
+        "studies.frequency_sweeps.apparent_restitution",
+        "release",
+        cross_checked=True,
+        evidence=True,
+    ),
+    _figure(
+        7,
+        "one cycle of the spring-damper model",
+        "studies.time_histories.contact_history",
+        "release",
+        cross_checked=True,
+    ),
+    _figure(
+        8,
+        "existence and stability domains of the spring-damper model, first family",
+        "studies.orbit_branches.orbit_branches",
+        "release",
+        "continuation",
+        cross_checked=True,
+        evidence=True,
+    ),
+    _figure(
+        9,
+        "existence and stability domains of the spring-damper model, second family",
+        "studies.orbit_branches.orbit_branches",
+        "release",
+        "continuation",
+        cross_checked=True,
+        evidence=True,
+    ),
+    _figure(
+        10,
+        "bouncing-off velocity along the frequency ratio",
+        "studies.frequency_sweeps.frequency_sweep",
+        "release",
+        cross_checked=True,
+        evidence=True,
+    ),
+    _figure(
+        11,
+        "threshold of permanent contact along the frequency ratio",
+        "studies.permanent_contact_curve.permanent_contact",
+        "release",
+    ),
+    _figure(
+        12,
+        "time histories of both models",
+        "studies.time_histories.both_histories",
+        "release",
+        cross_checked=True,
+    ),
+    _figure(
+        13,
+        "Poincaré map of both models along the frequency ratio",
+        "studies.frequency_sweeps.frequency_sweep",
+        "release",
+        cross_checked=True,
+        evidence=True,
+    ),
+    _figure(
+        14,
+        "greatest height of both models, and the threshold of the error",
+        "studies.error_thresholds.height_error",
+        "release",
+        cross_checked=True,
+        evidence=True,
+    ),
+    _figure(
+        15,
+        "existence and stability domains of both models",
+        "studies.orbit_branches.both_domains",
+        "release",
+        "continuation",
+        cross_checked=True,
+        evidence=True,
+    ),
+    _figure(
+        16,
+        "threshold of permanent contact of both models",
+        "studies.error_thresholds.permanent_contact_error",
+        "release",
+        evidence=True,
+    ),
+    Stage(
+        "table1",
+        Kind.TABLE,
+        "Table 1: stability ranges over the amplitude",
+        "studies.orbit_branches.stability_ranges",
+        "tables.table1",
+        ("release", "continuation", "printed"),
+        cross_checked=True,
+        evidence=True,
+    ),
+    Stage(
+        "thresholds",
+        Kind.TABLE,
+        "Frequency ratio from which the error of the restitution model is tolerable",
+        "studies.error_thresholds.error_thresholds",
+        "tables.thresholds",
+        ("release",),
+        evidence=True,
+    ),
+    Stage(
+        "ext_release",
+        Kind.EXTENSION,
+        "Bifurcations and thresholds under both release rules",
+        "studies.release_rules.release_rules",
+        "extensions.ext_release",
+        cross_checked=True,
+        evidence=True,
+    ),
+)
+
+_AUDIT = (
+    Stage(
+        "formulas",
+        Kind.TABLE,
+        "The printed formulas against a second computation",
+        "audit.formulas.formulas",
+        "studies.formulas",
+    ),
+    Stage(
+        "forensics",
+        Kind.TABLE,
+        "Table 1 under readings of what the authors may have done",
+        "audit.forensics.study.forensics",
+        "studies.forensics",
+        ("printed",),
+    ),
+    Stage(
+        "witness",
+        Kind.TABLE,
+        "Continuation, formula and simulation for every orbit shown",
+        "audit.cross_check.witness",
+        "continuation",
+        reads=tuple(stage.name for stage in _MODELS if stage.cross_checked),
+    ),
+    Stage(
+        "evidence",
+        Kind.DATASET,
+        "Evidence for the paper's statements",
+        "audit.evidence.evidence",
+        "studies.evidence",
+        reads=tuple(stage.name for stage in _MODELS if stage.evidence),
+    ),
+    # Reads what the ledger names.
+    Stage(
+        "claims",
+        Kind.TABLE,
+        "Verdicts on the paper's claims",
+        "audit.claims.assessment.verdicts",
+        "ledger",
+    ),
+)
+
+STAGES: Mapping[str, Stage] = {stage.name: stage for stage in (*_MODELS, *_AUDIT)}
+"""The entries by name, in the order in which they are listed everywhere."""
+
+
+def names(*kinds: Kind) -> list[str]:
+    """Artifacts of these kinds.
+
+    Examples
+    --------
+    >>> names(Kind.EXTENSION)
+    ['ext_release']
+    """
+    return [stage.name for stage in STAGES.values() if stage.kind in kinds]
+
+
+def studied() -> Iterator[Stage]:
+    """Entries that have a dataset."""
+    return (stage for stage in STAGES.values() if stage.study)
+
+
+def load(study: str) -> Callable[..., Any]:
+    """The function that an entry names.
+
+    Examples
+    --------
+    >>> load("studies.parameters.grid")({"min": 1.0, "max": 4.0, "samples": 3})
+    array([1., 2., 4.])
+    """
+    module, _, function = study.rpartition(".")
+    return getattr(import_module(f"bouncing_ball.{module}"), function)

@@ -1,0 +1,260 @@
+r"""Impacts of the corrected restitution model: instant, release, flight, landing.
+
+A state on the Poincaré section is (φ, δ′) at the start of contact, as with the
+spring-damper. The impact is that of :mod:`bouncing_ball.impacts.instant_map`;
+the flight that follows is looked at from the time φ + D on, when the contact
+is over. There the ball leaves if it rises and comes above the table's level.
+If not, the impact was too weak for its load, v of the order of a D, and the
+ball stays: until the table recedes with more than gravity, at Λ sin τ = 1 on
+the way up, or for ever if Λ ≤ 1.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.errors import ModelError
+from bouncing_ball.impacts.instant_map import throw
+from bouncing_ball.impacts.signature import Signature
+from bouncing_ball.motion.angles import reduce_angle, table
+from bouncing_ball.motion.ensembles import blocks, flatten, pick
+from bouncing_ball.motion.first_zero import State, first_zero
+from bouncing_ball.motion.landing import Flight, land
+from bouncing_ball.motion.sequence import ImpactSequence, Status
+
+
+class CorrectedCycle(NamedTuple):
+    """The next impact: phase in [-π, π], relative velocity, and the time until it.
+
+    NaN, with an infinite time, for a ball that stays for ever.
+    """
+
+    phase: np.ndarray
+    relative_velocity: np.ndarray
+    time: np.ndarray
+
+
+class _Departure(NamedTuple):
+    """Ends of contact: duration, the flight from then on, and a time of flight
+    by which the ball has not landed. ``forever`` marks balls that stay."""
+
+    duration: np.ndarray
+    flight: Flight
+    start: np.ndarray
+    forever: np.ndarray
+
+
+class _Rise:
+    """The motion δ of a ball that was let go below the table's level, while it rises."""
+
+    def __init__(self, flight: Flight):
+        self.flight = flight
+
+    def __call__(self, time: np.ndarray) -> State:
+        displacement, rate, second, third = self.flight.gap(time)
+        lam = self.flight.amplitude
+        return State(displacement, rate, second, third, 1 + lam, lam, lam, rate <= 0)
+
+    def take(self, which: np.ndarray) -> "_Rise":
+        return _Rise(self.flight.take(which))
+
+    def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
+        return time
+
+
+def _leaves(flight: Flight) -> tuple[np.ndarray, np.ndarray]:
+    """Whether balls come above the table, and a time by which they have not landed."""
+    rising = flight.velocity > 0
+    start = flight.sure()
+    gravity = 1 + flight.amplitude
+    inside = flight.velocity * flight.velocity + 2 * gravity * flight.displacement
+    unsure = np.flatnonzero(rising & (inside <= 0))
+    if unsure.size:
+        part = flight.take(unsure)
+        rise = first_zero(_Rise(part), np.zeros(unsure.size))
+        up = ~(rise.ended | rise.undecided) & (rise.rate > 0)
+        rising[unsure] = up
+        # From the table's level on, against the strongest relative gravity.
+        start[unsure] = rise.time + 2 * rise.rate / pick(gravity, unsure)
+    return rising, start
+
+
+def _from_rest(phase, amplitude):
+    """When a ball that stays leaves, and a time of flight by which it has not landed.
+
+    From rest at Λ sin τ = y ≥ 1 with x = Λ cos τ, ``δ ≥ (y - 1) s²/2 + x s³/6 - Λ s⁴/24``.
+    """
+    x, y = table(phase, amplitude)
+    pressed = (y < 1) | ((y == 1) & (x <= 0))
+    top = np.maximum(amplitude, 1.0)
+    lift = np.arcsin(1 / top)
+    wait = np.where(pressed, np.mod(reduce_angle(lift - phase), 2 * np.pi), 0.0)
+    # Rounding must not turn a lift-off that is due now into one a turn later.
+    wait = np.where(wait > 2 * np.pi - 1e-9, 0.0, wait)
+    away = np.sqrt(np.maximum((amplitude - 1) * (amplitude + 1), 0.0))
+    x, y = np.where(pressed, away, x), np.where(pressed, 1.0, y)
+    excess = y - 1
+    steep = np.minimum(excess / np.maximum(np.abs(x), 1e-300), np.sqrt(3 * excess / top))
+    return wait, x, y, np.maximum(steep, 4 * x / top)
+
+
+def _depart(phase, relative, signature: Signature, amplitude) -> _Departure:
+    """The end of contacts that start at (φ, δ′)."""
+    impact = throw(signature, amplitude, phase, relative)
+    x, y = table(impact.phase, amplitude)
+    depth = impact.height - y
+    duration = np.broadcast_to(impact.start.duration, phase.shape)
+    rest = duration - impact.start.delay
+    whole = Flight(depth, impact.velocity - x, x, y, amplitude)
+    displacement, velocity, _, _ = whole.gap(rest)
+    x, y = table(phase + duration, amplitude)
+    flight = Flight(displacement, velocity, x, y, amplitude)
+    leaves, start = _leaves(flight)
+    if leaves.all():
+        return _Departure(duration, flight, start, ~leaves)
+    wait, x_rest, y_rest, start_rest = _from_rest(phase + duration, amplitude)
+    flight = Flight(
+        np.where(leaves, displacement, 0.0),
+        np.where(leaves, velocity, 0.0),
+        np.where(leaves, x, x_rest),
+        np.where(leaves, y, y_rest),
+        amplitude,
+    )
+    forever = ~leaves & (amplitude <= 1)
+    duration = np.where(leaves, duration, np.where(forever, np.inf, duration + wait))
+    return _Departure(duration, flight, np.where(leaves, start, start_rest), forever)
+
+
+def _land(phase, departure: _Departure):
+    """The next impact, (φ, δ′), and the time until it from the last one."""
+    landing = land(departure.flight, departure.start)
+    total = departure.duration + landing.time
+    return reduce_angle(phase + total), -landing.rate, total
+
+
+def _prepare(signature: Signature, amplitude, phase, relative):
+    (lam,), (phase, relative), shape = flatten([amplitude], [phase, relative])
+    if not np.all((lam >= 0) & np.isfinite(lam)):
+        raise ModelError(f"amplitude Λ = {np.asarray(amplitude)} is not finite and ≥ 0")
+    if not np.all(np.isfinite(phase) & np.isfinite(relative)):
+        raise ModelError("the phase and the velocity of the impact must be finite")
+    return signature.flat(shape), lam, reduce_angle(phase), relative, shape
+
+
+def simulate(
+    signature: Signature,
+    amplitude: ArrayLike,
+    phase: ArrayLike,
+    velocity: ArrayLike,
+    impacts: int,
+) -> ImpactSequence:
+    """Follow balls from an impact through a number of impacts, the first included.
+
+    Parameters
+    ----------
+    signature : Signature
+        The contact law, seen from outside.
+    amplitude : array_like
+        Λ.
+    phase, velocity : array_like
+        Table phase φ and absolute velocity z′_i of the ball at the start of the
+        first contact.
+    impacts : int
+        Rows of the result, for every ball that does not stay for ever.
+
+    Raises
+    ------
+    ModelError
+        If Λ or a state is not finite, or if a ball rises from the table.
+
+    Examples
+    --------
+    An elastic ball on a table at rest keeps its speed:
+
+    >>> from bouncing_ball.impacts.signature import LinearSignature
+    >>> from bouncing_ball.impacts.spring_damper import Contact
+    >>> law = LinearSignature(Contact(100.0, 0.0))
+    >>> simulate(law, 0.0, 0.0, -2.0, 3).impact_velocity.round(13).tolist()
+    [-2.0, -2.0, -2.0]
+    """
+    law, lam, phase, velocity, shape = _prepare(signature, amplitude, phase, velocity)
+    relative = velocity - table(phase, lam)[0]
+    # A ball at rest on the table may come out of rounding as rising by a little.
+    if not np.all(relative <= 8 * np.finfo(float).eps * (np.abs(velocity) + lam)):
+        raise ModelError("a ball that rises from the table has no impact: z′ > w′")
+    relative = np.minimum(relative, 0.0)
+    tables = np.full((6, impacts, phase.size), np.nan)
+    status = np.zeros(phase.size, dtype=np.int8)
+    for part in blocks(phase.size):
+        start = phase[part], relative[part]
+        _run(*start, law.take(part), pick(lam, part), tables[:, :, part], status[part])
+    time, angle, speed, duration, left, thrown = tables.reshape(6, impacts, *shape)
+    return ImpactSequence(
+        amplitude=np.broadcast_to(np.asarray(amplitude, dtype=float), shape),
+        contact=None,
+        time=time,
+        phase=angle,
+        displacement=0 * time,
+        relative_velocity=speed,
+        contact_duration=duration,
+        release_displacement=left,
+        relative_release_velocity=thrown,
+        status=status.reshape(shape),
+    )
+
+
+def _run(phase, relative, law: Signature, lam, tables, status) -> None:
+    """Fill the tables of one block, impact by impact."""
+    time = np.zeros_like(phase)
+    alive = np.arange(phase.size)
+    for row in range(tables.shape[1]):
+        end = _depart(phase, relative, law, lam)
+        left, thrown = (
+            np.where(end.forever, np.nan, x) for x in (end.flight.displacement, end.flight.velocity)
+        )
+        for array, values in zip(
+            tables, (time, phase, relative, end.duration, left, thrown), strict=True
+        ):
+            array[row, alive] = values
+        if end.forever.any():
+            status[alive[end.forever]] = Status.PERMANENT_CONTACT
+            going = np.flatnonzero(~end.forever)
+            law, lam, alive = law.take(going), pick(lam, going), alive[going]
+            time, phase = time[going], phase[going]
+            end = _going(end, going)
+        if row == tables.shape[1] - 1 or not alive.size:
+            break
+        phase, relative, passed = _land(phase, end)
+        time = time + passed
+
+
+def _going(end: _Departure, which) -> _Departure:
+    return _Departure(
+        end.duration[which], end.flight.take(which), end.start[which], end.forever[which]
+    )
+
+
+def corrected_cycle(
+    signature: Signature, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike
+) -> CorrectedCycle:
+    """The Poincaré map: from one start of contact (φ, δ′) to the next.
+
+    Examples
+    --------
+    >>> from bouncing_ball.impacts.signature import LinearSignature
+    >>> from bouncing_ball.impacts.spring_damper import Contact
+    >>> law = LinearSignature(Contact(100.0, 0.0))
+    >>> round(float(corrected_cycle(law, 0.0, 0.0, -2.0).relative_velocity), 13)
+    -2.0
+    """
+    law, lam, phase, relative, shape = _prepare(signature, amplitude, phase, relative_velocity)
+    out = np.full((3, phase.size), np.nan)
+    out[2] = np.inf
+    for part in blocks(phase.size):
+        end = _depart(phase[part], relative[part], law.take(part), pick(lam, part))
+        going = np.flatnonzero(~end.forever)
+        landed = _land(phase[part][going], _going(end, going))
+        for row, values in zip(out, landed, strict=True):
+            row[part.start + going] = values
+    return CorrectedCycle(*(row.reshape(shape) for row in out))

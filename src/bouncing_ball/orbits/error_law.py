@@ -1,0 +1,151 @@
+r"""The error of the restitution model, to first order in the contact duration.
+
+The corrected model (:mod:`bouncing_ball.orbits.instant_orbit`) differs from the
+exact one by the second order, from the restitution model by the first: the
+delay t_c and the load sensitivity σ. So the first-order error of the
+restitution model is the derivative of the closed forms along (t_c, σ, D) at 0.
+With ``C = nπ (1 - r)/(1 + r)``, ``cos ψ₀ = C/Λ``, ``Y₀ = Λ sin ψ₀`` and
+``a₀ = 1 - Y₀`` of the restitution model's orbit ::
+
+    ψ = ψ₀ + σ a₀/((1 + r) Y₀)                (the line, at fixed Λ)
+    φ = ψ - t_c
+    max z = Λ sin φ + (nπ - t_c)²/2,   C + nπ = 2nπ/(1 + r)
+    z′_b = nπ - (D - t_c)
+    r_a = r + [σ - D + (1 + r) t_c] a₀/v₀,    v₀ = 2nπ/(1 + r)
+    Λ_SN = (nπ(1 - r) - σ)/√((1 + r)² + σ²)
+
+and at the period doubling, with ``Y₀ - 1 = (1 - r)²/(1 + r)²`` there, from its
+two straight lines ::
+
+    δX = σ (Y₀ - 1)/(1 + r)
+    δY = [2 t_c (Y₀ - 1) - nπ σ C + (1 - r) δX]/(nπ (1 + r))
+    δΛ = (C δX + Y₀ δY)/Λ_PD
+
+For a linear contact t_c, σ and D are inversely proportional to ϖ: the
+signature at ϖ = 1 gives the K of a relative error K/ϖ + O(1/ϖ²). The contact
+is compared with the restitution model *of its own r*: with the force release
+that is not the r of Eq. 16, whose restitution model is not its limit.
+
+The permanent contact has no impact to repair, and its error is of the second
+order: ``Λ_SD = 1 + K₂/ϖ² + O(1/ϖ⁴)`` with K₂ = -(1 - 2ζ²) for the
+displacement release and -1 for the force release.
+
+The law fails next to the saddle-node, where ψ depends on Λ by a root and the
+error of the phase is of order 1/√ϖ within Λ - Λ_SN ~ 1/ϖ; for grazing and slow
+impacts (v small against a D); and where the next order is not small: r → 0, or
+K next to zero.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.impacts.release import Release
+from bouncing_ball.impacts.signature import Instant, LinearSignature
+from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.orbits import restitution_orbit
+
+
+class FirstOrder(NamedTuple):
+    """Relative first-order errors, exact over restitution model minus one.
+
+    ``saddle_node`` is infinite, and so is ``phase`` at it, where the
+    restitution model's value is 0: there is nothing to be relative to.
+    """
+
+    max_height: np.ndarray
+    bounce_velocity: np.ndarray
+    phase: np.ndarray
+    apparent_restitution: np.ndarray
+    saddle_node: np.ndarray
+    period_doubling: np.ndarray
+
+
+def first_order(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> FirstOrder:
+    """Relative errors of the restitution model at the stable side's orbit.
+
+    Parameters
+    ----------
+    n : array_like of int
+        Index of the family.
+    instant : Instant
+        Signature of the contact at the orbit's impact speed.
+    amplitude : array_like
+        Λ, at or above the saddle-node of the restitution model.
+
+    Raises
+    ------
+    NoOrbitError
+        If Λ lies below it.
+
+    Examples
+    --------
+    A ball that leaves 0.1 late, and nothing else:
+
+    >>> law = first_order(1, Instant(0.0, 0.5, 0.0, 0.1), 1.5)
+    >>> abs(float(law.max_height)), round(float(law.bounce_velocity) * np.pi, 15)
+    (0.0, -0.1)
+    """
+    delay, r, load, duration = (np.asarray(x, dtype=float) for x in instant[:4])
+    lam, half = np.asarray(amplitude, dtype=float), np.asarray(n) * np.pi
+    psi = restitution_orbit.phase(n, r, lam)
+    fold = restitution_orbit.saddle_node(n, r)
+    lift = lam * np.sin(psi)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        later = load * (1 - lift) / ((1 + r) * lift) - delay
+        higher = fold * later - half * delay
+        unloaded = load - duration + (1 + r) * delay
+        doubling = _period_doubling(half, r, delay, load, fold)
+        return FirstOrder(
+            max_height=higher / (lift + half * half / 2),
+            bounce_velocity=(delay - duration) / half,
+            phase=later / psi,
+            apparent_restitution=unloaded * (1 - lift) * (1 + r) / (2 * half * r),
+            saddle_node=-load / (half * (1 - r)),
+            period_doubling=doubling,
+        )
+
+
+def _period_doubling(half, r, delay, load, fold):
+    lift = restitution_orbit.period_doubling_lift(r)
+    excess = ((1 - r) / (1 + r)) ** 2
+    d_x = load * excess / (1 + r)
+    d_y = (2 * delay * excess - half * load * fold + (1 - r) * d_x) / (half * (1 + r))
+    return (fold * d_x + lift * d_y) / (fold * fold + lift * lift)
+
+
+def coefficients(
+    n: ArrayLike,
+    damping_ratio: ArrayLike,
+    amplitude: ArrayLike,
+    release: Release = Release.DISPLACEMENT,
+) -> FirstOrder:
+    """K of each quantity for a linear contact: relative error K/ϖ + O(1/ϖ²).
+
+    Examples
+    --------
+    The rule of thumb 1/(nε) for r → 1, here where Λ sin φ = 1:
+
+    >>> law = coefficients(1, 0.0, 1.0)
+    >>> round(float(law.max_height) * (1 + 2 / np.pi**2), 14)
+    -1.0
+    """
+    contact = Contact(1.0, np.asarray(damping_ratio, dtype=float), release)
+    return first_order(n, LinearSignature(contact)(), amplitude)
+
+
+def permanent_contact_coefficient(
+    damping_ratio: ArrayLike, release: Release = Release.DISPLACEMENT
+) -> np.ndarray:
+    """K₂ of the permanent contact: relative error K₂/ϖ² + O(1/ϖ⁴).
+
+    Examples
+    --------
+    >>> float(permanent_contact_coefficient(0.5)), float(permanent_contact_coefficient(0.0))
+    (-0.5, -1.0)
+    """
+    zeta = np.asarray(damping_ratio, dtype=float)
+    if release is Release.FORCE:
+        return np.full_like(zeta, -1.0)
+    return 2 * zeta * zeta - 1

@@ -1,0 +1,127 @@
+r"""n-T orbits of the corrected restitution model, in closed form.
+
+Impacts are instants at the phase ψ, a period 2πn apart at equal heights, so
+that the ball has the velocities ∓nπ there, as in the restitution model. With
+X = Λ cos ψ, Y = Λ sin ψ, the speed v = nπ + X and the load a = 1 - Y, the
+impact ``nπ - X = r v + σ a`` is a straight line in the plane of (X, Y)::
+
+    (1 + r) X - σ Y = nπ (1 - r) - σ
+    R Λ cos(ψ + χ) = nπ (1 - r) - σ,      R = √((1 + r)² + σ²),  tan χ = σ/(1 + r)
+
+which is Eq. 6 for σ = 0. Λ is smallest at ψ = -χ: the saddle-node. The contact
+starts at φ = ψ - t_c with the closing speed ``v_i = nπ - t_c + Λ cos φ``.
+
+Linearising one cycle at the instants, with ``W = -(1 + r) Y - σX`` the change
+of the velocity after the impact with its phase, gives ::
+
+    tr  = 1 - r + [(2πn - t_c)(W + r) - t_c]/v_i
+    det = -r + [(2πn - t_c) r - t_c - t_c W]/v_i
+
+so that ``1 - tr + det = -2πn W/v_i`` vanishes at the saddle-node, and
+``1 + tr + det = 0`` is a second straight line, which meets the first at the
+period doubling::
+
+    (nπ - t_c) [(1 + r) Y + σX] - (1 - r) Λ cos(ψ - t_c) = nπ (1 + r) - 2t_c
+
+All quantities are dimensionless; all functions broadcast.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.impacts.signature import Instant
+
+
+def _level(n: ArrayLike, instant: Instant) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The right side nπ(1 - r) - σ, R and χ."""
+    r, load = np.asarray(instant.restitution), np.asarray(instant.load)
+    side = np.asarray(n) * np.pi * (1 - r) - load
+    return side, np.hypot(1 + r, load), np.arctan2(load, 1 + r)
+
+
+def saddle_node(n: ArrayLike, instant: Instant) -> np.ndarray:
+    """Λ at which the n-T orbits appear, (nπ(1 - r) - σ)/R.
+
+    NaN where σ is so large that the line lies on the other side of Λ = 0.
+
+    Examples
+    --------
+    >>> float(saddle_node(1, Instant(0.0, 1.0, 0.0, 0.0)))
+    0.0
+    """
+    side, radius, _ = _level(n, instant)
+    return np.where(side >= 0, side, np.nan) / radius
+
+
+def instant_phase(
+    n: ArrayLike, instant: Instant, amplitude: ArrayLike, stable_side: bool = True
+) -> np.ndarray:
+    """Phase ψ of the instants on a side of the saddle-node; NaN below it.
+
+    Examples
+    --------
+    >>> float(instant_phase(1, Instant(0.0, 1.0, 0.0, 0.0), 1.0)) == np.pi / 2
+    True
+    """
+    side, radius, turned = _level(n, instant)
+    across = radius * np.asarray(amplitude, dtype=float)
+    there = across >= np.abs(side)
+    lift = np.sqrt(np.where(there, (across - side) * (across + side), np.nan))
+    return np.arctan2(lift if stable_side else -lift, side) - turned
+
+
+def trace_and_determinant(
+    n: ArrayLike, instant: Instant, amplitude: ArrayLike, phase: ArrayLike
+) -> tuple[np.ndarray, np.ndarray]:
+    """Trace and determinant of the linearised cycle at instants of phase ψ.
+
+    Examples
+    --------
+    Without delay and load those of the restitution model:
+
+    >>> amplitude = 2 * np.pi / 3
+    >>> trace, det = trace_and_determinant(2, Instant(0.0, 0.5, 0.0, 0.0), amplitude, 0.0)
+    >>> round(float(trace), 14), round(float(det), 14)
+    (1.25, 0.25)
+    """
+    r, delay = np.asarray(instant.restitution), np.asarray(instant.delay)
+    lam = np.asarray(amplitude, dtype=float)
+    x, y = lam * np.cos(phase), lam * np.sin(phase)
+    by_phase = -(1 + r) * y - instant.load * x
+    half = np.asarray(n) * np.pi
+    speed = half - delay + lam * np.cos(phase - delay)
+    rest = 2 * half - delay
+    trace = 1 - r + (rest * (by_phase + r) - delay) / speed
+    return trace, (rest * r - delay - delay * by_phase) / speed - r
+
+
+def period_doubling(n: ArrayLike, instant: Instant) -> tuple[np.ndarray, np.ndarray]:
+    """Λ and ψ of the period doubling; NaN where there is none on the stable side.
+
+    Examples
+    --------
+    >>> amplitude, phase = period_doubling(1, Instant(0.0, 1.0, 0.0, 0.0))
+    >>> float(amplitude), float(phase) == np.pi / 2
+    (1.0, True)
+    """
+    delay, r, load = (np.asarray(x, dtype=float) for x in instant[:3])
+    half = np.asarray(n) * np.pi
+    rest = half - delay
+    a, b, s = 1 + r, -load, half * (1 - r) - load
+    c = rest * load - (1 - r) * np.cos(delay)
+    d = rest * (1 + r) - (1 - r) * np.sin(delay)
+    t = half * (1 + r) - 2 * delay
+    determinant = a * d - b * c
+    x, y = (s * d - b * t) / determinant, (a * t - s * c) / determinant
+    stable_side = ((1 + r) * y + load * x > 0) & (rest > 0)
+    amplitude = np.where(stable_side, np.hypot(x, y), np.nan)
+    return amplitude, np.where(stable_side, np.arctan2(y, x), np.nan)
+
+
+def require_above(n: int, instant: Instant, amplitude: float, model: str) -> None:
+    """Raise :class:`NoOrbitError` if the n-T orbits appear at a larger Λ only."""
+    fold = float(saddle_node(n, instant))
+    if not amplitude >= fold:
+        where = f"below the saddle-node at Λ = {fold:.6g}"
+        raise NoOrbitError(f"no {n}-T orbit at Λ = {amplitude:g} for {model}: {where}")

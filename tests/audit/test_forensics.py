@@ -104,7 +104,7 @@ def contact_path(u, phase, lam, m):
 
 def cycle(phase, u, orbit, m):
     """One cycle of the altered return map, its events closed by Brent's method."""
-    lam, duration = float(orbit.amplitude), float(orbit.duration)
+    lam, duration = float(orbit.amplitude), float(orbit.contact_duration)
     path = contact_path(u, phase, lam, m)
 
     def release(s):
@@ -191,8 +191,8 @@ def test_the_jump_of_the_damping_force_does_not_move_the_bifurcations():
     found = bifurcations(m)
     orbit = altered_orbit(0.6 * found.saddle_node + 0.4 * found.period_doubling, m)
     path = contact_path(1.0, 0.0, 0.0, m._replace(weight=0.0))
-    g, rate = path(float(orbit.duration))
-    flight = 4 * np.pi - float(orbit.duration)
+    g, rate = path(float(orbit.contact_duration))
+    flight = 4 * np.pi - float(orbit.contact_duration)
     trace = 2 * rate + 2 * ZETA * 2.0 * g - 4.0 * g * flight
     assert np.trace(altered_monodromy(orbit, m)) == pytest.approx(trace, abs=1e-11)
 
@@ -205,7 +205,9 @@ def test_criteria_of_the_restitution_model(study, share, where):
         cell = {"frequency_ratio": 10.0, "n": 2, "bound": "period doubling"}
         lam = float(study.computed.sel(reading=name, **cell))
         orbit = orbit_at(contact, 2, lam)
-        return lam * np.sin(orbit.phase + share * orbit.duration), orbit.apparent_restitution
+        return lam * np.sin(
+            orbit.phase + share * orbit.contact_duration
+        ), orbit.apparent_restitution
 
     # The root is closed to the last digit; its slope is of order one.
     assert lifted(f"Holmes' criterion, {where} of contact")[0] == pytest.approx(1, abs=1e-9)
@@ -241,7 +243,7 @@ def test_a_step_is_counted_along_the_papers_unknowns():
             [
                 orbit.impact_velocity,
                 orbit.bounce_velocity,
-                orbit.duration,
+                orbit.contact_duration,
                 orbit.phase,
                 a,
                 b,

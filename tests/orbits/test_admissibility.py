@@ -20,8 +20,8 @@ def sampled(orbit):
     """The definition, on 2000 samples of contact and flight each."""
     omega, zeta = orbit.contact.frequency_ratio, orbit.contact.damping_ratio
     u, lam = orbit.relative_impact_velocity, orbit.amplitude
-    flow = contact_flow(SHARES * orbit.duration, 0.0, u, orbit.phase, lam, omega, zeta)
-    time = orbit.duration + SHARES * orbit.flight_time
+    flow = contact_flow(SHARES * orbit.contact_duration, 0.0, u, orbit.phase, lam, omega, zeta)
+    time = orbit.contact_duration + SHARES * orbit.flight_time
     height, velocity = orbit.flight_path(time)
     over = height - lam * np.sin(orbit.phase + time)
     signal = flow.displacement
@@ -30,7 +30,7 @@ def sampled(orbit):
         rate = velocity - lam * np.cos(orbit.phase + time)
         rising = np.logical_and.accumulate(over < 0, axis=0)
         over = np.where(rising, over + 2 * zeta / omega * rate, over)
-    possible = (u < 0) & (orbit.duration > 0) & (orbit.flight_time > 0)
+    possible = (u < 0) & (orbit.contact_duration > 0) & (orbit.flight_time > 0)
     return possible & (signal.max(axis=0) < 0) & (over.min(axis=0) > 0)
 
 
@@ -70,13 +70,13 @@ def test_grazing_is_located(omega, r_zeta, release):
     system = OrbitSystem(1, r_zeta, Parameter.AMPLITUDE, omega, release)
     lam = np.linspace(1.9, 2.4, 6)
     orbit = orbit_at(Contact(omega, r_zeta, release), 1, lam, Side.UNSTABLE)
-    y = np.stack([orbit.phase, orbit.impact_velocity, omega * orbit.duration, lam], axis=-1)
+    y = np.stack([orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration, lam], axis=-1)
     found = grazing_points(system, lambda y: is_admissible(system.orbit(y)), y, NewtonSettings())
     assert len(found) == 1
     at = system.orbit(found[0])
     left = clearance(
         at.flight_time,
-        at.phase + at.duration,
+        at.phase + at.contact_duration,
         at.release_displacement,
         at.relative_bounce_velocity,
         at.amplitude,

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from bouncing_ball.errors import ModelError
 from bouncing_ball.impacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.impacts.spring_damper import Contact, Release, responses
-from bouncing_ball.orbits.closed_form import branch_point, free_release_angle
+from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
 from bouncing_ball.orbits.monodromy import monodromy
@@ -25,18 +25,18 @@ families = st.integers(1, 5)
 
 def scaled_residual(system, point, contact):
     omega = float(contact.frequency_ratio)
-    y = np.array([point.phase, point.u + point.x, omega * point.duration, point.amplitude])
+    y = np.array([point.phase, point.u + point.x, omega * point.contact_duration, point.amplitude])
     # Velocities, and lengths over one flight; the phase ϖD is rounded too.
     speed = 1 + abs(float(point.u)) + float(point.amplitude) + 2 * np.pi * system.n
     size = np.array([speed, speed, speed * 2 * np.pi * system.n])
-    return system.residual(y) / (size * (1 + omega * float(point.duration)))
+    return system.residual(y) / (size * (1 + omega * float(point.contact_duration)))
 
 
 @given(log_ratios, dampings, families, releases, st.floats(-0.9, 1.0))
 def test_every_point_satisfies_the_papers_equations(log_omega, zeta, n, release, share):
     contact = Contact(float(np.exp(log_omega)), zeta, release)
     omega_d = contact.frequency_ratio * np.sqrt((1 - zeta) * (1 + zeta))
-    start = float(free_release_angle(contact))
+    start = float(contact.free_angle)
     # Contacts from a tenth of the free one up to ε = 1, or up to the cycle's
     # end (where the three equations become dependent).
     excess = share * start if share < 0 else min(share, 0.95 * (omega_d * 2 * np.pi * n - start))
@@ -64,7 +64,7 @@ def test_derivatives_along_the_branch(release, zeta, omega):
     contact = Contact(omega, zeta, release)
     # The branch turns within 1/ϖ of ε; in those units all is of order one. D
     # is kept away from zero, where Λ is infinite.
-    unit = min(1.0, 1 / omega, float(free_release_angle(contact)) / 2)
+    unit = min(1.0, 1 / omega, float(contact.free_angle) / 2)
     h = 2e-3 * unit
     excess = np.array([-1.0, -0.3, 0.0, 0.2, 0.7]) * unit
     steps = [branch_point(excess + k * h, contact, 2) for k in (-2, -1, 1, 2)]
@@ -86,7 +86,7 @@ def test_free_release_angles(zeta):
     omega = 3.0
     omega_d = omega * np.sqrt(1 - zeta**2)
     for release in Release:
-        angle = float(free_release_angle(Contact(omega, zeta, release)))
+        angle = float(Contact(omega, zeta, release).free_angle)
         g = responses(angle / omega_d, omega, zeta).impulse
         defect = g.value if release is Release.DISPLACEMENT else 2 * zeta * g.rate + omega * g.value
         assert abs(float(defect)) < 20 * EPS
@@ -127,9 +127,9 @@ def test_elastic_contact_of_half_a_period():
 def test_trace_and_determinant_are_those_of_the_linearised_flow(log_omega, zeta, n, release, share):
     # Worked out from the formula here, from the flow's Jacobian there.
     contact = Contact(float(np.exp(log_omega)), zeta, release)
-    excess = share * float(free_release_angle(contact)) if share < 0 else share / 2
+    excess = share * float(contact.free_angle) if share < 0 else share / 2
     point = branch_point(excess, contact, n)
-    if not (0 < point.duration < 2 * np.pi * n - 0.1 and point.u < -0.1):
+    if not (0 < point.contact_duration < 2 * np.pi * n - 0.1 and point.u < -0.1):
         return
     matrix = monodromy(ContactOrbit.from_branch(point, contact, n))
     # Both lose digits where the ball leaves slowly, and entries are large.
@@ -137,7 +137,7 @@ def test_trace_and_determinant_are_those_of_the_linearised_flow(log_omega, zeta,
     trace, det = trace_and_determinant(matrix)
     assert abs(float(point.trace) - float(trace)) <= 1e-13 * scale
     assert abs(float(point.determinant) - float(det)) <= 1e-13 * scale
-    expected = np.exp(-2 * zeta * float(contact.frequency_ratio * point.duration))
+    expected = np.exp(-2 * zeta * float(contact.frequency_ratio * point.contact_duration))
     assert float(point.determinant) == pytest.approx(expected, rel=1e-13)
 
 

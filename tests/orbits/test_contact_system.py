@@ -106,7 +106,7 @@ def test_continuation_finds_the_bifurcations_of_the_closed_form(n, omega, releas
     doubling = branch_point(period_doubling(contact, n), contact, n)
     lam = float(node.amplitude + doubling.amplitude) / 2
     orbit = orbit_at(contact, n, lam)
-    start = np.array([orbit.phase, orbit.impact_velocity, omega * orbit.duration, lam])
+    start = np.array([orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration, lam])
     system = OrbitSystem(n, zeta, Parameter.AMPLITUDE, omega, release)
     # Far enough to pass both; the window ends the stable side, and the
     # amplitude of the start the unstable one.
@@ -123,7 +123,7 @@ def test_continuation_finds_the_bifurcations_of_the_closed_form(n, omega, releas
         found = branch.special[index].point
         # Newton's stop at 1e-12, relative to 1 + |y| ≤ 20, is converged
         # quadratically; what is left are roundings of residuals of that size.
-        expected = [point.phase, point.u + point.x, omega * point.duration, point.amplitude]
+        expected = [point.phase, point.u + point.x, omega * point.contact_duration, point.amplitude]
         assert found == pytest.approx(np.array(expected, dtype=float), abs=1e-11)
         assert found[3] == pytest.approx(float(point.amplitude), abs=1e-12)
     # The turning point of the branch is the saddle-node of the map.
@@ -153,7 +153,7 @@ def test_continuation_along_the_frequency_ratio(n, r, lam, release):
     # As in the comparison above.
     assert way.points[-1] == pytest.approx(
         np.array(
-            [expected.phase, expected.impact_velocity, 2 * expected.duration, np.log(2.0)],
+            [expected.phase, expected.impact_velocity, 2 * expected.contact_duration, np.log(2.0)],
             dtype=float,
         ),
         abs=1e-11,
@@ -170,12 +170,12 @@ def test_orbit_reads_both_parametrisations():
         1.4,
     ]
     assert float(orbit.contact.frequency_ratio) == 8.0
-    assert float(orbit.duration) == 0.4
+    assert float(orbit.contact_duration) == 0.4
     across = OrbitSystem(2, 0.1, Parameter.LOG_FREQUENCY_RATIO, 1.4)
     orbit = across.orbit(np.array([0.3, -6.0, 3.2, np.log(8.0)]))
     assert float(orbit.amplitude) == 1.4
     assert float(orbit.contact.frequency_ratio) == pytest.approx(8.0, rel=1e-15)
-    assert float(orbit.duration) == pytest.approx(0.4, rel=1e-15)
+    assert float(orbit.contact_duration) == pytest.approx(0.4, rel=1e-15)
 
 
 def test_guess_is_first_order_in_the_contact_time():
@@ -202,7 +202,7 @@ def test_guess_of_a_strongly_damped_contact_released_at_zero_force():
     # study starts from here for every contact.
     n, zeta, lam = 3, float(damping_ratio(0.3)), 5.155
     system = OrbitSystem(n, zeta, Parameter.LOG_FREQUENCY_RATIO, lam, Release.FORCE)
-    assert float(orbit_at(Contact(1e4, zeta, Release.FORCE), n, lam).duration) > 0
+    assert float(orbit_at(Contact(1e4, zeta, Release.FORCE), n, lam).contact_duration) > 0
     solve_at(system, system.guess(lam, 1e4))
 
 
@@ -210,7 +210,7 @@ def follow_unstable_side(n, omega, r, lam, largest=0.2):
     zeta = float(damping_ratio(r))
     system = OrbitSystem(n, zeta, Parameter.AMPLITUDE, omega)
     orbit = orbit_at(Contact(omega, zeta), n, lam)
-    start = np.array([orbit.phase, orbit.impact_velocity, omega * orbit.duration, lam])
+    start = np.array([orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration, lam])
     events = (*system.events(), fold(system), parameter_bound(10.0, True, "window"))
     control = StepControl(largest=largest)
     return system, continue_branch(system, start, increasing=False, events=events, control=control)
@@ -263,7 +263,7 @@ def test_flight_lost():
 def test_terminal_events_are_positive_on_an_orbit():
     system = OrbitSystem(1, 0.05, Parameter.AMPLITUDE, 10.0)
     orbit = orbit_at(Contact(10.0, 0.05), 1, 0.9)
-    y = np.array([orbit.phase, orbit.impact_velocity, 10.0 * orbit.duration, 0.9])
+    y = np.array([orbit.phase, orbit.impact_velocity, 10.0 * orbit.contact_duration, 0.9])
     events = {event.name: event for event in system.events()}
     assert list(events) == [
         "saddle-node",

@@ -11,7 +11,7 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.impacts.damping import damping_ratio
 from bouncing_ball.impacts.spring_damper import Contact, Release, responses
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
-from bouncing_ball.orbits.closed_form import branch_point, free_release_angle
+from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
 from bouncing_ball.orbits.limits import (
@@ -93,11 +93,11 @@ def test_a_multiplier_is_minus_one_at_the_period_doubling(n, r, log_omega, relea
 def check_orbit(orbit, n, lam):
     """The orbit is at Λ, and solves the paper's equations."""
     assert float(orbit.amplitude) == pytest.approx(lam, rel=1e-13, abs=1e-13)
-    assert 0 < orbit.duration < 2 * np.pi * n
+    assert 0 < orbit.contact_duration < 2 * np.pi * n
     omega, zeta = (float(x) for x in (orbit.contact.frequency_ratio, orbit.contact.damping_ratio))
     # In the continuation's variables; heights of the landing equation are of
     # order (2πn)².
-    y = np.array([orbit.phase, orbit.impact_velocity, omega * orbit.duration, lam])
+    y = np.array([orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration, lam])
     system = OrbitSystem(n, zeta, Parameter.AMPLITUDE, omega, orbit.contact.release)
     scale = np.array([1, 1, 2 * np.pi * n]) * (2 * np.pi * n)
     assert np.all(np.abs(system.residual(y)) < 1e-12 * scale)
@@ -113,8 +113,8 @@ def test_orbits_on_the_stable_side(n, r, log_omega, release, share):
     lam = node + share * (doubling - node)
     orbit = orbit_at(contact, n, lam)
     check_orbit(orbit, n, lam)
-    fold = float(branch_point(saddle_node(contact, n), contact, n).duration)
-    assert orbit.duration < fold
+    fold = float(branch_point(saddle_node(contact, n), contact, n).contact_duration)
+    assert orbit.contact_duration < fold
     assert stable(orbit)
 
 
@@ -133,8 +133,8 @@ def test_orbits_on_the_unstable_side(n, r, log_omega, release, share):
     lam = node + share * (doubling - node)
     orbit = orbit_at(contact, n, lam, Side.UNSTABLE)
     check_orbit(orbit, n, lam)
-    fold = float(branch_point(saddle_node(contact, n), contact, n).duration)
-    assert orbit.duration > fold
+    fold = float(branch_point(saddle_node(contact, n), contact, n).contact_duration)
+    assert orbit.contact_duration > fold
     assert not stable(orbit)
 
 
@@ -143,7 +143,7 @@ def test_not_stable_beyond_the_period_doubling(n, r, log_omega, release, beyond)
     contact = Contact(float(np.exp(log_omega)), float(damping_ratio(r)), release)
     _, doubling = amplitudes(contact, n)
     orbit = orbit_at(contact, n, doubling * (1 + beyond))
-    assert float(orbit.duration) > 0
+    assert float(orbit.contact_duration) > 0
     assert not stable(orbit)
 
 
@@ -152,7 +152,7 @@ def test_nothing_below_the_saddle_node_on_the_stable_side(n, r, log_omega, relea
     contact = Contact(float(np.exp(log_omega)), float(damping_ratio(r)), release)
     node, _ = amplitudes(contact, n)
     assume(node > 1e-6)
-    assert np.isnan(orbit_at(contact, n, node * (1 - below)).duration)
+    assert np.isnan(orbit_at(contact, n, node * (1 - below)).contact_duration)
 
 
 def limit_errors(n, r, omega, release):
@@ -161,7 +161,7 @@ def limit_errors(n, r, omega, release):
     contact = Contact(omega, zeta, release)
     if release is Release.FORCE:
         # A contact released at zero force returns more: the free velocity there.
-        angle = float(free_release_angle(Contact(1.0, zeta, release)))
+        angle = float(Contact(1.0, zeta, release).free_angle)
         free = responses(angle / np.sqrt(1 - zeta**2), 1.0, zeta).impulse
         r = -float(free.rate)
     lam = float(restitution_orbits.saddle_node(n, r)) + 0.3
@@ -177,7 +177,7 @@ def limit_errors(n, r, omega, release):
             orbit.bounce_velocity - n * np.pi,
             orbit.apparent_restitution - r,
             orbit.max_height - restitution_orbits.max_height(n, lam, phi),
-            orbit.duration,
+            orbit.contact_duration,
         ],
         dtype=float,
     )
@@ -223,8 +223,10 @@ def test_the_unstable_side_starts_at_the_fold():
     node, _ = amplitudes(contact, 1)
     near = [orbit_at(contact, 1, node * (1 + 1e-10), side) for side in Side]
     # Λ is quadratic there: √1e-10 in D, in units of the fold's scale.
-    assert float(near[0].duration) == pytest.approx(float(near[1].duration), abs=1e-4)
-    assert near[0].duration < near[1].duration
+    assert float(near[0].contact_duration) == pytest.approx(
+        float(near[1].contact_duration), abs=1e-4
+    )
+    assert near[0].contact_duration < near[1].contact_duration
 
 
 def test_arrays():
@@ -246,14 +248,14 @@ def test_arrays():
 def test_missing_orbits_are_marked_among_others():
     contact = Contact(10.0, float(damping_ratio(0.85)))
     orbits = orbit_at(contact, 1, np.array([0.1, 0.5, 0.2, 1.0]))
-    assert np.isnan(orbits.duration).tolist() == [True, False, True, False]
+    assert np.isnan(orbits.contact_duration).tolist() == [True, False, True, False]
     assert np.isnan(orbits.max_height).tolist() == [True, False, True, False]
 
 
 def test_a_required_orbit_is_that_of_the_stable_side():
     contact = Contact(10.0, 0.05)
     orbit = require_orbit(contact, 1, 0.9)
-    assert float(orbit.duration) == float(orbit_at(contact, 1, 0.9).duration)
+    assert float(orbit.contact_duration) == float(orbit_at(contact, 1, 0.9).contact_duration)
     assert stable(orbit)
 
 
@@ -354,7 +356,7 @@ def test_no_numerical_warnings_on_the_way(n, r, omega, release):
 def test_a_very_soft_contact_has_no_fold_after_the_cycles_end(omega):
     # ϖ_d < 1/2: half a period of contact is longer than the cycle 2π.
     contact = Contact(omega, float(damping_ratio(0.6)))
-    duration = float(branch_point(saddle_node(contact, 1), contact, 1).duration)
+    duration = float(branch_point(saddle_node(contact, 1), contact, 1).contact_duration)
     assert np.isnan(duration) or duration < 2 * np.pi
 
 
@@ -363,4 +365,4 @@ def test_the_unstable_side_of_a_very_soft_contact(omega):
     # None or an orbit, and no numerical warning on the way.
     contact = Contact(omega, float(damping_ratio(0.6)))
     orbit = orbit_at(contact, 1, 40.0, Side.UNSTABLE)
-    assert np.isnan(orbit.duration) or 0 < float(orbit.duration) < 2 * np.pi
+    assert np.isnan(orbit.contact_duration) or 0 < float(orbit.contact_duration) < 2 * np.pi

@@ -33,7 +33,7 @@ def test_against_differences_of_the_return_map(case, side, release, reference):
     zeta = float(damping_ratio(r))
     orbit = orbit_at(Contact(omega, zeta, release), n, lam, side)
     phase, u, duration = (
-        float(x) for x in (orbit.phase, orbit.relative_impact_velocity, orbit.duration)
+        float(x) for x in (orbit.phase, orbit.relative_impact_velocity, orbit.contact_duration)
     )
     assert duration > 0
 
@@ -73,7 +73,7 @@ def test_determinant_is_the_contraction_of_the_contact(n, r, log_omega, release,
     leaving = abs(float(orbit.relative_bounce_velocity))
     assume(leaving > 1e-3)  # the contact's end is not differentiable at zero
     matrix = monodromy(orbit)
-    expected = np.exp(-2 * zeta * omega * float(orbit.duration))
+    expected = np.exp(-2 * zeta * omega * float(orbit.contact_duration))
     det = float(trace_and_determinant(matrix)[1])
     # Products of entries cancel in the determinant; each entry has lost about
     # two digits to the phase, and some to the division by the release velocity.

@@ -28,14 +28,15 @@ def test_distance_is_the_largest_difference():
     point = branch_point(0.02, contact, 1)
     base = {
         "n": 1,
-        "contact": contact,
+        "law": contact,
         "amplitude": point.amplitude,
         "phase": point.phase + 2 * np.pi,  # the same table
-        "duration": point.duration,
+        "contact_duration": point.contact_duration,
         "impact_velocity": point.u + point.x,
     }
     assert float(distance(ContactOrbit(**base), point)) < 1e-14
-    for name, size in (("amplitude", 1), ("phase", 1), ("duration", 10), ("impact_velocity", 1)):
+    sizes = {"amplitude": 1, "phase": 1, "contact_duration": 10, "impact_velocity": 1}
+    for name, size in sizes.items():
         moved = base | {name: base[name] + 1e-3}
         assert float(distance(ContactOrbit(**moved), point)) == pytest.approx(size * 1e-3, rel=1e-9)
 
@@ -47,6 +48,11 @@ def test_an_orbit_beside_the_branch():
     normal = np.array([-point.d_y, point.d_x]) / np.hypot(point.d_x, point.d_y)
     x, y = point.x + 1e-4 * normal[0], point.y + 1e-4 * normal[1]
     orbit = ContactOrbit(
-        1, contact, np.hypot(x, y), np.arctan2(y, x), point.duration + 1e-6, point.u + point.x
+        1,
+        contact,
+        np.hypot(x, y),
+        np.arctan2(y, x),
+        point.contact_duration + 1e-6,
+        point.u + point.x,
     )
     assert float(nearest_excess(orbit)) == pytest.approx(0.02, abs=1e-9)

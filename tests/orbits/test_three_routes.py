@@ -55,13 +55,13 @@ def chosen(orbit, which):
         orbit.contact.damping_ratio[which],
         orbit.contact.release,
     )
-    parts = (orbit.amplitude, orbit.phase, orbit.duration, orbit.impact_velocity)
+    parts = (orbit.amplitude, orbit.phase, orbit.contact_duration, orbit.impact_velocity)
     return ContactOrbit(orbit.n[which], contact, *(x[which] for x in parts))
 
 
 def test_every_missing_orbit_has_its_reason(drawn):
     contact, n, lam, side, orbit = drawn
-    missing = np.isnan(orbit.duration)
+    missing = np.isnan(orbit.contact_duration)
     reasons = absence(contact, n, lam, side)
     assert np.all((reasons == Absence.NONE) == ~missing)
     # The sample reaches below the saddle-nodes, and most of it lies above.
@@ -71,13 +71,14 @@ def test_every_missing_orbit_has_its_reason(drawn):
 
 def test_newton_on_the_full_system_agrees(drawn):
     contact, _, _, _, every = drawn
-    orbit = chosen(every, np.isfinite(every.duration))
+    orbit = chosen(every, np.isfinite(every.contact_duration))
     omega = orbit.contact.frequency_ratio
     system = OrbitSystem(
         orbit.n, orbit.contact.damping_ratio, Parameter.AMPLITUDE, omega, contact.release
     )
     y = np.stack(
-        [orbit.phase, orbit.impact_velocity, omega * orbit.duration, orbit.amplitude], axis=-1
+        [orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration, orbit.amplitude],
+        axis=-1,
     )
     # Off the branch by a thousandth, back onto it in the plane across it: at a
     # fixed Λ the fold would amplify rounding to its square root.
@@ -94,9 +95,9 @@ def test_newton_on_the_full_system_agrees(drawn):
 
 def test_the_simulation_returns_to_the_admissible_ones(drawn):
     _, _, _, _, every = drawn
-    orbit = chosen(every, np.isfinite(every.duration))
+    orbit = chosen(every, np.isfinite(every.contact_duration))
     admissible = is_admissible(orbit)
-    assert np.sum(admissible) > np.size(every.duration) / 4
+    assert np.sum(admissible) > np.size(every.contact_duration) / 4
     orbit = chosen(orbit, admissible)
     u = orbit.relative_impact_velocity
     cycle = contact_cycle(orbit.contact, orbit.amplitude, orbit.phase, u)

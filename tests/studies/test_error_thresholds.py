@@ -207,7 +207,7 @@ def test_height_error_is_about_one_over_n_and_ratio(n, r, log_omega, share):
         for find in (restitution_orbits.saddle_node, restitution_orbits.period_doubling)
     )
     lam, omega = node + share * (doubling - node), float(np.exp(log_omega))
-    assume(np.isfinite(orbit_at(Contact(omega, float(damping_ratio(r))), n, lam).duration))
+    assume(np.isfinite(orbit_at(Contact(omega, float(damping_ratio(r))), n, lam).contact_duration))
     error = relative_error(Quantity.MAX_HEIGHT, n, r, lam, np.array([omega]))
     assert 0 < float(error[0]) * n * omega < (1.0 if omega > 10 else 1.04)
 

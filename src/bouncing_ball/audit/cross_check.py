@@ -184,7 +184,7 @@ def _continued(orbit: ContactOrbit, settings: Mapping[str, Any]) -> np.ndarray:
     turn = np.angle(np.exp(1j * (orbit.phase - found.phase)))
     differences = (
         turn,
-        (orbit.duration - found.duration) * omega,
+        (orbit.contact_duration - found.contact_duration) * omega,
         orbit.impact_velocity - found.impact_velocity,
     )
     return np.max(np.abs(differences), axis=0)
@@ -309,7 +309,10 @@ def _chosen(orbit: ContactOrbit, which: np.ndarray) -> ContactOrbit:
     return ContactOrbit(
         orbit.n,
         contact,
-        *(x[which] for x in (orbit.amplitude, orbit.phase, orbit.duration, orbit.impact_velocity)),
+        *(
+            x[which]
+            for x in (orbit.amplitude, orbit.phase, orbit.contact_duration, orbit.impact_velocity)
+        ),
     )
 
 
@@ -487,7 +490,7 @@ def _rules_against_extended_systems(
                     branch_point(find(contact, n), contact, n), contact, int(n)
                 )
                 system = OrbitSystem(int(n), zeta, Parameter.AMPLITUDE, omega, Release(str(rule)))
-                parts = (orbit.phase, orbit.impact_velocity, omega * orbit.duration)
+                parts = (orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration)
                 y = np.stack([*parts, orbit.amplitude], axis=-1)
                 test = next(event for event in system.events() if event.name == kind)
                 found = newton(system, y * (1 + 1e-3), vanishing(test.function), patient)

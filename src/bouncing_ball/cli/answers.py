@@ -64,11 +64,11 @@ def _contact_orbit(args: argparse.Namespace) -> Answer:
     system = OrbitSystem(
         args.n, contact.damping_ratio, Parameter.AMPLITUDE, args.frequency_ratio, contact.release
     )
-    angle = orbit.duration * args.frequency_ratio
+    angle = orbit.contact_duration * args.frequency_ratio
     y = np.array([orbit.phase, orbit.impact_velocity, angle, orbit.amplitude])
     return {
         "phase": float(orbit.phase),
-        "contact_duration": float(orbit.duration),
+        "contact_duration": float(orbit.contact_duration),
         "impact_velocity": float(orbit.impact_velocity),
         "bounce_velocity": float(orbit.bounce_velocity),
         "apparent_restitution": float(orbit.apparent_restitution),
@@ -115,7 +115,7 @@ def limits(args: argparse.Namespace) -> Answer:
         ("period_doubling", contact_limits.period_doubling),
     ):
         point = branch_point(find(contact, args.n), contact, args.n)
-        if np.isnan(point.duration):
+        if np.isnan(point.contact_duration):
             raise NoOrbitError(
                 f"the branch of {args.n}-T orbits for ϖ = {args.frequency_ratio:g}, "
                 f"ζ = {contact.damping_ratio:.4g} has no {name.replace('_', ' ')}"
@@ -123,7 +123,7 @@ def limits(args: argparse.Namespace) -> Answer:
         found[name] = {
             "amplitude": float(point.amplitude),
             "phase": float(point.phase),
-            "contact_duration": float(point.duration),
+            "contact_duration": float(point.contact_duration),
         }
     return found
 

@@ -21,7 +21,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import require
-from bouncing_ball.impacts.spring_damper import Release, check_contact
+from bouncing_ball.impacts.release import Release
+from bouncing_ball.impacts.spring_damper import check_contact
 
 RESTITUTION_THRESHOLD = 1.0
 """Λ_CR: the table's acceleration reaches that of gravity (Eq. 9)."""
@@ -54,17 +55,18 @@ def permanent_contact_threshold(
     check_contact(frequency_ratio, damping_ratio)
     omega = np.asarray(frequency_ratio, dtype=float)
     loss = 2 * np.asarray(damping_ratio) / omega
-    threshold = np.hypot((1 - 1 / omega) * (1 + 1 / omega), loss)
-    return threshold / np.hypot(1, loss) if release is Release.FORCE else threshold
+    lag = 2 * Release.of(release).sine(damping_ratio) / omega
+    return np.hypot((1 - 1 / omega) * (1 + 1 / omega), loss) / np.hypot(1, lag)
 
 
 def permanent_contact_minimum(
     damping_ratio: ArrayLike, release: Release = Release.DISPLACEMENT
 ) -> Minimum:
-    """Lowest threshold over ϖ.
+    """Lowest threshold over ϖ: its derivative along x vanishes at ::
 
-    Displacement release: 2ζ√(1 - ζ²) at ϖ = 1/√(1 - 2ζ²) (Eq. 36). Force
-    release: at x = 2/(1 + √(1 + 8ζ²)), for every ζ.
+        x = 2m/(1 + √(1 + 8 sin²α m)),     m = 1 - 2ζ² + 2 sin²α
+
+    For the displacement release 2ζ√(1 - ζ²) at ϖ = 1/√(1 - 2ζ²) (Eq. 36).
 
     Raises
     ------
@@ -77,14 +79,13 @@ def permanent_contact_minimum(
     >>> round(float(permanent_contact_minimum(0.6).threshold), 15)
     0.96
     """
-    zeta = np.asarray(damping_ratio, dtype=float)
-    if release is Release.FORCE:
-        check_contact(1.0, zeta)
-        omega = np.sqrt((1 + np.sqrt(1 + 8 * zeta * zeta)) / 2)
-        return Minimum(permanent_contact_threshold(omega, zeta, release), omega)
+    zeta, sine = np.asarray(damping_ratio, dtype=float), Release.of(release).sine(damping_ratio)
+    centre = 1 - 2 * (zeta - sine) * (zeta + sine)
     allowed = "in [0, 1/√2): the permanent-contact threshold has no minimum over ϖ there"
-    require((zeta >= 0) & (2 * zeta * zeta < 1), zeta, "damping ratio ζ", allowed)
-    return Minimum(2 * zeta * np.sqrt((1 - zeta) * (1 + zeta)), 1 / np.sqrt(1 - 2 * zeta * zeta))
+    require((zeta >= 0) & (centre > 0), zeta, "damping ratio ζ", allowed)
+    x = 2 * centre / (1 + np.sqrt(1 + 8 * sine * sine * centre))
+    omega = 1 / np.sqrt(x)
+    return Minimum(permanent_contact_threshold(omega, zeta, release), omega)
 
 
 def permanent_contact_frequency_ratios(
@@ -94,10 +95,9 @@ def permanent_contact_frequency_ratios(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Frequency ratios (ϖ₋, ϖ₊) at which the threshold takes a value (Eqs. 34-35).
 
-    With x = 1/ϖ², ``x = m ± √(m² + Λ² - 1)``, where m = 1 - 2ζ² for the
-    displacement release and m = 1 - 2ζ²(1 - Λ²) for the force release; the
-    larger x is the smaller ϖ. Where no such ϖ exists the entry is NaN, and infinite where
-    it is reached only in the limit ϖ → ∞.
+    With x = 1/ϖ², ``x = m ± √(m² + Λ² - 1)`` and m = 1 - 2(ζ² - Λ² sin²α); the
+    larger x is the smaller ϖ. Where no such ϖ exists the entry is NaN, and
+    infinite where it is reached only in the limit ϖ → ∞.
 
     The paper's form divides by 1 - Λ² and fails at Λ = 1; this one does not.
 
@@ -113,7 +113,8 @@ def permanent_contact_frequency_ratios(
     lam = np.asarray(threshold, dtype=float)
     # The smaller root comes from the product of both, 1 - Λ²: no cancellation.
     product = (1 - lam) * (1 + lam)
-    centre = 1 - 2 * zeta * zeta * (product if release is Release.FORCE else 1.0)
+    lift = Release.of(release).sine(zeta) * lam
+    centre = 1 - 2 * (zeta - lift) * (zeta + lift)
     inside = centre * centre - product
     # At the minimum the two roots meet; rounding must not push them apart into
     # the complex plane.

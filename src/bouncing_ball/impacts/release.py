@@ -1,6 +1,17 @@
-"""The rule that ends a contact: a choice of the model, with a name."""
+r"""The rule that ends a contact, as a number and not as a case.
+
+A contact ends where ``δ + κ δ′ = 0``. With κ = 0 the ball is back at the
+table's level; with κ = 2ζ/ϖ the force of the contact vanishes. All formulas
+take the rule as ``sin α = κϖ/2``, which is 0 or ζ; a free contact is
+released at the angle π - 2α.
+"""
 
 from enum import StrEnum
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.errors import ModelError
 
 
 class Release(StrEnum):
@@ -10,3 +21,45 @@ class Release(StrEnum):
     """The ball is back at the table's level, δ = 0 (Eq. 23, the paper's)."""
     FORCE = "force"
     """The contact force vanishes, 2ζϖ δ′ + ϖ² δ = 0: no tension."""
+
+    @classmethod
+    def of(cls, rule: str) -> "Release":
+        """The rule of a name.
+
+        Raises
+        ------
+        ModelError
+            If there is no such rule.
+
+        Examples
+        --------
+        >>> Release.of("force")
+        <Release.FORCE: 'force'>
+        """
+        try:
+            return cls(rule)
+        except ValueError:
+            allowed = ", ".join(cls)
+            raise ModelError(f"unknown release {rule!r}: one of {allowed}") from None
+
+    def sine(self, damping_ratio: ArrayLike) -> np.ndarray:
+        """``sin α = κϖ/2``: 0 for the displacement release, ζ for the force release.
+
+        Examples
+        --------
+        >>> float(Release.DISPLACEMENT.sine(0.3)), float(Release.FORCE.sine(0.3))
+        (0.0, 0.3)
+        """
+        zeta = np.asarray(damping_ratio, dtype=float)
+        return zeta if self is Release.FORCE else np.zeros_like(zeta)
+
+    def free_angle(self, damping_ratio: ArrayLike) -> np.ndarray:
+        """π - 2α: the angle ϖ_d s at which a free contact, ζ < 1, is released.
+
+        Examples
+        --------
+        >>> float(Release.DISPLACEMENT.free_angle(0.5)) == np.pi
+        True
+        """
+        # Not π - 2 arcsin, which loses its digits as ζ → 1.
+        return 2 * np.arccos(self.sine(damping_ratio))

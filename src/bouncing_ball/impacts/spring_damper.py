@@ -24,7 +24,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import require
+from bouncing_ball.impacts.damping import damping_ratio, restitution_coefficient
 from bouncing_ball.impacts.oscillator import Response, exponential_response, impulse_response
+from bouncing_ball.impacts.records import Record
 from bouncing_ball.impacts.release import Release
 
 ARGUMENTS = (
@@ -181,20 +183,26 @@ def contact_force(
 
 
 @dataclass(frozen=True)
-class Contact:
+class Contact(Record):
     """A spring-damper contact: ϖ, ζ and the rule that ends it.
 
     Parameters
     ----------
     frequency_ratio, damping_ratio : float or array
         ϖ > 0 and ζ ≥ 0, dimensionless.
-    release : Release
+    release : Release or str
         What ends the contact; the paper's choice is the default.
 
     Raises
     ------
     ModelError
-        If ϖ or ζ is outside its range.
+        If ϖ or ζ is outside its range, or the release is unknown.
+
+    Examples
+    --------
+    >>> contact = Contact.from_restitution(1.0, [5.0, 10.0], "force")
+    >>> contact[1].release, float(contact[1].frequency_ratio)
+    (<Release.FORCE: 'force'>, 10.0)
     """
 
     frequency_ratio: float | np.ndarray
@@ -203,3 +211,96 @@ class Contact:
 
     def __post_init__(self):
         check_contact(self.frequency_ratio, self.damping_ratio)
+        object.__setattr__(self, "release", Release.of(self.release))
+
+    @classmethod
+    def from_restitution(
+        cls,
+        restitution: ArrayLike,
+        frequency_ratio: ArrayLike,
+        release: Release = Release.DISPLACEMENT,
+        *,
+        measured: bool = False,
+    ) -> "Contact":
+        """The contact whose damping is that of a restitution coefficient r.
+
+        Parameters
+        ----------
+        restitution, frequency_ratio : array_like
+            r in (0, 1] and ϖ.
+        release : Release or str
+            What ends the contact.
+        measured : bool
+            Whether r is what a free impact with this release really has.
+            Otherwise it is the r of Eq. 16, that of the displacement release.
+
+        Examples
+        --------
+        >>> float(Contact.from_restitution(1.0, 10.0).damping_ratio)
+        0.0
+        """
+        rule = Release.of(release)
+        zeta = damping_ratio(restitution, rule if measured else Release.DISPLACEMENT)
+        return cls(np.asarray(frequency_ratio, dtype=float), zeta, rule)
+
+    @property
+    def release_sine(self) -> np.ndarray:
+        """sin α = κϖ/2."""
+        return self.release.sine(self.damping_ratio)
+
+    @property
+    def lag(self) -> np.ndarray:
+        """κ: the contact ends where δ + κ δ′ = 0."""
+        return 2 * self.release_sine / self.frequency_ratio
+
+    @property
+    def restitution(self) -> np.ndarray:
+        """Restitution coefficient of a free impact with this release, ζ < 1."""
+        return restitution_coefficient(self.damping_ratio, self.release)
+
+    @property
+    def free_angle(self) -> np.ndarray:
+        """π - 2α: the angle ϖ_d s at which the free contact, unforced and weightless, ends.
+
+        Raises
+        ------
+        ModelError
+            If ζ ≥ 1: an overdamped contact has no oscillation to count in.
+        """
+        self._require_underdamped()
+        return self.release.free_angle(self.damping_ratio)
+
+    @property
+    def damped_frequency(self) -> np.ndarray:
+        """ϖ_d = ϖ√(1 - ζ²), for ζ < 1."""
+        self._require_underdamped()
+        zeta = np.asarray(self.damping_ratio)
+        return self.frequency_ratio * np.sqrt((1 - zeta) * (1 + zeta))
+
+    @property
+    def free_duration(self) -> np.ndarray:
+        """Duration of the free contact, (π - 2α)/ϖ_d."""
+        return self.free_angle / self.damped_frequency
+
+    def _require_underdamped(self) -> None:
+        zeta = np.asarray(self.damping_ratio, dtype=float)
+        require(zeta < 1, zeta, "damping ratio ζ", "below 1: the contact does not oscillate")
+
+    def flow(
+        self,
+        time: ArrayLike,
+        displacement: ArrayLike,
+        velocity: ArrayLike,
+        phase: ArrayLike,
+        amplitude: ArrayLike,
+    ) -> ContactFlow:
+        """Relative state a time after (δ₀, δ′₀): :func:`contact_flow`."""
+        return contact_flow(
+            time,
+            displacement,
+            velocity,
+            phase,
+            amplitude,
+            self.frequency_ratio,
+            self.damping_ratio,
+        )

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.impacts.spring_damper import Contact, Release
+from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.motion.angles import sine_and_versine
 from bouncing_ball.motion.ensembles import pick
 from bouncing_ball.motion.first_zero import State, Zero, first_zero
@@ -88,7 +88,7 @@ def oscillator(contact: Contact, amplitude: ArrayLike) -> Oscillator:
             f"undamped resonance: ϖ = {contact.frequency_ratio}, ζ = {contact.damping_ratio} "
             "has no steady contact to simulate"
         )
-    lag = 2 * zeta / omega if contact.release is Release.FORCE else np.zeros(1)
+    lag = np.atleast_1d(contact.lag)
     damped = omega * np.sqrt((1 - zeta) * (1 + zeta))
     half = np.pi / damped
     in_phase = (detuning + lag * loss) / gamma

@@ -17,7 +17,7 @@ from bouncing_ball.motion.contact_motion import ContactMotion, Oscillator, oscil
 from bouncing_ball.motion.ensembles import blocks, flatten, pick
 from bouncing_ball.motion.landing import Flight, land
 from bouncing_ball.motion.resumption import leaves_fast, resumption
-from bouncing_ball.motion.sequence import ImpactSequence, Status
+from bouncing_ball.motion.sequence import Cycle, ImpactSequence, Status
 
 
 class Impact(NamedTuple):
@@ -35,18 +35,6 @@ class Departure(NamedTuple):
     displacement: np.ndarray
     velocity: np.ndarray
     status: np.ndarray
-
-
-class Cycle(NamedTuple):
-    """The next impact: phase in [-π, π], relative velocity, δ, and the time until it.
-
-    NaN, with an infinite time, after a contact that never ends.
-    """
-
-    phase: np.ndarray
-    relative_velocity: np.ndarray
-    displacement: np.ndarray
-    time: np.ndarray
 
 
 def _depart(impact: Impact, constants: Oscillator) -> Departure:

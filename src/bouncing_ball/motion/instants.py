@@ -20,7 +20,7 @@ from bouncing_ball.errors import ModelError
 from bouncing_ball.motion.angles import reduce_angle, table
 from bouncing_ball.motion.ensembles import blocks, flatten, pick
 from bouncing_ball.motion.landing import Flight, land
-from bouncing_ball.motion.sequence import ImpactSequence, Status
+from bouncing_ball.motion.sequence import Cycle, ImpactSequence, Status
 
 # Λ T₀/g and T₀/g below which chattering is summed up.
 _CHATTER = 1e-5
@@ -205,6 +205,22 @@ def _run(r, lam, phase, after, tables, status) -> None:
         after = -r * before
 
 
+def _cycle(restitution, amplitude, phase, velocity):
+    """Phase of the next impact, δ′ before it and the time until it, after an impact (τ, v)."""
+    r, lam, phase, after, shape = _prepare(restitution, amplitude, phase, velocity)
+    out = np.full((3, phase.size), np.nan)
+    out[2] = np.inf
+    for part in blocks(phase.size):
+        here, level = pick(r, part), pick(lam, part)
+        rebound = _rebound(phase[part], after[part], here, level)
+        going = np.flatnonzero(~rebound.forever)
+        rebound = Rebound(*(x[going] for x in rebound))
+        landed, before, flown = _fly(rebound, pick(level, going))
+        for array, values in zip(out, (landed, before, rebound.duration + flown), strict=True):
+            array[part.start + going] = values
+    return (row.reshape(shape) for row in out)
+
+
 def impact_cycle(
     restitution: ArrayLike, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike
 ) -> ImpactCycle:
@@ -215,18 +231,22 @@ def impact_cycle(
     >>> float(impact_cycle(0.5, 0.0, 0.0, 4.0).velocity)
     2.0
     """
-    r, lam, phase, after, shape = _prepare(restitution, amplitude, phase, velocity)
-    out = np.full((3, phase.size), np.nan)
-    out[2] = np.inf
-    for part in blocks(phase.size):
-        here, level = pick(r, part), pick(lam, part)
-        rebound = _rebound(phase[part], after[part], here, level)
-        going = np.flatnonzero(~rebound.forever)
-        rebound = Rebound(*(x[going] for x in rebound))
-        here, level = pick(here, going), pick(level, going)
-        landed, before, flown = _fly(rebound, level)
-        bounced = table(landed, level)[0] - here * before
-        rows = (landed, bounced, rebound.duration + flown)
-        for array, values in zip(out, rows, strict=True):
-            array[part.start + going] = values
-    return ImpactCycle(*(row.reshape(shape) for row in out))
+    landed, before, time = _cycle(restitution, amplitude, phase, velocity)
+    bounced = table(landed, np.asarray(amplitude))[0] - np.asarray(restitution) * before
+    return ImpactCycle(landed, bounced, time)
+
+
+def section_cycle(
+    restitution: ArrayLike, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike
+) -> Cycle:
+    """The same map on the section of all models: (φ, δ′) just before the impacts.
+
+    Examples
+    --------
+    >>> float(section_cycle(0.5, 0.0, 0.0, -4.0).relative_velocity)
+    -2.0
+    """
+    table_velocity, _ = table(np.asarray(phase, dtype=float), np.asarray(amplitude, dtype=float))
+    after = table_velocity - np.asarray(restitution) * np.asarray(relative_velocity)
+    landed, before, time = _cycle(restitution, amplitude, phase, after)
+    return Cycle(landed, before, 0 * before, time)

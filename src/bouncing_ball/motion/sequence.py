@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,6 +19,18 @@ class Status(IntEnum):
     """The last contact never ends."""
     UNDECIDED = 2
     """The last contact lasts for hundreds of oscillations, without proof that it never ends."""
+
+
+class Cycle(NamedTuple):
+    """The next impact: phase in [-π, π], relative velocity, δ, and the time until it.
+
+    NaN, with an infinite time, after a contact that never ends.
+    """
+
+    phase: np.ndarray
+    relative_velocity: np.ndarray
+    displacement: np.ndarray
+    time: np.ndarray
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,12 @@ At a fixed contact duration D they are *linear* in ::
 With T = 2πn - D the flight time, and g, G, h the responses of the contact at
 time D (see :mod:`bouncing_ball.impacts.spring_damper`), they read
 
-* release (Eq. 23): ``u g + X Im h + Y Re h = G``, or the same combination of
-  the contact force for the force release;
+* release (Eq. 23): ``δ_b + κ δ′_b = 0``, that is ``u g + X Im h + Y Re h = G``
+  for the displacement release, κ = 0;
 * velocity (Eqs. 24, 26, 20): ``δ′_b + Λ cos(φ + D) = u + X + T``, where
   ``δ′_b = u g′ + X Im h′ + Y Re h′ - g``;
-* landing (Eqs. 25, 19): ``δ_b + Λ sin(φ + D) + (u + X + T) T - T²/2 = Y``.
+* landing (Eqs. 25, 19): ``δ_b + Λ sin(φ + D) + (u + X + T) T - T²/2 = Y``
+  with ``δ_b = -κ δ′_b``.
 
 One 3×3 solve gives the orbit, so D runs along the whole branch: saddle-node
 and period doubling included, ``Λ = √(X² + Y²)``, ``φ = atan2(Y, X)``.
@@ -20,9 +21,9 @@ and period doubling included, ``Λ = √(X² + Y²)``, ``φ = atan2(Y, X)``.
 For a stiff contact the branch occupies a range of D of order 1/ϖ² around the
 free half period, where D itself has too few digits left. The curve is
 therefore parametrised by the *excess angle* ε, ``ϖ_d D = θ₀ + ε``, with θ₀ the
-angle at which the free contact would be released: π for the displacement
-release, π - 2 arcsin ζ for the force release. The one coefficient that is
-sensitive, that of u in the release condition, is then proportional to sin ε.
+angle at which the free contact would be released, π - 2α with sin α = κϖ/2
+(:mod:`bouncing_ball.impacts.release`). The one coefficient that is sensitive,
+that of u in the release condition, is then proportional to sin ε.
 
 Differentiating the three equations along ε gives dΛ/dε. It vanishes at the
 saddle-node, and also where the ball grazes at impact or release, without a
@@ -40,7 +41,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import require
-from bouncing_ball.impacts.spring_damper import Contact, Release, responses
+from bouncing_ball.impacts.spring_damper import Contact, responses
 
 # Points computed at once: as many as keep the intermediate arrays in the cache.
 _BLOCK = 2048
@@ -53,11 +54,11 @@ class BranchPoint(NamedTuple):
     """A point of the branch, its derivatives along ε, and its stability.
 
     ``x``, ``y``, ``u`` are Λ cos φ, Λ sin φ and the relative impact velocity;
-    ``duration`` is D; ``d_x``, ``d_y`` the derivatives dX/dε and dY/dε;
+    ``contact_duration`` is D; ``d_x``, ``d_y`` the derivatives dX/dε and dY/dε;
     ``trace`` and ``determinant`` those of the monodromy.
     """
 
-    duration: np.ndarray
+    contact_duration: np.ndarray
     x: np.ndarray
     y: np.ndarray
     u: np.ndarray
@@ -95,22 +96,6 @@ class _Responses(NamedTuple):
     gravity: np.ndarray
     q: np.ndarray
     p: np.ndarray
-
-
-def free_release_angle(contact: Contact) -> np.ndarray:
-    """θ₀ = ϖ_d D at which the free contact, unforced and weightless, ends.
-
-    Examples
-    --------
-    >>> float(free_release_angle(Contact(10.0, 0.5))) == np.pi
-    True
-    """
-    zeta = np.asarray(contact.damping_ratio, dtype=float)
-    return _release_angle(zeta, contact.release) + np.zeros_like(zeta)
-
-
-def _release_angle(zeta, rule: Release):
-    return np.pi - 2 * np.arcsin(zeta) if rule is Release.FORCE else np.pi
 
 
 def _responses(duration, sin_angle, cos_angle, sin_d, cos_d, decay, omega, zeta, root):
@@ -192,7 +177,7 @@ def branch_point(excess: ArrayLike, contact: Contact, n: ArrayLike) -> BranchPoi
     """
     arguments = [
         np.asarray(x, dtype=float)
-        for x in (excess, contact.frequency_ratio, contact.damping_ratio, n)
+        for x in (excess, contact.frequency_ratio, contact.damping_ratio, contact.release_sine, n)
     ]
     zeta = arguments[2]
     if not (zeta < 1).all():
@@ -200,35 +185,32 @@ def branch_point(excess: ArrayLike, contact: Contact, n: ArrayLike) -> BranchPoi
     shape = np.broadcast_shapes(*(x.shape for x in arguments))
     size = math.prod(shape)
     if size <= _BLOCK:
-        return _branch_point(contact.release, *arguments)
+        return _branch_point(*arguments)
     # Scalars stay scalars; the rest is run through in blocks.
     flat = [x if x.ndim == 0 else np.broadcast_to(x, shape).ravel() for x in arguments]
     out = np.empty((len(BranchPoint._fields), size))
     for start in range(0, size, _BLOCK):
         part = slice(start, start + _BLOCK)
         block = (x if x.ndim == 0 else x[part] for x in flat)
-        for row, values in zip(out, _branch_point(contact.release, *block), strict=True):
+        for row, values in zip(out, _branch_point(*block), strict=True):
             row[part] = values
     return BranchPoint(*(row.reshape(shape) for row in out))
 
 
-def _branch_point(rule: Release, eps, omega, zeta, n) -> BranchPoint:
-    """The same for one block of arrays."""
-    force = rule is Release.FORCE
+def _branch_point(eps, omega, zeta, sine, n) -> BranchPoint:
+    """The same for one block of arrays; ``sine`` is sin α = κϖ/2."""
     root = np.sqrt((1 - zeta) * (1 + zeta))
     per_angle = 1 / (omega * root)
-    duration = (_release_angle(zeta, rule) + eps) * per_angle
+    duration = (2 * np.arccos(sine) + eps) * per_angle
     flight = 2 * np.pi * n - duration
     loss, stiffness = 2 * zeta * omega, omega * omega
+    twice, lag = 2 * sine, 2 * sine / omega
 
+    # θ₀ = π - 2α: the sine and cosine of 2α are exact.
     sin_eps, cos_eps = np.sin(eps), np.cos(eps)
-    if force:
-        # θ₀ = π - 2α with sin α = ζ: the sine and cosine of 2α are exact.
-        sin_2a, cos_2a = 2 * zeta * root, 1 - 2 * zeta * zeta
-        sin_angle = sin_2a * cos_eps - cos_2a * sin_eps
-        cos_angle = -cos_2a * cos_eps - sin_2a * sin_eps
-    else:
-        sin_angle, cos_angle = -sin_eps, -cos_eps
+    sin_2a, cos_2a = twice * np.sqrt((1 - sine) * (1 + sine)), 1 - twice * sine
+    sin_angle = sin_2a * cos_eps - cos_2a * sin_eps
+    cos_angle = -cos_2a * cos_eps - sin_2a * sin_eps
     sin_half, cos_half = np.sin(duration / 2), np.cos(duration / 2)
     sin_d, versine = 2 * sin_half * cos_half, -2 * sin_half * sin_half
     cos_d = 1 + versine
@@ -242,23 +224,16 @@ def _branch_point(rule: Release, eps, omega, zeta, n) -> BranchPoint:
     dq, ddq, ddp = g - p, dg - q, g - p
     push = -decay / root * sin_eps
     d_push = decay / root * (zeta * omega * sin_eps - omega * root * cos_eps)
-    if force:
-        # 2ζ δ′ + ϖ δ = 0, and δ_b enters the landing.
-        release = (push, omega * p + 2 * zeta * q, omega * q + 2 * zeta * dq)
-        d_release = (d_push, omega * q + 2 * zeta * ddp, omega * dq + 2 * zeta * ddq)
-        weight, d_weight = omega * gravity + 2 * zeta * g, omega * g + 2 * zeta * dg
-        landing = (flight + g, flight + sin_d + p, versine + q)
-        d_landing = (dg - 1, versine + q, dq - sin_d)
-        fall, d_fall = gravity - flight * flight / 2, g + flight
-    else:
-        # ϖ δ = 0, and the ball leaves from the table's level exactly.
-        release, d_release = (push, omega * p, omega * q), (d_push, omega * q, omega * dq)
-        weight, d_weight = omega * gravity, omega * g
-        landing = (flight, flight + sin_d, versine)
-        d_landing = (-1.0, versine, -sin_d)
-        fall, d_fall = -flight * flight / 2, flight
-    velocity = (dg - 1, q + versine, dq - sin_d)
-    d_velocity = (ddg, ddp - sin_d, ddq - cos_d)
+    # Coefficients of (u, X, Y) and their derivatives along D: ϖ (δ + κ δ′) = 0.
+    release = push, omega * p + twice * q, omega * q + twice * dq
+    d_release = d_push, omega * q + twice * ddp, omega * dq + twice * ddq
+    weight, d_weight = omega * gravity + twice * g, omega * g + twice * dg
+    # δ_b = -κ δ′_b, which is exactly 0 for the displacement release.
+    landing = flight - lag * dg, flight + sin_d - lag * q, versine - lag * dq
+    d_landing = -1 - lag * ddg, versine - lag * ddp, -sin_d - lag * ddq
+    fall, d_fall = -flight * flight / 2 - lag * g, flight - lag * dg
+    velocity = dg - 1, q + versine, dq - sin_d
+    d_velocity = ddg, ddp - sin_d, ddq - cos_d
 
     (u, x, y), solve = _solve((release, velocity, landing), (weight, g + flight, fall))
     _, d_x, d_y = solve(
@@ -272,14 +247,14 @@ def _branch_point(rule: Release, eps, omega, zeta, n) -> BranchPoint:
         )
     )
 
-    trace = _trace(force, omega, zeta, flight, (u, x, y), (sin_d, cos_d), (g, dg, p, q, dq), push)
+    trace = _trace(omega, zeta, sine, flight, (u, x, y), (sin_d, cos_d), (g, dg, p, q, dq), push)
     return BranchPoint(
         duration, x, y, u, d_x * per_angle, d_y * per_angle, trace, decay * decay + 0 * trace
     )
 
 
 @np.errstate(divide="ignore", invalid="ignore")
-def _trace(force, omega, zeta, flight, orbit, end, responses_at_end, push):
+def _trace(omega, zeta, sine, flight, orbit, end, responses_at_end, push):
     """Trace of the linearised cycle: contact, release, flight, landing.
 
     Infinite or not a number where the ball grazes at impact or at release.
@@ -290,14 +265,11 @@ def _trace(force, omega, zeta, flight, orbit, end, responses_at_end, push):
     leaving = x * cos_d - y * sin_d  # Λ cos and Λ sin of the phase at release
     lifted = y * cos_d + x * sin_d
     by_phase, by_phase_rate = x * q - y * p, x * dq - y * q
-    if force:
-        acceleration = lifted - 1
-        slope = omega * bounce + 2 * zeta * acceleration
-        stay_tau = -(omega * by_phase + 2 * zeta * by_phase_rate) / slope
-        stay_u = -push / slope
-    else:
-        acceleration = lifted - 1 - 2 * zeta * omega * bounce
-        stay_tau, stay_u = -by_phase / bounce, -g / bounce
+    # δ″ at release, where δ_b = -κ δ′_b.
+    acceleration = lifted - 1 - 2 * (zeta - sine) * omega * bounce
+    slope = omega * bounce + 2 * sine * acceleration
+    stay_tau = -(omega * by_phase + 2 * sine * by_phase_rate) / slope
+    stay_u = -push / slope
     columns = []
     for stay, direct, displaced, moved in (
         (stay_tau, by_phase_rate, by_phase, 1.0),

@@ -1,100 +1,61 @@
-"""An n-T orbit of the spring-damper model and what is read from it.
+r"""n-T orbits of the spring-damper model: their contact, equations and stability.
 
-Time runs from the start of contact, τ_i = 0; the contact ends at τ_b = D, the
-next one starts at τ_2 = 2πn. All quantities are dimensionless.
+All quantities are dimensionless.
 """
 
-from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from bouncing_ball.impacts.spring_damper import Contact, Release, contact_flow
+from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.motion.contacts import contact_cycle
+from bouncing_ball.motion.sequence import Cycle
 from bouncing_ball.orbits.closed_form import BranchPoint
+from bouncing_ball.orbits.interface import Orbit
 
 # Samples of a contact among which its highest point is looked for, and Newton
 # steps from there.
 _CONTACT_SAMPLES = 33
 _REFINEMENTS = 4
+# Near the undamped resonance the simulation has no steady part to work with;
+# the orbit is then sampled. Same measure as the simulation's own limit.
+_RESONANCE = 1e-4
+_SAMPLES = 4000
 
 
-@dataclass(frozen=True)
-class ContactOrbit:
-    """n-T orbits, one per element of the (broadcast) arrays.
+class ContactOrbit(Orbit):
+    """n-T orbits of the spring-damper model; ``law`` is the :class:`Contact`.
 
-    Parameters
-    ----------
-    n : int or array of int
-        Index of the family.
-    contact : Contact
-        ϖ, ζ and the release rule.
-    amplitude, phase : array
-        Λ and the table's phase φ at the start of contact.
-    duration : array
-        Contact duration τ_b.
-    impact_velocity : array
-        Absolute velocity z′_i of the ball at the start of contact.
+    Examples
+    --------
+    >>> from bouncing_ball.orbits.contact_model import ContactModel
+    >>> orbit = ContactModel(Contact(5.0, 0.0)).orbit(1, 0.5)
+    >>> float(orbit.determinant())
+    1.0
     """
 
-    n: int | np.ndarray
-    contact: Contact
-    amplitude: np.ndarray
-    phase: np.ndarray
-    duration: np.ndarray
-    impact_velocity: np.ndarray
-
     @classmethod
-    def from_branch(cls, point: BranchPoint, contact: Contact, n: int) -> "ContactOrbit":
+    def from_branch(cls, point: BranchPoint, contact: Contact, n: int | np.ndarray) -> Self:
         """The orbit at a point of the closed-form branch."""
-        return cls(n, contact, point.amplitude, point.phase, point.duration, point.u + point.x)
+        return cls(
+            n, contact, point.amplitude, point.phase, point.contact_duration, point.u + point.x
+        )
 
     @property
-    def flight_time(self) -> np.ndarray:
-        """τ_2 - τ_b (Eq. 19)."""
-        return 2 * np.pi * np.asarray(self.n) - self.duration
+    def contact(self) -> Contact:
+        """ϖ, ζ and the release rule."""
+        return self.law
 
     @property
-    def bounce_velocity(self) -> np.ndarray:
-        """Absolute velocity z′_b at release, z′_i + 2πn - τ_b (Eq. 27)."""
-        return self.impact_velocity + self.flight_time
-
-    @property
-    def relative_impact_velocity(self) -> np.ndarray:
-        """z′_i - w′_i."""
-        return self.impact_velocity - self.amplitude * np.cos(self.phase)
-
-    @property
-    def relative_bounce_velocity(self) -> np.ndarray:
-        """z′_b - w′_b."""
-        return self.bounce_velocity - self.amplitude * np.cos(self.phase + self.duration)
-
-    @property
-    def apparent_restitution(self) -> np.ndarray:
-        """r_a = -(z′_b - w′_b)/(z′_i - w′_i) (Eq. 17)."""
-        return -self.relative_bounce_velocity / self.relative_impact_velocity
+    def clock(self) -> ArrayLike:
+        """ϖ."""
+        return self.contact.frequency_ratio
 
     @property
     def release_displacement(self) -> np.ndarray:
-        """δ_b at release: 0, or where the contact force vanishes -2ζδ′_b/ϖ."""
-        if self.contact.release is Release.FORCE:
-            lag = 2 * self.contact.damping_ratio / self.contact.frequency_ratio
-            return -lag * self.relative_bounce_velocity
-        return np.zeros_like(self.duration)
-
-    @property
-    def bounce_height(self) -> np.ndarray:
-        """Absolute height z_b of the ball at release.
-
-        From the flight, which ends at the table's level Λ sin φ.
-        """
-        landing = self.amplitude * np.sin(self.phase)
-        mean_velocity = (self.bounce_velocity + self.impact_velocity) / 2
-        return landing - mean_velocity * self.flight_time
-
-    @property
-    def flight_top(self) -> np.ndarray:
-        """Greatest height in flight: its top, or its start if released downwards."""
-        rising = np.maximum(self.bounce_velocity, 0.0)
-        return self.bounce_height + rising * rising / 2
+        """δ_b = -κ δ′_b at release."""
+        return -self.contact.lag * self.relative_bounce_velocity
 
     @property
     def max_height(self) -> np.ndarray:
@@ -108,13 +69,13 @@ class ContactOrbit:
         if not np.any(top < self.amplitude):
             return top
         share = np.linspace(0.0, 1.0, _CONTACT_SAMPLES)
-        share = share.reshape(-1, *(1,) * np.ndim(self.duration))
-        height, _ = self.contact_path(share * self.duration)
+        share = share.reshape(-1, *(1,) * np.ndim(self.contact_duration))
+        height, _ = self.contact_path(share * self.contact_duration)
         highest = np.argmax(np.where(np.isnan(height), -np.inf, height), axis=0)
-        step = self.duration / (_CONTACT_SAMPLES - 1)
+        step = self.contact_duration / (_CONTACT_SAMPLES - 1)
         centre = highest * step
         low = np.maximum(centre - step, 0.0)
-        high = np.minimum(centre + step, self.duration)
+        high = np.minimum(centre + step, self.contact_duration)
         time = centre
         for _ in range(_REFINEMENTS):
             _, velocity = self.contact_path(time)
@@ -124,15 +85,8 @@ class ContactOrbit:
         return np.maximum(top, self.contact_path(time)[0])
 
     def _contact_flow(self, time: np.ndarray):
-        return contact_flow(
-            time,
-            0.0,
-            self.relative_impact_velocity,
-            self.phase,
-            self.amplitude,
-            self.contact.frequency_ratio,
-            self.contact.damping_ratio,
-        )
+        u = self.relative_impact_velocity
+        return self.contact.flow(time, 0.0, u, self.phase, self.amplitude)
 
     def _contact_acceleration(self, time: np.ndarray) -> np.ndarray:
         table = self.amplitude * np.sin(self.phase + time)
@@ -147,8 +101,86 @@ class ContactOrbit:
             flow.velocity + self.amplitude * np.cos(angle),
         )
 
-    def flight_path(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Absolute position and velocity at times τ_b ≤ τ ≤ τ_2 in flight (Eqs. 14-15)."""
-        s = time - self.duration
-        velocity = self.bounce_velocity - s
-        return self.bounce_height + (self.bounce_velocity + velocity) / 2 * s, velocity
+    def residual(self) -> np.ndarray:
+        """Release, velocity and landing defects (Eqs. 23-25), shape (..., 3).
+
+        The first is ϖ (δ_b + κ δ′_b), of the order of a velocity as the second.
+        """
+        flow = self._contact_flow(self.contact_duration)
+        lam, end, flight = self.amplitude, self.release_phase, self.flight_time
+        omega, sine = self.contact.frequency_ratio, self.contact.release_sine
+        return np.stack(
+            [
+                omega * flow.displacement + 2 * sine * flow.velocity,
+                flow.velocity + lam * np.cos(end) - self.bounce_velocity,
+                flow.displacement
+                + lam * (np.sin(end) - np.sin(self.phase))
+                + (self.bounce_velocity - flight / 2) * flight,
+            ],
+            axis=-1,
+        )
+
+    def contact_jacobian(self) -> np.ndarray:
+        """Jacobian of (τ_b, δ_b, δ′_b) in (τ, δ′) at the impact, shape (..., 3, 2).
+
+        The duration is differentiated through δ_b + κ δ′_b = 0.
+        """
+        by_time, by_velocity, by_phase = (
+            self._contact_flow(self.contact_duration).jacobian[..., :, k] for k in (0, 2, 3)
+        )
+
+        def released(rows):
+            return rows[..., 0] + self.contact.lag * rows[..., 1]
+
+        duration = np.stack(
+            [-released(by_phase) / released(by_time), -released(by_velocity) / released(by_time)],
+            axis=-1,
+        )
+        state = np.stack([by_phase, by_velocity], axis=-1)  # (..., [δ, δ′], [τ, u])
+        state = state + by_time[..., :, np.newaxis] * duration[..., np.newaxis, :]
+        return np.concatenate([duration[..., np.newaxis, :], state], axis=-2)
+
+    def determinant(self) -> np.ndarray:
+        """exp(-2ζϖ τ_b), exactly."""
+        loss = np.asarray(self.contact.damping_ratio) * self.contact.frequency_ratio
+        return np.exp(-2 * loss * self.contact_duration)
+
+    def cycle(self, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
+        """From impacts (φ, δ′) to the next, simulated."""
+        return contact_cycle(self.contact, self.amplitude, phase, relative_velocity)
+
+    def is_admissible(self) -> np.ndarray:
+        """Whether each orbit is one of the ball; false where there is none.
+
+        Examples
+        --------
+        >>> from bouncing_ball.orbits.contact_model import ContactModel
+        >>> model = ContactModel(Contact(10.0, 0.05))
+        >>> bool(model.orbit(1, 1.0).is_admissible())
+        True
+        >>> bool(model.orbit(1, 2.3, "unstable").is_admissible())
+        False
+        """
+        shape = self.shape
+        if not shape:
+            return self.ravel().is_admissible()[0]
+        omega, zeta = self.contact.frequency_ratio, self.contact.damping_ratio
+        detuning = np.hypot((omega - 1) * (omega + 1), 2 * zeta * omega)
+        resonant = np.broadcast_to(detuning < 2 * _RESONANCE, shape)
+        admissible = np.zeros(shape, dtype=bool)
+        admissible[~resonant] = super(ContactOrbit, self[~resonant]).is_admissible()
+        for index in zip(*np.nonzero(resonant), strict=True):
+            admissible[index] = self[index]._sampled()
+        return admissible
+
+    def _sampled(self) -> bool:
+        """Whether one orbit is admissible, from samples."""
+        possible = self.relative_impact_velocity < 0 < self.contact_duration
+        if not (possible and self.flight_time > 0):
+            return False
+        share = np.linspace(0.0, 1.0, _SAMPLES)[1:-1]
+        flow = self._contact_flow(share * self.contact_duration)
+        touching = flow.displacement + self.contact.lag * flow.velocity
+        time = self.contact_duration + share * self.flight_time
+        gap = self.flight_path(time)[0] - self.amplitude * np.sin(self.phase + time)
+        return bool(np.all(touching < 0) and np.all(gap > 0))

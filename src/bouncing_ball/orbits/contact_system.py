@@ -16,12 +16,10 @@ from enum import StrEnum
 import numpy as np
 
 from bouncing_ball.continuation.events import Event
-from bouncing_ball.impacts.damping import restitution_coefficient
-from bouncing_ball.impacts.spring_damper import Contact, Release, contact_flow
+from bouncing_ball.impacts.release import Release
+from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
-from bouncing_ball.orbits.closed_form import free_release_angle
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
-from bouncing_ball.orbits.monodromy import monodromy
 from bouncing_ball.orbits.stability import (
     period_doubling_function,
     saddle_node_function,
@@ -78,43 +76,26 @@ class OrbitSystem:
         contact = Contact(omega, zeta, self.release)
         return ContactOrbit(self.n, contact, amplitude, phase, angle / omega, impact)
 
-    def _flow(self, orbit: ContactOrbit):
-        return contact_flow(
-            orbit.duration,
-            0.0,
-            orbit.relative_impact_velocity,
-            orbit.phase,
-            orbit.amplitude,
-            orbit.contact.frequency_ratio,
-            orbit.contact.damping_ratio,
-        )
-
-    def _release(self, omega, displacement, velocity):
-        if self.release is Release.FORCE:
-            return omega * displacement + 2 * self.damping_ratio * velocity
-        return omega * displacement
+    def point(self, orbit: ContactOrbit) -> np.ndarray:
+        """y of given orbits."""
+        omega = np.asarray(orbit.contact.frequency_ratio)
+        by_amplitude = self.parameter is Parameter.AMPLITUDE
+        parameter = orbit.amplitude if by_amplitude else np.log(omega)
+        parts = orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration, parameter
+        return np.stack(np.broadcast_arrays(*parts), axis=-1)
 
     def residual(self, y: np.ndarray) -> np.ndarray:
         """Release, velocity and landing defects, shape (..., 3)."""
-        o = self.orbit(y)
-        flow = self._flow(o)
-        lam, end, flight = o.amplitude, o.phase + o.duration, o.flight_time
-        return np.stack(
-            [
-                self._release(o.contact.frequency_ratio, flow.displacement, flow.velocity),
-                flow.velocity + lam * np.cos(end) - o.bounce_velocity,
-                flow.displacement
-                + lam * (np.sin(end) - np.sin(o.phase))
-                + (o.bounce_velocity - flight / 2) * flight,
-            ],
-            axis=-1,
-        )
+        return self.orbit(y).residual()
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """Exact Jacobian of the residual, shape (..., 3, 4)."""
         o = self.orbit(y)
-        flow = self._flow(o)
-        lam, omega, end = o.amplitude, o.contact.frequency_ratio, o.phase + o.duration
+        flow = o.contact.flow(
+            o.contact_duration, 0.0, o.relative_impact_velocity, o.phase, o.amplitude
+        )
+        sine = o.contact.release_sine
+        lam, omega, end = o.amplitude, o.contact.frequency_ratio, o.phase + o.contact_duration
         by_amplitude = self.parameter is Parameter.AMPLITUDE
         zero, one = np.zeros_like(lam), np.ones_like(lam)
 
@@ -122,7 +103,7 @@ class OrbitSystem:
         def row(*entries):
             return np.stack(entries, axis=-1)
 
-        d_time = row(zero, zero, 1 / omega, zero if by_amplitude else -o.duration)
+        d_time = row(zero, zero, 1 / omega, zero if by_amplitude else -o.contact_duration)
         d_lam = row(zero, zero, zero, one if by_amplitude else zero)
         d_omega = row(zero, zero, zero, zero if by_amplitude else omega)
         d_phase = row(one, zero, zero, zero)
@@ -149,8 +130,7 @@ class OrbitSystem:
         d_end, d_flight = d_phase + d_time, -d_time
         d_bounce = d_impact + d_flight
         release = scaled(omega, d_displacement) + scaled(flow.displacement, d_omega)
-        if self.release is Release.FORCE:
-            release = release + scaled(2 * o.contact.damping_ratio, d_velocity)
+        release = release + scaled(2 * sine, d_velocity)
         velocity = (
             d_velocity + scaled(np.cos(end), d_lam) - scaled(lam * np.sin(end), d_end) - d_bounce
         )
@@ -169,16 +149,15 @@ class OrbitSystem:
 
         Close to a solution for ϖ ≫ 1 only.
         """
-        zeta = self.damping_ratio
-        r = float(restitution_coefficient(zeta, self.release))
+        contact = Contact(frequency_ratio, self.damping_ratio, self.release)
+        r = float(contact.restitution)
         phase = float(restitution_orbits.phase(self.n, r, amplitude))
-        contact = Contact(frequency_ratio, zeta, self.release)
-        angle = float(free_release_angle(contact)) / np.sqrt((1 - zeta) * (1 + zeta))
+        angle = float(contact.free_duration * contact.frequency_ratio)
         p = amplitude if self.parameter is Parameter.AMPLITUDE else np.log(frequency_ratio)
         return np.array([phase, -self.n * np.pi, angle, p])
 
     def _stability(self, test: Callable) -> Callable[[np.ndarray], np.ndarray]:
-        return lambda y: test(*trace_and_determinant(monodromy(self.orbit(y))))
+        return lambda y: test(*trace_and_determinant(self.orbit(y).monodromy()))
 
     def events(self) -> tuple[Event, ...]:
         """Bifurcations, and the ends of the domain in which an orbit makes sense."""

@@ -10,16 +10,15 @@ duration until the saddle-node: that is the side which is stable next to the
 fold. Entries for which the quantity does not exist are NaN.
 """
 
-from enum import StrEnum
-
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize.elementwise import find_root
 
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.impacts.spring_damper import Contact
-from bouncing_ball.orbits.closed_form import branch_point, free_release_angle
+from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.interface import Absence, Side, check_index
 from bouncing_ball.orbits.stability import period_doubling_function, saddle_node_function
 
 # Points of the scan on each side of ε = 0, spaced geometrically from a small
@@ -32,24 +31,16 @@ _SHORTEST = 1e-3
 _FULL = 1e-6
 
 
-class Side(StrEnum):
-    """Side of the saddle-node on which an orbit lies."""
-
-    STABLE = "stable"
-    """The side that is stable next to the fold: the shorter contact."""
-    UNSTABLE = "unstable"
-
-
 def _columns(contact: Contact, n: ArrayLike, *more: ArrayLike):
+    check_index(n)
     arrays = (contact.frequency_ratio, contact.damping_ratio, n, *more)
     return np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in arrays))
 
 
 def _range(contact: Contact, n: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """ε at short contacts, where Λ is beyond any use, and at D → 2πn."""
-    omega, zeta, n = _columns(contact, n)
-    start = free_release_angle(contact)
-    full = omega * np.sqrt((1 - zeta) * (1 + zeta)) * 2 * np.pi * n
+    start = contact.free_angle
+    full = contact.damped_frequency * 2 * np.pi * np.asarray(n)
     low = -start * (1 - _SHORTEST)
     high = full * (1 - _FULL) - start
     return np.minimum(low, high), high
@@ -114,7 +105,7 @@ def saddle_node(contact: Contact, n: ArrayLike) -> np.ndarray:
     """
     omega, zeta, n = _columns(contact, n)
     release = contact.release
-    low, high = _range(contact, n)
+    low, high = np.broadcast_arrays(*_range(contact, n))
     grid = _scan(low, high, 1 / omega)
     points = branch_point(grid, Contact(omega, zeta, release), n)
     # Λ turns at grazing releases as well, where no multiplier is 1, and rounding
@@ -202,13 +193,52 @@ def orbit_at(
     return ContactOrbit.from_branch(branch_point(excess, local, n), local, n)
 
 
-class Absence(StrEnum):
-    """Why there is no orbit on a side of the branch at some Λ."""
+# Steps of the search for all orbits, in radians of the contact's oscillation and
+# of the table's, which Λ(ε) follows; and how many are taken at most.
+_FINE = 0.02
+_MOST = 200_000
 
-    NONE = "there is one"
-    BELOW_SADDLE_NODE = "below the saddle-node"
-    NO_OTHER_SIDE = "the branch has no saddle-node, and so no other side"
-    NOT_REACHED = "this side of the branch does not reach this Λ"
+
+def orbits_at(contact: Contact, n: int, amplitude: float) -> ContactOrbit:
+    """All n-T orbits of one contact at one Λ, in order of contact duration.
+
+    Every root of Λ(ε) = Λ at which the ball comes in and leaves. The turns of Λ
+    between the points of a fine grid are found first, so that two orbits next
+    to a turn are not missed. For ϖ above some 10³ the search does not reach
+    contacts longer than 2·10⁵ steps.
+
+    Examples
+    --------
+    >>> orbits = orbits_at(Contact(2.0, 0.05), 1, 0.9)
+    >>> orbits.contact_duration.round(3).tolist(), orbits.is_stable().tolist()
+    ([1.601, 2.249, 5.193], [True, False, True])
+    """
+    omega, zeta, index, lam = (x.reshape(1) for x in _columns(contact, n, amplitude))
+    local = Contact(omega, zeta, contact.release)
+    low, high = (float(np.ravel(x)[0]) for x in _range(local, n))
+    step = _FINE * min(1.0, float(contact.damped_frequency))
+    fine = np.arange(low, min(high, low + _MOST * step), step)
+    scan = _scan(np.array([low]), np.array([high]), 1 / omega)[:, 0]
+    grid = np.unique(np.concatenate([fine, scan[scan <= fine[-1] + step]]))[:, np.newaxis]
+
+    def roots(function, *more):
+        values = function(grid, omega, zeta, index, *more)
+        left, right = values[:-1, 0], values[1:, 0]
+        at = np.nonzero((left < 0) != (right < 0))[0]
+        args = tuple(np.broadcast_to(x, at.shape) for x in (omega, zeta, index, *more))
+        return _close(function, grid[at, 0], grid[at + 1, 0], np.full(at.shape, True), args)
+
+    def surplus(excess, omega, zeta, n, lam):
+        return branch_point(excess, Contact(omega, zeta, contact.release), n).amplitude - lam
+
+    turns = roots(_fold_function(contact.release))
+    grid = np.sort(np.concatenate([grid, turns[:, np.newaxis]]), axis=0)
+    excess = roots(surplus, lam)
+    point = branch_point(excess, local, n)
+    found = ContactOrbit.from_branch(point, local, n)
+    # A sign change at a pole of the branch is no root.
+    real = np.abs(found.amplitude - lam) <= 1e-6 * lam
+    return found[real & (found.relative_impact_velocity < 0) & (found.relative_bounce_velocity > 0)]
 
 
 def absence(
@@ -224,7 +254,7 @@ def absence(
     omega, zeta, n, lam = _columns(contact, n, amplitude)
     local = Contact(omega, zeta, contact.release)
     fold = branch_point(saddle_node(local, n), local, n).amplitude
-    missing = np.isnan(orbit_at(local, n, lam, side).duration)
+    missing = ~orbit_at(local, n, lam, side).exists
     reason = np.where(np.isnan(fold), Absence.NO_OTHER_SIDE, Absence.NOT_REACHED)
     if side is Side.STABLE:
         reason = np.full(missing.shape, Absence.NOT_REACHED)
@@ -250,7 +280,7 @@ def require_orbit(
     bouncing_ball.errors.NoOrbitError: no 1-T orbit at Λ = 0.2 for ϖ = 10, ...
     """
     orbit = orbit_at(contact, n, amplitude, side)
-    if np.isnan(orbit.duration):
+    if np.isnan(orbit.contact_duration):
         why = str(absence(contact, n, amplitude, side))
         if why == Absence.BELOW_SADDLE_NODE:
             fold = branch_point(saddle_node(contact, n), contact, n).amplitude

@@ -7,7 +7,8 @@ conditioned everywhere on the branch.
 
 import numpy as np
 
-from bouncing_ball.orbits.closed_form import BranchPoint, branch_point, free_release_angle
+from bouncing_ball.motion.angles import reduce_angle
+from bouncing_ball.orbits.closed_form import BranchPoint, branch_point
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 
 # Gauss-Newton from a start that is right to rounding of D converges at once.
@@ -17,9 +18,7 @@ _ITERATIONS = 4
 def nearest_excess(orbit: ContactOrbit) -> np.ndarray:
     """Excess angle ε of the nearest point of the branch."""
     contact = orbit.contact
-    zeta = np.asarray(contact.damping_ratio)
-    angle = orbit.duration * contact.frequency_ratio * np.sqrt((1 - zeta) * (1 + zeta))
-    excess = angle - free_release_angle(contact)
+    excess = orbit.contact_duration * contact.damped_frequency - contact.free_angle
     x, y = orbit.amplitude * np.cos(orbit.phase), orbit.amplitude * np.sin(orbit.phase)
     for _ in range(_ITERATIONS):
         point = branch_point(excess, contact, orbit.n)
@@ -30,8 +29,8 @@ def nearest_excess(orbit: ContactOrbit) -> np.ndarray:
 
 def distance(orbit: ContactOrbit, point: BranchPoint) -> np.ndarray:
     """Largest difference in Λ, φ, ϖτ_b and z′_i."""
-    turn = np.angle(np.exp(1j * (orbit.phase - point.phase)))
-    angle = (orbit.duration - point.duration) * orbit.contact.frequency_ratio
+    turn = reduce_angle(orbit.phase - point.phase)
+    angle = (orbit.contact_duration - point.contact_duration) * orbit.contact.frequency_ratio
     impact = orbit.impact_velocity - (point.u + point.x)
     differences = (orbit.amplitude - point.amplitude, turn, angle, impact)
     return np.max(np.abs(np.broadcast_arrays(*differences)), axis=0)

@@ -17,11 +17,17 @@ All quantities are dimensionless.
 """
 
 from enum import StrEnum
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import NoOrbitError, require
+from bouncing_ball.impacts.restitution_map import bounce, landing_gap
+from bouncing_ball.motion.gap import clearance
+from bouncing_ball.motion.instants import section_cycle
+from bouncing_ball.motion.sequence import Cycle
+from bouncing_ball.orbits.interface import Orbit, check_index
 
 
 class ImpactMap(StrEnum):
@@ -35,9 +41,8 @@ class ImpactMap(StrEnum):
 
 def check_family(n: ArrayLike, restitution: ArrayLike) -> None:
     """Raise :class:`ModelError` unless n is a positive integer and 0 < r ≤ 1."""
-    index, r = np.asarray(n, dtype=float), np.asarray(restitution, dtype=float)
-    whole = (index == np.floor(index)) & (index >= 1) & np.isfinite(index)
-    require(whole, np.asarray(n), "index of the family n", "a positive integer")
+    check_index(n)
+    r = np.asarray(restitution, dtype=float)
     require((r > 0) & (r <= 1), r, "restitution coefficient r", "in (0, 1]")
 
 
@@ -196,3 +201,67 @@ def path(
     s = np.mod(time, 2 * launch)
     height = np.asarray(amplitude) * np.sin(phase) + launch * s - s * s / 2
     return height, launch - s
+
+
+class RestitutionOrbit(Orbit):
+    """n-T orbits of the restitution model; ``law`` is r.
+
+    Examples
+    --------
+    >>> orbit = RestitutionOrbit.at(1, 0.5, 1.2, 0.5)
+    >>> float(orbit.bounce_velocity) == np.pi, float(orbit.determinant())
+    (True, 0.25)
+    """
+
+    @classmethod
+    def at(
+        cls, n: ArrayLike, restitution: ArrayLike, amplitude: ArrayLike, phase: ArrayLike
+    ) -> Self:
+        """The orbits at given Λ and φ, with the impact velocity -nπ."""
+        lam, angle = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in (amplitude, phase)))
+        missing = np.where(np.isnan(angle), np.nan, 0.0)
+        launch = np.asarray(n) * np.pi
+        return cls(n, restitution, lam, angle, missing, missing - launch)  # type: ignore[arg-type]
+
+    @property
+    def restitution(self) -> np.ndarray:
+        """r."""
+        return np.asarray(self.law)
+
+    def residual(self) -> np.ndarray:
+        """Landing gap and velocity defect of the exact map (Eq. 5), shape (..., 2)."""
+        time, launch = self.flight_time, self.bounce_velocity
+        after = bounce(time, self.phase, launch, self.amplitude, self.restitution)
+        gap = landing_gap(time, self.phase, launch, self.amplitude)
+        return np.stack(np.broadcast_arrays(gap, after - launch), axis=-1)
+
+    def contact_jacobian(self) -> np.ndarray:
+        """Of an instant at the table's level: only δ′_b = -r δ′ varies."""
+        jacobian = np.zeros((*self.shape, 3, 2))
+        jacobian[..., 2, 1] = -self.restitution
+        return jacobian
+
+    def determinant(self) -> np.ndarray:
+        """r²."""
+        return self.restitution**2 + 0 * self.phase
+
+    def trace_and_determinant(self) -> tuple[np.ndarray, np.ndarray]:
+        """1 + r² - (1 + r)² Λ sin φ, and r²."""
+        return trace_and_determinant(self.restitution, self.amplitude, self.phase)
+
+    def cycle(self, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
+        """From impacts (φ, δ′) to the next, simulated."""
+        return section_cycle(self.restitution, self.amplitude, phase, relative_velocity)
+
+    def is_admissible(self) -> np.ndarray:
+        """Whether the ball stays above the table, from the smallest gap of each flight.
+
+        Examples
+        --------
+        Over a table that accelerates less than gravity nothing can happen:
+
+        >>> bool(RestitutionOrbit.at(1, 0.5, 0.8, 1.2).is_admissible())
+        True
+        """
+        velocity, lam = self.relative_bounce_velocity, self.amplitude
+        return (velocity > 0) & (clearance(self.flight_time, self.phase, 0.0, velocity, lam) > 0)

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from bouncing_ball.continuation.events import Event
-from bouncing_ball.impacts.restitution_map import bounce, exact_map_jacobian, landing_gap
+from bouncing_ball.impacts.restitution_map import exact_map_jacobian
+from bouncing_ball.orbits.restitution_orbit import RestitutionOrbit
 from bouncing_ball.orbits.stability import (
     period_doubling_function,
     saddle_node_function,
@@ -38,15 +39,22 @@ class RestitutionSystem:
     """
 
     n: int
-    restitution: float
+    restitution: float | np.ndarray
+
+    def orbit(self, y: np.ndarray) -> RestitutionOrbit:
+        """The orbits at points y of shape (..., 3)."""
+        phase, velocity, amplitude = (y[..., k] for k in range(3))
+        impact = velocity - 2 * np.pi * self.n
+        return RestitutionOrbit(self.n, self.restitution, amplitude, phase, 0 * phase, impact)
+
+    def point(self, orbit: RestitutionOrbit) -> np.ndarray:
+        """y of given orbits."""
+        parts = orbit.phase, orbit.bounce_velocity, orbit.amplitude
+        return np.stack(np.broadcast_arrays(*parts), axis=-1)
 
     def residual(self, y: np.ndarray) -> np.ndarray:
         """Landing gap and velocity defect after 2πn, shape (..., 2)."""
-        phase, velocity, amplitude = (y[..., k] for k in range(3))
-        period = np.full_like(phase, 2 * np.pi * self.n)
-        after = bounce(period, phase, velocity, amplitude, self.restitution)
-        gap = landing_gap(period, phase, velocity, amplitude)
-        return np.stack([gap, after - velocity], axis=-1)
+        return self.orbit(y).residual()
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """Exact Jacobian of the residual, shape (..., 2, 3).

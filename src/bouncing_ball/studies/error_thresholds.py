@@ -211,7 +211,7 @@ def height_error(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     for name, values in (
         ("max_height", orbit.max_height),
         ("phase", orbit.phase),
-        ("contact_duration", orbit.duration),
+        ("contact_duration", orbit.contact_duration),
         ("impact_velocity", orbit.impact_velocity),
         ("admissible", is_admissible(orbit)),
     ):

@@ -197,8 +197,8 @@ def orbit_branches(
         values = (
             orbit.amplitude,
             orbit.phase,
-            orbit.duration,
-            orbit.phase + orbit.duration,
+            orbit.contact_duration,
+            orbit.phase + orbit.contact_duration,
             orbit.impact_velocity,
             orbit.bounce_velocity,
             orbit.apparent_restitution,

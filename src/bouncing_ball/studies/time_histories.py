@@ -34,8 +34,8 @@ def _cycle(orbit: ContactOrbit, samples: int) -> tuple[np.ndarray, ...]:
     contact may be a hundredth of the cycle and must be resolved all the same.
     """
     half = samples // 2
-    during = np.linspace(0.0, orbit.duration, half)
-    after = np.linspace(orbit.duration, 2 * np.pi * orbit.n, samples - half)
+    during = np.linspace(0.0, orbit.contact_duration, half)
+    after = np.linspace(orbit.contact_duration, 2 * np.pi * orbit.n, samples - half)
     pairs = [orbit.contact_path(during), orbit.flight_path(after)]
     time = np.concatenate([during, after])
     touching = np.concatenate([np.ones(half, bool), np.zeros(samples - half, bool)])
@@ -64,7 +64,7 @@ def contact_history(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
                 "contact": ("sample", touching),
                 "frequency_ratio": ((), float(parameters["frequency_ratio"])),
                 "phase": ((), float(orbit.phase)),
-                "contact_duration": ((), float(orbit.duration)),
+                "contact_duration": ((), float(orbit.contact_duration)),
                 "impact_velocity": ((), float(orbit.impact_velocity)),
                 "bounce_velocity": ((), float(orbit.bounce_velocity)),
             }
@@ -94,7 +94,7 @@ def both_histories(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         time, ball, _, touching = _cycle(orbit, parameters["samples"])
         for name, values in zip(columns, (time + orbit.phase, ball, touching), strict=True):
             columns[name].append(values)
-        state = (orbit.phase, orbit.duration, orbit.impact_velocity, orbit.bounce_velocity)
+        state = (orbit.phase, orbit.contact_duration, orbit.impact_velocity, orbit.bounce_velocity)
         for name, value in zip(states, state, strict=True):
             states[name].append(float(value))
     phase = float(restitution_orbits.phase(n, r, lam))

@@ -70,7 +70,7 @@ class Altered(NamedTuple):
 class AlteredOrbit(NamedTuple):
     """D, X = Λ cos φ, Y = Λ sin φ, u and v: δ′ at the start and the end of contact."""
 
-    duration: np.ndarray
+    contact_duration: np.ndarray
     x: np.ndarray
     y: np.ndarray
     impact: np.ndarray
@@ -215,10 +215,10 @@ def continuation_unknowns(orbit: AlteredOrbit, model: Altered) -> np.ndarray:
 
     A and B are those of Eqs. 12-13, at the start of contact.
     """
-    transient = _forms(orbit.duration, model).transient
+    transient = _forms(orbit.contact_duration, model).transient
     a, b = (
         _apply([pair[k] for pair in transient], orbit.x, orbit.y, orbit.impact, 1.0) for k in (0, 1)
     )
     start = orbit.impact + orbit.x
-    end = start + 2 * np.pi * model.n - orbit.duration
-    return np.stack([start, end, orbit.duration, orbit.phase, a, b, orbit.amplitude])
+    end = start + 2 * np.pi * model.n - orbit.contact_duration
+    return np.stack([start, end, orbit.contact_duration, orbit.phase, a, b, orbit.amplitude])

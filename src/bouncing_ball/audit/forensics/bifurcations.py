@@ -40,7 +40,7 @@ def criterion(excess: np.ndarray, model: Altered) -> np.ndarray:
     floquet = 1 + a + d + a * d - b * c
     r_a = -orbit.bounce / orbit.impact
     lift = np.where(model.lift > 0, model.lift, 2 * (1 + r_a * r_a) / (1 + r_a) ** 2)
-    angle = orbit.phase + model.share * orbit.duration
+    angle = orbit.phase + model.share * orbit.contact_duration
     return np.where(model.share < 0, floquet, lift - orbit.amplitude * np.sin(angle))
 
 

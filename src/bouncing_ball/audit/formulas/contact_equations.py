@@ -93,7 +93,7 @@ def orbit_checks(rng, samples) -> dict[str, Check]:
     fold = branch_point(saddle_node(touch, n), touch, n).amplitude
     lam = fold + rng.uniform(0.05, 0.5, samples)
     orbit = orbit_at(touch, n, lam)
-    phase, impact, end = orbit.phase, orbit.impact_velocity, orbit.duration
+    phase, impact, end = orbit.phase, orbit.impact_velocity, orbit.contact_duration
     period = 2 * np.pi * n
     again = contact_cycle(touch, lam, phase, orbit.relative_impact_velocity)
     repeated = (

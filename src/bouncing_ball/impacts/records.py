@@ -1,0 +1,70 @@
+"""Frozen dataclasses over arrays, one element per contact, ball or orbit.
+
+Their fields broadcast together, as arguments of a function do. A scalar field
+is that of all elements, and stays a scalar.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import fields, replace
+from typing import Any, Self
+
+import numpy as np
+
+
+def _shape(value: Any) -> tuple[int, ...]:
+    return value.shape if isinstance(value, Record) else np.shape(value)
+
+
+def _entry(value: Any, shape: tuple[int, ...], index: Any) -> Any:
+    """Some elements of a field; a scalar is that of all."""
+    if isinstance(value, Record):
+        return value._entries(shape, index)
+    return np.broadcast_to(value, shape)[index] if np.ndim(value) else value
+
+
+class Record:
+    """What a frozen dataclass of arrays inherits: a shape, indexing, a length.
+
+    Examples
+    --------
+    >>> from bouncing_ball.impacts.spring_damper import Contact
+    >>> contact = Contact(np.array([5.0, 10.0]), 0.1)
+    >>> contact.shape, float(contact[1].frequency_ratio), contact[1].damping_ratio
+    ((2,), 10.0, 0.1)
+    """
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Common shape of the fields."""
+        return np.broadcast_shapes(*(_shape(getattr(self, f.name)) for f in fields(self)))  # type: ignore[arg-type]
+
+    @property
+    def size(self) -> int:
+        """Number of elements."""
+        return math.prod(self.shape)
+
+    def __len__(self) -> int:
+        if not self.shape:
+            raise TypeError(f"a single {type(self).__name__} has no length")
+        return self.shape[0]
+
+    def _entries(self, shape: tuple[int, ...], index: Any) -> Self:
+        values = {f.name: getattr(self, f.name) for f in fields(self)}  # type: ignore[arg-type]
+        return replace(self, **{k: _entry(v, shape, index) for k, v in values.items()})  # type: ignore[type-var]
+
+    def __getitem__(self, index: Any) -> Self:
+        if not self.shape and index != ():
+            raise IndexError(f"a single {type(self).__name__} cannot be indexed")
+        return self._entries(self.shape, index)
+
+    def ravel(self) -> Self:
+        """All elements in one row."""
+        if not self.shape:
+            return self._entries_of(np.atleast_1d)
+        return self[np.unravel_index(np.arange(self.size), self.shape)]
+
+    def _entries_of(self, function: Callable[[Any], Any]) -> Self:
+        values = {f.name: getattr(self, f.name) for f in fields(self)}  # type: ignore[arg-type]
+        numbers = {k: v if isinstance(v, Record | str) else function(v) for k, v in values.items()}
+        return replace(self, **numbers)  # type: ignore[type-var]

@@ -1,0 +1,110 @@
+"""The spring-damper model: a contact and its n-T orbits."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.impacts.permanent_contact import permanent_contact_threshold
+from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.motion.contacts import contact_cycle, simulate
+from bouncing_ball.motion.sequence import Cycle, ImpactSequence
+from bouncing_ball.orbits import limits
+from bouncing_ball.orbits.closed_form import branch_point
+from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
+from bouncing_ball.orbits.interface import ImpactModel, Side
+from bouncing_ball.orbits.projection import nearest_excess
+
+
+@dataclass(frozen=True, repr=False)
+class ContactModel(ImpactModel):
+    """A ball on a spring-damper.
+
+    Parameters
+    ----------
+    contact : Contact
+        ϖ, ζ < 1 and the release rule.
+
+    Examples
+    --------
+    >>> model = ContactModel(Contact.from_restitution(0.85, 2.0))
+    >>> model.orbits(1, 0.9).contact_duration.round(3).tolist()
+    [1.602, 2.249, 5.182]
+    """
+
+    contact: Contact
+
+    name: ClassVar[str] = "spring-damper"
+
+    @property
+    def label(self) -> str:
+        """ϖ and ζ."""
+        contact = self.contact
+        return f"ϖ = {float(contact.frequency_ratio):g}, ζ = {float(contact.damping_ratio):.4g}"
+
+    def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> ContactOrbit:
+        """The n-T orbits at Λ on a side of the saddle-node; NaN where there is none."""
+        return limits.orbit_at(self.contact, n, amplitude, Side(side))
+
+    def orbits(self, n: int, amplitude: float) -> ContactOrbit:
+        """All n-T orbits of one contact at one Λ, in order of contact duration."""
+        return limits.orbits_at(self.contact, n, amplitude)
+
+    def absence(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> np.ndarray:
+        """Why :meth:`orbit` finds none."""
+        return limits.absence(self.contact, n, amplitude, Side(side))
+
+    def saddle_node(self, n: ArrayLike) -> ContactOrbit:
+        """The orbits at the saddle-node; NaN where the branch has none."""
+        return self._on_branch(limits.saddle_node(self.contact, n), n)
+
+    def period_doubling(self, n: ArrayLike) -> ContactOrbit:
+        """The orbits at the period doubling nearest to it; NaN where there is none."""
+        return self._on_branch(limits.period_doubling(self.contact, n), n)
+
+    def _on_branch(self, excess: np.ndarray, n) -> ContactOrbit:
+        return ContactOrbit.from_branch(branch_point(excess, self.contact, n), self.contact, n)
+
+    def orbit_of(
+        self,
+        n: ArrayLike,
+        amplitude: ArrayLike,
+        phase: ArrayLike,
+        contact_duration: ArrayLike,
+        impact_velocity: ArrayLike,
+    ) -> ContactOrbit:
+        """Orbits known by their numbers."""
+        values = (amplitude, phase, contact_duration, impact_velocity)
+        columns = (np.asarray(x, dtype=float) for x in values)
+        return ContactOrbit(n, self.contact, *columns)  # type: ignore[arg-type]
+
+    def nearest(self, orbit: ContactOrbit) -> ContactOrbit:
+        """The orbits of the closed form nearest to given ones in (Λ cos φ, Λ sin φ)."""
+        point = branch_point(nearest_excess(orbit), orbit.contact, orbit.n)
+        return ContactOrbit.from_branch(point, orbit.contact, orbit.n)
+
+    def system(self, n: int) -> OrbitSystem:
+        """The paper's equations, continued in Λ."""
+        contact = self.contact
+        return OrbitSystem(
+            n, contact.damping_ratio, Parameter.AMPLITUDE, contact.frequency_ratio, contact.release
+        )
+
+    def simulate(
+        self, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
+    ) -> ImpactSequence:
+        """Impacts from a first one at phase φ, with absolute velocity z′_i before it."""
+        return simulate(self.contact, amplitude, phase, velocity, impacts)
+
+    def cycle(self, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
+        """The Poincaré map, from an impact (φ, δ′) to the next."""
+        return contact_cycle(self.contact, amplitude, phase, relative_velocity)
+
+    def permanent_contact_threshold(self) -> np.ndarray:
+        """Λ_SD(ϖ) or Λ_F(ϖ)."""
+        contact = self.contact
+        return permanent_contact_threshold(
+            contact.frequency_ratio, contact.damping_ratio, contact.release
+        )

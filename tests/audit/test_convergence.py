@@ -11,7 +11,7 @@ import xarray as xr
 import yaml
 
 from bouncing_ball.audit import convergence
-from bouncing_ball.audit.claims.ledger_file import printed, read_ledger
+from bouncing_ball.audit.claims.ledger_file import read_ledger
 from bouncing_ball.audit.convergence import (
     Computation,
     Variation,
@@ -36,7 +36,7 @@ def config():
 
 @pytest.fixture(scope="module")
 def made(config):
-    table = printed(read_ledger(ROOT / "config"), "Table 1")
+    table = read_ledger(ROOT / "config").table("Table 1")
     return computations(config | {"printed": table})
 
 

@@ -33,6 +33,8 @@ from bouncing_ball.studies.orbit_branches import stability_ranges
 R = 0.85
 ZETA = float(damping_ratio(R))
 TABLE = {
+    "restitution": R,
+    "release": "displacement",
     "frequency_ratio": [1e4, 10.0, 2.0],
     "n": [1, 2, 3],
     "bound": ["saddle-node", "period doubling"],
@@ -43,7 +45,6 @@ TABLE = {
     ],
 }
 PARAMETERS = {
-    "restitution": R,
     "printed_damping_ratio": 0.052,
     "other_damping_ratios": [0.0495, 0.0535],
     "stiff_exponents": [2, 5],

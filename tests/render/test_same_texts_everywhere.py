@@ -6,26 +6,14 @@ everything that is read from them is made again: evidence, verdicts, tables, tex
 
 import csv
 from collections import defaultdict
-from importlib import import_module
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from bouncing_ball.audit.claims.assessment import assess
-from bouncing_ball.audit.claims.ledger import parse_ledger
-from bouncing_ball.audit.claims.ledger_file import read_ledger
-from bouncing_ball.audit.evidence import evidence
-from bouncing_ball.configuration.yaml_file import read_yaml
-from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.datasets.rounding import ROUNDING_SIZE
-from bouncing_ball.render.article.render import render_article
-from bouncing_ball.render.tables.formats import to_csv, to_latex, to_markdown
 
 ROOT = Path(__file__).resolve().parents[2]
-TEMPLATES = ROOT / "workflow" / "report" / "paper"
-TABLES = ("table1", "thresholds", "witness", "forensics", "formulas", "claims")
-DERIVED = ("evidence", "claims")
 
 
 def largest_changes():
@@ -36,12 +24,6 @@ def largest_changes():
     for row in rows:
         changes[row["artifact"]][row["variable"]] = float(row["rounding"])
     return changes
-
-
-@pytest.fixture(scope="module")
-def record():
-    paths = sorted((ROOT / "figures").glob("*.nc"))
-    return {path.stem: read_dataset(path) for path in paths if path.stem not in DERIVED}
 
 
 def perturbed(data, changes, rng):
@@ -65,30 +47,13 @@ def perturbed(data, changes, rng):
     return other
 
 
-def texts(data):
-    """All tables in all formats, and the article."""
-    parameters = read_yaml(ROOT / "config" / "config.yaml")["studies"]["evidence"]
-    found = evidence(data, parameters).assign_attrs(parameters)
-    data = {**data, "evidence": found}
-    data["claims"] = assess(parse_ledger(read_ledger(ROOT / "config")), data)
-    made = {}
-    for name in TABLES:
-        rows = import_module(f"bouncing_ball.render.tables.{name}").rows(data[name])
-        for form in (to_csv, to_latex, to_markdown):
-            made[name, form.__name__] = form(*rows)
-    references = read_yaml(TEMPLATES / "references.yaml")
-    tables = {name: made[name, "to_markdown"] for name in TABLES}
-    made["article"] = render_article(TEMPLATES, data, tables, references)
-    return made
-
-
 @pytest.fixture(scope="module")
-def accepted(record):
+def accepted(record, texts):
     return texts(record)
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_rounding_changes_no_text(record, accepted, seed):
+def test_rounding_changes_no_text(record, texts, accepted, seed):
     changes, rng = largest_changes(), np.random.default_rng(seed)
     noisy = {name: perturbed(data, changes[name], rng) for name, data in record.items()}
     moved = [
@@ -100,7 +65,7 @@ def test_rounding_changes_no_text(record, accepted, seed):
     assert not moved
 
 
-def test_what_matters_changes_the_texts(record, accepted):
+def test_what_matters_changes_the_texts(record, texts, accepted):
     # One last printed digit of one entry, and one formula that is wrong.
     other = {name: data.copy(deep=True) for name, data in record.items()}
     other["table1"]["computed"].values[0, 0, 0] += 1e-5

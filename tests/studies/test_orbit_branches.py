@@ -153,6 +153,8 @@ def test_stability_ranges(continuation_settings, described, release):
     }
     # In another order than computed, one family more and one contact less.
     printed = {
+        "restitution": 0.85,
+        "release": release,
         "frequency_ratio": [2.0],
         "n": [3, 2, 1],
         "bound": [PERIOD_DOUBLING, SADDLE_NODE],
@@ -247,6 +249,8 @@ def test_a_window_without_a_period_doubling(continuation_settings, one_line):
         "amplitude_max": 0.9,
     }
     printed = {
+        "restitution": 0.85,
+        "release": "displacement",
         "frequency_ratio": [10.0],
         "n": [1],
         "bound": [SADDLE_NODE, PERIOD_DOUBLING],

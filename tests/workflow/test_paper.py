@@ -89,11 +89,12 @@ def test_numbers_follow_the_data(run, text):
 def test_a_run_with_other_parameters_says_so(run):
     folder, data, tables, references = run
     changed = data["claims"].copy(deep=True)
-    reason = "fig14 was computed with n = 2, needed is 1"
+    reason = "fig14 was computed with n = 2; the claim requires 1"
     at = np.flatnonzero(changed.claim.values == "height threshold")
     changed["reason"] = changed.reason.astype(object)
     changed["reason"].values[at] = reason
-    changed["foreign"].values[at] = True
+    changed["verdict"] = changed.verdict.astype(object)
+    changed["verdict"].values[at] = "not asked"
     text = render_article(folder, data | {"claims": changed}, tables, references)
     assert text.index(reason) < text.index("## Abstract")
 

@@ -4,9 +4,10 @@ import os
 import sys
 from pathlib import Path
 
-from bouncing_ball.audit.claims.ledger_file import check_datasets, datasets_of, printed, read_ledger
+from bouncing_ball.audit.claims.ledger_file import read_ledger
 from bouncing_ball.configuration.check import ConfigurationError, check_configuration
 from bouncing_ball.configuration.stages import STAGES, Kind, names, studied
+from bouncing_ball.errors import ModelError
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.pipeline.sources import sources
 
@@ -21,11 +22,10 @@ TABLES = names(Kind.TABLE)
 DATASETS = [stage.name for stage in studied()]
 
 try:
-    LEDGER = read_ledger(Path(workflow.basedir, "config"))
-    check_datasets(LEDGER, set(DATASETS) - {"claims"})
+    LEDGER = read_ledger(Path(workflow.basedir, "config"), set(DATASETS) - {"claims"})
     # All that parameters and settings of the stages are taken from.
-    RUN = config | {"printed": printed(LEDGER, "Table 1"), "ledger": LEDGER}
-except ConfigurationError as error:
+    RUN = config | {"printed": LEDGER.table("Table 1"), "ledger": LEDGER.source}
+except ModelError as error:
     sys.exit(f"config/claims.yaml: {error}")
 
 
@@ -52,7 +52,7 @@ def files(artifacts):
 
 def reads(stage):
     """The artifacts whose datasets a stage takes; the ledger names its own."""
-    return datasets_of(LEDGER) if stage.section == "ledger" else stage.reads
+    return LEDGER.datasets if stage.section == "ledger" else stage.reads
 
 
 def modules(*names):

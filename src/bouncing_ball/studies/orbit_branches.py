@@ -265,26 +265,33 @@ def both_domains(
     )
 
 
-def printed_ranges(printed: Mapping[str, Any], ratios: list, families: list) -> np.ndarray:
+def printed_ranges(
+    printed: Mapping[str, Any], parameters: Mapping[str, Any], release: str
+) -> np.ndarray:
     """A printed table at the frequency ratios and families computed, shape (ϖ, n, 2).
 
-    NaN where the paper has no entry.
+    NaN where the paper has no entry, and everywhere with another r or another
+    release than the paper's: then there is nothing to compare with.
 
     Examples
     --------
-    >>> printed = {"frequency_ratio": [10.0], "n": [1], "bound": ["saddle-node",
-    ...            "period doubling"], "values": [[[0.25, 1.0]]]}
-    >>> printed_ranges(printed, [10.0, 5.0], [1]).tolist()
+    >>> printed = {"restitution": 0.85, "release": "displacement", "frequency_ratio": [10.0],
+    ...            "n": [1], "bound": ["saddle-node", "period doubling"], "values": [[[0.25, 1.0]]]}
+    >>> computed = {"restitution": 0.85, "frequency_ratio": [10.0, 5.0], "n": [1]}
+    >>> printed_ranges(printed, computed, "displacement").tolist()
     [[[0.25, 1.0]], [[nan, nan]]]
+    >>> bool(np.isnan(printed_ranges(printed, computed, "force")).all())
+    True
     """
     axes = {key: printed[key] for key in ("frequency_ratio", "n", "bound")}
     table = xr.DataArray(printed["values"], axes)
     wanted = {
-        "frequency_ratio": ratios,
-        "n": families,
+        "frequency_ratio": parameters["frequency_ratio"],
+        "n": parameters["n"],
         "bound": [SADDLE_NODE, PERIOD_DOUBLING],
     }
-    return table.reindex(wanted).values
+    same = (printed["restitution"], printed["release"]) == (parameters["restitution"], release)
+    return table.where(same).reindex(wanted).values
 
 
 def stability_ranges(
@@ -318,7 +325,7 @@ def stability_ranges(
                 "computed": (dims, computed),
                 "special_phase": (dims, phase),
                 "special_contact_duration": (dims, duration),
-                "printed": (dims, printed_ranges(printed, ratios, n)),
+                "printed": (dims, printed_ranges(printed, parameters, release)),
                 "restitution_range": (("impact_map", "n", "bound"), limit),
             },
             coords={

@@ -5,7 +5,7 @@ import copy
 import pytest
 import xarray as xr
 
-from bouncing_ball.audit.claims.ledger import parse_ledger
+from bouncing_ball.audit.claims.ledger_file import parse_ledger
 
 NUMBER = {
     "id": "height",

@@ -8,9 +8,8 @@ from bouncing_ball.audit.claims.ledger import (
     Condition,
     Measure,
     Relation,
-    parse_ledger,
-    printed_table,
 )
+from bouncing_ball.audit.claims.ledger_file import parse_ledger
 from bouncing_ball.errors import ModelError
 
 TABLE = {
@@ -76,13 +75,30 @@ def test_the_first_explanation_that_fits_is_taken(ledger, table):
     assert names == ["second", "first", "second", "first", "", "", "first", "first"]
 
 
-def test_a_printed_table_as_numbers():
-    assert printed_table(TABLE) == {
+def test_a_printed_table_as_numbers_with_the_parameters_behind_it(table, one_line):
+    book = parse_ledger(
+        {
+            "close_units": 2,
+            "parameters": {
+                "every": {"release": "displacement"},
+                "table1": {"restitution": 0.85, "n": [1, 2, 3], "points": {"at_least": 5}},
+            },
+            "claims": [table],
+            "explanations": [explanation("first"), explanation("second")],
+        }
+    )
+    assert book.datasets == ["sweep", "table1", "x"]
+    assert book.table("ranges") == {
+        "release": "displacement",
+        "restitution": 0.85,
         "frequency_ratio": [1e4, 2.0],
         "n": [1, 2],
         "bound": ["low", "high"],
         "values": [[[0.1, 0.2], [0.3, 0.4]], [[0.5, 0.6], [0.7, 0.8]]],
     }
+    with pytest.raises(ModelError) as error:
+        book.table("Table 2")
+    one_line(error, "unknown table 'Table 2'; known: ranges")
 
 
 @pytest.mark.parametrize(
@@ -103,7 +119,16 @@ def test_a_printed_table_as_numbers():
             "n = 1, bound = high is 0.6, not a number as a text",
         ),
         (lambda t: t.update(statement="{m} there"), "may name only frequency_ratio, n, bound"),
-        (lambda t: t.update(statement="{n there"), "may name only frequency_ratio, n, bound"),
+        (lambda t: t.update(statement="{} there"), "may name only frequency_ratio, n, bound"),
+        (lambda t: t.update(statement="{n there"), "has a brace that does not match"),
+        (lambda t: t.update(statement="n} there"), "has a brace that does not match"),
+        # Otherwise a format of a gigabyte, and the attributes of an object.
+        (lambda t: t.update(statement="{n:99999999999}"), "may write n as {n} or {n:g}"),
+        (lambda t: t.update(statement="{n:{n}}"), "may write n as {n} or {n:g}"),
+        (lambda t: t.update(statement="{n!r}"), "may write n as {n} or {n:g}"),
+        (lambda t: t.update(statement="{bound:g}"), "may write bound as {bound}"),
+        (lambda t: t.update(statement="{n.zzz}"), "it names 'n.zzz'"),
+        (lambda t: t.update(statement="{n[0]}"), "it names 'n[0]'"),
         (
             lambda t: t["explanation"][0].update(where={"r": 1}),
             "'first' is for r, which is not one of frequency_ratio, n, bound",
@@ -157,28 +182,28 @@ def test_what_a_claim_may_leave_out(ledger, number):
     assert ledger(number | {"unit": 100}).claims[0].unit == 100
 
 
-def test_names_stand_once(ledger, number, statement, table, one_line):
+def test_names_are_defined_once(ledger, number, statement, table, one_line):
     with pytest.raises(ModelError) as error:
         ledger(number, statement | {"id": "height"})
-    one_line(error, "claim 'height' stands twice in the ledger")
+    one_line(error, "claim 'height' is defined twice in the ledger")
     with pytest.raises(ModelError) as error:
         parsed(ledger, table, number | {"id": "ranges: 2, 1, low"})
-    one_line(error, "claim 'ranges: 2, 1, low' stands twice")
+    one_line(error, "claim 'ranges: 2, 1, low' is defined twice")
     # The rest of two tables of one name may differ; the name may not.
     other = copy.deepcopy(table) | {"over": {"n": [5]}, "printed": ["1"], "statement": "{n}"}
     other["explanation"] = []
     with pytest.raises(ModelError) as error:
         parsed(ledger, table, other)
-    one_line(error, "claim 'ranges' stands twice")
+    one_line(error, "claim 'ranges' is defined twice")
     with pytest.raises(ModelError) as error:
         ledger(number, explanations=[explanation("why"), explanation("why")])
-    one_line(error, "explanation 'why' stands twice in the ledger")
+    one_line(error, "explanation 'why' is defined twice in the ledger")
 
 
-def test_an_explanation_that_there_is_not(ledger, number, one_line):
+def test_an_unknown_explanation(ledger, number, one_line):
     with pytest.raises(ModelError) as error:
         ledger(number | {"explanation": "because"})
-    one_line(error, "claim 'height' names the explanation 'because'", "not one of it turns")
+    one_line(error, "claim 'height': unknown explanation 'because'; known: it turns")
 
 
 def test_measures_in_words():

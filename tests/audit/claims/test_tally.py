@@ -27,6 +27,13 @@ def test_counts_from_the_best_to_the_worst():
     )
 
 
+def test_what_is_not_asked_is_counted_where_there_is_any():
+    line = tally(verdicts(("not asked", True), ("reproduced", True)), 2)
+    assert line.endswith(
+        "2 claims: 1 reproduced, 0 close, 0 contradicted, 0 undecidable, 1 not asked"
+    )
+
+
 def test_what_is_not_explained_is_counted():
     line = tally(verdicts(("contradicted", False), ("close", True), ("undecidable", False)), 2)
     assert line.endswith("1 undecidable; 2 without explanation")

@@ -29,7 +29,6 @@ def claims(**changes):
         "condition": ["", ""],
         "legibility": ["clear", "clear"],
         "printed_table": ["", ""],
-        "foreign": [False, False],
         "statement": ["heights differ", "thresholds differ"],
         "printed_text": ["82", "6"],
         "required": ["82", "6"],
@@ -110,20 +109,23 @@ def test_explanations_are_those_of_claims_not_reproduced():
 
 
 def test_claims_by_place():
-    told = Claims(claims())
-    assert [claim.id for claim in told.about("Fig. 16")] == ["contact"]
-    # Each is told once.
-    assert told.about("Eq. 38") == [] == told.about("Fig. 1")
+    shown = Claims(claims())
+    assert [claim.id for claim in shown.about("Fig. 16")] == ["contact"]
+    # Each is shown once.
+    assert shown.about("Eq. 38") == [] == shown.about("Fig. 1")
     assert Claims(claims(printed_table=["", "Table 1"])).about("Fig. 16") == []
-    assert told.about("Fig. 14", "Eq. 38")[0].found == "82.18"
+    assert shown.about("Fig. 14", "Eq. 38")[0].found == "82.18"
 
 
-def test_foreign_parameters_are_reported_once():
-    reason = "fig14 was computed with n = 2, not with the paper's 1"
-    told = Claims(claims(reason=[reason, reason], foreign=[True, True]))
-    assert told.foreign() == [reason]
-    # The flag says it, not the words.
-    assert Claims(claims(reason=[reason, reason])).foreign() == []
+def test_other_parameters_are_reported_once():
+    reason = "fig14 was computed with n = 2; the claim requires 1"
+    shown = Claims(claims(reason=[reason, reason], verdict=["not asked"] * 2))
+    assert shown.not_asked() == [reason]
+    assert not shown.asked("heights")
+    # The verdict says it, not the words.
+    assert Claims(claims(reason=[reason, reason])).not_asked() == []
+    # What is not asked needs no explanation.
+    assert shown.explanations() == []
 
 
 @pytest.mark.parametrize(
@@ -165,5 +167,5 @@ def test_references_are_whole(key):
 
 
 def test_nan_is_not_printed():
-    told = Claims(claims(found=[np.nan, 9.8118], verdict=["undecidable", "contradicted"]))
-    assert told("heights").found == "–"
+    shown = Claims(claims(found=[np.nan, 9.8118], verdict=["undecidable", "contradicted"]))
+    assert shown("heights").found == "–"

@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.audit.claims.ledger import Claim, Criterion, Explanation, Ledger, parse_ledger
+from bouncing_ball.audit.claims.ledger import Claim, Criterion, Explanation, Ledger
+from bouncing_ball.audit.claims.ledger_file import parse_ledger
 from bouncing_ball.audit.claims.verdict import (
     Finding,
     Verdict,
@@ -93,12 +94,9 @@ def assess(ledger: Ledger, data: Mapping[str, xr.Dataset]) -> xr.Dataset:
             "deviation": finding.relative if finding else np.nan,
             "verdict": str(decision.verdict),
             "reason": decision.reason,
-            "foreign": decision.foreign,
             "printed_table": claim.table,
             "explained_by": claim.explanation,
-            # Other parameters than the paper's are a reason of their own.
-            "explained": decision.verdict is Verdict.REPRODUCED
-            or decision.foreign
+            "explained": decision.verdict in (Verdict.REPRODUCED, Verdict.NOT_ASKED)
             or holds.get(claim.explanation, False),
         }
         for key, value in row.items():

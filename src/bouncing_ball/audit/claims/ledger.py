@@ -1,21 +1,15 @@
-"""The claims as objects, from the mapping that ``config/claims.yaml`` holds.
+"""The ledger: what the paper claims, and what decides each claim."""
 
-The mapping is taken to satisfy ``config/claims.schema.yaml``; the pipeline
-checks that before.
-"""
-
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from itertools import product
 from typing import Any
 
-from bouncing_ball.audit.claims.digits import is_number_text
 from bouncing_ball.errors import ModelError
 
 
 class Relation(StrEnum):
-    """How a number must stand to the bound of a condition."""
+    """How a number compares with the bound of a condition."""
 
     AT_MOST = "at_most"
     AT_LEAST = "at_least"
@@ -24,13 +18,13 @@ class Relation(StrEnum):
 
     @property
     def sign(self) -> str:
-        """As it stands between two numbers."""
+        """The sign between two numbers."""
         return {"at_most": "≤", "at_least": "≥", "below": "<", "above": ">"}[self]
 
 
 @dataclass(frozen=True)
 class Measure:
-    """One number of a dataset: where it stands and how it is made one.
+    """One number of a dataset: its place, and how several become one.
 
     Parameters
     ----------
@@ -82,16 +76,16 @@ class Claim:
     Parameters
     ----------
     id, kind, section, item, statement : str
-        Name; ``number``, ``formula`` or ``statement``; where it stands; what it
-        says, in our words.
+        Name; ``number``, ``formula`` or ``statement``; its place in the paper;
+        what it says, in our words.
     printed : str
         The number as printed, with its digits; empty if there is none.
     unit : float or None
-        Unit of the last significant digit, where the digits do not tell.
+        Unit of the last significant digit, where the digits do not show it.
     legibility, remark : str
         How legible it is in the text at hand; how it was read.
     condition_text : str
-        The decidable condition that stands for a statement in words.
+        The decidable condition into which a statement in words is turned.
     criteria : tuple of Criterion
         One, or one for each reading.
     uses : tuple of str
@@ -130,176 +124,34 @@ class Explanation:
 
 @dataclass(frozen=True)
 class Ledger:
-    """All claims and explanations, and the paper's parameters by dataset."""
+    """All claims and explanations, and the paper's parameters by dataset.
+
+    ``tables`` are the printed tables by name, each with its axes, its
+    ``values`` as numbers, and the paper's other parameters of the dataset that
+    decides it. ``source`` is the mapping that all this was read from.
+    """
 
     close_units: float
     parameters: Mapping[str, Mapping[str, Any]]
     claims: tuple[Claim, ...]
     explanations: tuple[Explanation, ...]
+    tables: Mapping[str, Mapping[str, Any]]
+    source: Mapping[str, Any]
 
+    @property
+    def datasets(self) -> list[str]:
+        """Names of the datasets that decide something, sorted."""
+        used = [part.uses for part in self.claims] + [part.uses for part in self.explanations]
+        return sorted({name for names in used for name in names})
 
-def _criterion(entry: Mapping[str, Any]) -> Criterion:
-    source = entry["decided_by"]
-    measure = Measure(
-        source["dataset"],
-        source["variable"],
-        tuple(source.get("at", {}).items()),
-        source.get("reduce", "value"),
-    )
-    condition = None
-    if "condition" in entry:
-        given = entry["condition"]
-        relation = next(relation for relation in Relation if relation in given)
-        bound = given[relation]
-        if isinstance(bound, Mapping):
-            condition = Condition(relation, bound["variable"], bound_is_variable=True)
-        else:
-            condition = Condition(relation, bound)
-    return Criterion(measure, condition, entry.get("reading", ""))
+    def table(self, name: str) -> Mapping[str, Any]:
+        """A printed table, as a stage takes it.
 
-
-def _criteria(entry: Mapping[str, Any]) -> tuple[Criterion, ...]:
-    return tuple(_criterion(part) for part in entry.get("readings", [entry]))
-
-
-def _uses(entry: Mapping[str, Any], criteria: tuple[Criterion, ...]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys([*(c.measure.dataset for c in criteria), *entry.get("uses", [])]))
-
-
-def _claim(entry: Mapping[str, Any]) -> Claim:
-    criteria = _criteria(entry)
-    return Claim(
-        id=entry["id"],
-        kind=entry["kind"],
-        section=entry["section"],
-        item=entry["item"],
-        statement=entry["statement"],
-        printed=entry.get("printed", ""),
-        unit=entry.get("unit"),
-        legibility=entry["legibility"],
-        remark=entry.get("remark", ""),
-        condition_text=entry.get("condition", {}).get("text", ""),
-        criteria=criteria,
-        uses=_uses(entry, criteria),
-        explanation=entry.get("explanation", ""),
-        table=entry.get("table", ""),
-    )
-
-
-def _entry(entry: Mapping[str, Any], place) -> str:
-    """The printed number at a place, ((axis, index, value), ...) from the outermost axis."""
-    printed: Any = entry["printed"]
-    passed: list[str] = []
-    for axis, index, value in place:
-        expected = len(entry["over"][axis])
-        if not isinstance(printed, list) or len(printed) != expected:
-            at = f" at {', '.join(passed)}" if passed else ""
-            raise ModelError(
-                f"table {entry['id']!r}: printed{at} is not a list of {expected}, one for each "
-                f"{axis}"
-            )
-        printed = printed[index]
-        passed.append(f"{axis} = {value}")
-    if not is_number_text(printed):
-        raise ModelError(
-            f"table {entry['id']!r}: printed at {', '.join(passed)} is {printed!r}, not a number "
-            "as a text"
-        )
-    return printed
-
-
-def _chosen_explanation(entry: Mapping[str, Any], at: Mapping[str, Any]) -> str:
-    """The first explanation of a table whose ``where`` fits; empty if none does."""
-    for rule in entry["explanation"]:
-        where = rule.get("where", {})
-        strange = next((key for key in where if key not in at), None)
-        if strange is not None:
-            raise ModelError(
-                f"table {entry['id']!r}: the explanation {rule['name']!r} is for {strange}, which "
-                f"is not one of {', '.join(at)}"
-            )
-        if all(at[key] == value for key, value in where.items()):
-            return rule["name"]
-    return ""
-
-
-def _cells(entry: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
-    """One entry for each number of a printed table."""
-    axes = entry["over"]
-    labelled = ([(axis, *pair) for pair in enumerate(values)] for axis, values in axes.items())
-    for place in product(*labelled):
-        at = {axis: value for axis, _, value in place}
-        labels = (f"{x:g}" if isinstance(x, float) else str(x) for x in at.values())
-        try:
-            statement = entry["statement"].format(**at)
-        except (LookupError, ValueError) as error:
-            raise ModelError(
-                f"table {entry['id']!r}: the statement {entry['statement']!r} may name only "
-                f"{', '.join(axes)}"
-            ) from error
-        source = entry["decided_by"]
-        yield {
-            **{key: entry[key] for key in ("section", "item", "legibility")},
-            "id": f"{entry['id']}: {', '.join(labels)}",
-            "table": entry["id"],
-            "kind": "number",
-            "statement": statement,
-            "printed": _entry(entry, place),
-            "remark": entry.get("remark", ""),
-            "decided_by": {**source, "at": {**source.get("at", {}), **at}},
-            "explanation": _chosen_explanation(entry, at),
-            "uses": entry.get("uses", []),
-        }
-
-
-def printed_table(entry: Mapping[str, Any]) -> dict[str, Any]:
-    """Axes and numbers of a printed table, as a stage takes them.
-
-    Examples
-    --------
-    >>> printed_table({"over": {"n": [1, 2]}, "printed": ["0.5", "0.75"]})
-    {'n': [1, 2], 'values': [0.5, 0.75]}
-    """
-
-    def numbers(part):
-        return [numbers(x) for x in part] if isinstance(part, list) else float(part)
-
-    return {**entry["over"], "values": numbers(entry["printed"])}
-
-
-def _explanation(entry: Mapping[str, Any]) -> Explanation:
-    criteria = _criteria({"readings": entry["checks"]})
-    return Explanation(entry["id"], entry["text"], criteria, _uses(entry, criteria))
-
-
-def _once(kind: str, names: Sequence[str]) -> None:
-    for name in names:
-        if names.count(name) > 1:
-            raise ModelError(f"{kind} {name!r} stands twice in the ledger")
-
-
-def parse_ledger(mapping: Mapping[str, Any]) -> Ledger:
-    """The ledger from its mapping; tables become one claim for each number.
-
-    Raises
-    ------
-    ModelError
-        If a name stands twice, a claim names an explanation that there is not,
-        or a printed table does not have the shape of its axes.
-    """
-    explanations = tuple(_explanation(entry) for entry in mapping["explanations"])
-    _once("explanation", [explanation.id for explanation in explanations])
-    _once("claim", [entry["id"] for entry in mapping["claims"]])
-    claims: list[Claim] = []
-    for entry in mapping["claims"]:
-        parts = _cells(entry) if entry["kind"] == "table" else [entry]
-        claims += [_claim(part) for part in parts]
-    _once("claim", [claim.id for claim in claims])
-    known = {explanation.id for explanation in explanations}
-    for claim in claims:
-        if claim.explanation and claim.explanation not in known:
-            raise ModelError(
-                f"claim {claim.id!r} names the explanation {claim.explanation!r}, which is not one "
-                f"of {', '.join(sorted(known))}"
-            )
-    return Ledger(mapping["close_units"], mapping["parameters"], tuple(claims), explanations)
+        Raises
+        ------
+        ModelError
+            If the ledger has no such table.
+        """
+        if name not in self.tables:
+            raise ModelError(f"unknown table {name!r}; known: {', '.join(self.tables) or 'none'}")
+        return self.tables[name]

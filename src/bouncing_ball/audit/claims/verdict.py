@@ -1,4 +1,4 @@
-"""The verdict on a claim: reproduced, close, contradicted or undecidable."""
+"""The verdict on a claim, or that it was not asked."""
 
 import json
 from collections.abc import Mapping
@@ -22,14 +22,14 @@ from bouncing_ball.audit.claims.ledger import (
 from bouncing_ball.audit.claims.measure import measured
 from bouncing_ball.errors import ModelError
 
-# Rounding must not decide what stands exactly on a bound.
+# Rounding must not decide what lies exactly on a bound.
 _ROUNDING = 1e-9
 # A digit that rounds to the printed one.
 _HALF = 0.5 + _ROUNDING
 
 
 class Verdict(StrEnum):
-    """From the best to the worst."""
+    """From the best to the worst, and no verdict at all."""
 
     REPRODUCED = "reproduced"
     """Within half a unit of the last printed digit; a condition that holds."""
@@ -37,6 +37,9 @@ class Verdict(StrEnum):
     """A number farther away, by no more units than the ledger's ``close_units``."""
     CONTRADICTED = "contradicted"
     UNDECIDABLE = "undecidable"
+    """Depends on how the claim is read."""
+    NOT_ASKED = "not asked"
+    """The datasets were not computed with the paper's parameters."""
 
 
 @dataclass(frozen=True)
@@ -59,15 +62,11 @@ class Finding:
 
 @dataclass(frozen=True)
 class Decision:
-    """The verdict on a claim with the finding that it rests on.
-
-    ``foreign`` says that parameters other than the paper's leave it open.
-    """
+    """The verdict on a claim with the finding that it rests on, or why there is none."""
 
     verdict: Verdict
     finding: Finding | None
     reason: str = ""
-    foreign: bool = False
 
 
 def _relative(difference: float, reference: float) -> float:
@@ -181,10 +180,10 @@ def foreign_parameter(
 ) -> str:
     """The first parameter of the datasets used that is not the paper's, in words; or "".
 
-    A parameter stands in the ledger as it stands among a dataset's attributes;
-    those under ``every`` are asked of all datasets that have them, those under
-    ``dataset.variable`` only for what is decided by that variable. A mapping
-    with ``at_least``, ``at_most`` or ``includes`` asks no more than that.
+    The ledger writes a parameter as a dataset's attributes do. It requires those
+    under ``every`` of all datasets that have them, those under
+    ``dataset.variable`` only for what that variable decides. A mapping with
+    ``at_least``, ``at_most`` or ``includes`` requires no more than that.
 
     Raises
     ------
@@ -194,7 +193,7 @@ def foreign_parameter(
     common = ledger.parameters.get("every", {})
     for name in part.uses:
         if name not in data:
-            raise ModelError(f"{part.id!r} uses the dataset {name}, which there is not")
+            raise ModelError(f"{part.id!r} uses the unknown dataset {name}")
         attributes = data[name].attrs
         own = dict(ledger.parameters.get(name, {}))
         for measure in (criterion.measure for criterion in part.criteria):
@@ -209,7 +208,8 @@ def foreign_parameter(
         for key, paper in {**common, **own}.items():
             if key in attributes and not _agrees(_plain(attributes[key]), paper):
                 given = _plain(attributes[key])
-                return f"{name} was computed with {key} = {given}, needed is {_words(paper)}"
+                required = _words(paper)
+                return f"{name} was computed with {key} = {given}; the claim requires {required}"
     return ""
 
 
@@ -223,8 +223,8 @@ def _number(criterion: Criterion, finding: Finding) -> str:
 def decide(claim: Claim, ledger: Ledger, data: Mapping[str, xr.Dataset]) -> Decision:
     """The decision on a claim.
 
-    Undecidable if the datasets were not computed with the paper's parameters,
-    or if the verdict depends on how the claim is read.
+    Not asked if the datasets were not computed with the paper's parameters,
+    undecidable if the verdict depends on how the claim is read.
 
     Raises
     ------
@@ -233,7 +233,7 @@ def decide(claim: Claim, ledger: Ledger, data: Mapping[str, xr.Dataset]) -> Deci
     """
     foreign = foreign_parameter(claim, ledger, data)
     if foreign:
-        return Decision(Verdict.UNDECIDABLE, None, foreign, foreign=True)
+        return Decision(Verdict.NOT_ASKED, None, foreign)
     findings = [find(criterion, claim, ledger, data) for criterion in claim.criteria]
     verdicts = {finding.verdict for finding in findings}
     if len(verdicts) > 1:

@@ -75,7 +75,7 @@ class Reading:
 
 def single_readings(parameters: Mapping[str, Any]) -> dict[str, Reading]:
     """Readings with one assumption each, by name."""
-    r = parameters["restitution"]
+    r = parameters["printed"]["restitution"]
     rows = np.array(parameters["printed"]["frequency_ratio"], dtype=float)[:, np.newaxis]
     zeta = float(damping_ratio(r))
     printed_zeta = parameters["printed_damping_ratio"]

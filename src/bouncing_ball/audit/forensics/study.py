@@ -26,7 +26,7 @@ def _model(chosen: list[Reading], parameters: Mapping[str, Any]) -> Altered:
     printed = parameters["printed"]
     standard = {
         "frequency_ratio": np.array(printed["frequency_ratio"], dtype=float)[:, np.newaxis],
-        "damping_ratio": float(damping_ratio(parameters["restitution"])),
+        "damping_ratio": float(damping_ratio(printed["restitution"])),
         "n": np.array(printed["n"], dtype=float),
     }
     shape = (len(printed["frequency_ratio"]), len(printed["n"]))
@@ -41,7 +41,8 @@ def _model(chosen: list[Reading], parameters: Mapping[str, Any]) -> Altered:
 
 def _formula(parameters: Mapping[str, Any]) -> np.ndarray:
     """Eqs. 7 and 8 as printed, shape (families, 2)."""
-    n, r = np.array(parameters["printed"]["n"]), parameters["restitution"]
+    printed = parameters["printed"]
+    n, r = np.array(printed["n"]), printed["restitution"]
     doubling = restitution_orbits.period_doubling(n, r, ImpactMap.HOLMES)
     return np.stack([restitution_orbits.saddle_node(n, r), doubling], axis=-1)
 
@@ -112,14 +113,14 @@ def forensics(parameters: Mapping[str, Any], printed: Mapping[str, Any]) -> xr.D
     Parameters
     ----------
     parameters : mapping
-        ``restitution`` r; ``printed_damping_ratio``, ζ as the paper rounds it;
+        ``printed_damping_ratio``, ζ as the paper rounds it;
         ``other_damping_ratios`` to try; ``stiff_exponents`` to try for the
         stiffest row; ``steps`` of a continuation, and the arclength
         ``step_reach`` in which a step that would do is looked for;
         ``last_digit``, the unit of the last printed digit.
     printed : mapping
-        Table 1 as printed: its ``frequency_ratio``, ``n``, ``bound`` and
-        ``values`` of shape (frequency_ratio, n, bound).
+        Table 1 as printed: its ``restitution`` r, its ``frequency_ratio``, ``n``,
+        ``bound`` and ``values`` of shape (frequency_ratio, n, bound).
 
     Returns
     -------

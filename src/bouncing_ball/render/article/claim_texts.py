@@ -1,6 +1,6 @@
 """Claims and their verdicts as an article needs them."""
 
-from dataclasses import dataclass
+from types import SimpleNamespace
 
 import numpy as np
 import xarray as xr
@@ -9,28 +9,9 @@ from bouncing_ball.errors import ModelError
 from bouncing_ball.render.article.places import places
 from bouncing_ball.render.tables.claims import found_text
 
-
-@dataclass(frozen=True)
-class ClaimText:
-    """One claim of the ledger with its verdict, as text.
-
-    ``found`` and ``required`` are as in the table of claims.
-    """
-
-    id: str
-    kind: str
-    item: str
-    statement: str
-    condition: str
-    legibility: str
-    printed: str
-    printed_table: str
-    required: str
-    verdict: str
-    reason: str
-    foreign: bool
-    explanation: str
-    found: str
+# One claim: the dataset's variables over ``claim`` by name, its ``id``, and
+# ``found`` as in the table of claims.
+ClaimRow = SimpleNamespace
 
 
 class Claims:
@@ -38,47 +19,33 @@ class Claims:
 
     def __init__(self, data: xr.Dataset) -> None:
         self._data = data
-        self._told: set[str] = set()
-        rows = [data.isel(claim=index) for index in range(data.sizes["claim"])]
-        self._claims = [
-            ClaimText(
-                id=row.claim.item(),
-                kind=row.kind.item(),
-                item=row["item"].item(),
-                statement=row.statement.item(),
-                condition=row.condition.item(),
-                legibility=row.legibility.item(),
-                printed=row.printed_text.item(),
-                printed_table=row.printed_table.item(),
-                required=row.required.item(),
-                verdict=row.verdict.item(),
-                reason=row.reason.item(),
-                foreign=bool(row.foreign.item()),
-                explanation=row.explained_by.item(),
-                found=found_text(row),
-            )
-            for row in rows
-        ]
+        self._shown: set[str] = set()
+        columns = [name for name, values in data.data_vars.items() if values.dims == ("claim",)]
+        self._claims = []
+        for index, name in enumerate(data.claim.values.tolist()):
+            row = data[columns].isel(claim=index)
+            texts = {str(key): row[key].item() for key in columns}
+            self._claims.append(ClaimRow(**texts | {"id": name, "found": found_text(row)}))
 
-    def __call__(self, name: str) -> ClaimText:
+    def __call__(self, name: str) -> ClaimRow:
         """A claim by its id."""
         for claim in self._claims:
             if claim.id == name:
                 return claim
         raise ModelError(f"no claim {name!r} in the ledger")
 
-    def about(self, *items: str) -> list[ClaimText]:
-        """The claims that stand at a figure or equation, each where it is first asked
-        for; entries of tables are left out."""
+    def about(self, *items: str) -> list[ClaimRow]:
+        """The claims about a figure or equation, each only the first time; entries of
+        tables are left out."""
         wanted = set(items)
         found = [
             claim
             for claim in self._claims
             if places(claim.item) & wanted
             and not claim.printed_table
-            and claim.id not in self._told
+            and claim.id not in self._shown
         ]
-        self._told |= {claim.id for claim in found}
+        self._shown |= {claim.id for claim in found}
         return found
 
     def count(self, verdict: str = "", *, table: str = "") -> int:
@@ -89,7 +56,7 @@ class Claims:
             if verdict in ("", claim.verdict) and table in ("", claim.printed_table)
         )
 
-    def all(self, verdict: str) -> list[ClaimText]:
+    def all(self, verdict: str) -> list[ClaimRow]:
         """All claims with a verdict."""
         return [claim for claim in self._claims if claim.verdict == verdict]
 
@@ -101,16 +68,24 @@ class Claims:
             if (claim.kind, claim.legibility, claim.verdict) == ("formula", "damaged", "reproduced")
         )
 
-    def foreign(self) -> list[str]:
-        """Why claims are open because of parameters that are not the paper's."""
-        return sorted({claim.reason for claim in self._claims if claim.foreign})
+    def asked(self, name: str) -> bool:
+        """Whether a claim has a verdict: the run has the paper's parameters for it."""
+        return self(name).verdict != "not asked"
+
+    def not_asked(self) -> list[str]:
+        """Which parameters are not the paper's, so that claims are not asked."""
+        return sorted({claim.reason for claim in self.all("not asked")})
 
     def explanations(self) -> list[dict[str, object]]:
-        """Explanations of the claims that are not reproduced, with those claims."""
+        """Explanations of the claims that are asked and not reproduced, with those claims."""
         found = []
         data = self._data
         for index, name in enumerate(data.explanation.values):
-            about = [c for c in self._claims if c.explanation == name and c.verdict != "reproduced"]
+            about = [
+                claim
+                for claim in self._claims
+                if claim.explained_by == name and claim.verdict not in ("reproduced", "not asked")
+            ]
             if about:
                 found.append(
                     {

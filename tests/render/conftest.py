@@ -1,0 +1,49 @@
+"""All texts that are read from the accepted datasets, for tests to change."""
+
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+from bouncing_ball.audit.claims.assessment import assess
+from bouncing_ball.audit.claims.ledger_file import read_ledger
+from bouncing_ball.audit.evidence import evidence
+from bouncing_ball.configuration.yaml_file import read_yaml
+from bouncing_ball.datasets.netcdf import read_dataset
+from bouncing_ball.render.article.render import render_article
+from bouncing_ball.render.tables.formats import to_csv, to_latex, to_markdown
+
+ROOT = Path(__file__).resolve().parents[2]
+TEMPLATES = ROOT / "workflow" / "report" / "paper"
+TABLES = ("table1", "thresholds", "witness", "forensics", "formulas", "claims")
+DERIVED = ("evidence", "claims")
+
+
+@pytest.fixture(scope="session")
+def record():
+    """The accepted datasets that are computed, not read off others."""
+    paths = sorted((ROOT / "figures").glob("*.nc"))
+    return {path.stem: read_dataset(path) for path in paths if path.stem not in DERIVED}
+
+
+def all_texts(data):
+    """All tables in all formats, and the article."""
+    parameters = read_yaml(ROOT / "config" / "config.yaml")["studies"]["evidence"]
+    found = evidence(data, parameters).assign_attrs(parameters)
+    data = {**data, "evidence": found}
+    data["claims"] = assess(read_ledger(ROOT / "config"), data)
+    made = {}
+    for name in TABLES:
+        rows = import_module(f"bouncing_ball.render.tables.{name}").rows(data[name])
+        for form in (to_csv, to_latex, to_markdown):
+            made[name, form.__name__] = form(*rows)
+    references = read_yaml(TEMPLATES / "references.yaml")
+    tables = {name: made[name, "to_markdown"] for name in TABLES}
+    made["article"] = render_article(TEMPLATES, data, tables, references)
+    return made
+
+
+@pytest.fixture(scope="session")
+def texts():
+    """Makes all tables in all formats, and the article, from datasets by name."""
+    return all_texts

@@ -1,0 +1,34 @@
+"""What is not compared with the paper is compared in no text."""
+
+import numpy as np
+import pytest
+
+
+@pytest.fixture(scope="module")
+def other(record, texts):
+    """All texts of a run whose Table 1 has another r, as the stage writes it."""
+    table = record["table1"].assign(printed=record["table1"].printed * np.nan)
+    return texts(record | {"table1": table.assign_attrs(restitution=0.8)})
+
+
+def test_table_1_at_another_r_has_nothing_printed(other):
+    body = other["table1", "to_csv"].splitlines()[1:]
+    assert all(line.endswith(",,") for line in body)
+
+
+def test_the_article_compares_no_entry_of_it(other, record, texts):
+    compared = ("ends of stability ranges", "differ from ours")
+    abstracts = [
+        " ".join(made["article"].partition("## Introduction")[0].split())
+        for made in (texts(record), other)
+    ]
+    assert all(words in abstracts[0] for words in compared)
+    assert not any(words in abstracts[1] for words in compared)
+    assert "table1 was computed with restitution = 0.8; the claim requires 0.85" in abstracts[1]
+    assert "are not asked, as this rendering has other parameters" in abstracts[1]
+
+
+def test_its_claims_are_not_asked(other):
+    rows = [line for line in other["claims", "to_csv"].splitlines() if line.startswith('"Table 1:')]
+    assert len(rows) == 18 and all(row.endswith(",–,,not asked") for row in rows)
+    assert "Claims: Table 1" not in other["article"]

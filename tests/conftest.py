@@ -5,6 +5,7 @@ own solution of the contact, Brent's method, and free flight.
 """
 
 import math
+import os
 from types import SimpleNamespace
 
 import numpy as np
@@ -24,6 +25,12 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )
 settings.load_profile("deterministic")
+
+
+def pytest_collection_modifyitems(items):
+    """With several workers the long tests first, so that none runs alone at the end."""
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        items.sort(key=lambda item: "workflow" not in item.path.parts)
 
 
 def _contact_state(s, d0, v0, phase, lam, omega, zeta):

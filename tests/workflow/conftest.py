@@ -1,5 +1,11 @@
-"""Copies of the tree in which the workflow is run as a user runs it."""
+"""Copies of the tree in which the workflow is run as a user runs it.
 
+A whole run costs as much as hundreds of other tests: there is one, which all
+workers share, and copies of it.
+"""
+
+import compileall
+import fcntl
 import os
 import re
 import shutil
@@ -7,6 +13,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -123,8 +130,8 @@ class Tree:
             if "__pycache__" not in name and not any(part in name for part in skipped)
         }
 
-    def interrupt(self, sign: signal.Signals, *arguments: str) -> None:
-        """Start a run and stop it once a few results are there."""
+    def interrupt(self, sign: signal.Signals, *arguments: str, after: int) -> None:
+        """Start a run and stop it once so many results are there."""
         running = subprocess.Popen(
             [SNAKEMAKE, *arguments],
             cwd=self.path,
@@ -134,7 +141,7 @@ class Tree:
             start_new_session=True,
         )
         deadline = time.monotonic() + 60
-        while len(list(self.path.glob("results/figures/*"))) < 4:
+        while len(list(self.path.glob("results/figures/*"))) < after:
             assert running.poll() is None, "the run ended before it could be interrupted"
             assert time.monotonic() < deadline, "no results within a minute"
             time.sleep(0.02)
@@ -146,36 +153,64 @@ class Tree:
                 os.killpg(running.pid, signal.SIGKILL)
 
 
-def copy_tree(source: Path, target: Path, *, with_results: bool = False) -> Tree:
-    ignored = shutil.ignore_patterns("__pycache__") if with_results else IGNORED
+def copy_tree(source: Path, target: Path, *, with_git: bool = False) -> Tree:
+    """A copy of the repository, or of one of these trees with its git and its results."""
+    ignored = None if with_git else IGNORED
     shutil.copytree(source, target, ignore=ignored, copy_function=shutil.copy2)
     return Tree(target)
 
 
-def clone(target: Path) -> Tree:
-    """A copy of the repository, in a repository of its own with one commit."""
-    tree = copy_tree(ROOT, target)
-    tree.lock_what_runs()
-    tree.git("init", "--quiet")
-    tree.commit("All")
-    return tree
+@pytest.fixture(scope="session")
+def shared(tmp_path_factory) -> Path:
+    """A folder of this session, the same for all workers."""
+    base = tmp_path_factory.getbasetemp()
+    return base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+
+
+def made_once(target: Path, make: Callable[[Path], None]) -> Tree:
+    """A tree that the first worker who needs it makes; the others wait for it."""
+    with open(target.with_suffix(".lock"), "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not target.exists():
+            part = target.with_suffix(".part")
+            shutil.rmtree(part, ignore_errors=True)
+            make(part)
+            part.rename(target)
+    return Tree(target)
 
 
 @pytest.fixture(scope="session")
-def pristine(tmp_path_factory) -> Tree:
+def cloned(shared) -> Tree:
+    """A fresh clone: the repository in a repository of its own with one commit."""
+
+    def make(folder: Path) -> None:
+        tree = copy_tree(ROOT, folder)
+        tree.lock_what_runs()
+        tree.git("init", "--quiet")
+        tree.commit("All")
+        # Once, and not by every process of every copy.
+        compileall.compile_dir(folder / "src", quiet=2)
+
+    return made_once(shared / "cloned", make)
+
+
+@pytest.fixture(scope="session")
+def pristine(shared, cloned) -> Tree:
     """A complete run. Tests must not change it."""
-    tree = clone(tmp_path_factory.mktemp("pristine") / "tree")
-    tree.run("--cores", "2")
-    return tree
+
+    def make(folder: Path) -> None:
+        copy_tree(cloned.path, folder, with_git=True).run("--cores", "2")
+
+    return made_once(shared / "pristine", make)
 
 
 @pytest.fixture
-def fresh(tmp_path) -> Tree:
+def fresh(cloned, tmp_path) -> Tree:
     """A fresh clone, nothing run."""
-    return clone(tmp_path / "tree")
+    return copy_tree(cloned.path, tmp_path / "tree", with_git=True)
 
 
 @pytest.fixture
 def complete(pristine, tmp_path) -> Tree:
     """A complete run that a test may change."""
-    return copy_tree(pristine.path, tmp_path / "tree", with_results=True)
+    return copy_tree(pristine.path, tmp_path / "tree", with_git=True)

@@ -41,28 +41,39 @@ def test_up_to_date_means_nothing_to_do(pristine):
     assert pristine.planned() == set()
 
 
-def test_two_runs_give_the_same_bytes(pristine, fresh):
-    fresh.run("--cores", "1")
-    first, second = pristine.contents("results"), fresh.contents("results")
-    assert first.keys() == second.keys()
-    assert [name for name in first if first[name] != second[name]] == []
+def whole(tree):
+    """The results under their own names; what is being written has another."""
+    return {name: data for name, data in tree.contents("results").items() if ".part" not in name}
 
 
-@pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
-def test_an_interrupted_run_is_resumed(pristine, fresh, sign):
-    fresh.interrupt(sign, "--cores", "2")
-    whole = pristine.contents("results")
-    early = {k: v for k, v in fresh.contents("results").items() if ".part" not in k}
-    assert 0 < len(early) < len(whole)
+def test_a_killed_run_is_resumed_and_gives_the_same_bytes(pristine, fresh):
+    fresh.interrupt(signal.SIGKILL, "--cores", "2", after=4)
+    expected, early = pristine.contents("results"), whole(fresh)
+    assert 0 < len(early) < len(expected)
     # What is there under its own name is whole, even after a kill.
-    assert [name for name, content in early.items() if content != whole[name]] == []
-    if sign is signal.SIGKILL:
-        # Snakemake could not remove its lock; it says so and names this command.
-        assert "--unlock" in fresh.run("--cores", "2", check=False).stderr
-        fresh.run("--unlock")
-    fresh.run("--cores", "2")
-    after = {k: v for k, v in fresh.contents("results").items() if ".part" not in k}
-    assert after == whole
+    assert [name for name, content in early.items() if content != expected[name]] == []
+    # Snakemake could not remove its lock; it says so and names this command.
+    assert "--unlock" in fresh.run("--cores", "2", check=False).stderr
+    fresh.run("--unlock")
+    # Another number of jobs at a time, another order.
+    fresh.run("--cores", "1")
+    after = whole(fresh)
+    assert after.keys() == expected.keys()
+    assert [name for name in after if after[name] != expected[name]] == []
+
+
+@pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_run_is_resumed(pristine, fresh, sign):
+    run = ("--cores", "2", "fig11", "fig12")
+    fresh.interrupt(sign, *run, after=1)
+    expected = pristine.contents("results")
+    early = whole(fresh)
+    assert all(content == expected[name] for name, content in early.items())
+    fresh.run(*run)
+    after = whole(fresh)
+    kinds = {f"figures/{name}.{kind}" for name in run[2:] for kind in ("nc", "png", "svg")}
+    assert early.keys() < after.keys() == kinds
+    assert [name for name in after if after[name] != expected[name]] == []
 
 
 def test_report_shows_every_figure_offline(complete):

@@ -14,6 +14,7 @@ _PACKAGE = "bouncing_ball"
 _ROOT = Path(__file__).resolve().parent.parent
 
 
+@cache
 def _file(module: str) -> Path | None:
     base = _ROOT.joinpath(*module.split(".")[1:])
     for candidate in (base.with_suffix(".py"), base / "__init__.py"):

@@ -8,14 +8,14 @@ from bouncing_ball.datasets.files import write_text
 from bouncing_ball.datasets.netcdf import parameter_attributes
 from bouncing_ball.pipeline.job import logged
 from bouncing_ball.record.diff.budgets import changes
-from bouncing_ball.record.diff.pictures import compare_pictures
+from bouncing_ball.record.diff.pictures import compare_pictures, read_picture
 from bouncing_ball.record.diff.tolerance_file import read_tolerances
 from bouncing_ball.render.figures.style import style
 from bouncing_ball.render.tables.formats import to_csv
 
 
 def picture(name, computation, data):
-    """The figure as PNG, labelled with the parameters of the stage itself."""
+    """The figure as its pixels, labelled with the parameters of the stage itself."""
     file = io.BytesIO()
     labels = parameter_attributes(
         {**computation.parameters, "release": snakemake.params.run["release"]}
@@ -23,7 +23,7 @@ def picture(name, computation, data):
     with style():
         draw = import_module(f"bouncing_ball.render.figures.{name}").draw
         draw(data.assign_attrs(labels)).savefig(file, format="png")
-    return file.getvalue()
+    return read_picture(file.getvalue())
 
 
 with logged(snakemake) as lines:

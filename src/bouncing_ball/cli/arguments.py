@@ -180,9 +180,12 @@ def parser() -> Parser:
     diff.add_argument("record", metavar="RECORD", help="folder with the accepted artifacts")
     diff.add_argument("results", metavar="RESULTS", help="folder with the new artifacts")
     diff.add_argument(
+        "artifacts", metavar="ARTIFACT", nargs="*", help="as fig08 or table1; default: all"
+    )
+    diff.add_argument(
         "--tolerances",
         metavar="FILE",
-        help="default: RECORD/config/tolerances.yaml, else config/tolerances.yaml",
+        help="default: config/tolerances.yaml of this checkout, else of RECORD",
     )
     for name, what in (
         ("json", "everything that was found, as JSON"),

@@ -11,19 +11,47 @@ _TOLERANCES = Path("config", "tolerances.yaml")
 
 
 def tolerance_file(given: str | None, record: Path) -> Path:
-    """The file named, else that of the record, else that of the working directory.
+    """The file named, else that of this checkout, else that of the record.
+
+    A folder that was sent says what its own budgets are only where there is no
+    checkout of this workflow, neither here nor where the package is.
 
     Raises
     ------
     ValueError
-        If none is named and neither folder has one.
+        If there is none.
     """
+    import bouncing_ball
+    from bouncing_ball.record.reading import read_file
+    from bouncing_ball.record.revision import checkout
+
     if given is not None:
         return Path(given)
-    for folder in (record, Path()):
-        if (folder / _TOLERANCES).is_file():
-            return folder / _TOLERANCES
-    raise ValueError(f"no {_TOLERANCES} in {record} or here: name one with --tolerances")
+    own = checkout(Path.cwd(), Path(bouncing_ball.__file__).resolve())
+    if own is not None:
+        return own / _TOLERANCES
+    read_file(record, _TOLERANCES.as_posix())
+    return record / _TOLERANCES
+
+
+def _compare(args: argparse.Namespace) -> tuple[list[str], int]:
+    """Lines to print and the exit status, with the reports written."""
+    # Imported here, so that --help and a mistyped argument need none of it.
+    from bouncing_ball.record.diff.folders import compare_folders
+    from bouncing_ball.record.diff.outcome import status
+    from bouncing_ball.record.diff.report_terminal import to_terminal
+    from bouncing_ball.record.diff.reports import write_reports
+    from bouncing_ball.record.diff.tolerance_file import read_tolerances
+    from bouncing_ball.record.reading import printable
+
+    record, results = Path(args.record), Path(args.results)
+    budgets = tolerance_file(args.tolerances, record)
+    comparison = compare_folders(record, results, read_tolerances(budgets), args.artifacts)
+    write_reports(comparison, json=args.json, markdown=args.markdown, html=args.html)
+    if budgets.is_relative_to(Path.cwd()):
+        budgets = budgets.relative_to(Path.cwd())
+    lines = [f"Budgets: {printable(budgets)}", *to_terminal(comparison).splitlines()]
+    return lines, status(comparison.outcome)
 
 
 def run(args: argparse.Namespace) -> NoReturn:
@@ -32,19 +60,12 @@ def run(args: argparse.Namespace) -> NoReturn:
     Exits with 0 if the artifacts say the same, 1 if they differ, and 2 if
     something could not be compared.
     """
-    # Imported here, so that --help and a mistyped argument need none of it.
-    from bouncing_ball.record.diff.folders import compare_folders
-    from bouncing_ball.record.diff.outcome import status
-    from bouncing_ball.record.diff.report_terminal import to_terminal
-    from bouncing_ball.record.diff.reports import write_reports
-    from bouncing_ball.record.diff.tolerance_file import read_tolerances
-
-    record, results = Path(args.record), Path(args.results)
     try:
-        rules = read_tolerances(tolerance_file(args.tolerances, record))
-        comparison = compare_folders(record, results, rules)
-        write_reports(comparison, json=args.json, markdown=args.markdown, html=args.html)
-    except (OSError, ValueError) as error:
-        fail(str(error), status=2)
-    print_lines(to_terminal(comparison).splitlines())
-    sys.exit(status(comparison.outcome))
+        lines, status = _compare(args)
+    # By intent: 1 means that something differs, and a traceback would exit with it.
+    except Exception as error:
+        from bouncing_ball.record.reading import printable
+
+        fail(printable(" ".join(str(error).split()) or type(error).__name__), status=2)
+    print_lines(lines)
+    sys.exit(status)

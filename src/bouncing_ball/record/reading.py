@@ -34,7 +34,7 @@ class UnreadableError(ModelError):
     """Why a file is not read, in one line that does not name it."""
 
 
-def printable(text: object, width: int = 300) -> str:
+def printable(text: object, width: int | None = 300) -> str:
     """Text on one line in which nothing moves a cursor, hides or turns the reading.
 
     What Python does not call printable is escaped: controls, line ends, marks of
@@ -48,7 +48,9 @@ def printable(text: object, width: int = 300) -> str:
     'Λ = 1 …'
     """
     text = str(text)
-    shown = text if len(text) <= width else text[: width - 1] + "…"
+    shown = text if width is None or len(text) <= width else text[: width - 1] + "…"
+    if shown.isprintable():
+        return shown
     return "".join(
         c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in shown
     )

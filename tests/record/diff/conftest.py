@@ -1,14 +1,11 @@
 """A small record and a copy of it that a test may change."""
 
-import io
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 import xarray as xr
-from PIL import Image
-from PIL.PngImagePlugin import PngInfo
 
 from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
 from bouncing_ball.record.diff.folders import Artifact, Comparison, compare_folders
@@ -33,11 +30,11 @@ class Pair:
         return compare_folders(self.record, self.new, self.rules)
 
     def artifact(self, name: str) -> Artifact:
-        return next(found for found in self.compare().artifacts if found.name == name)
+        (found,) = compare_folders(self.record, self.new, self.rules, [name]).artifacts
+        return found
 
     def part(self, file: str) -> Part:
-        parts = (part for found in self.compare().artifacts for part in found.parts)
-        return next(part for part in parts if part.file == file)
+        return next(part for part in self.artifact(Path(file).stem).parts if part.file == file)
 
     def dataset(self, name: str) -> xr.Dataset:
         return read_dataset(self.record / "figures" / f"{name}.nc")
@@ -54,29 +51,6 @@ class Pair:
         assert set(others.values()) <= {"identical"}, others
         return found[variable]
 
-    def stamp(self, record: str | None, new: str | None) -> None:
-        """Write on both sides with which versions they were made."""
-        for folder, versions in ((self.record, record), (self.new, new)):
-            stamp(folder, versions)
-
-
-def stamp(folder: Path, versions: str | None) -> None:
-    for path in sorted((folder / "figures").glob("*.nc")):
-        data = read_dataset(path)
-        kept = {k: v for k, v in data.attrs.items() if not k.startswith("provenance_")}
-        extra = {} if versions is None else {"provenance_versions": versions}
-        data.attrs = kept | extra
-        write_dataset(data, path)
-    for path in sorted((folder / "figures").glob("*.png")):
-        text = PngInfo()
-        if versions is not None:
-            text.add_text("provenance_versions", versions)
-        file = io.BytesIO()
-        with Image.open(path) as picture:
-            picture.info.clear()
-            picture.save(file, "PNG", pnginfo=text)
-        path.write_bytes(file.getvalue())
-
 
 @pytest.fixture(scope="session")
 def rules() -> Tolerances:
@@ -92,13 +66,12 @@ def _record(tmp_path_factory) -> Path:
         for path in (ROOT / "figures").glob(f"{name}.*"):
             shutil.copyfile(path, folder / "figures" / path.name)
     shutil.copyfile(ROOT / "paper.md", folder / "paper.md")
-    stamp(folder, None)
     return folder
 
 
 @pytest.fixture
 def pair(_record, rules, tmp_path) -> Pair:
-    """Two equal folders, of unknown versions."""
+    """Two equal folders."""
     for side in ("record", "new"):
         shutil.copytree(_record, tmp_path / side)
     return Pair(tmp_path / "record", tmp_path / "new", rules)

@@ -1,13 +1,8 @@
 """The diff tests itself: a known change of each kind gives the outcome it should."""
 
-import json
-import struct
-import zlib
-
 import numpy as np
 import pytest
 import xarray as xr
-from PIL import Image
 
 from bouncing_ball.datasets.netcdf import write_dataset
 from bouncing_ball.record.diff.data import compare_datasets
@@ -19,8 +14,6 @@ from bouncing_ball.record.diff.tolerances import Mode, Tolerance, Tolerances
 pytestmark = pytest.mark.slow
 
 HALF, TWICE = 0.5, 2.0
-VERSIONS = json.dumps({"numpy": "2.4.0", "matplotlib": "3.11.0"})
-OTHER_VERSIONS = json.dumps({"numpy": "2.4.1", "matplotlib": "3.11.0"})
 
 
 def moved(data: xr.Dataset, name: str, index: tuple, by: float) -> xr.Dataset:
@@ -93,47 +86,6 @@ def test_curve_along_its_abscissa(part):
     found = {result.name: result for result in compare_datasets("", record, new, rules)}
     assert found["y"].outcome is (Outcome.WITHIN if part < 1 else Outcome.DRIFTED)
     assert found["y"].share == pytest.approx(part, rel=1e-9)
-
-
-@pytest.mark.parametrize("part", [HALF, TWICE])
-def test_invariant(pair, part):
-    data = pair.dataset("fig08")
-    rule = pair.rules.of("fig08", "residual")
-    index = (1, int(np.argmax(data.residual.values[1])))
-    pair.write("fig08", moved(data, "residual", index, part * rule.budget * rule.scale))
-    result = pair.variable("fig08", "residual")
-    assert result.outcome == (Outcome.WITHIN if part < 1 else Outcome.DRIFTED)
-    assert result.share == pytest.approx(part, rel=1e-12)
-    assert result.place == "statistic = max, frequency_ratio = 10"
-    # A smaller residual elsewhere is no derived number, whatever it does.
-    pair.write("fig08", moved(data, "residual", (1, 0), -float(data.residual[1, 0])))
-    assert pair.variable("fig08", "residual").share == 0
-
-
-def logistic(start, count=20_000):
-    """x → 4 x (1 - x): chaotic, so that a rounding is all after fifty steps."""
-    values = np.empty(count)
-    for k in range(count):
-        values[k] = start
-        start = 4 * start * (1 - start)
-    return xr.Dataset({"x": ("step", values)})
-
-
-def test_beyond_the_predictability_horizon():
-    # Mean and deviation of the invariant density are 1/2 and 1/√8; over N steps
-    # they are known to about 1/√N, 0.007 here, and the budget is thrice that.
-    record, new = logistic(0.3), logistic(0.3 + 1e-15)
-    invariant = Tolerance(
-        Mode.INVARIANT, "a test", budget=0.02, along="step", statistics=("mean", "std")
-    )
-    outcomes = {}
-    for rule in (Tolerance(Mode.POINTWISE, "a test", budget=0.02), invariant):
-        (result,) = compare_datasets("chaos", record, new, Tolerances({"x": rule}, rule))
-        outcomes[rule.mode] = result.outcome
-    assert outcomes == {"pointwise": Outcome.DRIFTED, "invariant": Outcome.WITHIN}
-    # Another map is another density.
-    (result,) = compare_datasets("chaos", record, record**2, Tolerances({"x": invariant}, rule))
-    assert result.outcome is Outcome.DRIFTED and result.place.startswith("statistic = ")
 
 
 @pytest.mark.parametrize("part", [HALF, TWICE])
@@ -233,17 +185,17 @@ def test_other_labels_are_other_data(pair):
     data = pair.dataset("table1")
     pair.write("table1", data.assign_coords(n=data.n.copy(data=[1, 2, 4])))
     result = pair.variable("table1", "n")
-    assert result.outcome is Outcome.STRUCTURE and (result.record, result.new) == ("3", "4")
+    assert result.outcome is Outcome.DRIFTED and (result.record, result.new) == ("3", "4")
 
 
-def structure(pair, name, data, variable, note):
+def structure(pair, name, data, variable, note, outcome=Outcome.STRUCTURE):
     pair.write(name, data)
     part = pair.part(f"figures/{name}.nc")
     found = {result.name: result for result in part.variables}
-    assert found[variable].outcome is Outcome.STRUCTURE
+    assert found[variable].outcome is outcome
     assert note in found[variable].note
-    assert part.outcome is Outcome.STRUCTURE
-    assert part.variables[0].outcome is Outcome.STRUCTURE
+    assert part.outcome is outcome
+    assert part.variables[0].outcome is outcome
     assert status(pair.compare().outcome) == 1
 
 
@@ -289,13 +241,13 @@ def test_attributes_that_matter_and_others(pair):
     data = pair.dataset("fig05")
     other = data.assign_attrs({"frequency_ratio.max": 1001.0})
     note = "attribute frequency_ratio.max: 1000.0 → 1001.0"
-    structure(pair, "fig05", other, "(global attributes)", note)
+    structure(pair, "fig05", other, "(global attributes)", note, Outcome.DRIFTED)
     without = data.copy()
     del without.attrs["release"]
     structure(pair, "fig05", without, "(global attributes)", "attribute release is gone")
     units = data.copy(deep=True)
     units.phase.attrs["units"] = "degree"
-    structure(pair, "fig05", units, "phase", "attribute units: rad → degree")
+    structure(pair, "fig05", units, "phase", "attribute units: rad → degree", Outcome.DRIFTED)
     made = {"provenance_commit": "0123abc", "title": "another_rule"}
     pair.write("fig05", data.assign_attrs(made))
     assert pair.artifact("fig05").outcome is Outcome.IDENTICAL
@@ -308,7 +260,8 @@ def test_attributes_of_another_kind(pair):
     data = pair.dataset("fig05")
     for value in ("1", [1, 2], 2):
         other = data.assign_attrs(n=value)
-        structure(pair, "fig05", other, "(global attributes)", f"attribute n: 1 → {value}")
+        note = f"attribute n: 1 → {value}"
+        structure(pair, "fig05", other, "(global attributes)", note, Outcome.DRIFTED)
 
 
 def test_nan_and_infinity(pair):
@@ -372,232 +325,14 @@ def test_missing_and_extra(pair):
     assert status(comparison.outcome) == 1
 
 
-# Pictures and texts.
-
-
-def swap(pair, one, two):
-    paths = [pair.new / "figures" / name for name in (one, two)]
-    contents = [path.read_bytes() for path in paths]
-    for path, content in zip(paths, reversed(contents), strict=True):
-        path.write_bytes(content)
-
-
-@pytest.mark.parametrize(
-    ("versions", "decides", "outcome"),
-    [
-        ((None, None), False, Outcome.WITHIN),
-        ((VERSIONS, None), False, Outcome.WITHIN),
-        ((VERSIONS, OTHER_VERSIONS), False, Outcome.WITHIN),
-        ((VERSIONS, VERSIONS), True, Outcome.DRIFTED),
-        # The same versions, written in another order.
-        ((VERSIONS, json.dumps(dict(reversed(json.loads(VERSIONS).items())))), True, "drifted"),
-    ],
-)
-def test_swapped_figures(pair, versions, decides, outcome):
-    pair.stamp(*versions)
-    swap(pair, "fig08.png", "fig09.png")
-    found = {each.name: each for each in pair.compare().artifacts}
-    part = next(part for part in found["fig08"].parts if part.file == "figures/fig08.png")
-    assert part.outcome is Outcome.DRIFTED and part.decides is decides
-    assert part.picture.rms > 10 * pair.rules.pictures.budget
-    assert found["fig08"].outcome == found["fig09"].outcome == outcome
-
-
-@pytest.mark.parametrize("versions", [None, VERSIONS])
-def test_swapped_figures_of_different_sizes(pair, versions):
-    pair.stamp(versions, versions)
-    swap(pair, "fig01.png", "fig08.png")
-    part = pair.part("figures/fig01.png")
-    sizes = []
-    for name in ("fig01", "fig08"):
-        with Image.open(pair.record / "figures" / f"{name}.png") as picture:
-            sizes.append(" × ".join(map(str, picture.size)))
-    assert part.outcome is Outcome.STRUCTURE
-    assert part.note == f"size in pixels: {' → '.join(sizes)}"
-    # A figure without a dataset says in its own text with what it was made. Swapped,
-    # that text comes along.
-    expected = Outcome.WITHIN if versions is None else Outcome.STRUCTURE
-    assert pair.artifact("fig01").outcome is pair.artifact("fig08").outcome is expected
-
-
-def test_a_picture_by_half_and_twice_its_budget(pair):
-    pair.stamp(VERSIONS, VERSIONS)
-    path = pair.new / "figures" / "fig08.png"
-    with Image.open(path) as picture:
-        size = picture.size
-        pixels = np.array(picture.convert("RGB"), dtype=int)
-    for part, outcome in ((HALF, Outcome.WITHIN), (TWICE, Outcome.DRIFTED)):
-        # So many pixels of the upper edge by 16 levels that the rms is as wanted.
-        step = 16
-        count = round((part * pair.rules.pictures.budget / step) ** 2 * size[0] * size[1])
-        changed = pixels.copy()
-        flat = changed.reshape(-1, 3)
-        flat[:count] += np.where(flat[:count] > 127, -step, step)
-        Image.fromarray(changed.astype(np.uint8)).save(path)
-        result = pair.part("figures/fig08.png")
-        assert result.outcome is outcome
-        assert result.share == pytest.approx(part, rel=1e-2)
-
-
-def test_pixels_count_and_not_bytes(pair):
-    pair.stamp(VERSIONS, OTHER_VERSIONS)
-    paths = [folder / "figures" / "fig08.png" for folder in (pair.record, pair.new)]
-    assert paths[0].read_bytes() != paths[1].read_bytes()
-    assert pair.part("figures/fig08.png").outcome is Outcome.IDENTICAL
-
-
-def test_truncated_picture(pair):
-    path = pair.new / "figures" / "fig01.png"
-    path.write_bytes(path.read_bytes()[:5000])
-    part = pair.part("figures/fig01.png")
-    assert part.outcome is Outcome.UNREADABLE and "PNG" in part.note
-    assert status(pair.compare().outcome) == 2
-
-
-@pytest.mark.parametrize("content", [b"", b"text", b"\x89PNG\r\n\x1a\n"])
-def test_a_picture_that_is_none(pair, content):
-    (pair.new / "figures" / "fig01.png").write_bytes(content)
-    part = pair.part("figures/fig01.png")
-    # Twice the same words: nothing of this process in them.
-    assert part.outcome is Outcome.UNREADABLE and part.note == "not a PNG file"
-
-
-@pytest.mark.parametrize("size", [10_000, 20_000])
-def test_a_picture_too_large_to_be_opened(pair, size):
-    # Pillow warns above 9e7 pixels and refuses twice as many.
-    head = b"IHDR" + struct.pack(">IIBBBBB", size, size, 8, 0, 0, 0, 0)
-    crc = struct.pack(">I", zlib.crc32(head))
-    path = pair.new / "figures" / "fig01.png"
-    begun = struct.pack(">I", 1000) + b"IDAT"
-    path.write_bytes(b"\x89PNG\r\n\x1a\n" + struct.pack(">I", 13) + head + crc + begun)
-    part = pair.part("figures/fig01.png")
-    assert part.outcome is Outcome.UNREADABLE and part.note == "too large a picture"
-    assert status(pair.compare().outcome) == 2
-
-
-def test_vector_graphics_are_reported_and_their_metadata_is_not(pair):
-    pair.stamp(VERSIONS, VERSIONS)
-    path = pair.new / "figures" / "fig05.svg"
-    text = path.read_text(encoding="utf-8")
-    assert text.count("</svg>") == 1
-    path.write_text(text.replace("<defs>", "<metadata>\n made by\n</metadata>\n <defs>", 1))
-    record = pair.record / "figures" / "fig05.svg"
-    record.write_text(
-        text.replace("<defs>", "<metadata>\n made elsewhere\n</metadata>\n <defs>", 1)
-    )
-    assert pair.part("figures/fig05.svg").outcome is Outcome.IDENTICAL
-    path.write_text(text.replace("</svg>", "<g/></svg>"))
-    assert pair.part("figures/fig05.svg").outcome is Outcome.DRIFTED
-    assert pair.artifact("fig05").outcome is Outcome.WITHIN
-
-
-def change_digit(path):
-    text = path.read_text(encoding="utf-8")
-    assert "0.23999" in text
-    path.write_text(text.replace("0.23999", "0.24000", 1), encoding="utf-8")
-
-
-def test_a_table_moves_with_its_data(pair):
-    change_digit(pair.new / "figures" / "table1.csv")
-    # The data are the same: then the printed digit has another reason.
-    assert pair.part("figures/table1.csv").outcome is Outcome.DRIFTED
+def test_labels_that_are_there_twice(pair):
     data = pair.dataset("table1")
-    budget = pair.rules.of("table1", "computed").budget
-    pair.write("table1", moved(data, "computed", (1, 0, 0), HALF * budget * span(data.computed)))
-    assert pair.part("figures/table1.csv").outcome is Outcome.WITHIN
-    assert pair.artifact("table1").outcome is Outcome.WITHIN
-    pair.write("table1", moved(data, "computed", (1, 0, 0), TWICE * budget * span(data.computed)))
-    assert pair.part("figures/table1.csv").outcome is Outcome.DRIFTED
-    for folder in (pair.record, pair.new):
-        (folder / "figures" / "table1.nc").unlink()
-    assert pair.part("figures/table1.csv").outcome is Outcome.DRIFTED
-
-
-@pytest.mark.parametrize(
-    ("name", "old", "new", "outcome"),
-    [
-        # One unit of the last digit, and two.
-        ("table1", "0.23999", "0.24000", Outcome.WITHIN),
-        ("table1", "0.23999", "0.24001", Outcome.DRIFTED),
-        # The size of rounding, and the number of orbits behind it.
-        ("witness", "4.5e-13 (1812)", "9.1e-15 (1812)", Outcome.WITHIN),
-        ("witness", "4.5e-13 (1812)", "4.5e-13 (1811)", Outcome.DRIFTED),
-        ("witness", "4.5e-13 (1812)", "4.5e-03 (1812)", Outcome.DRIFTED),
-        ("witness", "4.5e-13 (1812)", "4.5e-13 of 1812", Outcome.STRUCTURE),
-        ("witness", "4.5e-13 (1812)", "–", Outcome.STRUCTURE),
-    ],
-)
-def test_how_far_a_table_moves_with_its_data(pair, name, old, new, outcome):
-    variable = {"table1": "computed", "witness": "disagreement"}[name]
-    data = pair.dataset(name)
-    index = tuple(int(k) for k in np.argwhere(np.isfinite(data[variable].values))[0])
-    pair.write(name, moved(data, variable, index, 1e-15))
-    assert pair.part(f"figures/{name}.nc").outcome is Outcome.WITHIN
-    path = pair.new / "figures" / f"{name}.csv"
-    text = path.read_text(encoding="utf-8")
-    assert text.count(old) == 1
-    path.write_text(text.replace(old, new), encoding="utf-8")
-    part = pair.part(f"figures/{name}.csv")
-    assert part.outcome is outcome and part.decides
-    assert pair.artifact(name).outcome is outcome
-
-
-@pytest.mark.parametrize("cell", ["a\rb", "x" * 131_073])
-def test_a_table_that_is_none(pair, cell):
-    (pair.new / "figures" / "table1.csv").write_text(cell, encoding="utf-8", newline="")
-    part = pair.part("figures/table1.csv")
-    assert part.outcome is Outcome.UNREADABLE and part.note.startswith("not a CSV table: ")
-    assert status(pair.compare().outcome) == 2
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "note"),
-    [
-        ("computed", "calculated", "row 1, column 4"),
-        ("ϖ,n", "ϖ,n,m", "columns of row 1: 6 → 7"),
-        ("\n2,1,", "\n2,1,saddle-node,,,\n2,1,", "rows"),
-    ],
-)
-def test_the_shape_and_the_words_of_a_table(pair, old, new, note):
-    path = pair.new / "figures" / "table1.csv"
-    text = path.read_text(encoding="utf-8")
-    assert old in text
-    path.write_text(text.replace(old, new, 1), encoding="utf-8")
-    part = pair.part("figures/table1.csv")
-    assert part.outcome is Outcome.STRUCTURE and note in part.note
-
-
-@pytest.mark.parametrize("file", ["figures/table1.md", "figures/table1.tex", "paper.md"])
-def test_texts_decide_among_the_same_versions(pair, file):
-    change_digit(pair.new / file)
-    name = file.removeprefix("figures/").split(".")[0]
-    assert pair.part(file).outcome is Outcome.DRIFTED
-    assert pair.artifact(name).outcome is Outcome.WITHIN
-    pair.stamp(VERSIONS, VERSIONS)
-    assert pair.artifact(name).outcome is Outcome.DRIFTED
-    # One dataset made with other versions, and the paper is made from all.
-    data = pair.dataset("fig05").assign_attrs(provenance_versions=OTHER_VERSIONS)
-    pair.write("fig05", data)
-    expected = Outcome.WITHIN if name == "paper" else Outcome.DRIFTED
-    assert pair.artifact(name).outcome is expected
-
-
-@pytest.mark.parametrize("file", ["figures/table1.md", "figures/table1.tex", "paper.md"])
-def test_texts_move_with_their_data(pair, file):
-    pair.stamp(VERSIONS, VERSIONS)
-    change_digit(pair.new / file)
-    data = pair.dataset("table1")
-    budget = pair.rules.of("table1", "computed").budget
-    step = budget * span(data.computed)
-    pair.write("table1", moved(data, "computed", (1, 0, 0), HALF * step))
-    part = pair.part(file)
-    assert part.outcome is Outcome.WITHIN and not part.decides
-    assert pair.compare().outcome is Outcome.WITHIN
-    # Beyond its budget the dataset decides, and the text is no more than reported.
-    pair.write("table1", moved(data, "computed", (1, 0, 0), TWICE * step))
-    part = pair.part(file)
-    assert part.outcome is Outcome.DRIFTED and not part.decides
-    assert pair.artifact("table1").outcome is Outcome.DRIFTED
+    twice = data.assign_coords(n=data.n.copy(data=[1, 1, 1]))
+    for name in ("record", "new"):
+        write_dataset(twice, getattr(pair, name) / "figures" / "table1.nc")
+    assert pair.part("figures/table1.nc").outcome is Outcome.IDENTICAL
+    pair.write("table1", moved(twice, "computed", (1, 0, 0), 1.0))
+    assert pair.variable("table1", "computed").outcome is Outcome.DRIFTED
 
 
 def test_a_variable_without_an_entry_is_compared_exactly(pair):

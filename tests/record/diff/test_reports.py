@@ -44,7 +44,7 @@ def changed(pair):
 
 def test_the_terminal_in_short(changed):
     lines = to_terminal(changed.compare()).splitlines()
-    assert lines[0].split() == ["artifact", "outcome", "share", "what"]
+    assert lines[0].split() == ["artifact", "outcome", "of", "budget", "what"]
     assert [line.split()[0] for line in lines[1:-1]] == [
         "fig99",
         "table1",
@@ -96,7 +96,7 @@ def test_all_text_is_escaped(pair):
     page, summary = to_html(comparison), to_markdown(comparison)
     assert "<script" not in page and "&lt;script&gt;" in page
     assert bad not in summary and "\\<script\\>" in summary and "\\|" in summary
-    assert json.loads(to_json(comparison))["outcome"] == "changed structure"
+    assert json.loads(to_json(comparison))["outcome"] == "drifted"
 
 
 def test_the_page_fetches_nothing(changed):
@@ -137,9 +137,8 @@ def test_exit_status(pair, capsys):
     call = (pair.record, pair.new, "--tolerances", TOLERANCES)
     assert command(capsys, *call)[0] == 0
     (pair.new / "paper.md").write_text("another text\n", encoding="utf-8")
-    # Of unknown versions: reported, and it does not decide.
     code, out, _ = command(capsys, *call)
-    assert code == 0 and "paper.md drifted: line 1" in out and "(reported only)" in out
+    assert code == 1 and "paper.md, line 1: " in out and "→ another text" in out
     (pair.new / "paper.md").unlink()
     assert command(capsys, *call)[0] == 1
     (pair.new / "figures" / "fig05.nc").write_bytes(b"no dataset")
@@ -147,18 +146,41 @@ def test_exit_status(pair, capsys):
 
 
 def test_where_the_tolerances_come_from(pair, capsys, monkeypatch):
-    monkeypatch.chdir(pair.record.parent)
-    code, _, err = command(capsys, pair.record, pair.new)
-    assert code == 2 and "name one with --tolerances" in err
-    here = pair.record.parent / "config"
-    here.mkdir()
-    shutil.copyfile(TOLERANCES, here / "tolerances.yaml")
-    assert command(capsys, pair.record, pair.new)[0] == 0
-    # The record's own come first.
+    # A folder that was sent may bring loose budgets with it: this checkout's hold.
+    data = pair.dataset("fig05")
+    data.phase.values[1, 40] += 1e-3
+    pair.write("fig05", data)
     (pair.record / "config").mkdir()
-    (pair.record / "config" / "tolerances.yaml").write_text("variables: 1\n")
+    sent = pair.record / "config" / "tolerances.yaml"
+    sent.write_text(TOLERANCES.read_text(encoding="utf-8").replace("1.0e-13", "1.0e+3"))
+    monkeypatch.chdir(pair.record.parent)
+    code, out, _ = command(capsys, "record", "new")
+    assert code == 1 and out.startswith(f"Budgets: {TOLERANCES}\n")
+    # Without a checkout there are no others, and it is said which.
+    monkeypatch.setattr("bouncing_ball.record.revision.checkout", lambda *_: None)
+    code, out, _ = command(capsys, "record", "new")
+    assert code == 0 and out.startswith("Budgets: record/config/tolerances.yaml\n")
+    assert command(capsys, "record", "new", "--tolerances", TOLERANCES)[0] == 1
+    sent.unlink()
+    sent.symlink_to(TOLERANCES)
     code, _, err = command(capsys, "record", "new")
-    assert code == 2 and "record/config/tolerances.yaml" in err
+    assert code == 2 and "a link" in err
+
+
+def test_one_artifact_or_several(pair, capsys, tmp_path):
+    data = pair.dataset("fig05")
+    data.phase.values[1, 40] += 1e-3
+    pair.write("fig05", data)
+    report = tmp_path / "report.json"
+    call = (pair.record, pair.new)
+    options = ("--tolerances", TOLERANCES, "--json", report)
+    for names, code in ((["fig08"], 0), (["fig05"], 1), (["paper", "fig08"], 0), (["paper"], 0)):
+        assert command(capsys, *call, *names, *options)[0] == code, names
+        content = json.loads(report.read_text(encoding="utf-8"))
+        assert {found["name"] for found in content["artifacts"]} == set(names)
+    code, out, err = command(capsys, *call, "fig08", "fig80", *options)
+    assert (code, out) == (2, "") and err.count("\n") == 1
+    assert "unknown artifact fig80; there are fig01, fig05, " in err
 
 
 def test_what_cannot_be_compared_at_all_is_one_line(pair, capsys, tmp_path):
@@ -182,9 +204,8 @@ def test_only_artifacts_are_compared(pair, capsys):
         path = pair.new / name
         path.parent.mkdir(exist_ok=True)
         path.write_text("something else", encoding="utf-8")
-    (pair.new / "figures" / "folder.png").mkdir()
     code, out, _ = command(capsys, pair.record, pair.new, "--tolerances", TOLERANCES)
-    assert code == 0 and out.startswith("7 identical.")
+    assert code == 0 and out.splitlines()[1].startswith("7 identical.")
 
 
 def test_help_needs_neither_numpy_nor_the_comparison():

@@ -124,25 +124,10 @@ def test_the_rule():
     [
         ({"mode": Mode.POINTWISE}, "mode pointwise needs budget"),
         ({"mode": Mode.CURVE, "budget": 1.0, "along": "t"}, "mode curve needs abscissa"),
-        ({"mode": Mode.INVARIANT, "budget": 1.0, "along": "t"}, "needs statistics"),
         ({"mode": Mode.IGNORED, "scale": 1.0}, "mode ignored has no scale"),
         ({"mode": Mode.POINTWISE, "budget": 1.0, "along": "t"}, "mode pointwise has no along"),
         ({"mode": Mode.POINTWISE, "budget": float("inf")}, "budget = inf must be a finite"),
         ({"mode": Mode.POINTWISE, "budget": 1.0, "scale": 0.0}, "scale = 0.0 must be"),
-        (
-            {
-                "mode": Mode.INVARIANT,
-                "budget": 1.0,
-                "along": "t",
-                "statistics": ("max",),
-                "scale": "x",
-            },
-            "scale = x must be a number",
-        ),
-        (
-            {"mode": Mode.INVARIANT, "budget": 1.0, "along": "t", "statistics": ("median",)},
-            "statistic median must be one of min, max",
-        ),
     ],
 )
 def test_tolerances_that_make_no_sense(options, said, one_line):

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.record.diff.drift import curve, pointwise, span
-from bouncing_ball.record.diff.outcome import Outcome
+from bouncing_ball.record.diff.outcome import Outcome, worst
 from bouncing_ball.record.diff.tolerances import Mode, Tolerance, ToleranceError, Tolerances
 
 
@@ -18,8 +18,8 @@ class VariableResult:
     """What became of one variable, coordinate or attribute.
 
     ``drift`` and ``budget`` are shares of the variable's scale, ``share`` is
-    the one over the other. ``place``, ``record`` and ``new`` tell where the
-    drift is largest and what stands there. Without numbers they are None.
+    the one over the other. ``place``, ``record`` and ``new`` say where the
+    drift is largest, and the values there. Without numbers they are None.
     """
 
     name: str
@@ -66,20 +66,21 @@ def _place(variable: xr.DataArray, index: tuple[int, ...]) -> str:
 
 def _attributes(
     record: xr.Dataset | xr.DataArray, new: xr.Dataset | xr.DataArray, rules: Tolerances
-) -> Iterator[str]:
+) -> Iterator[tuple[Outcome, str]]:
     """One sentence for each attribute that matters and is not the same."""
     for name in sorted({*record.attrs, *new.attrs}, key=str):
         if rules.ignores(str(name)):
             continue
         if name not in new.attrs:
-            yield f"attribute {name} is gone"
+            yield Outcome.STRUCTURE, f"attribute {name} is gone"
         elif name not in record.attrs:
-            yield f"attribute {name} is new"
+            yield Outcome.STRUCTURE, f"attribute {name} is new"
         elif not np.array_equal(np.asarray(record.attrs[name]), np.asarray(new.attrs[name])):
-            yield f"attribute {name}: {_text(record.attrs[name])} → {_text(new.attrs[name])}"
+            change = f"{_text(record.attrs[name])} → {_text(new.attrs[name])}"
+            yield Outcome.DRIFTED, f"attribute {name}: {change}"
 
 
-def _structure(record: xr.DataArray, new: xr.DataArray, rules: Tolerances) -> Iterator[str]:
+def _structure(record: xr.DataArray, new: xr.DataArray) -> Iterator[str]:
     if record.dims != new.dims:
         before, after = (", ".join(map(str, side.dims)) or "none" for side in (record, new))
         yield f"dimensions: {before} → {after}"
@@ -89,33 +90,18 @@ def _structure(record: xr.DataArray, new: xr.DataArray, rules: Tolerances) -> It
                 yield f"size of {name}: {record.sizes[name]} → {new.sizes[name]}"
     if _kind(record) != _kind(new):
         yield f"type: {_kind(record)} → {_kind(new)}"
-    yield from _attributes(record, new, rules)
+    if (record.name in record.coords) != (new.name in new.coords):
+        yield "coordinate → data" if record.name in record.coords else "data → coordinate"
 
 
-def _statistics(values: xr.DataArray, rule: Tolerance) -> xr.DataArray:
-    numbers = values.astype(float)
-    taken = [
-        numbers.notnull().sum(dim=rule.along).astype(float)
-        if name == "count"
-        else getattr(numbers, name)(dim=rule.along)
-        for name in rule.statistics
-    ]
-    return xr.concat(taken, xr.Variable("statistic", list(rule.statistics)), coords="minimal")
-
-
-def _scale(rule: Tolerance, values: xr.DataArray, data: xr.Dataset) -> Any:
-    if isinstance(rule.scale, str):
-        return data[rule.scale].broadcast_like(values).transpose(*values.dims).values
-    return span(values) if rule.scale is None else rule.scale
-
-
-def _along_last(values: xr.DataArray, rule: Tolerance, like: xr.DataArray) -> np.ndarray:
-    """The values broadcast to the shape of another variable, the curve's dimension last."""
-    return values.broadcast_like(like).transpose(..., rule.along).values
+def _spread(values: xr.DataArray, like: xr.DataArray) -> np.ndarray:
+    """The values in the shape of another variable, place by place whatever the labels."""
+    sizes = {name: like.sizes[name] for name in like.dims}
+    return values.variable.set_dims(sizes).transpose(*like.dims).values
 
 
 def drifts(name: str, record: xr.Dataset, new: xr.Dataset, rule: Tolerance) -> xr.DataArray:
-    """Drift of a variable at every place where the mode measures one.
+    """Drift of a variable, place by place.
 
     Parameters
     ----------
@@ -123,13 +109,12 @@ def drifts(name: str, record: xr.Dataset, new: xr.Dataset, rule: Tolerance) -> x
         A variable of both datasets, of the same shape and of numbers.
     record, new : Dataset
     rule : Tolerance
-        Of mode pointwise, curve or invariant.
+        Of mode pointwise or curve.
 
     Returns
     -------
     DataArray
-        Dimensions of the variable; for the mode invariant ``along`` is gone and
-        ``statistic`` is there.
+        Dimensions of the variable.
 
     Raises
     ------
@@ -139,12 +124,9 @@ def drifts(name: str, record: xr.Dataset, new: xr.Dataset, rule: Tolerance) -> x
     Examples
     --------
     >>> record = xr.Dataset({"x": ("t", [0.0, 1.0, 2.0])})
-    >>> shuffled = record.isel(t=[2, 0, 1])
-    >>> invariant = Tolerance(
-    ...     Mode.INVARIANT, "an example", budget=1e-9, along="t", statistics=("mean", "max")
-    ... )
-    >>> drifts("x", record, shuffled, invariant).values.tolist()
-    [0.0, 0.0]
+    >>> rule = Tolerance(Mode.POINTWISE, "an example", budget=1e-9)
+    >>> drifts("x", record, record + 0.5, rule).values.tolist()
+    [0.25, 0.25, 0.25]
     """
     a, b = record[name], new[name]
     if rule.along is not None and rule.along not in a.dims:
@@ -155,23 +137,24 @@ def drifts(name: str, record: xr.Dataset, new: xr.Dataset, rule: Tolerance) -> x
             for data in (record, new)
         ):
             raise ToleranceError(f"mode {rule.mode} needs {other}, on dimensions of {name}")
-    if rule.mode is Mode.INVARIANT:
-        scale = _scale(rule, a, record)
-        before, after = _statistics(a, rule), _statistics(b, rule)
-        return before.copy(data=pointwise(before.values, after.values, scale))
     if rule.mode is Mode.CURVE:
-        axis = record[rule.abscissa]
-        # In the tube's own measure: the abscissa shrunk to the other axis.
-        width = span(axis) * (rule.axis_budget or rule.allowed) / rule.allowed
-        height = span(a)
-        sides = [
-            (_along_last(data[rule.abscissa], rule, a) / width, _along_last(data[name], rule, a))
-            for data in (record, new)
-        ]
-        (x, y), (new_x, new_y) = sides
-        values = curve(x, y / height, new_x, new_y / height)
-        return a.transpose(..., rule.along).copy(data=values)
-    return a.copy(data=pointwise(a.values, b.values, _scale(rule, a, record)))
+        return a.copy(data=_off_curve(a, b, record[rule.abscissa], new[rule.abscissa], rule))
+    scale: Any = span(a) if rule.scale is None else rule.scale
+    if isinstance(rule.scale, str):
+        scale = _spread(record[rule.scale], a)
+    return a.copy(data=pointwise(a.values, b.values, scale))
+
+
+def _off_curve(
+    record: xr.DataArray, new: xr.DataArray, axis: xr.DataArray, new_axis: xr.DataArray, rule: Any
+) -> np.ndarray:
+    """Distance of two curves, in the tube's own measure: the abscissa shrunk to the other axis."""
+    width = span(axis) * (rule.axis_budget or rule.allowed) / rule.allowed
+    height = span(record)
+    place = record.dims.index(rule.along)
+    parts = (_spread(axis, record) / width, record.values / height)
+    parts += (_spread(new_axis, new) / width, new.values / height)
+    return np.moveaxis(curve(*(np.moveaxis(part, place, -1) for part in parts)), -1, place)
 
 
 def _measured(name: str, record: xr.Dataset, new: xr.Dataset, rule: Tolerance) -> VariableResult:
@@ -179,18 +162,13 @@ def _measured(name: str, record: xr.Dataset, new: xr.Dataset, rule: Tolerance) -
         drift = drifts(name, record, new, rule)
     except ToleranceError as error:
         return VariableResult(name, Outcome.STRUCTURE, rule.mode, note=str(error))
-    place = np.unravel_index(int(np.argmax(drift.values)), drift.shape)
-    index = tuple(int(k) for k in place)
+    index = tuple(map(int, np.unravel_index(int(np.argmax(drift.values)), drift.shape)))
     largest = float(drift.values[index])
     share = largest / rule.allowed
     note = ""
-    if rule.mode is Mode.INVARIANT:
-        shown = [_text(_statistics(data[name], rule).values[index]) for data in (record, new)]
-    else:
-        shown = [_value(data[name], record[name], drift, index) for data in (record, new)]
     if rule.mode is Mode.CURVE:
-        axis = [_value(data[rule.abscissa], record[name], drift, index) for data in (record, new)]
-        note = f"over {rule.abscissa}: {' → '.join(dict.fromkeys(axis))}"
+        axes = [_spread(data[rule.abscissa], record[name])[index] for data in (record, new)]
+        note = f"over {rule.abscissa}: {' → '.join(dict.fromkeys(map(_text, axes)))}"
     return VariableResult(
         name,
         Outcome.WITHIN if share <= 1 else Outcome.DRIFTED,
@@ -199,17 +177,10 @@ def _measured(name: str, record: xr.Dataset, new: xr.Dataset, rule: Tolerance) -
         rule.budget,
         share,
         _place(drift, index),
-        shown[0],
-        shown[1],
+        _text(record[name].values[index]),
+        _text(new[name].values[index]),
         note,
     )
-
-
-def _value(
-    values: xr.DataArray, like: xr.DataArray, drift: xr.DataArray, index: tuple[int, ...]
-) -> str:
-    """What stands at the place of a drift."""
-    return _text(values.broadcast_like(like).transpose(*drift.dims).values[index])
 
 
 def _exactly(
@@ -220,8 +191,7 @@ def _exactly(
     count = f"{len(different)} of {same.size} entries differ"
     return VariableResult(
         name,
-        # Labels say what the data are: under other labels they are other data.
-        Outcome.STRUCTURE if name in record.dims else Outcome.DRIFTED,
+        Outcome.DRIFTED,
         Mode.EXACT,
         math.inf,
         0.0,
@@ -240,11 +210,9 @@ def _compare_variable(
     rule = rules.of(artifact, name)
     mode = Mode.EXACT if rule is None else rule.mode
     note = "no entry in the tolerance file" if rule is None else ""
-    changes = list(_structure(a, b, rules))
-    if (name in record.coords) != (name in new.coords):
-        changes.append("coordinate → data" if name in record.coords else "data → coordinate")
+    changes = [*((Outcome.STRUCTURE, text) for text in _structure(a, b)), *_attributes(a, b, rules)]
     if changes:
-        return VariableResult(name, Outcome.STRUCTURE, mode, note="; ".join(changes))
+        return _told(name, changes, mode)
     same = _same_values(a, b)
     if same.all():
         budget = None if rule is None else rule.budget
@@ -254,6 +222,14 @@ def _compare_variable(
     if rule is None or mode is Mode.EXACT or _kind(a) == "text":
         return _exactly(name, a, b, same, note)
     return _measured(name, record, new, rule)
+
+
+def _told(
+    name: str, changes: list[tuple[Outcome, str]], mode: Mode | None = None
+) -> VariableResult:
+    """The result for what has no number."""
+    outcome = worst(outcome for outcome, _ in changes)
+    return VariableResult(name, outcome, mode, note="; ".join(text for _, text in changes))
 
 
 def compare_datasets(
@@ -285,9 +261,7 @@ def compare_datasets(
             results.append(_compare_variable(name, artifact, record, new, rules))
     changes = list(_attributes(record, new, rules))
     if changes:
-        results.append(
-            VariableResult("(global attributes)", Outcome.STRUCTURE, note="; ".join(changes))
-        )
+        results.append(_told("(global attributes)", changes))
     return sorted(results, key=_severity)
 
 

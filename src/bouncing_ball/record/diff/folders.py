@@ -5,16 +5,21 @@ A folder holds ``figures/`` with datasets, pictures and tables, and
 suffixes are one artifact.
 """
 
+import time
+from collections.abc import Collection
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 from bouncing_ball.record.diff.outcome import Outcome, worst
-from bouncing_ball.record.diff.parts import Part, dataset, one_sided, rendering
+from bouncing_ball.record.diff.parts import Part, judge
 from bouncing_ball.record.diff.tolerances import Tolerances
+from bouncing_ball.record.reading import UnreadableError, names_in, printable
 
 _FIGURES, _PAPER = "figures", "paper.md"
 # In the order in which they are compared: the data first, as the others lean on them.
 _SUFFIXES = (".nc", ".csv", ".png", ".svg", ".md", ".tex")
+# Of processor time, a hundred times what the record takes; what then is left is not compared.
+_SECONDS = 300.0
 
 
 class ComparisonError(ValueError):
@@ -63,75 +68,75 @@ def artifacts_in(folder: Path) -> dict[str, set[str]]:
         If there is no such folder, or no artifact in it.
     """
     if not folder.is_dir():
-        raise ComparisonError(f"no folder {folder}")
-    candidates = [*(folder / _FIGURES).glob("*"), folder / _PAPER]
+        raise ComparisonError(f"no folder {printable(folder)}")
+    try:
+        names = names_in(folder / _FIGURES) if (folder / _FIGURES).is_dir() else []
+    except UnreadableError as error:
+        raise ComparisonError(f"{printable(folder / _FIGURES)}: {error}") from None
+    files = [f"{_FIGURES}/{name}" for name in names]
+    files += [_PAPER] * ((folder / _PAPER).is_symlink() or (folder / _PAPER).exists())
     found: dict[str, set[str]] = {}
-    for path in candidates:
+    for file in files:
+        path = PurePosixPath(file)
         # Files that begin with a point are halfway written.
-        if path.suffix in _SUFFIXES and path.is_file() and not path.name.startswith("."):
-            found.setdefault(path.stem, set()).add(path.relative_to(folder).as_posix())
+        if path.suffix in _SUFFIXES and not path.name.startswith("."):
+            found.setdefault(path.stem, set()).add(file)
     if not found:
-        raise ComparisonError(f"nothing to compare in {folder}: neither {_FIGURES}/ nor {_PAPER}")
+        raise ComparisonError(
+            f"nothing to compare in {printable(folder)}: neither {_FIGURES}/ nor {_PAPER}"
+        )
     return found
 
 
-def _artifact(
-    name: str,
-    files: tuple[set[str], set[str]],
-    folders: tuple[Path, Path],
-    rules: Tolerances,
-    own: bool | None = None,
-    data: Outcome | None = None,
-) -> Artifact:
-    """An artifact and its files.
-
-    ``own``, whether the versions are the same, and ``data``, the outcome on what
-    it is made from, are told by its dataset, if it has one.
-    """
-    parts: list[Part] = []
-    ordered = sorted(files[0] | files[1], key=lambda file: _SUFFIXES.index(Path(file).suffix))
-    for file in ordered:
-        if file not in files[1]:
-            part = one_sided(file, folders[0], Outcome.MISSING)
-        elif file not in files[0]:
-            part = one_sided(file, folders[1], Outcome.EXTRA)
-        elif file.endswith(".nc"):
-            part = dataset(file, name, folders, rules)
-            own = bool(part.same_versions)
-        else:
-            part = rendering(file, folders, rules, data, own)
-        if file.endswith(".nc"):
-            data = part.outcome
-        parts.append(part)
-    return Artifact(name, tuple(parts))
-
-
-def compare_folders(record: Path, new: Path, rules: Tolerances) -> Comparison:
-    """All artifacts of two folders, worst first.
+def compare_folders(
+    record: Path, new: Path, rules: Tolerances, only: Collection[str] = ()
+) -> Comparison:
+    """All artifacts of two folders, or only those named, worst first.
 
     Raises
     ------
     ComparisonError
-        If one of the folders is not there or holds no artifact.
+        If one of the folders is not there or holds no artifact, or neither has
+        one of those named.
     """
     before, after = artifacts_in(record), artifacts_in(new)
-    paper = Path(_PAPER).stem
+    names = sorted(before.keys() | after.keys())
+    for name in only:
+        if name not in names:
+            known = printable(", ".join(names))
+            raise ComparisonError(f"unknown artifact {printable(name)}; there are {known}")
+    deadline = time.process_time() + _SECONDS
 
-    def files(name: str) -> tuple[set[str], set[str]]:
-        return before.get(name, set()), after.get(name, set())
+    def judged(name: str, file: str, data: Outcome | None) -> Part:
+        if time.process_time() > deadline:
+            note = f"not compared: the {_SECONDS:g} s for all are over"
+            return Part(file, Outcome.UNREADABLE, note=note)
+        sides = (
+            record if file in before.get(name, ()) else None,
+            new if file in after.get(name, ()) else None,
+        )
+        return judge(file, name, sides, rules, data)
 
-    names = before.keys() | after.keys()
-    folders = record, new
-    artifacts = [_artifact(name, files(name), folders, rules) for name in sorted(names - {paper})]
-    if paper in names:
-        # The text is made from all datasets.
-        made_from = [
-            part for found in artifacts for part in found.parts if part.file.endswith(".nc")
-        ]
-        own = bool(made_from) and all(part.same_versions for part in made_from)
-        data = worst(part.outcome for part in made_from) if made_from else None
-        artifacts.append(_artifact(paper, files(paper), folders, rules, own, data))
-    return Comparison(tuple(sorted(artifacts, key=_severity)))
+    def artifact(name: str, data: Outcome | None = None) -> Artifact:
+        files = before.get(name, set()) | after.get(name, set())
+        parts = []
+        for file in sorted(files, key=lambda file: _SUFFIXES.index(PurePosixPath(file).suffix)):
+            parts.append(judged(name, file, data))
+            if file.endswith(".nc"):
+                data = parts[-1].outcome
+        return Artifact(name, tuple(parts))
+
+    paper = PurePosixPath(_PAPER).stem
+    chosen = set(only or names)
+    # The text is made from all datasets: for its sake they are all judged.
+    asked = names if paper in chosen else chosen
+    found = [artifact(name) for name in sorted(asked) if name != paper]
+    if paper in chosen:
+        parts = [part for each in found for part in each.parts]
+        data = [part.outcome for part in parts if part.file.endswith(".nc")]
+        found.append(artifact(paper, worst(data)))
+    found = [each for each in found if each.name in chosen]
+    return Comparison(tuple(sorted(found, key=_severity)))
 
 
 def _severity(artifact: Artifact) -> tuple:

@@ -1,37 +1,33 @@
 """One file of an artifact against its counterpart in the record.
 
-Data decide. A picture or a text is made from data: where it differs, that is
-reported, and it decides only if both sides were made with the same versions of
-everything. That leaves the code as the reason, or the processor: another one
-rounds otherwise. So a picture has a budget, a digit of a table may move with
-its data (:func:`~bouncing_ball.record.diff.texts.compare_tables`), and any other
-text decides only while its data are identical. Where they have drifted within
-their budgets, the text may follow, and the table beside it says how far.
+Everything decides, by a measure of its own: data by their budgets, texts and
+tables line by line with numbers that move only as their data do, pictures by
+their pixels and the places of their elements. One thing is only reported: a
+picture drawn by another matplotlib than the record's, which draws otherwise.
+
+Every file is judged alone. Whatever is wrong with one, it is unreadable, with
+the reason, and the others are compared all the same.
 """
 
 import json
+import warnings
+from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePosixPath
+from typing import Any
 
-from bouncing_ball.datasets.netcdf import read_dataset
+import numpy as np
+import xarray as xr
+
 from bouncing_ball.record.diff.data import VariableResult, compare_datasets
+from bouncing_ball.record.diff.drawings import compare_drawings, read_drawing
 from bouncing_ball.record.diff.outcome import Outcome, worst
-from bouncing_ball.record.diff.pictures import (
-    VERSIONS,
-    PictureError,
-    PictureResult,
-    compare_pictures,
-    versions_of,
-)
-from bouncing_ball.record.diff.texts import (
-    PictureTextError,
-    TableError,
-    check_svg,
-    compare_tables,
-    compare_texts,
-    without_metadata,
-)
+from bouncing_ball.record.diff.pictures import PictureResult, compare_pictures, read_picture
+from bouncing_ball.record.diff.texts import Line, compare_texts, summary
 from bouncing_ball.record.diff.tolerances import Tolerances
+from bouncing_ball.record.reading import UnreadableError, opened_dataset, read_file, reason
+
+_VERSIONS = "provenance_versions"
 
 
 @dataclass(frozen=True)
@@ -51,8 +47,8 @@ class Part:
         What is different, in a few words.
     variables : tuple of VariableResult
         Of a dataset, worst first.
-    same_versions : bool, optional
-        Of a dataset: whether both sides name the same versions of everything.
+    lines : tuple of Line
+        Of a text or a vector graphic: all that are not the same.
     picture : PictureResult, optional
     images : tuple
         The record's and the new picture as files, None where there is none.
@@ -64,135 +60,159 @@ class Part:
     share: float | None = None
     note: str = ""
     variables: tuple[VariableResult, ...] = ()
-    same_versions: bool | None = None
+    lines: tuple[Line, ...] = ()
     picture: PictureResult | None = None
     images: tuple[bytes | None, bytes | None] = (None, None)
 
 
-def same_versions(record: str | None, new: str | None) -> bool:
-    """Whether two JSON texts name the same versions; not if one side has none.
+def read_data(content: bytes) -> xr.Dataset:
+    """A dataset from its file's content, whole; numbers are taken for no dates."""
+    with opened_dataset(content) as raw:
+        store = xr.backends.NetCDF4DataStore(raw)
+        backend = xr.backends.StoreBackendEntrypoint()
+        return backend.open_dataset(store, decode_times=False, decode_timedelta=False).load()
+
+
+def _text(content: bytes) -> str:
+    try:
+        return content.decode("utf-8")
+    except UnicodeDecodeError:
+        raise UnreadableError("not UTF-8 text") from None
+
+
+_READERS = {".nc": read_data, ".png": read_picture, ".svg": read_drawing}
+
+
+def _read(folder: Path, file: str) -> tuple[bytes, Any]:
+    """The content of a file, and what it holds: dataset, picture, drawing or text."""
+    content = read_file(folder, file)
+    return content, _READERS.get(PurePosixPath(file).suffix, _text)(content)
+
+
+def redrawn(record: Mapping[Any, Any], new: Mapping[Any, Any]) -> str:
+    """How two pictures' metadata name different versions of matplotlib; empty if not.
 
     Examples
     --------
-    >>> same_versions('{"numpy": "2.4", "scipy": "1.17"}', '{"scipy":"1.17","numpy":"2.4"}')
-    True
-    >>> same_versions(None, None)
-    False
+    >>> old, new = ({_VERSIONS: f'{{"matplotlib": "3.{k}"}}'} for k in (10, 11))
+    >>> redrawn(old, new), redrawn(old, old), redrawn(old, {})
+    ('drawn by matplotlib 3.10 → 3.11', '', '')
     """
-    if record is None or new is None:
-        return False
-    try:
-        return json.loads(record) == json.loads(new)
-    except (TypeError, ValueError):
-        return False
-
-
-def one_sided(file: str, folder: Path, outcome: Outcome) -> Part:
-    """A file that only one of the folders has, missing or extra."""
-    content = (folder / file).read_bytes() if file.endswith(".png") else None
-    images = (content, None) if outcome is Outcome.MISSING else (None, content)
-    return Part(file, outcome, images=images)
-
-
-def _summary(results: tuple[VariableResult, ...], unknown: list[str]) -> str:
-    """The worst variable and where it is, and those without an entry."""
-    notes = []
-    if results and results[0].outcome is not Outcome.IDENTICAL:
-        first = results[0]
-        where = f" at {first.place}" if first.place else ""
-        notes.append(f"{first.name}{where}" + (f": {first.note}" if first.note else ""))
-    if unknown:
-        notes.append(f"no entry for {', '.join(unknown)}")
-    return "; ".join(notes)
-
-
-def dataset(file: str, artifact: str, folders: tuple[Path, Path], rules: Tolerances) -> Part:
-    """A dataset that both folders have."""
-    sides = []
-    for side, folder in zip(("record", "new"), folders, strict=True):
+    found = []
+    for metadata in (record, new):
         try:
-            sides.append(read_dataset(folder / file))
-        # What netCDF4 and xarray raise on a damaged file.
-        except (OSError, RuntimeError, ValueError, KeyError) as error:
-            reason = " ".join(str(error).split()).replace(str(folder), "…")
-            return Part(file, Outcome.UNREADABLE, note=f"{side}: {reason[:120]}")
+            versions = json.loads(str(metadata.get(_VERSIONS)))
+            found.append(versions["matplotlib"])
+        except (ValueError, KeyError, TypeError, RecursionError):
+            return ""
+    return f"drawn by matplotlib {found[0]} → {found[1]}" if found[0] != found[1] else ""
+
+
+def _joined(*notes: str) -> str:
+    return "; ".join(filter(None, notes))
+
+
+def _dataset(file: str, artifact: str, sides: Any, rules: Tolerances) -> Part:
     record, new = sides
     results = tuple(compare_datasets(artifact, record, new, rules))
-    shares = [result.share for result in results if result.share is not None]
     names = sorted(map(str, {*record.variables, *new.variables}))
     unknown = [name for name in names if rules.of(artifact, name) is None]
+    first = results[0] if results else None
+    note = ""
+    if first is not None and first.outcome is not Outcome.IDENTICAL:
+        note = first.name + (f" at {first.place}" if first.place else "")
+        note += f": {first.note}" if first.note else ""
     return Part(
         file,
         worst(result.outcome for result in results),
-        share=max(shares, default=None),
-        note=_summary(results, unknown),
+        share=max((each.share for each in results if each.share is not None), default=None),
+        note=_joined(note, f"no entry for {', '.join(unknown)}" if unknown else ""),
         variables=results,
-        same_versions=same_versions(record.attrs.get(VERSIONS), new.attrs.get(VERSIONS)),
     )
 
 
-def _picture(file: str, record: bytes, new: bytes, rules: Tolerances, own: bool | None) -> Part:
-    found = compare_pictures(record, new, rules.pictures.allowed)
-    if own is None and record != new:
-        # A figure without a dataset tells by itself.
-        own = same_versions(versions_of(record), versions_of(new))
+def _picture(file: str, images: tuple[bytes, bytes], sides: Any, rules: Tolerances) -> Part:
+    found = compare_pictures(sides[0], sides[1], rules.pictures.allowed)
+    other = redrawn(sides[0].info, sides[1].info)
     return Part(
         file,
         found.outcome,
-        decides=bool(own),
+        decides=not other,
         share=found.share,
-        note=found.note,
+        note=_joined(found.note, other if found.outcome is not Outcome.IDENTICAL else ""),
         picture=found,
-        images=(record, new),
+        images=images,
     )
 
 
-def _text(file: str, record: str, new: str, data: Outcome | None, own: bool | None) -> Part:
-    match Path(file).suffix:
-        case ".csv":
-            outcome, note = compare_tables(record, new, data)
-            return Part(file, outcome, note=note)
-        case ".svg":
-            for text in (record, new):
-                check_svg(text)
-            outcome, _ = compare_texts(without_metadata(record), without_metadata(new))
-            return Part(file, outcome, decides=False)
-        case _:
-            outcome, note = compare_texts(record, new)
-            if outcome is Outcome.DRIFTED and data is Outcome.WITHIN:
-                outcome = Outcome.WITHIN
-            return Part(file, outcome, decides=bool(own) and data is Outcome.IDENTICAL, note=note)
+def _drawing(file: str, sides: Any) -> Part:
+    share, lines = compare_drawings(*sides)
+    outcome = worst(line.outcome for line in lines)
+    other = redrawn(sides[0].metadata, sides[1].metadata) if lines else ""
+    note = f"{len(lines)} of {len(sides[0].elements)} elements moved" if lines else ""
+    return Part(file, outcome, not other, share, _joined(note, other), lines=lines)
 
 
-def rendering(
-    file: str,
-    folders: tuple[Path, Path],
-    rules: Tolerances,
-    data: Outcome | None,
-    own: bool | None,
+def _lines(file: str, sides: Any, data: Outcome | None) -> Part:
+    lines = compare_texts(sides[0], sides[1], data)
+    outcome, note = summary(lines)
+    return Part(file, outcome, note=note, lines=lines)
+
+
+def _compared(
+    file: str, artifact: str, contents: Any, sides: Any, rules: Tolerances, data: Outcome | None
 ) -> Part:
-    """A picture, table or text that both folders have.
+    match PurePosixPath(file).suffix:
+        case ".nc":
+            return _dataset(file, artifact, sides, rules)
+        case ".png":
+            return _picture(file, (contents[0], contents[1]), sides, rules)
+        case ".svg":
+            return _drawing(file, sides)
+        case _:
+            return _lines(file, sides, data)
+
+
+def judge(
+    file: str,
+    artifact: str,
+    folders: tuple[Path | None, Path | None],
+    rules: Tolerances,
+    data: Outcome | None = None,
+) -> Part:
+    """A file of one folder or of both; never an error.
 
     Parameters
     ----------
     file : str
-    folders : tuple of Path
-        That of the record and the new one.
+    artifact : str
+        Whose file it is.
+    folders : tuple
+        That of the record and the new one; None where the file is not there.
     rules : Tolerances
-    data : Outcome or None
-        The outcome on the dataset it is made from; the worst one, of several.
-    own : bool or None
-        Whether both sides were made with the same versions of everything;
-        None if no dataset tells.
+    data : Outcome, optional
+        On the datasets that a text is made from, the worst.
     """
-    try:
-        record, new = ((folder / file).read_bytes() for folder in folders)
-        if file.endswith(".png"):
-            return _picture(file, record, new, rules, own)
-        return _text(file, record.decode("utf-8"), new.decode("utf-8"), data, own)
-    except UnicodeDecodeError:
-        return Part(file, Outcome.UNREADABLE, note="not UTF-8 text")
-    except (PictureError, PictureTextError, TableError) as error:
-        return Part(file, Outcome.UNREADABLE, note=str(error))
-    except OSError as error:
-        return Part(file, Outcome.UNREADABLE, note=str(error.strerror))
+    before, after = folders
+    contents: list[bytes | None] = [None, None]
+    sides: list[Any] = [None, None]
+    reading = ""
+    # What a library has to say of a damaged file is said below, and in one line.
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore")
+        try:
+            if before is not None:
+                reading = "record: "
+                contents[0], sides[0] = _read(before, file)
+            if after is not None:
+                reading = "new: "
+                contents[1], sides[1] = _read(after, file)
+            reading = ""
+            if before is not None and after is not None:
+                return _compared(file, artifact, contents, sides, rules, data)
+        # By intent: what the libraries raise on a file made to confuse them has no end.
+        except Exception as error:
+            return Part(file, Outcome.UNREADABLE, note=f"{reading}{reason(error)}")
+    outcome = Outcome.EXTRA if before is None else Outcome.MISSING
+    images = (contents[0], contents[1]) if file.endswith(".png") else (None, None)
+    return Part(file, outcome, images=images)

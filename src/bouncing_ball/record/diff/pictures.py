@@ -1,7 +1,6 @@
 """Two pictures, pixel by pixel."""
 
 import io
-import warnings
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,16 +8,10 @@ from matplotlib.testing.compare import calculate_rms
 from PIL import Image, UnidentifiedImageError
 
 from bouncing_ball.record.diff.outcome import Outcome
+from bouncing_ball.record.reading import MAX_PIXELS, UnreadableError, reason
 
 # Grey levels of a pixel.
 _LEVELS = 255
-VERSIONS = "provenance_versions"
-"""Under which name a file holds the versions of the software it was made with: text
-chunk of a picture, global attribute of a dataset."""
-
-
-class PictureError(ValueError):
-    """A file that is no picture, or half of one."""
 
 
 @dataclass(frozen=True)
@@ -38,22 +31,27 @@ class PictureResult:
     note: str = ""
 
 
-def _opened(content: bytes) -> Image.Image:
+def read_picture(content: bytes) -> Image.Image:
+    """A PNG file, decoded; what it says of itself is its ``info``.
+
+    Raises
+    ------
+    UnreadableError
+        If it is no whole PNG file, or has more than ``MAX_PIXELS``.
+    """
     try:
-        with warnings.catch_warnings():
-            # A damaged file is an error here, whatever else is said about it.
-            warnings.simplefilter("ignore")
-            # A picture so large that to open it may take all memory.
-            warnings.simplefilter("error", Image.DecompressionBombWarning)
-            picture = Image.open(io.BytesIO(content), formats=["PNG"])
-            picture.load()
+        picture = Image.open(io.BytesIO(content), formats=["PNG"])
+        # The head is read, and not yet the pixels: a small file may have many.
+        if picture.width * picture.height > MAX_PIXELS:
+            raise UnreadableError("too large a picture")
+        picture.load()
     except (Image.DecompressionBombError, Image.DecompressionBombWarning):
-        raise PictureError("too large a picture") from None
+        raise UnreadableError("too large a picture") from None
     except UnidentifiedImageError:
         # Its own message holds an address in memory.
-        raise PictureError("not a PNG file") from None
-    except (OSError, SyntaxError, ValueError) as error:
-        raise PictureError(f"not a whole PNG file: {' '.join(str(error).split())[:80]}") from None
+        raise UnreadableError("not a PNG file") from None
+    except (OSError, SyntaxError) as error:
+        raise UnreadableError(f"not a whole PNG file: {reason(error)}") from None
     return picture
 
 
@@ -62,17 +60,6 @@ def _pixels(picture: Image.Image) -> np.ndarray:
     whole = picture.convert("RGBA")
     ground = Image.new("RGBA", whole.size, "white")
     return np.asarray(Image.alpha_composite(ground, whole).convert("RGB"), dtype=np.int16)
-
-
-def versions_of(content: bytes) -> str | None:
-    """The versions a PNG file says it was made with, None if it does not.
-
-    Raises
-    ------
-    PictureError
-        If it is no PNG file.
-    """
-    return _opened(content).info.get(VERSIONS)
 
 
 def _difference(record: np.ndarray, new: np.ndarray) -> tuple[bytes, int]:
@@ -84,24 +71,17 @@ def _difference(record: np.ndarray, new: np.ndarray) -> tuple[bytes, int]:
     return file.getvalue(), factor
 
 
-def compare_pictures(record: bytes, new: bytes, budget: float) -> PictureResult:
-    """Two PNG files as decoded pictures; what else is in the files does not count.
+def compare_pictures(record: Image.Image, new: Image.Image, budget: float) -> PictureResult:
+    """Two pictures by their pixels; what else is in the files does not count.
 
     Parameters
     ----------
-    record, new : bytes
-        Contents of the files.
+    record, new : Image
+        As :func:`read_picture` gives them.
     budget : float
         Root mean square allowed, in grey levels of 255.
-
-    Raises
-    ------
-    PictureError
-        If they differ and one of them is no whole PNG file.
     """
-    if record == new:
-        return PictureResult(Outcome.IDENTICAL, 0.0, 0.0)
-    before, after = _pixels(_opened(record)), _pixels(_opened(new))
+    before, after = _pixels(record), _pixels(new)
     if before.shape != after.shape:
         sizes = " → ".join(f"{shape[1]} × {shape[0]}" for shape in (before.shape, after.shape))
         return PictureResult(Outcome.STRUCTURE, note=f"size in pixels: {sizes}")

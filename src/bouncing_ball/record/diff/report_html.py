@@ -2,12 +2,20 @@
 
 import base64
 import math
+from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from bouncing_ball.record.diff.folders import Comparison
 from bouncing_ball.record.diff.outcome import Outcome, status
-from bouncing_ball.record.diff.report_terminal import SENTENCES, counts, remarks, share_text
+from bouncing_ball.record.diff.report_terminal import (
+    counts,
+    excerpts,
+    remarks,
+    sentence,
+    share_text,
+)
+from bouncing_ball.record.reading import printable
 
 
 def _colour(outcome: Outcome) -> str:
@@ -19,6 +27,15 @@ def _small(value: float | None) -> str:
     if value is None:
         return ""
     return f"{value:.2g}" if math.isfinite(value) else "∞"
+
+
+def _plain(value: Any) -> Any:
+    """What stands in an expression of the page; text that is no markup yet, on one line."""
+    return (
+        value
+        if hasattr(value, "__html__") or not isinstance(value, str)
+        else printable(value, None)
+    )
 
 
 def to_html(comparison: Comparison) -> str:
@@ -35,6 +52,7 @@ def to_html(comparison: Comparison) -> str:
     environment = Environment(
         loader=PackageLoader("bouncing_ball.record.diff", "."),
         autoescape=True,
+        finalize=_plain,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -42,7 +60,8 @@ def to_html(comparison: Comparison) -> str:
     )
     return environment.get_template("page.html.j2").render(
         comparison=comparison,
-        sentence=SENTENCES[status(comparison.outcome)],
+        sentence=sentence(comparison),
+        excerpts=excerpts,
         counts=counts(comparison) or "No artifacts",
         remarks=remarks,
         share=share_text,

@@ -2,39 +2,41 @@
 
 import json
 import math
+from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
-from bouncing_ball.record.diff.data import VariableResult
 from bouncing_ball.record.diff.folders import Artifact, Comparison
 from bouncing_ball.record.diff.outcome import status
 from bouncing_ball.record.diff.parts import Part
+from bouncing_ball.record.reading import printable
 
 
-def _number(value: float | None) -> float | str | None:
-    """JSON knows no infinity."""
-    return value if value is None or math.isfinite(value) else str(value)
-
-
-def _variable(result: VariableResult) -> dict[str, Any]:
-    return {
-        name: _number(value) if isinstance(value, float) else value
-        for name, value in asdict(result).items()
-    }
+def _plain(value: Any) -> Any:
+    """As JSON can hold it: it knows no infinity, and UTF-8 no half of a pair."""
+    if isinstance(value, Mapping):
+        return {printable(key): _plain(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(each) for each in value]
+    if isinstance(value, str):
+        return printable(value, width=None)
+    return str(value) if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _part(part: Part) -> dict[str, Any]:
-    found = {
+    found: dict[str, Any] = {
         "file": part.file,
         "outcome": part.outcome,
         "decides": part.decides,
-        "share": _number(part.share),
+        "share": part.share,
         "note": part.note,
     }
     if part.picture is not None:
         found["rms"] = part.picture.rms
     if part.variables:
-        found["variables"] = [_variable(result) for result in part.variables]
+        found["variables"] = [asdict(result) for result in part.variables]
+    if part.lines:
+        found["lines"] = [asdict(line) for line in part.lines]
     return found
 
 
@@ -42,7 +44,7 @@ def _artifact(artifact: Artifact) -> dict[str, Any]:
     return {
         "name": artifact.name,
         "outcome": artifact.outcome,
-        "share": _number(artifact.share),
+        "share": artifact.share,
         "parts": [_part(part) for part in artifact.parts],
     }
 
@@ -66,4 +68,4 @@ def to_json(comparison: Comparison) -> str:
         "outcome": comparison.outcome,
         "artifacts": [_artifact(artifact) for artifact in comparison.artifacts],
     }
-    return json.dumps(content, ensure_ascii=False, indent=2, allow_nan=False) + "\n"
+    return json.dumps(_plain(content), ensure_ascii=False, indent=2, allow_nan=False) + "\n"

@@ -1,8 +1,15 @@
 """The summary for continuous integration, as Markdown."""
 
 from bouncing_ball.record.diff.folders import Comparison
-from bouncing_ball.record.diff.outcome import Outcome, status
-from bouncing_ball.record.diff.report_terminal import SENTENCES, counts, remarks, share_text
+from bouncing_ball.record.diff.outcome import Outcome
+from bouncing_ball.record.diff.report_terminal import (
+    changed_lines,
+    counts,
+    remarks,
+    sentence,
+    share_text,
+)
+from bouncing_ball.record.reading import printable
 
 # Characters that would end a cell, or be taken for markup.
 _SPECIAL = str.maketrans({character: f"\\{character}" for character in "\\`*_[]<>|~#"})
@@ -16,7 +23,7 @@ def escaped(text: str) -> str:
     >>> escaped("a|b <i>")
     'a\\\\|b \\\\<i\\\\>'
     """
-    return " ".join(text.split()).translate(_SPECIAL)
+    return printable(" ".join(text.split())).translate(_SPECIAL)
 
 
 def to_markdown(comparison: Comparison) -> str:
@@ -29,12 +36,11 @@ def to_markdown(comparison: Comparison) -> str:
     <BLANKLINE>
     **The new artifacts say what the record says.** No artifacts.
     """
-    sentence = SENTENCES[status(comparison.outcome)]
+    found = counts(comparison) or "no artifacts"
     lines = [
         "## Artifacts against the record",
         "",
-        f"**{sentence}** {(counts(comparison) or 'No artifacts')[:1].upper()}"
-        f"{(counts(comparison) or 'No artifacts')[1:]}.",
+        f"**{sentence(comparison)}** {found[:1].upper()}{found[1:]}.",
     ]
     shown = [
         artifact for artifact in comparison.artifacts if artifact.outcome is not Outcome.IDENTICAL
@@ -42,12 +48,12 @@ def to_markdown(comparison: Comparison) -> str:
     if shown:
         lines += [
             "",
-            "| artifact | outcome | share of budget | what |",
+            "| artifact | outcome | of budget | what |",
             "| --- | --- | ---: | --- |",
         ]
     for artifact in shown:
         name, share = escaped(artifact.name), share_text(artifact.share)
-        what = "<br>".join(escaped(remark) for remark in remarks(artifact))
+        what = "<br>".join(map(escaped, [*remarks(artifact), *changed_lines(artifact)]))
         outcome = f"**{artifact.outcome}**" if not artifact.outcome.agrees else artifact.outcome
         lines.append(f"| {name} | {outcome} | {share} | {what} |")
     return "".join(f"{line}\n" for line in lines)

@@ -3,6 +3,7 @@
 from bouncing_ball.record.diff.folders import Artifact, Comparison
 from bouncing_ball.record.diff.outcome import Outcome, status
 from bouncing_ball.record.diff.parts import Part
+from bouncing_ball.record.reading import printable
 
 SENTENCES = {
     0: "The new artifacts say what the record says.",
@@ -11,17 +12,41 @@ SENTENCES = {
 }
 
 
+# Of a text, more changed lines than these are in the other reports only.
+_LINES = 5
+
+
+def sentence(comparison: Comparison) -> str:
+    """The result in a sentence, with what it leaves open."""
+    reported = sum(
+        not part.decides and part.outcome is not Outcome.IDENTICAL
+        for artifact in comparison.artifacts
+        for part in artifact.parts
+    )
+    more = f" Pictures drawn by another matplotlib and not judged: {reported}." if reported else ""
+    return SENTENCES[status(comparison.outcome)] + more
+
+
 def share_text(share: float | None) -> str:
-    """A share of a budget in three digits, nothing for what has no budget.
+    """A share of a budget: in per cent up to ten budgets, in budgets above.
 
     Examples
     --------
-    >>> [share_text(share) for share in (None, 0.0, 0.0123, 2.0, 12345.0, float("inf"))]
-    ['', '0', '0.0123', '2', '1.23e+04', '∞']
+    >>> [share_text(share) for share in (None, 0.0, 0.00123, 1.46, 150.0, 12345.0)]
+    ['', '0 %', '0.123 %', '146 %', '150 ×', '12 300 ×']
+    >>> [share_text(share) for share in (1e-9, 2.5e8, float("inf"))]
+    ['< 0.001 %', '> 1 000 000 ×', '∞']
     """
     if share is None:
         return ""
-    return "∞" if share == float("inf") else f"{share:.3g}"
+    if share == float("inf"):
+        return "∞"
+    if 0 < share < 1e-5:
+        return "< 0.001 %"
+    if share < 9.995:
+        return f"{100 * share:.3g} %"
+    rounded = float(f"{share:.3g}")
+    return "> 1 000 000 ×" if rounded > 1e6 else f"{rounded:,.16g} ×".replace(",", " ")
 
 
 def remarks(artifact: Artifact) -> list[str]:
@@ -30,7 +55,7 @@ def remarks(artifact: Artifact) -> list[str]:
     What decides comes first.
     """
 
-    def sentence(part: Part) -> str:
+    def remark(part: Part) -> str:
         note = f": {part.note}" if part.note else ""
         return f"{part.file} {part.outcome}{note}" + ("" if part.decides else " (reported only)")
 
@@ -38,7 +63,46 @@ def remarks(artifact: Artifact) -> list[str]:
         part for part in artifact.parts if part.outcome is not Outcome.IDENTICAL or part.note
     ]
     ordered = sorted(different, key=lambda part: (not part.decides, -part.outcome.rank))
-    return [sentence(part) for part in ordered]
+    return [remark(part) for part in ordered]
+
+
+def changed_lines(artifact: Artifact) -> list[str]:
+    """The lines of an artifact's texts that are not the same, from where they begin to differ.
+
+    Of elements of a vector graphic there is no more than their number.
+    """
+    shown = []
+    for part in artifact.parts:
+        lines = () if part.file.endswith(".svg") else part.lines
+        file = printable(part.file)
+        for line in lines[:_LINES]:
+            old, new = excerpts(line.record, line.new)
+            shown.append(f"{file}, {line.place}: {old} → {new}")
+        if len(lines) > _LINES:
+            shown.append(f"{file}: {len(lines) - _LINES} more")
+    return shown
+
+
+def excerpts(record: str | None, new: str | None, width: int = 60) -> tuple[str, str]:
+    """Two lines from shortly before where they begin to differ.
+
+    Examples
+    --------
+    >>> excerpts("All of the readings are right, with one exception", None, width=12)
+    ('All of the r…', '(none)')
+    >>> excerpts("All of the readings are right", "All of the readings are wrong", width=12)
+    ('…dings are ri…', '…dings are wr…')
+    """
+    pairs = enumerate(zip(record or "", new or "", strict=False))
+    start = max(0, next((k for k, (old, each) in pairs if old != each), 0) - 10)
+
+    def part(text: str | None) -> str:
+        if text is None:
+            return "(none)"
+        shown = printable(text[start : start + width], None)
+        return "…" * (start > 0) + shown + "…" * (start + width < len(text))
+
+    return part(record), part(new)
 
 
 def counts(comparison: Comparison) -> str:
@@ -57,25 +121,27 @@ def counts(comparison: Comparison) -> str:
 def to_terminal(comparison: Comparison) -> str:
     """One line for each artifact that is not identical, worst first, and the result.
 
+    Under it, the first lines of its texts that are not the same.
+
     Examples
     --------
     >>> print(to_terminal(Comparison((Artifact("fig01", ()),))), end="")
     1 identical. The new artifacts say what the record says.
     """
-    lines = []
-    shown = [
-        artifact for artifact in comparison.artifacts if artifact.outcome is not Outcome.IDENTICAL
-    ]
-    if shown:
-        width = max(len(artifact.name) for artifact in shown)
-        lines.append(f"{'artifact':<{max(width, 8)}}  {'outcome':<17}  {'share':>7}  what")
-        for artifact in shown:
+    rows = [("artifact", "outcome", "of budget", "what")]
+    details: dict[int, list[str]] = {}
+    for artifact in comparison.artifacts:
+        if artifact.outcome is not Outcome.IDENTICAL:
             first, *rest = [*remarks(artifact), ""]
             more = f" (+{len(rest) - 1})" if len(rest) > 1 else ""
-            share = share_text(artifact.share)
-            lines.append(
-                f"{artifact.name:<{max(width, 8)}}  {artifact.outcome:<17}  {share:>7}  "
-                f"{first}{more}"
-            )
-    lines.append(f"{counts(comparison)}. {SENTENCES[status(comparison.outcome)]}")
+            what = printable(first) + more
+            name, share = printable(artifact.name, 40), share_text(artifact.share)
+            details[len(rows)] = changed_lines(artifact)
+            rows.append((name, str(artifact.outcome), share, what))
+    width = max(len(row[0]) for row in rows)
+    lines = []
+    for number, (name, outcome, share, what) in enumerate(rows if len(rows) > 1 else ()):
+        lines.append(f"{name:<{width}}  {outcome:<17}  {share:>9}  {what}")
+        lines += [f"  {line}" for line in details.get(number, ())]
+    lines.append(f"{counts(comparison)}. {sentence(comparison)}")
     return "".join(f"{line}\n" for line in lines)

@@ -1,74 +1,29 @@
-"""Tables cell by cell, and texts line by line."""
+"""Texts line by line: words as they are, numbers as their data allow."""
 
-import csv
-import io
 import re
+from dataclasses import dataclass
 from decimal import Decimal
-from xml.etree import ElementTree
+from difflib import SequenceMatcher
+from itertools import zip_longest
 
-from bouncing_ball.record.diff.outcome import Outcome
+from bouncing_ball.record.diff.outcome import Outcome, worst
 
-# A number as it is printed, with its sign and exponent.
-_NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
-# Below, a number is only the size of a rounding error: it has no digits that
-# two processors share. The largest budget of a disagreement between two routes
-# to one number, that of the witness's rate of departure (audit/cross_check.py).
-_ROUNDING_LEVEL = Decimal("1e-5")
-_METADATA = re.compile(r"<metadata\b.*?</metadata>\s*", re.DOTALL)
-
-
-class PictureTextError(ValueError):
-    """A text that is no vector graphic."""
+# A number as it is printed, with its sign and exponent. An exponent of more digits
+# belongs to no number of ours, and Decimal would refuse it.
+_NUMBER = re.compile(r"[-+]?[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]{1,4}(?![0-9]))?")
+# Up to so many changed lines, those that were put in or left out are found; more are
+# taken in their order, as finding them takes up to the cube of their number.
+_ALIGNED = 400
 
 
-class TableError(ValueError):
-    """A text that is no CSV table."""
+@dataclass(frozen=True)
+class Line:
+    """A line that is not the same on both sides; None where a side has no such line."""
 
-
-def without_metadata(svg: str) -> str:
-    """A vector graphic without the block that tells how it was made.
-
-    Examples
-    --------
-    >>> without_metadata("<svg><metadata><a>1</a></metadata><g/></svg>")
-    '<svg><g/></svg>'
-    """
-    return _METADATA.sub("", svg)
-
-
-def check_svg(text: str) -> None:
-    """Raise :class:`PictureTextError` unless a text is a whole vector graphic."""
-    try:
-        ElementTree.fromstring(text)
-    except ElementTree.ParseError as error:
-        raise PictureTextError(f"not a whole SVG file: {error}") from None
-
-
-def compare_texts(record: str, new: str) -> tuple[Outcome, str]:
-    """Outcome and the first line that differs.
-
-    Examples
-    --------
-    >>> outcome, note = compare_texts("a\\nb\\n", "a\\nc\\n")
-    >>> str(outcome), note
-    ('drifted', 'line 2: b → c')
-    """
-    if record == new:
-        return Outcome.IDENTICAL, ""
-    before, after = record.splitlines(), new.splitlines()
-    for number, (old, line) in enumerate(zip(before, after, strict=False), start=1):
-        if old != line:
-            # Long lines from where they begin to differ.
-            same = next(
-                (k for k, pair in enumerate(zip(old, line, strict=False)) if pair[0] != pair[1]),
-                min(len(old), len(line)),
-            )
-            start = max(0, same - 10)
-            shown = " → ".join(part[start : start + 40].strip() for part in (old, line))
-            return Outcome.DRIFTED, f"line {number}: {shown}"
-    if len(before) == len(after):
-        return Outcome.DRIFTED, "ends of lines"
-    return Outcome.DRIFTED, f"{len(before)} lines → {len(after)} lines"
+    place: str
+    outcome: Outcome
+    record: str | None
+    new: str | None
 
 
 def _last_digit(number: str) -> Decimal:
@@ -79,8 +34,7 @@ def _last_digit(number: str) -> Decimal:
     >>> [str(_last_digit(text)) for text in ("0.25", "-4.5e-13", "82")]
     ['0.01', '1E-14', '1']
     """
-    exponent = Decimal(number).as_tuple().exponent
-    return Decimal((0, (1,), int(exponent)))
+    return Decimal((0, (1,), int(Decimal(number).as_tuple().exponent)))
 
 
 def _same_to_the_last_digit(old: str, new: str) -> bool:
@@ -90,78 +44,103 @@ def _same_to_the_last_digit(old: str, new: str) -> bool:
     --------
     >>> _same_to_the_last_digit("0.25", "0.26"), _same_to_the_last_digit("0.25", "0.27")
     (True, False)
-    >>> _same_to_the_last_digit("99.99", "100"), _same_to_the_last_digit("9e-16", "0.0e+00")
-    (True, True)
-    >>> _same_to_the_last_digit("7", "8")
-    False
+    >>> _same_to_the_last_digit("99.99", "100"), _same_to_the_last_digit("7", "8")
+    (True, False)
     """
     if old == new:
         return True
-    a, b = Decimal(old), Decimal(new)
     if old.lstrip("+-").isdigit() and new.lstrip("+-").isdigit():
         # A count, or a part of a name.
-        return a == b
+        return False
     # Across a power of ten, and where zeros are left out, the smaller unit is the step.
-    unit = min(_last_digit(old), _last_digit(new))
-    return abs(a - b) <= unit or max(abs(a), abs(b)) < _ROUNDING_LEVEL
+    return abs(Decimal(old) - Decimal(new)) <= min(_last_digit(old), _last_digit(new))
 
 
-def compare_tables(record: str, new: str, data: Outcome | None) -> tuple[Outcome, str]:
-    """Outcome on two CSV tables, and the first cell that differs.
+def may_be_rounding(old: str, new: str) -> bool:
+    """Whether two lines have the same words, and numbers apart by a last digit at most.
 
-    A table prints a dataset. Where the data have drifted within their budget,
-    the last printed digit may move with them by one, and numbers of the size of
-    rounding at will; nothing else may. Where the data are the same, or there
-    are none, a digit that moves is a drift.
+    Examples
+    --------
+    >>> may_be_rounding("r = 0.25 in 3 orbits", "r = 0.26 in 3 orbits")
+    True
+    >>> may_be_rounding("r = 0.25 in 3 orbits", "r = 0.26 in 4 orbits")
+    False
+    >>> may_be_rounding("right, with 0.25", "wrong, with 0.25")
+    False
+    """
+    return _NUMBER.split(old) == _NUMBER.split(new) and all(
+        map(_same_to_the_last_digit, _NUMBER.findall(old), _NUMBER.findall(new))
+    )
+
+
+def _changed(before: list[str], after: list[str]) -> list[tuple[int, str | None, str | None]]:
+    """Number of the line and both sides of what is not the same, line against line."""
+    start = 0
+    while start < min(len(before), len(after)) and before[start] == after[start]:
+        start += 1
+    end = 0
+    while end < min(len(before), len(after)) - start and before[-1 - end] == after[-1 - end]:
+        end += 1
+    before, after = before[start : len(before) - end], after[start : len(after) - end]
+    blocks = [(0, len(before), 0, len(after))]
+    if len(before) != len(after) and max(len(before), len(after)) <= _ALIGNED:
+        # Numbers taken out, so that a line is found whose digits have moved.
+        words, new_words = ([_NUMBER.sub("#", line) for line in side] for side in (before, after))
+        codes = SequenceMatcher(None, words, new_words, autojunk=False).get_opcodes()
+        blocks = [code[1:] for code in codes]
+    found = []
+    for low, high, new_low, new_high in blocks:
+        pairs = zip_longest(before[low:high], after[new_low:new_high])
+        found += [(start + low + k + 1, *pair) for k, pair in enumerate(pairs)]
+    return [each for each in found if each[1] != each[2]]
+
+
+def compare_texts(record: str, new: str, data: Outcome | None) -> tuple[Line, ...]:
+    """All lines that are not the same, each with its outcome.
+
+    Where the data have drifted within their budget, the last digit of a printed
+    number may move with them by one. Nothing else may: not a word, not a count,
+    and no digit where the data are the same or there are none.
 
     Parameters
     ----------
     record, new : str
     data : Outcome or None
-        The outcome on the dataset of the same name.
-
-    Raises
-    ------
-    TableError
-        If one of them is no CSV table.
+        Of what the text is made from, the worst.
 
     Examples
     --------
-    >>> [str(compare_tables("x\\n0.25\\n", "x\\n0.26\\n", data)[0])
-    ...  for data in (Outcome.WITHIN, Outcome.IDENTICAL)]
-    ['within budget', 'drifted']
-    >>> str(compare_tables("x\\n0.25\\n", "x\\n0.31\\n", Outcome.WITHIN)[0])
-    'drifted'
-    >>> compare_tables("x\\n0.25\\n", "x,y\\n0.25,1\\n", Outcome.IDENTICAL)[1]
-    'columns of row 1: 1 → 2'
+    >>> for data in (Outcome.WITHIN, Outcome.IDENTICAL):
+    ...     print(*[str(line.outcome) for line in compare_texts("0.25\\nb", "0.26\\nb", data)])
+    within budget
+    drifted
+    >>> line, = compare_texts("are right\\n", "are wrong\\n", Outcome.WITHIN)
+    >>> line.place, str(line.outcome), line.record, line.new
+    ('line 1', 'drifted', 'are right', 'are wrong')
     """
-    try:
-        before, after = (list(csv.reader(io.StringIO(text))) for text in (record, new))
-    except csv.Error as error:
-        raise TableError(f"not a CSV table: {error}") from None
-    if before == after:
+
+    def judged(old: str | None, line: str | None) -> Outcome:
+        if data is not Outcome.WITHIN or old is None or line is None:
+            return Outcome.DRIFTED
+        return Outcome.WITHIN if may_be_rounding(old, line) else Outcome.DRIFTED
+
+    return tuple(
+        Line(f"line {number}", judged(old, line), old, line)
+        for number, old, line in _changed(record.split("\n"), new.split("\n"))
+    )
+
+
+def summary(lines: tuple[Line, ...]) -> tuple[Outcome, str]:
+    """The worst outcome and how many lines have it, in words.
+
+    Examples
+    --------
+    >>> summary(compare_texts("a\\nb", "c\\nd", None))[1]
+    '2 lines changed'
+    """
+    if not lines:
         return Outcome.IDENTICAL, ""
-    if len(before) != len(after):
-        return Outcome.STRUCTURE, f"rows: {len(before)} → {len(after)}"
-    moved, too_far = [], []
-    for row, (old, line) in enumerate(zip(before, after, strict=True), start=1):
-        if len(old) != len(line):
-            return Outcome.STRUCTURE, f"columns of row {row}: {len(old)} → {len(line)}"
-        for column, (cell, other) in enumerate(zip(old, line, strict=True), start=1):
-            if cell == other:
-                continue
-            place = f"row {row}, column {column}: {cell} → {other}"
-            if _NUMBER.split(cell) != _NUMBER.split(other):
-                return Outcome.STRUCTURE, place
-            moved.append(place)
-            pairs = zip(_NUMBER.findall(cell), _NUMBER.findall(other), strict=True)
-            if not all(_same_to_the_last_digit(*pair) for pair in pairs):
-                too_far.append(place)
-    if data is Outcome.WITHIN and not too_far:
-        return Outcome.WITHIN, _first_of(moved)
-    return Outcome.DRIFTED, _first_of(too_far if data is Outcome.WITHIN else moved)
-
-
-def _first_of(places: list[str]) -> str:
-    more = f" and {len(places) - 1} more" if len(places) > 1 else ""
-    return places[0] + more
+    result = worst(line.outcome for line in lines)
+    count = sum(line.outcome is result for line in lines)
+    what = "changed" if result is Outcome.DRIFTED else "moved with their data"
+    return result, f"{count} line{'s' * (count != 1)} {what}"

@@ -19,13 +19,8 @@ class Mode(StrEnum):
 
     POINTWISE = "pointwise"
     CURVE = "curve"
-    INVARIANT = "invariant"
     EXACT = "exact"
     IGNORED = "ignored"
-
-
-STATISTICS = ("min", "max", "mean", "std", "sum", "count")
-"""Derived numbers of the mode ``invariant``; ``count`` is that of the finite values."""
 
 
 @dataclass(frozen=True)
@@ -40,18 +35,15 @@ class Tolerance:
     budget : float
         Drift allowed, as a share of the scale. For modes that measure one.
     along : str
-        Dimension along which a curve runs or a statistic is taken.
+        Curve: the dimension along which it runs.
     abscissa : str
         Curve: the variable or coordinate on the other axis.
     axis_budget : float, optional
         Curve: half width of the tube along the abscissa, as a share of the
         abscissa's range; the budget itself if not given.
-    statistics : tuple of str
-        Invariant: which of :data:`STATISTICS` are compared.
     scale : float or str, optional
-        What a drift is a share of: a number, or, for the mode pointwise, a
-        variable of the same dataset. The range of the record's values if not
-        given.
+        Pointwise: what a drift is a share of, a number or a variable of the
+        same dataset. The range of the record's values if not given.
 
     Raises
     ------
@@ -74,7 +66,6 @@ class Tolerance:
     along: str | None = None
     abscissa: str | None = None
     axis_budget: float | None = None
-    statistics: tuple[str, ...] = ()
     scale: float | str | None = None
 
     @property
@@ -88,15 +79,13 @@ class Tolerance:
         needed = {
             Mode.POINTWISE: {"budget"},
             Mode.CURVE: {"budget", "along", "abscissa"},
-            Mode.INVARIANT: {"budget", "along", "statistics"},
         }.get(self.mode, set())
         possible = needed | {
             Mode.POINTWISE: {"scale"},
             Mode.CURVE: {"axis_budget"},
-            Mode.INVARIANT: {"scale"},
         }.get(self.mode, set())
-        optional = ("budget", "along", "abscissa", "axis_budget", "statistics", "scale")
-        given = {name for name in optional if getattr(self, name) not in (None, ())}
+        optional = ("budget", "along", "abscissa", "axis_budget", "scale")
+        given = {name for name in optional if getattr(self, name) is not None}
         for name in sorted(needed - given):
             raise ToleranceError(f"mode {self.mode} needs {name}")
         for name in sorted(given - possible):
@@ -105,11 +94,6 @@ class Tolerance:
             value = getattr(self, name)
             if isinstance(value, float | int) and not 0 < value < math.inf:
                 raise ToleranceError(f"{name} = {value} must be a finite number greater than 0")
-        if self.mode is Mode.INVARIANT and isinstance(self.scale, str):
-            raise ToleranceError(f"scale = {self.scale} must be a number in mode invariant")
-        for name in self.statistics:
-            if name not in STATISTICS:
-                raise ToleranceError(f"statistic {name} must be one of {', '.join(STATISTICS)}")
         if not self.source.strip():
             raise ToleranceError("source must say where the tolerance comes from")
 
@@ -146,11 +130,8 @@ class Tolerances:
 
 
 def _tolerance(where: str, entry: Mapping[str, Any]) -> Tolerance:
-    options = dict(entry)
-    if "statistics" in options:
-        options["statistics"] = tuple(options["statistics"])
     try:
-        return Tolerance(**(options | {"mode": Mode(options["mode"])}))
+        return Tolerance(**{**entry, "mode": Mode(entry["mode"])})
     except ToleranceError as error:
         raise ToleranceError(f"{where}: {error}") from None
 

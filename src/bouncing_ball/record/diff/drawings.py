@@ -1,0 +1,255 @@
+"""Two vector graphics: elements and words as they are, coordinates within a budget.
+
+matplotlib leaves out a vertex that is nearer than a ninth of a pixel, here of a
+point, to the line through its neighbours (``path.simplify_threshold``): what is
+drawn of a curve is known to that, and two drawings of one curve to twice that.
+"""
+
+import json
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import zip_longest
+from xml.parsers import expat
+
+import numpy as np
+
+from bouncing_ball.record.diff.outcome import Outcome
+from bouncing_ball.record.diff.texts import Line
+from bouncing_ball.record.reading import UnreadableError, printable
+
+BUDGET = 2 / 9
+"""In points, of a coordinate and of the distance of a vertex from the other line."""
+_SVG = "http://www.w3.org/2000/svg"
+# What matplotlib draws with. Nothing else is let in: neither a script nor an animation
+# nor a picture from elsewhere.
+_TAGS = {"svg", "metadata", "defs", "style", "g", "path", "use", "clipPath", "rect", "text"}
+_TAGS |= {"pattern", "tspan", "circle", "line", "polyline", "polygon", "ellipse"}
+# Named by matplotlib after a checksum of the coordinates.
+_CHECKSUM = re.compile(r"\b[a-zA-Z]?[0-9a-f]{10}\b")
+_NUMBER = re.compile(r"-?[0-9]+(?:\.[0-9]+)?(?:e-?[0-9]{1,3})?")
+_PLACES = {"d", "x", "y", "cx", "cy", "x1", "x2", "y1", "y2", "points", "width", "height"}
+_TRANSLATE = re.compile(r"translate\([^()]*\)")
+# Vertices times segments of two lines: 32 MB in each of a handful of arrays.
+_MAX_PAIRS = 2**22
+
+
+@dataclass(frozen=True)
+class Element:
+    """A tag with its attributes, or a text; numbers that are places are taken out."""
+
+    words: str
+    numbers: tuple[float, ...] = ()
+    path: str = ""
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """All elements in their order, and what the drawing says of itself."""
+
+    elements: tuple[Element, ...]
+    metadata: dict[str, str]
+
+
+def _check_attribute(name: str, value: str) -> None:
+    """Refuse what may run something or fetch something."""
+    local = name.rpartition(" ")[2].lower()
+    if local.startswith("on"):
+        raise UnreadableError(f"an event handler in it: {printable(local, 40)}")
+    if local in ("href", "src", "base") and not value.startswith("#"):
+        raise UnreadableError(f"a reference to elsewhere in it: {printable(value, 60)}")
+    _check_style(value)
+
+
+def _check_style(text: str) -> None:
+    fetched = re.sub(r"url\(#", "", text)
+    if re.search(r"url\s*\(|@|\\|expression|javascript:", fetched, re.IGNORECASE):
+        raise UnreadableError(f"a style in it that may fetch: {printable(text, 60)}")
+
+
+class _Reader:
+    """The parser's handlers, and what they have gathered."""
+
+    def __init__(self) -> None:
+        self.elements: list[Element] = []
+        self.names: dict[str, str] = {}
+        self.description: list[str] = []
+        self.open: list[str] = []
+        self.text: list[str] = []
+
+    def _flush(self) -> None:
+        text = "".join(self.text).strip()
+        self.text.clear()
+        if text and "metadata" not in self.open:
+            _check_style(text)
+            self.elements.append(Element(" ".join(text.split())))
+        elif text and self.open[-1].endswith(" description"):
+            self.description.append(text)
+
+    def start(self, tag: str, attributes: dict[str, str]) -> None:
+        self._flush()
+        space, _, name = tag.rpartition(" ")
+        inside = "metadata" in self.open
+        if (space == _SVG or not inside) and not (space == _SVG and name in _TAGS):
+            raise UnreadableError(f"a <{printable(name, 40)}> in it")
+        for key, value in attributes.items():
+            if not inside:
+                _check_attribute(key, value)
+        self.open.append(name if space == _SVG else tag)
+        if "metadata" not in self.open:
+            self.elements.append(self._element(name, attributes))
+
+    def end(self, _: str) -> None:
+        self._flush()
+        self.open.pop()
+        if "metadata" not in self.open:
+            self.elements.append(Element("end"))
+
+    def comment(self, text: str) -> None:
+        self._flush()
+        if "metadata" not in self.open:
+            self.elements.append(Element(f"comment {text.strip()}"))
+
+    def refuse(self, *_: object) -> None:
+        raise UnreadableError("a definition or an instruction in it, beside the elements")
+
+    def doctype(self, _: str, __: str | None, ___: str | None, internal: bool) -> None:
+        if internal:
+            self.refuse()
+
+    def _element(self, name: str, attributes: dict[str, str]) -> Element:
+        words, numbers, path = [name], [], ""
+        for key, value in sorted(attributes.items()):
+            local = key.rpartition(" ")[2]
+            value = _CHECKSUM.sub(self._renamed, value)
+            if local == "d":
+                path = " ".join(value.split())
+                value = ""
+            elif local in _PLACES:
+                numbers += _NUMBER.findall(value)
+                value = _NUMBER.sub("#", value)
+            elif local == "transform":
+                for part in _TRANSLATE.findall(value):
+                    numbers += _NUMBER.findall(part)
+                value = _TRANSLATE.sub("translate", value)
+            words.append(f"{local}={' '.join(value.split())!r}")
+        return Element(" ".join(words), tuple(map(float, numbers)), path)
+
+    def _renamed(self, found: re.Match[str]) -> str:
+        return self.names.setdefault(found[0], f"({len(self.names) + 1})")
+
+
+def read_drawing(content: bytes) -> Drawing:
+    """A vector graphic, without the block that tells how it was made.
+
+    Raises
+    ------
+    UnreadableError
+        If it is no whole SVG file, or holds what no picture of ours does: a
+        script, an event handler, a reference to elsewhere.
+
+    Examples
+    --------
+    >>> svg = b'<svg xmlns="http://www.w3.org/2000/svg"><use x="1.5" onload="f()"/></svg>'
+    >>> read_drawing(svg)
+    Traceback (most recent call last):
+    ...
+    bouncing_ball.record.reading.UnreadableError: an event handler in it: onload
+    >>> read_drawing(svg.replace(b'onload="f()"', b"")).elements[1]
+    Element(words="use x='#'", numbers=(1.5,), path='')
+    """
+    reader = _Reader()
+    parser = expat.ParserCreate("utf-8", " ")
+    parser.buffer_text = True
+    parser.StartElementHandler = reader.start
+    parser.EndElementHandler = reader.end
+    parser.CharacterDataHandler = reader.text.append
+    parser.CommentHandler = reader.comment
+    parser.ProcessingInstructionHandler = reader.refuse
+    parser.EntityDeclHandler = reader.refuse
+    parser.StartDoctypeDeclHandler = reader.doctype
+    try:
+        parser.Parse(content, True)
+    except expat.ExpatError as error:
+        raise UnreadableError(f"not a whole SVG file: {error}") from None
+    try:
+        described = json.loads("".join(reader.description))
+    except (ValueError, RecursionError):
+        described = None
+    metadata = described if isinstance(described, dict) else {}
+    return Drawing(tuple(reader.elements), metadata)
+
+
+def _vertices(path: str) -> list[np.ndarray] | None:
+    """The lines of a path, each of shape (vertices, 2); None if it has a curve."""
+    if re.search(r"[^MLzZ0-9e.\s-]", path):
+        return None
+    lines = []
+    for part in path.replace("z", "").replace("Z", "").split("M")[1:]:
+        numbers = np.array([float(text) for text in _NUMBER.findall(part)])
+        if numbers.size % 2 or not np.isfinite(numbers).all():
+            return None
+        lines.append(numbers.reshape(-1, 2))
+    return lines
+
+
+def _far(points: list[np.ndarray], lines: list[np.ndarray]) -> float:
+    """Largest distance of the inner vertices of some lines from the nearest of others.
+
+    Where a line ends is known to one sample, as stability changes between two.
+    """
+    inner = np.concatenate([part[1:-1] for part in points] or [np.empty((0, 2))])
+    starts = np.concatenate([part[:-1] for part in lines] or [np.empty((0, 2))])
+    steps = np.concatenate([np.diff(part, axis=0) for part in lines] or [np.empty((0, 2))])
+    if not inner.size:
+        return 0.0
+    if not starts.size or len(inner) * len(starts) > _MAX_PAIRS:
+        return np.inf
+    square = (steps**2).sum(axis=1)
+    away = inner[:, None] - starts
+    along = np.clip((away * steps).sum(axis=2) / np.where(square > 0, square, 1.0), 0.0, 1.0)
+    return float(np.hypot(*np.moveaxis(away - along[..., None] * steps, 2, 0)).min(axis=1).max())
+
+
+def _largest(record: Sequence[float], new: Sequence[float]) -> float:
+    """Largest difference, ∞ where there is none."""
+    distance = np.abs(np.asarray(record) - np.asarray(new))
+    return float(np.max(np.nan_to_num(distance, nan=np.inf), initial=0.0))
+
+
+def _moved(record: Element, new: Element) -> float:
+    """How far the places in an element have moved, in points; ∞ for another element."""
+    if record == new:
+        return 0.0
+    if record.words != new.words or len(record.numbers) != len(new.numbers):
+        return np.inf
+    if _NUMBER.sub("#", record.path) == _NUMBER.sub("#", new.path):
+        old, now = (
+            [*each.numbers, *map(float, _NUMBER.findall(each.path))] for each in (record, new)
+        )
+        return _largest(old, now)
+    before, after = _vertices(record.path), _vertices(new.path)
+    if before is None or after is None:
+        return np.inf
+    return max(_largest(record.numbers, new.numbers), _far(before, after), _far(after, before))
+
+
+def _shown(element: Element | None) -> str | None:
+    if element is None:
+        return None
+    numbers = " ".join(f"{number:g}" for number in element.numbers)
+    return " ".join(filter(None, (element.words, numbers, element.path)))
+
+
+def compare_drawings(record: Drawing, new: Drawing) -> tuple[float, tuple[Line, ...]]:
+    """The largest share of :data:`BUDGET`, and all elements that are not the same."""
+    share, lines = 0.0, []
+    with np.errstate(all="ignore"):
+        for number, (old, each) in enumerate(zip_longest(record.elements, new.elements), start=1):
+            if old == each:
+                continue
+            moved = np.inf if old is None or each is None else _moved(old, each) / BUDGET
+            outcome = Outcome.WITHIN if moved <= 1 else Outcome.DRIFTED
+            share = max(share, moved)
+            lines.append(Line(f"element {number}", outcome, _shown(old), _shown(each)))
+    return share, tuple(lines)

@@ -7,6 +7,10 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 NEWEST := .venv-newest
+# Snakemake starts jobs by the path of Python as it is, without quotes.
+ifneq ($(words $(if $(filter /%,$(VENV)),$(VENV),$(CURDIR))),1)
+$(error the path of this checkout has a space: move it, or make VENV=/a/path/without/spaces)
+endif
 # What comes before anything runs; nothing, where another venv is there already.
 SETUP ?= setup
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check

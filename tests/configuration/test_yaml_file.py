@@ -2,13 +2,15 @@
 
 import re
 import shutil
+import time
 from pathlib import Path
 
 import pytest
+import yaml
 
 import bouncing_ball
 from bouncing_ball.audit.claims.ledger_file import read_ledger
-from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
+from bouncing_ball.configuration.yaml_file import ConfigurationError, parse_yaml, read_yaml
 from bouncing_ball.record.diff.tolerance_file import read_tolerances
 
 ROOT = Path(bouncing_ball.__file__).resolve().parents[2]
@@ -22,7 +24,7 @@ MISTAKES = pytest.mark.parametrize(
         (b"a: 1\nb: \x07\n", "not YAML: "),
         (b"a: 1\nb: [1\n", "not YAML in line 3: "),
         (b"a: 1\nb: !!python/name:os.system\n", "not YAML in line 2: "),
-        (b"a: 2011-13-45\n", "not YAML: "),
+        (b"a: 2011-13-45\n", "'2011-13-45' in line 1 is read differently"),
     ],
 )
 
@@ -58,3 +60,79 @@ def test_no_mapping(tmp_path, one_line, content):
     with pytest.raises(ConfigurationError) as error:
         read_ledger(tmp_path)
     one_line(error, "the whole file = ", "must be a mapping of keys")
+
+
+@pytest.mark.parametrize(
+    "value",
+    ["1:30", "-1:30.5", "010", "0x1F", "0b11", "1_000", "1_0.0", "yes", "Off", "2011-08-28"],
+)
+def test_what_versions_of_yaml_read_differently(one_line, value):
+    with pytest.raises(ConfigurationError) as error:
+        parse_yaml(f"a: 1\nb: {value}\n")
+    one_line(error, f"{value!r} in line 2 is read differently")
+    # Quoted, it is a text in all of them.
+    assert parse_yaml(f"b: '{value}'") == {"b": value}
+
+
+def test_what_all_versions_read_alike():
+    text = "[1, -2, 0, 1.5, -1.0e-12, .5, 1.e+4, .inf, -.inf, true, False, null, ~, text, 1e4]"
+    inf = float("inf")
+    assert parse_yaml(text) == [
+        *(1, -2, 0, 1.5, -1e-12, 0.5, 1e4, inf, -inf, True, False, None, None, "text", "1e4")
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("release: a\nb: 1\nrelease: c\n", "duplicate key 'release' in line 3"),
+        ("a: {n: 1, n: 1}", "duplicate key 'n' in line 1"),
+        # Two keys of the mapping in Python, which are the same text.
+        ("- {1: a, '1': b}", "duplicate key '1' in line 1"),
+        ("a: &a {n: 1}\nb: {<<: *a, m: 1}", "a key in line 2 is no plain text"),
+        ("? [1, 2]\n: 3", "a key in line 1 is no plain text"),
+        ("a: &a [1]\nb: *c", "not YAML in line 2: found undefined alias"),
+        ("a: 1\n---\nb: 1", "not YAML in line 2: "),
+    ],
+)
+def test_what_is_said_twice_or_hidden(one_line, text, said):
+    with pytest.raises(ConfigurationError) as error:
+        parse_yaml(text)
+    one_line(error, said)
+
+
+def test_an_alias_stands_for_what_it_names():
+    assert parse_yaml("a: &a [1, 2]\nb: *a") == {"a": [1, 2], "b": [1, 2]}
+
+
+BOMB = "a0: &a0 [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]\n" + "".join(
+    f"a{k}: &a{k} [{', '.join([f'*a{k - 1}'] * 10)}]\n" for k in range(1, 30)
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (BOMB, "more than 100000 entries, aliases filled in"),
+        ("&a [*a]", "more than 100000 entries"),
+        ("&a {b: [*a]}", "more than 100000 entries"),
+        ("[" * 100_000, "more than 50 levels in line 1"),
+        ("a: [" * 200, "more than 50 levels in line 1"),
+        ("- 1\n" * 100_001, "more than 100000 entries"),
+        (" " * 2_000_000, "more than 1048576 characters"),
+    ],
+    ids=["bomb", "list in itself", "mapping in itself", "lists", "mappings", "entries", "size"],
+)
+def test_a_hostile_text_is_refused_soon(one_line, text, said):
+    start = time.process_time()
+    with pytest.raises(ConfigurationError) as error:
+        parse_yaml(text)
+    assert time.process_time() - start < 5.0
+    one_line(error, said)
+
+
+def test_every_file_of_the_project_is_read():
+    files = [path for path in ROOT.glob("*/**/*.yaml") if ".venv" not in str(path)]
+    assert len(files) > 5
+    for path in files:
+        assert read_yaml(path) == yaml.safe_load(path.read_text(encoding="utf-8")), path

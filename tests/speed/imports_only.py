@@ -36,9 +36,7 @@ def reduce_to_imports(script: Path) -> None:
     imports = [node for node in tree.body if isinstance(node, ast.Import | ast.ImportFrom)]
     text = "".join(ast.unparse(node) + "\n" for node in imports) + LATE_DATA
     if script.stem == "stage":
-        text += (
-            "from bouncing_ball.configuration.stages import load\nload(snakemake.params.study)\n"
-        )
+        text += "from bouncing_ball.configuration.study import load\nload(snakemake.params.study)\n"
     if script.stem in ("figure", "table"):
         name = f"bouncing_ball.render.{script.stem}s.{{snakemake.params.{script.stem}}}"
         text += f'import_module(f"{name}")\n'

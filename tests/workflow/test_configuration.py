@@ -1,6 +1,10 @@
 """Each mistake in the configuration gives its one line."""
 
 import copy
+import os
+import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -100,3 +104,71 @@ def test_the_workflow_stops_at_once_and_touches_nothing(complete):
     assert said[0].startswith("configuration: figures.fig08.restitution = 1.2 must be less than 1")
     after = {k: (complete.path / k).stat().st_mtime_ns for k in before}
     assert after == before
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ((), "config/config.yaml: duplicate key 'release' in line "),
+        (("--configfile", "mine.yaml"), "mine.yaml: '1:30' in line 1 is read differently"),
+    ],
+)
+def test_what_snakemake_reads_without_a_word(fresh, options, said):
+    if options:
+        (fresh.path / "mine.yaml").write_text("figures: {fig08: {points: 1:30}}\n")
+    else:
+        with (fresh.path / "config/config.yaml").open("a") as file:
+            file.write("release: force\n")
+    assert refusal(fresh, *options).startswith(said)
+
+
+def test_the_package_of_another_checkout_is_refused(fresh, tmp_path):
+    # Run as it would be with that checkout's environment.
+    shutil.copytree(fresh.path / "src", tmp_path / "other")
+    environment = os.environ | {"PYTHONPATH": str(tmp_path / "other")}
+    said = refusal(fresh, environment=environment)
+    assert said.startswith(f"bouncing_ball is imported from {tmp_path / 'other'}")
+    assert str(fresh.path / "src") in said
+
+
+def test_a_python_whose_path_has_a_space_is_refused(fresh, tmp_path):
+    venv = tmp_path / "a venv"
+    (venv / "bin").mkdir(parents=True)
+    (venv / "bin" / "python").symlink_to(Path(sys.executable).resolve())
+    shutil.copyfile(Path(sys.prefix, "pyvenv.cfg"), venv / "pyvenv.cfg")
+    (venv / "lib").symlink_to(Path(sys.prefix, "lib"))
+    said = refusal(fresh, python=venv / "bin" / "python")
+    assert said.startswith(f"{venv}/bin/python: a path of Python with a space")
+
+
+def test_make_refuses_a_path_with_a_space(tmp_path):
+    folder = tmp_path / "a checkout"
+    folder.mkdir()
+    shutil.copyfile(ROOT / "Makefile", folder / "Makefile")
+    for options, status in (((), 2), (("VENV=/venv",), 0)):
+        done = subprocess.run(
+            ["make", "--dry-run", "clean", *options],
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == status
+        assert ("the path of this checkout has a space" in done.stderr) == (status == 2)
+
+
+def refusal(tree, *options, python=sys.executable, environment=None):
+    """The line with which a run ends before anything is run."""
+    done = subprocess.run(
+        [python, "-m", "snakemake", "--cores", "1", *options],
+        cwd=tree.path,
+        env=environment or tree.environment(),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 1
+    # Snakemake itself says which profile and files it uses; the rest is ours.
+    own = ("Using ", "Config file ")
+    (said,) = [line for line in done.stderr.splitlines() if not line.startswith(own)]
+    return said

@@ -128,6 +128,8 @@ def test_a_changed_parameter(complete, keys, value, expected):
             "audit/forensics/readings.py",
             {*FORENSICS, PAPER},
         ),
+        # Another entry is no reason to run those that are there.
+        ("configuration/stages.py", set()),
         # A plotting change does not run the science again.
         ("render/figures/fig12.py", drawing("fig12")),
         (
@@ -170,6 +172,12 @@ def test_a_printed_number_of_table_1_runs_the_table_too(complete):
 def test_another_printed_number_runs_the_verdicts_only(complete):
     complete.rewrite("config/claims.yaml", 'printed: "82"', 'printed: "83"')
     assert complete.planned() == {*CLAIMS, PAPER}
+
+
+@pytest.mark.parametrize("targets", [(), ("fig08",)])
+def test_a_dataset_that_is_missing_is_made_again(complete, targets):
+    (complete.path / "results/figures/fig08.nc").unlink()
+    assert made("fig08") <= complete.planned(*targets)
 
 
 def test_the_last_rule_prints_the_tally(complete):

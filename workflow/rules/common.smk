@@ -1,32 +1,53 @@
 # Check the configuration before anything runs; names shared by the rules.
 
 import os
+import shlex
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
+# Snakemake starts jobs by the path of Python as it is.
+if shlex.quote(sys.executable) != sys.executable:
+    sys.exit(
+        f"{sys.executable}: a path of Python with a space or a quote in it; put the .venv elsewhere"
+    )
+
+# Not the code of another checkout, whose environment this may be.
+HERE = Path(workflow.basedir, "src", "bouncing_ball").resolve()
+package = find_spec("bouncing_ball")
+if package is None or Path(package.origin).resolve().parent != HERE:
+    found = Path(package.origin).parent if package else "nowhere"
+    sys.exit(
+        f"bouncing_ball is imported from {found}, not from {HERE}: use this checkout's .venv (make setup)"
+    )
+
 from bouncing_ball.audit.claims.ledger_file import read_ledger
-from bouncing_ball.configuration.check import ConfigurationError, check_configuration
+from bouncing_ball.configuration.check import check_configuration
 from bouncing_ball.configuration.stages import STAGES, Kind, names, studied
 from bouncing_ball.errors import ModelError
 from bouncing_ball.configuration.yaml_file import read_yaml
+from bouncing_ball.pipeline.pieces import check_pieces
 from bouncing_ball.pipeline.sources import sources
-
-schema = read_yaml(Path(workflow.basedir, "config/schema.yaml"))
-try:
-    check_configuration(config, schema)
-except ConfigurationError as error:
-    sys.exit(f"configuration: {error}")
 
 FIGURES = names(Kind.FIGURE, Kind.EXTENSION)
 TABLES = names(Kind.TABLE)
 DATASETS = [stage.name for stage in studied()]
 
+where = "configuration"
 try:
+    # Snakemake has read these files already, and taken the last of equal keys.
+    for where in map(os.path.relpath, workflow.configfiles):
+        read_yaml(where)
+    where = "configuration"
+    check_configuration(config, read_yaml(Path(workflow.basedir, "config/schema.yaml")))
+    where = "config/claims.yaml"
     LEDGER = read_ledger(Path(workflow.basedir, "config"), set(DATASETS) - {"claims"})
     # All that parameters and settings of the stages are taken from.
     RUN = config | {"printed": LEDGER.table("Table 1"), "ledger": LEDGER.source}
+    where = "stages"
+    check_pieces(STAGES, RUN)
 except ModelError as error:
-    sys.exit(f"config/claims.yaml: {error}")
+    sys.exit(f"{where}: {error}")
 
 
 def stage_of(wildcards):

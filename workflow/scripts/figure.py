@@ -2,13 +2,12 @@
 
 from importlib import import_module
 
-from bouncing_ball.datasets.netcdf import read_dataset
-from bouncing_ball.pipeline.job import logged, provenance
+from bouncing_ball.pipeline.job import logged, provenance, read_input
 from bouncing_ball.render.figures.style import save, style
 
 with logged(snakemake) as lines, style():
     draw = import_module(f"bouncing_ball.render.figures.{snakemake.params.figure}").draw
-    data = [read_dataset(path) for path in snakemake.input.get("data", [])]
+    data = [read_input(path) for path in snakemake.input.get("data", [])]
     figure = draw(*data)
     # Laid out once, for both files.
     figure.get_layout_engine().execute(figure)

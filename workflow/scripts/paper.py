@@ -5,8 +5,7 @@ from pathlib import Path
 from bouncing_ball.audit.claims.tally import tally
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.files import write_text
-from bouncing_ball.datasets.netcdf import read_dataset
-from bouncing_ball.pipeline.job import logged
+from bouncing_ball.pipeline.job import logged, read_input
 from bouncing_ball.render.article.render import render_article
 
 
@@ -15,7 +14,7 @@ def text_of(path):
 
 
 with logged(snakemake) as lines:
-    data = {Path(path).stem: read_dataset(path) for path in snakemake.input.data}
+    data = {Path(path).stem: read_input(path) for path in snakemake.input.data}
     tables = {Path(path).stem: text_of(path) for path in snakemake.input.tables}
     references = read_yaml(snakemake.input.references)
     folder = Path(snakemake.input.templates[0]).parent

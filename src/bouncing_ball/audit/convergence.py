@@ -21,7 +21,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.configuration.stages import STAGES, Stage, load, studied
+from bouncing_ball.configuration.stages import STAGES, Stage, studied
+from bouncing_ball.configuration.study import load
 from bouncing_ball.datasets.netcdf import parameter_attributes
 
 Parameters = Mapping[str, Any]

@@ -7,10 +7,9 @@ convergence study, the check of the configuration and the tests read these
 entries; studies are named and not imported, so that reading them is quick.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
-from importlib import import_module
 from typing import Any
 
 
@@ -302,15 +301,3 @@ def names(*kinds: Kind) -> list[str]:
 def studied() -> Iterator[Stage]:
     """Entries that have a dataset."""
     return (stage for stage in STAGES.values() if stage.study)
-
-
-def load(study: str) -> Callable[..., Any]:
-    """The function that an entry names.
-
-    Examples
-    --------
-    >>> load("studies.parameters.grid")({"min": 1.0, "max": 4.0, "samples": 3})
-    array([1., 2., 4.])
-    """
-    module, _, function = study.rpartition(".")
-    return getattr(import_module(f"bouncing_ball.{module}"), function)

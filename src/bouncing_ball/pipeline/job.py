@@ -12,8 +12,16 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from bouncing_ball.configuration.stages import load
-from bouncing_ball.datasets.netcdf import parameter_attributes, read_dataset, write_dataset
+import xarray as xr
+
+from bouncing_ball.configuration.study import load
+from bouncing_ball.datasets.files import write_text
+from bouncing_ball.datasets.netcdf import (
+    DatasetError,
+    parameter_attributes,
+    read_dataset,
+    write_dataset,
+)
 from bouncing_ball.record.carriers import read_attributes
 from bouncing_ball.record.provenance import PREFIX, SUM, Provenance, file_digest, gather
 
@@ -21,6 +29,11 @@ REFERENCE = (
     "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient "
     "and spring-damper models for the bouncing ball problem, DETC2011-47870 (2011)"
 )
+
+LOGS = "results/logs/stages"
+"""Where the jobs that make datasets say what they wrote."""
+ARTICLE = ("results/paper.md", "results/tally.txt")
+"""What is made from all datasets and tables."""
 
 
 @contextmanager
@@ -36,16 +49,52 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
     name = "/".join([snakemake.rule, *snakemake.wildcards])
     lines: list[str] = []
     log = Path(snakemake.log[0])
-    log.parent.mkdir(parents=True, exist_ok=True)
     try:
         yield lines
+        # What a job wrote is known by its checksum, so that a file changed by hand is seen.
+        written = [f"{SUM} {file_digest(path)} {path}" for path in snakemake.output]
+        write_text(log, "".join(f"{line}\n" for line in [*lines, *written]))
     except Exception as error:
-        log.write_text(traceback.format_exc(), encoding="utf-8")
         kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
-        sys.exit(f"{name}: {kind}{' '.join(str(error).split())} (details in {log})")
-    # What a job wrote is known by its checksum, so that a file changed by hand is seen.
-    written = [f"{SUM} {file_digest(path)} {path}" for path in snakemake.output]
-    log.write_text("".join(f"{line}\n" for line in [*lines, *written]), encoding="utf-8")
+        sys.exit(f"{name}: {kind}{' '.join(str(error).split())} ({_details(log)})")
+
+
+def _details(log: Path) -> str:
+    """Where the traceback of the error at hand is; a full disk may not take it."""
+    try:
+        write_text(log, traceback.format_exc())
+    except OSError as error:
+        return f"no details: {log}: {error.strerror}"
+    return f"details in {log}"
+
+
+def withdraw() -> None:
+    """Remove the article and the tally, as a job is about to change what they say.
+
+    A run that fails then leaves neither beside new datasets and tables.
+    """
+    for path in ARTICLE:
+        Path(path).unlink(missing_ok=True)
+
+
+def read_input(path: str) -> xr.Dataset:
+    """A dataset that another job has made for this one.
+
+    Raises
+    ------
+    DatasetError
+        If it is not what its job wrote, or is that of another artifact.
+    """
+    again = f"make it again, snakemake --cores 2 --force {path}"
+    log = Path(LOGS, Path(path).stem).with_suffix(".log")
+    said = log.read_text(encoding="utf-8").splitlines() if log.is_file() else []
+    if f"{SUM} {file_digest(path)} {path}" not in said:
+        raise DatasetError(f"{path} is not what its job wrote, which {log} says: {again}")
+    dataset = read_dataset(path)
+    target = dataset.attrs.get(PREFIX + "target")
+    if target != path:
+        raise DatasetError(f"{path} is the dataset of {target}: {again}")
+    return dataset
 
 
 def provenance(snakemake: Any, parameters: Mapping[str, Any]) -> Provenance:
@@ -63,8 +112,9 @@ def make_dataset(snakemake: Any) -> None:
     the study says itself what is worth recording, and so does the provenance.
     """
     with logged(snakemake) as lines:
+        withdraw()
         job = snakemake.params
-        data = {Path(path).stem: read_dataset(path) for path in snakemake.input.data}
+        data = {Path(path).stem: read_input(path) for path in snakemake.input.data}
         inputs = [data] if data else []
         dataset = load(job.study)(*inputs, job.parameters, *job.settings.values())
         dataset.attrs = {

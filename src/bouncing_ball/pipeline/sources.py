@@ -15,7 +15,8 @@ _ROOT = Path(__file__).resolve().parent.parent
 
 
 @cache
-def _file(module: str) -> Path | None:
+def module_file(module: str) -> Path | None:
+    """The file of a module or package of this package, if there is one."""
     base = _ROOT.joinpath(*module.split(".")[1:])
     for candidate in (base.with_suffix(".py"), base / "__init__.py"):
         if candidate.is_file():
@@ -58,12 +59,12 @@ def sources(*modules: str) -> list[str]:
     ['__init__.py', 'errors.py', '__init__.py', 'damping.py', 'release.py']
     """
     for module in modules:
-        if _file(module) is None:
+        if module_file(module) is None:
             raise ModuleNotFoundError(f"no module {module}")
     pending, seen = list(modules), set()
     while pending:
         for name in _with_parents(pending.pop()):
-            path = _file(name)
+            path = module_file(name)
             if path is not None and path not in seen:
                 seen.add(path)
                 pending.extend(_imports(path))

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 import yaml
 
-from bouncing_ball.configuration.stages import STAGES, Kind, load, names
+from bouncing_ball.configuration.stages import STAGES, Kind, names
+from bouncing_ball.configuration.study import load
 from bouncing_ball.record.carriers import read_attributes
 from bouncing_ball.render.figures.style import INADMISSIBLE, STABLE, UNSTABLE, number, save, style
 

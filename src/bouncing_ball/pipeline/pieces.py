@@ -1,0 +1,93 @@
+"""Whether every entry of the stages has all its pieces, before anything runs."""
+
+import ast
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from bouncing_ball.configuration.stages import Kind, Stage
+from bouncing_ball.configuration.yaml_file import ConfigurationError
+from bouncing_ball.pipeline.sources import module_file
+
+SECTIONS = ("figures", "tables", "extensions", "studies")
+"""Sections of the configuration in which each key is an artifact."""
+
+# Where what draws or sets an artifact is, and what it is called.
+_RENDERERS = {
+    Kind.FIGURE: ("render.figures", "draw"),
+    Kind.EXTENSION: ("render.figures", "draw"),
+    Kind.TABLE: ("render.tables", "rows"),
+}
+
+
+def _require_function(stage: Stage, name: str) -> None:
+    module, _, function = name.rpartition(".")
+    file = module_file(f"bouncing_ball.{module}")
+    if file is None:
+        raise ConfigurationError(
+            f"{stage.name}: no module src/bouncing_ball/{module.replace('.', '/')}.py, which is to "
+            f"define {function}"
+        )
+    tree = ast.parse(file.read_text(encoding="utf-8"))
+    found = [node.name for node in tree.body if isinstance(node, ast.FunctionDef)]
+    imported = [
+        alias.asname or alias.name
+        for node in tree.body
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    ]
+    if function not in found + imported:
+        raise ConfigurationError(
+            f"{stage.name}: no function {function} in src/bouncing_ball/{module.replace('.', '/')}"
+        )
+
+
+def check_pieces(stages: Mapping[str, Stage], run: Mapping[str, Any]) -> None:
+    """Raise on the first piece that an entry names and that is missing.
+
+    Parameters
+    ----------
+    stages : mapping
+        The entries by name.
+    run : mapping
+        What a run is given: configuration, Table 1 and ledger.
+
+    Raises
+    ------
+    ConfigurationError
+        One line: a parameter section, a study, a module that draws or sets the
+        artifact, a dataset read, or a setting of the run that is not there; or
+        a section of the configuration that no entry uses.
+    """
+    for stage in stages.values():
+        if stage.kind in _RENDERERS:
+            package, function = _RENDERERS[stage.kind]
+            _require_function(stage, f"{package}.{stage.name}.{function}")
+        if stage.study:
+            _require_function(stage, stage.study)
+            _require_keys(stage, run)
+        for name in stage.reads:
+            if name not in stages or not stages[name].study:
+                raise ConfigurationError(f"{stage.name}: there is no dataset {name} to read")
+    used = {stage.section for stage in stages.values()}
+    for section in _sections(run):
+        if section not in used:
+            raise ConfigurationError(
+                f"{section} has no entry in src/bouncing_ball/configuration/stages.py"
+            )
+
+
+def _require_keys(stage: Stage, run: Mapping[str, Any]) -> None:
+    try:
+        stage.parameters(run)
+    except KeyError:
+        raise ConfigurationError(
+            f"{stage.name}: no section {stage.section} in config/config.yaml"
+        ) from None
+    try:
+        stage.settings(run)
+    except KeyError as error:
+        raise ConfigurationError(f"{stage.name}: a run has no setting {error.args[0]}") from None
+
+
+def _sections(run: Mapping[str, Any]) -> Iterable[str]:
+    return (f"{part}.{name}" for part in SECTIONS for name in run.get(part, {}))

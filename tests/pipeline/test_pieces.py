@@ -1,0 +1,59 @@
+"""A piece that is missing is named before anything runs."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from bouncing_ball.audit.claims.ledger_file import read_ledger
+from bouncing_ball.configuration.stages import STAGES, Kind, Stage
+from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
+from bouncing_ball.pipeline.pieces import check_pieces
+
+CONFIG = Path(__file__).resolve().parents[2] / "config"
+LEDGER = read_ledger(CONFIG)
+RUN = read_yaml(CONFIG / "config.yaml") | {"ledger": {}, "printed": LEDGER.table("Table 1")}
+NEW = Stage(
+    "fig17", Kind.FIGURE, "Figure 17: new", STAGES["fig08"].study, "figures.fig08", ("release",)
+)
+
+
+def test_nothing_is_missing():
+    check_pieces(STAGES, RUN)
+
+
+@pytest.mark.parametrize(
+    ("entry", "said"),
+    [
+        (
+            NEW,
+            "fig17: no module src/bouncing_ball/render/figures/fig17.py, which is to",
+        ),
+        (
+            replace(NEW, name="fig16", study="studies.sweeps.f"),
+            "no module src/bouncing_ball/stud",
+        ),
+        (
+            replace(NEW, name="fig16", study="studies.orbit_branches.sweep"),
+            "fig16: no function sweep in src/bouncing_ball/studies/orbit_branches",
+        ),
+        (
+            replace(NEW, name="fig16", section="figures.fig17"),
+            "fig16: no section figures.fig17 in config/config.yaml",
+        ),
+        (replace(NEW, name="fig16", arguments=("tolerance",)), "a run has no setting tolerance"),
+        (replace(NEW, name="fig16", reads=("fig19",)), "fig16: there is no dataset fig19 to read"),
+        (replace(NEW, name="fig16", reads=("fig01",)), "fig16: there is no dataset fig01 to read"),
+    ],
+)
+def test_an_entry_without_a_piece(one_line, entry, said):
+    with pytest.raises(ConfigurationError) as error:
+        check_pieces(STAGES | {entry.name: entry}, RUN)
+    one_line(error, said)
+
+
+def test_parameters_without_an_entry(one_line):
+    entries = {name: stage for name, stage in STAGES.items() if name != "fig11"}
+    with pytest.raises(ConfigurationError) as error:
+        check_pieces(entries, RUN)
+    one_line(error, "figures.fig11 has no entry in src/bouncing_ball/configuration/stages.py")

@@ -1,20 +1,18 @@
 r"""The restitution model, corrected: an impact is an instant in the right place.
 
-From the start of contact, at table phase φ and relative velocity δ′ = -v, the
-flight is continued for the delay t_c of the contact law's signature. There, at
-the phase ψ = φ + t_c and below the table's level, the ball has the velocity p
-relative to nothing but the ground, and the impact turns ``v_c = Λ cos ψ - p``
-into ``r_c v_c = r v_c + σ a`` with the load ``a = 1 - Λ sin ψ``::
+At the instant the table has the phase ψ and the ball, in its continued flight,
+the absolute velocity p. It is below the table by h, and turns its closing
+speed v into ``r_c v = r v + σ a`` with the load ``a = 1 - Λ sin ψ``::
 
-    p = δ′ + Λ cos φ - t_c
-    z = Λ sin φ + p t_c + t_c²/2
-    w = Λ cos ψ + r v_c + σ a
+    v = Λ cos ψ - p
+    z = Λ sin ψ - h,                h = v t_c(v)
+    w = Λ cos ψ + r(v) v + σ(v) a
 
-The flight from (ψ, z, w) ends at the next start of contact, and its part up to
-φ + D stands for the rest of the contact. The map from start to start is that
-of the restitution model for t_c = σ = 0. Nothing else is approximated: t_c, r
-and σ stand for the contact to second order in its duration
-(:mod:`bouncing_ball.impacts.signature`).
+From (ψ, z, w) the ball flies until it is below the table by h again: the
+restitution map (Eq. 5) with the table lowered by h(v) and r replaced by
+``r_c = r + σ a/v``, and that map itself for t_c = σ = 0. The contact starts t_c
+before the instant, at φ = ψ - t_c with z′ = p + t_c, and ends D later; t_c, r, σ
+and D are the law's :mod:`signature <bouncing_ball.impacts.signature>`.
 
 All quantities are dimensionless; all functions broadcast.
 """
@@ -26,100 +24,127 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.impacts.signature import Instant, Signature
 
+# Iterations of ψ = φ + t_c(v), for laws whose delay depends on the speed. Each
+# gains a factor a dt_c/dv, of the order of a D/v.
+_ITERATIONS = 30
 
-class Throw(NamedTuple):
-    """The impact of a start of contact: where it is, and what it does.
 
-    ``phase`` is ψ, ``height`` and ``velocity`` the ball's absolute z and w just
-    after; ``speed`` is v_c, ``arrival`` the absolute velocity p before.
-    ``start`` and ``instant`` are the signatures that were used: at the start of
-    contact (t_c, D) and at the instant (r, σ).
+class Impact(NamedTuple):
+    """An instant: phase ψ, velocity p before, and what follows from them.
+
+    ``speed`` is v, ``depth`` h, ``height`` and ``velocity`` the absolute z and w
+    just after; ``instant`` the signature at v.
     """
 
     phase: np.ndarray
+    arrival: np.ndarray
+    speed: np.ndarray
+    depth: np.ndarray
     height: np.ndarray
     velocity: np.ndarray
-    speed: np.ndarray
-    arrival: np.ndarray
-    start: Instant
     instant: Instant
 
 
-def throw(
-    signature: Signature, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike
-) -> Throw:
-    """From the start of contact (φ, δ′ < 0) to just after the impact.
+def impact(
+    signature: Signature, amplitude: ArrayLike, phase: ArrayLike, arrival: ArrayLike
+) -> Impact:
+    """The instant at a phase ψ of the table, with absolute velocity p before it.
 
     Examples
     --------
-    On a table at rest an elastic ball returns with the speed that it has when
-    the impact comes, a little below the table:
+    An elastic ball on a table at rest, with a contact of duration 1:
 
     >>> from bouncing_ball.impacts.signature import LinearSignature
     >>> from bouncing_ball.impacts.spring_damper import Contact
-    >>> impact = throw(LinearSignature(Contact(np.pi, 0.0)), 0.0, 0.0, -2.0)
-    >>> float(impact.velocity), float(impact.height)
-    (2.5, -1.125)
+    >>> hit = impact(LinearSignature(Contact(np.pi, 0.0)), 0.0, 0.0, -2.0)
+    >>> float(hit.velocity), float(hit.depth)
+    (2.0, 1.0)
+    """
+    lam, psi, p = (np.asarray(x, dtype=float) for x in (amplitude, phase, arrival))
+    x, y = lam * np.cos(psi), lam * np.sin(psi)
+    speed = x - p
+    law = signature(speed)
+    depth = speed * law.delay
+    after = x + law.restitution * speed + law.load * (1 - y)
+    return Impact(psi, p, speed, depth, y - depth, after, law)
+
+
+def instant_of(
+    signature: Signature, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike
+) -> tuple[np.ndarray, np.ndarray]:
+    """(ψ, p) of a contact that starts at (φ, δ′).
+
+    Examples
+    --------
+    >>> from bouncing_ball.impacts.signature import LinearSignature
+    >>> from bouncing_ball.impacts.spring_damper import Contact
+    >>> psi, p = instant_of(LinearSignature(Contact(np.pi, 0.0)), 0.0, 0.25, -1.5)
+    >>> float(psi), float(p)
+    (0.75, -2.0)
     """
     lam, phi, u = (np.asarray(x, dtype=float) for x in (amplitude, phase, relative_velocity))
-    start = signature(-u)
-    delay = start.delay
-    psi = phi + delay
-    # Differences over the short delay as products, which lose no digits.
-    half, middle = np.sin(delay / 2), phi + delay / 2
-    slowed = 2 * lam * np.sin(middle) * half  # Λ (cos φ - cos ψ)
-    speed = delay - u - slowed
-    arrival = u + lam * np.cos(phi) - delay
-    height = lam * np.sin(phi) + (arrival + delay / 2) * delay
-    instant = signature(speed)
-    load = 1 - lam * np.sin(psi)
-    after = lam * np.cos(psi) + instant.restitution * speed + instant.load * load
-    return Throw(psi, height, after, speed, arrival, start, instant)
+    velocity = u + lam * np.cos(phi)
+    delay = signature(-u).delay
+    for _ in range(0 if signature.is_constant else _ITERATIONS):
+        speed = lam * np.cos(phi + delay) - (velocity - delay)
+        delay = signature(speed).delay
+    return phi + delay, velocity - delay
 
 
-def cycle_jacobian(
-    signature: Signature,
-    amplitude: ArrayLike,
-    phase: ArrayLike,
-    relative_velocity: ArrayLike,
-    landing: ArrayLike,
-) -> np.ndarray:
-    """Jacobian of the map (φ, δ′) → (φ₁, δ′₁), shape (..., 2, 2).
+def start_of(amplitude: ArrayLike, hit: Impact) -> tuple[np.ndarray, np.ndarray]:
+    """(φ, δ′) of the start of contact, t_c before the instant."""
+    delay = hit.instant.delay
+    phase = hit.phase - delay
+    return phase, hit.arrival + delay - np.asarray(amplitude) * np.cos(phase)
+
+
+def instant_jacobian(amplitude: ArrayLike, hit: Impact, flight_time: ArrayLike, following: Impact):
+    """Jacobian of the map (ψ, p) → (ψ₁, p₁) between instants, shape (..., 2, 2).
 
     Parameters
     ----------
-    signature : Signature
-    amplitude, phase, relative_velocity : array_like
-        Λ and the start of contact.
-    landing : array_like
-        Time from the start of contact to the next one.
+    amplitude : array_like
+        Λ.
+    hit, following : Impact
+        An instant and the next.
+    flight_time : array_like
+        Time between them.
     """
-    lam, phi, u, total = np.broadcast_arrays(
-        *(np.asarray(x, dtype=float) for x in (amplitude, phase, relative_velocity, landing))
-    )
-    impact = throw(signature, lam, phi, u)
-    delay, end = impact.start.delay, phi + total
-    flight = total - delay
-    x, y = lam * np.cos(impact.phase), lam * np.sin(impact.phase)
-    by_speed = (
-        impact.instant.restitution
-        + impact.instant.d_restitution * impact.speed
-        + impact.instant.d_load * (1 - y)
-    )
-    next_velocity = impact.velocity - flight - lam * np.cos(end)
-    jacobian = np.empty((*phi.shape, 2, 2))
-    for column, (d_phase, d_u) in enumerate(((1.0, 0.0), (0.0, 1.0))):
-        d_delay = -impact.start.d_delay * d_u
-        d_psi = d_phase + d_delay
-        d_arrival = d_u - lam * np.sin(phi) * d_phase - d_delay
-        d_height = lam * np.cos(phi) * d_phase + delay * d_arrival
-        d_height = d_height + (impact.arrival + delay) * d_delay
-        d_speed = -y * d_psi - d_arrival
-        d_after = by_speed * d_speed - (y + impact.instant.load * x) * d_psi
-        # Landing: z + w T - T²/2 = Λ sin(ψ + T).
-        sinking = lam * np.cos(end) * d_psi - d_height - flight * d_after
-        d_flight = sinking / next_velocity
-        jacobian[..., 0, column] = d_psi + d_flight
-        moved = lam * np.sin(end) * (d_psi + d_flight)
-        jacobian[..., 1, column] = d_after - d_flight + moved
-    return jacobian
+    lam, time = np.asarray(amplitude, dtype=float), np.asarray(flight_time, dtype=float)
+    x, y, d_depth = _at(lam, hit)
+    law = hit.instant
+    by_speed = law.restitution + law.d_restitution * hit.speed + law.d_load * (1 - y)
+    next_x, next_y, next_d_depth = _at(lam, following)
+    # Landing: z + w T - T²/2 = Λ sin ψ₁ - h(Λ cos ψ₁ - p₁), ψ₁ = ψ + T, p₁ = w - T.
+    by_time = -following.speed - next_d_depth * (next_y - 1)
+    columns = []
+    for d_psi, d_p in ((1.0, 0.0), (0.0, 1.0)):
+        d_speed = -y * d_psi - d_p
+        d_height = x * d_psi - d_depth * d_speed
+        d_after = by_speed * d_speed - (y + law.load * x) * d_psi
+        gap = d_height + time * d_after - next_x * d_psi
+        gap = gap - next_d_depth * (next_y * d_psi + d_after)
+        d_time = -gap / by_time
+        columns.append(np.stack(np.broadcast_arrays(d_psi + d_time, d_after - d_time), axis=-1))
+    return np.stack(columns, axis=-1)
+
+
+def _at(lam, hit: Impact):
+    """Λ cos ψ, Λ sin ψ and dh/dv."""
+    law = hit.instant
+    return lam * np.cos(hit.phase), lam * np.sin(hit.phase), law.delay + law.d_delay * hit.speed
+
+
+def start_jacobian(amplitude: ArrayLike, hit: Impact) -> np.ndarray:
+    """Jacobian of (φ, δ′) in (ψ, p), shape (..., 2, 2)."""
+    lam = np.asarray(amplitude, dtype=float)
+    y, d_delay = lam * np.sin(hit.phase), np.asarray(hit.instant.d_delay)
+    fall = lam * np.sin(hit.phase - hit.instant.delay)
+    columns = []
+    for d_psi, d_p in ((1.0, 0.0), (0.0, 1.0)):
+        later = d_delay * (-y * d_psi - d_p)
+        d_phase = d_psi - later
+        columns.append(
+            np.stack(np.broadcast_arrays(d_phase, d_p + later + fall * d_phase), axis=-1)
+        )
+    return np.stack(columns, axis=-1)

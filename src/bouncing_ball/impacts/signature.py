@@ -7,44 +7,45 @@ grows as the impulse of F has come in, whatever the table does meanwhile::
 
     δ_out(t) - δ_in(t) = ∫ F(s) (t - s) ds = J (t - t_c),    J = ∫ F ds
 
-They meet at one instant, the centroid of the force, ``t_c = ∫ s F ds / J``: to
+They meet at one moment, the centroid of the force, ``t_c = ∫ s F ds / J``: to
 the outside a contact *is* an instantaneous impact at that moment, below the
 table's level, with the restitution ``r_c = -δ′_out/δ′_in`` of the continued
-flights. This much is exact. A contact law enters by functions of the impact
-speed v alone, to second order in the contact duration:
+flights. This much is exact. To second order in the duration of the contact
+its law enters by functions of one speed v = -δ′_in alone:
 
-* the *delay* t_c(v), from the start of contact to the instant;
+* the *delay* t_c(v), from the start of contact to the instant, and with it the
+  depth h = v t_c of the instant below the table;
 * the *restitution* r(v) of the free impact, without load;
 * the *load sensitivity* σ(v), ``r_c = r + σ a/v``, v and a at the instant;
 * the *duration* D(v) of the contact, which says only when the ball leaves.
 
-For the linear contact they are constants. It ends where δ + κ δ′ = 0, with
-κ = 0 for the displacement release and κ = 2ζ/ϖ for the force release, at the
-angle ``ϖ_d D = π - 2 arcsin(κϖ/2)``. The free impact ends with δ′ = r v and
+For the linear contact they are constants. It ends where δ + κ δ′ = 0, see
+:mod:`bouncing_ball.impacts.release`. The free impact ends with δ′ = r v and
 δ = -κ r v, hence from F = δ″ and one integration by parts ::
 
     t_c = (D δ′_b - δ_b)/((1 + r) v) = r (D + κ)/(1 + r)
 
-A constant load adds -a G to δ, with ``G = (1 - g′ - 2ζϖ g)/ϖ²`` and g the
-impulse response. The release is then later by ``(1 + r) a/(r v ϖ²)``, and the
-velocity there changes to first order by ``-[2ζ(1 + r)/ϖ - κ] a``; the ends of
-contact and the instant are D apart in all, which adds ``[D - (1 + r) t_c] a``::
+A constant load a adds -a G to δ, ``G = (1 - g′ - 2ζϖ g)/ϖ²`` with g the impulse
+response. The release then comes later by ``(1 + r) a/(r v ϖ²)``, and the
+velocity there is less by ``[2ζ(1 + r)/ϖ - κ] a``, to first order. From there
+back to the instant, and from the start on to it, the load acts for D in all,
+weighted by 1 and r: ``[D - (1 + r) t_c] a``. Together ::
 
     σ = (1 - r)(D + κ) - 2ζ (1 + r)/ϖ
 
 All quantities are dimensionless; all functions broadcast.
 """
 
-from collections.abc import Callable
+import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import require
-from bouncing_ball.impacts.damping import restitution_coefficient
-from bouncing_ball.impacts.release import Release
+from bouncing_ball.impacts.records import Record
 from bouncing_ball.impacts.spring_damper import Contact
 
 
@@ -64,29 +65,30 @@ class Instant(NamedTuple):
     d_load: np.ndarray | float = 0.0
 
 
-class Signature(Protocol):
-    """A contact law, seen from outside."""
+class Signature(Record, ABC):
+    """A contact law, seen from outside: a frozen dataclass of its parameters."""
 
     @property
     def is_constant(self) -> bool:
         """Whether the impact speed changes nothing, as for a linear contact."""
-        ...
+        return False
 
+    @abstractmethod
     def __call__(self, speed: ArrayLike) -> Instant:
-        """The signature of impacts at speeds v > 0."""
-        ...
+        """The signature of impacts with speeds v > 0 at the instant."""
 
-    def flat(self, shape: tuple[int, ...]) -> "Signature":
-        """The laws of balls in an array of a shape, as a flat array."""
-        ...
+    def flat(self, shape: tuple[int, ...]) -> Self:
+        """One law for each ball of an array, in a row; a single law is that of all."""
+        index = np.unravel_index(np.arange(math.prod(shape)), shape) if shape else (np.newaxis,)
+        return self._entries(shape, index)
 
-    def take(self, which: np.ndarray | slice) -> "Signature":
-        """The laws of some balls of a flat array."""
-        ...
+    def take(self, which: Any) -> Self:
+        """The laws of some balls of a row."""
+        return self[which] if self.shape else self
 
 
-@dataclass(frozen=True)
-class LinearSignature:
+@dataclass(frozen=True, repr=False)
+class LinearSignature(Signature):
     """Signature of the spring-damper contact, in closed form.
 
     Parameters
@@ -112,42 +114,24 @@ class LinearSignature:
 
     def __post_init__(self):
         zeta = np.asarray(self.contact.damping_ratio, dtype=float)
-        require(zeta < 1, zeta, "damping ratio ζ", "below 1")
+        require(zeta < 1, zeta, "damping ratio ζ", "below 1: a free contact never ends")
 
     @property
     def is_constant(self) -> bool:
         """A linear impact is the same at every speed."""
         return True
 
-    def flat(self, shape: tuple[int, ...]) -> "LinearSignature":
-        """One contact for each ball; a contact that is the same for all stays one."""
-        return self._each(lambda x: np.broadcast_to(x, shape).ravel() if np.ndim(x) else x)
-
-    def take(self, which: np.ndarray | slice) -> "LinearSignature":
-        """The contacts of some balls."""
-        return self._each(lambda x: np.asarray(x)[which] if np.ndim(x) else x)
-
-    def _each(self, change: Callable) -> "LinearSignature":
-        contact = self.contact
-        parts = change(contact.frequency_ratio), change(contact.damping_ratio)
-        return LinearSignature(Contact(*parts, contact.release))
-
     def __call__(self, speed: ArrayLike = 1.0) -> Instant:
         """The signature; the speed only gives the shape."""
-        contact = self.contact
-        omega, zeta, _ = np.broadcast_arrays(
-            contact.frequency_ratio, contact.damping_ratio, np.asarray(speed, dtype=float)
-        )
-        r = restitution_coefficient(zeta, contact.release)
-        force = contact.release is Release.FORCE
-        lag = 2 * zeta / omega if force else np.zeros_like(r)
-        angle = np.pi - 2 * np.arcsin(lag * omega / 2)
-        duration = angle / (omega * np.sqrt((1 - zeta) * (1 + zeta)))
+        contact, same = self.contact, np.ones(np.shape(speed))
+        r = same * contact.restitution
+        duration = same * contact.free_duration
         # When the flight after the contact, continued, rises through δ = 0.
-        through = duration + lag
+        through = duration + contact.lag
+        loss = 2 * np.asarray(contact.damping_ratio) / contact.frequency_ratio
         return Instant(
             delay=r * through / (1 + r),
             restitution=r,
-            load=(1 - r) * through - 2 * zeta * (1 + r) / omega,
+            load=(1 - r) * through - loss * (1 + r),
             duration=duration,
         )

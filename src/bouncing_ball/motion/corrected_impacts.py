@@ -1,12 +1,19 @@
 r"""Impacts of the corrected restitution model: instant, release, flight, landing.
 
-A state on the Poincaré section is (φ, δ′) at the start of contact, as with the
-spring-damper. The impact is that of :mod:`bouncing_ball.impacts.instant_map`;
-the flight that follows is looked at from the time φ + D on, when the contact
-is over. There the ball leaves if it rises and comes above the table's level.
+The impact is that of :mod:`bouncing_ball.impacts.instant_map`; the flight that
+follows is looked at from the end of the contact on, D - t_c after the
+instant. There the ball leaves if it rises and comes above the table's level.
 If not, the impact was too weak for its load, v of the order of a D, and the
 ball stays: until the table recedes with more than gravity, at Λ sin τ = 1 on
 the way up, or for ever if Λ ≤ 1.
+
+The landing on the table's level is found as in both other models, certified to
+be the first. From there to the instant, where the ball is h = v t_c(v) deep, a
+few steps of Newton's method on the continued flight lead, from the solution
+for a constant load.
+
+A state on the Poincaré section is (φ, δ′) at the start of contact, t_c before
+the instant. There the continued flight meets the table's level but for a t_c²/2.
 """
 
 from typing import NamedTuple
@@ -15,31 +22,25 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.impacts.instant_map import throw
+from bouncing_ball.impacts.instant_map import Impact, impact, instant_of, start_of
 from bouncing_ball.impacts.signature import Signature
 from bouncing_ball.motion.angles import reduce_angle, table
 from bouncing_ball.motion.ensembles import blocks, flatten, pick
 from bouncing_ball.motion.first_zero import State, first_zero
 from bouncing_ball.motion.landing import Flight, land
-from bouncing_ball.motion.sequence import ImpactSequence, Status
+from bouncing_ball.motion.sequence import Cycle, ImpactSequence, Status
 
-
-class CorrectedCycle(NamedTuple):
-    """The next impact: phase in [-π, π], relative velocity, and the time until it.
-
-    NaN, with an infinite time, for a ball that stays for ever.
-    """
-
-    phase: np.ndarray
-    relative_velocity: np.ndarray
-    time: np.ndarray
+# Newton steps from the landing to the instant: the start is right to the third
+# order in t_c, and each step doubles that.
+_DESCENT = 4
 
 
 class _Departure(NamedTuple):
-    """Ends of contact: duration, the flight from then on, and a time of flight
-    by which the ball has not landed. ``forever`` marks balls that stay."""
+    """Ends of contact: duration, table phase, the flight from then on, and a time of
+    flight by which the ball has not landed. ``forever`` marks balls that stay."""
 
     duration: np.ndarray
+    phase: np.ndarray
     flight: Flight
     start: np.ndarray
     forever: np.ndarray
@@ -99,21 +100,21 @@ def _from_rest(phase, amplitude):
     return wait, x, y, np.maximum(steep, 4 * x / top)
 
 
-def _depart(phase, relative, signature: Signature, amplitude) -> _Departure:
-    """The end of contacts that start at (φ, δ′)."""
-    impact = throw(signature, amplitude, phase, relative)
-    x, y = table(impact.phase, amplitude)
-    depth = impact.height - y
-    duration = np.broadcast_to(impact.start.duration, phase.shape)
-    rest = duration - impact.start.delay
-    whole = Flight(depth, impact.velocity - x, x, y, amplitude)
+def _depart(hit: Impact, amplitude) -> _Departure:
+    """The ends of the contacts of instants, counted from their starts."""
+    x, y = table(hit.phase, amplitude)
+    law = hit.instant
+    rest = law.duration - law.delay
+    whole = Flight(hit.height - y, hit.velocity - x, x, y, amplitude)
     displacement, velocity, _, _ = whole.gap(rest)
-    x, y = table(phase + duration, amplitude)
+    end = hit.phase + rest
+    x, y = table(end, amplitude)
     flight = Flight(displacement, velocity, x, y, amplitude)
+    duration = law.duration + np.zeros_like(end)
     leaves, start = _leaves(flight)
     if leaves.all():
-        return _Departure(duration, flight, start, ~leaves)
-    wait, x_rest, y_rest, start_rest = _from_rest(phase + duration, amplitude)
+        return _Departure(duration, end, flight, start, ~leaves)
+    wait, x_rest, y_rest, start_rest = _from_rest(end, amplitude)
     flight = Flight(
         np.where(leaves, displacement, 0.0),
         np.where(leaves, velocity, 0.0),
@@ -122,19 +123,45 @@ def _depart(phase, relative, signature: Signature, amplitude) -> _Departure:
         amplitude,
     )
     forever = ~leaves & (amplitude <= 1)
-    duration = np.where(leaves, duration, np.where(forever, np.inf, duration + wait))
-    return _Departure(duration, flight, np.where(leaves, start, start_rest), forever)
+    wait = np.where(leaves, 0.0, np.where(forever, np.inf, wait))
+    start = np.where(leaves, start, start_rest)
+    return _Departure(duration + wait, end + np.where(forever, 0.0, wait), flight, start, forever)
 
 
-def _land(phase, departure: _Departure):
-    """The next impact, (φ, δ′), and the time until it from the last one."""
+def _descend(phase, relative, law: Signature, amplitude):
+    """Time from landings (phase, δ′) on the table's level to the instants.
+
+    There ``δ + h(-δ′) = 0``. With a constant load a and delay t_c,
+    ``a s²/2 + (u - a t_c) s = u t_c`` for the landing speed u = -δ′.
+    """
+    x, y = table(phase, amplitude)
+    fall = Flight(np.zeros_like(relative), relative, x, y, amplitude)
+    delay = law(-relative).delay
+    pull = (1 - y) * delay
+    ahead = -relative - pull
+    both = ahead + np.sqrt(relative * relative + pull * pull)
+    time = np.where(both > 0, -2 * delay * relative / np.where(both > 0, both, 1.0), 2 * delay)
+    for _ in range(_DESCENT):
+        displacement, rate, acceleration, _ = fall.gap(time)
+        here = law(-rate)
+        by_time = rate - (here.delay - here.d_delay * rate) * acceleration
+        missing = displacement - rate * here.delay
+        time = time - np.where(by_time < 0, missing / np.where(by_time < 0, by_time, -1.0), 0.0)
+    return time
+
+
+def _land(departure: _Departure, law: Signature, amplitude) -> tuple[Impact, np.ndarray]:
+    """The next instants, and the time until them from the end of contact."""
     landing = land(departure.flight, departure.start)
-    total = departure.duration + landing.time
-    return reduce_angle(phase + total), -landing.rate, total
+    thrown = departure.flight.thrown
+    below = _descend(departure.phase + landing.time, -landing.rate, law, amplitude)
+    flown = landing.time + below
+    return impact(law, amplitude, reduce_angle(departure.phase + flown), thrown - flown), flown
 
 
 def _prepare(signature: Signature, amplitude, phase, relative):
-    (lam,), (phase, relative), shape = flatten([amplitude], [phase, relative])
+    like_law = np.zeros(signature.shape)
+    (lam, _), (phase, relative), shape = flatten([amplitude, like_law], [phase, relative])
     if not np.all((lam >= 0) & np.isfinite(lam)):
         raise ModelError(f"amplitude Λ = {np.asarray(amplitude)} is not finite and ≥ 0")
     if not np.all(np.isfinite(phase) & np.isfinite(relative)):
@@ -208,36 +235,41 @@ def _run(phase, relative, law: Signature, lam, tables, status) -> None:
     """Fill the tables of one block, impact by impact."""
     time = np.zeros_like(phase)
     alive = np.arange(phase.size)
+    hit = impact(law, lam, *instant_of(law, lam, phase, relative))
     for row in range(tables.shape[1]):
-        end = _depart(phase, relative, law, lam)
+        if row:
+            phase, relative = start_of(lam, hit)
+        end = _depart(hit, lam)
         left, thrown = (
             np.where(end.forever, np.nan, x) for x in (end.flight.displacement, end.flight.velocity)
         )
-        for array, values in zip(
-            tables, (time, phase, relative, end.duration, left, thrown), strict=True
-        ):
+        record = (time, reduce_angle(phase), relative, end.duration, left, thrown)
+        for array, values in zip(tables, record, strict=True):
             array[row, alive] = values
         if end.forever.any():
             status[alive[end.forever]] = Status.PERMANENT_CONTACT
             going = np.flatnonzero(~end.forever)
             law, lam, alive = law.take(going), pick(lam, going), alive[going]
-            time, phase = time[going], phase[going]
-            end = _going(end, going)
+            time, end = time[going], _going(end, going)
         if row == tables.shape[1] - 1 or not alive.size:
             break
-        phase, relative, passed = _land(phase, end)
-        time = time + passed
+        hit, flown = _land(end, law, lam)
+        time = time + (end.duration + flown - hit.instant.delay)
 
 
 def _going(end: _Departure, which) -> _Departure:
     return _Departure(
-        end.duration[which], end.flight.take(which), end.start[which], end.forever[which]
+        end.duration[which],
+        end.phase[which],
+        end.flight.take(which),
+        end.start[which],
+        end.forever[which],
     )
 
 
 def corrected_cycle(
     signature: Signature, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike
-) -> CorrectedCycle:
+) -> Cycle:
     """The Poincaré map: from one start of contact (φ, δ′) to the next.
 
     Examples
@@ -249,12 +281,17 @@ def corrected_cycle(
     -2.0
     """
     law, lam, phase, relative, shape = _prepare(signature, amplitude, phase, relative_velocity)
-    out = np.full((3, phase.size), np.nan)
-    out[2] = np.inf
+    out = np.full((4, phase.size), np.nan)
+    out[3] = np.inf
     for part in blocks(phase.size):
-        end = _depart(phase[part], relative[part], law.take(part), pick(lam, part))
+        here, level = law.take(part), pick(lam, part)
+        first = instant_of(here, level, phase[part], relative[part])
+        end = _depart(impact(here, level, *first), level)
         going = np.flatnonzero(~end.forever)
-        landed = _land(phase[part][going], _going(end, going))
-        for row, values in zip(out, landed, strict=True):
+        end, here, level = _going(end, going), here.take(going), pick(level, going)
+        hit, flown = _land(end, here, level)
+        start, speed = start_of(level, hit)
+        time = end.duration + flown - hit.instant.delay
+        for row, values in zip(out, (reduce_angle(start), speed, 0 * speed, time), strict=True):
             row[part.start + going] = values
-    return CorrectedCycle(*(row.reshape(shape) for row in out))
+    return Cycle(*(row.reshape(shape) for row in out))

@@ -1,6 +1,6 @@
 r"""The error of the restitution model, to first order in the contact duration.
 
-The corrected model (:mod:`bouncing_ball.orbits.instant_orbit`) differs from the
+The corrected model (:mod:`bouncing_ball.orbits.corrected_branch`) differs from the
 exact one by the second order, from the restitution model by the first: the
 delay t_c and the load sensitivity σ. So the first-order error of the
 restitution model is the derivative of the closed forms along (t_c, σ, D) at 0.
@@ -9,9 +9,9 @@ With ``C = nπ (1 - r)/(1 + r)``, ``cos ψ₀ = C/Λ``, ``Y₀ = Λ sin ψ₀`` 
 
     ψ = ψ₀ + σ a₀/((1 + r) Y₀)                (the line, at fixed Λ)
     φ = ψ - t_c
-    max z = Λ sin φ + (nπ - t_c)²/2,   C + nπ = 2nπ/(1 + r)
+    max z = Λ sin ψ - v₀ t_c + (nπ)²/2,   v₀ = nπ + C = 2nπ/(1 + r)
     z′_b = nπ - (D - t_c)
-    r_a = r + [σ - D + (1 + r) t_c] a₀/v₀,    v₀ = 2nπ/(1 + r)
+    r_a = r + [σ - D + (1 + r) t_c] a₀/v₀
     Λ_SN = (nπ(1 - r) - σ)/√((1 + r)² + σ²)
 
 and at the period doubling, with ``Y₀ - 1 = (1 - r)²/(1 + r)²`` there, from its

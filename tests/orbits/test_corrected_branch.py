@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 
 from bouncing_ball.impacts.damping import restitution_coefficient
-from bouncing_ball.impacts.instant_map import cycle_jacobian
 from bouncing_ball.impacts.signature import LinearSignature
 from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.motion.corrected_impacts import corrected_cycle
-from bouncing_ball.orbits import instant_orbit, limits, restitution_orbit, stability
+from bouncing_ball.orbits import corrected_branch, limits, restitution_orbit, stability
 from bouncing_ball.orbits.closed_form import branch_point
+from bouncing_ball.orbits.corrected_model import CorrectedModel
+from bouncing_ball.orbits.interface import Side
 
 RELEASES = list(Release)
 
@@ -20,14 +21,14 @@ def sample(seed, size, release, ratios=(1.0, 3.0)):
     n = rng.integers(1, 6, size)
     contact = Contact(10 ** rng.uniform(*ratios, size), rng.uniform(0.01, 0.6, size), release)
     instant = LinearSignature(contact)()
-    low = instant_orbit.saddle_node(n, instant)
-    high, _ = instant_orbit.period_doubling(n, instant)
+    low = corrected_branch.saddle_node(n, instant)
+    high, _ = corrected_branch.period_doubling(n, instant)
     return n, contact, instant, low + rng.uniform(0.05, 0.95, size) * (high - low)
 
 
 def start_of_contact(n, instant, amplitude, stable_side=True):
     """φ and δ′ of the orbit."""
-    phase = instant_orbit.instant_phase(n, instant, amplitude, stable_side) - instant.delay
+    phase = corrected_branch.instant_phase(n, instant, amplitude, stable_side) - instant.delay
     return phase, instant.delay - n * np.pi - amplitude * np.cos(phase)
 
 
@@ -44,32 +45,29 @@ def test_orbits_are_fixed_points_of_the_map(release, stable_side):
     np.testing.assert_allclose(cycle.relative_velocity[free], velocity[free], atol=1e-11)
 
 
-@pytest.mark.parametrize("stable_side", [True, False])
+@pytest.mark.parametrize("side", list(Side))
 @pytest.mark.parametrize("release", RELEASES)
-def test_trace_and_determinant_are_those_of_the_map(release, stable_side):
-    n, contact, instant, lam = sample(2, 200, release)
-    phase, velocity = start_of_contact(n, instant, lam, stable_side)
-    law = LinearSignature(contact)
-    jacobian = cycle_jacobian(law, lam, phase, velocity, 2 * np.pi * n)
-    trace, det = stability.trace_and_determinant(jacobian)
-    psi = phase + instant.delay
-    found = instant_orbit.trace_and_determinant(n, instant, lam, psi)
+def test_trace_and_determinant_are_those_of_the_map(release, side):
+    n, contact, _, lam = sample(2, 200, release)
+    orbit = CorrectedModel.of_contact(contact).orbit(n, lam, side)
+    jacobian = orbit.monodromy()
+    found = orbit.trace_and_determinant()
     scale = 1 + np.abs(jacobian).max((1, 2)) ** 2
-    assert np.all(np.abs(found[0] - trace) < 1e-14 * scale)
-    assert np.all(np.abs(found[1] - det) < 1e-14 * scale)
+    for a, b in zip(found, stability.trace_and_determinant(jacobian), strict=True):
+        assert np.all(np.abs(a - b) < 1e-14 * scale)
 
 
 @pytest.mark.parametrize("release", RELEASES)
 def test_multipliers_at_the_bifurcations(release):
     n, _, instant, _ = sample(3, 200, release)
-    fold = instant_orbit.saddle_node(n, instant)
-    psi = instant_orbit.instant_phase(n, instant, fold * (1 + 1e-15))
-    trace, det = instant_orbit.trace_and_determinant(n, instant, fold, psi)
+    fold = corrected_branch.saddle_node(n, instant)
+    psi = corrected_branch.instant_phase(n, instant, fold * (1 + 1e-15))
+    trace, det = corrected_branch.trace_and_determinant(n, instant, fold, psi)
     # The phase at the fold has half the digits, and so has the test function.
     assert np.all(np.abs(stability.saddle_node_function(trace, det)) < 1e-6)
-    lam, psi = instant_orbit.period_doubling(n, instant)
-    np.testing.assert_allclose(instant_orbit.instant_phase(n, instant, lam), psi, atol=1e-12)
-    trace, det = instant_orbit.trace_and_determinant(n, instant, lam, psi)
+    lam, psi = corrected_branch.period_doubling(n, instant)
+    np.testing.assert_allclose(corrected_branch.instant_phase(n, instant, lam), psi, atol=1e-12)
+    trace, det = corrected_branch.trace_and_determinant(n, instant, lam, psi)
     assert np.all(np.abs(stability.period_doubling_function(trace, det)) < 1e-12)
 
 
@@ -77,8 +75,8 @@ def test_multipliers_at_the_bifurcations(release):
 def test_orbits_between_the_bifurcations_are_stable(release):
     n, _, instant, lam = sample(4, 500, release)
     for side, expected in ((True, True), (False, False)):
-        psi = instant_orbit.instant_phase(n, instant, lam, side)
-        trace, det = instant_orbit.trace_and_determinant(n, instant, lam, psi)
+        psi = corrected_branch.instant_phase(n, instant, lam, side)
+        trace, det = corrected_branch.trace_and_determinant(n, instant, lam, psi)
         assert np.all(stability.is_stable(trace, det) == expected)
 
 
@@ -87,8 +85,10 @@ def test_the_restitution_model_is_the_limit_of_a_stiff_contact():
     instant = LinearSignature(Contact(1e12, 0.1359))()
     r = restitution_coefficient(0.1359)
     fold, doubling = restitution_orbit.saddle_node(n, r), restitution_orbit.period_doubling(n, r)
-    np.testing.assert_allclose(instant_orbit.saddle_node(n, instant), fold, rtol=1e-11)
-    np.testing.assert_allclose(instant_orbit.period_doubling(n, instant)[0], doubling, rtol=1e-11)
+    np.testing.assert_allclose(corrected_branch.saddle_node(n, instant), fold, rtol=1e-11)
+    np.testing.assert_allclose(
+        corrected_branch.period_doubling(n, instant)[0], doubling, rtol=1e-11
+    )
 
 
 @pytest.mark.parametrize("release", RELEASES)
@@ -96,9 +96,9 @@ def test_elastic_orbits_hit_at_the_top_of_the_table(release):
     """r = 1: time reversal puts the instant at ψ = π/2 in the exact model too."""
     contact = Contact(np.array([3.0, 10.0, 100.0]), 0.0, release)
     instant = LinearSignature(contact)()
-    psi = instant_orbit.instant_phase(1, instant, 0.8)
+    psi = corrected_branch.instant_phase(1, instant, 0.8)
     np.testing.assert_allclose(psi, np.pi / 2, rtol=1e-15)
-    np.testing.assert_array_equal(instant_orbit.saddle_node(1, instant), 0.0)
+    np.testing.assert_array_equal(corrected_branch.saddle_node(1, instant), 0.0)
     exact = limits.orbit_at(contact, 1, 0.8)
     np.testing.assert_allclose(exact.phase + exact.contact_duration / 2, np.pi / 2, atol=1e-12)
 
@@ -110,8 +110,8 @@ def test_the_branch_of_the_exact_contact_is_met_to_second_order(release):
     for omega in (400.0, 800.0):
         stiff = Contact(np.full(60, omega), contact.damping_ratio, release)
         instant = LinearSignature(stiff)()
-        low = instant_orbit.saddle_node(n, instant)
-        high, _ = instant_orbit.period_doubling(n, instant)
+        low = corrected_branch.saddle_node(n, instant)
+        high, _ = corrected_branch.period_doubling(n, instant)
         # The same place of the stable range, away from the boundary layer.
         lam = low + np.linspace(0.2, 0.95, 60) * (high - low)
         phase, velocity = start_of_contact(n, instant, lam)
@@ -134,6 +134,6 @@ def test_the_branch_of_the_exact_contact_is_met_to_second_order(release):
 
 def test_no_orbit_below_the_saddle_node():
     instant = LinearSignature(Contact(10.0, 0.1))()
-    fold = float(instant_orbit.saddle_node(1, instant))
-    below, above = (instant_orbit.instant_phase(1, instant, k * fold) for k in (0.999, 1.001))
+    fold = float(corrected_branch.saddle_node(1, instant))
+    below, above = (corrected_branch.instant_phase(1, instant, k * fold) for k in (0.999, 1.001))
     assert np.isnan(below) and np.isfinite(above)

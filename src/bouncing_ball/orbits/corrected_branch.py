@@ -9,19 +9,24 @@ impact ``nπ - X = r v + σ a`` is a straight line in the plane of (X, Y)::
     R Λ cos(ψ + χ) = nπ (1 - r) - σ,      R = √((1 + r)² + σ²),  tan χ = σ/(1 + r)
 
 which is Eq. 6 for σ = 0. Λ is smallest at ψ = -χ: the saddle-node. The contact
-starts at φ = ψ - t_c with the closing speed ``v_i = nπ - t_c + Λ cos φ``.
+starts at φ = ψ - t_c, lasts D, and ::
+
+    z′_i = -(nπ - t_c),   z′_b = nπ - (D - t_c),   max z = Y - v t_c + (nπ)²/2
 
 Linearising one cycle at the instants, with ``W = -(1 + r) Y - σX`` the change
-of the velocity after the impact with its phase, gives ::
+of the velocity after the impact with its phase, and ``u = v - a t_c``, the speed
+at the start of contact, gives ::
 
-    tr  = 1 - r + [(2πn - t_c)(W + r) - t_c]/v_i
-    det = -r + [(2πn - t_c) r - t_c - t_c W]/v_i
+    tr  = 1 - r + [(2πn - t_c)(W + r) - t_c]/u
+    det = -r + [(2πn - t_c) r - t_c - t_c W]/u
 
-so that ``1 - tr + det = -2πn W/v_i`` vanishes at the saddle-node, and
+so that ``1 - tr + det = -2πn W/u`` vanishes at the saddle-node, and
 ``1 + tr + det = 0`` is a second straight line, which meets the first at the
 period doubling::
 
-    (nπ - t_c) [(1 + r) Y + σX] - (1 - r) Λ cos(ψ - t_c) = nπ (1 + r) - 2t_c
+    (nπ - t_c) [(1 + r) Y + σX] - (1 - r)(X + t_c Y) = nπ (1 + r) - 2t_c
+
+So this holds for laws with the same signature at every impact speed.
 
 All quantities are dimensionless; all functions broadcast.
 """
@@ -29,7 +34,6 @@ All quantities are dimensionless; all functions broadcast.
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.impacts.signature import Instant
 
 
@@ -52,6 +56,17 @@ def saddle_node(n: ArrayLike, instant: Instant) -> np.ndarray:
     """
     side, radius, _ = _level(n, instant)
     return np.where(side >= 0, side, np.nan) / radius
+
+
+def saddle_node_phase(instant: Instant) -> np.ndarray:
+    """Phase ψ = -χ of the instants at the saddle-node.
+
+    Examples
+    --------
+    >>> abs(float(saddle_node_phase(Instant(0.0, 1.0, 0.0, 0.0))))
+    0.0
+    """
+    return -np.arctan2(instant.load, 1 + np.asarray(instant.restitution))
 
 
 def instant_phase(
@@ -90,7 +105,7 @@ def trace_and_determinant(
     x, y = lam * np.cos(phase), lam * np.sin(phase)
     by_phase = -(1 + r) * y - instant.load * x
     half = np.asarray(n) * np.pi
-    speed = half - delay + lam * np.cos(phase - delay)
+    speed = half + x - delay * (1 - y)
     rest = 2 * half - delay
     trace = 1 - r + (rest * (by_phase + r) - delay) / speed
     return trace, (rest * r - delay - delay * by_phase) / speed - r
@@ -109,8 +124,8 @@ def period_doubling(n: ArrayLike, instant: Instant) -> tuple[np.ndarray, np.ndar
     half = np.asarray(n) * np.pi
     rest = half - delay
     a, b, s = 1 + r, -load, half * (1 - r) - load
-    c = rest * load - (1 - r) * np.cos(delay)
-    d = rest * (1 + r) - (1 - r) * np.sin(delay)
+    c = rest * load - (1 - r)
+    d = rest * (1 + r) - (1 - r) * delay
     t = half * (1 + r) - 2 * delay
     determinant = a * d - b * c
     x, y = (s * d - b * t) / determinant, (a * t - s * c) / determinant
@@ -119,9 +134,20 @@ def period_doubling(n: ArrayLike, instant: Instant) -> tuple[np.ndarray, np.ndar
     return amplitude, np.where(stable_side, np.arctan2(y, x), np.nan)
 
 
-def require_above(n: int, instant: Instant, amplitude: float, model: str) -> None:
-    """Raise :class:`NoOrbitError` if the n-T orbits appear at a larger Λ only."""
-    fold = float(saddle_node(n, instant))
-    if not amplitude >= fold:
-        where = f"below the saddle-node at Λ = {fold:.6g}"
-        raise NoOrbitError(f"no {n}-T orbit at Λ = {amplitude:g} for {model}: {where}")
+def nearest(
+    n: ArrayLike, instant: Instant, amplitude: ArrayLike, phase: ArrayLike
+) -> tuple[np.ndarray, np.ndarray]:
+    """Λ and ψ of the point of the line that is nearest to (Λ cos ψ, Λ sin ψ).
+
+    Examples
+    --------
+    >>> amplitude, phase = nearest(1, Instant(0.0, 1.0, 0.0, 0.0), 2.0, np.pi / 6)
+    >>> round(float(amplitude), 12), float(phase) == np.pi / 2
+    (1.0, True)
+    """
+    side, radius, _ = _level(n, instant)
+    x, y = np.asarray(amplitude) * np.cos(phase), np.asarray(amplitude) * np.sin(phase)
+    a, b = (1 + np.asarray(instant.restitution)) / radius, -np.asarray(instant.load) / radius
+    off = a * x + b * y - side / radius
+    x, y = x - off * a, y - off * b
+    return np.hypot(x, y), np.arctan2(y, x)

@@ -1,0 +1,123 @@
+"""n-T orbits of the corrected restitution model: path, equations and stability.
+
+All quantities are dimensionless.
+"""
+
+from functools import cached_property
+from typing import Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.impacts.instant_map import Impact, impact, instant_jacobian, start_jacobian
+from bouncing_ball.impacts.signature import Instant, Signature
+from bouncing_ball.motion.corrected_impacts import corrected_cycle
+from bouncing_ball.motion.sequence import Cycle
+from bouncing_ball.orbits import corrected_branch as formulas
+from bouncing_ball.orbits.interface import Orbit
+
+
+class CorrectedOrbit(Orbit):
+    """n-T orbits of the corrected restitution model; ``law`` is the :class:`Signature`.
+
+    Examples
+    --------
+    >>> from bouncing_ball.impacts.signature import LinearSignature
+    >>> from bouncing_ball.impacts.spring_damper import Contact
+    >>> orbit = CorrectedOrbit.at(1, LinearSignature(Contact(np.pi, 0.0)), 0.8, np.pi / 2)
+    >>> float(orbit.bounce_velocity) == np.pi - 0.5, round(float(orbit.phase) - np.pi / 2, 12)
+    (True, -0.5)
+    """
+
+    @classmethod
+    def at(cls, n: ArrayLike, law: Signature, amplitude: ArrayLike, phase: ArrayLike) -> Self:
+        """The orbits with instants at the phase ψ, where the velocity before is -nπ."""
+        launch = np.asarray(n) * np.pi
+        hit = impact(law, amplitude, phase, -launch)
+        delay, duration = hit.instant.delay, hit.instant.duration
+        columns = (amplitude, hit.phase - delay, duration, delay - launch)
+        columns = np.broadcast_arrays(*columns)
+        missing = np.where(np.isnan(columns[1]), np.nan, 0.0)
+        lam, *rest = (np.asarray(x, dtype=float) for x in columns)
+        return cls(n, law, lam, *(x + missing for x in rest))  # type: ignore[arg-type]
+
+    @cached_property
+    def instant(self) -> Instant:
+        """The signature of the impacts."""
+        # A constant law needs no speed; another gives the orbit its own.
+        return self.law(-self.relative_impact_velocity)
+
+    @cached_property
+    def hit(self) -> Impact:
+        """The instant: phase ψ, depth, speeds."""
+        delay = self.instant.delay
+        return impact(self.law, self.amplitude, self.phase + delay, self.impact_velocity - delay)
+
+    @property
+    def after(self) -> np.ndarray:
+        """Time from the instant to the release, D - t_c."""
+        return self.contact_duration - self.instant.delay
+
+    @property
+    def bounce_height(self) -> np.ndarray:
+        """Absolute height z_b of the ball at release, by the flight from the instant."""
+        return self.hit.height + (self.bounce_velocity + self.after / 2) * self.after
+
+    @property
+    def release_displacement(self) -> np.ndarray:
+        """δ_b at release."""
+        return self.bounce_height - self.amplitude * np.sin(self.release_phase)
+
+    def contact_path(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The two continued flights, before and after the instant."""
+        since = np.asarray(time) - self.instant.delay
+        start = np.where(since < 0, self.hit.arrival, self.bounce_velocity + self.after)
+        return self.hit.height + (start - since / 2) * since, start - since
+
+    def residual(self) -> np.ndarray:
+        """Velocity after the impact against the flight's, and nπ, shape (..., 2)."""
+        start = self.bounce_velocity + self.after
+        level = start - np.asarray(self.n) * np.pi
+        return np.stack(np.broadcast_arrays(self.hit.velocity - start, level), axis=-1)
+
+    def contact_jacobian(self) -> np.ndarray:
+        """Jacobian of (τ_b, δ_b, δ′_b) in (τ, δ′) at the start of contact."""
+        hit, lam, end = self.hit, self.amplitude, self.release_phase
+        law, y = hit.instant, self.amplitude * np.sin(hit.phase)
+        by_speed = law.restitution + law.d_restitution * hit.speed + law.d_load * (1 - y)
+        x = lam * np.cos(hit.phase)
+        columns = []
+        for d_psi, d_p in ((1.0, 0.0), (0.0, 1.0)):
+            d_speed = -y * d_psi - d_p
+            d_rest = -law.d_delay * d_speed
+            d_after = by_speed * d_speed - (y + law.load * x) * d_psi
+            d_height = x * d_psi - (law.delay + law.d_delay * hit.speed) * d_speed
+            d_height = d_height + self.after * d_after + self.bounce_velocity * d_rest
+            moved = d_psi + d_rest
+            gap = d_height - lam * np.cos(end) * moved
+            rate = d_after - d_rest + lam * np.sin(end) * moved
+            columns.append(np.stack(np.broadcast_arrays(0 * gap, gap, rate), axis=-1))
+        back = np.linalg.inv(start_jacobian(lam, hit))
+        return np.stack(columns, axis=-1) @ back
+
+    def monodromy(self) -> np.ndarray:
+        """Jacobian of the return map (φ, δ′) → (φ₁, δ′₁), shape (..., 2, 2).
+
+        Between instants, and from there to the starts of contact.
+        """
+        hit, period = self.hit, 2 * np.pi * np.asarray(self.n)
+        to_start = start_jacobian(self.amplitude, hit)
+        between = instant_jacobian(self.amplitude, hit, period, hit)
+        return to_start @ between @ np.linalg.inv(to_start)
+
+    def trace_and_determinant(self) -> tuple[np.ndarray, np.ndarray]:
+        """The closed forms of :mod:`bouncing_ball.orbits.corrected_branch`."""
+        return formulas.trace_and_determinant(self.n, self.instant, self.amplitude, self.hit.phase)
+
+    def determinant(self) -> np.ndarray:
+        """That of the linearised cycle, in closed form."""
+        return self.trace_and_determinant()[1]
+
+    def cycle(self, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
+        """From starts of contact (φ, δ′) to the next, simulated."""
+        return corrected_cycle(self.law, self.amplitude, phase, relative_velocity)

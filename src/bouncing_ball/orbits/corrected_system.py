@@ -1,0 +1,79 @@
+"""The equations of the corrected model's n-T orbits for a continuation.
+
+Unknowns (ψ, w), the phase of the instant and the velocity after it; parameter Λ.
+They have the closed form of :mod:`bouncing_ball.orbits.corrected_branch`;
+continued, they check both the continuation and the formula.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from bouncing_ball.continuation.events import Event
+from bouncing_ball.impacts.signature import Signature
+from bouncing_ball.orbits.corrected_orbit import CorrectedOrbit
+from bouncing_ball.orbits.stability import period_doubling_function, saddle_node_function
+
+
+@dataclass(frozen=True)
+class CorrectedSystem:
+    """n-T orbits as a :class:`~bouncing_ball.continuation.problem.Problem`.
+
+    Parameters
+    ----------
+    n : int
+        Index of the family.
+    law : Signature
+        The same at every impact speed.
+
+    Examples
+    --------
+    >>> from bouncing_ball.impacts.signature import LinearSignature
+    >>> from bouncing_ball.impacts.spring_damper import Contact
+    >>> system = CorrectedSystem(1, LinearSignature(Contact(5.0, 0.0)))
+    >>> [abs(round(float(x), 12)) for x in system.residual(np.array([np.pi / 2, np.pi, 1.0]))]
+    [0.0, 0.0]
+    """
+
+    n: int
+    law: Signature
+
+    def orbit(self, y: np.ndarray) -> CorrectedOrbit:
+        """The orbits at points y of shape (..., 3)."""
+        psi, after, amplitude = (y[..., k] for k in range(3))
+        instant = self.law(np.ones_like(psi))
+        impact = after - 2 * np.pi * self.n + instant.delay
+        phase = psi - instant.delay
+        return CorrectedOrbit(self.n, self.law, amplitude, phase, instant.duration, impact)
+
+    def point(self, orbit: CorrectedOrbit) -> np.ndarray:
+        """y of given orbits."""
+        parts = orbit.hit.phase, orbit.bounce_velocity + orbit.after, orbit.amplitude
+        return np.stack(np.broadcast_arrays(*parts), axis=-1)
+
+    def residual(self, y: np.ndarray) -> np.ndarray:
+        """Velocity defect and landing defect, shape (..., 2)."""
+        return self.orbit(y).residual()
+
+    def jacobian(self, y: np.ndarray) -> np.ndarray:
+        """Exact Jacobian of the residual, shape (..., 2, 3)."""
+        psi, amplitude = y[..., 0], y[..., 2]
+        sine, cosine = np.sin(psi), np.cos(psi)
+        instant = self.law(np.ones_like(psi))
+        r, load = instant.restitution, instant.load
+        out = np.zeros((*y.shape[:-1], 2, 3))
+        out[..., 0, 0] = -amplitude * ((1 + r) * sine + load * cosine)
+        out[..., 0, 1] = -r - 1
+        out[..., 0, 2] = (1 + r) * cosine - load * sine
+        out[..., 1, 1] = 1
+        return out
+
+    def _stability(self, test):
+        return lambda y: test(*self.orbit(y).trace_and_determinant())
+
+    def events(self) -> tuple[Event, ...]:
+        """Saddle-node and period doubling."""
+        return (
+            Event("saddle-node", self._stability(saddle_node_function)),
+            Event("period doubling", self._stability(period_doubling_function)),
+        )

@@ -29,7 +29,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 # An attack looks at the clock between two cases; a case of a pipeline takes its time.
-GRACE = 60.0
+GRACE = 120.0
 SHOWN = 10
 
 

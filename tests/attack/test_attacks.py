@@ -20,7 +20,12 @@ def run(*arguments, folder=HERE):
     )
 
 
-@pytest.mark.parametrize("name", RUNNER["attacks"]())
+def short_or_long(name):
+    """An attack on runs of the pipeline takes its time for one case."""
+    return pytest.param(name, marks=pytest.mark.long if name == "interruptions" else ())
+
+
+@pytest.mark.parametrize("name", map(short_or_long, RUNNER["attacks"]()))
 def test_nothing_falls_in_a_second(name):
     done = run("--seed", "1", "--seconds", "1", name)
     assert done.returncode == 0, done.stdout + done.stderr

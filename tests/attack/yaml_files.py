@@ -1,0 +1,108 @@
+"""YAML files with keys twice, numbers to the base 60, aliases that expand, and torn ones.
+
+The loader that reads configuration, tolerances and claims takes a mutated file
+as a reader of it would, or refuses it in one line.
+"""
+
+import time
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
+
+ROOT = Path(__file__).resolve().parents[2]
+FILES = ("config.yaml", "tolerances.yaml", "claims.yaml")
+# A refusal or an answer within this; an alias bomb takes minutes.
+SOON = 5.0
+
+
+def twice(rng, lines: list[str]) -> list[str]:
+    """A key of a mapping again, next to itself."""
+    keys = [k for k, line in enumerate(lines) if is_pair(line)]
+    at = int(rng.choice(keys))
+    return [*lines[: at + 1], lines[at], *lines[at + 1 :]]
+
+
+def sexagesimal(rng, lines: list[str]) -> list[str]:
+    """A number as 1:30, which YAML 1.1 takes for 90."""
+    keys = [k for k, line in enumerate(lines) if is_pair(line)]
+    at = int(rng.choice(keys))
+    value = f"{rng.integers(1, 60)}:{rng.integers(10, 60)}"
+    value += str(rng.choice(["", ".5", ":00"]))
+    changed = f"{lines[at].split(':')[0]}: {value}"
+    return [*lines[:at], changed, *lines[at + 1 :]]
+
+
+def bomb(rng, lines: list[str]) -> list[str]:
+    """Aliases of aliases: few lines for more items than there is memory."""
+    depth, width = int(rng.integers(8, 30)), int(rng.integers(8, 20))
+    first = ["bomb0: &b0 [x, x]"]
+    more = [f"bomb{k}: &b{k} [{', '.join([f'*b{k - 1}'] * width)}]" for k in range(1, depth)]
+    return [*lines, *first, *more]
+
+
+def cycle(rng, lines: list[str]) -> list[str]:
+    """A collection that contains itself."""
+    return [*lines, "self: &self [*self]"]
+
+
+def tag(rng, lines: list[str]) -> list[str]:
+    """A value that would be a Python object."""
+    name = rng.choice(["object/apply:os.getcwd []", "name:os.system", "tuple [1, 2]"])
+    return [*lines, f"tagged: !!python/{name}"]
+
+
+def is_pair(line: str) -> bool:
+    """Whether a line is a key with a plain value."""
+    key, _, value = line.strip().partition(": ")
+    return key.isidentifier() and bool(value) and value[0] not in "{[|>&*\"'#"
+
+
+MUST_FALL = (twice, sexagesimal, bomb, cycle, tag)
+
+
+def torn(rng, lines: list[str]) -> list[str]:
+    """Characters that another one stands for, anywhere: readable or not."""
+    text = list("\n".join(lines))
+    for _ in range(int(rng.integers(1, 4))):
+        text[int(rng.integers(len(text)))] = str(rng.choice(list("\t\0:-{}[]&*!|>'\"%@`é\x85")))
+    return "".join(text).split("\n")
+
+
+def wrong(path: Path, must_fall: bool) -> str:
+    """What is wrong with the loader's answer; nothing if it is right."""
+    start = time.monotonic()
+    try:
+        read_yaml(path)
+        said = "accepted" if must_fall else ""
+    except ConfigurationError as error:
+        said = "more than one line" if "\n" in str(error) else ""
+    except Exception as error:
+        said = f"{type(error).__name__}: {error}"
+    took = time.monotonic() - start
+    return said or (f"took {took:.1f} s" if took > SOON else "")
+
+
+def attack(seed: int, seconds: float) -> tuple[int, int, list[str]]:
+    """Random mutations of the project's own files."""
+    rng = np.random.default_rng(seed)
+    end = time.monotonic() + seconds
+    texts = {
+        name: (ROOT / "config" / name).read_text(encoding="utf-8").splitlines() for name in FILES
+    }
+    tried, fallen = 0, []
+    with TemporaryDirectory() as folder:
+        path = Path(folder, "file.yaml")
+        while not tried or time.monotonic() < end:
+            name = str(rng.choice(FILES))
+            kind = (*MUST_FALL, torn)[int(rng.integers(len(MUST_FALL) + 1))]
+            lines = kind(rng, texts[name])
+            path.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
+            tried += 1
+            said = wrong(path, kind in MUST_FALL)
+            if said:
+                new = [line for line in lines if line not in texts[name]] or ["a line twice"]
+                fallen.append(f"{kind.__name__} in {name}, {said}: {' / '.join(new)[:200]!r}")
+    return tried, tried - len(fallen), fallen

@@ -25,7 +25,7 @@ def short_or_long(name):
     return pytest.param(name, marks=pytest.mark.long if name == "interruptions" else ())
 
 
-@pytest.mark.parametrize("name", map(short_or_long, RUNNER["attacks"]()))
+@pytest.mark.parametrize("name", [short_or_long(name) for name in RUNNER["attacks"]()])
 def test_nothing_falls_in_a_second(name):
     done = run("--seed", "1", "--seconds", "1", name)
     assert done.returncode == 0, done.stdout + done.stderr

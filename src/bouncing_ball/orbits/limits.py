@@ -29,6 +29,10 @@ _SCAN_START = 1e-3
 # 10⁶, and contacts that fill the cycle but for a millionth.
 _SHORTEST = 1e-3
 _FULL = 1e-6
+# Width, in parts of its ε and of 1/ϖ, in which the zero of dΛ/dε is looked for next
+# to that of the multiplier: wide against the rounding of the trace (some 1e-9 of
+# these for ϖ = 10⁸), narrow against the distance to the next turn of Λ.
+_NEXT_TO = 1e-4
 
 
 def _columns(contact: Contact, n: ArrayLike, *more: ArrayLike):
@@ -88,8 +92,49 @@ def _fold_function(release):
     return fold
 
 
+def _floquet_function(release, test):
+    """A test function of stability along the branch, of arrays."""
+
+    def floquet(excess, omega, zeta, n):
+        point = branch_point(excess, Contact(omega, zeta, release), n)
+        return test(point.trace, point.determinant)
+
+    return floquet
+
+
+def _zero(test, grid, args, *, last=False):
+    """First, or last, zero of a test function along a grid; NaN where there is none.
+
+    A test function changes sign at a pole as well, where the ball grazes the
+    table at impact or release. Closed upon, its value is then larger than at
+    both ends of the bracket, and at a zero smaller: no tolerance decides. A
+    pole is passed over for the next change of sign.
+    """
+    values = test(grid, *args)
+    signs = np.where(np.isnan(values), np.nan, values >= 0)
+    changes = np.abs(np.diff(signs, axis=0)) == 1
+    size = np.abs(values)
+    result = np.full(values.shape[1:], np.nan)
+    pending = np.any(changes, axis=0)
+    while np.any(pending):
+        index = np.argmax(changes[::-1] if last else changes, axis=0)
+        index = len(changes) - 1 - index if last else index
+        ends = _at(grid, index), _at(grid, index + 1)
+        root = _close(test, *ends, pending, args)
+        found = np.abs(test(root, *args)) <= np.minimum(_at(size, index), _at(size, index + 1))
+        result = np.where(pending & found, root, result)
+        np.put_along_axis(changes, index[np.newaxis], False, axis=0)
+        pending = pending & ~found & np.any(changes, axis=0)
+    return result
+
+
 def saddle_node(contact: Contact, n: ArrayLike) -> np.ndarray:
-    """Excess angle ε of the saddle-node, dΛ/dε = 0.
+    """Excess angle ε of the saddle-node, the first zero of 1 - tr + det.
+
+    dΛ/dε vanishes there too, and with more digits for a stiff contact: next to
+    the zero of the one, that of the other is taken. It vanishes as well where
+    the ball grazes, and changes sign at the poles of the branch, where Λ is
+    infinite; neither is a bifurcation.
 
     Returns
     -------
@@ -104,18 +149,16 @@ def saddle_node(contact: Contact, n: ArrayLike) -> np.ndarray:
     True
     """
     omega, zeta, n = _columns(contact, n)
-    release = contact.release
+    args = omega, zeta, n
     low, high = np.broadcast_arrays(*_range(contact, n))
     grid = _scan(low, high, 1 / omega)
-    points = branch_point(grid, Contact(omega, zeta, release), n)
-    # Λ turns at grazing releases as well, where no multiplier is 1, and rounding
-    # turns it at vanishing contacts: both test functions must change sign.
-    floquet = saddle_node_function(points.trace, points.determinant)
-    agreed = np.where(points.fold * floquet < 0, floquet, np.nan)
-    index, found = _bracket(agreed)
-    return _close(
-        _fold_function(release), _at(grid, index), _at(grid, index + 1), found, (omega, zeta, n)
-    )
+    floquet = _floquet_function(contact.release, saddle_node_function)
+    root = _zero(floquet, grid, args)
+    width = _NEXT_TO * np.minimum(np.abs(root), 1 / omega)
+    fold, ends = _fold_function(contact.release), (root - width, root + width)
+    left, right = (fold(x, *args) for x in ends)
+    closer = _close(fold, *ends, left * right < 0, args)
+    return np.where(np.isnan(closer), root, closer)
 
 
 def period_doubling(contact: Contact, n: ArrayLike) -> np.ndarray:
@@ -124,19 +167,13 @@ def period_doubling(contact: Contact, n: ArrayLike) -> np.ndarray:
     NaN where the stable side has none.
     """
     omega, zeta, n = _columns(contact, n)
-    release = contact.release
-
-    def flip(excess, omega, zeta, n):
-        point = branch_point(excess, Contact(omega, zeta, release), n)
-        return period_doubling_function(point.trace, point.determinant)
-
     fold = saddle_node(contact, n)
     low, high = _range(contact, n)
     end = np.where(np.isnan(fold), high, fold)
     # The part of the scan on the stable side; its points beyond collapse there.
     grid = np.minimum(_scan(low, high, 1 / omega), end)
-    index, found = _bracket(flip(grid, omega, zeta, n), last=True)
-    return _close(flip, _at(grid, index), _at(grid, index + 1), found, (omega, zeta, n))
+    flip = _floquet_function(contact.release, period_doubling_function)
+    return _zero(flip, grid, (omega, zeta, n), last=True)
 
 
 def orbit_at(

@@ -105,27 +105,16 @@ def _floquet_function(release, test):
 def _zero(test, grid, args, *, last=False):
     """First, or last, zero of a test function along a grid; NaN where there is none.
 
-    A test function changes sign at a pole as well, where the ball grazes the
-    table at impact or release. Closed upon, its value is then larger than at
-    both ends of the bracket, and at a zero smaller: no tolerance decides. A
-    pole is passed over for the next change of sign.
+    A test function would change sign at a pole as well. Closed upon, its value
+    is then larger than at both ends of the bracket, and at a zero smaller: no
+    tolerance decides that it is one.
     """
     values = test(grid, *args)
-    signs = np.where(np.isnan(values), np.nan, values >= 0)
-    changes = np.abs(np.diff(signs, axis=0)) == 1
+    index, found = _bracket(values, last=last)
+    root = _close(test, _at(grid, index), _at(grid, index + 1), found, args)
     size = np.abs(values)
-    result = np.full(values.shape[1:], np.nan)
-    pending = np.any(changes, axis=0)
-    while np.any(pending):
-        index = np.argmax(changes[::-1] if last else changes, axis=0)
-        index = len(changes) - 1 - index if last else index
-        ends = _at(grid, index), _at(grid, index + 1)
-        root = _close(test, *ends, pending, args)
-        found = np.abs(test(root, *args)) <= np.minimum(_at(size, index), _at(size, index + 1))
-        result = np.where(pending & found, root, result)
-        np.put_along_axis(changes, index[np.newaxis], False, axis=0)
-        pending = pending & ~found & np.any(changes, axis=0)
-    return result
+    smallest = np.minimum(_at(size, index), _at(size, index + 1))
+    return np.where(np.abs(test(root, *args)) <= smallest, root, np.nan)
 
 
 def saddle_node(contact: Contact, n: ArrayLike) -> np.ndarray:

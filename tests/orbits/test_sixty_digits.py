@@ -13,6 +13,7 @@ import pytest
 from mpmath import mp, mpf
 
 from bouncing_ball.impacts.spring_damper import Contact, Release
+from bouncing_ball.orbits import limits
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.contact_model import ContactModel
 
@@ -131,3 +132,47 @@ def test_the_branch_in_sixty_digits():
     # A 3 × 3 solve whose condition costs up to two digits, on the median none.
     assert max(errors) < 1e-13
     assert np.median(errors) < 4 * EPS
+
+
+def check_bifurcation(contact: Contact, n: int, kind: str) -> bool:
+    """Whether a reported bifurcation is one in 60 digits; False if none is reported."""
+    sign = 1 if kind == "saddle_node" else -1
+    excess = float(getattr(limits, kind)(contact, n))
+    if np.isnan(excess):
+        return False
+    exact = Exact(contact, n)
+
+    def test(x):
+        return 1 - sign * exact.trace(x) + exact.determinant(x)
+
+    _, u, x, y = exact.orbit(excess)
+    # A grazing orbit would have u = 0, a pole an infinite Λ.
+    assert abs(u) > 1e-6 and mp.hypot(x, y) < 1e8
+    # Closed in double precision, where the trace has lost three digits at most.
+    assert abs(test(excess)) < 1e3 * EPS
+    width = mpf(1e-6) * min(abs(excess), 1 / exact.omega)
+    assert test(excess - width) * test(excess + width) < 0
+    return True
+
+
+NAMED = [(0.794141, 0.170932, 19), (0.775496, 0.244529, 13), (0.32412, 0.255791, 193)]
+
+
+@pytest.mark.parametrize("kind", ["saddle_node", "period_doubling"])
+@pytest.mark.parametrize(("restitution", "omega", "n"), NAMED)
+def test_what_once_was_a_pole_or_a_grazing_orbit(restitution, omega, n, kind):
+    # Reported at Λ = 6e17, at 1108 and at 7375: poles and one grazing orbit. The
+    # zeros of the test functions have balls that rise at impact, and say so.
+    contact = Contact.from_restitution(restitution, omega)
+    with mpmath.workdps(60):
+        assert check_bifurcation(contact, n, kind)
+    orbit = getattr(ContactModel(contact), kind)(n)
+    assert orbit.relative_impact_velocity > 0
+    assert not orbit.is_admissible()
+
+
+@pytest.mark.parametrize("kind", ["saddle_node", "period_doubling"])
+def test_bifurcations_in_sixty_digits(kind):
+    with mpmath.workdps(60):
+        found = [check_bifurcation(c, n, kind) for c, n, _ in contacts(2, 40, -1, 5)]
+    assert sum(found) > 30

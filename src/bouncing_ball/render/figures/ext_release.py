@@ -2,6 +2,7 @@
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bouncing_ball.render.figures.style import (
@@ -16,31 +17,26 @@ from bouncing_ball.render.figures.style import (
 
 _LOOKS = {"saddle-node": "-", "period doubling": (0, (4, 1.5))}
 _MARKS = ("o", "x", "s")
+_NAMES = {"saddle_node": "saddle-node", "bounce_velocity": "bouncing-off velocity"}
 
 
-def draw(data: xr.Dataset) -> Figure:
-    """Shift of the bifurcations (left) and thresholds of each quantity (right)."""
-    figure, (left, right) = canvas(WIDE, 3.2, columns=2, width_ratios=(1.0, 1.25))
+def _draw_shifts(axes: Axes, data: xr.Dataset) -> None:
+    """Shift of the bifurcations with ϖ, one curve for each family and bifurcation."""
     for n, colour in zip(data.n.values, COLOURS, strict=False):
         for bound, look in _LOOKS.items():
             amplitude = data.bifurcation_amplitude.sel(n=n, bound=bound)
             shift = amplitude.sel(release="force") - amplitude.sel(release="displacement")
-            left.plot(
-                data.frequency_ratio,
-                shift,
-                color=colour,
-                linestyle=look,
-                label=f"$n={n}$, {bound}",
-            )
-    left.axhline(0.0, **GUIDE)
-    logarithmic(left)
-    left.set(
+            label = f"$n={n}$, {bound}"
+            axes.plot(data.frequency_ratio, shift, color=colour, linestyle=look, label=label)
+    axes.axhline(0.0, **GUIDE)
+    logarithmic(axes)
+    axes.set(
         xlabel=r"frequency ratio $\varpi$",
         ylabel=r"shift of $\Lambda$, force minus displacement",
         xlim=(float(data.frequency_ratio[0]), float(data.frequency_ratio[-1])),
     )
-    left.set_title(rf"$r={number(data.attrs['restitution'])}$", fontsize=9)
-    left.legend(
+    axes.set_title(rf"$r={number(data.attrs['restitution'])}$", fontsize=9)
+    axes.legend(
         fontsize=6,
         loc="lower right",
         bbox_to_anchor=(1.0, 0.1),
@@ -50,44 +46,41 @@ def draw(data: xr.Dataset) -> Figure:
         handletextpad=0.4,
     )
 
+
+def _draw_thresholds(axes: Axes, data: xr.Dataset) -> None:
+    """Threshold of each quantity, one mark for each reading; an arrow where there is none."""
     rows = np.arange(data.sizes["quantity"])[::-1]
     limit = data.attrs["thresholds.frequency_ratio.max"]
     for reading, mark, colour in zip(data.reading.values, _MARKS, COLOURS, strict=False):
         found = data.error_threshold.sel(reading=reading).values
         status = data.threshold_status.sel(reading=reading).values
-        right.plot(
-            found,
-            rows,
-            mark,
-            color=colour,
-            label=str(reading),
-            markersize=5,
-            markerfacecolor="none" if mark == "s" else colour,
-        )
+        face = "none" if mark == "s" else colour
+        look = {"color": colour, "label": str(reading), "markersize": 5, "markerfacecolor": face}
+        axes.plot(found, rows, mark, **look)
         never = np.array([text.startswith("outside") for text in status])
-        right.plot(
-            np.full(never.sum(), limit / 1.25),
-            rows[never],
-            ">",
-            color=colour,
-            markersize=6,
-        )
-    logarithmic(right)
-    right.set(
+        at_the_end = np.full(never.sum(), limit / 1.25)
+        axes.plot(at_the_end, rows[never], ">", color=colour, markersize=6)
+    logarithmic(axes)
+    axes.set(
         xlabel=rf"$\varpi$ for an error of {100 * data.attrs['thresholds.tolerance']:g} %",
         xlim=(1, limit),
         yticks=rows,
         ylim=(-0.7, len(rows) - 0.3),
     )
-    names = {"saddle_node": "saddle-node", "bounce_velocity": "bouncing-off velocity"}
-    right.set_yticklabels(
-        [names.get(str(name), str(name).replace("_", " ")) for name in data.quantity.values]
-    )
-    right.set_title(
+    names = (str(name) for name in data.quantity.values)
+    axes.set_yticklabels([_NAMES.get(name, name.replace("_", " ")) for name in names])
+    axes.set_title(
         rf"$n={data.attrs['thresholds.n']}$, $r={number(data.attrs['thresholds.restitution'])}$, "
         rf"$\Lambda={number(data.attrs['thresholds.amplitude'])}$",
         fontsize=9,
     )
+
+
+def draw(data: xr.Dataset) -> Figure:
+    """Shift of the bifurcations (left) and thresholds of each quantity (right)."""
+    figure, (left, right) = canvas(WIDE, 3.2, columns=2, width_ratios=(1.0, 1.25))
+    _draw_shifts(left, data)
+    _draw_thresholds(right, data)
     # What the arrows mean, in the colour of none of the readings.
     right.plot([], [], ">", color=TABLE, markersize=6, label="never within the range")
     figure.legend(*right.get_legend_handles_labels(), loc="outside lower center", ncols=4)

@@ -1,100 +1,101 @@
 """Figure 7: look of the 1-T orbit of the spring-damper model."""
 
+from typing import NamedTuple
+
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bouncing_ball.render.figures.style import CONTACT, GUIDE, TABLE, canvas, number
+
+_ARROW = {
+    "arrowstyle": "-|>",
+    "color": "black",
+    "linewidth": 0.9,
+    "shrinkA": 0,
+    "shrinkB": 0,
+    "mutation_scale": 9,
+}
+
+
+class Instant(NamedTuple):
+    """An instant of the cycle, with the ball's height and velocity, and the paper's names."""
+
+    time: float
+    height: float
+    velocity: float
+    name: str
+    velocity_name: str
+
+
+def _instants(data: xr.Dataset) -> list[Instant]:
+    """Impact, release, and the next impact."""
+    ball = data.ball.values
+    released = float(ball[data.contact.values.astype(bool)][-1])
+    duration, end = float(data.contact_duration), float(data.time[-1])
+    before, after = float(data.impact_velocity), float(data.bounce_velocity)
+    return [
+        Instant(0.0, float(ball[0]), before, r"$\tau_i=0$", r"$z_i^{\prime}$"),
+        Instant(duration, released, after, r"$\tau_b$", r"$z_b^{\prime}$"),
+        Instant(end, float(ball[-1]), before, r"$\tau_2=\tau_i+2\pi n$", r"$z_2^{\prime}$"),
+    ]
+
+
+def _label(axes: Axes, text: str, point, offset, ha: str, va: str = "baseline", **look) -> None:
+    """A text at an offset in points from a point of the data."""
+    axes.annotate(text, point, xytext=offset, textcoords="offset points", ha=ha, va=va, **look)
+
+
+def _draw_velocity(axes: Axes, instant: Instant, reach: float) -> None:
+    """An arrow along the ball's velocity: a tangent of fixed length in τ."""
+    here = (instant.time, instant.height)
+    rise = reach * instant.velocity
+    # Into the impact, or out of the release.
+    arrives = instant.velocity < 0
+    tail = (instant.time - reach, instant.height - rise) if arrives else here
+    head = here if arrives else (instant.time + reach, instant.height + rise)
+    axes.annotate("", xy=head, xytext=tail, arrowprops=_ARROW)
+    if arrives:
+        _label(axes, instant.velocity_name, tail, (4, 1), "left", "center")
+    else:
+        _label(axes, instant.velocity_name, head, (-4, 1), "right", "center")
+
+
+def _draw_instant(axes: Axes, instant: Instant, low: float, reach: float) -> None:
+    """A guide down to its name, a dot at the ball, and the ball's velocity."""
+    axes.plot([instant.time, instant.time], [low, instant.height], **GUIDE)
+    axes.plot(instant.time, instant.height, "o", color="black", markersize=3.5, zorder=5)
+    _draw_velocity(axes, instant, reach)
+    _label(axes, instant.name, (instant.time, low), (0, -2), "center", "top")
+
+
+def _name_curves(axes: Axes, data: xr.Dataset) -> None:
+    """Names of ball, table, contact and flight beside them."""
+    time, ball, table = data.time.values, data.ball.values, data.table.values
+    touching = data.contact.values.astype(bool)
+    top, dip = int(np.argmax(ball)), int(np.argmin(table))
+    _label(axes, "ball $z$", (time[top], ball[top]), (0, 5), "center", color=CONTACT)
+    below = (time[dip], table[dip])
+    _label(axes, "table $w$", below, (0, 4), "center", "bottom", color="#5f5f5f")
+    middle = (float(data.contact_duration) / 2, float(ball[touching].min()))
+    _label(axes, "contact", middle, (0, -9), "center", "top", fontsize=8)
+    axes.annotate("flight", (time[top], 0.62 * ball[top]), ha="center", fontsize=8)
 
 
 def draw(data: xr.Dataset) -> Figure:
     """One cycle with the instants and velocities of the paper's equations marked."""
     figure, axes = canvas(5.0, 3.0)
     time, ball = data.time.values, data.ball.values
-    duration = float(data.contact_duration)
     end = float(time[-1])
     touching = data.contact.values.astype(bool)
     axes.plot(time, data.table, color=TABLE)
     axes.plot(time[~touching], ball[~touching], color=CONTACT)
     axes.plot(time[touching], ball[touching], color=CONTACT, linewidth=2.6)
-    marks = {
-        0.0: (float(ball[0]), float(data.impact_velocity), r"$\tau_i=0$", r"$z_i^{\prime}$"),
-        duration: (
-            float(ball[touching][-1]),
-            float(data.bounce_velocity),
-            r"$\tau_b$",
-            r"$z_b^{\prime}$",
-        ),
-        end: (
-            float(ball[-1]),
-            float(data.impact_velocity),
-            r"$\tau_2=\tau_i+2\pi n$",
-            r"$z_2^{\prime}$",
-        ),
-    }
-    span = float(ball.max() - data.table.min())
-    low = float(data.table.min()) - 0.16 * span
-    for instant, (height, velocity, name, symbol) in marks.items():
-        axes.plot([instant, instant], [low, height], **GUIDE)
-        axes.plot(instant, height, "o", color="black", markersize=3.5, zorder=5)
-        # An arrow along the ball's velocity: a tangent of fixed length in τ.
-        reach = 0.12 * end
-        before = velocity < 0
-        tail = (instant - reach, height - reach * velocity) if before else (instant, height)
-        head = (instant, height) if before else (instant + reach, height + reach * velocity)
-        axes.annotate(
-            "",
-            xy=head,
-            xytext=tail,
-            arrowprops={
-                "arrowstyle": "-|>",
-                "color": "black",
-                "linewidth": 0.9,
-                "shrinkA": 0,
-                "shrinkB": 0,
-                "mutation_scale": 9,
-            },
-        )
-        axes.annotate(
-            symbol,
-            tail if before else head,
-            xytext=(4 if before else -4, 1),
-            textcoords="offset points",
-            ha="left" if before else "right",
-            va="center",
-        )
-        axes.annotate(
-            name, (instant, low), xytext=(0, -2), textcoords="offset points", ha="center", va="top"
-        )
-    top = int(np.argmax(ball))
-    axes.annotate(
-        "ball $z$",
-        (time[top], ball[top]),
-        xytext=(0, 5),
-        textcoords="offset points",
-        ha="center",
-        color=CONTACT,
-    )
-    dip = int(np.argmin(data.table.values))
-    axes.annotate(
-        "table $w$",
-        (time[dip], float(data.table[dip])),
-        xytext=(0, 4),
-        textcoords="offset points",
-        ha="center",
-        va="bottom",
-        color="#5f5f5f",
-    )
-    axes.annotate(
-        "contact",
-        (duration / 2, float(ball[touching].min())),
-        xytext=(0, -9),
-        textcoords="offset points",
-        ha="center",
-        va="top",
-        fontsize=8,
-    )
-    axes.annotate("flight", (time[top], 0.62 * ball[top]), ha="center", fontsize=8)
+    low = float(data.table.min()) - 0.16 * float(ball.max() - data.table.min())
+    for instant in _instants(data):
+        _draw_instant(axes, instant, low, reach=0.12 * end)
+    _name_curves(axes, data)
     axes.set(
         ylabel="$z$, $w$",
         xticks=[],

@@ -9,7 +9,12 @@ for name in FIGURES:
             f"Drawing {name}"
         input:
             data=datasets([name] if STAGES[name].study else []),
-            source=modules(f"render.figures.{name}", "render.figures.style", "datasets.netcdf"),
+            source=modules(
+                f"render.figures.{name}",
+                "render.figures.style",
+                "render.given",
+                "datasets.netcdf",
+            ),
         output:
             png=report(
                 f"results/figures/{name}.png",

@@ -12,6 +12,7 @@ for name in TABLES:
             source=modules(
                 f"render.tables.{name}",
                 "render.tables.formats",
+                "render.given",
                 "datasets.netcdf",
                 "datasets.files",
             ),

@@ -4,12 +4,14 @@ from importlib import import_module
 
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.pipeline.job import logged, read_input, withdraw
+from bouncing_ball.render.given import from_dataset
 from bouncing_ball.render.tables.formats import to_csv, to_latex, to_markdown
 
 with logged(snakemake) as lines:
     withdraw()
     rows = import_module(f"bouncing_ball.render.tables.{snakemake.params.table}").rows
-    header, body = rows(read_input(snakemake.input.data))
+    path = snakemake.input.data
+    header, body = from_dataset(rows, read_input(path), path)
     write_text(snakemake.output.csv, to_csv(header, body))
     write_text(snakemake.output.md, to_markdown(header, body))
     write_text(snakemake.output.tex, to_latex(header, body))

@@ -68,7 +68,7 @@ def draw(data: xr.Dataset) -> Figure:
     below.legend(loc="best")
     above.set_title(
         rf"$n={data.attrs['n']}$, $r={number(data.attrs['restitution'])}$, "
-        + ", ".join(rf"$\Lambda={number(x)}$" for x in data.amplitude.values),
+        + ", ".join(rf"$\Lambda={number(x)}$" for x in data["amplitude"].values),
         fontsize=9,
     )
     return figure

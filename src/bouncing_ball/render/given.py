@@ -1,0 +1,74 @@
+"""Whether a dataset holds what is to be drawn or set from it."""
+
+from collections.abc import Callable
+from typing import TypeVar
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.errors import ModelError
+
+T = TypeVar("T")
+
+# What is there for some parameters only: bifurcations and grazings may lie outside
+# the window, errors may never cross the tolerance, other parameters are not printed.
+_MAY_BE_EMPTY = {
+    "difference",
+    "error_threshold",
+    "grazing_amplitude",
+    "grazing_phase",
+    "period_doubling_turn",
+    "printed",
+    "special_amplitude",
+    "special_contact_duration",
+    "special_phase",
+    "special_residual",
+    "step_needed",
+    # Of claims: a statement has no printed number, a formula no deviation.
+    "deviation",
+    "deviation_units",
+    "found",
+    "limit",
+}
+
+
+def empty_variables(data: xr.Dataset) -> list[str]:
+    """Variables without a single finite number that should have one.
+
+    Examples
+    --------
+    >>> empty_variables(xr.Dataset({"phase": ("point", [np.nan, np.nan]), "n": 1.0}))
+    ['phase']
+    """
+    return [
+        str(name)
+        for name, values in data.variables.items()
+        if values.dtype.kind in "fc" and name not in _MAY_BE_EMPTY
+        if not np.isfinite(values.values).any()
+    ]
+
+
+def from_dataset(render: Callable[[xr.Dataset], T], data: xr.Dataset, path: str) -> T:
+    """What ``render`` makes of a dataset, if the dataset holds what it takes.
+
+    Raises
+    ------
+    ModelError
+        In one line: what is missing in the file, and the command that makes it
+        again.
+    """
+    again = f"make it again, snakemake --cores 2 --force {path}"
+    # Every dimension of a dataset that is written has a coordinate.
+    bare = [str(name) for name in data.dims if name not in data.coords]
+    if bare:
+        raise ModelError(f"{path}: no coordinate {', '.join(bare)}: {again}")
+    empty = empty_variables(data)
+    if empty:
+        raise ModelError(f"{path}: no finite number in {', '.join(empty)}: {again}")
+    try:
+        return render(data)
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
+        # The datasets of a run have all that is drawn, so that it is the file's fault.
+        words = " ".join(str(error).split())
+        reason = f"no {words}" if isinstance(error, KeyError) else words
+        raise ModelError(f"{path}: {reason}: {again}") from error

@@ -10,6 +10,7 @@ from bouncing_ball.render.figures.style import (
     GUIDE,
     TABLE,
     WIDE,
+    Look,
     canvas,
     logarithmic,
     number,
@@ -55,7 +56,12 @@ def _draw_thresholds(axes: Axes, data: xr.Dataset) -> None:
         found = data.error_threshold.sel(reading=reading).values
         status = data.threshold_status.sel(reading=reading).values
         face = "none" if mark == "s" else colour
-        look = {"color": colour, "label": str(reading), "markersize": 5, "markerfacecolor": face}
+        look: Look = {
+            "color": colour,
+            "label": str(reading),
+            "markersize": 5,
+            "markerfacecolor": face,
+        }
         axes.plot(found, rows, mark, **look)
         never = np.array([text.startswith("outside") for text in status])
         at_the_end = np.full(never.sum(), limit / 1.25)

@@ -1,9 +1,16 @@
-"""The witness agrees with itself, and sees what is wrong."""
+"""The cross-check agrees with itself, and sees what is wrong."""
 
 import numpy as np
 import pytest
 
-from bouncing_ball.audit.cross_check import BUDGETS, FORMULA, HOLDS, LEAVES, WitnessError, witness
+from bouncing_ball.audit.cross_check import (
+    BUDGETS,
+    FORMULA,
+    HOLDS,
+    LEAVES,
+    CrossCheckError,
+    cross_check,
+)
 from bouncing_ball.studies.frequency_sweeps import frequency_sweep
 from bouncing_ball.studies.orbit_branches import both_domains, orbit_branches, stability_ranges
 from bouncing_ball.studies.restitution_families import restitution_history, restitution_orbits
@@ -28,7 +35,7 @@ def branches(request, continuation_settings):
 
 
 def test_branches_agree(branches, continuation_settings):
-    result = witness({"fig08": branches}, continuation_settings)
+    result = cross_check({"fig08": branches}, continuation_settings)
     assert np.all(result.disagreement <= result.budget)
     # Every kind of comparison is made on some orbits.
     assert np.all(result.orbits > 0)
@@ -40,15 +47,16 @@ def test_branches_agree(branches, continuation_settings):
     ("variable", "shift"),
     [
         ("phase", 1e-10),
-        ("amplitude", 1e-10),
+        # Nearly along the branch, which takes nine tenths of it.
+        ("amplitude", 1e-9),
         ("impact_velocity", 1e-10),
         ("special_amplitude", 1e-10),
     ],
 )
 def test_a_wrong_point_is_named(branches, continuation_settings, variable, shift):
     branches[variable][0, 1] += shift
-    with pytest.raises(WitnessError) as error:
-        witness({"fig08": branches}, continuation_settings)
+    with pytest.raises(CrossCheckError) as error:
+        cross_check({"fig08": branches}, continuation_settings)
     assert "fig08: continuation and formula disagree by" in str(error.value)
     assert "ϖ = 10" in str(error.value) and "\n" not in str(error.value)
 
@@ -62,11 +70,11 @@ def test_sweeps_agree(continuation_settings, release):
         "frequency_ratio": {"min": 1.0, "max": 1e3, "samples": 15},
     }
     data = with_attributes(frequency_sweep(parameters, release), parameters, release)
-    result = witness({"fig10": data}, continuation_settings)
+    result = cross_check({"fig10": data}, continuation_settings)
     assert float(result.disagreement.sel(comparison=FORMULA).squeeze()) < 1e-12
     data["impact_velocity"][0, 3] += 1e-9
-    with pytest.raises(WitnessError, match="Λ = 1, ϖ ="):
-        witness({"fig10": data}, continuation_settings)
+    with pytest.raises(CrossCheckError, match="Λ = 1, ϖ ="):
+        cross_check({"fig10": data}, continuation_settings)
 
 
 def test_restitution_model_agrees(continuation_settings):
@@ -76,12 +84,12 @@ def test_restitution_model_agrees(continuation_settings):
         "fig02": with_attributes(restitution_history(history), history),
         "fig03": with_attributes(restitution_orbits(domains), domains),
     }
-    result = witness(datasets, continuation_settings)
+    result = cross_check(datasets, continuation_settings)
     assert np.nanmax(result.disagreement.sel(comparison=HOLDS)) < 1e-12
     assert int(result.orbits.sel(artifact="fig03", comparison=LEAVES)) > 10
     datasets["fig03"]["phase"][1, 2] += 1e-9
-    with pytest.raises(WitnessError, match=r"4-T orbit .* restitution model"):
-        witness(datasets, continuation_settings)
+    with pytest.raises(CrossCheckError, match=r"4-T orbit .* restitution model"):
+        cross_check(datasets, continuation_settings)
 
 
 def test_both_models_in_one_dataset_and_the_table(continuation_settings):
@@ -114,7 +122,7 @@ def test_both_models_in_one_dataset_and_the_table(continuation_settings):
             "displacement",
         ),
     }
-    result = witness(datasets, continuation_settings)
+    result = cross_check(datasets, continuation_settings)
     # 21 points and 2 bifurcations of each model; 4 bifurcations of the table.
     assert result.orbits.sel(comparison=FORMULA).values.tolist() == [46, 4]
     assert set(BUDGETS) == set(result.comparison.values)

@@ -52,7 +52,7 @@ def test_an_orbit_beside_the_branch():
         contact,
         np.hypot(x, y),
         np.arctan2(y, x),
-        point.contact_duration + 1e-6,
+        point.contact_duration,
         point.u + point.x,
     )
     assert float(nearest_excess(orbit)) == pytest.approx(0.02, abs=1e-9)

@@ -15,6 +15,7 @@ from bouncing_ball.orbits.monodromy import monodromy
 from bouncing_ball.studies.orbit_branches import (
     PERIOD_DOUBLING,
     SADDLE_NODE,
+    _on_the_way,
     both_domains,
     branch_along_amplitude,
     controls,
@@ -216,11 +217,28 @@ def test_both_ends_in_contact_with_each_other(continuation_settings):
 
 
 @pytest.mark.slow
-def test_blocked_ways_are_reported(continuation_settings, one_line):
-    # At ϖ = 0.6 and this Λ the ball stays on the table.
+def test_a_branch_that_no_way_leads_to_starts_at_the_closed_form(continuation_settings, one_line):
+    # At ϖ = 0.6 all ways from the restitution orbit are blocked.
     with pytest.raises(ContinuationError) as error:
-        branch_along_amplitude(1, 0.85, 0.6, 1.5, "displacement", continuation_settings)
+        _on_the_way(1, Contact.from_restitution(0.85, 0.6), 0.6465, continuation_settings)
     one_line(error, "1-T orbit at Λ = 0.6465", "ϖ = 10000", "before 0.6", "lost: the")
+    with pytest.raises(NoOrbitError) as missing:
+        branch_along_amplitude(1, 0.85, 0.6, 1.5, "displacement", continuation_settings)
+    one_line(missing, "no 1-T orbit", "ϖ = 0.6", "up to Λ = 1.5")
+
+
+def test_a_branch_that_does_not_exist_is_missing_and_says_why(continuation_settings):
+    parameters = {
+        "n": 1,
+        "restitution": 0.85,
+        "frequency_ratio": [10.0, 0.6],
+        "amplitude_max": 1.5,
+        "points": 11,
+    }
+    data = orbit_branches(parameters, "displacement", continuation_settings)
+    assert np.isfinite(data.amplitude[0]).all() and np.isnan(data.amplitude[1]).all()
+    assert not data.stable[1].any() and not data.admissible[1].any()
+    assert all("no 1-T orbit" in str(reason) for reason in data.end_reason[1].values)
 
 
 @pytest.mark.slow
@@ -241,7 +259,7 @@ def test_strong_damping(continuation_settings, release):
     assert found == pytest.approx(bifurcations(3, 0.3, 1e4, release), abs=1e-11)
 
 
-def test_a_window_without_a_period_doubling(continuation_settings, one_line):
+def test_a_window_without_a_period_doubling(continuation_settings):
     parameters = {
         "n": [1],
         "restitution": 0.85,
@@ -256,9 +274,10 @@ def test_a_window_without_a_period_doubling(continuation_settings, one_line):
         "bound": [SADDLE_NODE, PERIOD_DOUBLING],
         "values": [[[0.238, 1.035]]],
     }
-    with pytest.raises(NoOrbitError) as error:
-        stability_ranges(parameters, "displacement", continuation_settings, printed)
-    one_line(error, "no period doubling", "left the window at amplitude 0.9")
+    data = stability_ranges(parameters, "displacement", continuation_settings, printed)
+    assert np.isnan(data.computed).all()
+    why = str(data.absence[0, 0].item())
+    assert "no period doubling" in why and "left the window at amplitude 0.9" in why
 
 
 def test_a_branch_without_a_saddle_node(continuation_settings, one_line):

@@ -40,8 +40,8 @@ FIG08, FIG05 = ("figures", "fig08"), ("figures", "fig05")
 @pytest.mark.parametrize(
     ("keys", "value", "message"),
     [
-        ((*FIG08, "restitution"), 1.2, "figures.fig08.restitution = 1.2 must be less than 1"),
-        ((*FIG08, "restitution"), 0, "figures.fig08.restitution = 0 must be greater than 0"),
+        ((*FIG08, "restitution"), 1.2, "figures.fig08.restitution = 1.2 must be at most 0.999"),
+        ((*FIG08, "restitution"), 0, "figures.fig08.restitution = 0 must be at least 0.01"),
         ((*FIG08, "n"), 0, "figures.fig08.n = 0 must be at least 1"),
         ((*FIG08, "n"), 1.5, "figures.fig08.n = 1.5 must be a whole number"),
         ((*FIG08, "n"), 1.0, "figures.fig08.n = 1.0 must be a whole number"),
@@ -49,8 +49,12 @@ FIG08, FIG05 = ("figures", "fig08"), ("figures", "fig05")
         ((*FIG08, "n"), REMOVED, "missing key figures.fig08.n"),
         ((*FIG08, "m"), 1, "unknown key figures.fig08.m = 1; allowed here: n, restitution"),
         ((*FIG08, "frequency_ratio"), [], "figures.fig08.frequency_ratio = [] must have at least"),
-        ((*FIG08, "frequency_ratio", 1), -10, "fig08.frequency_ratio[1] = -10 must be greater"),
-        ((*FIG08, "frequency_ratio", 1), 0, "fig08.frequency_ratio[1] = 0 must be greater"),
+        (
+            (*FIG08, "frequency_ratio", 1),
+            -10,
+            "fig08.frequency_ratio[1] = -10 must be at least 0.01",
+        ),
+        ((*FIG08, "frequency_ratio", 1), 0, "fig08.frequency_ratio[1] = 0 must be at least 0.01"),
         ((*FIG08, "frequency_ratio"), [2, 2], "fig08.frequency_ratio = [2, 2] must not repeat"),
         ((*FIG08, "frequency_ratio", 0), "1e4", "'1e4' must be a number (powers of ten are"),
         ((*FIG05, "cases", 0, "restitution"), 1.2, "restitution = 1.2 must be at most 1"),
@@ -68,11 +72,11 @@ FIG08, FIG05 = ("figures", "fig08"), ("figures", "fig05")
         (("figures", "fig12", "amplitude"), 0.5, "= 0.5 must be at least 0.666398, the saddle"),
         (("figures", "fig08", "amplitude_max"), 0.2, "= 0.2 must be at least 0.254724, the sad"),
         (("tables", "table1", "amplitude_max"), 1.3, "at least 1.39016, the period doubling"),
-        (("tables", "table1", "restitution"), 1.0, "restitution = 1.0 must be less than 1"),
+        (("tables", "table1", "restitution"), 1.0, "restitution = 1.0 must be at most 0.999"),
         (("tables", "table1", "printed"), [], "unknown key tables.table1.printed = []; allowed"),
         (("tables", "table1", "n"), [], "tables.table1.n = [] must have at least 1 item"),
         (("studies", "formulas", "samples"), 7, "studies.formulas.samples = 7 must be at least 8"),
-        (("studies", "evidence", "stiff_frequency_ratio"), 0, "ratio = 0 must be greater than 0"),
+        (("studies", "evidence", "stiff_frequency_ratio"), 0, "ratio = 0 must be at least 0.01"),
         (("tables", "thresholds", "quantities"), ["height"], "'height' must be one of max_height"),
         (("figures", "fig11", "restitution"), 0.04, "= 0.04 must be greater than 0.0433"),
         (("reason",), "", "reason = '' must be why the record changes, one line"),
@@ -101,7 +105,9 @@ def test_the_workflow_stops_at_once_and_touches_nothing(complete):
     # Snakemake itself says which profile it uses; the rest is ours.
     said = [line for line in done.stderr.splitlines() if not line.startswith("Using ")]
     assert len(said) == 1
-    assert said[0].startswith("configuration: figures.fig08.restitution = 1.2 must be less than 1")
+    assert said[0].startswith(
+        "configuration: figures.fig08.restitution = 1.2 must be at most 0.999"
+    )
     after = {k: (complete.path / k).stat().st_mtime_ns for k in before}
     assert after == before
 

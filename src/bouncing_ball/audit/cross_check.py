@@ -1,48 +1,36 @@
 """Three independent routes to every orbit that a figure or Table 1 shows.
 
-*Continuation* solves the paper's equations, the *formula* is the explicit
-branch, the *simulation* runs from event to event. Every published orbit and
-bifurcation is taken from its dataset and met by the two routes that it did not
-come from. A disagreement beyond its budget fails the run with the orbit named.
+*Continuation* solves the model's equations, the *formula* is the closed form of
+its branch, the *simulation* runs from event to event. Every published orbit and
+bifurcation is taken from its dataset and met by the routes that it did not come
+from, as far as its model has them. A disagreement beyond its budget fails the
+run with the orbit named.
+
+What does not exist is not compared: entries that are NaN, and in the simulation
+orbits that are inadmissible by the dataset *and* on their own path.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.continuation.branch import (
-    ContinuationError,
-    continue_both_ways,
-    continue_branch,
-    solve_at,
-)
-from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane
-from bouncing_ball.continuation.events import parameter_bound, vanishing
+from bouncing_ball.audit import published
+from bouncing_ball.audit.published import BIFURCATIONS, Shown, ShownLimits
+from bouncing_ball.continuation.branch import ContinuationError, continue_both_ways
+from bouncing_ball.continuation.corrector import Condition, NewtonSettings, newton, plane
+from bouncing_ball.continuation.events import LocationError, parameter_bound, vanishing
 from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.impacts.damping import damping_ratio
-from bouncing_ball.impacts.restitution_map import exact_map_jacobian
-from bouncing_ball.impacts.spring_damper import Contact, Release
-from bouncing_ball.motion.contacts import contact_cycle
-from bouncing_ball.motion.instants import impact_cycle
-from bouncing_ball.orbits import restitution_orbit as restitution
-from bouncing_ball.orbits.admissibility import restitution_is_admissible
-from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_orbit import ContactOrbit
-from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
-from bouncing_ball.orbits.limits import period_doubling, saddle_node
-from bouncing_ball.orbits.monodromy import monodromy, trace_and_contraction
-from bouncing_ball.orbits.projection import distance, nearest_excess
-from bouncing_ball.orbits.restitution_system import RestitutionSystem
-from bouncing_ball.orbits.stability import (
-    is_stable,
-    period_doubling_function,
-    saddle_node_function,
-)
-from bouncing_ball.studies.orbit_branches import PERIOD_DOUBLING, SADDLE_NODE, controls
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.motion.angles import reduce_angle
+from bouncing_ball.orbits.contact_system import OrbitSystem
+from bouncing_ball.orbits.interface import ImpactModel, Orbit, Route, System
+from bouncing_ball.orbits.stability import period_doubling_function, saddle_node_function
+from bouncing_ball.studies.orbit_branches import SADDLE_NODE, controls, followed_from_stiff
 
 # Periods over which the simulation must hold a stable orbit.
 HELD_PERIODS = 50
@@ -50,104 +38,95 @@ HELD_PERIODS = 50
 # rounding, so that its growth over one cycle shows six digits of the multiplier.
 _NUDGE = 1e-8
 
-
-# Kinds of comparison and their budgets. Continuation and formula are both right
-# to rounding, amplified where the branch merges with permanent contact: the
-# impact velocity is 1e-4 at the end of the branches there, and rounding of the
-# orbit's equations enters divided by it. One cycle of the simulation adds as
-# much again; fifty add up. The departure is a difference quotient over 1e-8 of
-# the impact velocity, so that rounding, 1e-15, leaves seven digits, and one or
-# two fewer in the same corner.
+# Kinds of comparison and their budgets, relative to the larger of Λ and n.
+# Continuation and formula are both right to rounding, amplified where the branch
+# merges with permanent contact: the impact velocity is 1e-4 at the end of the
+# branches there, and rounding of the orbit's equations enters divided by it. One
+# cycle of the simulation adds as much again; fifty add up. The departure is a
+# difference quotient over 1e-8 of the impact velocity, so that rounding, 1e-15,
+# leaves seven digits, and one or two fewer in the same corner.
 FORMULA, CLOSES = "continuation and formula", "simulation over one cycle"
 HOLDS = f"simulation over {HELD_PERIODS} cycles, stable orbits"
 LEAVES = "rate of departure, unstable orbits"
 BUDGETS = {FORMULA: 1e-11, CLOSES: 1e-10, HOLDS: 1e-9, LEAVES: 1e-5}
 
-
 # Steps of a continuation whose points only start Newton's method at the orbits.
 _LARGEST_STEP, _LARGEST_ANGLE = 0.8, 0.4
+# Where no continuation leads, Newton's method starts this far off, relatively:
+# far against the budget, and near enough for orbits close to a fold or grazing.
+_STARTS = (1e-3, 1e-5, 1e-7)
 # Test function below which an orbit counts as left: away from the bifurcations,
 # where the multiplier is ±1 and a departure would tell nothing.
 _UNSTABLE = -0.05
-BIFURCATIONS = (SADDLE_NODE, PERIOD_DOUBLING)
+# Samples of an orbit's path for each half period of the contact and the table.
+_SAMPLES = 64
+_TESTS = dict(zip(BIFURCATIONS, (saddle_node_function, period_doubling_function), strict=True))
 
 
-class WitnessError(ValueError):
+class CrossCheckError(ValueError):
     """Two routes to one orbit disagree beyond their budget."""
 
 
 class Comparison(NamedTuple):
-    """Disagreements of one kind, one for each orbit, and the orbits' names."""
+    """Disagreements of one kind, one for each orbit, and what the orbits are called."""
 
     kind: str
     values: np.ndarray
-    names: list[str]
+    name: Callable[[int], str]
 
 
-def _names(orbit: ContactOrbit) -> list[str]:
-    lam, omega = np.broadcast_arrays(orbit.amplitude, orbit.contact.frequency_ratio)
-    pairs = zip(np.ravel(lam), np.ravel(omega), strict=True)
-    return [f"{orbit.n}-T orbit at Λ = {x:.6g}, ϖ = {w:.6g}" for x, w in pairs]
+def _size(n, amplitude) -> np.ndarray:
+    """What differences of orbits are relative to: the larger of Λ and n."""
+    return np.maximum(amplitude, n)
 
 
-def _rule(data: xr.Dataset) -> Release:
-    return Release(data.attrs["release"])
+# Newton's method on a model's equations.
 
 
-def _flat(n: int, omega, zeta, rule, *values) -> ContactOrbit:
-    arrays = [np.ravel(x) for x in np.broadcast_arrays(omega, zeta, *values)]
-    there = np.isfinite(arrays[-1])
-    omega, zeta, *values = (x[there] for x in arrays)
-    return ContactOrbit(n, Contact(omega, zeta, rule), *values)
+def _solve(
+    system_of: Callable[[np.ndarray], System],
+    guess: np.ndarray,
+    condition_of: Callable[[System, np.ndarray], Condition],
+    settings: NewtonSettings,
+) -> np.ndarray:
+    """Solutions from many guesses, NaN where the iteration fails.
+
+    All together; if one of them fails, in halves, so that it spoils no other.
+    """
+    out = np.full_like(guess, np.nan)
+    stack = [np.arange(len(guess))]
+    while stack:
+        part = stack.pop()
+        if not part.size:
+            continue
+        system = system_of(part)
+        with np.errstate(all="ignore"):
+            found = newton(system, guess[part], condition_of(system, part), settings)
+        if found.converged:
+            out[part] = found.point
+        elif part.size > 1:
+            stack += np.array_split(part, 2)
+        elif found.residual < BUDGETS[FORMULA]:
+            # At the limit of rounding: the last step never gets short enough.
+            out[part] = found.point
+    return out
 
 
-def sweep_orbits(data: xr.Dataset) -> ContactOrbit:
-    """The orbits of a dataset along ϖ (Figs. 5, 6, 10, 13)."""
-    zeta = damping_ratio(data.restitution.values)[:, np.newaxis]
-    return _flat(
-        int(data.attrs["n"]),
-        data.frequency_ratio.values,
-        zeta,
-        _rule(data),
-        data.amplitude.values[:, np.newaxis],
-        data.phase.values,
-        data.contact_duration.values,
-        data.impact_velocity.values,
-    )
+def _equations(model: ImpactModel, n: np.ndarray, which: np.ndarray) -> System:
+    return model[which].system(n[which])
 
 
-def branch_orbits(data: xr.Dataset) -> ContactOrbit:
-    """The orbits of a dataset along Λ (Figs. 8, 9, 15)."""
-    return _flat(
-        int(data.attrs["n"]),
-        data.frequency_ratio.values[:, np.newaxis],
-        float(damping_ratio(data.attrs["restitution"])),
-        _rule(data),
-        data.amplitude.values,
-        data.phase.values,
-        data.contact_duration.values,
-        data.impact_velocity.values,
-    )
+def _plane(normal: np.ndarray, through: np.ndarray, _: System, which: np.ndarray) -> Condition:
+    return plane(normal[which], through[which])
 
 
-def single_orbits(data: xr.Dataset) -> ContactOrbit:
-    """The orbits of a dataset of time histories (Figs. 7 and 12)."""
-    return _flat(
-        int(data.attrs["n"]),
-        np.asarray(data.frequency_ratio.values, dtype=float),
-        float(damping_ratio(data.attrs["restitution"])),
-        _rule(data),
-        float(data.attrs["amplitude"]),
-        data.phase.values,
-        data.contact_duration.values,
-        data.impact_velocity.values,
-    )
+def _vanishing(kind: str, system: System, _: np.ndarray) -> Condition:
+    return vanishing(next(event.function for event in system.events() if event.name == kind))
 
 
-def continuation_against_formula(orbit: ContactOrbit) -> Comparison:
-    """Orbits from a continuation against the nearest points of the formula."""
-    point = branch_point(nearest_excess(orbit), orbit.contact, orbit.n)
-    return Comparison(FORMULA, distance(orbit, point), _names(orbit))
+def _normals(system: System, y: np.ndarray) -> np.ndarray:
+    """Unit tangents of the branches through y: normals of the planes solved in."""
+    return np.linalg.svd(system.jacobian(y))[2][..., -1, :]
 
 
 def _coarse(settings: Mapping[str, Any]) -> tuple[StepControl, NewtonSettings]:
@@ -156,295 +135,270 @@ def _coarse(settings: Mapping[str, Any]) -> tuple[StepControl, NewtonSettings]:
     return replace(control, largest=_LARGEST_STEP, max_angle=_LARGEST_ANGLE), newton_settings
 
 
-def _continued(orbit: ContactOrbit, settings: Mapping[str, Any]) -> np.ndarray:
-    """Distances of orbits along ϖ, one ζ and Λ, from a continuation in ln ϖ."""
+def _interpolated(vertices: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """The nearest points of a polygon, of segments next to the nearest vertex."""
+    nearest = np.empty(len(y), dtype=int)
+    for k, point in enumerate(y):
+        nearest[k] = np.argmin(np.sum((vertices - point) ** 2, axis=1))
+    best, least = vertices[nearest], np.full(len(y), np.inf)
+    for other in (np.maximum(nearest - 1, 0), np.minimum(nearest + 1, len(vertices) - 1)):
+        chord = vertices[other] - vertices[nearest]
+        square = np.sum(chord * chord, axis=1)
+        along = np.sum((y - vertices[nearest]) * chord, axis=1) / np.where(square > 0, square, 1)
+        point = vertices[nearest] + np.clip(along, 0, 1)[:, np.newaxis] * chord
+        off = np.sum((y - point) ** 2, axis=1)
+        closer = off < least
+        best, least = np.where(closer[:, np.newaxis], point, best), np.where(closer, off, least)
+    return best
+
+
+def _along_amplitude(shown: Shown, y: np.ndarray, settings) -> np.ndarray:
+    """Guesses on the continued branch along Λ of a single model."""
+    model, n = shown.model[0], int(shown.orbit.n)
     control, tolerance = _coarse(settings)
-    omega = np.asarray(orbit.contact.frequency_ratio)
-    zeta, lam = np.asarray(orbit.contact.damping_ratio).item(0), float(orbit.amplitude[0])
-    rule = orbit.contact.release
-    system = OrbitSystem(orbit.n, zeta, Parameter.LOG_FREQUENCY_RATIO, lam, rule)
-    stiff = max(settings["stiff_frequency_ratio"], float(omega.max()))
-    start = solve_at(system, system.guess(lam, stiff), tolerance)
-    # A hair beyond the softest contact, so that it lies inside the branch.
-    target = parameter_bound(np.log(omega.min()) - 1e-3, False, "target reached")
-    branch = continue_branch(
+    node, doubling = (float(x.amplitude) for x in (model.saddle_node(n), model.period_doubling(n)))
+    if not 0 < node < doubling:
+        return np.full_like(y, np.nan)
+    system = model.system(n)
+    top = max(float(np.max(shown.orbit.amplitude)), doubling) + control.largest
+    branch = continue_both_ways(
         system,
-        start,
-        increasing=False,
-        events=(*(event for event in system.events() if event.terminal), target),
+        system.point(model.orbit(n, (node + doubling) / 2)),
+        events=(
+            *(event for event in system.events() if event.terminal),
+            parameter_bound(top, True, "left the window"),
+        ),
         control=control,
         settings=tolerance,
     )
-    if branch.end_reason != target.reason:
-        raise ContinuationError(
-            f"continuation at Λ = {lam:g} ends before ϖ = {omega.min():g}: {branch.end_reason}"
-        )
-    y = _at_parameter(system, branch.points, np.log(omega), tolerance)
-    found = system.orbit(y)
-    turn = np.angle(np.exp(1j * (orbit.phase - found.phase)))
-    differences = (
-        turn,
-        (orbit.contact_duration - found.contact_duration) * omega,
-        orbit.impact_velocity - found.impact_velocity,
+    return _interpolated(branch.points, y)
+
+
+def _along_frequency_ratio(shown: Shown, y: np.ndarray, settings) -> np.ndarray:
+    """Guesses on the branches along ϖ at fixed ζ and Λ; NaN where they do not lead."""
+    control, tolerance = _coarse(settings)
+    orbit, guess = shown.orbit, np.full_like(y, np.nan)
+    omega, zeta, lam = np.broadcast_arrays(
+        orbit.law.frequency_ratio, orbit.law.damping_ratio, orbit.amplitude
     )
-    return np.max(np.abs(differences), axis=0)
-
-
-def _at_parameter(system, points, wanted, settings: NewtonSettings) -> np.ndarray:
-    """Solutions at given parameters between the points of a monotone branch."""
-    order = np.argsort(points[:, -1])
-    columns = [np.interp(wanted, points[order, -1], points[order, k]) for k in range(4)]
-    guess = np.stack(columns, axis=-1)
-    axis = np.zeros(4)
-    axis[-1] = 1.0
-    patient = settings._replace(max_iterations=2 * settings.max_iterations)
-    return newton(system, guess, plane(np.broadcast_to(axis, guess.shape), guess), patient).point
-
-
-def formula_against_continuation(orbit: ContactOrbit, settings: Mapping[str, Any]) -> Comparison:
-    """Orbits from the formula against a continuation along ϖ, curve by curve."""
-    zeta, lam = np.asarray(orbit.contact.damping_ratio), orbit.amplitude
-    values = np.empty(lam.shape)
     for pair in sorted(set(zip(zeta.tolist(), lam.tolist(), strict=True))):
-        at = (zeta == pair[0]) & (lam == pair[1])
-        values[at] = _continued(_chosen(orbit, at), settings)
-    return Comparison(FORMULA, values, _names(orbit))
+        at = np.flatnonzero((zeta == pair[0]) & (lam == pair[1]))
+        softest = orbit.law[at[np.argmin(omega[at])]]
+        stiff = max(settings["stiff_frequency_ratio"], float(omega[at].max()))
+        # A hair beyond the softest contact, so that it lies inside the branch.
+        softer = replace(softest, frequency_ratio=float(softest.frequency_ratio) * (1 - 1e-3))
+        try:
+            branch = followed_from_stiff(int(orbit.n), softer, pair[1], stiff, control, tolerance)
+        except (ContinuationError, LocationError, NoOrbitError):
+            continue
+        points = branch.points[::-1]
+        wanted = np.log(omega[at])
+        columns = [np.interp(wanted, points[:, -1], points[:, k], left=np.nan) for k in range(3)]
+        guess[at] = np.stack([*columns, lam[at]], axis=-1)
+    return guess
 
 
-def bifurcations_against_formula(data: xr.Dataset) -> Comparison:
-    """Located bifurcations of a dataset against those of the formula."""
-    rule, n = _rule(data), int(data.attrs["n"])
-    zeta = float(damping_ratio(data.attrs["restitution"]))
-    values, names = [], []
-    for ratio in data.frequency_ratio.values:
-        row = data.sel(frequency_ratio=ratio)
-        for kind, lam, phase, duration in zip(
-            row.special_kind.values,
-            row.special_amplitude.values,
-            row.special_phase.values,
-            row.special_contact_duration.values,
-            strict=True,
-        ):
-            if kind not in (SADDLE_NODE, PERIOD_DOUBLING):
-                continue
-            values.append(
-                _bifurcation_distance(
-                    str(kind), n, Contact(ratio, zeta, rule), lam, phase, duration
-                )
-            )
-            names.append(f"{kind} of the {n}-T orbits at Λ = {lam:.6g}, ϖ = {ratio:.6g}")
-    return Comparison(FORMULA, np.array(values), names)
+def _guesses(shown: Shown, y: np.ndarray, settings) -> Iterator[np.ndarray]:
+    """Where Newton's method starts: on a continued branch, then a little off."""
+    try:
+        if isinstance(shown.model.system(int(shown.orbit.n)), OrbitSystem):
+            yield _along_frequency_ratio(shown, y, settings)
+        else:
+            yield _along_amplitude(shown, y, settings)
+    except (ContinuationError, LocationError):
+        pass
+    for share in _STARTS:
+        yield y * (1 + share)
 
 
-def _bifurcation_distance(kind, n, contact, amplitude, phase, duration) -> float:
-    """Distance of a located bifurcation from that of the formula, in Λ and φ."""
-    scalar = np.asarray(amplitude), np.asarray(phase), np.asarray(duration)
-    excess = nearest_excess(ContactOrbit(n, contact, *scalar, np.asarray(0.0)))
-    test = saddle_node_function if kind == SADDLE_NODE else period_doubling_function
-    # Two secant steps from a start that is right to rounding.
-    width = 1e-4 / max(contact.frequency_ratio, 1.0)
-    ends = [excess - width, excess + width]
-    for _ in range(6):
-        points = [branch_point(e, contact, n) for e in ends]
-        low, high = (test(point.trace, point.determinant) for point in points)
-        if high == low:
+def formula_against_continuation(shown: Shown, settings: Mapping[str, Any]) -> Comparison:
+    """Orbits of the formula against solutions of the equations.
+
+    Each in the plane through the orbit that is normal to its branch: well
+    conditioned at a fold too, where Λ alone has half of the digits.
+    """
+    orbit, n = shown.orbit, int(shown.orbit.n)
+    _, tolerance = controls(settings)
+    patient = tolerance._replace(max_iterations=2 * tolerance.max_iterations)
+    whole = shown.model.system(n)
+    y = whole.point(orbit)
+    normal, size = _normals(whole, y), _size(n, orbit.amplitude)
+    best = np.full(orbit.shape, np.inf)
+    for guess in _guesses(shown, y, settings):
+        todo = np.flatnonzero(~(best <= BUDGETS[FORMULA]) & np.isfinite(guess).all(axis=-1))
+        if not todo.size:
+            continue
+        part = shown.chosen(todo)
+        found = _solve(
+            partial(_equations, part.model, np.full(todo.shape, n)),
+            guess[todo],
+            partial(_plane, normal[todo], y[todo]),
+            patient,
+        )
+        off = part.orbit.distance(part.model.system(n).orbit(found)) / size[todo]
+        best[todo] = np.fmin(best[todo], off)
+    return Comparison(FORMULA, best, shown.name)
+
+
+def continuation_against_formula(shown: Shown) -> Comparison:
+    """Orbits of a continuation against the nearest points of the formula."""
+    off = shown.orbit.distance(shown.model.nearest(shown.orbit))
+    return Comparison(FORMULA, off / _size(shown.orbit.n, shown.orbit.amplitude), shown.name)
+
+
+# Bifurcations.
+
+
+def _test_function(kind: str, orbit: Orbit) -> np.ndarray:
+    return _TESTS[kind](*orbit.trace_and_determinant())
+
+
+def _limit_of(model: ImpactModel, kind: str, n) -> Orbit:
+    return model.saddle_node(n) if kind == SADDLE_NODE else model.period_doubling(n)
+
+
+def _limits_off(limits: ShownLimits, orbit: Orbit) -> np.ndarray:
+    """Largest difference in Λ and, where it is known, φ."""
+    turn = np.abs(reduce_angle(limits.phase - orbit.phase))
+    off = np.fmax(np.abs(limits.amplitude - orbit.amplitude), turn)
+    return off / _size(limits.n, limits.amplitude)
+
+
+def located_against_formula(limits: ShownLimits) -> Comparison:
+    """Located bifurcations against those of the formula.
+
+    The formula gives the first one next to the saddle-node. Others of the same
+    kind are the zeros of its test function: secant steps along the closed form,
+    from both sides of the nearest orbit.
+    """
+    model, n = limits.model, limits.n
+    values = _limits_off(limits, _limit_of(model, limits.kind, n))
+    shown = model.orbit_of(n, limits.amplitude, limits.phase, limits.contact_duration, 0 * n)
+    start = model.nearest(shown)
+    system = model.system(n)
+    y = system.point(start)
+    along = _normals(system, y)
+    width = 1e-4 / np.maximum(start.clock, 1.0)
+
+    def orbit_at(place):
+        return model.nearest(system.orbit(y + place[:, np.newaxis] * along))
+
+    left, right = -width, +width
+    with np.errstate(all="ignore"):
+        low, high = (_test_function(limits.kind, orbit_at(x)) for x in (left, right))
+        for _ in range(6):
+            flat = high == low
+            step = np.where(flat, 0, high * (right - left) / np.where(flat, 1, high - low))
+            left, low, right = right, high, right - step
+            high = _test_function(limits.kind, orbit_at(right))
+        values = np.fmin(values, _limits_off(limits, orbit_at(right)))
+    return Comparison(FORMULA, values, limits.name)
+
+
+def formula_against_equations(limits: ShownLimits, settings: Mapping[str, Any]) -> Comparison:
+    """Bifurcations of the formula against the extended systems.
+
+    The model's equations with the test function, solved from a start that is a
+    little off, as a continuation locates its events.
+    """
+    _, tolerance = controls(settings)
+    patient = tolerance._replace(max_iterations=4 * tolerance.max_iterations)
+    model, n = limits.model, limits.n
+    y = model.system(n).point(_limit_of(model, limits.kind, n))
+    best = np.full(len(n), np.inf)
+    for share in _STARTS:
+        todo = np.flatnonzero(~(best <= BUDGETS[FORMULA]))
+        if not todo.size:
             break
-        ends = [ends[1], ends[1] - high * (ends[1] - ends[0]) / (high - low)]
-    point = branch_point(ends[1], contact, n)
-    turn = np.angle(np.exp(1j * (phase - point.phase)))
-    return float(max(abs(amplitude - point.amplitude), abs(turn)))
+        part = limits.chosen(todo)
+        found = _solve(
+            partial(_equations, part.model, part.n),
+            y[todo] * (1 + share),
+            partial(_vanishing, limits.kind),
+            patient,
+        )
+        off = _limits_off(part, part.model.system(part.n).orbit(found))
+        best[todo] = np.fmin(best[todo], off)
+    return Comparison(FORMULA, best, limits.name)
 
 
-def simulation_closes(orbit: ContactOrbit) -> Comparison:
+# Simulation.
+
+
+def _bump(values: np.ndarray) -> np.ndarray:
+    """Largest interior maximum of samples along the first axis, by parabolas."""
+    before, middle, after = values[:-2], values[1:-1], values[2:]
+    bend = before - 2 * middle + after
+    top = np.where(
+        bend < 0, middle - (after - before) ** 2 / (8 * np.where(bend < 0, bend, 1)), middle
+    )
+    peak = (middle >= before) & (middle >= after)
+    return np.max(np.where(peak, top, -np.inf), axis=0)
+
+
+def path_is_free(orbit: Orbit) -> np.ndarray:
+    """Whether an orbit's own path has neither an earlier release nor a landing.
+
+    From samples of its path, without the simulation: the ball closes in at the
+    impact, is held until the release, leaves, and stays above the table.
+    """
+    longest = np.max(np.abs(orbit.clock * orbit.contact_duration), initial=0.0)
+    count = int(_SAMPLES * (2 + longest / np.pi + np.max(orbit.n, initial=1) * 2))
+    share = np.linspace(0.0, 1.0, count)[:, np.newaxis]
+    held = orbit.holding(share * orbit.contact_duration)
+    time = orbit.contact_duration + share * orbit.flight_time
+    table = orbit.amplitude * np.sin(orbit.phase + time)
+    gap = orbit.flight_path(time)[0] - table
+    approach = (orbit.relative_impact_velocity < 0) & (orbit.relative_bounce_velocity > 0)
+    return approach & ~(_bump(held) > 0) & ~(_bump(-gap) > 0)
+
+
+def _differences(orbit: Orbit, cycle, *, late: bool) -> np.ndarray:
+    """Largest difference in φ, δ′ and, over one cycle, time."""
+    parts = [
+        reduce_angle(cycle.phase - orbit.phase),
+        cycle.relative_velocity - orbit.relative_impact_velocity,
+    ]
+    if late:
+        parts.append(cycle.time - 2 * np.pi * np.asarray(orbit.n))
+    values = np.max(np.abs(parts), axis=0) / _size(orbit.n, orbit.amplitude)
+    return np.where(np.isnan(values), np.inf, values)
+
+
+def simulation_closes(shown: Shown) -> Comparison:
     """The simulation returns to every orbit after one cycle."""
-    u = orbit.relative_impact_velocity
-    cycle = contact_cycle(orbit.contact, orbit.amplitude, orbit.phase, u)
-    turn = np.angle(np.exp(1j * (cycle.phase - orbit.phase)))
-    late = cycle.time - 2 * np.pi * orbit.n
-    values = np.max(np.abs([turn, late, cycle.relative_velocity - u]), axis=0)
-    return Comparison(CLOSES, values, _names(orbit))
+    orbit = shown.orbit
+    cycle = orbit.cycle(orbit.phase, orbit.relative_impact_velocity)
+    return Comparison(CLOSES, _differences(orbit, cycle, late=True), shown.name)
 
 
-def simulation_holds(orbit: ContactOrbit) -> Comparison:
+def simulation_holds(shown: Shown) -> Comparison:
     """The simulation stays on every stable orbit."""
-    phase, u = orbit.phase, orbit.relative_impact_velocity
-    start = phase, u
-    for _ in range(HELD_PERIODS):
-        cycle = contact_cycle(orbit.contact, orbit.amplitude, phase, u)
-        phase, u = cycle.phase, cycle.relative_velocity
-    turn = np.angle(np.exp(1j * (phase - start[0])))
-    values = np.max(np.abs([turn, u - start[1]]), axis=0)
-    return Comparison(HOLDS, np.where(np.isnan(values), np.inf, values), _names(orbit))
+    orbit = shown.orbit
+    cycle = orbit.cycle(orbit.phase, orbit.relative_impact_velocity)
+    for _ in range(HELD_PERIODS - 1):
+        cycle = orbit.cycle(cycle.phase, cycle.relative_velocity)
+    return Comparison(HOLDS, _differences(orbit, cycle, late=False), shown.name)
 
 
-def simulation_leaves(orbit: ContactOrbit) -> Comparison:
+def simulation_leaves(shown: Shown) -> Comparison:
     """The simulation leaves every unstable orbit at the rate of its multiplier.
 
     Started a little off along the unstable direction, on both sides; the
     growth of the difference over one cycle is compared with the multiplier.
     """
-    multiplier, direction = _leading(monodromy(orbit))
+    orbit = shown.orbit
+    multiplier, direction = _leading(orbit.monodromy())
     u = orbit.relative_impact_velocity
     # A fixed part of the impact velocity, so that soft landings are met too.
     nudge = _NUDGE * np.abs(u)[:, np.newaxis] * direction
     ends = []
     for sign in (1.0, -1.0):
-        cycle = contact_cycle(
-            orbit.contact,
-            orbit.amplitude,
-            orbit.phase + sign * nudge[:, 0],
-            u + sign * nudge[:, 1],
-        )
-        turn = np.angle(np.exp(1j * (cycle.phase - orbit.phase)))
+        cycle = orbit.cycle(orbit.phase + sign * nudge[:, 0], u + sign * nudge[:, 1])
+        turn = reduce_angle(cycle.phase - orbit.phase)
         ends.append(np.stack([turn, cycle.relative_velocity], axis=-1))
-    return Comparison(LEAVES, _departure(ends, nudge, multiplier), _names(orbit))
-
-
-def _chosen(orbit: ContactOrbit, which: np.ndarray) -> ContactOrbit:
-    contact = Contact(
-        np.asarray(orbit.contact.frequency_ratio)[which],
-        np.asarray(orbit.contact.damping_ratio)[which],
-        orbit.contact.release,
-    )
-    return ContactOrbit(
-        orbit.n,
-        contact,
-        *(
-            x[which]
-            for x in (orbit.amplitude, orbit.phase, orbit.contact_duration, orbit.impact_velocity)
-        ),
-    )
-
-
-def _simulated(orbit: ContactOrbit) -> Iterator[Comparison]:
-    omega, zeta = orbit.contact.frequency_ratio, orbit.contact.damping_ratio
-    # The simulation has no steady contact at the undamped resonance.
-    orbit = _chosen(orbit, np.hypot((omega - 1) * (omega + 1), 2 * zeta * omega) > 1e-3)
-    stable = is_stable(*trace_and_contraction(orbit))
-    yield simulation_closes(orbit)
-    yield simulation_holds(_chosen(orbit, stable))
-    trace, det = trace_and_contraction(orbit)
-    unstable = np.minimum(saddle_node_function(trace, det), period_doubling_function(trace, det))
-    yield simulation_leaves(_chosen(orbit, unstable < _UNSTABLE))
-
-
-def _table_against_formula(data: xr.Dataset) -> Comparison:
-    """Table 1's bifurcations against those of the formula."""
-    rule, zeta = _rule(data), float(damping_ratio(data.attrs["restitution"]))
-    values, names = [], []
-    for ratio in data.frequency_ratio.values:
-        for n in data.n.values:
-            for kind in data.bound.values:
-                cell = data.sel(frequency_ratio=ratio, n=n, bound=kind)
-                place = (cell.computed, cell.special_phase, cell.special_contact_duration)
-                place = tuple(float(x) for x in place)
-                contact = Contact(ratio, zeta, rule)
-                values.append(_bifurcation_distance(str(kind), int(n), contact, *place))
-                names.append(f"{kind} of the {n}-T orbits, ϖ = {ratio:g}")
-    return Comparison(FORMULA, np.array(values), names)
-
-
-class RestitutionOrbits(NamedTuple):
-    """n-T orbits of the restitution model: n, r, Λ, φ, as flat arrays or scalars."""
-
-    n: int
-    restitution: float
-    amplitude: np.ndarray
-    phase: np.ndarray
-
-
-def _restitution_names(orbits: RestitutionOrbits) -> list[str]:
-    return [f"{orbits.n}-T orbit at Λ = {x:.6g}, restitution model" for x in orbits.amplitude]
-
-
-def _restitution_families(data: xr.Dataset) -> Iterator[RestitutionOrbits]:
-    r = data.attrs["restitution"]
-    if "restitution_amplitude" in data:
-        lam, phase = data.restitution_amplitude.values, data.restitution_phase.values
-        yield RestitutionOrbits(int(data.attrs["n"]), r, lam, phase)
-    elif "n" in data.dims:
-        for n in data.n.values:
-            family = data.sel(n=n)
-            yield RestitutionOrbits(int(n), r, family.amplitude.values, family.phase.values)
-    else:
-        lam, phase = np.array([data.attrs["amplitude"]]), np.array([float(data.phase)])
-        yield RestitutionOrbits(int(data.attrs["n"]), r, lam, phase)
-
-
-def _restitution_continued(
-    orbits: RestitutionOrbits, settings: Mapping[str, Any]
-) -> Iterator[Comparison]:
-    """Continuation of the map's fixed points, and its located bifurcations."""
-    control, tolerance = _coarse(settings)
-    n, r, lam, phase = orbits
-    system = RestitutionSystem(n, r)
-    patient = tolerance._replace(max_iterations=2 * tolerance.max_iterations)
-    if r == 1:
-        # φ is ±π/2 all along: solved at each Λ, from a start that is off. The
-        # fold lies at Λ = 0, where φ has no meaning.
-        guess = np.stack([phase + 1e-3, np.full_like(lam, n * np.pi - 1e-3), lam], axis=-1)
-        axis = np.broadcast_to([0.0, 0.0, 1.0], guess.shape)
-        found = newton(system, guess, plane(axis, guess), patient)
-        differences = found.point[:, 0] - phase, found.point[:, 1] - n * np.pi
-        yield Comparison(FORMULA, np.max(np.abs(differences), axis=0), _restitution_names(orbits))
-        return
-    node, doubling = restitution.saddle_node(n, r), restitution.period_doubling(n, r)
-    start = float(node + doubling) / 2
-    y = np.array([float(restitution.phase(n, r, start)), n * np.pi, start])
-    top = max(float(lam.max()), float(doubling)) + control.largest
-    branch = continue_both_ways(
-        system,
-        y,
-        events=(*system.events(), parameter_bound(top, True, "left the window")),
-        control=control,
-        settings=tolerance,
-    )
-    # φ runs along the whole branch: the continued point at each published φ.
-    guess = np.stack(
-        [np.interp(phase, branch.points[:, 0], branch.points[:, k]) for k in range(3)], axis=-1
-    )
-    axis = np.broadcast_to([1.0, 0.0, 0.0], guess.shape)
-    found = newton(system, guess, plane(axis, guess), patient)
-    differences = found.point[:, 2] - lam, found.point[:, 1] - n * np.pi
-    yield Comparison(FORMULA, np.max(np.abs(differences), axis=0), _restitution_names(orbits))
-    names = [f"{kind} of the {n}-T orbits, restitution model" for kind in BIFURCATIONS]
-    located = [branch.named(kind)[0][2] for kind in BIFURCATIONS]
-    yield Comparison(FORMULA, np.abs(np.array(located) - [float(node), float(doubling)]), names)
-
-
-def _restitution_simulated(orbits: RestitutionOrbits) -> Iterator[Comparison]:
-    n, r, lam, phase = orbits
-    there = restitution_is_admissible(n, lam, phase)
-    orbits = orbits._replace(amplitude=lam[there], phase=phase[there])
-    lam, phase = orbits.amplitude, orbits.phase
-    names, velocity = _restitution_names(orbits), np.full_like(lam, n * np.pi)
-
-    def off(cycle):
-        turn = np.angle(np.exp(1j * (cycle.phase - phase)))
-        return np.max(np.abs([turn, cycle.velocity - n * np.pi]), axis=0)
-
-    cycle = impact_cycle(r, lam, phase, velocity)
-    late = np.abs(cycle.time - 2 * np.pi * n)
-    yield Comparison(CLOSES, np.maximum(off(cycle), late), names)
-    trace, det = restitution.trace_and_determinant(r, lam, phase)
-    stable = is_stable(trace, det)
-    for _ in range(HELD_PERIODS - 1):
-        cycle = impact_cycle(r, lam, cycle.phase, cycle.velocity)
-    kept = [name for name, keep in zip(names, stable, strict=True) if keep]
-    yield Comparison(HOLDS, off(cycle)[stable], kept)
-    test = np.minimum(saddle_node_function(trace, det), period_doubling_function(trace, det))
-    gone = test < _UNSTABLE
-    matrix = exact_map_jacobian(2 * np.pi * n, phase, velocity, lam, r)[gone]
-    multiplier, direction = _leading(matrix)
-    nudge = _NUDGE * direction
-    ends = []
-    for sign in (1.0, -1.0):
-        start = phase[gone] + sign * nudge[:, 0], velocity[gone] + sign * nudge[:, 1]
-        cycle = impact_cycle(r, lam[gone], *start)
-        turn = np.angle(np.exp(1j * (cycle.phase - phase[gone])))
-        ends.append(np.stack([turn, cycle.velocity], axis=-1))
-    left = [name for name, leaves in zip(names, gone, strict=True) if leaves]
-    yield Comparison(LEAVES, _departure(ends, nudge, multiplier), left)
+    growth = np.sum((ends[0] - ends[1]) * nudge, axis=-1) / (2 * np.sum(nudge * nudge, axis=-1))
+    return Comparison(LEAVES, np.abs(growth / multiplier - 1), shown.name)
 
 
 def _leading(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -455,101 +409,76 @@ def _leading(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return value, np.take_along_axis(vectors, which[..., np.newaxis, :], axis=-1)[..., 0].real
 
 
-def _departure(ends, nudge, multiplier) -> np.ndarray:
-    """Relative difference of the growth over one cycle from the multiplier."""
-    growth = np.sum((ends[0] - ends[1]) * nudge, axis=-1) / (2 * np.sum(nudge * nudge, axis=-1))
-    return np.abs(growth / multiplier - 1)
+def _simulated(shown: Shown) -> Iterator[Comparison]:
+    """The simulation of every orbit that is one of the ball."""
+    shown = shown.chosen(shown.orbit.can_be_simulated())
+    compared = shown.admissible.copy()
+    if not compared.all():
+        compared[~compared] = path_is_free(shown.orbit[~compared])
+    shown = shown.chosen(compared)
+    yield simulation_closes(shown)
+    yield simulation_holds(shown.chosen(shown.orbit.is_stable()))
+    tests = [_test_function(kind, shown.orbit) for kind in BIFURCATIONS]
+    yield simulation_leaves(shown.chosen(np.min(tests, axis=0) < _UNSTABLE))
 
 
-def compare_restitution(data: xr.Dataset, settings: Mapping[str, Any]) -> Iterator[Comparison]:
-    """All comparisons for the restitution model's orbits of one dataset."""
-    for family in _restitution_families(data):
-        there = family.amplitude > 0
-        orbits = family._replace(amplitude=family.amplitude[there], phase=family.phase[there])
-        yield from _restitution_continued(orbits, settings)
-        yield from _restitution_simulated(orbits)
-
-
-def _rules_against_extended_systems(
-    data: xr.Dataset, settings: Mapping[str, Any]
-) -> Iterator[Comparison]:
-    """Bifurcations along ϖ from the formula against the extended systems.
-
-    The paper's equations with the test function, solved from a start that is
-    a thousandth off, as the continuation locates its events.
-    """
-    zeta = float(data.damping_ratio)
-    _, tolerance = controls(settings)
-    patient = tolerance._replace(max_iterations=4 * tolerance.max_iterations)
-    omega = data.frequency_ratio.values
-    for rule in data.release.values:
-        contact = Contact(omega, zeta, Release(str(rule)))
-        for n in data.n.values:
-            for kind, find in ((SADDLE_NODE, saddle_node), (PERIOD_DOUBLING, period_doubling)):
-                orbit = ContactOrbit.from_branch(
-                    branch_point(find(contact, n), contact, n), contact, int(n)
-                )
-                system = OrbitSystem(int(n), zeta, Parameter.AMPLITUDE, omega, Release(str(rule)))
-                parts = (orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration)
-                y = np.stack([*parts, orbit.amplitude], axis=-1)
-                test = next(event for event in system.events() if event.name == kind)
-                found = newton(system, y * (1 + 1e-3), vanishing(test.function), patient)
-                shown = data.bifurcation_amplitude.sel(release=rule, n=n, bound=kind).values
-                values = np.abs(found.point[:, -1] - shown)
-                names = [f"{kind} of the {n}-T orbits, {rule} release, ϖ = {w:.6g}" for w in omega]
-                yield Comparison(FORMULA, values, names)
+# The table.
 
 
 def compare(data: xr.Dataset, settings: Mapping[str, Any]) -> Iterator[Comparison]:
-    """All comparisons for the spring-damper orbits of one dataset."""
-    if "bifurcation_amplitude" in data:
-        yield from _rules_against_extended_systems(data, settings)
-        return
-    if "computed" in data:
-        yield _table_against_formula(data)
-        return
-    if "special_kind" in data:
-        orbit = branch_orbits(data)
-        yield continuation_against_formula(orbit)
-        yield bifurcations_against_formula(data)
-    else:
-        orbit = sweep_orbits(data) if "case" in data.dims else single_orbits(data)
-        yield formula_against_continuation(orbit, settings)
-    yield from _simulated(orbit)
-    if "restitution_amplitude" in data:
-        yield from compare_restitution(data, settings)
+    """All comparisons for the orbits and bifurcations of one dataset.
+
+    By the routes that a model has besides the one its orbits were made by.
+    """
+    for shown in published.orbits(data):
+        routes = shown.model.routes - {shown.made}
+        if not shown.orbit.size:
+            continue
+        if Route.FORMULA in routes:
+            yield continuation_against_formula(shown)
+        if Route.CONTINUATION in routes:
+            yield formula_against_continuation(shown, settings)
+        if Route.SIMULATION in routes:
+            yield from _simulated(shown)
+    for limits in published.limits(data):
+        routes = limits.model.routes - {limits.made}
+        if limits.amplitude.size and Route.FORMULA in routes:
+            yield located_against_formula(limits)
+        elif limits.amplitude.size and Route.CONTINUATION in routes:
+            yield formula_against_equations(limits, settings)
 
 
 def _worst(comparisons: list[Comparison], kind: str) -> tuple[float, int, str]:
     """Largest disagreement of a kind, how many were compared, and which it is."""
-    same = [c for c in comparisons if c.kind == kind and len(c.values)]
-    if not same:
-        return np.nan, 0, ""
-    values = np.concatenate([c.values for c in same])
-    names = [name for c in same for name in c.names]
-    worst = int(np.argmax(np.where(np.isnan(values), np.inf, values)))
-    return float(values[worst]), len(values), names[worst]
+    largest, count, where = -np.inf, 0, ""
+    for one in comparisons:
+        if one.kind != kind or not len(one.values):
+            continue
+        values = np.where(np.isnan(one.values), np.inf, one.values)
+        at = int(np.argmax(values))
+        count += len(values)
+        if values[at] > largest:
+            largest, where = float(values[at]), one.name(at)
+    return (largest if count else np.nan), count, where
 
 
-def witness(datasets: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.Dataset:
+def cross_check(datasets: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.Dataset:
     """Largest disagreement of every kind for every figure and table.
 
     Raises
     ------
-    WitnessError
+    CrossCheckError
         If a disagreement exceeds its budget, with the orbit named.
     """
     kinds = list(BUDGETS)
     shape = (len(datasets), len(kinds))
     largest, count, place = np.empty(shape), np.zeros(shape, dtype=int), np.empty(shape, object)
     for i, (name, data) in enumerate(datasets.items()):
-        contact = "release" in data.attrs or "release" in data.dims
-        routes = compare if contact else compare_restitution
-        comparisons = list(routes(data, settings))
+        comparisons = list(compare(data, settings))
         for j, kind in enumerate(kinds):
             largest[i, j], count[i, j], place[i, j] = _worst(comparisons, kind)
             if count[i, j] and not largest[i, j] <= BUDGETS[kind]:
-                raise WitnessError(
+                raise CrossCheckError(
                     f"{name}: {kind} disagree by {largest[i, j]:.1e}, more than "
                     f"{BUDGETS[kind]:.0e}, at the {place[i, j]}"
                 )

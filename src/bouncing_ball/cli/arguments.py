@@ -18,6 +18,16 @@ class Parser(argparse.ArgumentParser):
         self.exit(2, f"{self.prog}: {message}\n")
 
 
+class _Version(argparse.Action):
+    """The version of the installed package, looked up only when it is asked for."""
+
+    def __call__(self, parser, namespace, values, option_string=None):
+        from importlib.metadata import version
+
+        print(f"{parser.prog} {version('bouncing-ball')}")
+        parser.exit()
+
+
 def _number(low: float, high: float, *, low_open: bool = True, high_open: bool = True):
     """A parser of finite numbers in an interval, for ``type=``."""
     left, right = "(" if low_open else "[", ")" if high_open else "]"
@@ -71,6 +81,13 @@ def _add_damping(parser: argparse.ArgumentParser) -> None:
         metavar="Z",
         help="damping ratio ζ in [0, 1) of the contact, in place of --restitution",
     )
+    group.add_argument(
+        "--measured-restitution",
+        type=_number(0, 1, high_open=False),
+        metavar="R",
+        help="restitution coefficient that a free impact really has, in place of --restitution, "
+        "whose r is that of the displacement release: with --release force it is higher",
+    )
 
 
 def _add_contact(parser: argparse.ArgumentParser, *, required: bool) -> None:
@@ -84,7 +101,6 @@ def _add_contact(parser: argparse.ArgumentParser, *, required: bool) -> None:
     parser.add_argument(
         "--release",
         choices=["displacement", "force"],
-        default="displacement",
         help="what ends a contact (default: displacement, the paper's)",
     )
 
@@ -120,6 +136,7 @@ def parser() -> Parser:
         description="Periodic orbits of a ball on a vibrating table. All quantities are "
         "dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g.",
     )
+    top.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
     commands = top.add_subparsers(dest="command", required=True, parser_class=Parser)
 
     def command(name: str, text: str) -> Parser:
@@ -133,11 +150,16 @@ def parser() -> Parser:
     _add_family(orbit)
     _add_amplitude(orbit)
     _add_contact(orbit, required=False)
-    orbit.add_argument(
+    which = orbit.add_mutually_exclusive_group()
+    which.add_argument(
         "--side",
-        choices=["stable", "unstable"],
+        choices=["stable", "unstable", "all"],
         default="stable",
-        help="side of the saddle-node: the one that is stable next to it, or the other",
+        help="side of the saddle-node: the one that is stable next to it (default), or the other; "
+        "all: every orbit at this amplitude, in order of contact duration",
+    )
+    which.add_argument(
+        "--index", type=_count(1000), metavar="K", help="the K-th of --side all, from 1"
     )
 
     limits = command("limits", "saddle-node and period doubling of the n-T orbits")
@@ -208,10 +230,12 @@ def parse(arguments: list[str] | None = None) -> argparse.Namespace:
     if args.model is None:
         args.model = "restitution" if args.frequency_ratio is None else "spring-damper"
     if args.model == "restitution":
-        if args.restitution is None:
+        if args.damping_ratio is not None:
             top.error("--model restitution needs --restitution, not --damping-ratio")
-        if args.frequency_ratio is not None:
-            top.error("--frequency-ratio has no meaning for --model restitution")
+        for name in ("frequency_ratio", "release"):
+            if getattr(args, name) is not None:
+                option = f"--{name.replace('_', '-')}"
+                top.error(f"{option} has no meaning for --model restitution, without a contact")
     elif args.frequency_ratio is None:
         top.error("--model spring-damper needs --frequency-ratio")
     return args

@@ -261,7 +261,7 @@ _AUDIT = (
         "witness",
         Kind.TABLE,
         "Continuation, formula and simulation for every orbit shown",
-        "audit.cross_check.witness",
+        "audit.cross_check.cross_check",
         "continuation",
         reads=tuple(stage.name for stage in _MODELS if stage.cross_checked),
     ),

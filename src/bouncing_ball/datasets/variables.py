@@ -73,6 +73,7 @@ VARIABLES: dict[str, Variable] = {
         "contact duration at the special point", "τ_b", equation="Eq. 23"
     ),
     "special_residual": Variable("residual of the extended system at the special point", ""),
+    "absence": Variable("why there is no stable range", ""),
     "end_reason": Variable("why the branch ends there", ""),
     # restitution model's limits
     "saddle_node_amplitude": Variable("amplitude of the saddle-node", "Λ_SN", equation="Eq. 7"),

@@ -85,7 +85,7 @@ class ContactModel(ImpactModel):
         point = branch_point(nearest_excess(orbit), orbit.contact, orbit.n)
         return ContactOrbit.from_branch(point, orbit.contact, orbit.n)
 
-    def system(self, n: int) -> OrbitSystem:
+    def system(self, n: int | np.ndarray) -> OrbitSystem:
         """The paper's equations, continued in Λ."""
         contact = self.contact
         return OrbitSystem(

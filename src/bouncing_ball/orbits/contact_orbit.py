@@ -149,6 +149,17 @@ class ContactOrbit(Orbit):
         """From impacts (φ, δ′) to the next, simulated."""
         return contact_cycle(self.contact, self.amplitude, phase, relative_velocity)
 
+    def holding(self, time: np.ndarray) -> np.ndarray:
+        """δ + κ δ′ in contact."""
+        flow = self._contact_flow(time)
+        return flow.displacement + self.contact.lag * flow.velocity
+
+    def can_be_simulated(self) -> np.ndarray:
+        """Whether each contact is away from the undamped resonance."""
+        omega, zeta = self.contact.frequency_ratio, self.contact.damping_ratio
+        detuning = np.hypot((omega - 1) * (omega + 1), 2 * zeta * omega)
+        return np.broadcast_to(detuning >= 2 * _RESONANCE, self.shape)
+
     def is_admissible(self) -> np.ndarray:
         """Whether each orbit is one of the ball; false where there is none.
 
@@ -164,9 +175,7 @@ class ContactOrbit(Orbit):
         shape = self.shape
         if not shape:
             return self.ravel().is_admissible()[0]
-        omega, zeta = self.contact.frequency_ratio, self.contact.damping_ratio
-        detuning = np.hypot((omega - 1) * (omega + 1), 2 * zeta * omega)
-        resonant = np.broadcast_to(detuning < 2 * _RESONANCE, shape)
+        resonant = ~self.can_be_simulated()
         admissible = np.zeros(shape, dtype=bool)
         admissible[~resonant] = super(ContactOrbit, self[~resonant]).is_admissible()
         for index in zip(*np.nonzero(resonant), strict=True):
@@ -179,8 +188,7 @@ class ContactOrbit(Orbit):
         if not (possible and self.flight_time > 0):
             return False
         share = np.linspace(0.0, 1.0, _SAMPLES)[1:-1]
-        flow = self._contact_flow(share * self.contact_duration)
-        touching = flow.displacement + self.contact.lag * flow.velocity
+        touching = self.holding(share * self.contact_duration)
         time = self.contact_duration + share * self.flight_time
         gap = self.flight_path(time)[0] - self.amplitude * np.sin(self.phase + time)
         return bool(np.all(touching < 0) and np.all(gap > 0))

@@ -121,7 +121,7 @@ class CorrectedModel(ImpactModel):
         lam, psi = formulas.nearest(orbit.n, orbit.instant, orbit.amplitude, orbit.hit.phase)
         return CorrectedOrbit.at(orbit.n, orbit.law, lam, psi)
 
-    def system(self, n: int) -> CorrectedSystem:
+    def system(self, n: int | np.ndarray) -> CorrectedSystem:
         """The equations of the orbits, continued in Λ."""
         return CorrectedSystem(n, self.law)
 

@@ -120,6 +120,14 @@ class Orbit(Record, ABC):
         angle = self.phase + time
         return self.amplitude * np.sin(angle), self.amplitude * np.cos(angle)
 
+    def holding(self, time: np.ndarray) -> np.ndarray:
+        """What a contact holds the ball by: negative until it vanishes at the release."""
+        return self.contact_path(time)[0] - self.amplitude * np.sin(self.phase + time)
+
+    def can_be_simulated(self) -> np.ndarray:
+        """Whether :meth:`cycle` is defined for each orbit's parameters."""
+        return np.ones(self.shape, dtype=bool)
+
     @abstractmethod
     def residual(self) -> np.ndarray:
         """Defects of the model's equations, along the last axis."""
@@ -359,7 +367,7 @@ class ImpactModel(Record, ABC):
         """The orbits of the closed form nearest to given ones (route FORMULA)."""
 
     @abstractmethod
-    def system(self, n: int) -> System:
+    def system(self, n: int | np.ndarray) -> System:
         """The equations of the orbits, continued in Λ (route CONTINUATION)."""
 
     @abstractmethod

@@ -1,8 +1,9 @@
 """The point of the explicit branch that is nearest to a given orbit.
 
-Comparing at equal Λ or equal D would divide by zero at a fold or where D has
-too few digits; the nearest point in the plane (Λ cos φ, Λ sin φ) is well
-conditioned everywhere on the branch.
+Comparing at equal Λ would divide by zero at a fold. At a stiff contact D has too
+few digits to compare at equal D, as Λ cos φ = X and Λ sin φ = Y change ϖ times
+as fast; elsewhere both may nearly stand still. The nearest point in the space
+(X, Y, ε) is well conditioned everywhere.
 """
 
 import numpy as np
@@ -16,14 +17,15 @@ _ITERATIONS = 4
 
 
 def nearest_excess(orbit: ContactOrbit) -> np.ndarray:
-    """Excess angle ε of the nearest point of the branch."""
+    """Excess angle ε of the point of the branch that is nearest in (X, Y, ε)."""
     contact = orbit.contact
-    excess = orbit.contact_duration * contact.damped_frequency - contact.free_angle
+    own = excess = orbit.contact_duration * contact.damped_frequency - contact.free_angle
     x, y = orbit.amplitude * np.cos(orbit.phase), orbit.amplitude * np.sin(orbit.phase)
     for _ in range(_ITERATIONS):
         point = branch_point(excess, contact, orbit.n)
         along = (x - point.x) * point.d_x + (y - point.y) * point.d_y
-        excess = excess + along / (point.d_x * point.d_x + point.d_y * point.d_y)
+        square = point.d_x * point.d_x + point.d_y * point.d_y
+        excess = excess + (along + own - excess) / (square + 1)
     return excess
 
 

@@ -99,7 +99,7 @@ class RestitutionModel(ImpactModel):
         lam, phase = np.hypot(fold, lift), np.arctan2(lift, fold)
         return RestitutionOrbit.at(orbit.n, orbit.restitution, lam, phase)
 
-    def system(self, n: int) -> RestitutionSystem:
+    def system(self, n: int | np.ndarray) -> RestitutionSystem:
         """The fixed points of the exact map, continued in Λ."""
         return RestitutionSystem(n, self.restitution)
 

@@ -38,7 +38,7 @@ class RestitutionSystem:
     [0.0, 0.0]
     """
 
-    n: int
+    n: int | np.ndarray
     restitution: float | np.ndarray
 
     def orbit(self, y: np.ndarray) -> RestitutionOrbit:

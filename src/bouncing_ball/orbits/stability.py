@@ -39,7 +39,8 @@ def multipliers(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
     root = np.sqrt(half * half - det + 0j)
     first = half + np.where(half < 0, -1, 1) * root
     zero = first == 0
-    second = np.where(zero, 0, det / np.where(zero, 1, first))
+    with np.errstate(invalid="ignore"):  # where there is no orbit
+        second = np.where(zero, 0, det / np.where(zero, 1, first))
     return np.stack([first, second], axis=-1)
 
 

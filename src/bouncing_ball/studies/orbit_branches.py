@@ -5,7 +5,7 @@ along ϖ to the contact wanted, then along Λ to both sides.
 """
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -18,22 +18,22 @@ from bouncing_ball.continuation.branch import (
     resample,
     solve_at,
 )
-from bouncing_ball.continuation.corrector import NewtonSettings
+from bouncing_ball.continuation.corrector import NewtonSettings, null_vector
 from bouncing_ball.continuation.events import Event, fold, parameter_bound
 from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.impacts.damping import damping_ratio
-from bouncing_ball.impacts.spring_damper import Release
+from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
-from bouncing_ball.orbits.admissibility import is_admissible, restitution_is_admissible
+from bouncing_ball.orbits.contact_model import ContactModel
 from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
 from bouncing_ball.orbits.grazing import grazing_points
-from bouncing_ball.orbits.monodromy import trace_and_contraction
-from bouncing_ball.orbits.stability import is_stable, multipliers
+from bouncing_ball.orbits.interface import Orbit
+from bouncing_ball.orbits.restitution_model import RestitutionModel
 
 SADDLE_NODE, PERIOD_DOUBLING = "saddle-node", "period doubling"
 GRAZING = "grazing"
+_REACHED = "target reached"
 
 
 def controls(settings: Mapping[str, Any]) -> tuple[StepControl, NewtonSettings]:
@@ -48,6 +48,96 @@ def controls(settings: Mapping[str, Any]) -> tuple[StepControl, NewtonSettings]:
     return control, newton
 
 
+def followed_from_stiff(
+    n: int,
+    contact: Contact,
+    amplitude: float,
+    stiff: float,
+    control: StepControl,
+    newton: NewtonSettings,
+) -> Branch:
+    """The branch in ln ϖ at one Λ, from a very stiff contact to the one wanted.
+
+    It starts at the restitution orbit, and ends before ``contact`` where it
+    turns back to stiffer contacts or leaves the domain of the equations.
+
+    Raises
+    ------
+    ContinuationError
+        If there is no orbit near that of the restitution model.
+    """
+    towards = OrbitSystem(
+        n, contact.damping_ratio, Parameter.LOG_FREQUENCY_RATIO, amplitude, contact.release
+    )
+    y = solve_at(towards, towards.guess(amplitude, stiff), newton)
+    if contact.frequency_ratio >= stiff:
+        along = null_vector(towards.jacobian(y))
+        return Branch(y[np.newaxis], along[np.newaxis], (), "starting point", _REACHED)
+    target = parameter_bound(np.log(float(contact.frequency_ratio)), False, _REACHED)
+    determinant = fold(towards).function
+    side = np.sign(determinant(y))
+    turn = Event(
+        "turn",
+        lambda y: side * determinant(y),
+        terminal=True,
+        reason="the branch turns back to stiffer contacts",
+    )
+    ends = (event for event in towards.events() if event.terminal)
+    return continue_branch(
+        towards, y, increasing=False, events=(*ends, turn, target), control=control, settings=newton
+    )
+
+
+def _on_the_way(
+    n: int, contact: Contact, amplitude: float, settings: Mapping[str, Any]
+) -> np.ndarray:
+    """(φ, z′_i, ϖ τ_b) of the orbit at Λ, followed along ϖ from a very stiff contact."""
+    control, newton = controls(settings)
+    omega = float(contact.frequency_ratio)
+    stiff = max(settings["stiff_frequency_ratio"], omega)
+    way = followed_from_stiff(n, contact, amplitude, stiff, control, newton)
+    if way.end_reason != _REACHED:
+        raise ContinuationError(
+            f"{n}-T orbit at Λ = {amplitude:.4g} followed from ϖ = {stiff:g} ends at "
+            f"ϖ = {np.exp(way.points[-1, -1]):.4g}, before {omega:g}: {way.end_reason}"
+        )
+    return way.points[-1, :-1]
+
+
+def _start(
+    n: int, contact: Contact, restitution: float, top: float, settings: Mapping[str, Any]
+) -> np.ndarray:
+    """A point of the branch along Λ of a contact, up to Λ = ``top``.
+
+    Half way between the two bifurcations of the restitution orbit, or to the
+    end of the window; other ways are tried if that one is blocked. Where all
+    are, the branch is not connected with the restitution orbit at any of these
+    Λ, and the orbit of the closed form starts it.
+
+    Raises
+    ------
+    NoOrbitError
+        If there is no orbit there either.
+    """
+    rigid = RestitutionModel(restitution)
+    node, doubling = (float(x.amplitude) for x in (rigid.saddle_node(n), rigid.period_doubling(n)))
+    ways = [node + share * (min(doubling, top) - node) for share in (0.5, 0.25, 0.9, 1.3)]
+    ways = [way for way in ways if way <= top]
+    for amplitude in ways:
+        try:
+            return np.append(_on_the_way(n, contact, amplitude, settings), amplitude)
+        except ContinuationError:
+            continue
+    model = ContactModel(contact)
+    found = model.orbit(n, np.array([*ways, (node + top) / 2, top]))
+    if not np.any(found.exists):
+        raise NoOrbitError(
+            f"no {n}-T orbit of {model.label} up to Λ = {top:g} that is followed from the "
+            "restitution orbit, or that the closed form knows"
+        )
+    return model.system(n).point(found[np.argmax(found.exists)])
+
+
 def branch_along_amplitude(
     n: int,
     restitution: float,
@@ -60,35 +150,21 @@ def branch_along_amplitude(
 
     Raises
     ------
+    NoOrbitError
+        If there is none.
     ContinuationError
-        If the way from the restitution orbit to this contact is blocked.
+        If it is not followed to its end.
     """
-    node = float(restitution_orbits.saddle_node(n, restitution))
-    doubling = float(restitution_orbits.period_doubling(n, restitution))
-    # Half way between the two bifurcations of the restitution orbit, or to the
-    # end of the window; other ways are tried if that one is blocked.
-    shares = (0.5, 0.25, 0.9, 1.3)
-    ways = [node + share * (min(doubling, amplitude_max) - node) for share in shares]
-    failures = []
-    for start in (way for way in ways if way <= amplitude_max):
-        try:
-            y = _orbit_on_the_way(n, restitution, frequency_ratio, start, release, settings)
-            break
-        except ContinuationError as error:
-            failures.append(error)
-    else:
-        raise failures[0]
     control, newton = controls(settings)
-    system = OrbitSystem(
-        n, float(damping_ratio(restitution)), Parameter.AMPLITUDE, frequency_ratio, Release(release)
-    )
+    contact = Contact.from_restitution(restitution, frequency_ratio, Release(release))
+    system = ContactModel(contact).system(n)
     windows = (
         parameter_bound(0.0, False, "left the window at amplitude 0"),
         parameter_bound(amplitude_max, True, f"left the window at amplitude {amplitude_max:g}"),
     )
     branch = continue_both_ways(
         system,
-        np.append(y[:-1], start),
+        _start(n, contact, restitution, amplitude_max, settings),
         events=(*system.events(), *windows),
         control=control,
         settings=newton,
@@ -96,45 +172,10 @@ def branch_along_amplitude(
     for reason in (branch.start_reason, branch.end_reason):
         if reason.startswith("reached the limit"):
             raise ContinuationError(
-                f"the branch of {n}-T orbits at ϖ = {frequency_ratio:g} is not followed to its "
-                f"end: {reason}"
+                f"the branch of {n}-T orbits at ϖ = {frequency_ratio:g} is not "
+                f"followed to its end: {reason}"
             )
     return system, branch
-
-
-def _orbit_on_the_way(n, restitution, frequency_ratio, start, release, settings) -> np.ndarray:
-    """The orbit at Λ = ``start``, followed along ϖ from a very stiff contact."""
-    zeta, rule = float(damping_ratio(restitution)), Release(release)
-    control, newton = controls(settings)
-    stiff = max(settings["stiff_frequency_ratio"], frequency_ratio)
-    towards = OrbitSystem(n, zeta, Parameter.LOG_FREQUENCY_RATIO, start, rule)
-    y = solve_at(towards, towards.guess(start, stiff), newton)
-    if frequency_ratio >= stiff:
-        return y
-    target = parameter_bound(np.log(frequency_ratio), False, "target reached")
-    determinant = fold(towards).function
-    side = np.sign(determinant(y))
-    turn = Event(
-        "turn",
-        lambda y: side * determinant(y),
-        terminal=True,
-        reason="the branch turns back to stiffer contacts",
-    )
-    way = continue_branch(
-        towards,
-        y,
-        increasing=False,
-        events=(*(event for event in towards.events() if event.terminal), turn, target),
-        control=control,
-        settings=newton,
-    )
-    if way.end_reason != target.reason:
-        raise ContinuationError(
-            f"{n}-T orbit at Λ = {start:.4g} followed from ϖ = {stiff:g} ends at "
-            f"ϖ = {np.exp(way.points[-1, -1]):.4g}, before {frequency_ratio:g}: "
-            f"{way.end_reason}"
-        )
-    return way.points[-1]
 
 
 def first_limits(branch: Branch) -> dict[str, np.ndarray]:
@@ -164,6 +205,76 @@ def first_limits(branch: Branch) -> dict[str, np.ndarray]:
     }
 
 
+# What is published of every orbit of a branch, and of the special ones.
+_OBSERVABLES = (
+    "amplitude",
+    "phase",
+    "contact_duration",
+    "release_phase",
+    "impact_velocity",
+    "bounce_velocity",
+    "apparent_restitution",
+)
+_PLACE = ("amplitude", "phase", "contact_duration")
+
+
+class _Row(NamedTuple):
+    """One branch: columns along it, its special points, and why it ends."""
+
+    columns: dict[str, np.ndarray]
+    kinds: list[str]
+    special: dict[str, np.ndarray]
+    reasons: list[str]
+
+
+def _columns(orbit: Orbit) -> dict[str, np.ndarray]:
+    """Observables, stability and admissibility of orbits."""
+    floquet = orbit.multipliers()
+    return {
+        **{name: getattr(orbit, name) for name in _OBSERVABLES},
+        "stable": orbit.is_stable(),
+        "admissible": orbit.is_admissible(),
+        "multiplier_real": floquet.real,
+        "multiplier_imag": floquet.imag,
+        "residual": orbit.defect(),
+    }
+
+
+def _places(orbit: Orbit) -> dict[str, np.ndarray]:
+    """Where special orbits are."""
+    return {**{name: getattr(orbit, name) for name in _PLACE}, "residual": orbit.defect()}
+
+
+def _row(
+    ratio: float, parameters: Mapping[str, Any], release: str, settings: Mapping[str, Any]
+) -> _Row:
+    """The branch of one contact; NaN, with the reason, where it cannot be followed."""
+    n, count, top = parameters["n"], parameters["points"], parameters["amplitude_max"]
+    _, newton = controls(settings)
+    try:
+        system, branch = branch_along_amplitude(
+            n, parameters["restitution"], ratio, top, release, settings
+        )
+        y = resample(system, branch, count, newton)
+    except (NoOrbitError, ContinuationError) as error:
+        none = _missing(n, count)
+        return _Row(_columns(none), [], _places(none[:0]), [str(error)] * 2)
+    chosen = [s for s in branch.special if s.name in (SADDLE_NODE, PERIOD_DOUBLING)]
+    grazing = grazing_points(system, lambda z: system.orbit(z).is_admissible(), y, newton)
+    points = np.array([*(s.point for s in chosen), *grazing]).reshape(-1, y.shape[-1])
+    return _Row(
+        _columns(system.orbit(y)),
+        [*(s.name for s in chosen), *[GRAZING] * len(grazing)],
+        _places(system.orbit(points)),
+        [branch.start_reason, branch.end_reason],
+    )
+
+
+def _missing(n: int, count: int) -> Orbit:
+    """Orbits that do not exist."""
+    return ContactModel(Contact(1.0, 0.0)).system(n).orbit(np.full((count, 4), np.nan))
+
+
 def _ragged(rows, fill=np.nan):
     """Rows of different lengths as one array, filled at the end."""
     width = max(len(row) for row in rows)
@@ -177,66 +288,17 @@ def orbit_branches(
     parameters: Mapping[str, Any], release: str, settings: Mapping[str, Any]
 ) -> xr.Dataset:
     """Branches along Λ for one n and several ϖ (Figs. 8, 9 and 15)."""
-    n, r = parameters["n"], parameters["restitution"]
     ratios = np.array(parameters["frequency_ratio"], dtype=float)
-    _, newton = controls(settings)
-    names = (
-        "amplitude phase contact_duration release_phase impact_velocity bounce_velocity "
-        "apparent_restitution stable admissible multiplier_real multiplier_imag residual"
-    ).split()
-    columns: dict[str, list] = {name: [] for name in names}
-    kinds, special_points, residuals, reasons = [], [], [], []
-    for ratio in ratios:
-        system, branch = branch_along_amplitude(
-            n, r, ratio, parameters["amplitude_max"], release, settings
-        )
-        y = resample(system, branch, parameters["points"], newton)
-        orbit = system.orbit(y)
-        trace, det = trace_and_contraction(orbit)
-        floquet = multipliers(trace, det)
-        values = (
-            orbit.amplitude,
-            orbit.phase,
-            orbit.contact_duration,
-            orbit.phase + orbit.contact_duration,
-            orbit.impact_velocity,
-            orbit.bounce_velocity,
-            orbit.apparent_restitution,
-            is_stable(trace, det),
-            is_admissible(orbit),
-            floquet.real,
-            floquet.imag,
-            np.max(np.abs(system.residual(y)), axis=-1),
-        )
-        for name, value in zip(names, values, strict=True):
-            columns[name].append(value)
-        chosen = [s for s in branch.special if s.name in (SADDLE_NODE, PERIOD_DOUBLING)]
-
-        def admissible_at(y, system=system):
-            return is_admissible(system.orbit(y))
-
-        grazing = grazing_points(system, admissible_at, y, newton)
-        kinds.append([*(s.name for s in chosen), *[GRAZING] * len(grazing)])
-        points = np.array([*(s.point for s in chosen), *grazing]).reshape(-1, 4)
-        special_points.append(points)
-        residuals.append(np.max(np.abs(system.residual(points)), axis=-1))
-        reasons.append([branch.start_reason, branch.end_reason])
+    rows = [_row(ratio, parameters, release, settings) for ratio in ratios]
     dims, special = ("frequency_ratio", "point"), ("frequency_ratio", "special")
-    floquet_dims = (*dims, "multiplier")
-    dataset = xr.Dataset(
-        {
-            name: (floquet_dims if name.startswith("multiplier") else dims, np.array(values))
-            for name, values in columns.items()
-        },
-        coords={"frequency_ratio": ratios},
-    )
-    dataset["special_kind"] = (special, _ragged(kinds, ""))
-    dataset["special_amplitude"] = (special, _ragged([p[:, 3] for p in special_points]))
-    dataset["special_phase"] = (special, _ragged([p[:, 0] for p in special_points]))
-    durations = [p[:, 2] / ratio for p, ratio in zip(special_points, ratios, strict=True)]
-    dataset["special_contact_duration"] = (special, _ragged(durations))
-    dataset["special_residual"] = (special, _ragged(residuals))
-    dataset["end_reason"] = (("frequency_ratio", "end"), np.array(reasons))
+    dataset = xr.Dataset(coords={"frequency_ratio": ratios})
+    for name in rows[0].columns:
+        own = (*dims, "multiplier") if name.startswith("multiplier") else dims
+        dataset[name] = (own, np.array([row.columns[name] for row in rows]))
+    dataset["special_kind"] = (special, _ragged([row.kinds for row in rows], ""))
+    for name in rows[0].special:
+        dataset[f"special_{name}"] = (special, _ragged([row.special[name] for row in rows]))
+    dataset["end_reason"] = (("frequency_ratio", "end"), np.array([row.reasons for row in rows]))
     return describe(dataset.assign_coords(end=["unstable side", "stable side"]))
 
 
@@ -248,50 +310,56 @@ def both_domains(
     contact = orbit_branches(
         {**parameters, "frequency_ratio": [parameters["frequency_ratio"]]}, release, settings
     )
-    amplitude, phase = restitution_orbits.branch(n, r, top, parameters["points"])
-    doubling = float(restitution_orbits.period_doubling(n, r))
-    stable = is_stable(*restitution_orbits.trace_and_determinant(r, amplitude, phase))
+    model = RestitutionModel(r)
+    rigid = model.orbit_of(n, *restitution_orbits.branch(n, r, top, parameters["points"]))
+    node, doubling = model.saddle_node(n), model.period_doubling(n)
     return describe(
         contact.assign(
-            restitution_amplitude=("point", amplitude),
-            restitution_phase=("point", phase),
-            restitution_stable=("point", stable),
-            restitution_admissible=("point", restitution_is_admissible(n, amplitude, phase)),
-            saddle_node_amplitude=((), float(restitution_orbits.saddle_node(n, r))),
-            saddle_node_phase=((), 0.0),
-            period_doubling_amplitude=((), doubling),
-            period_doubling_phase=((), float(restitution_orbits.phase(n, r, doubling))),
+            restitution_amplitude=("point", rigid.amplitude),
+            restitution_phase=("point", rigid.phase),
+            restitution_stable=("point", rigid.is_stable()),
+            restitution_admissible=("point", rigid.is_admissible()),
+            saddle_node_amplitude=((), float(node.amplitude)),
+            saddle_node_phase=((), float(node.phase)),
+            period_doubling_amplitude=((), float(doubling.amplitude)),
+            period_doubling_phase=((), float(doubling.phase)),
         )
     )
 
 
-def printed_ranges(
-    printed: Mapping[str, Any], parameters: Mapping[str, Any], release: str
-) -> np.ndarray:
+def printed_ranges(printed: Mapping[str, Any], ratios: list, families: list) -> np.ndarray:
     """A printed table at the frequency ratios and families computed, shape (ϖ, n, 2).
 
-    NaN where the paper has no entry, and everywhere with another r or another
-    release than the paper's: then there is nothing to compare with.
+    NaN where the paper has no entry.
 
     Examples
     --------
-    >>> printed = {"restitution": 0.85, "release": "displacement", "frequency_ratio": [10.0],
-    ...            "n": [1], "bound": ["saddle-node", "period doubling"], "values": [[[0.25, 1.0]]]}
-    >>> computed = {"restitution": 0.85, "frequency_ratio": [10.0, 5.0], "n": [1]}
-    >>> printed_ranges(printed, computed, "displacement").tolist()
+    >>> printed = {"frequency_ratio": [10.0], "n": [1], "bound": ["saddle-node",
+    ...            "period doubling"], "values": [[[0.25, 1.0]]]}
+    >>> printed_ranges(printed, [10.0, 5.0], [1]).tolist()
     [[[0.25, 1.0]], [[nan, nan]]]
-    >>> bool(np.isnan(printed_ranges(printed, computed, "force")).all())
-    True
     """
     axes = {key: printed[key] for key in ("frequency_ratio", "n", "bound")}
     table = xr.DataArray(printed["values"], axes)
     wanted = {
-        "frequency_ratio": parameters["frequency_ratio"],
-        "n": parameters["n"],
+        "frequency_ratio": ratios,
+        "n": families,
         "bound": [SADDLE_NODE, PERIOD_DOUBLING],
     }
-    same = (printed["restitution"], printed["release"]) == (parameters["restitution"], release)
-    return table.where(same).reindex(wanted).values
+    return table.reindex(wanted).values
+
+
+def _limits(
+    n: int, ratio: float, parameters: Mapping[str, Any], release: str, settings: Mapping[str, Any]
+) -> tuple[Orbit, str]:
+    """The orbits at both ends of the stable range, or NaN and why there is none."""
+    r, top = parameters["restitution"], parameters["amplitude_max"]
+    try:
+        system, branch = branch_along_amplitude(n, r, ratio, top, release, settings)
+        ends = first_limits(branch)
+    except (NoOrbitError, ContinuationError) as error:
+        return _missing(n, 2), str(error)
+    return system.orbit(np.array([ends[SADDLE_NODE], ends[PERIOD_DOUBLING]])), ""
 
 
 def stability_ranges(
@@ -300,39 +368,46 @@ def stability_ranges(
     settings: Mapping[str, Any],
     printed: Mapping[str, Any],
 ) -> xr.Dataset:
-    """Ranges of Λ in which the n-T orbits are stable, computed and printed (Table 1)."""
-    n, r = parameters["n"], parameters["restitution"]
-    ratios = parameters["frequency_ratio"]
-    computed, phase, duration = np.empty((3, len(ratios), len(n), 2))
-    for i, ratio in enumerate(ratios):
-        for j, family in enumerate(n):
-            top = parameters["amplitude_max"]
-            _, branch = branch_along_amplitude(family, r, ratio, top, release, settings)
-            limits = first_limits(branch)
-            for k, kind in enumerate((SADDLE_NODE, PERIOD_DOUBLING)):
-                phase[i, j, k], _, angle, computed[i, j, k] = limits[kind]
-                duration[i, j, k] = angle / ratio
-    families = np.array(n)
+    """Ranges of Λ in which the n-T orbits are stable, computed and printed (Table 1).
+
+    Where an orbit has no such range the entry is NaN, and ``absence`` says why.
+    """
+    families, r = np.array(parameters["n"]), parameters["restitution"]
+    ratios = np.array(parameters["frequency_ratio"], dtype=float)
+    found = [
+        [_limits(int(n), ratio, parameters, release, settings) for n in families]
+        for ratio in ratios
+    ]
+    rigid = RestitutionModel(r).saddle_node(families).amplitude
     maps = list(restitution_orbits.ImpactMap)
-    limit = np.empty((len(maps), len(n), 2))
-    limit[..., 0] = restitution_orbits.saddle_node(families, r)
-    for k, kind in enumerate(maps):
-        limit[k, :, 1] = restitution_orbits.period_doubling(families, r, kind)
+    doublings = [restitution_orbits.period_doubling(families, r, kind) for kind in maps]
     dims = ("frequency_ratio", "n", "bound")
-    return describe(
-        xr.Dataset(
-            {
-                "computed": (dims, computed),
-                "special_phase": (dims, phase),
-                "special_contact_duration": (dims, duration),
-                "printed": (dims, printed_ranges(printed, parameters, release)),
-                "restitution_range": (("impact_map", "n", "bound"), limit),
-            },
-            coords={
-                "frequency_ratio": np.array(ratios, dtype=float),
-                "n": families,
-                "bound": [SADDLE_NODE, PERIOD_DOUBLING],
-                "impact_map": [str(kind) for kind in maps],
-            },
-        )
+    columns = {
+        name: np.array([[getattr(orbit, name) for orbit, _ in row] for row in found])
+        for name in _PLACE
+    }
+    reasons = np.array([[reason for _, reason in row] for row in found])
+    dataset = xr.Dataset(
+        {
+            "computed": (dims, columns["amplitude"]),
+            "special_phase": (dims, columns["phase"]),
+            "special_contact_duration": (dims, columns["contact_duration"]),
+            "printed": (
+                dims,
+                printed_ranges(printed, parameters["frequency_ratio"], parameters["n"]),
+            ),
+            "restitution_range": (
+                ("impact_map", "n", "bound"),
+                np.array([np.stack([rigid, doubling], axis=-1) for doubling in doublings]),
+            ),
+        },
+        coords={
+            "frequency_ratio": ratios,
+            "n": families,
+            "bound": [SADDLE_NODE, PERIOD_DOUBLING],
+            "impact_map": [str(kind) for kind in maps],
+        },
     )
+    if np.any(reasons != ""):
+        dataset["absence"] = (dims[:2], reasons)
+    return describe(dataset)

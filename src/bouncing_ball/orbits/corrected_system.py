@@ -35,7 +35,7 @@ class CorrectedSystem:
     [0.0, 0.0]
     """
 
-    n: int
+    n: int | np.ndarray
     law: Signature
 
     def orbit(self, y: np.ndarray) -> CorrectedOrbit:

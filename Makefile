@@ -13,6 +13,8 @@ $(error the path of this checkout has a space: move it, or make VENV=/a/path/wit
 endif
 # What comes before anything runs; nothing, where another venv is there already.
 SETUP ?= setup
+# A line for each file, and errors; what Snakemake says besides is in .snakemake/log.
+QUIETLY := --quiet host rules reason progress
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
 # One thing after another: clean, run and compare share results/.
@@ -20,7 +22,8 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 .PHONY: all setup lint test quick test-long attack diff accept report clean ci setup-newest newest config-docs lock
 
 all: $(SETUP)
-	$(BIN)/snakemake --cores 2
+	$(BIN)/snakemake --cores 2 $(QUIETLY)
+	@echo "Results: results/paper.md, results/figures/. Compare with the record: make diff"
 
 setup: $(VENV)/.installed
 

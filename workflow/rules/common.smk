@@ -29,6 +29,9 @@ from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.pipeline.pieces import check_pieces
 from bouncing_ball.pipeline.sources import sources
 
+# Two lines before every job, which say nothing of it.
+logger.addFilter(lambda record: not str(record.msg).startswith(("Select jobs", "Execute ")))
+
 FIGURES = names(Kind.FIGURE, Kind.EXTENSION)
 TABLES = names(Kind.TABLE)
 DATASETS = [stage.name for stage in studied()]

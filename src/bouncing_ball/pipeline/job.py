@@ -54,6 +54,8 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
         # What a job wrote is known by its checksum, so that a file changed by hand is seen.
         written = [f"{SUM} {file_digest(path)} {path}" for path in snakemake.output]
         write_text(log, "".join(f"{line}\n" for line in [*lines, *written]))
+        if written:
+            print("made", *snakemake.output, flush=True)
     except Exception as error:
         kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
         sys.exit(f"{name}: {kind}{' '.join(str(error).split())} ({_details(log)})")

@@ -66,11 +66,12 @@ attack: $(SETUP)
 diff: $(SETUP)
 	$(BIN)/snakemake --cores 2 diff
 
-# make accept REASON="why the record moves"
-# Through the environment, so that the shell reads no quote in it.
-export REASON
+# make accept REASON='why the record moves' [ALSO='fig05 paper' or ALSO=all]
+# As typed: neither make nor the shell reads anything in it.
+override export REASON := $(value REASON)
+export ALSO
 accept: $(SETUP)
-	$(BIN)/snakemake --cores 1 accept --config reason="$$REASON"
+	$(BIN)/snakemake --cores 1 accept
 
 report: all
 	$(BIN)/snakemake --report results/report.html

@@ -23,8 +23,6 @@ for name in FIGURES:
                 labels={"figure": name},
             ),
             svg=f"results/figures/{name}.svg",
-        params:
-            figure=name,
         log:
             f"results/logs/figures/{name}.log",
         benchmark:

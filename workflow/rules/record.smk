@@ -1,7 +1,18 @@
 # The accepted record: figures/ and paper.md, which git holds, with accepted.csv,
 # which says why it moved. Only this target writes there:
-#     snakemake --cores 1 accept --config reason="…"
+#     REASON="…" snakemake --cores 1 accept
 # It has no output and no benchmark, so that it looks at the record each time.
+
+from bouncing_ball.record.recipe import Recipe
+
+
+def recipes(dag):
+    """What every file is made from by this workflow, to be compared with what it was."""
+    return [
+        Recipe.of(job, Path(str(job.rule.snakefile)).parent / job.rule.script)
+        for job in dag.jobs
+        if job.output
+    ]
 
 
 rule accept:
@@ -12,6 +23,7 @@ rule accept:
         paper=rules.paper.output.paper,
     params:
         record=workflow.basedir,
+        recipes=lambda wildcards: recipes(workflow.dag),
     log:
         "results/logs/accept.log",
     script:

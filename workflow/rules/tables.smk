@@ -20,8 +20,6 @@ for name in TABLES:
             csv=f"results/figures/{name}.csv",
             md=f"results/figures/{name}.md",
             tex=f"results/figures/{name}.tex",
-        params:
-            table=name,
         log:
             f"results/logs/tables/{name}.log",
         benchmark:

@@ -1,6 +1,7 @@
 """One table as CSV, Markdown and LaTeX from its dataset."""
 
 from importlib import import_module
+from pathlib import Path
 
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.pipeline.job import logged, read_input, withdraw
@@ -9,7 +10,8 @@ from bouncing_ball.render.tables.formats import to_csv, to_latex, to_markdown
 
 with logged(snakemake) as lines:
     withdraw()
-    rows = import_module(f"bouncing_ball.render.tables.{snakemake.params.table}").rows
+    name = Path(snakemake.output[0]).stem
+    rows = import_module(f"bouncing_ball.render.tables.{name}").rows
     path = snakemake.input.data
     header, body = from_dataset(rows, read_input(path), path)
     write_text(snakemake.output.csv, to_csv(header, body))

@@ -7,7 +7,7 @@ object that Snakemake gives them.
 import signal
 import sys
 import traceback
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -22,8 +22,10 @@ from bouncing_ball.datasets.netcdf import (
     read_dataset,
     write_dataset,
 )
-from bouncing_ball.record.carriers import read_attributes
-from bouncing_ball.record.provenance import PREFIX, SUM, Provenance, file_digest, gather
+from bouncing_ball.record.carriers import CARRIERS
+from bouncing_ball.record.job_log import log_lines, read_log
+from bouncing_ball.record.provenance import PREFIX, Provenance, file_digest
+from bouncing_ball.record.recipe import Recipe, Run, gather
 
 REFERENCE = (
     "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient "
@@ -51,11 +53,14 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
     log = Path(snakemake.log[0])
     try:
         yield lines
-        # What a job wrote is known by its checksum, so that a file changed by hand is seen.
-        written = [f"{SUM} {file_digest(path)} {path}" for path in snakemake.output]
-        write_text(log, "".join(f"{line}\n" for line in [*lines, *written]))
-        if written:
-            print("made", *snakemake.output, flush=True)
+        # What a job wrote is known by its checksum, so that a file changed by hand is
+        # seen, and what from by its own words or, for a text or a table, by the log's.
+        outputs = list(snakemake.output)
+        silent = outputs and not any(Path(path).suffix in CARRIERS for path in outputs)
+        lines += log_lines(outputs, provenance(snakemake) if silent else None)
+        write_text(log, "".join(f"{line}\n" for line in lines))
+        if outputs:
+            print("made", *outputs, flush=True)
     except Exception as error:
         kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
         sys.exit(f"{name}: {kind}{' '.join(str(error).split())} ({_details(log)})")
@@ -89,8 +94,7 @@ def read_input(path: str) -> xr.Dataset:
     """
     again = f"make it again, snakemake --cores 2 --force {path}"
     log = Path(LOGS, Path(path).stem).with_suffix(".log")
-    said = log.read_text(encoding="utf-8").splitlines() if log.is_file() else []
-    if f"{SUM} {file_digest(path)} {path}" not in said:
+    if read_log(log).sums.get(path) != file_digest(path):
         raise DatasetError(f"{path} is not what its job wrote, which {log} says: {again}")
     dataset = read_dataset(path)
     target = dataset.attrs.get(PREFIX + "target")
@@ -99,12 +103,18 @@ def read_input(path: str) -> xr.Dataset:
     return dataset
 
 
-def provenance(snakemake: Any, parameters: Mapping[str, Any]) -> Provenance:
-    """The provenance of what the job writes, its inputs' parameters included."""
-    attributes = [read_attributes(Path(path)) for path in snakemake.input if path[-3:] == ".nc"]
-    name = PREFIX + "parameters"
-    inherited = [data[name] for data in attributes if name in data]
-    return gather(snakemake, parameters, inherited)
+def provenance(snakemake: Any) -> Provenance:
+    """The provenance of what the job writes, its inputs' parameters included.
+
+    Gathered as a file is written: as a parameter of the job, a commit would run
+    everything again.
+    """
+    # The scripts are in workflow/scripts of the repository, the run may be anywhere;
+    # Snakemake runs a copy, to which it gives the script's name.
+    scripts = Path(snakemake.scriptdir).resolve()
+    script = scripts / Path(str(sys.modules["__main__"].__file__)).name
+    recipe = Recipe.of(snakemake, script)
+    return gather(recipe, Run.of(scripts.parents[1], snakemake.config))
 
 
 def make_dataset(snakemake: Any) -> None:
@@ -123,7 +133,7 @@ def make_dataset(snakemake: Any) -> None:
             "title": job.title,
             "references": REFERENCE,
             **(dataset.attrs or parameter_attributes(job.parameters | job.settings)),
-            **provenance(snakemake, {"parameters": job.parameters, **job.settings}).attributes(),
+            **provenance(snakemake).attributes(),
         }
         write_dataset(dataset, snakemake.output.data)
         sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())

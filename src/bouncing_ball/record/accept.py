@@ -2,134 +2,54 @@
 
 git holds the record, ``figures/`` and ``paper.md``, laid out as the results
 are, and ``accepted.csv``, in which every acceptance says why the record moved.
+
+An artifact that says the same within its budgets stays as it is, with the commit
+that it names: another processor moves most of them, and git would grow by what
+has not changed. What has moved is copied, and with it what is made from it and
+differs at all: the verdicts and the paper follow the numbers that they are
+about. So the files of the record agree with each other within the budgets, and
+a text quotes the tables beside it.
 """
 
 import csv
 import io
-import json
-import re
 import shutil
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import ExitStack
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-import bouncing_ball
 from bouncing_ball.datasets.atomic import replacing
-from bouncing_ball.errors import ModelError
-from bouncing_ball.record.carriers import CARRIERS, read_provenance
 from bouncing_ball.record.diff.folders import ComparisonError, artifacts_in, compare_folders
 from bouncing_ball.record.diff.outcome import Outcome
 from bouncing_ball.record.diff.report_terminal import to_terminal
 from bouncing_ball.record.diff.tolerance_file import read_tolerances
-from bouncing_ball.record.provenance import (
-    LIBRARIES,
-    LOCK,
-    SUM,
-    Provenance,
-    departure,
-    file_digest,
-)
-from bouncing_ball.record.revision import Revision, revision
+from bouncing_ball.record.proof import RefusedError, check_made, check_versions
+from bouncing_ball.record.provenance import LOCK, Provenance, file_digest
+from bouncing_ball.record.recipe import Recipe, Run
+from bouncing_ball.record.revision import Revision
 
 LOG = "accepted.csv"
 COLUMNS = ("number", "commit", "reason", "changes")
-
-
-class RefusedError(ModelError):
-    """Results that must not become the record, with the reason why."""
+ALL = "all"
+"""In place of the names of artifacts that are copied although they have not moved."""
 
 
 def check_reason(reason: str) -> None:
-    """Raise :class:`RefusedError` without a reason to write into the log."""
+    """Raise :class:`RefusedError` without a reason, one line, to write into the log."""
     if not reason.strip():
-        raise RefusedError('say why the record changes: --config reason="…"')
+        raise RefusedError("say why the record changes: make accept REASON='…'")
+    if not reason.isprintable():
+        raise RefusedError("the reason is one line of text")
 
 
 def check_tree(now: Revision) -> None:
-    """Raise :class:`RefusedError` unless a commit, and nothing else, is checked out.
-
-    Results carry no word of the texts and tables; but Snakemake has just found
-    them up to date, so that a clean tree now is the one they are made from.
-    """
+    """Raise :class:`RefusedError` unless a commit, and nothing else, is checked out."""
     if now.commit == "unknown":
         raise RefusedError("no git repository with a commit here, and the record is what git holds")
     if now.dirty != "no":
         raise RefusedError("the tree is dirty: commit first, and accept what that commit makes")
-
-
-def check_results(made: Mapping[str, Provenance]) -> None:
-    """Raise :class:`RefusedError` if a result was not made from a commit alone."""
-    bad = [name for name, provenance in made.items() if provenance.dirty != "no"]
-    if bad:
-        more = f" and {len(bad) - 1} more" if len(bad) > 1 else ""
-        raise RefusedError(
-            f"{bad[0]}{more} made from a dirty or unknown tree, or with another configuration or "
-            "package: make them again from the commit, snakemake --cores 2 --forceall"
-        )
-
-
-def check_run(record: Path, config: Mapping[str, Any]) -> None:
-    """Raise :class:`RefusedError` if this run rests on more than the commit's tree."""
-    reason = departure(record, config, [str(bouncing_ball.__file__)])
-    if reason:
-        raise RefusedError(f"{reason}: accept what the commit alone makes")
-
-
-def pins(lock: str) -> dict[str, set[str]]:
-    """The versions that a lock file asks for, by the names of the packages.
-
-    Several, where they depend on the system.
-
-    Examples
-    --------
-    >>> lock = ["numpy==2.4.1 ; sys_platform == 'linux'", "    --hash=sha256:1f0e", "scipy==1.17.0"]
-    >>> pins("\\n".join(lock))
-    {'numpy': {'2.4.1'}, 'scipy': {'1.17.0'}}
-    """
-    found: dict[str, set[str]] = {}
-    for name, version in re.findall(r"^([\w.-]+)==([^\s;\\]+)", lock, re.MULTILINE):
-        found.setdefault(name.lower(), set()).add(version)
-    return found
-
-
-def check_versions(made: Mapping[str, Provenance], lock: str) -> None:
-    """Raise :class:`RefusedError` if a result was made with versions that are not locked."""
-    pinned = pins(lock)
-    for name, provenance in made.items():
-        versions = json.loads(provenance.versions)
-        for library in LIBRARIES:
-            wanted, used = pinned.get(library.lower(), set()), versions.get(library)
-            if used not in wanted:
-                locked = " or ".join(sorted(wanted)) or "none"
-                raise RefusedError(
-                    f"{name} made with {library} {used}, {LOCK} has {locked}: make setup, then "
-                    "snakemake --cores 2 --forceall"
-                )
-
-
-def written(logs: Path) -> dict[str, str]:
-    """Checksums of what the jobs wrote, by path, from their logs."""
-    found = {}
-    for log in sorted(logs.rglob("*.log")):
-        for line in log.read_text(encoding="utf-8").splitlines():
-            start, _, rest = line.partition(" ")
-            if start == SUM:
-                checksum, _, path = rest.partition(" ")
-                found[path] = checksum
-    return found
-
-
-def check_untouched(results: Path, files: Sequence[str]) -> None:
-    """Raise :class:`RefusedError` if a result is not what its job wrote."""
-    sums = written(results / "logs")
-    for file in files:
-        if sums.get((results / file).as_posix()) != file_digest(results / file):
-            raise RefusedError(
-                f"{results / file} is not what its job wrote: remove it, and the next run makes it "
-                "again"
-            )
 
 
 def commits(made: Iterable[Provenance], now: Revision) -> list[str]:
@@ -146,6 +66,56 @@ def stale(folder: Path, wanted: Iterable[Path]) -> list[Path]:
     """Files of a folder that are not among the wanted ones."""
     kept = {path for path in folder.glob("*") if path.is_file()}
     return sorted(kept - set(wanted))
+
+
+def made_from(recipes: Iterable[Recipe]) -> dict[str, set[str]]:
+    """Names of the artifacts that each artifact is made from, straight."""
+    found: dict[str, set[str]] = {}
+    for recipe in recipes:
+        name = Path(recipe.target).stem
+        read = {Path(path).stem for path in recipe.inputs if path.startswith("results/")}
+        found.setdefault(name, set()).update(read - {name})
+    return found
+
+
+def moved(outcomes: Mapping[str, Outcome], reads: Mapping[str, Collection[str]]) -> set[str]:
+    """The artifacts that say something else, and those made from them that differ at all.
+
+    Examples
+    --------
+    >>> outcomes = dict.fromkeys(["fig08", "paper", "fig05"], Outcome.WITHIN)
+    >>> sorted(moved(outcomes | {"fig08": Outcome.DRIFTED}, {"paper": ["fig05", "fig08"]}))
+    ['fig08', 'paper']
+    """
+    found = {name for name, outcome in outcomes.items() if not outcome.agrees}
+    differ = {name for name, outcome in outcomes.items() if outcome is not Outcome.IDENTICAL}
+    while more := {name for name in differ - found if found & set(reads.get(name, ()))}:
+        found |= more
+    return found
+
+
+@dataclass(frozen=True)
+class Entry:
+    """The last entry of the log: for what, and which artifacts it names."""
+
+    commit: str
+    reason: str
+    names: frozenset[str]
+
+
+def last_entry(text: str) -> Entry | None:
+    """The last entry of a log, if there is one.
+
+    Examples
+    --------
+    >>> last_entry(log_with("", "1f0e", "Eq. 8, exact", {"fig03": "drifted"}))
+    Entry(commit='1f0e', reason='Eq. 8, exact', names=frozenset({'fig03'}))
+    """
+    rows = list(csv.reader(io.StringIO(text)))[1:]
+    if not rows:
+        return None
+    _, commit, reason, changes = rows[-1]
+    return Entry(commit, reason, frozenset(part.split()[0] for part in changes.split("; ")))
 
 
 def log_with(text: str, commit: str, reason: str, changes: Mapping[str, str]) -> str:
@@ -166,31 +136,30 @@ def log_with(text: str, commit: str, reason: str, changes: Mapping[str, str]) ->
 
 
 def replace_record(
-    record: Path, results: Path, files: Sequence[str], moved: Sequence[str], log: str
+    record: Path, results: Path, copied: Sequence[str], removed: Sequence[Path], log: str
 ) -> list[str]:
-    """Copy what has moved over the record and remove what is no longer made.
+    """Copy files over the record and remove others; the log comes first.
 
-    Everything is copied under temporary names first: if that fails, the record
-    is as it was. A file that says the same as the record's stays, with the
-    commit that it names, so that git does not grow by what has not changed.
+    Everything is copied under temporary names before: if that fails, the record
+    is as it was. Whoever is stopped between two renames has the entry in the
+    log, from which the next call knows what is missing (:func:`accept`).
     """
     with ExitStack() as stack:
-        # Entered first, so renamed last.
-        stack.enter_context(replacing(record / LOG)).write_text(log, encoding="utf-8", newline="\n")
-        for file in moved:
+        for file in copied:
             shutil.copyfile(results / file, stack.enter_context(replacing(record / file)))
-    removed = stale(record / "figures", [record / file for file in files])
+        # Entered last, so renamed first.
+        stack.enter_context(replacing(record / LOG)).write_text(log, encoding="utf-8", newline="\n")
     for path in removed:
         path.unlink()
-    return [*moved, *(f"removed figures/{path.name}" for path in removed)]
+    return [*copied, *(f"removed figures/{path.name}" for path in removed)]
 
 
 # In the log, what the comparison calls missing goes, and what is extra comes.
 _IN_THE_LOG = {Outcome.MISSING: "removed", Outcome.EXTRA: "new"}
 
 
-def show_difference(record: Path, results: Path) -> dict[str, str]:
-    """Print how the results differ from the record; the artifacts that do, with outcomes.
+def compare(record: Path, results: Path) -> dict[str, Outcome]:
+    """Print how the results differ from the record; what became of each artifact.
 
     Files that say the same in other bytes, another commit of the provenance for
     one, do not differ.
@@ -199,55 +168,79 @@ def show_difference(record: Path, results: Path) -> dict[str, str]:
         artifacts_in(record)
     except ComparisonError:
         print("There is no record yet.")
-        return {name: _IN_THE_LOG[Outcome.EXTRA] for name in artifacts_in(results)}
+        return dict.fromkeys(artifacts_in(results), Outcome.EXTRA)
     rules = read_tolerances(record / "config" / "tolerances.yaml")
     comparison = compare_folders(record, results, rules)
     print(to_terminal(comparison), end="", flush=True)
-    return {
-        artifact.name: _IN_THE_LOG.get(artifact.outcome, str(artifact.outcome))
-        for artifact in comparison.artifacts
-        if artifact.outcome is not Outcome.IDENTICAL
-    }
+    return {artifact.name: artifact.outcome for artifact in comparison.artifacts}
+
+
+def _same(one: Path, other: Path) -> bool:
+    return other.is_file() and file_digest(one) == file_digest(other)
 
 
 def accept(
-    record: Path, results: Path, files: Sequence[str], config: Mapping[str, Any]
+    run: Run, results: Path, recipes: Sequence[Recipe], files: Sequence[str], reason: str, also: str
 ) -> list[str]:
     """Make the results the record; the lines of the job's log.
 
-    ``config`` is the configuration in effect, with the reason in it.
+    Parameters
+    ----------
+    run : Run
+        Whose repository holds the record.
+    results : Path
+    recipes : sequence of Recipe
+        Of all jobs of the workflow.
+    files : sequence of str
+        What is published, relative to the results.
+    reason : str
+        Why the record moves. The same reason at the same commit completes an
+        acceptance that was interrupted: what its entry names is copied.
+    also : str
+        Names of artifacts to be copied although they have not moved, or ``all``.
 
     Raises
     ------
     RefusedError
-        If there is no reason, the tree is dirty or unknown, the configuration
-        or the package is not that of the tree, a result was made in such a
-        state or with versions that are not locked, or is not one of the files
-        that the workflow makes. Nothing is touched then.
+        If there is no reason, the tree is dirty or unknown, or a result is not
+        what the commit makes (:func:`~bouncing_ball.record.proof.check_made`).
+        Nothing is touched then.
     """
-    reason = config.get("reason", "")
     check_reason(reason)
-    now = revision(record)
-    check_tree(now)
-    check_run(record, config)
+    check_tree(run.now)
+    record = run.repository
     foreign = stale(results / "figures", [results / file for file in files])
     if foreign:
         raise RefusedError(f"{foreign[0]} is not made by this workflow: remove it")
-    check_untouched(results, files)
-    carriers = [file for file in files if Path(file).suffix in CARRIERS]
-    made = {file: read_provenance(results / file) for file in carriers}
-    check_results(made)
+    made = check_made(recipes, run)
+    published = {file: made[(results / file).as_posix()] for file in files}
     lock = record / LOCK
-    check_versions(made, lock.read_text(encoding="utf-8") if lock.is_file() else "")
-    print(*commits(made.values(), now), sep="\n")
-    changes = show_difference(record, results)
+    check_versions(published, lock.read_text(encoding="utf-8") if lock.is_file() else "")
+    print(*commits(published.values(), run.now), sep="\n")
+
+    outcomes = compare(record, results)
+    text = (record / LOG).read_text(encoding="utf-8") if (record / LOG).is_file() else ""
+    last = last_entry(text)
+    interrupted = last and (last.commit, last.reason) == (run.now.commit, reason.strip())
+    begun = last.names if last and interrupted else frozenset()
+    asked = outcomes.keys() if also == ALL else also.split()
+    if unknown := set(asked) - outcomes.keys():
+        raise RefusedError(f"no artifact {', '.join(sorted(unknown))} to be copied as well")
+    names = moved(outcomes, made_from(recipes)) | begun | set(asked)
+    copied = [
+        file
+        for file in files
+        if Path(file).stem in names and not _same(results / file, record / file)
+    ]
+    removed = stale(record / "figures", [record / file for file in files])
+    changes = {Path(file).stem for file in copied} | {path.stem for path in removed}
     if not changes:
-        print("Nothing to accept: the results are the record.")
+        print("Nothing to accept: the record says what the results say.")
         return ["nothing to accept"]
-    log = record / LOG
-    before = log.read_text(encoding="utf-8") if log.is_file() else ""
-    moved = [file for file in files if Path(file).stem in changes]
-    after = log_with(before, now.commit, reason, changes)
-    lines = replace_record(record, results, files, moved, after)
+    if not changes <= begun:
+        said = {name: outcomes.get(name, Outcome.MISSING) for name in changes}
+        said_ = {name: _IN_THE_LOG.get(outcome, str(outcome)) for name, outcome in said.items()}
+        text = log_with(text, run.now.commit, reason, said_)
+    lines = replace_record(record, results, copied, removed, text)
     print(f"Accepted, reason: {reason.strip()}", flush=True)
     return lines

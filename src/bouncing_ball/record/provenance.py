@@ -1,15 +1,16 @@
 """Where an artifact comes from, as it stands in the artifact itself.
 
 Every dataset carries its provenance in netCDF attributes, every picture in its
-metadata: the commit, the configuration, sources, lock file and inputs as
-checksums, and the versions of the libraries. No time and no machine, so that
-two runs of one commit give the same bytes. It is gathered when a file is
-written: as a parameter of the job it would run everything again at each commit.
+metadata; of texts and tables the log of their job holds it. It names the
+commit, what the configuration changes, parameters, sources, lock file and
+inputs as checksums, and the versions of the libraries. No time and no machine,
+so that two runs of one commit give the same bytes.
 """
 
 import hashlib
 import json
 import platform
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, fields
 from importlib.metadata import version
@@ -17,19 +18,30 @@ from pathlib import Path
 from typing import Any, Self
 
 import bouncing_ball
-from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.errors import ModelError
-from bouncing_ball.record.revision import revision
 
 PREFIX = "provenance_"
 """How the names of the attributes begin."""
 
-CONFIGURATION = "config/config.yaml"
-SUM = "sha256"
-"""How the lines of a job's log begin that tell the checksum of what it wrote."""
-
 LOCK = "requirements.lock"
 LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib")
+
+_SHA256 = r"[0-9a-f]{64}"
+_PATH = r"(?!-)[\w.+/-]{1,300}"
+_FORMS = {
+    "commit": r"[0-9a-f]{40}|[0-9a-f]{64}|unknown",
+    "dirty": "yes|no|unknown",
+    "target": _PATH,
+    "parameters": _SHA256,
+    "sources": _SHA256,
+    "lock": f"{_SHA256}|unknown",
+}
+# Of a mapping in JSON: the forms of its keys and of its values.
+_MAPPINGS = {
+    "inputs": (_PATH, _SHA256),
+    "versions": (r"\w{1,40}", r"\d[\w.+!-]{0,40}"),
+}
+_LONGEST = 100_000
 
 
 class ProvenanceError(ModelError):
@@ -43,18 +55,20 @@ class Provenance:
     commit: str
     """Full hash of the commit, or unknown."""
     dirty: str
-    """Whether more than the commit decided: a changed tree, another configuration or
-    package (:func:`departure`). yes, no or unknown."""
+    """Whether more than the commit's files decided: a changed tree, or a package from
+    elsewhere. yes, no or unknown."""
+    configuration: str
+    """JSON: what the run's configuration changes in config/config.yaml, nested alike."""
     target: str
     """What to ask Snakemake for to have the artifact made again."""
     parameters: str
-    """Checksum of the configuration on which the artifact depends."""
+    """Checksum of the parameters on which the artifact depends."""
     sources: str
-    """Checksum of the modules that made it."""
+    """Checksum of the script and the modules that made it."""
     lock: str
     """Checksum of the lock file, or unknown."""
     inputs: str
-    """JSON: for each input file, by its path in the working directory, its checksum."""
+    """JSON: for each input file, by its path, its checksum."""
     versions: str
     """JSON: for Python and each library, its version."""
 
@@ -66,16 +80,94 @@ class Provenance:
     def of(cls, attributes: Mapping[str, Any]) -> Self:
         """The provenance among the attributes of an artifact.
 
+        The form of every part is checked, as it comes from a file.
+
         Raises
         ------
         ProvenanceError
-            If a part of it is missing.
+            If a part is missing, or is not of its form.
         """
-        try:
-            values = {field.name: str(attributes[PREFIX + field.name]) for field in fields(cls)}
-        except KeyError as error:
-            raise ProvenanceError(f"no attribute {error.args[0]}") from None
+        values = {}
+        for field in fields(cls):
+            name = PREFIX + field.name
+            if name not in attributes:
+                raise ProvenanceError(f"no attribute {name}")
+            value = attributes[name]
+            if not isinstance(value, str) or not _is_of_its_form(field.name, value):
+                raise ProvenanceError(f"attribute {name} is none of ours")
+            values[field.name] = value
         return cls(**values)
+
+
+def _is_of_its_form(name: str, value: str) -> bool:
+    if name in _FORMS:
+        return re.fullmatch(_FORMS[name], value, re.ASCII) is not None
+    try:
+        mapping = read_mapping(value)
+    except ValueError:
+        return False
+    if name == "configuration":
+        return all(re.fullmatch(r"[\w.-]{1,200}", key, re.ASCII) for key in dotted(mapping))
+    return all(
+        isinstance(part, str) and re.fullmatch(form, part, re.ASCII)
+        for item in mapping.items()
+        for form, part in zip(_MAPPINGS[name], item, strict=True)
+    )
+
+
+def read_mapping(text: str) -> dict[str, Any]:
+    """A mapping written as JSON.
+
+    Raises
+    ------
+    ValueError
+        If the text is none, or is longer than any of ours.
+    """
+    try:
+        mapping = json.loads(text) if len(text) <= _LONGEST else None
+    except RecursionError:
+        mapping = None
+    if not isinstance(mapping, dict):
+        raise ValueError("not a mapping in JSON")
+    return mapping
+
+
+def dotted(mapping: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Nested values by their keys in full.
+
+    Examples
+    --------
+    >>> dotted({"release": "force", "figures": {"fig11": {"restitution": 0.7}}})
+    {'release': 'force', 'figures.fig11.restitution': 0.7}
+    """
+    found: dict[str, Any] = {}
+    for key, value in mapping.items():
+        found |= (
+            dotted(value, f"{prefix}{key}.")
+            if isinstance(value, Mapping)
+            else {f"{prefix}{key}": value}
+        )
+    return found
+
+
+def changes(config: Mapping[str, Any], written: Mapping[str, Any]) -> dict[str, Any]:
+    """What a configuration changes in the written one, nested alike.
+
+    Examples
+    --------
+    >>> written = {"release": "force", "fig11": {"restitution": 0.85, "points": 11}}
+    >>> changes({"release": "force", "fig11": {"restitution": 0.7, "points": 11}}, written)
+    {'fig11': {'restitution': 0.7}}
+    """
+    found = {}
+    for key, value in config.items():
+        before = written.get(key)
+        if isinstance(value, Mapping) and isinstance(before, Mapping):
+            if inside := changes(value, before):
+                found[key] = inside
+        elif key not in written or digest(value) != digest(before):
+            found[key] = value
+    return found
 
 
 def digest(value: Any) -> str:
@@ -92,21 +184,22 @@ def digest(value: Any) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def dependent_digest(parameters: Mapping[str, Any], inherited: Iterable[str]) -> str:
+def dependent_digest(own: str, inherited: Iterable[str]) -> str:
     """Checksum of a job's own parameters and of those its inputs were made with.
 
-    A picture has the checksum of its dataset.
+    ``own`` is empty for a job without parameters: a picture has the checksum of
+    its dataset.
 
     Examples
     --------
-    >>> dependent_digest({}, ["ab12"])
+    >>> dependent_digest("", ["ab12"])
     'ab12'
-    >>> dependent_digest({"n": 1}, []) == digest({"n": 1})
+    >>> dependent_digest("", []) == digest({})
     True
     """
     parts = sorted(set(inherited))
-    if parameters or not parts:
-        parts = [digest(parameters), *parts]
+    if own or not parts:
+        parts = [own or digest({}), *parts]
     return parts[0] if len(parts) == 1 else digest(parts)
 
 
@@ -122,11 +215,14 @@ def file_digest(path: str | Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-def sources_digest(files: Iterable[str]) -> str:
-    """Checksum of modules of this package, wherever the package is."""
-    root = Path(bouncing_ball.__file__).resolve().parent
-    paths = sorted(Path(file).resolve() for file in files)
-    return digest({path.relative_to(root).as_posix(): file_digest(path) for path in paths})
+def sources_digest(files: Iterable[str | Path], repository: Path) -> str:
+    """Checksum of modules of this package, wherever it is, and files of the repository."""
+    package = Path(bouncing_ball.__file__).resolve().parent
+    found = {}
+    for path in (Path(file).resolve() for file in files):
+        root = package.parent if path.is_relative_to(package) else repository
+        found[path.relative_to(root).as_posix()] = file_digest(path)
+    return digest(found)
 
 
 def lock_digest(repository: Path) -> str:
@@ -138,65 +234,3 @@ def lock_digest(repository: Path) -> str:
 def versions() -> dict[str, str]:
     """Versions of Python and of the libraries that decide about the artifacts."""
     return {"python": platform.python_version(), **{name: version(name) for name in LIBRARIES}}
-
-
-def departure(repository: Path, config: Mapping[str, Any], files: Iterable[str]) -> str:
-    """What a run rests on that the tree of a repository does not hold, in words.
-
-    Parameters
-    ----------
-    repository : Path
-    config : mapping
-        The configuration in effect, in which Snakemake's options count.
-    files : iterable of str
-        Modules of this package that are at work.
-
-    Returns
-    -------
-    str
-        Empty if there is nothing.
-
-    Raises
-    ------
-    ConfigurationError
-        If the repository's own configuration cannot be read.
-    """
-    package = repository.resolve() / "src"
-    if not all(Path(file).resolve().is_relative_to(package) for file in files):
-        return "the package is not imported from src/ of the repository"
-    given, written = (
-        {key: value for key, value in mapping.items() if key != "reason"}
-        for mapping in (config, read_yaml(repository / CONFIGURATION))
-    )
-    return "" if digest(given) == digest(written) else f"the configuration is not {CONFIGURATION}"
-
-
-def gather(snakemake: Any, parameters: Mapping[str, Any], inherited: Iterable[str]) -> Provenance:
-    """The provenance of what a job is about to write.
-
-    ``parameters`` are the job's own, ``inherited`` the checksums of the
-    parameters of the datasets that it reads.
-    """
-    # The scripts are in workflow/scripts of the repository; the run may be
-    # anywhere.
-    repository = Path(snakemake.scriptdir).resolve().parents[1]
-    now = revision(repository)
-    sources = snakemake.input.get("source", [])
-    modules = set(sources)
-    inputs = {path: file_digest(path) for path in snakemake.input if path not in modules}
-    output = snakemake.output[0]
-    dirty = now.dirty
-    if dirty == "no" and departure(
-        repository, snakemake.config, [*sources, str(bouncing_ball.__file__)]
-    ):
-        dirty = "yes"
-    return Provenance(
-        commit=now.commit,
-        dirty=dirty,
-        target=output,
-        parameters=dependent_digest(parameters, inherited),
-        sources=sources_digest(sources),
-        lock=lock_digest(repository),
-        inputs=json.dumps(inputs, sort_keys=True),
-        versions=json.dumps(versions()),
-    )

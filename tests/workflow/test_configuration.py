@@ -79,13 +79,6 @@ FIG08, FIG05 = ("figures", "fig08"), ("figures", "fig05")
         (("studies", "evidence", "stiff_frequency_ratio"), 0, "ratio = 0 must be at least 0.01"),
         (("tables", "thresholds", "quantities"), ["height"], "'height' must be one of max_height"),
         (("figures", "fig11", "restitution"), 0.04, "= 0.04 must be greater than 0.0433"),
-        (("reason",), "", "reason = '' must be why the record changes, one line"),
-        (("reason",), "one\ntwo", "reason = 'one\\ntwo' must be why the record"),
-        (
-            ("reason",),
-            {"Eq. 8": "wrong"},
-            "must be a text (why the record changes, one line without a colon",
-        ),
         (("continuation", "initial_step"), 0.5, "must lie between smallest_step"),
     ],
 )

@@ -1,6 +1,10 @@
 """``bouncing-ball explain FILE``: where an artifact comes from, and how to make it again."""
 
+import hashlib
 import json
+import math
+import os
+import shlex
 from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from pathlib import Path
@@ -12,13 +16,28 @@ from bouncing_ball.record.provenance import (
     PREFIX,
     Provenance,
     ProvenanceError,
-    file_digest,
+    dotted,
     lock_digest,
+    read_mapping,
     versions,
 )
+from bouncing_ball.record.reading import UnreadableError, printable, read_file, reason
 from bouncing_ball.record.revision import UNKNOWN, checkout, revision
 
 _KINDS = {".nc": "dataset", ".png": "picture", ".svg": "picture", ".csv": "table", ".tex": "table"}
+_SEVERAL = "several"
+# Ignored by git, so that it does not mark the next run as dirty.
+_CHANGED = "results/configuration.json"
+
+
+def _check_file(path: Path) -> None:
+    try:
+        os.stat(path)
+        why = "a folder" if path.is_dir() else ""
+    except OSError as error:
+        why = "no such file" if isinstance(error, FileNotFoundError) else reason(error)
+    if why:
+        raise ProvenanceError(f"{printable(path)} cannot be read: {why}")
 
 
 def _carriers(path: Path) -> list[Path]:
@@ -32,7 +51,9 @@ def _carriers(path: Path) -> list[Path]:
         found = [path.with_suffix(".nc")] if path.with_suffix(".nc").is_file() else []
         wanted = f"{path.stem}.nc"
     if not found:
-        raise ProvenanceError(f"{path} is no artifact of this workflow: no {wanted} next to it")
+        raise ProvenanceError(
+            f"{printable(path)} is no artifact of this workflow: no {printable(wanted)} next to it"
+        )
     return found
 
 
@@ -41,72 +62,102 @@ def _common(all_of: list[Provenance]) -> Provenance:
     values = {
         field.name: {getattr(one, field.name) for one in all_of} for field in fields(Provenance)
     }
-    return Provenance(**{k: v.pop() if len(v) == 1 else "several" for k, v in values.items()})
+    return Provenance(**{k: v.pop() if len(v) == 1 else _SEVERAL for k, v in values.items()})
 
 
-def _mapping(text: str) -> dict[str, str]:
-    return json.loads(text) if text.startswith("{") else {}
+def _mapping(text: str) -> dict[str, Any]:
+    return {} if text == _SEVERAL else read_mapping(text)
 
 
-def _places(path: Path, recorded: str, repository: Path | None) -> Iterator[Path]:
+def _places(path: Path, recorded: str, repository: Path | None) -> Iterator[tuple[Path, str]]:
     """Where an input may be: next to the artifact, or at its path in the checkout."""
-    yield path.parent / Path(recorded).name
+    yield path.parent, Path(recorded).name
     if repository:
-        yield repository / recorded
+        yield repository, recorded
+
+
+def _state(path: Path, recorded: str, checksum: str, repository: Path | None) -> str:
+    for folder, name in _places(path, recorded, repository):
+        try:
+            content = read_file(folder, name)
+        except UnreadableError:
+            continue
+        return "unchanged" if hashlib.sha256(content).hexdigest() == checksum else "changed"
+    return "not found"
 
 
 def _inputs(path: Path, made: Provenance, repository: Path | None) -> list[dict[str, str]]:
-    answer = []
-    for recorded, checksum in _mapping(made.inputs).items():
-        found = [file for file in _places(path, recorded, repository) if file.is_file()]
-        if not found:
-            state = "not found"
-        else:
-            state = "unchanged" if file_digest(found[0]) == checksum else "changed"
-        answer.append({"path": recorded, "sha256": checksum, "state": state})
-    return answer
+    return [
+        {
+            "path": recorded,
+            "sha256": checksum,
+            "state": _state(path, recorded, checksum, repository),
+        }
+        for recorded, checksum in _mapping(made.inputs).items()
+    ]
 
 
 def _plain(value: Any) -> Any:
-    return value.tolist() if hasattr(value, "tolist") else value
+    """A value of an attribute as JSON has it; what JSON has not, as text."""
+    value = value.tolist() if hasattr(value, "tolist") else value
+    if isinstance(value, list):
+        return [_plain(part) for part in value]
+    finite = isinstance(value, float) and math.isfinite(value)
+    return value if finite or isinstance(value, int | str) else str(value)
 
 
 def _parameters(path: Path, made: Provenance, repository: Path | None) -> dict[str, Any]:
-    """The parameters, from the artifact's dataset where that is at hand."""
+    """The parameters, from the artifact's dataset where that is at hand and whole."""
     places = [path.with_suffix(".nc")]
     for recorded in _mapping(made.inputs):
-        places += _places(path, recorded, repository)
+        places += [folder / name for folder, name in _places(path, recorded, repository)]
     for place in places:
-        if place.suffix == ".nc" and place.is_file():
+        try:
             attributes = read_attributes(place)
-            if attributes.get(PREFIX + "parameters") == made.parameters:
-                return {
-                    name: _plain(value)
-                    for name, value in attributes.items()
-                    if not name.startswith(PREFIX) and name not in ("title", "references")
-                }
+        except ProvenanceError:
+            continue
+        if attributes.get(PREFIX + "parameters") == made.parameters:
+            return {
+                name: _plain(value)
+                for name, value in attributes.items()
+                if not name.startswith(PREFIX) and name not in ("title", "references")
+            }
     return {}
 
 
 def _commands(made: Provenance, target: str, checked_out: bool | None) -> list[str]:
+    """What makes a file again, to be pasted into a shell."""
     # Asked for by its name, a file that is up to date would not be made again.
-    make = f"snakemake --cores 2 --force {target}"
-    if checked_out or made.commit in ("unknown", "several"):
-        return [make]
-    return [f"git checkout {made.commit}", "make setup", make]
+    make = f"snakemake --cores 2 --force {shlex.quote(target)}"
+    commands = [make]
+    if changed := _mapping(made.configuration):
+        text = shlex.quote(json.dumps(changed))
+        write = f"mkdir -p results && printf '%s\\n' {text} > {_CHANGED}"
+        commands = [write, f"{make} --configfile {_CHANGED}"]
+    if checked_out or made.commit in ("unknown", _SEVERAL):
+        return commands
+    return [f"git checkout {made.commit}", "make setup", *commands]
+
+
+def _target(path: Path, made: Provenance) -> str:
+    """What to ask Snakemake for: the file's name in the results, or what it carries."""
+    if path.suffix in CARRIERS:
+        return made.target
+    return f"results/{'' if path.name == 'paper.md' else 'figures/'}{path.name}"
 
 
 def explain(path: Path) -> dict[str, Any]:
-    """Where an artifact comes from.
+    """Where an artifact comes from; all of it plain JSON.
+
+    The file may be anybody's, and what stands in it anything. Nothing of it is
+    run, and the commands are made of parts of known forms.
 
     Raises
     ------
     ProvenanceError
         If the file is not one of this workflow, or says nothing of it.
     """
-    if not path.is_file():
-        why = "a folder" if path.is_dir() else "no such file"
-        raise ProvenanceError(f"{path} cannot be read: {why}")
+    _check_file(path)
     carriers = _carriers(path)
     made = _common([read_provenance(carrier) for carrier in carriers])
     repository = checkout(Path.cwd(), Path(bouncing_ball.__file__).resolve())
@@ -115,15 +166,15 @@ def explain(path: Path) -> dict[str, Any]:
     checked_out = made.commit == now.commit if known else None
     lock = lock_digest(repository) if repository else "unknown"
     running = versions()
-    whole = f"results/figures/{path.name}" if path.suffix != ".md" else path.stem
-    target = made.target if carriers == [path] else whole
+    target = _target(path, made)
     return {
         "file": str(path),
         "artifact": f"{Path(target).stem}, a {_KINDS.get(path.suffix, 'text')}",
-        "told_by": str(carriers[0]) if len(carriers) == 1 else f"{len(carriers)} datasets",
+        "read_from": str(carriers[0]) if len(carriers) == 1 else f"{len(carriers)} datasets",
         "commit": made.commit,
         "checked_out": checked_out,
         "dirty": made.dirty,
+        "configuration": dotted(_mapping(made.configuration)),
         "parameters": {"sha256": made.parameters, "values": _parameters(path, made, repository)},
         "sources": made.sources,
         "lock": {
@@ -151,15 +202,18 @@ def _said(answer: bool | None, yes: str, no: str) -> str:
 def lines(answer: Mapping[str, Any]) -> list[str]:
     """The answer of :func:`explain` as a readable table."""
     tree = {"no": "clean", "yes": "dirty: the commit alone does not give this file"}
-    rows = [
+    changed = answer["configuration"]
+    rows: list[tuple[str, object]] = [
         ("file", answer["file"]),
         ("artifact", answer["artifact"]),
-        ("told by", answer["told_by"]),
+        ("read from", answer["read_from"]),
         (
             "commit",
             answer["commit"] + _said(answer["checked_out"], "checked out", "not checked out"),
         ),
         ("tree", tree.get(answer["dirty"], answer["dirty"])),
+        ("configuration", "config/config.yaml" + (" with other values:" if changed else "")),
+        *((f"  {name}", json.dumps(value)) for name, value in changed.items()),
         ("parameters", _checksum(answer["parameters"]["sha256"])),
         *((f"  {name}", value) for name, value in answer["parameters"]["values"].items()),
         ("sources", _checksum(answer["sources"])),
@@ -182,7 +236,9 @@ def lines(answer: Mapping[str, Any]) -> list[str]:
             )
             for name, item in answer["versions"].items()
         ),
-        ("make it again", " && ".join(answer["make_again"])),
     ]
-    width = max(32, max(len(name) for name, _ in rows) + 2)
-    return [f"{name:<{width}}{value}" for name, value in rows]
+    # What stands in a file moves no cursor; the commands are ours, and must stay whole.
+    shown = [(printable(name), printable(value)) for name, value in rows]
+    shown.append(("make it again", " && ".join(answer["make_again"])))
+    width = max(32, max(len(name) for name, _ in shown) + 2)
+    return [f"{name:<{width}}{value}" for name, value in shown]

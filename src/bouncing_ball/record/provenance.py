@@ -27,11 +27,11 @@ LOCK = "requirements.lock"
 LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib")
 
 _SHA256 = r"[0-9a-f]{64}"
-_PATH = r"(?!-)[\w.+/-]{1,300}"
+_PATH = r"(?![-/])(?!.*\.\.)[\w.+/-]{1,300}"
 _FORMS = {
     "commit": r"[0-9a-f]{40}|[0-9a-f]{64}|unknown",
     "dirty": "yes|no|unknown",
-    "target": _PATH,
+    "target": r"results/(\w{1,40}/)?\w{1,80}\.\w{1,4}",
     "parameters": _SHA256,
     "sources": _SHA256,
     "lock": f"{_SHA256}|unknown",

@@ -1,91 +1,337 @@
-"""The record is replaced as a whole or not at all."""
+"""What may become the record, and how it is replaced: as a whole, or completed by a rerun."""
 
 import csv
 import io
 import json
-import shutil
+import os
+import runpy
+import subprocess
+import sys
+from pathlib import Path
 
+import numpy as np
 import pytest
 
-from bouncing_ball.record import accept as record_module
+from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
 from bouncing_ball.record.accept import (
     COLUMNS,
     LOG,
-    RefusedError,
-    check_results,
-    check_run,
-    check_tree,
-    check_versions,
+    accept,
     commits,
     log_with,
+    made_from,
+    moved,
     replace_record,
 )
-from bouncing_ball.record.provenance import LIBRARIES, Provenance
+from bouncing_ball.record.diff.outcome import Outcome
+from bouncing_ball.record.proof import RefusedError, check_made, check_versions
+from bouncing_ball.record.provenance import LIBRARIES, Provenance, versions
+from bouncing_ball.record.recipe import Run
 from bouncing_ball.record.revision import UNKNOWN, Revision
 
-FILES = ["figures/fig01.png", "figures/fig02.png", "paper.md"]
+ROOT = Path(__file__).resolve().parents[2]
+SmallRun = runpy.run_path(str(ROOT / "tests" / "attack" / "provenance.py"))["SmallRun"]
+REASON = "Why, in a few words"
 
 
 @pytest.fixture
-def folders(tmp_path):
-    """A record and new results of the same files."""
-    for folder, text in (("record", "old"), ("results", "new")):
-        for file in FILES:
-            path = tmp_path / folder / file
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(f"{text} {file}", encoding="utf-8")
-    return tmp_path / "record", tmp_path / "results"
+def world(tmp_path, monkeypatch):
+    """A small run in the working directory, with versions that are locked."""
+    monkeypatch.chdir(tmp_path)
+    made = SmallRun(tmp_path).create()
+    lock = "\n".join(f"{name}=={version}" for name, version in versions().items())
+    (tmp_path / "requirements.lock").write_text(lock, encoding="utf-8")
+    return made.make()
 
 
-def contents(folder):
-    return {
-        str(path.relative_to(folder)): path.read_text(encoding="utf-8")
-        for path in folder.rglob("*")
-        if path.is_file()
+def accepted(world, reason=REASON, also="", now=None):
+    run = world.run()
+    run = Run(run.repository, now or run.now, run.configuration)
+    return accept(run, Path("results"), world.recipes(), world.files(), reason, also)
+
+
+def contents(*folders):
+    paths = [path for folder in folders for path in Path(folder).rglob("*")]
+    paths += [Path("paper.md"), Path(LOG)]
+    return {str(path): path.read_bytes() for path in paths if path.is_file()}
+
+
+def entries():
+    with open(LOG, encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def nudge(variable, name, by):
+    """Change one value of a dataset of the results, and make again what is made from it."""
+
+    def change(world):
+        path = Path("results/figures", f"{name}.nc")
+        data = read_dataset(path)
+        data[variable].values.flat[7 % data[variable].size] *= 1 + by
+        write_dataset(data, path)
+        world.sign(f"figures/{name}.nc")
+        world.make(f"{name}.png", f"{name}.csv")
+        world.make("paper.md")
+
+    return change
+
+
+within = nudge("threshold_amplitude", "fig11", 1e-15)
+drift = nudge("threshold_amplitude", "fig11", 1e-3)
+
+
+def refused(world, *parts, **arguments):
+    before = contents("figures")
+    with pytest.raises(RefusedError) as error:
+        accepted(world, **arguments)
+    said = str(error.value)
+    assert said.isprintable() and all(part in said for part in parts), said
+    assert contents("figures") == before
+
+
+def test_the_first_record_and_then_nothing(world, capsys):
+    accepted(world)
+    assert contents("figures").keys() == {*world.files(), LOG}
+    assert all(
+        Path(file).read_bytes() == Path("results", file).read_bytes() for file in world.files()
+    )
+    [entry] = entries()
+    assert (entry["number"], entry["commit"], entry["reason"]) == ("1", "c" * 40, REASON)
+    assert entry["changes"] == "fig11 new; paper new; thresholds new"
+    before = contents("figures")
+    assert accepted(world, reason="Again") == ["nothing to accept"]
+    assert "Nothing to accept" in capsys.readouterr().out and contents("figures") == before
+
+
+def test_what_is_within_its_budget_stays(world):
+    accepted(world)
+    before = contents("figures")
+    within(world)
+    assert Path("results/figures/fig11.nc").read_bytes() != before["figures/fig11.nc"]
+    assert accepted(world, reason="Another processor") == ["nothing to accept"]
+    assert contents("figures") == before
+
+
+@pytest.mark.parametrize("also", ["fig11", "all"])
+def test_what_is_within_its_budget_moves_if_asked_for(world, also):
+    accepted(world)
+    within(world)
+    refused(world, "no artifact fig99 to be copied", also="fig11 fig99")
+    accepted(world, reason="Asked for", also=also)
+    assert entries()[-1]["changes"] == "fig11 within budget"
+    assert Path("figures/fig11.nc").read_bytes() == Path("results/figures/fig11.nc").read_bytes()
+
+
+def test_what_has_moved_is_copied_and_named_and_nothing_else(world):
+    accepted(world)
+    before = contents("figures")
+    drift(world)
+    (Path("figures") / "old.png").write_bytes(b"of an older version")
+    lines = accepted(world, reason="Moved")
+    assert entries()[-1]["changes"] == "fig11 drifted; old removed"
+    after = contents("figures")
+    assert {name for name in after if after[name] != before.get(name)} == {
+        LOG,
+        *(f"figures/fig11.{kind}" for kind in ("nc", "png", "svg")),
     }
+    assert "removed figures/old.png" in lines and not Path("figures/old.png").exists()
 
 
-def test_everything_is_copied_and_what_is_stale_removed(folders):
-    record, results = folders
-    (record / "figures" / "fig99.png").write_text("stale", encoding="utf-8")
-    lines = replace_record(record, results, FILES, FILES, "the log")
-    assert contents(record) == contents(results) | {LOG: "the log"}
-    assert lines == [*FILES, "removed figures/fig99.png"]
+def test_a_text_moves_with_what_it_is_made_from(world):
+    accepted(world)
+    drift(world)
+    # A digit that may follow its data.
+    paper = Path("results/paper.md")
+    paper.write_text(paper.read_text(encoding="utf-8").replace("0.25", "0.26"), encoding="utf-8")
+    world.sign("paper.md")
+    accepted(world)
+    names = {part.split()[0] for part in entries()[-1]["changes"].split("; ")}
+    assert names == {"fig11", "paper"}
 
 
-def test_what_has_not_moved_stays(folders):
-    record, results = folders
-    lines = replace_record(record, results, FILES, FILES[:1], "the log")
-    assert lines == FILES[:1]
-    for file in FILES:
-        side = results if file == FILES[0] else record
-        expected = f"{'new' if side is results else 'old'} {file}"
-        assert (record / file).read_text(encoding="utf-8") == expected
+def test_which_artifacts_move():
+    outcomes = {
+        "fig05": Outcome.WITHIN, "fig08": Outcome.DRIFTED, "evidence": Outcome.WITHIN,
+        "claims": Outcome.WITHIN, "witness": Outcome.IDENTICAL, "paper": Outcome.WITHIN,
+        "fig99": Outcome.EXTRA, "old": Outcome.MISSING,
+    }  # fmt: skip
+    reads = {
+        "evidence": {"fig08"},
+        "claims": {"evidence"},
+        "witness": {"fig08"},
+        "paper": {"fig05"},
+    }
+    assert moved(outcomes, reads) == {"fig08", "fig99", "old", "evidence", "claims"}
+    assert moved(dict.fromkeys(outcomes, Outcome.WITHIN), reads) == set()
 
 
-def test_a_copy_that_fails_leaves_the_record_as_it_was(folders, monkeypatch):
-    record, results = folders
-    (record / LOG).write_text("before", encoding="utf-8")
-    (record / "figures" / "fig99.png").write_text("stale", encoding="utf-8")
-    before = contents(record)
-    copyfile = shutil.copyfile
+def test_what_is_made_from_what(world):
+    assert made_from(world.recipes()) == {
+        "fig11": set(), "thresholds": set(), "paper": {"fig11", "thresholds"}
+    }  # fmt: skip
 
-    def full(source, target):
-        if source.name == "paper.md":
-            raise OSError("no space left on device")
-        copyfile(source, target)
 
-    monkeypatch.setattr(record_module.shutil, "copyfile", full)
-    with pytest.raises(OSError, match="no space left"):
-        replace_record(record, results, FILES, FILES, "after")
-    assert contents(record) == before
+# What is refused, where it is decided.
+
+
+@pytest.mark.parametrize(
+    ("reason", "said"),
+    [("", "say why"), (" \t", "say why"), ("one\ntwo", "one line"), ("\x1b[2J", "one line")],
+)
+def test_a_reason_is_one_line(world, reason, said):
+    refused(world, said, reason=reason)
+
+
+@pytest.mark.parametrize("reason", ['costs $5: 100 % #1 `x` "q" it\'s', "ϖ → ∞", "- a, b; c"])
+def test_a_reason_is_recorded_as_it_is(world, reason):
+    accepted(world, reason=reason)
+    assert entries()[-1]["reason"] == reason
+
+
+def test_a_tree_that_is_no_commit(world):
+    refused(world, "the tree is dirty: commit first", now=Revision("c" * 40, "yes"))
+    refused(world, "no git repository", now=UNKNOWN)
+
+
+def edit_source(world):
+    Path("workflow/scripts/figure.py").write_text("# other\n", encoding="utf-8")
+
+
+def edit_configuration(world):
+    world.configure(fig11=0.7)
+
+
+def edit_lock(world):
+    path = Path("requirements.lock")
+    path.write_text(path.read_text(encoding="utf-8") + "\n# other", encoding="utf-8")
+
+
+def edit_dataset_and_log(world):
+    path = Path("results/figures/fig11.nc")
+    data = read_dataset(path)
+    data.threshold_amplitude.values[7] += 0.1
+    write_dataset(data, path)
+    world.sign("figures/fig11.nc")
+
+
+def edit_text(world):
+    path = Path("results/figures/thresholds.csv")
+    path.write_text(path.read_text(encoding="utf-8").replace("1", "2", 1), encoding="utf-8")
+
+
+def edit_table_and_log(world):
+    path = Path("results/figures/thresholds.md")
+    path.write_text(path.read_text(encoding="utf-8").replace("1", "2", 1), encoding="utf-8")
+    world.sign("figures/thresholds.md")
+
+
+def mix_pictures(world):
+    picture = Path("results/figures/fig11.svg").read_bytes()
+    edit_source(world)
+    world.make("fig11.png")
+    Path("results/figures/fig11.svg").write_bytes(picture)
+    world.sign("figures/fig11.svg")
+
+
+def make_dirty(world):
+    world.make("fig11.png", run=world.run(dirty="yes"))
+
+
+def make_dirty_text(world):
+    world.make("thresholds.csv", run=world.run(dirty="unknown"))
+
+
+def make_otherwise(world):
+    config = {"fig11": 0.7, "table": 1}
+    world.make("fig11.nc", run=world.run(config=config), config=config)
+
+
+def lose_a_log(world):
+    Path("results/logs/stages/paper.md.log").unlink()
+
+
+def lose_a_file(world):
+    Path("results/figures/fig11.svg").unlink()
+
+
+def add_a_file(world):
+    Path("results/figures/mine.png").write_bytes(b"")
+
+
+MADE = "made from other than this commit makes it from: "
+TAMPERED = [
+    (edit_source, ["fig11.png: ", MADE + "other sources; ", "--force results/figures/fig11.png"]),
+    (edit_configuration, ["fig11.nc: ", MADE + "other parameters"]),
+    (edit_lock, ["fig11.nc: ", MADE + "another requirements.lock; and 4 more; ", "--forceall"]),
+    (edit_dataset_and_log, ["fig11.png: ", MADE + "another results/figures/fig11.nc; and 1 more"]),
+    (edit_text, ["thresholds.csv: thresholds.csv is not what its job wrote; make again"]),
+    (edit_table_and_log, ["paper.md: ", MADE + "another results/figures/thresholds.md"]),
+    (mix_pictures, ["fig11.png: ", "its files are of different jobs"]),
+    (make_dirty, ["fig11.png: ", MADE + "the tree was dirty"]),
+    (make_dirty_text, ["thresholds.csv: ", MADE + "the commit is unknown"]),
+    (make_otherwise, ["fig11.nc: ", MADE + "configuration with another fig11, other parameters"]),
+    (lose_a_log, ["paper.md: paper.md is not what its job wrote"]),
+    (lose_a_file, ["fig11.png: no file results/figures/fig11.svg"]),
+    (add_a_file, ["results/figures/mine.png is not made by this workflow: remove it"]),
+]
+
+
+@pytest.mark.parametrize(
+    ("tamper", "said"), TAMPERED, ids=lambda value: getattr(value, "__name__", "")
+)
+@pytest.mark.parametrize("touched", [False, True])
+def test_results_that_the_commit_does_not_make(world, tamper, said, touched):
+    accepted(world)
+    tamper(world)
+    if touched:
+        # As `snakemake --touch` does; or as `cp -p` gives a source its old time.
+        for path in Path().rglob("*"):
+            os.utime(path, (1e9 + path.is_relative_to("results"), 1e9))
+    refused(world, *said)
+
+
+def test_times_of_files_and_other_commits_count_for_nothing(world):
+    for path in Path().rglob("*"):
+        os.utime(path, (1e9, 1e9 + path.is_relative_to("workflow")))
+    proven = check_made(world.recipes(), Run(world.folder, Revision("d" * 40, "no"), "{}"))
+    assert {made.commit for made in proven.values()} == {"c" * 40}
+
+
+def test_versions_that_are_not_locked(world, one_line):
+    found = {name: f"1.{number}" for number, name in enumerate(LIBRARIES)}
+    pins = [f"{name.lower()}=={version} \\" for name, version in found.items()]
+    one = {"a.png": Provenance(*"abcdefgh", versions=json.dumps({"python": "3.11"} | found))}
+    check_versions(one, "\n".join(pins))
+    # Another version for another system.
+    check_versions(one, "\n".join([*pins, "numpy==0.9 ; sys_platform == 'win32'"]))
+    for lock, said in (
+        ([*pins[1:], "numpy==1.00"], "a.png made with numpy 1.0, requirements.lock has 1.00: "),
+        (pins[:-1], "a.png made with matplotlib 1.4, requirements.lock has none: "),
+    ):
+        with pytest.raises(RefusedError) as error:
+            check_versions(one, "\n".join(lock))
+        one_line(error, said, "make setup")
+    Path("requirements.lock").write_text(f"numpy=={np.__version__}\n", encoding="utf-8")
+    world.make()
+    refused(world, "requirements.lock has none")
+
+
+def test_commits_the_most_frequent_first():
+    made = [Provenance(commit, *"bcdefghi") for commit in ("1f0e", "2a2a", "1f0e")]
+    assert commits(made, Revision("2a2a", "no")) == [
+        "2 files made at commit 1f0e, up to date but not the one checked out",
+        "1 files made at commit 2a2a",
+    ]
+
+
+# The record is replaced as a whole, or completed by a rerun.
 
 
 def test_the_log_grows_and_can_be_read_back():
     reasons = ["First", 'A "quoted" one, with a comma', "  Third "]
     text = ""
     for reason in reasons:
-        text = log_with(text, "1f0e", reason, {"fig08": "drifted", "fig03": "within budget"})
+        text = log_with(text, "1f0e", reason, {"fig08": Outcome.DRIFTED, "fig03": Outcome.WITHIN})
     header, *rows = csv.reader(io.StringIO(text))
     assert tuple(header) == COLUMNS
     assert [row[0] for row in rows] == ["1", "2", "3"]
@@ -93,48 +339,63 @@ def test_the_log_grows_and_can_be_read_back():
     assert {row[3] for row in rows} == {"fig03 within budget; fig08 drifted"}
 
 
-def made(commit, dirty="no"):
-    return Provenance(commit, dirty, *"cdefgh")
+def test_a_copy_that_fails_leaves_the_record_as_it_was(world):
+    accepted(world)
+    before = contents("figures")
+    missing = Path("results/figures/nothing.png")
+    with pytest.raises(FileNotFoundError):
+        replace_record(
+            Path(), Path("results"), [*world.files(), "figures/nothing.png"], [], "after"
+        )
+    assert contents("figures") == before and not missing.exists()
 
 
-def test_what_is_refused(one_line):
-    check_tree(Revision("1f0e", "no"))
-    check_results({"fig01.png": made("1f0e")})
-    for now, said in ((Revision("1f0e", "yes"), "dirty"), (UNKNOWN, "no git repository")):
-        with pytest.raises(RefusedError) as error:
-            check_tree(now)
-        one_line(error, said)
-    for dirty in ("yes", "unknown"):
-        with pytest.raises(RefusedError) as error:
-            check_results({"a.png": made("1f0e"), "b.png": made("1f0e", dirty)})
-        one_line(error, "b.png made from a dirty or unknown tree", "--forceall")
+# The program dies at its k-th renaming or removal, nothing cleaned up: as SIGKILL does.
+KILLED = """
+import os, pathlib, runpy, sys
+from pathlib import Path
+left = int(sys.argv[1])
+
+def dying(real):
+    def call(*arguments, **keywords):
+        global left
+        left -= 1
+        if left == 0:
+            os._exit(9)
+        return real(*arguments, **keywords)
+    return call
+
+from bouncing_ball.record import accept as module
+from bouncing_ball.datasets import atomic
+world = runpy.run_path(sys.argv[2])["SmallRun"](Path.cwd())
+atomic.os.replace = dying(os.replace)
+module.accept(world.run(), Path("results"), world.recipes(), world.files(), sys.argv[3], "")
+"""
 
 
-def test_a_run_on_more_than_the_commit_is_refused(tmp_path, one_line):
-    with pytest.raises(RefusedError) as error:
-        check_run(tmp_path, {})
-    one_line(error, "the package is not imported from src/", "accept what the commit alone makes")
-
-
-def test_versions_that_are_not_locked_are_refused(one_line):
-    versions = {name: f"1.{number}" for number, name in enumerate(LIBRARIES)}
-    lines = [f"{name.lower()}=={version} \\" for name, version in versions.items()]
-    one = {"a.png": Provenance(*"abcdefg", versions=json.dumps({"python": "3.11"} | versions))}
-    check_versions(one, "\n".join(lines))
-    # Another version for another system.
-    check_versions(one, "\n".join([*lines, "numpy==0.9 ; sys_platform == 'win32'"]))
-    for lock, said in (
-        ([*lines[1:], "numpy==1.00"], "a.png made with numpy 1.0, requirements.lock has 1.00: "),
-        (lines[:-1], "a.png made with matplotlib 1.4, requirements.lock has none: "),
-    ):
-        with pytest.raises(RefusedError) as error:
-            check_versions(one, "\n".join(lock))
-        one_line(error, said, "make setup")
-
-
-def test_commits_the_most_frequent_first():
-    lines = commits([made("1f0e"), made("2a2a"), made("1f0e")], Revision("2a2a", "no"))
-    assert lines == [
-        "2 files made at commit 1f0e, up to date but not the one checked out",
-        "1 files made at commit 2a2a",
+@pytest.mark.parametrize("at", range(1, 5))
+def test_an_acceptance_killed_at_any_rename_is_completed_by_the_next(world, at):
+    accepted(world)
+    drift(world)
+    before = contents("figures")
+    script = str(ROOT / "tests" / "attack" / "provenance.py")
+    done = subprocess.run(
+        [sys.executable, "-c", KILLED, str(at), script, "Moved"], capture_output=True, check=False
+    )
+    assert done.returncode == 9, done.stderr
+    assert list(Path("figures").glob(".*.part.*"))
+    accepted(world, reason="Moved")
+    assert {*contents("figures")} == {*before}
+    for file in world.files():
+        if "fig11" in file:
+            assert Path(file).read_bytes() == Path("results", file).read_bytes()
+    # One entry, which names all, however far it came.
+    assert [(entry["reason"], entry["changes"]) for entry in entries()[1:]] == [
+        ("Moved", "fig11 drifted")
     ]
+    assert accepted(world, reason="Moved") == ["nothing to accept"]
+
+
+def test_what_is_halfway_written_is_no_dirt():
+    ignored = (ROOT / ".gitignore").read_text(encoding="utf-8").splitlines()
+    assert ".*.part.*" in ignored

@@ -3,16 +3,7 @@
 #     REASON="…" snakemake --cores 1 accept
 # It has no output and no benchmark, so that it looks at the record each time.
 
-from bouncing_ball.record.recipe import Recipe
-
-
-def recipes(dag):
-    """What every file is made from by this workflow, to be compared with what it was."""
-    return [
-        Recipe.of(job, Path(str(job.rule.snakefile)).parent / job.rule.script)
-        for job in dag.jobs
-        if job.output
-    ]
+from bouncing_ball.record.recipe import planned
 
 
 rule accept:
@@ -23,7 +14,7 @@ rule accept:
         paper=rules.paper.output.paper,
     params:
         record=workflow.basedir,
-        recipes=lambda wildcards: recipes(workflow.dag),
+        recipes=lambda wildcards: planned(workflow.dag),
     log:
         "results/logs/accept.log",
     script:

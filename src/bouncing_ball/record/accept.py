@@ -32,6 +32,8 @@ from bouncing_ball.record.revision import Revision
 
 LOG = "accepted.csv"
 COLUMNS = ("number", "commit", "reason", "changes")
+# In the log, what the comparison calls missing goes, and what is extra comes.
+_IN_THE_LOG = {Outcome.MISSING: "removed", Outcome.EXTRA: "new"}
 ALL = "all"
 """In place of the names of artifacts that are copied although they have not moved."""
 
@@ -62,10 +64,15 @@ def commits(made: Iterable[Provenance], now: Revision) -> list[str]:
     ]
 
 
+def halfway(folder: Path) -> set[Path]:
+    """Temporary files that a killed program left in a folder."""
+    return set(folder.glob(".*.part.*"))
+
+
 def stale(folder: Path, wanted: Iterable[Path]) -> list[Path]:
     """Files of a folder that are not among the wanted ones."""
     kept = {path for path in folder.glob("*") if path.is_file()}
-    return sorted(kept - set(wanted))
+    return sorted(kept - halfway(folder) - set(wanted))
 
 
 def made_from(recipes: Iterable[Recipe]) -> dict[str, set[str]]:
@@ -108,7 +115,7 @@ def last_entry(text: str) -> Entry | None:
 
     Examples
     --------
-    >>> last_entry(log_with("", "1f0e", "Eq. 8, exact", {"fig03": "drifted"}))
+    >>> last_entry(log_with("", "1f0e", "Eq. 8, exact", {"fig03": Outcome.DRIFTED}))
     Entry(commit='1f0e', reason='Eq. 8, exact', names=frozenset({'fig03'}))
     """
     rows = list(csv.reader(io.StringIO(text)))[1:]
@@ -118,17 +125,19 @@ def last_entry(text: str) -> Entry | None:
     return Entry(commit, reason, frozenset(part.split()[0] for part in changes.split("; ")))
 
 
-def log_with(text: str, commit: str, reason: str, changes: Mapping[str, str]) -> str:
+def log_with(text: str, commit: str, reason: str, changes: Mapping[str, Outcome]) -> str:
     """The log with one entry more.
 
     Examples
     --------
-    >>> print(log_with("", "1f0e", "Eq. 8, exact", {"fig03": "drifted"}), end="")
+    >>> print(log_with("", "1f0e", "Eq. 8, exact", {"fig03": Outcome.DRIFTED}), end="")
     number,commit,reason,changes
     1,1f0e,"Eq. 8, exact",fig03 drifted
     """
     rows = list(csv.reader(io.StringIO(text))) or [list(COLUMNS)]
-    said = "; ".join(f"{name} {outcome}" for name, outcome in sorted(changes.items()))
+    said = "; ".join(
+        f"{name} {_IN_THE_LOG.get(outcome, outcome)}" for name, outcome in sorted(changes.items())
+    )
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerows([*rows, [len(rows), commit, reason.strip(), said]])
@@ -141,21 +150,28 @@ def replace_record(
     """Copy files over the record and remove others; the log comes first.
 
     Everything is copied under temporary names before: if that fails, the record
-    is as it was. Whoever is stopped between two renames has the entry in the
-    log, from which the next call knows what is missing (:func:`accept`).
+    is as it was. A program that is killed between two renames leaves the entry in
+    the log and a temporary file, by which the next one knows (:func:`begun`).
     """
     with ExitStack() as stack:
         for file in copied:
             shutil.copyfile(results / file, stack.enter_context(replacing(record / file)))
+        for path in removed:
+            stack.callback(path.unlink)
         # Entered last, so renamed first.
         stack.enter_context(replacing(record / LOG)).write_text(log, encoding="utf-8", newline="\n")
-    for path in removed:
+    for path in halfway(record) | halfway(record / "figures"):
         path.unlink()
     return [*copied, *(f"removed figures/{path.name}" for path in removed)]
 
 
-# In the log, what the comparison calls missing goes, and what is extra comes.
-_IN_THE_LOG = {Outcome.MISSING: "removed", Outcome.EXTRA: "new"}
+def begun(record: Path, log: str, commit: str, reason: str) -> frozenset[str]:
+    """What an acceptance of this commit for this reason, killed on its way, was to copy."""
+    left = halfway(record) | halfway(record / "figures")
+    last = last_entry(log)
+    if not left or last is None or (last.commit, last.reason) != (commit, reason):
+        return frozenset()
+    return last.names
 
 
 def compare(record: Path, results: Path) -> dict[str, Outcome]:
@@ -194,8 +210,8 @@ def accept(
     files : sequence of str
         What is published, relative to the results.
     reason : str
-        Why the record moves. The same reason at the same commit completes an
-        acceptance that was interrupted: what its entry names is copied.
+        Why the record moves. The same reason completes an acceptance that was
+        killed: the rest of what its entry names is copied.
     also : str
         Names of artifacts to be copied although they have not moved, or ``all``.
 
@@ -220,27 +236,24 @@ def accept(
 
     outcomes = compare(record, results)
     text = (record / LOG).read_text(encoding="utf-8") if (record / LOG).is_file() else ""
-    last = last_entry(text)
-    interrupted = last and (last.commit, last.reason) == (run.now.commit, reason.strip())
-    begun = last.names if last and interrupted else frozenset()
+    started = begun(record, text, run.now.commit, reason.strip())
     asked = outcomes.keys() if also == ALL else also.split()
     if unknown := set(asked) - outcomes.keys():
         raise RefusedError(f"no artifact {', '.join(sorted(unknown))} to be copied as well")
-    names = moved(outcomes, made_from(recipes)) | begun | set(asked)
+    names = moved(outcomes, made_from(recipes)) | started | set(asked)
     copied = [
         file
         for file in files
         if Path(file).stem in names and not _same(results / file, record / file)
     ]
     removed = stale(record / "figures", [record / file for file in files])
-    changes = {Path(file).stem for file in copied} | {path.stem for path in removed}
-    if not changes:
+    changed = {Path(file).stem for file in copied} | {path.stem for path in removed}
+    if not changed:
         print("Nothing to accept: the record says what the results say.")
         return ["nothing to accept"]
-    if not changes <= begun:
-        said = {name: outcomes.get(name, Outcome.MISSING) for name in changes}
-        said_ = {name: _IN_THE_LOG.get(outcome, str(outcome)) for name, outcome in said.items()}
-        text = log_with(text, run.now.commit, reason, said_)
+    if not changed <= started:
+        said = {name: outcomes.get(name, Outcome.MISSING) for name in changed}
+        text = log_with(text, run.now.commit, reason, said)
     lines = replace_record(record, results, copied, removed, text)
     print(f"Accepted, reason: {reason.strip()}", flush=True)
     return lines

@@ -92,17 +92,25 @@ def differences(made: Provenance, now: Provenance) -> list[str]:
     return found
 
 
-def _made_as_now(recipe: Recipe, run: Run) -> tuple[Provenance, list[str]]:
-    """What the files of a job say of where they come from, and where that is not so now."""
+def _objections(recipe: Recipe, run: Run) -> tuple[Provenance | None, list[str]]:
+    """What the files of a job say of where they come from, and what speaks against it."""
+    sums = read_log(Path(recipe.log)).sums
+    changed = [file for file in recipe.outputs if sums.get(file) != file_digest(file)]
+    if changed:
+        # Not opened: a damaged file can keep its library busy for ever.
+        return None, [f"{Path(file).name} is not what its job wrote" for file in changed]
     made, *others = recorded(recipe)
     if any(other != made for other in others):
         return made, ["its files are of different jobs"]
-    return made, differences(made, gather(recipe, run))
+    found = differences(made, gather(recipe, run))
+    return made, [f"made from other than this commit makes it from: {', '.join(found)}"][
+        : len(found)
+    ]
 
 
-def _written_so(recipe: Recipe) -> bool:
-    sums = read_log(Path(recipe.log)).sums
-    return all(sums.get(file) == file_digest(file) for file in recipe.outputs)
+def _said(error: Exception) -> str:
+    missing = isinstance(error, FileNotFoundError)
+    return f"no file {error.filename}" if missing else str(error)
 
 
 def _again(targets: Sequence[str]) -> str:
@@ -124,17 +132,13 @@ def check_made(recipes: Sequence[Recipe], run: Run) -> dict[str, Provenance]:
     refused: dict[str, str] = {}
     for recipe in recipes:
         try:
-            made, found = _made_as_now(recipe, run)
-            if not _written_so(recipe):
-                found = ["is not what its job wrote", *found]
-            elif found:
-                found[0] = f"made from other than this commit makes it from: {found[0]}"
+            made, found = _objections(recipe, run)
         except (ProvenanceError, OSError) as error:
-            found = [str(error)]
-        if found:
-            refused[recipe.target] = ", ".join(found)
-        else:
+            made, found = None, [_said(error)]
+        if made and not found:
             proven |= dict.fromkeys(recipe.outputs, made)
+        else:
+            refused[recipe.target] = ", ".join(found)
     if refused:
         first, why = next(iter(refused.items()))
         more = f"; and {len(refused) - 1} more" if len(refused) > 1 else ""

@@ -70,6 +70,15 @@ class Recipe:
         return self.outputs[0]
 
 
+def planned(dag: Any) -> list[Recipe]:
+    """The recipes of all jobs in Snakemake's plan that write files."""
+    return [
+        Recipe.of(job, Path(str(job.rule.snakefile)).parent / job.rule.script)
+        for job in dag.jobs
+        if job.output
+    ]
+
+
 @dataclass(frozen=True)
 class Run:
     """What all jobs of a run share: the checkout, its state, and its configuration."""

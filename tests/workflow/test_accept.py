@@ -1,24 +1,26 @@
-"""``accept``: what may become the record, and what is refused."""
+"""``accept`` as it is called; what it refuses is tested in tests/record/test_accept.py."""
 
 import csv
 import os
 import shutil
 import subprocess
-from importlib.metadata import version
 from pathlib import Path
 
 import pytest
 
+from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
 from bouncing_ball.record.diff.folders import compare_folders
-from bouncing_ball.record.diff.outcome import Outcome
 from bouncing_ball.record.diff.tolerance_file import read_tolerances
 
-REASON = "The reason, in a few words"
+REASON = """costs $5: "new" form of Eq. 8; it's `date` \\ 100 % #1"""
 
 
-def log(tree):
-    with open(tree.path / "accepted.csv", encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
+@pytest.fixture
+def tree(complete, monkeypatch):
+    """A complete run, and no reason or request left over from whoever runs the tests."""
+    for name in ("REASON", "ALSO"):
+        monkeypatch.delenv(name, raising=False)
+    return complete
 
 
 def record(tree):
@@ -29,179 +31,97 @@ def record(tree):
     }
 
 
-def says_the_same(tree):
-    """Whether the record has every file of the results, and says the same."""
-    files = [set(tree.contents(folder)) for folder in ("figures", "results/figures")]
-    rules = read_tolerances(tree.path / "config" / "tolerances.yaml")
-    outcome = compare_folders(tree.path, tree.path / "results", rules).outcome
-    return files[0] == files[1] and outcome is Outcome.IDENTICAL
-
-
-def refused(tree, *arguments):
+def refused(tree):
     """The one line of ours; nothing of the record is touched."""
     before = record(tree)
-    done = tree.run("--cores", "1", "accept", *arguments, check=False)
+    done = tree.run("--cores", "1", "accept", check=False)
     assert done.returncode == 1 and "Traceback" not in done.stdout + done.stderr
     assert record(tree) == before
-    said = [line for line in done.stderr.splitlines() if line.startswith("accept: ")]
-    assert len(said) == 1
-    return said[0]
+    [said] = [line for line in done.stderr.splitlines() if line.startswith("accept: ")]
+    return said
 
 
-def test_the_results_become_the_record(complete):
-    tree = complete
-    (tree.path / "figures" / "stale.png").write_bytes(b"from an older version")
-    done = tree.run("--cores", "1", "accept", "--config", f"reason={REASON}")
-    # First what there is to accept, and where it was made.
+def move(path, by):
+    """Change a value of a dataset of the record relatively, on purpose."""
+    data = read_dataset(path)
+    data.threshold_amplitude.values.flat[7] *= 1 + by
+    write_dataset(data, path)
+
+
+def test_what_has_moved_becomes_the_record(tree, monkeypatch):
+    figures = tree.path / "figures"
+    # As if the code had moved one, another processor nudged one, and one were no more.
+    move(figures / "fig11.nc", 1e-3)
+    nudged = figures / "fig02.nc"
+    data = read_dataset(nudged)
+    data.ball.values.flat[-1] *= 1 + 1e-15
+    write_dataset(data, nudged)
+    (figures / "old.png").write_bytes(b"from an older version")
+    before = nudged.read_bytes()
+    # What is missing is made first.
+    (tree.path / "results" / "figures" / "fig11.png").unlink()
+    assert "say why the record changes" in refused(tree)
+
+    monkeypatch.setenv("REASON", REASON)
+    done = tree.run("--cores", "1", "accept")
     commit = tree.git("rev-parse", "HEAD")
-    assert f"56 files made at commit {commit}\n" in done.stdout
-    assert "stale" in done.stdout and f"Accepted, reason: {REASON}" in done.stdout
-    assert says_the_same(tree)
-    entry = log(tree)[-1]
+    assert f"files made at commit {commit}\n" in done.stdout and REASON in done.stdout
+    with open(tree.path / "accepted.csv", encoding="utf-8", newline="") as file:
+        entry = list(csv.DictReader(file))[-1]
     assert (entry["commit"], entry["reason"]) == (commit, REASON)
-    assert "stale removed" in entry["changes"].split("; ")
-    # The record is no dirt, and the same results are nothing new.
-    before = record(tree)
-    again = tree.run("--cores", "1", "accept", "--config", "reason=Again")
-    assert "Nothing to accept" in again.stdout
-    assert record(tree) == before
-    # A second acceptance is a second entry.
-    (tree.path / "figures" / "fig08.png").unlink()
-    tree.run("--cores", "1", "accept", "--config", "reason=Lost")
-    last = log(tree)[-1]
-    assert int(last["number"]) == int(entry["number"]) + 1
-    assert (last["reason"], last["changes"]) == ("Lost", "fig08 new")
-    assert says_the_same(tree)
-    # Copied is what has moved, and nothing else.
+    assert {"fig11 drifted", "old removed"} <= set(entry["changes"].split("; "))
+    for name in ("fig11.nc", "fig11.png", "fig11.svg"):
+        assert (figures / name).read_bytes() == (tree.path / "results/figures" / name).read_bytes()
+    assert not (figures / "old.png").exists()
+    # Within its budget: neither copied nor named.
+    assert nudged.read_bytes() == before and "fig02" not in entry["changes"]
+
+    rules = read_tolerances(tree.path / "config" / "tolerances.yaml")
+    assert compare_folders(tree.path, tree.path / "results", rules).outcome.agrees
+    # The record is no dirt, and makes nothing again.
+    monkeypatch.setenv("REASON", "Again")
     after = record(tree)
-    moved = {name for name in after if after[name] != before.get(name)}
-    assert moved == {"accepted.csv", *(f"figures/fig08.{kind}" for kind in ("nc", "png", "svg"))}
+    done = tree.run("--cores", "1", "accept")
+    assert "Nothing to accept" in done.stdout and record(tree) == after
 
 
-def test_a_reason_runs_nothing_again(complete):
-    assert complete.planned("--config", "reason=Something") == set()
-
-
-def test_refused_without_a_reason(complete):
-    assert 'say why the record changes: --config reason="…"' in refused(complete)
-
-
-def test_refused_with_a_dirty_tree(complete):
-    (complete.path / "README.md").write_text("Not committed.\n", encoding="utf-8")
-    said = refused(complete, "--config", f"reason={REASON}")
-    assert "the tree is dirty: commit first" in said
-
-
-def test_refused_without_git(complete):
-    shutil.rmtree(complete.path / ".git")
-    assert "no git repository" in refused(complete, "--config", f"reason={REASON}")
-
-
-def test_refused_with_results_of_a_dirty_tree(complete):
-    readme = complete.path / "README.md"
-    before = readme.read_bytes()
-    readme.write_text("Not committed.\n", encoding="utf-8")
-    complete.run("--cores", "1", "--force", "fig01")
-    readme.write_bytes(before)
-    said = refused(complete, "--config", f"reason={REASON}")
-    assert "figures/fig01.png and 1 more made from a dirty or unknown tree" in said
-
-
-def test_refused_with_another_configuration(complete, tmp_path):
-    mine = tmp_path / "mine.yaml"
-    mine.write_text("figures:\n  fig11:\n    restitution: 0.7\n", encoding="utf-8")
-    assert refused(complete, "--configfile", str(mine), "--config", f"reason={REASON}") == (
-        "accept: the configuration is not config/config.yaml: accept what the commit alone makes "
-        "(details in results/logs/accept.log)"
-    )
-
-
-def test_refused_with_results_of_another_configuration(complete):
-    # No parameter of this figure, so that it is up to date without the option.
-    complete.run("--cores", "1", "--force", "fig01", "--config", "release=force")
-    said = refused(complete, "--config", f"reason={REASON}")
-    assert "figures/fig01.png and 1 more made from a dirty or unknown tree, or with anoth" in said
-
-
-def test_refused_with_another_package(complete, tmp_path, monkeypatch):
-    shutil.copytree(complete.path / "src", tmp_path / "src")
-    monkeypatch.setattr(
-        type(complete), "environment", lambda _: os.environ | {"PYTHONPATH": str(tmp_path / "src")}
-    )
-    said = refused(complete, "--config", f"reason={REASON}")
-    assert "the package is not imported from src/ of the repository: accept" in said
-
-
-def test_refused_with_versions_that_are_not_locked(complete):
-    path = complete.path / "requirements.lock"
-    text = path.read_text(encoding="utf-8")
-    pin = f"scipy=={version('scipy')}"
-    path.write_text(text.replace(pin, "scipy==0.1"), encoding="utf-8")
-    complete.commit("Another lock")
-    said = refused(complete, "--config", f"reason={REASON}")
-    assert f"made with scipy {version('scipy')}, requirements.lock has 0.1: make setup" in said
-
-
-def test_refused_with_a_file_that_nothing_makes(complete):
-    (complete.path / "results" / "figures" / "mine.png").write_bytes(b"")
-    said = refused(complete, "--config", f"reason={REASON}")
-    assert "results/figures/mine.png is not made by this workflow" in said
-
-
-def test_an_incomplete_result_is_made_first(complete):
-    for folder in ("figures", "results/figures"):
-        (complete.path / folder / "fig11.nc").unlink()
-    complete.run("--cores", "1", "accept", "--config", f"reason={REASON}")
-    assert says_the_same(complete)
-
-
-def test_results_of_several_commits_are_reported(complete):
-    first = complete.git("rev-parse", "HEAD")
-    (complete.path / "README.md").write_text("Other words.\n", encoding="utf-8")
-    second = complete.commit("Other words")
-    (complete.path / "figures" / "fig05.png").unlink()
-    complete.run("--cores", "1", "--force", "fig01")
-    done = complete.run("--cores", "1", "accept", "--config", f"reason={REASON}")
-    assert f"54 files made at commit {first}, up to date but not the one checked out" in done.stdout
-    assert f"2 files made at commit {second}\n" in done.stdout
-    assert log(complete)[-1]["commit"] == second
+def test_stale_results_are_refused_whatever_their_times(tree, monkeypatch):
+    monkeypatch.setenv("REASON", REASON)
+    tree.configure("figures", "fig11", "restitution", value=0.7)
+    with open(tree.path / "workflow" / "scripts" / "table.py", "a", encoding="utf-8") as file:
+        file.write("# edited\n")
+    tree.edit("render/figures/fig12.py")
+    tree.commit("Other results")
+    tree.run("--cores", "1", "--touch")
+    assert tree.planned() == set()
+    said = refused(tree)
+    assert "made from other than this commit makes it from: other " in said
+    # fig11's dataset, the pictures of fig12, and all tables.
+    assert "--forceall" in said
+    tree.run("--cores", "1", "--force", "results/figures/fig11.nc", "results/figures/fig12.png")
+    assert "results/figures/fig1" not in refused(tree)
 
 
 @pytest.mark.skipif(shutil.which("make") is None, reason="no make on this machine")
-@pytest.mark.parametrize("reason", ['the "new" form; it\'s', "`false` \\ $$(false)", ""])
-def test_make_hands_the_reason_over_as_it_is(tmp_path, reason):
-    # In place of Snakemake, what says with which arguments it was called.
+@pytest.mark.parametrize("origin", ["command line", "environment"])
+@pytest.mark.parametrize(
+    "reason", [REASON, "$(shell touch made) ${HOME} $$ $(date)", "`touch made`; touch made", ""]
+)
+def test_make_hands_the_reason_over_as_it_is_typed(tmp_path, reason, origin):
+    # In place of Snakemake, what says with which arguments and reason it was called.
     program = tmp_path / "bin" / "snakemake"
     program.parent.mkdir()
-    program.write_text('#!/bin/sh\nprintf "%s\\n" "$@"\n', encoding="utf-8")
+    program.write_text('#!/bin/sh\nprintf "%s\\n" "$@" "$REASON"\n', encoding="utf-8")
     program.chmod(0o755)
     makefile = Path(__file__).resolve().parents[2] / "Makefile"
+    typed = [f"REASON={reason}"] if origin == "command line" else []
     done = subprocess.run(
-        ["make", "--silent", "-f", makefile, "accept", "SETUP=", "VENV=.", f"REASON={reason}"],
+        ["make", "--silent", "-f", makefile, "accept", "SETUP=", "VENV=.", *typed],
         cwd=tmp_path,
+        env=os.environ | ({} if typed else {"REASON": reason}),
         capture_output=True,
         text=True,
         check=True,
     )
-    expected = f"reason={reason.replace('$$', '$')}"
-    assert done.stdout.splitlines() == ["--cores", "1", "accept", "--config", expected]
-
-
-@pytest.mark.parametrize("reason", ["", "Eq. 8: sign"])
-def test_a_reason_that_is_no_line_is_a_mistake_of_the_configuration(complete, reason):
-    before = record(complete)
-    done = complete.run("--cores", "1", "accept", "--config", f"reason={reason}", check=False)
-    assert done.returncode == 1 and "configuration: reason = " in done.stderr
-    assert record(complete) == before
-
-
-@pytest.mark.parametrize("file", ["figures/fig12.nc", "figures/table1.md", "paper.md"])
-def test_refused_with_a_file_changed_by_hand(complete, file):
-    (complete.path / "figures" / "fig05.png").unlink()
-    path = complete.path / "results" / file
-    path.write_bytes(path.read_bytes() + b" ")
-    # Nothing looks newer than it is, so that nothing is made again.
-    times = (complete.path / "results" / "figures" / "fig12.png").stat()
-    os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns - 10**9))
-    said = refused(complete, "--config", f"reason={REASON}")
-    assert f"results/{file} is not what its job wrote: remove it" in said
+    assert done.stdout.splitlines() == ["--cores", "1", "accept", reason]
+    assert not (tmp_path / "made").exists()

@@ -108,11 +108,6 @@ def _objections(recipe: Recipe, run: Run) -> tuple[Provenance | None, list[str]]
     ]
 
 
-def _said(error: Exception) -> str:
-    missing = isinstance(error, FileNotFoundError)
-    return f"no file {error.filename}" if missing else str(error)
-
-
 def _again(targets: Sequence[str]) -> str:
     what = f"--force {' '.join(targets)}" if len(targets) <= _NAMED else "--forceall"
     return f"make again: snakemake --cores 2 {what}"
@@ -133,8 +128,10 @@ def check_made(recipes: Sequence[Recipe], run: Run) -> dict[str, Provenance]:
     for recipe in recipes:
         try:
             made, found = _objections(recipe, run)
+        except FileNotFoundError as error:
+            made, found = None, [f"no file {error.filename}"]
         except (ProvenanceError, OSError) as error:
-            made, found = None, [_said(error)]
+            made, found = None, [str(error)]
         if made and not found:
             proven |= dict.fromkeys(recipe.outputs, made)
         else:

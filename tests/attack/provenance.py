@@ -50,7 +50,8 @@ class SmallRun:
             script.write_text(f"# {name}\n", encoding="utf-8")
         (self.folder / "config").mkdir()
         shutil.copy(ROOT / "config" / "tolerances.yaml", self.folder / "config")
-        shutil.copy(ROOT / "requirements.lock", self.folder)
+        if not (self.folder / "requirements.lock").exists():
+            shutil.copy(ROOT / "requirements.lock", self.folder)
         self.configure(fig11=0.85)
         return self.make()
 

@@ -1,10 +1,12 @@
 """What may become the record, and how it is replaced: as a whole, or completed by a rerun."""
 
+import contextlib
 import csv
 import io
 import json
 import os
 import runpy
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -34,14 +36,24 @@ SmallRun = runpy.run_path(str(ROOT / "tests" / "attack" / "provenance.py"))["Sma
 REASON = "Why, in a few words"
 
 
-@pytest.fixture
-def world(tmp_path, monkeypatch):
-    """A small run in the working directory, with versions that are locked."""
-    monkeypatch.chdir(tmp_path)
-    made = SmallRun(tmp_path).create()
+@pytest.fixture(scope="module")
+def template(tmp_path_factory):
+    """A small run, with versions that are locked."""
+    folder = tmp_path_factory.mktemp("template")
     lock = "\n".join(f"{name}=={version}" for name, version in versions().items())
-    (tmp_path / "requirements.lock").write_text(lock, encoding="utf-8")
-    return made.make()
+    with contextlib.chdir(folder):
+        (folder / "requirements.lock").write_text(lock, encoding="utf-8")
+        SmallRun(folder).create()
+    return folder
+
+
+@pytest.fixture
+def world(template, tmp_path, monkeypatch):
+    """A small run in the working directory, that a test may change."""
+    folder = tmp_path / "world"
+    shutil.copytree(template, folder)
+    monkeypatch.chdir(folder)
+    return SmallRun(folder)
 
 
 def accepted(world, reason=REASON, also="", now=None):
@@ -331,7 +343,7 @@ def test_the_log_grows_and_can_be_read_back():
     reasons = ["First", 'A "quoted" one, with a comma', "  Third "]
     text = ""
     for reason in reasons:
-        text = log_with(text, "1f0e", reason, {"fig08": Outcome.DRIFTED, "fig03": Outcome.WITHIN})
+        text = log_with(text, "1f0e", reason, {"fig08": "drifted", "fig03": "within budget"})
     header, *rows = csv.reader(io.StringIO(text))
     assert tuple(header) == COLUMNS
     assert [row[0] for row in rows] == ["1", "2", "3"]

@@ -32,8 +32,6 @@ from bouncing_ball.record.revision import Revision
 
 LOG = "accepted.csv"
 COLUMNS = ("number", "commit", "reason", "changes")
-# In the log, what the comparison calls missing goes, and what is extra comes.
-_IN_THE_LOG = {Outcome.MISSING: "removed", Outcome.EXTRA: "new"}
 ALL = "all"
 """In place of the names of artifacts that are copied although they have not moved."""
 
@@ -115,7 +113,7 @@ def last_entry(text: str) -> Entry | None:
 
     Examples
     --------
-    >>> last_entry(log_with("", "1f0e", "Eq. 8, exact", {"fig03": Outcome.DRIFTED}))
+    >>> last_entry(log_with("", "1f0e", "Eq. 8, exact", {"fig03": "drifted"}))
     Entry(commit='1f0e', reason='Eq. 8, exact', names=frozenset({'fig03'}))
     """
     rows = list(csv.reader(io.StringIO(text)))[1:]
@@ -125,19 +123,17 @@ def last_entry(text: str) -> Entry | None:
     return Entry(commit, reason, frozenset(part.split()[0] for part in changes.split("; ")))
 
 
-def log_with(text: str, commit: str, reason: str, changes: Mapping[str, Outcome]) -> str:
+def log_with(text: str, commit: str, reason: str, changes: Mapping[str, str]) -> str:
     """The log with one entry more.
 
     Examples
     --------
-    >>> print(log_with("", "1f0e", "Eq. 8, exact", {"fig03": Outcome.DRIFTED}), end="")
+    >>> print(log_with("", "1f0e", "Eq. 8, exact", {"fig03": "drifted"}), end="")
     number,commit,reason,changes
     1,1f0e,"Eq. 8, exact",fig03 drifted
     """
     rows = list(csv.reader(io.StringIO(text))) or [list(COLUMNS)]
-    said = "; ".join(
-        f"{name} {_IN_THE_LOG.get(outcome, outcome)}" for name, outcome in sorted(changes.items())
-    )
+    said = "; ".join(f"{name} {change}" for name, change in sorted(changes.items()))
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerows([*rows, [len(rows), commit, reason.strip(), said]])
@@ -189,6 +185,11 @@ def compare(record: Path, results: Path) -> dict[str, Outcome]:
     comparison = compare_folders(record, results, rules)
     print(to_terminal(comparison), end="", flush=True)
     return {artifact.name: artifact.outcome for artifact in comparison.artifacts}
+
+
+def _change(outcome: Outcome) -> str:
+    """What the log calls it: for the record, what is extra in the results is new."""
+    return "new" if outcome is Outcome.EXTRA else str(outcome)
 
 
 def _same(one: Path, other: Path) -> bool:
@@ -252,7 +253,10 @@ def accept(
         print("Nothing to accept: the record says what the results say.")
         return ["nothing to accept"]
     if not changed <= started:
-        said = {name: outcomes.get(name, Outcome.MISSING) for name in changed}
+        made_now = {Path(file).stem for file in files}
+        said = {
+            name: _change(outcomes[name]) if name in made_now else "removed" for name in changed
+        }
         text = log_with(text, run.now.commit, reason, said)
     lines = replace_record(record, results, copied, removed, text)
     print(f"Accepted, reason: {reason.strip()}", flush=True)

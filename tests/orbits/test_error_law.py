@@ -15,6 +15,8 @@ from bouncing_ball.orbits.error_law import (
     coefficients,
     first_order,
     permanent_contact_coefficient,
+    scale,
+    small_parameter,
 )
 
 RELEASES = list(Release)
@@ -78,6 +80,28 @@ def test_the_papers_orbit():
         "saddle_node": 60.2,
         "period_doubling": 15.8,
     }
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_the_remainder_where_the_law_is_stated_to_hold(release):
+    """|error - K| ≤ M S δ for δ < 0.3, in the whole stable range, ϖ from 1 to 10⁴."""
+    rng = np.random.default_rng(31)
+    size = 2000
+    r = rng.uniform(0.05 if release is Release.DISPLACEMENT else 0.14, 0.98, size)
+    n, zeta = rng.integers(1, 6, size), damping_ratio(r, release)
+    low, high = restitution_orbit.saddle_node(n, r), restitution_orbit.period_doubling(n, r)
+    lam = low + rng.uniform(0, 1, size) * (high - low)
+    contact = Contact(10 ** rng.uniform(0, 4, size), zeta, release)
+    instant = LinearSignature(contact)()
+    small = small_parameter(n, instant, lam)
+    stated = small < 0.3
+    assert stated.mean() > 0.5
+    errors = np.array(relative_errors(n, contact, r, lam))
+    off = np.abs(errors - np.array(first_order(n, instant, lam)))
+    factor = off / (np.array(scale(n, instant, lam)) * small)
+    bound = {name: 4.0 if name == "phase" else 2.0 for name in FirstOrder._fields}
+    for name, values in zip(FirstOrder._fields, factor, strict=True):
+        assert np.all(values[stated] < bound[name]), (name, values[stated].max())
 
 
 @pytest.mark.parametrize("release", RELEASES)

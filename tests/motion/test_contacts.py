@@ -13,7 +13,6 @@ from bouncing_ball.motion.contacts import contact_cycle, simulate
 from bouncing_ball.motion.history import history
 from bouncing_ball.motion.sequence import Status
 from bouncing_ball.orbits.limits import Side, orbit_at
-from bouncing_ball.orbits.monodromy import monodromy
 
 CASES = [
     # n, r, ϖ, Λ
@@ -97,7 +96,7 @@ def test_jacobian_is_the_monodromy(case, release):
     after = np.array([cycle.phase, cycle.relative_velocity])
     columns = [(after[:, k] - after[:, k + 1]) / (2 * step) for k in (0, 2)]
     # Central differences: step² times third derivatives, up to 100, and rounding over step.
-    np.testing.assert_allclose(np.transpose(columns), monodromy(orbit), rtol=0, atol=1e-7)
+    np.testing.assert_allclose(np.transpose(columns), orbit.monodromy(), rtol=0, atol=1e-7)
 
 
 @pytest.mark.parametrize("case", CASES[:3])
@@ -109,7 +108,7 @@ def test_the_stable_orbit_holds_and_the_unstable_one_is_left(case):
     assert abs(sequence.time[-1] - 100 * np.pi * case[0]) < 1e-11
 
     contact, lam, orbit = build(case, Release.DISPLACEMENT, Side.UNSTABLE)
-    values, vectors = np.linalg.eig(monodromy(orbit))
+    values, vectors = np.linalg.eig(orbit.monodromy())
     k = np.argmax(np.abs(values))
     multiplier, direction = values[k].real, vectors[:, k].real
     assert multiplier > 1

@@ -6,12 +6,12 @@ import pytest
 from bouncing_ball.continuation.corrector import NewtonSettings
 from bouncing_ball.impacts.spring_damper import Contact, Release, contact_flow
 from bouncing_ball.motion.gap import clearance, gap
-from bouncing_ball.orbits.admissibility import is_admissible, restitution_is_admissible
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
 from bouncing_ball.orbits.grazing import grazing_points
 from bouncing_ball.orbits.limits import Side, orbit_at
+from bouncing_ball.orbits.restitution_orbit import RestitutionOrbit
 
 SHARES = np.linspace(0, 1, 2001)[1:-1, np.newaxis]
 
@@ -49,19 +49,19 @@ def test_random_orbits_against_samples(release):
     excess = duration * omega * np.sqrt(1 - zeta**2) - free
     contact = Contact(omega, zeta, release)
     orbit = ContactOrbit.from_branch(branch_point(excess, contact, n), contact, n)
-    admissible = is_admissible(orbit)
+    admissible = orbit.is_admissible()
     assert np.array_equal(admissible, sampled(orbit))
     assert 0.2 < admissible.mean() < 0.8
 
 
 def test_missing_orbits_are_not_admissible():
     orbit = orbit_at(Contact(10.0, 0.1), 1, np.array([0.1, 1.0]))
-    assert is_admissible(orbit).tolist() == [False, True]
+    assert orbit.is_admissible().tolist() == [False, True]
 
 
 def test_undamped_resonance_is_sampled():
     orbit = orbit_at(Contact(1.0, 0.0), 1, np.array([0.8, 0.9]))
-    assert is_admissible(orbit).tolist() == [True, True]
+    assert orbit.is_admissible().tolist() == [True, True]
 
 
 @pytest.mark.parametrize(("omega", "r_zeta", "release"), [(10.0, 0.05, r) for r in Release])
@@ -71,7 +71,7 @@ def test_grazing_is_located(omega, r_zeta, release):
     lam = np.linspace(1.9, 2.4, 6)
     orbit = orbit_at(Contact(omega, r_zeta, release), 1, lam, Side.UNSTABLE)
     y = np.stack([orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration, lam], axis=-1)
-    found = grazing_points(system, lambda y: is_admissible(system.orbit(y)), y, NewtonSettings())
+    found = grazing_points(system, lambda y: system.orbit(y).is_admissible(), y, NewtonSettings())
     assert len(found) == 1
     at = system.orbit(found[0])
     left = clearance(
@@ -109,7 +109,7 @@ def test_restitution_orbits_graze():
     lam = np.linspace(0.3, 4.0, 200)
     fold = np.pi * 0.15 / 1.85
     phase = -np.arccos(fold / lam)
-    admissible = restitution_is_admissible(1, lam, phase)
+    admissible = RestitutionOrbit.at(1, 0.85, lam, phase).is_admissible()
     assert admissible[0] and not admissible[-1]
     assert np.sum(np.diff(admissible.astype(int)) != 0) == 1
     time = np.linspace(0, 2 * np.pi, 4001)[1:-1, np.newaxis]

@@ -11,7 +11,6 @@ from bouncing_ball.impacts.spring_damper import Contact, Release, responses
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
-from bouncing_ball.orbits.monodromy import monodromy
 from bouncing_ball.orbits.stability import trace_and_determinant
 
 EPS = np.finfo(float).eps
@@ -114,6 +113,23 @@ def test_contact_filling_the_cycle_is_permanent_contact(n):
         assert 0 < -float(point.u) < flight
 
 
+@pytest.mark.parametrize(("omega", "zeta"), [(2.0, 0.05), (5.0, 0.1), (3.0, 0.4)])
+def test_a_contact_of_several_periods_opens_in_every_one(omega, zeta):
+    # As D → 2πn: one orbit of the ball for n = 1, none for n ≥ 2, whose contact
+    # is over after one period, when δ becomes positive.
+    contact = Contact(omega, zeta)
+    for n in (1, 2, 3):
+        duration = 2 * np.pi * n - 0.05
+        excess = float(duration * contact.damped_frequency - contact.free_angle)
+        orbit = ContactOrbit.from_branch(branch_point(excess, contact, n), contact, n)
+        assert orbit.defect() < 1e-10
+        assert bool(orbit.is_admissible()) == (n == 1)
+        touches = 2 * np.pi * np.arange(1, n) - 0.05 / 2
+        time = touches[:, np.newaxis] + np.linspace(-0.05, 0.05, 201)
+        flow = contact.flow(time, 0.0, orbit.relative_impact_velocity, orbit.phase, orbit.amplitude)
+        assert np.all(flow.displacement.max(axis=1) > 0)
+
+
 def test_elastic_contact_of_half_a_period():
     # ζ = 0, ε = 0: the velocity is reversed whatever the forces, if these
     # vanish over the contact: Λ sin φ → 1 balances gravity.
@@ -131,7 +147,7 @@ def test_trace_and_determinant_are_those_of_the_linearised_flow(log_omega, zeta,
     point = branch_point(excess, contact, n)
     if not (0 < point.contact_duration < 2 * np.pi * n - 0.1 and point.u < -0.1):
         return
-    matrix = monodromy(ContactOrbit.from_branch(point, contact, n))
+    matrix = ContactOrbit.from_branch(point, contact, n).monodromy()
     # Both lose digits where the ball leaves slowly, and entries are large.
     scale = 1 + np.abs(matrix).max() ** 2
     trace, det = trace_and_determinant(matrix)

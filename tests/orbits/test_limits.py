@@ -12,6 +12,7 @@ from bouncing_ball.impacts.damping import damping_ratio
 from bouncing_ball.impacts.spring_damper import Contact, Release, responses
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.closed_form import branch_point
+from bouncing_ball.orbits.contact_model import ContactModel
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
 from bouncing_ball.orbits.limits import (
@@ -20,10 +21,8 @@ from bouncing_ball.orbits.limits import (
     absence,
     orbit_at,
     period_doubling,
-    require_orbit,
     saddle_node,
 )
-from bouncing_ball.orbits.monodromy import monodromy
 from bouncing_ball.orbits.stability import (
     is_stable,
     period_doubling_function,
@@ -42,7 +41,7 @@ releases = st.sampled_from(list(Release))
 
 
 def stability(orbit):
-    return trace_and_determinant(monodromy(orbit))
+    return trace_and_determinant(orbit.monodromy())
 
 
 def stable(orbit):
@@ -254,7 +253,7 @@ def test_missing_orbits_are_marked_among_others():
 
 def test_a_required_orbit_is_that_of_the_stable_side():
     contact = Contact(10.0, 0.05)
-    orbit = require_orbit(contact, 1, 0.9)
+    orbit = ContactModel(contact).require_orbit(1, 0.9)
     assert float(orbit.contact_duration) == float(orbit_at(contact, 1, 0.9).contact_duration)
     assert stable(orbit)
 
@@ -262,20 +261,20 @@ def test_a_required_orbit_is_that_of_the_stable_side():
 def test_a_required_orbit_that_is_missing(one_line):
     contact = Contact(10.0, float(damping_ratio(0.85)))
     with pytest.raises(NoOrbitError) as error:
-        require_orbit(contact, 1, 0.2)
+        ContactModel(contact).require_orbit(1, 0.2)
     # The saddle-node of the model notes' table, 0.2400.
     one_line(error, "no 1-T orbit at Λ = 0.2 for ϖ = 10", "below the saddle-node at Λ = 0.239988")
     # Without a saddle-node Λ ends at permanent contact, 0.97, on its one side.
     soft = Contact(2.592, float(damping_ratio(0.0893)))
     with pytest.raises(NoOrbitError) as error:
-        require_orbit(soft, 1, 0.5)
+        ContactModel(soft).require_orbit(1, 0.5)
     one_line(error, "no 1-T orbit at Λ = 0.5 for ϖ = 2.592", "does not reach this Λ")
     with pytest.raises(NoOrbitError) as error:
-        require_orbit(soft, 1, 2.5, Side.UNSTABLE)
+        ContactModel(soft).require_orbit(1, 2.5, Side.UNSTABLE)
     one_line(error, "Λ = 2.5", "no saddle-node, and so no other side")
     # The unstable side of r = 0.85, ϖ = 2 turns at Λ = 1.176.
     with pytest.raises(NoOrbitError) as error:
-        require_orbit(Contact(2.0, float(damping_ratio(0.85))), 1, 1.3, Side.UNSTABLE)
+        ContactModel(Contact(2.0, float(damping_ratio(0.85)))).require_orbit(1, 1.3, Side.UNSTABLE)
     one_line(error, "Λ = 1.3", "does not reach this Λ")
 
 

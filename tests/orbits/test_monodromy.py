@@ -11,7 +11,6 @@ from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.limits import Side, orbit_at
-from bouncing_ball.orbits.monodromy import monodromy
 from bouncing_ball.orbits.stability import trace_and_determinant
 
 CASES = [
@@ -52,7 +51,7 @@ def test_against_differences_of_the_return_map(case, side, release, reference):
         weights @ np.array([cycle(*(k * h * np.array(axis))) for k in (-2, -1, 1, 2)])
         for axis in ((1, 0), (0, 1))
     ]
-    computed = monodromy(orbit)
+    computed = orbit.monodromy()
     # h⁴/30 times a fifth derivative, up to 1e4 where |u| is small, and the
     # map's own 1e-13 over h.
     assert computed == pytest.approx(np.array(columns).T, abs=1e-9 * (1 + np.abs(computed).max()))
@@ -72,7 +71,7 @@ def test_determinant_is_the_contraction_of_the_contact(n, r, log_omega, release,
     orbit = ContactOrbit.from_branch(point, contact, n)
     leaving = abs(float(orbit.relative_bounce_velocity))
     assume(leaving > 1e-3)  # the contact's end is not differentiable at zero
-    matrix = monodromy(orbit)
+    matrix = orbit.monodromy()
     expected = np.exp(-2 * zeta * omega * float(orbit.contact_duration))
     det = float(trace_and_determinant(matrix)[1])
     # Products of entries cancel in the determinant; each entry has lost about
@@ -89,7 +88,7 @@ def test_stiff_limit_is_the_restitution_map(n, r, lam):
     errors = []
     for omega in (1e4, 1e5):
         orbit = orbit_at(Contact(omega, zeta), n, lam)
-        errors.append(np.array(trace_and_determinant(monodromy(orbit))) - expected)
+        errors.append(np.array(trace_and_determinant(orbit.monodromy())) - expected)
     # First order in 1/ϖ; the next order changes the ratio by 1e-4 or so.
     assert np.abs(errors[0]).max() < 100 / 1e4
     assert errors[1] / errors[0] == pytest.approx([0.1, 0.1], abs=2e-3)
@@ -97,7 +96,7 @@ def test_stiff_limit_is_the_restitution_map(n, r, lam):
 
 def test_shape_follows_the_orbits():
     orbits = orbit_at(Contact(np.array([5.0, 50.0]), 0.1), 1, np.array([[0.9], [1.0], [1.1]]))
-    matrices = monodromy(orbits)
+    matrices = orbits.monodromy()
     assert matrices.shape == (3, 2, 2, 2)
-    single = monodromy(orbit_at(Contact(50.0, 0.1), 1, 1.1))
+    single = orbit_at(Contact(50.0, 0.1), 1, 1.1).monodromy()
     assert matrices[2, 1] == pytest.approx(single, rel=1e-10)

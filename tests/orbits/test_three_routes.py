@@ -8,11 +8,9 @@ from bouncing_ball.impacts.damping import damping_ratio
 from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.motion.contacts import contact_cycle
 from bouncing_ball.orbits import restitution_orbit as restitution
-from bouncing_ball.orbits.admissibility import is_admissible
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
 from bouncing_ball.orbits.limits import Absence, Side, absence, orbit_at
-from bouncing_ball.orbits.monodromy import monodromy
 
 # For each of two rules and two sides.
 SIZES = [1_000, pytest.param(25_000, marks=pytest.mark.long)]
@@ -96,7 +94,7 @@ def test_newton_on_the_full_system_agrees(drawn):
 def test_the_simulation_returns_to_the_admissible_ones(drawn):
     _, _, _, _, every = drawn
     orbit = chosen(every, np.isfinite(every.contact_duration))
-    admissible = is_admissible(orbit)
+    admissible = orbit.is_admissible()
     assert np.sum(admissible) > np.size(every.contact_duration) / 4
     orbit = chosen(orbit, admissible)
     u = orbit.relative_impact_velocity
@@ -105,6 +103,6 @@ def test_the_simulation_returns_to_the_admissible_ones(drawn):
     late = cycle.time - 2 * np.pi * orbit.n
     off = np.max(np.abs([turn, late, (cycle.relative_velocity - u)]), axis=0)
     # Rounding of the start, amplified by one cycle.
-    amplification = 1 + np.linalg.norm(monodromy(orbit), axis=(-2, -1))
+    amplification = 1 + np.linalg.norm(orbit.monodromy(), axis=(-2, -1))
     size = 1 + np.abs(u) + np.abs(orbit.phase) + 2 * np.pi * orbit.n
     assert np.max(off / (amplification * size)) < 1e-13

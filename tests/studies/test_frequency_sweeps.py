@@ -7,7 +7,6 @@ from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.impacts.damping import damping_ratio
 from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits.limits import orbit_at
-from bouncing_ball.orbits.monodromy import monodromy
 from bouncing_ball.studies.frequency_sweeps import apparent_restitution, frequency_sweep, sweep
 
 SPAN = {"min": 1.0, "max": 1000.0, "samples": 7}
@@ -48,7 +47,7 @@ def test_every_entry_is_the_orbit_of_its_parameters(described, release):
                 float(at.phase + at.contact_duration), abs=1e-15
             )
             if case["restitution"] < 1:
-                largest = np.abs(np.linalg.eigvals(monodromy(orbit))).max()
+                largest = np.abs(np.linalg.eigvals(orbit.monodromy())).max()
                 assert bool(at.stable) == (largest < 1)
 
 

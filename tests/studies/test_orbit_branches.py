@@ -11,7 +11,6 @@ from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.limits import period_doubling, saddle_node
-from bouncing_ball.orbits.monodromy import monodromy
 from bouncing_ball.studies.orbit_branches import (
     PERIOD_DOUBLING,
     SADDLE_NODE,
@@ -99,7 +98,7 @@ def test_points_are_orbits(figure_8):
         # Multipliers and stability from the matrix itself. At the end of the
         # soft branch the impact velocity vanishes, and the map is singular.
         inner = np.abs(orbit.relative_impact_velocity) > 1e-3
-        eigenvalues = np.linalg.eigvals(monodromy(orbit))
+        eigenvalues = np.linalg.eigvals(orbit.monodromy())
         largest = np.abs(eigenvalues).max(axis=-1)
         far = inner & (np.abs(largest - 1) > 1e-6)
         assert far.sum() > 50

@@ -10,11 +10,8 @@ from bouncing_ball.datasets.variables import describe
 from bouncing_ball.impacts.damping import damping_ratio
 from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
-from bouncing_ball.orbits.admissibility import is_admissible
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.limits import orbit_at
-from bouncing_ball.orbits.monodromy import trace_and_contraction
-from bouncing_ball.orbits.stability import is_stable
 from bouncing_ball.studies.parameters import grid
 
 
@@ -28,7 +25,7 @@ def sweep(
 
 def stability_along(orbit: ContactOrbit) -> np.ndarray:
     """Whether each orbit is stable; false where there is none."""
-    return is_stable(*trace_and_contraction(orbit))
+    return orbit.is_stable()
 
 
 def _sweep_dataset(parameters, restitution, amplitude, release) -> xr.Dataset:
@@ -47,7 +44,7 @@ def _sweep_dataset(parameters, restitution, amplitude, release) -> xr.Dataset:
             "apparent_restitution": (dims, orbit.apparent_restitution),
             "max_height": (dims, orbit.max_height),
             "stable": (dims, stability_along(orbit)),
-            "admissible": (dims, is_admissible(orbit)),
+            "admissible": (dims, orbit.is_admissible()),
         },
         coords={"frequency_ratio": ratios, "case": np.arange(len(restitution))},
     )

@@ -8,9 +8,7 @@ import xarray as xr
 
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.orbits import restitution_orbit as orbits
-from bouncing_ball.orbits.admissibility import restitution_is_admissible
-from bouncing_ball.orbits.restitution_orbit import ImpactMap
-from bouncing_ball.orbits.stability import is_stable
+from bouncing_ball.orbits.restitution_orbit import ImpactMap, RestitutionOrbit
 
 
 def _grazing(n: int, r: float, top: float) -> tuple[float, float]:
@@ -22,7 +20,7 @@ def _grazing(n: int, r: float, top: float) -> tuple[float, float]:
 
     def admissible(amplitude):
         phase = orbits.phase(n, r, amplitude, stable_side=False)
-        return bool(restitution_is_admissible(n, amplitude, phase))
+        return bool(RestitutionOrbit.at(n, r, amplitude, phase).is_admissible())
 
     if admissible(high):
         return np.nan, np.nan
@@ -47,8 +45,8 @@ def restitution_orbits(parameters: Mapping[str, Any]) -> xr.Dataset:
     r, top = parameters["restitution"], parameters["amplitude_max"]
     fold = orbits.saddle_node(n, r)
     amplitude, phase = orbits.branch(n, r, top, parameters["points"])
-    stable = is_stable(*orbits.trace_and_determinant(r, amplitude, phase))
-    admissible = restitution_is_admissible(n[:, np.newaxis], amplitude, phase)
+    shown = RestitutionOrbit.at(n[:, np.newaxis], r, amplitude, phase)
+    stable, admissible = shown.is_stable(), shown.is_admissible()
     grazing = np.array([_grazing(int(k), r, top) for k in n])
     maps = list(ImpactMap)
     doubling = np.array([orbits.period_doubling(n, r, kind) for kind in maps])

@@ -10,16 +10,15 @@ from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
-from bouncing_ball.orbits.admissibility import is_admissible
-from bouncing_ball.orbits.contact_orbit import ContactOrbit
-from bouncing_ball.orbits.limits import require_orbit
+from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.interface import Orbit
 from bouncing_ball.studies.parameters import contact
 
 
-def _orbit(touch: Contact, n: int, amplitude: float) -> ContactOrbit:
+def _orbit(touch: Contact, n: int, amplitude: float) -> Orbit:
     """The admissible orbit on the stable side."""
-    orbit = require_orbit(touch, n, amplitude)
-    if not is_admissible(orbit):
+    orbit = ContactModel(touch).require_orbit(n, amplitude)
+    if not orbit.is_admissible():
         raise NoOrbitError(
             f"the {n}-T orbit at Λ = {amplitude:g}, ϖ = {float(touch.frequency_ratio):g} is "
             "inadmissible: another impact or release comes first"
@@ -27,7 +26,7 @@ def _orbit(touch: Contact, n: int, amplitude: float) -> ContactOrbit:
     return orbit
 
 
-def _cycle(orbit: ContactOrbit, samples: int) -> tuple[np.ndarray, ...]:
+def _cycle(orbit: Orbit, samples: int) -> tuple[np.ndarray, ...]:
     """Times of one cycle with the orbit's states: contact, then flight.
 
     Half the samples fall in either part, and τ_b is a sample in both: the

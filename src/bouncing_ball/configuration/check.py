@@ -11,6 +11,7 @@ from typing import Any
 
 from jsonschema import Draft202012Validator, ValidationError, validators
 
+from bouncing_ball.configuration.schema import configuration_schema
 from bouncing_ball.configuration.yaml_file import ConfigurationError
 
 # JSON takes 801.0 for an integer; a number of samples is written 801.
@@ -187,30 +188,30 @@ def _check_consistency(config: Mapping[str, Any]) -> None:
             )
 
 
-def _needs(config: Mapping[str, Any]) -> Iterator[tuple[str, float, list[int], float]]:
-    """Key and value of every Λ at which, or up to which, an orbit is needed."""
-    sections = {section: config[section] for section in ("figures", "tables")}
-    for name, figure in config["extensions"].items():
-        sections[f"extensions.{name}"] = {key: figure[key] for key in ("thresholds",)}
-    for section, parts in sections.items():
-        for name, figure in parts.items():
-            for index, case in enumerate(figure.get("cases", [])):
-                key = f"{section}.{name}.cases[{index}].amplitude"
-                yield key, case["amplitude"], [figure["n"]], case["restitution"]
-            for label in ("amplitude", "amplitude_max"):
-                values = figure.get(label, [])
-                listed = isinstance(values, list)
-                for index, value in enumerate(values if listed else [values]):
-                    key = f"{section}.{name}.{label}" + (f"[{index}]" if listed else "")
-                    n = figure["n"] if isinstance(figure["n"], list) else [figure["n"]]
-                    yield key, value, n, figure["restitution"]
+def _needs(value: Any, path: tuple = ()) -> Iterator[tuple[tuple, float, list[int], float]]:
+    """Path and value of every Λ at which, or up to which, an orbit is needed, with n and r."""
+    if not isinstance(value, Mapping):
+        return
+    families = value.get("n", [])
+    families = families if isinstance(families, list) else [families]
+    for index, case in enumerate(value.get("cases", [])):
+        yield (*path, "cases", index, "amplitude"), case["amplitude"], families, case["restitution"]
+    for label in ("amplitude", "amplitude_max"):
+        found = value.get(label, [])
+        listed = isinstance(found, list)
+        for index, one in enumerate(found if listed else [found]):
+            key = (*path, label, index) if listed else (*path, label)
+            yield key, one, families, value["restitution"]
+    for key, part in value.items():
+        yield from _needs(part, (*path, key))
 
 
 def _check_existence(config: Mapping[str, Any]) -> None:
     # Imported here: numpy is not needed to refuse a mistyped key.
     from bouncing_ball.orbits.restitution_orbit import period_doubling, saddle_node
 
-    for key, value, families, r in _needs(config):
+    for path, value, families, r in _needs(config):
+        key = _dotted(path)
         # The branch of the highest family starts last.
         n = max(families)
         if key.startswith("tables.table1"):
@@ -232,6 +233,13 @@ def check_schema(mapping: Mapping[str, Any], schema: Mapping[str, Any]) -> None:
     ------
     ConfigurationError
         One line that names the key, the value and what is allowed.
+
+    Examples
+    --------
+    >>> check_schema({"n": 0}, {"properties": {"n": {"type": "integer", "minimum": 1}}})
+    Traceback (most recent call last):
+    ...
+    bouncing_ball.configuration.yaml_file.ConfigurationError: n = 0 must be at least 1
     """
     for path, value in _numbers(mapping):
         if not math.isfinite(value):
@@ -244,22 +252,20 @@ def check_schema(mapping: Mapping[str, Any], schema: Mapping[str, Any]) -> None:
         raise ConfigurationError(_message(errors[0], mapping, schema))
 
 
-def check_configuration(config: Mapping[str, Any], schema: Mapping[str, Any]) -> None:
+def check_configuration(config: Mapping[str, Any], kinds: Mapping[str, Any]) -> None:
     """Raise on the first mistake in a configuration.
+
+    Parameters
+    ----------
+    config : mapping
+    kinds : mapping
+        The content of ``config/schema.yaml``.
 
     Raises
     ------
     ConfigurationError
         One line that names the key, the value and what is allowed.
-
-    Examples
-    --------
-    >>> schema = {"properties": {"n": {"type": "integer", "minimum": 1}}}
-    >>> check_configuration({"n": 0}, schema)
-    Traceback (most recent call last):
-    ...
-    bouncing_ball.configuration.yaml_file.ConfigurationError: n = 0 must be at least 1
     """
-    check_schema(config, schema)
+    check_schema(config, configuration_schema(kinds))
     _check_consistency(config)
     _check_existence(config)

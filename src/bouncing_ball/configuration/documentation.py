@@ -1,7 +1,7 @@
-"""config/README.md from the schema: ``python -m bouncing_ball.configuration.documentation``.
+"""config/README.md from kinds and stages: ``python -m bouncing_ball.configuration.documentation``.
 
-The schema is the only place where a key is described; a test fails when the
-page is not the one that the schema gives.
+``config/schema.yaml`` is the only place where a key is described; a test fails
+when the page is another one.
 """
 
 from collections.abc import Iterator, Mapping
@@ -11,12 +11,15 @@ from typing import Any
 import yaml
 
 from bouncing_ball.configuration.check import resolved
+from bouncing_ball.configuration.schema import configuration_schema
+from bouncing_ball.configuration.stages import STAGES
 from bouncing_ball.configuration.yaml_file import read_yaml
 
 _HEAD = """# The configuration
 
-Every key of `config.yaml`, with what is allowed. This page is made from
-`schema.yaml` by `make config-docs`; change the schema, not the page.
+The keys of `config.yaml`, with what is allowed. This page is made from
+`schema.yaml` and the entries of the stages by `make config-docs`; change those,
+not the page.
 
 Beside it stands `claims.yaml`, the ledger of the paper's claims. What the paper
 printed is there and nowhere else; its schema, `claims.schema.yaml`, says how a
@@ -26,9 +29,21 @@ Numbers in powers of ten need a point and a sign, `1.0e+4`: YAML takes `1e4`
 for a text. To try a change without editing `config.yaml`, write only the keys
 that change into another file and name it last,
 `snakemake --cores 2 fig12 --configfile mine.yaml`.
+"""
+_RUN = """
+## The whole run, and the audit
 
 | key | allowed | meaning | default |
 | --- | --- | --- | --- |
+"""
+_ARTIFACTS = """
+## Figures, tables and extensions
+
+Each takes some of these keys, as `config.yaml` shows; where a key has several
+rows, the entry of the stage says which one holds.
+
+| key | allowed | meaning |
+| --- | --- | --- |
 """
 
 
@@ -49,7 +64,7 @@ def _rows(schema, root, default, path) -> Iterator[tuple[str, str, str, str]]:
     schema = resolved(schema, root)
     if schema.get("type") == "object":
         for key, part in schema["properties"].items():
-            yield from _rows(part, root, default.get(key), [*path, key])
+            yield from _rows(part, root, (default or {}).get(key), [*path, key])
         return
     if default is None:
         yield ".".join(path), _allowed(schema, root), schema["description"], "not set"
@@ -63,10 +78,19 @@ def _rows(schema, root, default, path) -> Iterator[tuple[str, str, str, str]]:
     yield ".".join(path), _allowed(schema, root), schema.get("description", ""), shown
 
 
-def configuration_page(schema: Mapping[str, Any], config: Mapping[str, Any]) -> str:
-    """The page as Markdown."""
-    rows = _rows(schema, schema, config, [])
-    return _HEAD + "".join("| `{}` | {} | {} | {} |\n".format(*row) for row in rows)
+def configuration_page(kinds: Mapping[str, Any], config: Mapping[str, Any]) -> str:
+    """The page as Markdown, from the content of ``schema.yaml`` and ``config.yaml``."""
+    schema = configuration_schema(kinds)
+    run = {"properties": {name: schema["properties"][name] for name in kinds["properties"]}}
+    rows = _rows({"type": "object", **run}, schema, config, [])
+    page = _HEAD + _RUN + "".join("| `{}` | {} | {} | {} |\n".format(*row) for row in rows)
+    pairs = dict.fromkeys(pair for stage in STAGES.values() for pair in stage.takes.items())
+    lines = {
+        "| `{}` | {} | {} |\n".format(*row): None
+        for key, kind in sorted(pairs)
+        for row in _rows({"$ref": f"#/$defs/{kind}"}, schema, {}, [key])
+    }
+    return page + _ARTIFACTS + "".join(lines)
 
 
 def main() -> None:

@@ -36,6 +36,8 @@ class Stage:
     """Function within the package, ``module.function``; none for a drawing without data."""
     section: str = ""
     """Where its parameters stand in the configuration, ``figures.fig08``."""
+    keys: str = ""
+    """Its parameters, ``name`` or ``name:kind``; ``config/schema.yaml`` describes the kinds."""
     arguments: tuple[str, ...] = ()
     """Settings of the whole run: ``release``, ``continuation``, ``printed`` (Table 1)."""
     reads: tuple[str, ...] = ()
@@ -55,6 +57,18 @@ class Stage:
         'studies.orbit_branches'
         """
         return self.study.rpartition(".")[0]
+
+    @property
+    def takes(self) -> dict[str, str]:
+        """The kind of each of its parameters, by name.
+
+        Examples
+        --------
+        >>> STAGES["fig11"].takes
+        {'restitution': 'damped_restitution', 'frequency_ratio': 'span'}
+        """
+        pairs = (key.partition(":") for key in self.keys.split())
+        return {name: kind or name for name, _, kind in pairs}
 
     def parameters(self, run: Mapping[str, Any]) -> Any:
         """Its section of what a run is given: configuration, Table 1 and ledger.
@@ -84,7 +98,9 @@ def _figure(
     number: int,
     title: str,
     study: str = "",
-    *arguments: str,
+    keys: str = "",
+    arguments: tuple[str, ...] = (),
+    *,
     cross_checked: bool = False,
     evidence: bool = False,
 ) -> Stage:
@@ -95,6 +111,7 @@ def _figure(
         f"Figure {number}: {title}",
         study,
         f"figures.{name}" if study else "",
+        keys,
         arguments,
         cross_checked=cross_checked,
         evidence=evidence,
@@ -107,12 +124,14 @@ _MODELS: tuple[Stage, ...] = (
         2,
         "n-T response of the restitution model",
         "studies.restitution_families.restitution_history",
+        "n restitution amplitude periods samples",
         cross_checked=True,
     ),
     _figure(
         3,
         "existence and stability domains of the restitution model",
         "studies.restitution_families.restitution_orbits",
+        "n:families restitution amplitude_max points",
         cross_checked=True,
         evidence=True,
     ),
@@ -121,7 +140,8 @@ _MODELS: tuple[Stage, ...] = (
         5,
         "apparent restitution along the frequency ratio, by restitution and amplitude",
         "studies.frequency_sweeps.apparent_restitution",
-        "release",
+        "n cases frequency_ratio:span",
+        ("release",),
         cross_checked=True,
         evidence=True,
     ),
@@ -129,7 +149,8 @@ _MODELS: tuple[Stage, ...] = (
         6,
         "apparent restitution along the frequency ratio, by amplitude",
         "studies.frequency_sweeps.apparent_restitution",
-        "release",
+        "n cases frequency_ratio:span",
+        ("release",),
         cross_checked=True,
         evidence=True,
     ),
@@ -137,15 +158,16 @@ _MODELS: tuple[Stage, ...] = (
         7,
         "one cycle of the spring-damper model",
         "studies.time_histories.contact_history",
-        "release",
+        "n restitution amplitude frequency_ratio:ratio samples",
+        ("release",),
         cross_checked=True,
     ),
     _figure(
         8,
         "existence and stability domains of the spring-damper model, first family",
         "studies.orbit_branches.orbit_branches",
-        "release",
-        "continuation",
+        "n restitution:lossy_restitution frequency_ratio:four_ratios amplitude_max points",
+        ("release", "continuation"),
         cross_checked=True,
         evidence=True,
     ),
@@ -153,8 +175,8 @@ _MODELS: tuple[Stage, ...] = (
         9,
         "existence and stability domains of the spring-damper model, second family",
         "studies.orbit_branches.orbit_branches",
-        "release",
-        "continuation",
+        "n restitution:lossy_restitution frequency_ratio:four_ratios amplitude_max points",
+        ("release", "continuation"),
         cross_checked=True,
         evidence=True,
     ),
@@ -162,7 +184,8 @@ _MODELS: tuple[Stage, ...] = (
         10,
         "bouncing-off velocity along the frequency ratio",
         "studies.frequency_sweeps.frequency_sweep",
-        "release",
+        "n restitution amplitude:amplitudes frequency_ratio:span",
+        ("release",),
         cross_checked=True,
         evidence=True,
     ),
@@ -170,20 +193,23 @@ _MODELS: tuple[Stage, ...] = (
         11,
         "threshold of permanent contact along the frequency ratio",
         "studies.permanent_contact_curve.permanent_contact",
-        "release",
+        "restitution:damped_restitution frequency_ratio:span",
+        ("release",),
     ),
     _figure(
         12,
         "time histories of both models",
         "studies.time_histories.both_histories",
-        "release",
+        "n restitution amplitude frequency_ratio:six_ratios samples",
+        ("release",),
         cross_checked=True,
     ),
     _figure(
         13,
         "Poincaré map of both models along the frequency ratio",
         "studies.frequency_sweeps.frequency_sweep",
-        "release",
+        "n restitution amplitude:amplitudes frequency_ratio:span",
+        ("release",),
         cross_checked=True,
         evidence=True,
     ),
@@ -191,7 +217,8 @@ _MODELS: tuple[Stage, ...] = (
         14,
         "greatest height of both models, and the threshold of the error",
         "studies.error_thresholds.height_error",
-        "release",
+        "n restitution amplitude frequency_ratio:span tolerance",
+        ("release",),
         cross_checked=True,
         evidence=True,
     ),
@@ -199,8 +226,8 @@ _MODELS: tuple[Stage, ...] = (
         15,
         "existence and stability domains of both models",
         "studies.orbit_branches.both_domains",
-        "release",
-        "continuation",
+        "n restitution:lossy_restitution frequency_ratio:ratio amplitude_max points",
+        ("release", "continuation"),
         cross_checked=True,
         evidence=True,
     ),
@@ -208,7 +235,8 @@ _MODELS: tuple[Stage, ...] = (
         16,
         "threshold of permanent contact of both models",
         "studies.error_thresholds.permanent_contact_error",
-        "release",
+        "restitution:damped_restitution frequency_ratio:span tolerance",
+        ("release",),
         evidence=True,
     ),
     Stage(
@@ -217,6 +245,7 @@ _MODELS: tuple[Stage, ...] = (
         "Table 1: stability ranges over the amplitude",
         "studies.orbit_branches.stability_ranges",
         "tables.table1",
+        "n:families restitution:lossy_restitution frequency_ratio:ratios amplitude_max",
         ("release", "continuation", "printed"),
         cross_checked=True,
         evidence=True,
@@ -227,6 +256,7 @@ _MODELS: tuple[Stage, ...] = (
         "Frequency ratio from which the error of the restitution model is tolerable",
         "studies.error_thresholds.error_thresholds",
         "tables.thresholds",
+        "n restitution amplitude quantities tolerances frequency_ratio:span",
         ("release",),
         evidence=True,
     ),
@@ -236,6 +266,8 @@ _MODELS: tuple[Stage, ...] = (
         "Bifurcations and thresholds under both release rules",
         "studies.release_rules.release_rules",
         "extensions.ext_release",
+        "n:five_families restitution:lossy_restitution frequency_ratio:span"
+        " thresholds:error_threshold",
         cross_checked=True,
         evidence=True,
     ),
@@ -255,7 +287,7 @@ _AUDIT = (
         "Table 1 under readings of what the authors may have done",
         "audit.forensics.study.forensics",
         "studies.forensics",
-        ("printed",),
+        arguments=("printed",),
     ),
     Stage(
         "witness",

@@ -1,0 +1,54 @@
+"""The schema of the configuration, from ``config/schema.yaml`` and the stages.
+
+The file describes each kind of parameter once; what a figure or a table takes
+stands in its entry. Together they are a JSON schema.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+from bouncing_ball.configuration.stages import STAGES
+
+
+def expanded(schema: Any) -> Any:
+    """A schema without the abbreviations of ``config/schema.yaml``.
+
+    Examples
+    --------
+    >>> expanded({"properties": {"n": "ratio"}})
+    {'type': 'object', 'additionalProperties': False, 'required': ['n'], \
+'properties': {'n': {'$ref': '#/$defs/ratio'}}}
+    """
+    if isinstance(schema, str):
+        return {"$ref": f"#/$defs/{schema}"}
+    full = dict(schema)
+    if "$ref" in full:
+        full["$ref"] = f"#/$defs/{full['$ref'].removeprefix('#/$defs/')}"
+    if "items" in full:
+        full["items"] = expanded(full["items"])
+    for part in {"properties", "$defs"} & set(full):
+        full[part] = {key: expanded(value) for key, value in full[part].items()}
+    if "properties" in full:
+        closed = {"type": "object", "additionalProperties": False}
+        full = closed | {"required": list(full["properties"])} | full
+    return full
+
+
+def configuration_schema(kinds: Mapping[str, Any]) -> dict[str, Any]:
+    """The schema of the whole configuration.
+
+    Parameters
+    ----------
+    kinds : mapping
+        The content of ``config/schema.yaml``.
+    """
+    properties = dict(kinds["properties"])
+    for stage in STAGES.values():
+        if stage.takes:
+            section, name = stage.section.split(".")
+            keys = {"properties": stage.takes}
+            part = properties.setdefault(section, {"properties": {}})
+            part["properties"] = part["properties"] | {name: keys}
+    schema = expanded({**kinds, "properties": properties})
+    optional = kinds.get("optional", [])
+    return schema | {"required": [name for name in properties if name not in optional]}

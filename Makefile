@@ -69,7 +69,7 @@ diff: $(SETUP)
 # make accept REASON='why the record moves' [ALSO='fig05 paper' or ALSO=all]
 # As typed: neither make nor the shell reads anything in it.
 override export REASON := $(value REASON)
-export ALSO
+override export ALSO := $(value ALSO)
 accept: $(SETUP)
 	$(BIN)/snakemake --cores 1 accept
 

@@ -1,11 +1,13 @@
 """Files of a folder that nobody vouches for: what is read, and what is refused."""
 
 import os
+import signal
 import socket
 
 import pytest
 from netCDF4 import Dataset
 
+from bouncing_ball.record import reading
 from bouncing_ball.record.reading import (
     MAX_BYTES,
     MAX_FILES,
@@ -112,3 +114,24 @@ def test_a_dataset_of_bounded_size(folder, one_line):
     with pytest.raises(UnreadableError) as error, opened_dataset(content):
         pass
     one_line(error, "values")
+
+
+def hang():
+    while True:
+        pass
+
+
+def die():
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+@pytest.mark.parametrize("end", [hang, die])
+def test_a_dataset_at_which_its_library_hangs_or_dies(monkeypatch, end):
+    def damaged(*arguments, **keywords):
+        end()
+
+    monkeypatch.setattr("netCDF4.Dataset", damaged)
+    monkeypatch.setattr(reading, "MAX_SECONDS", 1)
+    with pytest.raises(UnreadableError) as error, opened_dataset(b"\x89HDF"):
+        pass
+    assert str(error.value) == "damaged: its reading does not end, or ends the program"

@@ -10,8 +10,9 @@ lead elsewhere on the way. Names and texts from such a folder are printed with
 import os
 import resource
 import stat
+import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
@@ -24,6 +25,8 @@ MAX_BYTES = 16 * 2**20
 """Size of a file; the largest artifact of the record has a quarter of a megabyte."""
 MAX_VALUES = 2**22
 """Numbers and texts in a dataset, 160 times those of the largest; 32 MB of doubles."""
+MAX_SECONDS = 5
+"""Processor time for the reading of a dataset; the largest takes some milliseconds."""
 MAX_PIXELS = 2**23
 """Pixels of a picture, four times those of the largest; about half a gigabyte at work."""
 MAX_FILES = 1000
@@ -161,6 +164,36 @@ def no_file_opened() -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
 
 
+def _check_end(content: bytes) -> None:
+    """Read all of a dataset in a process of its own, which may come to no good end.
+
+    One flipped bit can keep HDF5 busy for ever, or make it end the program; its
+    errors are left to the reading that follows.
+    """
+    from netCDF4 import Dataset
+
+    with warnings.catch_warnings():
+        # Newer Pythons warn of threads, of which the child uses none.
+        warnings.simplefilter("ignore", DeprecationWarning)
+        child = os.fork()
+    if child == 0:
+        with suppress(BaseException):
+            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+            resource.setrlimit(resource.RLIMIT_CPU, (MAX_SECONDS, MAX_SECONDS))
+            with no_file_opened(), Dataset("memory", memory=content) as dataset:
+                _check_size(dataset)
+                for variable in dataset.variables.values():
+                    variable[...]
+        os._exit(0)
+    if os.WIFSIGNALED(os.waitpid(child, 0)[1]):
+        raise UnreadableError("damaged: its reading does not end, or ends the program")
+
+
+def _check_size(dataset: "Dataset") -> None:
+    if sum(variable.size for variable in dataset.variables.values()) > MAX_VALUES:
+        raise UnreadableError(f"more than {MAX_VALUES} values")
+
+
 @contextmanager
 def opened_dataset(content: bytes) -> Iterator["Dataset"]:
     """A netCDF file from its bytes, of a bounded size when it is read.
@@ -171,11 +204,12 @@ def opened_dataset(content: bytes) -> Iterator["Dataset"]:
     Raises
     ------
     UnreadableError
-        If it holds more than :data:`MAX_VALUES`: compressed, nothing takes no room.
+        If it holds more than :data:`MAX_VALUES`: compressed, nothing takes no room;
+        or if reading it takes more than :data:`MAX_SECONDS`.
     """
     from netCDF4 import Dataset
 
+    _check_end(content)
     with no_file_opened(), Dataset("memory", memory=content) as dataset:
-        if sum(variable.size for variable in dataset.variables.values()) > MAX_VALUES:
-            raise UnreadableError(f"more than {MAX_VALUES} values")
+        _check_size(dataset)
         yield dataset

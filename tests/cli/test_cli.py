@@ -11,12 +11,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import bouncing_ball
 from bouncing_ball.cli.main import main
 from bouncing_ball.impacts.damping import damping_ratio
 from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits import limits
 from bouncing_ball.orbits import restitution_orbit as restitution
 
+BOUNDS = ("saddle_node", "period_doubling")
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = Path(sys.executable).with_name("bouncing-ball")
 
@@ -39,6 +41,7 @@ def refused(capsys, *arguments):
 
 
 ORBIT = ("orbit", "--n", "1", "--restitution", "0.85", "--amplitude", "1.0")
+STIFF_FORCE = ("--frequency-ratio", "10", "--release", "force")
 FIELDS = [
     "phase",
     "contact_duration",
@@ -67,7 +70,7 @@ def test_restitution_orbit_is_the_closed_form(capsys):
 @pytest.mark.parametrize("side", ["stable", "unstable"])
 def test_spring_damper_orbit_in_full_precision(capsys, release, side):
     answer = ask(capsys, *ORBIT, "--frequency-ratio", "10", "--release", release, "--side", side)
-    assert list(answer) == FIELDS
+    assert list(answer) == [*FIELDS, "measured_restitution", "damping_ratio"]
     contact = Contact(10.0, float(damping_ratio(0.85)), Release(release))
     orbit = limits.orbit_at(contact, 1, 1.0, limits.Side(side))
     for name in ("phase", "impact_velocity", "bounce_velocity", "max_height"):
@@ -88,7 +91,8 @@ def test_limits_of_both_models(capsys):
     assert answer["saddle_node"]["amplitude"] == float(restitution.saddle_node(1, 0.85))
     assert answer["period_doubling"]["amplitude"] == float(restitution.period_doubling(1, 0.85))
     answer = ask(capsys, "limits", "--restitution", "0.85", "--frequency-ratio", "10")
-    assert set(answer["saddle_node"]) == {"amplitude", "phase", "contact_duration"}
+    fields = {"amplitude", "phase", "contact_duration", "is_admissible"}
+    assert set(answer["saddle_node"]) == fields
     # Table 1 as computed by continuation, see the accepted record.
     assert answer["saddle_node"]["amplitude"] == pytest.approx(0.2399879121, abs=1e-9)
     assert answer["period_doubling"]["amplitude"] == pytest.approx(1.0374563012, abs=1e-9)
@@ -126,11 +130,92 @@ def test_simulation_into_permanent_contact(capsys):
     assert answer["sequence"]["contact_duration"][-1] is None
 
 
+def test_the_restitution_that_a_contact_really_has(capsys):
+    call = ("orbit", "--amplitude", "1", *STIFF_FORCE)
+    asked = ask(capsys, *call, "--restitution", "0.7")
+    assert asked["measured_restitution"] == pytest.approx(0.718, abs=5e-4)
+    own = ask(capsys, *call, "--measured-restitution", "0.7")
+    assert own["measured_restitution"] == pytest.approx(0.7, rel=1e-14)
+    assert own["damping_ratio"] > asked["damping_ratio"]
+    # Without a contact there is one r only.
+    bare = ("orbit", "--amplitude", "1")
+    assert ask(capsys, *bare, "--measured-restitution", "0.7") == ask(
+        capsys, *bare, "--restitution", "0.7"
+    )
+
+
+def test_every_orbit_can_be_reached(capsys):
+    call = ("orbit", "--restitution", "0.85", "--amplitude", "0.9", "--frequency-ratio", "2")
+    found = ask(capsys, *call, "--side", "all")["orbits"]
+    assert [orbit["is_stable"] for orbit in found] == [True, False, True]
+    durations = [orbit["contact_duration"] for orbit in found]
+    assert durations == sorted(durations)
+    third = ask(capsys, *call, "--index", "3")
+    assert {name: third[name] for name in FIELDS} == found[2]
+    status, line = refused(capsys, *call, "--index", "4")
+    assert status == 1 and "has 3 1-T orbits at Λ = 0.9" in line
+    main([*call, "--side", "all"])
+    assert "orbit 3" in capsys.readouterr().out
+
+
+def test_limits_say_whether_their_orbits_are_the_balls(capsys):
+    soft = ask(capsys, "limits", "--restitution", "0.85", "--frequency-ratio", "10")
+    assert soft["period_doubling"]["is_admissible"] is True
+    # The ball would rise at impact.
+    for answer in (soft, ask(capsys, "limits", "--restitution", "0.85")):
+        assert all(isinstance(answer[x]["is_admissible"], bool) for x in BOUNDS)
+
+
+def test_the_corrected_model_answers_too(capsys):
+    call = ("--restitution", "0.65", "--frequency-ratio", "100", "--model", "corrected")
+    corrected = ask(capsys, "orbit", "--amplitude", "1", *call)
+    spring = ask(capsys, "orbit", "--amplitude", "1", *call[:-1], "spring-damper")
+    assert corrected["max_height"] == pytest.approx(spring["max_height"], rel=1e-3)
+
+
+def test_the_version(capsys):
+    with pytest.raises(SystemExit) as exit_:
+        main(["--version"])
+    assert exit_.value.code == 0
+    assert capsys.readouterr().out == f"bouncing-ball {bouncing_ball.__version__}\n"
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "latin-1", "utf-8"])
+@pytest.mark.parametrize(
+    ("arguments", "status"),
+    [
+        (["--help"], 0),
+        (["orbit", "--help"], 0),
+        ([*ORBIT], 0),
+        ([*ORBIT, "--json"], 0),
+        ([*ORBIT[:-1], "0.1", "--json"], 1),
+    ],
+)
+def test_any_encoding_of_the_output(encoding, arguments, status):
+    environment = os.environ | {"PYTHONIOENCODING": encoding}
+    done = subprocess.run([PROGRAM, *arguments], capture_output=True, env=environment, check=False)
+    assert done.returncode == status
+    assert b"Traceback" not in done.stderr and done.stderr.count(b"\n") <= 1
+    if "--json" in arguments:
+        assert json.loads(done.stdout.decode(encoding))
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["--version"], [*ORBIT], [*ORBIT, "--json"]])
+def test_a_full_device(arguments):
+    with Path("/dev/full").open("wb") as full:
+        done = subprocess.run(
+            [PROGRAM, *arguments], stdout=full, stderr=subprocess.PIPE, text=True, check=False
+        )
+    assert done.returncode == 2
+    assert done.stderr == "bouncing-ball: the output cannot be written: No space left on device\n"
+
+
 def test_a_missing_orbit_exits_1_with_the_reason(capsys):
     call = ("orbit", "--restitution", "0.85", "--amplitude", "0.1")
     assert refused(capsys, *call) == (
         1,
-        "bouncing-ball: no 1-T orbit at Λ = 0.1: below the saddle-node at Λ = 0.254724",
+        "bouncing-ball: no 1-T orbit at Λ = 0.1 for r = 0.85: below the saddle-node "
+        "at Λ = 0.254724",
     )
     status, line = refused(capsys, *call, "--frequency-ratio", "10")
     assert status == 1 and "below the saddle-node at Λ = 0.239988" in line
@@ -144,7 +229,10 @@ def test_a_missing_orbit_exits_1_with_the_reason(capsys):
     ("arguments", "said"),
     [
         ((), "required: command"),
-        (("orbit", "--amplitude", "1"), "--restitution --damping-ratio is required"),
+        (
+            ("orbit", "--amplitude", "1"),
+            "--restitution --damping-ratio --measured-restitution is required",
+        ),
         (("orbit", "--restitution", "0.85"), "required: --amplitude"),
         (("orbit", "--restitution", "1.2", "--amplitude", "1"), "'1.2' is not a number in (0, 1]"),
         (("orbit", "--restitution", "nan", "--amplitude", "1"), "'nan' is not a number in (0, 1]"),
@@ -161,6 +249,13 @@ def test_a_missing_orbit_exits_1_with_the_reason(capsys):
         ((*ORBIT, "--n", "1.5"), "'1.5' is not a whole number"),
         ((*ORBIT, "--model", "spring-damper"), "needs --frequency-ratio"),
         ((*ORBIT, "--model", "restitution", "--frequency-ratio", "3"), "has no meaning"),
+        ((*ORBIT, "--release", "force"), "--release has no meaning for --model restitution"),
+        ((*ORBIT, "--model", "corrected"), "--model corrected needs --frequency-ratio"),
+        ((*ORBIT, "--side", "all", "--index", "2"), "not allowed with argument --side"),
+        (
+            ("orbit", "--measured-restitution", "0.1", "--amplitude", "9", *STIFF_FORCE),
+            "r = 0.1 is not in (e⁻², 1]",
+        ),
         ((*ORBIT, "--side", "left"), "invalid choice: 'left'"),
         ((*ORBIT, "--tension", "1"), "unrecognized arguments: --tension 1"),
         (
@@ -253,8 +348,8 @@ def test_diff_for_nobody_who_reads(tmp_path):
         check=False,
     )
     os.close(writer)
-    # A text that differs without data of the same versions is only reported.
-    assert (done.returncode, done.stderr) == (0, "")
+    # The texts differ.
+    assert (done.returncode, done.stderr) == (1, "")
 
 
 def test_the_installed_program():

@@ -6,66 +6,52 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.impacts.damping import damping_ratio
-from bouncing_ball.impacts.permanent_contact import (
-    permanent_contact_minimum,
-    permanent_contact_threshold,
-)
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.impacts.permanent_contact import permanent_contact_minimum
 from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.motion.sequence import Status
-from bouncing_ball.orbits import limits as contact_limits
-from bouncing_ball.orbits import restitution_orbit as restitution_orbits
-from bouncing_ball.orbits.admissibility import is_admissible, restitution_is_admissible
-from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
-from bouncing_ball.orbits.monodromy import trace_and_contraction
-from bouncing_ball.orbits.stability import is_stable, multipliers
+from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.corrected_model import CorrectedModel
+from bouncing_ball.orbits.interface import ImpactModel, Orbit, Side
+from bouncing_ball.orbits.restitution_model import RestitutionModel
 
 Answer = dict[str, Any]
 
 
 def _contact(args: argparse.Namespace) -> Contact:
-    zeta = args.damping_ratio
-    if zeta is None:
-        zeta = float(damping_ratio(args.restitution))
-    return Contact(args.frequency_ratio, zeta, Release(args.release))
+    release = Release.of(args.release or Release.DISPLACEMENT)
+    if args.damping_ratio is not None:
+        return Contact(args.frequency_ratio, args.damping_ratio, release)
+    measured = args.measured_restitution is not None
+    r = args.measured_restitution if measured else args.restitution
+    return Contact.from_restitution(r, args.frequency_ratio, release, measured=measured)
 
 
-def _pairs(trace: float, determinant: float) -> list[list[float]]:
-    return [[value.real, value.imag] for value in multipliers(trace, determinant).tolist()]
+def _model(args: argparse.Namespace) -> ImpactModel:
+    if args.model == "restitution":
+        r = args.restitution if args.measured_restitution is None else args.measured_restitution
+        return RestitutionModel(r)
+    contact = _contact(args)
+    return (
+        ContactModel(contact)
+        if args.model == "spring-damper"
+        else CorrectedModel.of_contact(contact)
+    )
 
 
-def _restitution_orbit(args: argparse.Namespace) -> Answer:
-    n, r, lam = args.n, args.restitution, args.amplitude
-    phase = float(restitution_orbits.phase(n, r, lam, args.side == "stable"))
-    velocity = n * math.pi
-    trace, det = (float(x) for x in restitution_orbits.trace_and_determinant(r, lam, phase))
-    defect = -r * velocity + velocity - (1 + r) * lam * math.cos(phase)
+def _measured(args: argparse.Namespace) -> Answer:
+    """What a free impact on the contact has, whatever was asked for: r and ζ."""
+    if args.model == "restitution":
+        return {}
+    contact = _contact(args)
     return {
-        "phase": phase,
-        "contact_duration": 0.0,
-        "impact_velocity": -velocity,
-        "bounce_velocity": velocity,
-        "apparent_restitution": r,
-        "max_height": float(restitution_orbits.max_height(n, lam, phase)),
-        "multipliers": _pairs(trace, det),
-        "is_stable": bool(is_stable(trace, det)),
-        "is_admissible": bool(restitution_is_admissible(n, lam, phase)),
-        "residual": abs(defect),
+        "measured_restitution": float(contact.restitution),
+        "damping_ratio": float(contact.damping_ratio),
     }
 
 
-def _contact_orbit(args: argparse.Namespace) -> Answer:
-    contact = _contact(args)
-    side = contact_limits.Side(args.side)
-    orbit = contact_limits.require_orbit(contact, args.n, args.amplitude, side)
-    trace, det = (float(x) for x in trace_and_contraction(orbit))
-    system = OrbitSystem(
-        args.n, contact.damping_ratio, Parameter.AMPLITUDE, args.frequency_ratio, contact.release
-    )
-    angle = orbit.contact_duration * args.frequency_ratio
-    y = np.array([orbit.phase, orbit.impact_velocity, angle, orbit.amplitude])
+def _described(orbit: Orbit) -> Answer:
+    """One orbit."""
     return {
         "phase": float(orbit.phase),
         "contact_duration": float(orbit.contact_duration),
@@ -73,59 +59,73 @@ def _contact_orbit(args: argparse.Namespace) -> Answer:
         "bounce_velocity": float(orbit.bounce_velocity),
         "apparent_restitution": float(orbit.apparent_restitution),
         "max_height": float(orbit.max_height),
-        "multipliers": _pairs(trace, det),
-        "is_stable": bool(is_stable(trace, det)),
-        "is_admissible": bool(is_admissible(orbit)),
-        "residual": float(np.max(np.abs(system.residual(y)))),
+        "multipliers": [[x.real, x.imag] for x in orbit.multipliers().tolist()],
+        "is_stable": bool(orbit.is_stable()),
+        "is_admissible": bool(orbit.is_admissible()),
+        "residual": float(orbit.defect()),
     }
 
 
+def _all_orbits(model: ImpactModel, n: int, amplitude: float) -> list[Answer]:
+    """Every orbit at Λ, in order of contact duration.
+
+    Raises
+    ------
+    NoOrbitError
+        If there is none.
+    """
+    found = model.orbits(n, amplitude)
+    if not found.size:
+        raise NoOrbitError(f"no {n}-T orbit at Λ = {amplitude:g} for {model.label}")
+    return [_described(found[k]) for k in range(found.size)]
+
+
 def orbit(args: argparse.Namespace) -> Answer:
-    """The n-T orbit at Λ.
+    """The n-T orbit at Λ on a side of the saddle-node, or all of them, or one of all.
 
     Raises
     ------
     NoOrbitError
         With the reason, if there is none.
     """
-    return _restitution_orbit(args) if args.model == "restitution" else _contact_orbit(args)
+    model = _model(args)
+    if args.side != "all" and args.index is None:
+        side = Side(args.side)
+        return _described(model.require_orbit(args.n, args.amplitude, side)) | _measured(args)
+    found = _all_orbits(model, args.n, args.amplitude)
+    if args.index is None:
+        return {"orbits": found} | _measured(args)
+    if args.index > len(found):
+        raise NoOrbitError(
+            f"no orbit {args.index}: {model.label} has {len(found)} {args.n}-T orbits "
+            f"at Λ = {args.amplitude:g}"
+        )
+    return found[args.index - 1] | _measured(args)
 
 
 def limits(args: argparse.Namespace) -> Answer:
-    """Saddle-node and period doubling, the latter of the exact map.
+    """Saddle-node and period doubling, and whether the orbits there are the ball's.
 
     Raises
     ------
     NoOrbitError
         If the branch has not both.
     """
-    if args.model == "restitution":
-        n, r = args.n, args.restitution
-        node = float(restitution_orbits.saddle_node(n, r))
-        doubling = float(restitution_orbits.period_doubling(n, r))
-        phase = float(restitution_orbits.phase(n, r, doubling))
-        return {
-            "saddle_node": {"amplitude": node, "phase": 0.0, "contact_duration": 0.0},
-            "period_doubling": {"amplitude": doubling, "phase": phase, "contact_duration": 0.0},
-        }
-    contact = _contact(args)
+    model = _model(args)
     found = {}
-    for name, find in (
-        ("saddle_node", contact_limits.saddle_node),
-        ("period_doubling", contact_limits.period_doubling),
-    ):
-        point = branch_point(find(contact, args.n), contact, args.n)
-        if np.isnan(point.contact_duration):
+    for name in ("saddle_node", "period_doubling"):
+        orbit = getattr(model, name)(args.n)
+        if not orbit.exists:
             raise NoOrbitError(
-                f"the branch of {args.n}-T orbits for ϖ = {args.frequency_ratio:g}, "
-                f"ζ = {contact.damping_ratio:.4g} has no {name.replace('_', ' ')}"
+                f"the branch of {args.n}-T orbits for {model.label} has no {name.replace('_', ' ')}"
             )
         found[name] = {
-            "amplitude": float(point.amplitude),
-            "phase": float(point.phase),
-            "contact_duration": float(point.contact_duration),
+            "amplitude": float(orbit.amplitude),
+            "phase": float(orbit.phase),
+            "contact_duration": float(orbit.contact_duration),
+            "is_admissible": bool(orbit.is_admissible()),
         }
-    return found
+    return found | _measured(args)
 
 
 def permanent_contact(args: argparse.Namespace) -> Answer:
@@ -136,7 +136,7 @@ def permanent_contact(args: argparse.Namespace) -> Answer:
     contact = _contact(args)
     zeta, release = contact.damping_ratio, contact.release
     answer = {
-        "threshold": float(permanent_contact_threshold(args.frequency_ratio, zeta, release)),
+        "threshold": float(ContactModel(contact).permanent_contact_threshold()),
         "minimum": None,
         "at_frequency_ratio": None,
     }
@@ -144,7 +144,10 @@ def permanent_contact(args: argparse.Namespace) -> Answer:
         lowest = permanent_contact_minimum(zeta, release)
         answer["minimum"] = float(lowest.threshold)
         answer["at_frequency_ratio"] = float(lowest.frequency_ratio)
-    return answer
+    return answer | {
+        "measured_restitution": float(contact.restitution),
+        "damping_ratio": float(contact.damping_ratio),
+    }
 
 
 def _columns(sequence: Any) -> Answer:
@@ -172,17 +175,6 @@ def simulate(args: argparse.Namespace) -> Answer:
         If the ball does not approach the table at the first impact.
     """
     velocity = -math.pi if args.velocity is None else args.velocity
-    if args.model == "restitution":
-        from bouncing_ball.motion.instants import simulate as of_instants
-
-        r, table = args.restitution, args.amplitude * math.cos(args.phase)
-        if velocity > table:
-            raise ModelError("a ball that rises from the table has no impact: z′ > w′")
-        after = -r * velocity + (1 + r) * table
-        sequence = of_instants(r, args.amplitude, args.phase, after, args.impacts)
-    else:
-        from bouncing_ball.motion.contacts import simulate as of_contacts
-
-        sequence = of_contacts(_contact(args), args.amplitude, args.phase, velocity, args.impacts)
+    sequence = _model(args).simulate(args.amplitude, args.phase, velocity, args.impacts)
     status = Status(int(sequence.status)).name.lower().replace("_", " ")
-    return {"status": status, "sequence": _columns(sequence)}
+    return {"status": status} | _measured(args) | {"sequence": _columns(sequence)}

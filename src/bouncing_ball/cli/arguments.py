@@ -5,6 +5,8 @@ import math
 from pathlib import Path
 from typing import NoReturn
 
+from bouncing_ball.cli.output import one_line, print_lines
+
 # Of frequency ratio and amplitude: beyond, their squares leave no digits.
 _LARGEST = 1e8
 # Of the frequency ratio, for the same reason.
@@ -15,7 +17,10 @@ class Parser(argparse.ArgumentParser):
     """A parser whose errors are one line and exit status 2."""
 
     def error(self, message: str) -> NoReturn:
-        self.exit(2, f"{self.prog}: {message}\n")
+        self.exit(2, f"{self.prog}: {one_line(message)}\n")
+
+    def print_help(self, file=None) -> None:
+        print_lines(self.format_help().splitlines())
 
 
 class _Version(argparse.Action):
@@ -24,7 +29,7 @@ class _Version(argparse.Action):
     def __call__(self, parser, namespace, values, option_string=None):
         from importlib.metadata import version
 
-        print(f"{parser.prog} {version('bouncing-ball')}")
+        print_lines([f"{parser.prog} {version('bouncing-ball')}"])
         parser.exit()
 
 
@@ -108,7 +113,7 @@ def _add_contact(parser: argparse.ArgumentParser, *, required: bool) -> None:
 def _add_model(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--model",
-        choices=["restitution", "spring-damper"],
+        choices=["restitution", "spring-damper", "corrected"],
         help="default: spring-damper if --frequency-ratio is given, else restitution",
     )
 
@@ -237,5 +242,5 @@ def parse(arguments: list[str] | None = None) -> argparse.Namespace:
                 option = f"--{name.replace('_', '-')}"
                 top.error(f"{option} has no meaning for --model restitution, without a contact")
     elif args.frequency_ratio is None:
-        top.error("--model spring-damper needs --frequency-ratio")
+        top.error(f"--model {args.model} needs --frequency-ratio")
     return args

@@ -1,12 +1,11 @@
 """Entry point of ``bouncing-ball``."""
 
 import argparse
-import json
 from collections.abc import Callable
 from typing import Any
 
 from bouncing_ball.cli.arguments import parse
-from bouncing_ball.cli.output import fail, print_lines
+from bouncing_ball.cli.output import fail, flush, prepare, print_lines, to_json
 from bouncing_ball.errors import NoOrbitError
 
 
@@ -42,10 +41,13 @@ def _table(rows: dict[str, list]) -> list[str]:
 
 
 def _readable(answer: dict[str, Any]) -> list[str]:
-    """The values, and the sequence of a simulation as a table."""
-    values = {key: value for key, value in answer.items() if key != "sequence"}
+    """The values; all orbits one after another, or a simulation as a table."""
+    nested = ("orbits", "sequence")
+    lines = _lines({key: value for key, value in answer.items() if key not in nested})
+    for index, orbit in enumerate(answer.get("orbits", []), start=1):
+        lines += ["", f"orbit {index}", *_lines(orbit)]
     sequence = answer.get("sequence")
-    return _lines(values) + (_table(sequence) if sequence else [])
+    return lines + (_table(sequence) if sequence else [])
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -53,7 +55,14 @@ def main(arguments: list[str] | None = None) -> None:
 
     For ``diff`` see :mod:`bouncing_ball.cli.diff`.
     """
-    args = parse(arguments)
+    prepare()
+    try:
+        _run(parse(arguments))
+    finally:
+        flush()
+
+
+def _run(args: argparse.Namespace) -> None:
     if args.command == "diff":
         from bouncing_ball.cli import diff
 
@@ -62,9 +71,9 @@ def main(arguments: list[str] | None = None) -> None:
         answer, readable = (_explained if args.command == "explain" else _answered)(args)
     except ValueError as error:
         if args.json:
-            print_lines([json.dumps({"error": str(error)}, ensure_ascii=False)])
+            print_lines([to_json({"error": str(error)})])
         fail(str(error), status=1 if isinstance(error, NoOrbitError) else 2)
-    print_lines([json.dumps(answer, allow_nan=False)] if args.json else readable(answer))
+    print_lines([to_json(answer)] if args.json else readable(answer))
 
 
 Answered = tuple[dict[str, Any], Callable[[dict[str, Any]], list[str]]]

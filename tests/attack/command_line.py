@@ -1,0 +1,99 @@
+"""Argument lists of the command line: an answer or one line, and never a traceback."""
+
+import io
+import json
+import time
+import warnings
+from contextlib import redirect_stderr, redirect_stdout
+
+import numpy as np
+
+from bouncing_ball.cli.main import main
+
+_NUMBERS = "1 0.5 0.85 0 -1 2 10 1e-300 1e300 1e8 1e-8 nan inf -inf 1e999 0x10 ½ 1,5 1_0".split()
+_WORDS = ["", " ", "\n", "\x1b[31m", "Λ", "-", "--", "stable", "all", "force", "null", "\udcff"]
+_OPTIONS = {
+    "--restitution": None,
+    "--measured-restitution": None,
+    "--damping-ratio": None,
+    "--frequency-ratio": None,
+    "--amplitude": None,
+    "--phase": None,
+    "--velocity": None,
+    "--n": ["1", "2", "7", "1000", "0", "-3", "1.5", "10000000000000000000000"],
+    "--impacts": ["1", "3", "0", "17"],
+    "--index": ["1", "2", "3", "0"],
+    "--side": ["stable", "unstable", "all", "left"],
+    "--release": ["displacement", "force", "tension"],
+    "--model": ["restitution", "spring-damper", "corrected", "ball"],
+}
+_COMMANDS = ["orbit", "limits", "permanent-contact", "simulate"]
+
+
+def _arguments(rng: np.random.Generator) -> list[str]:
+    """Mostly what could be meant: a command, its options with numbers, some nonsense."""
+    command = str(rng.choice([*_COMMANDS, *_COMMANDS, *_COMMANDS, "explain", "diff", "orbits", ""]))
+    damping = str(rng.choice(["--restitution", "--measured-restitution", "--damping-ratio"]))
+    out = [command, damping, _value(rng, damping), "--amplitude", _value(rng, "--amplitude")]
+    if command in ("limits", "permanent-contact"):
+        out = out[:3]
+    for option in rng.choice(list(_OPTIONS), size=rng.integers(0, 4), replace=False):
+        out += [str(option), _value(rng, str(option))]
+    if rng.random() < 0.3:
+        out.insert(int(rng.integers(len(out) + 1)), str(rng.choice(_WORDS)))
+    if rng.random() < 0.1:
+        del out[int(rng.integers(len(out)))]
+    if rng.random() < 0.5:
+        out.append("--json")
+    return out
+
+
+def _value(rng: np.random.Generator, option: str) -> str:
+    choices = _OPTIONS[option]
+    if choices is not None:
+        return str(rng.choice(choices))
+    if rng.random() < 0.25:
+        return str(rng.choice(_NUMBERS))
+    if option in ("--restitution", "--measured-restitution", "--damping-ratio"):
+        return repr(float(rng.random()))
+    return repr(float(10.0 ** rng.uniform(-2, 3)))
+
+
+def _wrong(arguments: list[str]) -> str:
+    """Empty, or what is wrong with how a call ends."""
+    out, err = io.StringIO(), io.StringIO()
+    status = 0
+    try:
+        with warnings.catch_warnings(), redirect_stdout(out), redirect_stderr(err):
+            warnings.simplefilter("error")
+            main(list(arguments))
+    except SystemExit as end:
+        status = end.code or 0
+    except BaseException as error:  # a traceback for the user
+        return f"{type(error).__name__}: {error}"
+    said, answered = err.getvalue(), out.getvalue()
+    if status not in (0, 1, 2):
+        return f"status {status}"
+    if said.count("\n") != (status != 0):
+        return f"status {status} with {said!r}"
+    if "--json" in arguments and answered and "usage" not in answered:
+        try:
+            json.loads(answered)
+        except ValueError as error:
+            return f"no JSON: {error}"
+    return ""
+
+
+def attack(seed: int, seconds: float) -> tuple[int, int, list[str]]:
+    """Argument lists tried, those that held, and what fell, within some seconds."""
+    rng = np.random.default_rng(seed)
+    end, tried, fallen = time.monotonic() + seconds, 0, []
+    while time.monotonic() < end:
+        arguments = _arguments(rng)
+        start = time.monotonic()
+        wrong = _wrong(arguments)
+        took = time.monotonic() - start
+        tried += 1
+        if wrong or took > 20:
+            fallen.append(f"{arguments}: {wrong or f'took {took:.0f} s'}")
+    return tried, tried - len(fallen), fallen

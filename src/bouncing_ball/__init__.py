@@ -4,6 +4,18 @@ A replication of Carbonelli, Perret-Liaudet, Rigaud and Feki, "Investigation
 of restitution coefficient and spring-damper models for the bouncing ball
 problem", ASME IDETC/CIE 2011, DETC2011-47870.
 
+Three calls answer most questions; ``restitution`` alone is the model with a
+restitution coefficient, with ``frequency_ratio`` a spring-damper contact::
+
+    bouncing_ball.orbit(n=1, amplitude=1.0, restitution=0.85, frequency_ratio=10.0)
+    bouncing_ball.limits(n=1, restitution=0.85, frequency_ratio=10.0)
+    bouncing_ball.simulate(amplitude=1.0, restitution=0.85, frequency_ratio=10.0)
+
+Behind them are the models, :class:`ContactModel` of a :class:`Contact` and
+:class:`RestitutionModel`, with one interface
+(:mod:`bouncing_ball.orbits.interface`); they work on arrays. Everything is
+dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g.
+
 The layers, each importing only what lies above it in this list (and the errors):
 
 ``datasets``      names, symbols, units and netCDF files
@@ -20,4 +32,32 @@ The layers, each importing only what lies above it in this list (and the errors)
 ``cli``           the command line, ``bouncing-ball``
 """
 
+from importlib import import_module
+from typing import Any
+
 __version__ = "0.1.0"
+
+# What users import from here, and where it is. Imported when it is asked for:
+# the command line's --help needs no numpy.
+_PUBLIC = {
+    "orbit": "orbits.calls",
+    "limits": "orbits.calls",
+    "simulate": "orbits.calls",
+    "model": "orbits.calls",
+    "Contact": "impacts.spring_damper",
+    "ContactModel": "orbits.contact_model",
+    "RestitutionModel": "orbits.restitution_model",
+    "ModelError": "errors",
+    "NoOrbitError": "errors",
+}
+__all__ = [*_PUBLIC]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _PUBLIC:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_PUBLIC[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *_PUBLIC])

@@ -23,6 +23,26 @@ def _entry(value: Any, shape: tuple[int, ...], index: Any) -> Any:
     return np.broadcast_to(value, shape)[index] if np.ndim(value) else value
 
 
+def in_words(value: Any) -> str:
+    """A number or an array, rounded and abbreviated.
+
+    Examples
+    --------
+    >>> in_words(np.pi), in_words(np.linspace(0, 1, 100)), in_words("force")
+    ('3.14159', '[0 0.010101 ... 0.989899 1]', "'force'")
+    """
+    if isinstance(value, str):
+        return f"'{value}'"
+    if not np.issubdtype(np.asarray(value).dtype, np.number):
+        return repr(value)
+    return np.array2string(
+        np.asarray(value),
+        threshold=8,
+        edgeitems=2,
+        formatter={"float_kind": lambda number: f"{number:.6g}"},
+    )
+
+
 class Record:
     """What a frozen dataclass of arrays inherits: a shape, indexing, a length.
 
@@ -30,9 +50,13 @@ class Record:
     --------
     >>> from bouncing_ball.impacts.spring_damper import Contact
     >>> contact = Contact(np.array([5.0, 10.0]), 0.1)
-    >>> contact.shape, float(contact[1].frequency_ratio), contact[1].damping_ratio
-    ((2,), 10.0, 0.1)
+    >>> contact.shape, contact[1]
+    ((2,), Contact(frequency_ratio=10, damping_ratio=0.1, release='displacement'))
     """
+
+    def __repr__(self) -> str:
+        values = (f"{f.name}={in_words(getattr(self, f.name))}" for f in fields(self))  # type: ignore[arg-type]
+        return f"{type(self).__name__}({', '.join(values)})"
 
     @property
     def shape(self) -> tuple[int, ...]:

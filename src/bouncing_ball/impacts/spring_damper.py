@@ -182,7 +182,7 @@ def contact_force(
     return -(pull + omega * omega * np.asarray(displacement))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Contact(Record):
     """A spring-damper contact: ϖ, ζ and the rule that ends it.
 
@@ -218,7 +218,7 @@ class Contact(Record):
         cls,
         restitution: ArrayLike,
         frequency_ratio: ArrayLike,
-        release: Release = Release.DISPLACEMENT,
+        release: str = Release.DISPLACEMENT,
         *,
         measured: bool = False,
     ) -> "Contact":

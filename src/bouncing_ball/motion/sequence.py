@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bouncing_ball.impacts.records import in_words
 from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.motion.angles import reduce_angle
 
@@ -33,7 +34,7 @@ class Cycle(NamedTuple):
     time: np.ndarray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ImpactSequence:
     """Impacts in order, shape (impacts, ...) with one entry per ball behind.
 
@@ -75,6 +76,14 @@ class ImpactSequence:
     relative_release_velocity: np.ndarray
     status: np.ndarray
     settling: np.ndarray | None = None
+
+    def __repr__(self) -> str:
+        balls = f" of {self.status.size} balls" if self.status.ndim else ""
+        doing = (Status(int(k)).name.lower().replace("_", " ") for k in np.unique(self.status))
+        head = f"ImpactSequence: {len(self.time)} impacts{balls}, then {' or '.join(doing)}"
+        names = ("time", "phase", "impact_velocity", "contact_duration", "release_velocity")
+        values = (f"  {name:<22}{in_words(getattr(self, name))}" for name in names)
+        return "\n".join([head, *values])
 
     @property
     def impact_velocity(self) -> np.ndarray:

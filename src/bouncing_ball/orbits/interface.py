@@ -24,11 +24,22 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.continuation.events import Event
-from bouncing_ball.errors import NoOrbitError, require
-from bouncing_ball.impacts.records import Record
+from bouncing_ball.errors import ModelError, NoOrbitError, require
+from bouncing_ball.impacts.records import Record, in_words
 from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence
 from bouncing_ball.orbits import stability
+
+OBSERVABLES = (
+    "amplitude",
+    "phase",
+    "contact_duration",
+    "impact_velocity",
+    "bounce_velocity",
+    "apparent_restitution",
+    "max_height",
+)
+"""What is read from an orbit, by the names that datasets and the command line use."""
 
 # An event that the equations do not know of shifts the next impact by a good
 # part of a period; rounding, amplified by one unstable cycle, by far less.
@@ -41,6 +52,20 @@ class Side(StrEnum):
     STABLE = "stable"
     """The side that is stable next to the fold: the shorter contact."""
     UNSTABLE = "unstable"
+
+    @classmethod
+    def of(cls, side: str) -> "Side":
+        """The side of a name; ModelError for another.
+
+        Examples
+        --------
+        >>> Side.of("stable")
+        <Side.STABLE: 'stable'>
+        """
+        try:
+            return cls(side)
+        except ValueError:
+            raise ModelError(f"unknown side {side!r}: one of {', '.join(cls)}") from None
 
 
 class Route(StrEnum):
@@ -102,6 +127,11 @@ class Orbit(Record, ABC):
     phase: np.ndarray
     contact_duration: np.ndarray
     impact_velocity: np.ndarray
+
+    def __repr__(self) -> str:
+        names = ("n", "law", *OBSERVABLES)
+        values = (f"  {name:<22}{in_words(getattr(self, name))}" for name in names)
+        return "\n".join([type(self).__name__, *values])
 
     # What a model's orbits add.
 

@@ -1,0 +1,138 @@
+"""The three calls that most people need: an orbit, its limits, a simulation.
+
+Each takes the parameters of a model: r alone is the restitution model, r and ϖ
+are a spring-damper contact with the damping of r by Eq. 16.
+"""
+
+import math
+from typing import NamedTuple
+
+from numpy.typing import ArrayLike
+
+from bouncing_ball.errors import ModelError
+from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.motion.sequence import ImpactSequence
+from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.interface import ImpactModel, Orbit, Side
+from bouncing_ball.orbits.restitution_model import RestitutionModel
+
+
+class Limits(NamedTuple):
+    """The orbits between which a family is stable; NaN where there is none."""
+
+    saddle_node: Orbit
+    period_doubling: Orbit
+
+
+def model(
+    restitution: ArrayLike,
+    frequency_ratio: ArrayLike | None = None,
+    release: str = "displacement",
+) -> ImpactModel:
+    """The model with these parameters.
+
+    Parameters
+    ----------
+    restitution : array_like
+        Restitution coefficient r in (0, 1].
+    frequency_ratio : array_like, optional
+        ϖ of a spring-damper contact; without it an impact is an instant.
+    release : str
+        What ends a contact: "displacement", as in the paper, or "force".
+
+    Raises
+    ------
+    ModelError
+        If a parameter is out of range, or a release is given and no contact.
+
+    Examples
+    --------
+    >>> model(0.85)
+    RestitutionModel(restitution=0.85)
+    """
+    if frequency_ratio is not None:
+        return ContactModel(Contact.from_restitution(restitution, frequency_ratio, release))
+    if release != "displacement":
+        raise ModelError("a release needs a contact: give its frequency ratio ϖ as well")
+    return RestitutionModel(restitution)  # type: ignore[arg-type]
+
+
+def orbit(
+    n: int,
+    amplitude: float,
+    *,
+    restitution: float,
+    frequency_ratio: float | None = None,
+    release: str = "displacement",
+    side: str = "stable",
+) -> Orbit:
+    """The n-T orbit at the excitation amplitude Λ.
+
+    ``side`` is the side of the saddle-node: the one that is stable next to it,
+    or the "unstable" one. For other parameters see :func:`model`.
+
+    Raises
+    ------
+    NoOrbitError
+        If there is none, with the reason.
+    ModelError
+        If a parameter is out of range.
+
+    Examples
+    --------
+    >>> orbit(1, 1.0, restitution=0.85, frequency_ratio=10.0)  # doctest: +ELLIPSIS
+    ContactOrbit
+      n                     1
+      law                   Contact(frequency_ratio=10, damping_ratio=0.0516623, ...)
+      amplitude             1
+      phase                 1.16848
+      contact_duration      0.314782
+      impact_velocity       -2.99694
+      bounce_velocity       2.97147
+      apparent_restitution  0.851132
+      max_height            5.41098
+    """
+    return model(restitution, frequency_ratio, release).require_orbit(n, amplitude, Side.of(side))
+
+
+def limits(
+    n: int,
+    *,
+    restitution: float,
+    frequency_ratio: float | None = None,
+    release: str = "displacement",
+) -> Limits:
+    """Saddle-node and period doubling of the n-T orbits.
+
+    Examples
+    --------
+    >>> found = limits(1, restitution=0.85)
+    >>> float(found.saddle_node.amplitude) < float(found.period_doubling.amplitude)
+    True
+    """
+    of = model(restitution, frequency_ratio, release)
+    return Limits(of.saddle_node(n), of.period_doubling(n))
+
+
+def simulate(
+    amplitude: float,
+    *,
+    restitution: float,
+    frequency_ratio: float | None = None,
+    release: str = "displacement",
+    phase: ArrayLike = 0.0,
+    velocity: ArrayLike = -math.pi,
+    impacts: int = 100,
+) -> ImpactSequence:
+    """Impacts in order, from a first one at a phase of the table.
+
+    ``velocity`` is that of the ball before the first impact. Arrays follow
+    many balls at once.
+
+    Examples
+    --------
+    >>> simulate(0.0, restitution=0.5, velocity=-4.0, impacts=3).time.tolist()
+    [0.0, 4.0, 6.0]
+    """
+    of = model(restitution, frequency_ratio, release)
+    return of.simulate(amplitude, phase, velocity, impacts)

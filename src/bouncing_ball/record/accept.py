@@ -196,6 +196,27 @@ def _same(one: Path, other: Path) -> bool:
     return other.is_file() and file_digest(one) == file_digest(other)
 
 
+def check(run: Run, results: Path, recipes: Sequence[Recipe], files: Sequence[str]) -> None:
+    """Raise :class:`RefusedError` unless results are what the commit checked out makes."""
+    check_tree(run.now)
+    foreign = stale(results / "figures", [results / file for file in files])
+    if foreign:
+        raise RefusedError(f"{foreign[0]} is not made by this workflow: remove it")
+    made = check_made(recipes, run)
+    published = {file: made[(results / file).as_posix()] for file in files}
+    lock = run.repository / LOCK
+    check_versions(published, lock.read_text(encoding="utf-8") if lock.is_file() else "")
+    print(*commits(published.values(), run.now), sep="\n")
+
+
+def chosen(outcomes: Mapping[str, Outcome], recipes: Iterable[Recipe], also: str) -> set[str]:
+    """The artifacts to be copied: those that have moved, and those asked for."""
+    asked = set(outcomes if also == ALL else also.split())
+    if unknown := asked - outcomes.keys():
+        raise RefusedError(f"no artifact {', '.join(sorted(unknown))} to be copied as well")
+    return moved(outcomes, made_from(recipes)) | asked
+
+
 def accept(
     run: Run, results: Path, recipes: Sequence[Recipe], files: Sequence[str], reason: str, also: str
 ) -> list[str]:
@@ -224,40 +245,25 @@ def accept(
         Nothing is touched then.
     """
     check_reason(reason)
-    check_tree(run.now)
-    record = run.repository
-    foreign = stale(results / "figures", [results / file for file in files])
-    if foreign:
-        raise RefusedError(f"{foreign[0]} is not made by this workflow: remove it")
-    made = check_made(recipes, run)
-    published = {file: made[(results / file).as_posix()] for file in files}
-    lock = record / LOCK
-    check_versions(published, lock.read_text(encoding="utf-8") if lock.is_file() else "")
-    print(*commits(published.values(), run.now), sep="\n")
-
+    check(run, results, recipes, files)
+    record, commit = run.repository, run.now.commit
     outcomes = compare(record, results)
-    text = (record / LOG).read_text(encoding="utf-8") if (record / LOG).is_file() else ""
-    started = begun(record, text, run.now.commit, reason.strip())
-    asked = outcomes.keys() if also == ALL else also.split()
-    if unknown := set(asked) - outcomes.keys():
-        raise RefusedError(f"no artifact {', '.join(sorted(unknown))} to be copied as well")
-    names = moved(outcomes, made_from(recipes)) | started | set(asked)
+    log = (record / LOG).read_text(encoding="utf-8") if (record / LOG).is_file() else ""
+    started = begun(record, log, commit, reason.strip())
+    names = chosen(outcomes, recipes, also) | started
     copied = [
         file
         for file in files
         if Path(file).stem in names and not _same(results / file, record / file)
     ]
     removed = stale(record / "figures", [record / file for file in files])
-    changed = {Path(file).stem for file in copied} | {path.stem for path in removed}
-    if not changed:
+    changes = dict.fromkeys((path.stem for path in removed), "removed")
+    changes |= {Path(file).stem: _change(outcomes[Path(file).stem]) for file in copied}
+    if not changes:
         print("Nothing to accept: the record says what the results say.")
         return ["nothing to accept"]
-    if not changed <= started:
-        made_now = {Path(file).stem for file in files}
-        said = {
-            name: _change(outcomes[name]) if name in made_now else "removed" for name in changed
-        }
-        text = log_with(text, run.now.commit, reason, said)
-    lines = replace_record(record, results, copied, removed, text)
+    if not changes.keys() <= started:
+        log = log_with(log, commit, reason, changes)
+    lines = replace_record(record, results, copied, removed, log)
     print(f"Accepted, reason: {reason.strip()}", flush=True)
     return lines

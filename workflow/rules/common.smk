@@ -74,6 +74,10 @@ def files(artifacts):
     ]
 
 
+def captioned(name):
+    return Path(workflow.basedir, f"workflow/report/{name}.rst").is_file()
+
+
 def reads(stage):
     """The artifacts whose datasets a stage takes; the ledger names its own."""
     return LEDGER.datasets if stage.section == "ledger" else stage.reads

@@ -18,7 +18,7 @@ for name in FIGURES:
         output:
             png=report(
                 f"results/figures/{name}.png",
-                caption=f"../report/{name}.rst",
+                caption=f"../report/{name if captioned(name) else 'figure'}.rst",
                 category="Figures" if STAGES[name].kind is Kind.FIGURE else "Beyond the paper",
                 labels={"figure": name},
             ),

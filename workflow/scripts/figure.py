@@ -13,7 +13,8 @@ with logged(snakemake) as lines, style():
     paths = snakemake.input.get("data", [])
     figure = from_dataset(draw, read_input(paths[0]), paths[0]) if paths else draw()
     # Laid out once, for both files.
-    figure.get_layout_engine().execute(figure)
+    if layout := figure.get_layout_engine():
+        layout.execute(figure)
     figure.set_layout_engine("none")
     metadata = provenance(snakemake).attributes()
     for path in snakemake.output:

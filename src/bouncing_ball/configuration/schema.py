@@ -46,9 +46,6 @@ def configuration_schema(kinds: Mapping[str, Any]) -> dict[str, Any]:
     for stage in STAGES.values():
         if stage.takes:
             section, name = stage.section.split(".")
-            keys = {"properties": stage.takes}
-            part = properties.setdefault(section, {"properties": {}})
-            part["properties"] = part["properties"] | {name: keys}
-    schema = expanded({**kinds, "properties": properties})
-    optional = kinds.get("optional", [])
-    return schema | {"required": [name for name in properties if name not in optional]}
+            known = properties.get(section, {"properties": {}})["properties"]
+            properties[section] = {"properties": known | {name: {"properties": stage.takes}}}
+    return expanded({**kinds, "properties": properties})

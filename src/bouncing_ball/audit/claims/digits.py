@@ -3,7 +3,7 @@
 import re
 
 # Digits with or without a decimal part, and a power of ten.
-_NUMBER = re.compile(r"-?[0-9]+(\.[0-9]+)?(e-?[0-9]+)?")
+_NUMBER = re.compile(r"-?[0-9]{1,20}(\.[0-9]{1,20})?(e-?[0-9]{1,2})?")
 
 
 def is_number_text(value: object) -> bool:

@@ -408,6 +408,6 @@ def test_an_acceptance_killed_at_any_rename_is_completed_by_the_next(world, at):
     assert accepted(world, reason="Moved") == ["nothing to accept"]
 
 
-def test_what_is_halfway_written_is_no_dirt():
+def test_what_is_halfway_written_is_no_change():
     ignored = (ROOT / ".gitignore").read_text(encoding="utf-8").splitlines()
     assert ".*.part.*" in ignored

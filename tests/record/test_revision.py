@@ -1,4 +1,4 @@
-"""The commit and the dirt of a repository."""
+"""The commit of a repository, and whether anything has changed since."""
 
 import shutil
 import subprocess
@@ -61,7 +61,7 @@ def test_what_makes_a_tree_dirty(repository, file, dirty):
     assert revision(repository) == (head(repository), dirty)
 
 
-def test_a_removed_file_is_dirt(repository):
+def test_a_removed_file_is_a_change(repository):
     (repository / "Snakefile").unlink()
     assert revision(repository).dirty == "yes"
 

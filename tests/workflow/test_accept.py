@@ -78,7 +78,7 @@ def test_what_has_moved_becomes_the_record(tree, monkeypatch):
 
     rules = read_tolerances(tree.path / "config" / "tolerances.yaml")
     assert compare_folders(tree.path, tree.path / "results", rules).outcome.agrees
-    # The record is no dirt, and makes nothing again.
+    # The record is no change, and makes nothing again.
     monkeypatch.setenv("REASON", "Again")
     after = record(tree)
     done = tree.run("--cores", "1", "accept")

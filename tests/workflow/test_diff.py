@@ -31,7 +31,7 @@ def test_a_run_against_its_record(complete):
     said = [line for line in done.stderr.splitlines() if line.startswith("diff: ")]
     assert said == ["diff: see results/diff/index.html, or diff.md and diff.json beside it"]
     assert "Traceback" not in done.stderr
-    # The reports outlive the job that failed, and tell what has changed.
+    # The reports outlive the job that failed, and say what has changed.
     content = json.loads((reports / "diff.json").read_text(encoding="utf-8"))
     assert content["status"] == 1
     after = {path.name: path.read_bytes() for path in reports.iterdir()}

@@ -1,5 +1,5 @@
 # Parameters in, datasets out: one rule for all stages. What each is made from
-# stands in src/bouncing_ball/configuration/stages.py.
+# is in src/bouncing_ball/configuration/stages.py.
 
 
 rule stage:

@@ -56,7 +56,7 @@ _LARGEST_STEP, _LARGEST_ANGLE = 0.8, 0.4
 # far against the budget, and near enough for orbits close to a fold or grazing.
 _STARTS = (1e-3, 1e-5, 1e-7)
 # Test function below which an orbit counts as left: away from the bifurcations,
-# where the multiplier is ±1 and a departure would tell nothing.
+# where the multiplier is ±1 and a departure would show nothing.
 _UNSTABLE = -0.05
 # Samples of an orbit's path for each half period of the contact and the table.
 _SAMPLES = 64

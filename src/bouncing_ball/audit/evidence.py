@@ -199,7 +199,7 @@ def _end_of_softest(branches: xr.Dataset) -> xr.DataArray:
 def _first_range(kinds: np.ndarray, amplitudes: np.ndarray) -> np.ndarray:
     """Ends of the stable range next to the saddle-node, NaN where there is none.
 
-    The special points stand in the branch's order, which ends on the stable
+    The special points are in the branch's order, which ends on the stable
     side: the last saddle-node, and the first period doubling after it.
     """
     node, doubling = (np.flatnonzero(kinds == kind) for kind in BOUNDS)
@@ -242,7 +242,7 @@ def _table(data: Datasets) -> Found:
     return found
 
 
-def _permanent_contact(figure: xr.Dataset, asked: float) -> Found:
+def _permanent_contact(figure: xr.Dataset, printed_ratio: float) -> Found:
     """Fig. 16: the error at the printed threshold, and the threshold by Eq. 34."""
     error = figure.relative_error.isel(quantity=0)
     grid = np.log(figure.frequency_ratio.values)
@@ -254,7 +254,7 @@ def _permanent_contact(figure: xr.Dataset, asked: float) -> Found:
         by_formula = printed.permanent_contact_frequency_ratio(level, figure.damping_ratio, 1)
     return {
         "permanent_contact_error": xr.DataArray(
-            np.interp(np.log(asked), grid, error.values, left=np.nan, right=np.nan)
+            np.interp(np.log(printed_ratio), grid, error.values, left=np.nan, right=np.nan)
         ),
         "permanent_contact_inverse": np.abs(by_formula / threshold - 1),
     }

@@ -31,7 +31,7 @@ def _dotted(path, root: Any = None) -> str:
         value = value[part] if root is not None else {}
         if isinstance(part, int):
             name = value.get("id") if isinstance(value, Mapping) else None
-            text += f"[{name!r}]" if isinstance(name, str) else f"[{part}]"
+            text += f"[{_shown(name)}]" if isinstance(name, str) else f"[{part}]"
         else:
             text += f".{part}" if text else str(part)
     return text
@@ -122,7 +122,7 @@ def _known_keys(schema: Mapping[str, Any], root: Mapping[str, Any]) -> list[str]
 
 
 def _chosen(error: ValidationError) -> ValidationError | None:
-    """The error within the alternative that was meant, if one key tells which."""
+    """The error within the alternative that was meant, if one key shows which."""
     met = [
         index
         for index, option in enumerate(error.validator_value)

@@ -21,7 +21,7 @@ The keys of `config.yaml`, with what is allowed. This page is made from
 `schema.yaml` and the entries of the stages by `make config-docs`; change those,
 not the page.
 
-Beside it stands `claims.yaml`, the ledger of the paper's claims. What the paper
+Beside it is `claims.yaml`, the ledger of the paper's claims. What the paper
 printed is there and nowhere else; its schema, `claims.schema.yaml`, says how a
 claim is written.
 

@@ -1,7 +1,7 @@
 """The schema of the configuration, from ``config/schema.yaml`` and the stages.
 
 The file describes each kind of parameter once; what a figure or a table takes
-stands in its entry. Together they are a JSON schema.
+is in its entry. Together they are a JSON schema.
 """
 
 from collections.abc import Mapping

@@ -35,7 +35,7 @@ class Stage:
     study: str = ""
     """Function within the package, ``module.function``; none for a drawing without data."""
     section: str = ""
-    """Where its parameters stand in the configuration, ``figures.fig08``."""
+    """Place of its parameters in the configuration, ``figures.fig08``."""
     keys: str = ""
     """Its parameters, ``name`` or ``name:kind``; ``config/schema.yaml`` describes the kinds."""
     arguments: tuple[str, ...] = ()

@@ -33,6 +33,6 @@ def index_of(values: xr.DataArray, name: str, wanted: Any) -> int:
         there = np.flatnonzero(np.isclose(labels, wanted, rtol=_MATCH, atol=0))
     if there.size != 1:
         known = ", ".join(map(str, labels.tolist()))
-        often = "is not among" if not there.size else f"stands {there.size} times among"
+        often = "is not among" if not there.size else f"is {there.size} times among"
         raise ModelError(f"{name} = {wanted} {often} {known}")
     return int(there[0])

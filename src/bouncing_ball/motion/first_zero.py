@@ -68,7 +68,7 @@ class Motion(Protocol):
     def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
         """A later time up to which there is certainly no zero, or the time itself.
 
-        ``steps`` have been taken before; what is dear may wait for a few.
+        ``steps`` have been taken before; costly bounds may be skipped for a few.
         """
         ...
 

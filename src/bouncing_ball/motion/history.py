@@ -13,7 +13,7 @@ from bouncing_ball.motion.sequence import ImpactSequence, Status
 class History(NamedTuple):
     """Height z and velocity z′ of the ball, height w of the table, and δ = z - w.
 
-    ``touching`` tells contact from flight. NaN before the first impact and
+    ``touching`` is true in contact, false in flight. NaN before the first impact and
     after the last contact, whose flight is not known to its end.
     """
 

@@ -50,7 +50,7 @@ class CorrectedModel(ImpactModel):
 
     @classmethod
     def of_contact(cls, contact: Contact) -> "CorrectedModel":
-        """The model that stands for a spring-damper contact."""
+        """The model of a spring-damper contact."""
         return cls(LinearSignature(contact))
 
     @property

@@ -149,7 +149,7 @@ def _target(path: Path, made: Provenance) -> str:
 def explain(path: Path) -> dict[str, Any]:
     """Where an artifact comes from; all of it plain JSON.
 
-    The file may be anybody's, and what stands in it anything. Nothing of it is
+    The file may be anybody's, and what it holds anything. Nothing of it is
     run, and the commands are made of parts of known forms.
 
     Raises
@@ -237,7 +237,7 @@ def lines(answer: Mapping[str, Any]) -> list[str]:
             for name, item in answer["versions"].items()
         ),
     ]
-    # What stands in a file moves no cursor; the commands are ours, and must stay whole.
+    # The content of a file moves no cursor; the commands are ours, and must stay whole.
     shown = [(printable(name), printable(value)) for name, value in rows]
     shown.append(("make it again", " && ".join(answer["make_again"])))
     width = max(32, max(len(name) for name, _ in shown) + 2)

@@ -22,7 +22,7 @@ _MADE = "provenance"
 
 @dataclass(frozen=True)
 class JobLog:
-    """Checksums by path, and the line that tells the provenance, if there is one."""
+    """Checksums by path, and the line with the provenance, if there is one."""
 
     path: Path
     sums: dict[str, str]

@@ -1,4 +1,4 @@
-"""Whether results are what the commit checked out makes, by what stands in the files.
+"""Whether results are what the commit checked out makes, by what the files say.
 
 Every file is the one that its job wrote, by the checksum in the job's log; and
 the job had the script, modules, parameters, lock file and inputs that the

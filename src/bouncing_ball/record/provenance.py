@@ -1,4 +1,4 @@
-"""Where an artifact comes from, as it stands in the artifact itself.
+"""Where an artifact comes from, as the artifact itself says.
 
 Every dataset carries its provenance in netCDF attributes, every picture in its
 metadata; of texts and tables the log of their job holds it. It names the

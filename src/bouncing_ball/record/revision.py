@@ -35,15 +35,15 @@ def parse_status(text: str) -> Revision:
     >>> parse_status("# branch.oid (initial)\\n? Snakefile\\n")
     Revision(commit='unknown', dirty='unknown')
     """
-    dirt = False
+    changed = False
     commit = ""
     for line in text.splitlines():
         if line.startswith("# branch.oid "):
             commit = line.split()[-1]
-        dirt = dirt or not line.startswith("#")
+        changed = changed or not line.startswith("#")
     if not commit or commit == "(initial)":
         return UNKNOWN
-    return Revision(commit, "yes" if dirt else "no")
+    return Revision(commit, "yes" if changed else "no")
 
 
 def _git(folder: Path, *arguments: str) -> str | None:

@@ -61,7 +61,7 @@ def test_flags_count_and_infinity_is_a_number():
         (Measure("grid", "x", (("bound", 1),)), "bound = 1 is not among low, high"),
         (Measure("grid", "x", (("n", "one"),)), "n = one is not among 1, 2"),
         (Measure("grid", "x", (("n", 1), ("n", 1))), "x has no coordinate n"),
-        (Measure("grid", "twice", (("ratio", 10.0),)), "ratio = 10.0 stands 2 times among"),
+        (Measure("grid", "twice", (("ratio", 10.0),)), "ratio = 10.0 is 2 times among"),
         (Measure("grid", "x"), "4 numbers over n, bound, not 1"),
         (Measure("grid", "x", (("n", 1),)), "2 numbers over bound, not 1"),
         (Measure("grid", "gap", (("n", 2),)), "1 of 1 not a number"),

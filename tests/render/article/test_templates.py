@@ -37,7 +37,7 @@ def typed_numbers(text: str) -> list[str]:
     """Numbers in the prose, and numbers in formulas that no formula needs."""
     found = re.findall(r"\S*\d\S*", prose(text))
     for formula in mathematics(text):
-        # Exponents and factors are single digits; numbers of equations stand in \text.
+        # Exponents and factors are single digits; numbers of equations are in \text.
         bare = re.sub(r"\\text\{[^}]*\}", " ", formula)
         found += re.findall(r"\d+\.\d+|\d{2,}|[5-9]", bare)
     return found

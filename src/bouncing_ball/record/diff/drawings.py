@@ -140,7 +140,7 @@ class _Reader:
 
 
 def read_drawing(content: bytes) -> Drawing:
-    """A vector graphic, without the block that tells how it was made.
+    """A vector graphic, without the block that says how it was made.
 
     Raises
     ------

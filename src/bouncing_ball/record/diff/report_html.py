@@ -30,7 +30,7 @@ def _small(value: float | None) -> str:
 
 
 def _plain(value: Any) -> Any:
-    """What stands in an expression of the page; text that is no markup yet, on one line."""
+    """The value of an expression of the page; text that is no markup yet, on one line."""
     return (
         value
         if hasattr(value, "__html__") or not isinstance(value, str)

@@ -16,7 +16,7 @@ _SPECIAL = str.maketrans({character: f"\\{character}" for character in "\\`*_[]<
 
 
 def escaped(text: str) -> str:
-    """Text that stands in a cell of a table as it is.
+    """Text in a cell of a table, unchanged when read.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Curves along ϖ for several amplitudes, told apart by dashes too (Figs. 6 and 10)."""
+"""Curves along ϖ for several amplitudes, distinguished by dashes too (Figs. 6 and 10)."""
 
 import xarray as xr
 from matplotlib.axes import Axes

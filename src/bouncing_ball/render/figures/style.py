@@ -17,7 +17,7 @@ WIDTH = 3.4
 WIDE = 7.0
 """Width of a two-column figure in inches."""
 
-# Okabe and Ito's colours, which colour-blind readers tell apart, in an order in
+# Okabe and Ito's colours, which colour-blind readers can distinguish, in an order in
 # which neighbours differ in greyscale too (grey levels 0, 87, 162, 119, 158).
 COLOURS = ("#000000", "#0072B2", "#E69F00", "#D55E00", "#56B4E9")
 RESTITUTION = "#000000"
@@ -89,7 +89,7 @@ def logarithmic(axes: Axes) -> None:
 
 
 def number(value: float) -> str:
-    """A parameter as it stands in a label.
+    """A parameter as a label shows it.
 
     Examples
     --------

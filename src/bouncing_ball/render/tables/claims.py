@@ -29,8 +29,8 @@ def deviation_text(claim: xr.Dataset) -> str:
 def rows(data: xr.Dataset) -> tuple[Sequence[str], list[list[str]]]:
     """One row for each claim: place, statement, number, deviation, verdict.
 
-    Under "printed or required" stands the printed number, or for a formula or a
-    statement the bound that must be met.
+    The column "printed or required" has the printed number, or the bound that a
+    formula or a statement must meet.
     """
     header = ["claim", "where", "what the paper says", "printed or required", "found"]
     header += ["deviation", "verdict"]

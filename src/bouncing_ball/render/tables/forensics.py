@@ -13,8 +13,8 @@ def _number(value: float) -> str:
 def rows(data: xr.Dataset) -> tuple[Sequence[str], list[list[str]]]:
     """One row for each reading, the closest first; differences in last digits.
 
-    A dash stands where a reading has no orbit. Readings marked as chosen take
-    the best value of a range and stand behind the others.
+    A dash is where a reading has no orbit. Readings marked as chosen take the
+    best value of a range and come after the others.
     """
     compared = [str(name) for name in data.rows.values[:2]]
     header = ["rank", "reading"]

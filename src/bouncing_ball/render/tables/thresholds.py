@@ -8,8 +8,8 @@ import xarray as xr
 def rows(data: xr.Dataset) -> tuple[Sequence[str], list[list[str]]]:
     """One row for each quantity, one column for each tolerance.
 
-    Where the threshold lies outside the range scanned, the end of the range
-    stands with < or >.
+    Where the threshold lies outside the range scanned, the entry is the end of
+    the range after < or >.
     """
     header = ["quantity", *(f"{100 * tolerance:g} %" for tolerance in data.tolerance.values)]
     low, high = (float(data.frequency_ratio[k]) for k in (0, -1))

@@ -1,0 +1,259 @@
+"""What every model of the impact keeps, whatever its law.
+
+A new model is one more line of :data:`MODELS`. Tolerances are roundings, of
+times some 2πn and of velocities some nπ, grown by the quantity that is named
+beside them.
+"""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.continuation.corrector import NewtonSettings, newton
+from bouncing_ball.continuation.events import vanishing
+from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.corrected_model import CorrectedModel
+from bouncing_ball.orbits.interface import OBSERVABLES, Route, Side
+from bouncing_ball.orbits.restitution_model import RestitutionModel
+
+EPS = np.finfo(float).eps
+SOFT = Contact.from_restitution(0.85, 4.0)
+STIFF = Contact.from_restitution(0.65, 50.0)
+PUSHING = Contact.from_restitution(0.65, 20.0, "force")
+MODELS = {
+    "restitution": RestitutionModel(0.65),
+    "elastic": RestitutionModel(1.0),
+    "soft contact": ContactModel(SOFT),
+    "stiff contact": ContactModel(STIFF),
+    "force release": ContactModel(PUSHING),
+    "undamped contact": ContactModel(Contact(10.0, 0.0)),
+    "corrected": CorrectedModel.of_contact(STIFF),
+    "corrected, force release": CorrectedModel.of_contact(PUSHING),
+}
+DISSIPATIVE = [name for name in MODELS if name not in ("elastic", "undamped contact")]
+# n, and Λ over the saddle-node's and below the table's grazing, Λ > 1 included.
+CASES = [(1, 0.3), (2, 0.3), (1, 0.6)]
+
+every_model = pytest.mark.parametrize("name", MODELS)
+every_case = pytest.mark.parametrize(("n", "above"), CASES)
+every_side = pytest.mark.parametrize("side", list(Side))
+
+
+def some_orbit(name, n, above, side):
+    model = MODELS[name]
+    node = float(model.saddle_node(n).amplitude)
+    return model, model.require_orbit(n, (0.0 if np.isnan(node) else node) + above, side)
+
+
+def differences(function, y, steps):
+    """Central differences of fourth order along every entry of y, last axis."""
+    weights = np.array([1, -8, 8, -1]) / 12
+    columns = []
+    for k, step in enumerate(steps):
+        moved = [y + j * step * np.eye(len(y))[k] for j in (-2, -1, 1, 2)]
+        columns.append(sum(w * function(x) for w, x in zip(weights, moved, strict=True)) / step)
+    return np.stack(columns, axis=-1)
+
+
+@every_side
+@every_case
+@every_model
+def test_an_orbit_solves_its_equations(name, n, above, side):
+    model, orbit = some_orbit(name, n, above, side)
+    # Heights of order (nπ)²; a contact's phase ϖD is rounded too.
+    size = (1 + np.pi * n) ** 2 * (1 + float(orbit.clock) * float(orbit.contact_duration))
+    assert orbit.defect() < 100 * EPS * size
+    system = model.system(n)
+    y = system.point(orbit)
+    assert np.max(np.abs(system.residual(y))) < 100 * EPS * size
+    assert system.orbit(y).distance(orbit) < 100 * EPS * size
+
+
+@every_side
+@every_case
+@every_model
+def test_the_jacobian_of_the_equations(name, n, above, side):
+    model, orbit = some_orbit(name, n, above, side)
+    system = model.system(n)
+    y = system.point(orbit)
+    computed = system.jacobian(y)
+    # Fourth order: h⁴/30 = 3e-14 times a fifth derivative, and roundings over h.
+    expected = differences(system.residual, y, np.full(len(y), 1e-3))
+    assert np.abs(computed - expected).max() < 1e-9 * (1 + np.abs(computed).max())
+
+
+@every_side
+@every_case
+@every_model
+def test_an_orbit_is_a_fixed_point_of_the_simulation(name, n, above, side):
+    model, orbit = some_orbit(name, n, above, side)
+    assert orbit.is_admissible()
+    u = orbit.relative_impact_velocity
+    growth = 1 + np.abs(orbit.monodromy()).max()
+    for cycle in (
+        model.cycle(orbit.amplitude, orbit.phase, u),
+        orbit.cycle(orbit.phase, u),
+    ):
+        assert abs(cycle.time - 2 * np.pi * n) < 100 * EPS * 2 * np.pi * n * growth
+        assert abs(cycle.relative_velocity - u) < 100 * EPS * 2 * np.pi * n * growth
+    sequence = model.simulate(orbit.amplitude, orbit.phase, orbit.impact_velocity, 2)
+    assert sequence.time[1] == pytest.approx(2 * np.pi * n, abs=1e-12 * growth)
+    assert sequence.contact_duration[0] == pytest.approx(orbit.contact_duration, abs=1e-13 * growth)
+
+
+@every_side
+@every_case
+@every_model
+def test_the_monodromy_is_the_jacobian_of_the_simulated_map(name, n, above, side):
+    _, orbit = some_orbit(name, n, above, side)
+
+    def cycle(state):
+        at = orbit.cycle(state[0], state[1])
+        # The time runs on where the phase is reduced.
+        return np.array([state[0] + at.time, at.relative_velocity])
+
+    state = np.array([float(orbit.phase), float(orbit.relative_impact_velocity)])
+    expected = differences(cycle, state, np.full(2, 1e-3 * min(1.0, abs(state[1]))))
+    computed = orbit.monodromy()
+    assert np.abs(computed - expected).max() < 1e-8 * (1 + np.abs(computed).max() ** 2)
+
+
+@every_side
+@every_case
+@every_model
+def test_the_determinant_is_the_contraction(name, n, above, side):
+    _, orbit = some_orbit(name, n, above, side)
+    matrix = orbit.monodromy()
+    size = 1 + np.abs(matrix).max() ** 2
+    assert abs(np.linalg.det(matrix) - orbit.determinant()) < 100 * EPS * size
+    trace, det = orbit.trace_and_determinant()
+    assert abs(np.trace(matrix) - trace) < 100 * EPS * size
+    product = np.prod(orbit.multipliers())
+    assert abs(product - det) < 100 * EPS * size
+    # Without dissipation the multipliers lie on the circle, and rounding decides.
+    if name in DISSIPATIVE:
+        assert bool(orbit.is_stable()) == bool(np.all(np.abs(orbit.multipliers()) < 1))
+
+
+@every_case
+@pytest.mark.parametrize("name", DISSIPATIVE)
+def test_sides_and_bifurcations(name, n, above):
+    model = MODELS[name]
+    node, doubling = model.saddle_node(n), model.period_doubling(n)
+    # The multiplier at a fold is as exact as the root of its distance to 1.
+    assert np.min(np.abs(node.multipliers() - 1)) < 1e-6
+    assert np.min(np.abs(doubling.multipliers() + 1)) < 1e-6
+    between = model.orbit(n, (node.amplitude + doubling.amplitude) / 2)
+    assert between.is_stable()
+    assert not model.orbit(n, node.amplitude + 0.01 * above, Side.UNSTABLE).is_stable()
+    # The continuation's own extended system meets them.
+    system = model.system(n)
+    events = {event.name: event.function for event in system.events()}
+    for kind, orbit in (("saddle-node", node), ("period doubling", doubling)):
+        start = system.point(orbit) * (1 + 1e-4)
+        settings = NewtonSettings(max_iterations=40)
+        found = newton(system, start, vanishing(events[kind]), settings)
+        assert found.converged
+        # The test functions' rounding over their slope, of order one.
+        assert abs(found.point[-1] - orbit.amplitude) < 1e-9
+
+
+@every_side
+@every_case
+@every_model
+def test_the_path_is_continuous_and_closed(name, n, above, side):
+    _, orbit = some_orbit(name, n, above, side)
+    period, duration = 2 * np.pi * n, float(orbit.contact_duration)
+    height, velocity = orbit.path([0.0, period, -period, 5 * period])
+    np.testing.assert_allclose(height, height[0], rtol=0, atol=1e-12 * n * n)
+    # The corrected model meets the table's level to second order in the delay only.
+    delay = float(orbit.instant.delay) if name.startswith("corrected") else 0.0
+    missed = 1e-12 + (1 + orbit.amplitude) * delay**2
+    assert height[0] == pytest.approx(orbit.amplitude * np.sin(orbit.phase), abs=missed)
+    np.testing.assert_allclose(velocity, velocity[0], rtol=0, atol=1e-12 * n)
+    # Velocities are the slopes, but at impacts that are instants.
+    time = np.linspace(0, period, 403)[1:-1]
+    h = 1e-4
+    instants = [0.0, duration, period, delay]
+    clear = np.min(np.abs(time[:, None] - instants), axis=1) > 2 * h
+    slope = (orbit.path(time + h)[0] - orbit.path(time - h)[0]) / (2 * h)
+    # Second order: h²/6 times the third derivative of the height, ϖ² and more.
+    assert np.abs(slope - orbit.path(time)[1])[clear].max() < h * h * (1 + float(orbit.clock)) ** 3
+    for end in (duration, period):
+        before, after = (orbit.path(end + s * 1e-9)[0] for s in (-1, 1))
+        assert abs(before - after) < 1e-7
+    # The flight keeps its energy.
+    flying = np.linspace(duration, period, 50)[1:-1]
+    z, v = orbit.path(flying)
+    np.testing.assert_allclose(v * v / 2 + z, v[0] ** 2 / 2 + z[0], rtol=100 * EPS)
+    assert orbit.max_height >= z.max() - 1e-12
+
+
+@every_side
+@every_case
+@every_model
+def test_nothing_happens_between_the_events(name, n, above, side):
+    # First events: the ball is above the table in flight, between the events.
+    _, orbit = some_orbit(name, n, above, side)
+    share = np.linspace(0, 1, 2001)[1:-1]
+    time = float(orbit.contact_duration) + share * float(orbit.flight_time)
+    gap = orbit.path(time)[0] - orbit.amplitude * np.sin(orbit.phase + time)
+    rising = gap > 0
+    if orbit.release_displacement < 0:
+        # Let go below the table's level: it crosses it once, upwards.
+        rising = rising[np.argmax(rising) :]
+        assert len(rising) > len(gap) / 2
+    assert np.all(rising)
+
+
+@every_model
+def test_arrays_are_their_elements(name):
+    model = MODELS[name]
+    amplitude = np.array([[0.01], [1.0], [1.3]])
+    orbits = model.orbit(np.array([1, 2]), amplitude)
+    assert orbits.shape == (3, 2) and len(orbits) == 3
+    for k in np.ndindex(3, 2):
+        single, one = model.orbit(k[1] + 1, amplitude[k[0], 0]), orbits[k]
+        for quantity in OBSERVABLES:
+            assert getattr(one, quantity) == pytest.approx(
+                getattr(single, quantity), rel=1e-11, nan_ok=True
+            )
+    there = orbits[orbits.exists]
+    assert there.size == orbits.exists.sum() > 0
+    # The orbits known by their numbers are the same ones.
+    values = (there.amplitude, there.phase, there.contact_duration, there.impact_velocity)
+    known = model.orbit_of(there.n, *values)
+    np.testing.assert_allclose(known.bounce_velocity, there.bounce_velocity)
+
+
+@pytest.mark.parametrize("name", DISSIPATIVE)
+def test_all_orbits_at_an_amplitude(name):
+    model = MODELS[name]
+    found = model.orbits(1, 0.9)
+    assert np.all(np.diff(found.contact_duration) >= 0)
+    for side in Side:
+        assert np.min(found.distance(model.orbit(1, 0.9, side))) < 1e-9
+    assert model.orbits(1, 1e-3).size == 0
+
+
+@every_side
+@every_model
+def test_the_closed_form_is_nearest_to_its_own_orbits(name, side):
+    model, orbit = some_orbit(name, 1, 0.5, side)
+    if Route.FORMULA not in model.routes:
+        pytest.skip("no closed form")
+    assert model.nearest(orbit).distance(orbit) < 1e-12
+
+
+@every_model
+def test_what_is_refused(name):
+    model = MODELS[name]
+    for n in (0, -1, 1.5, np.nan):
+        for ask in (model.saddle_node, model.period_doubling, lambda n: model.orbit(n, 1.0)):
+            with pytest.raises(ModelError, match="not a positive integer"):
+                ask(n)
+    if name in DISSIPATIVE:
+        with pytest.raises(NoOrbitError, match=r"Λ = 0\.001 .*below the saddle-node"):
+            model.require_orbit(1, 1e-3)
+    assert model.permanent_contact_threshold() > 0

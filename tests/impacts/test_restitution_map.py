@@ -8,8 +8,6 @@ from scipy.optimize import brentq
 from bouncing_ball.impacts.restitution_map import (
     bounce,
     exact_map_jacobian,
-    holmes_map,
-    holmes_map_jacobian,
     landing_gap,
 )
 
@@ -73,31 +71,6 @@ def test_determinant_of_the_exact_map(state):
     assert det == pytest.approx(r * r * launch / after, rel=1e-13)
 
 
-@pytest.mark.parametrize("state", STATES)
-def test_holmes_jacobian(state):
-    tau, v, lam, r = state
-    h = 1e-3
-    columns = []
-    for step in ((h, 0), (0, h)):
-        values = [holmes_map(tau + k * step[0], v + k * step[1], lam, r) for k in (-2, -1, 1, 2)]
-        columns.append(np.array([1, -8, 8, -1]) / 12 @ np.array(values) / h)
-    computed = holmes_map_jacobian(tau, v, lam, r)
-    # h⁴ · 2⁵/30 · (1 + r) Λ: 3e-12 · 5.
-    assert computed == pytest.approx(np.array(columns).T, abs=2e-11)
-    assert np.linalg.det(computed) == pytest.approx(r, rel=1e-13)
-
-
-def test_holmes_map_is_the_high_bounce_limit():
-    # The neglected displacement, 2Λ at most, shifts the flight time 2v by at
-    # most Λ·2/v, and the velocity by r and (1 + r) Λ times that.
-    tau, lam, r = 0.3, 0.2, 0.8
-    for v in (30.0, 300.0):
-        exact, holmes = exact_map(tau, v, lam, r), holmes_map(tau, v, lam, r)
-        shift = 2 * lam / v
-        assert abs(exact[0] - holmes[0]) <= 1.01 * shift
-        assert abs(exact[1] - holmes[1]) <= 1.01 * (r + (1 + r) * lam) * shift
-
-
 def test_jacobians_broadcast():
     assert exact_map_jacobian(np.full((3, 1), 6.0), 0.0, np.full(2, 3.0), 0.5, 0.8).shape == (
         3,
@@ -105,4 +78,3 @@ def test_jacobians_broadcast():
         2,
         2,
     )
-    assert holmes_map_jacobian(np.zeros(4), 3.0, 0.5, 0.8).shape == (4, 2, 2)

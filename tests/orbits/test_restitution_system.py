@@ -26,20 +26,6 @@ def test_bifurcations_are_those_of_the_formula(n, r):
         assert found == pytest.approx(np.array([phase, n * np.pi, lam]), abs=1e-12 * scale)
 
 
-def test_jacobian_against_differences():
-    system, h = RestitutionSystem(2, 0.7), 1e-4
-    y = np.array([0.4, 2 * np.pi, 1.3])
-    # On the solution's velocity the gap depends on v alone: also off it.
-    for v in (2 * np.pi, 5.0):
-        y[1] = v
-        steps = [
-            (system.residual(y + h * axis) - system.residual(y - h * axis)) / (2 * h)
-            for axis in np.eye(3)
-        ]
-        # h²/6 times third derivatives of order one.
-        assert system.jacobian(y) == pytest.approx(np.array(steps).T, abs=1e-8)
-
-
 def test_broadcasting():
     system = RestitutionSystem(1, 0.85)
     y = np.array([0.5, np.pi, 0.9]) + np.linspace(0, 0.1, 6).reshape(2, 3, 1)

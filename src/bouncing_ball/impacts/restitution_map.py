@@ -1,4 +1,4 @@
-r"""Restitution-coefficient model: the impact map and Holmes' approximation.
+r"""Restitution-coefficient model: the impact map.
 
 State just after an impact: phase τ of the table, absolute velocity v of the
 ball. The ball flies for a time s and lands when ::
@@ -7,8 +7,8 @@ ball. The ball flies for a time s and lands when ::
     v₁ = -r (v - s) + (1 + r) Λ cos(τ + s)                       (Eq. 5)
 
 Holmes' high-bounce map neglects the table's displacement in the flight time,
-s = 2v, so that ``v₁ = r v + (1 + r) Λ cos(τ + 2v)``. Its Jacobian has
-determinant r, that of the exact map r² in the velocity relative to the table.
+s = 2v; only its period doubling is needed, see
+:mod:`bouncing_ball.orbits.restitution_orbit`.
 
 All quantities are dimensionless.
 """
@@ -79,38 +79,4 @@ def exact_map_jacobian(
     jacobian[..., 0, 1] = s_v
     jacobian[..., 1, 0] = v_s * s_tau - (1 + r) * lam * np.sin(landing)
     jacobian[..., 1, 1] = v_s * s_v - r
-    return jacobian
-
-
-def holmes_map(
-    phase: ArrayLike, velocity: ArrayLike, amplitude: ArrayLike, restitution: ArrayLike
-) -> tuple[np.ndarray, np.ndarray]:
-    """Holmes' high-bounce map, ``τ₁ = τ + 2v, v₁ = r v + (1 + r) Λ cos τ₁``.
-
-    P. J. Holmes, J. Sound Vib. 84 (1982) 173-189, in the paper's scaling.
-
-    Examples
-    --------
-    >>> tau, v = holmes_map(0.0, np.pi, 0.0, 0.5)
-    >>> bool(tau == 2 * np.pi), bool(v == np.pi / 2)
-    (True, True)
-    """
-    r = np.asarray(restitution, dtype=float)
-    landing = np.asarray(phase, dtype=float) + 2 * np.asarray(velocity, dtype=float)
-    return landing, r * np.asarray(velocity) + (1 + r) * np.asarray(amplitude) * np.cos(landing)
-
-
-def holmes_map_jacobian(
-    phase: ArrayLike, velocity: ArrayLike, amplitude: ArrayLike, restitution: ArrayLike
-) -> np.ndarray:
-    """Jacobian of Holmes' map, shape (..., 2, 2); its determinant is r."""
-    tau, v, lam, r = np.broadcast_arrays(
-        *(np.asarray(x, float) for x in (phase, velocity, amplitude, restitution))
-    )
-    slope = -(1 + r) * lam * np.sin(tau + 2 * v)
-    jacobian = np.empty((*tau.shape, 2, 2))
-    jacobian[..., 0, 0] = 1
-    jacobian[..., 0, 1] = 2
-    jacobian[..., 1, 0] = slope
-    jacobian[..., 1, 1] = r + 2 * slope
     return jacobian

@@ -26,7 +26,7 @@ ALLOWED = {
         {"numpy", "scipy", "xarray"},
     ),
     # Studies are imported by name when they are run.
-    "configuration": ({"orbits"}, {"yaml", "jsonschema", BY_NAME}),
+    "configuration": ({"impacts", "orbits"}, {"yaml", "jsonschema", BY_NAME}),
     "audit": (
         {"datasets", "impacts", "continuation", "motion", "orbits", "studies", "configuration"},
         {"numpy", "scipy", "xarray"},

@@ -20,12 +20,13 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.audit.claims.assessment import assess
-from bouncing_ball.audit.claims.ledger import parse_ledger
-from bouncing_ball.audit.claims.ledger_file import printed, read_ledger
+from bouncing_ball.audit.claims.ledger_file import read_ledger
 from bouncing_ball.audit.cross_check import cross_check
 from bouncing_ball.audit.evidence import evidence
-from bouncing_ball.configuration.check import check_configuration, resolved
-from bouncing_ball.configuration.stages import STAGES, load, studied
+from bouncing_ball.configuration.check import check_configuration, check_orbits, resolved
+from bouncing_ball.configuration.schema import configuration_schema
+from bouncing_ball.configuration.stages import STAGES, studied
+from bouncing_ball.configuration.study import load
 from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
 from bouncing_ball.datasets.netcdf import parameter_attributes
 from bouncing_ball.orbits import restitution_orbit
@@ -48,13 +49,18 @@ class Case(NamedTuple):
 
 @cache
 def _project() -> tuple[dict[str, Any], dict[str, Any], Any]:
-    """Configuration, schema and ledger of claims."""
+    """Configuration, kinds of parameters and ledger of claims."""
     folder = ROOT / "config"
     return (
         read_yaml(folder / "config.yaml"),
         read_yaml(folder / "schema.yaml"),
         read_ledger(folder),
     )
+
+
+@cache
+def _schema() -> dict[str, Any]:
+    return configuration_schema(_project()[1])
 
 
 def _extreme(schema: Mapping[str, Any], rng: np.random.Generator) -> float:
@@ -142,7 +148,7 @@ def _made_to_exist(part: dict[str, Any], stage: str, rng: np.random.Generator) -
 
 def drawn(rng: np.random.Generator, kind: str, stage: str = "") -> Case:
     """The project's configuration with the section of one stage drawn anew."""
-    config, schema, _ = _project()
+    config, schema = _project()[0], _schema()
     names = [(section, name) for section in SECTIONS for name in config[section]]
     names = [pair for pair in names if pair[1] != "evidence" and stage in ("", pair[1])]
     section, name = names[rng.integers(len(names))]
@@ -166,7 +172,7 @@ def drawn(rng: np.random.Generator, kind: str, stage: str = "") -> Case:
 def _dataset(name: str, config: Mapping[str, Any]) -> xr.Dataset:
     """The dataset of a stage, with its parameters as a run writes them."""
     ledger = _project()[2]
-    stage, run = STAGES[name], {**config, "printed": printed(ledger, "Table 1"), "ledger": ledger}
+    stage, run = STAGES[name], {**config, "printed": ledger.table("Table 1")}
     settings = stage.settings(run)
     data = load(stage.study)(stage.parameters(run), *settings.values())
     return data.assign_attrs(parameter_attributes({**stage.parameters(run), **settings}))
@@ -204,8 +210,9 @@ def run(case: Case) -> None:
     ConfigurationError
         If the configuration is refused, before anything runs.
     """
-    config, (_, schema, ledger) = case.config, _project()
-    check_configuration(config, schema)
+    config, (_, kinds, ledger) = case.config, _project()
+    check_configuration(config, kinds)
+    check_orbits(config)
     try:
         data = _dataset(case.stage, config)
         others = {**_others(), case.stage: data}
@@ -214,7 +221,7 @@ def run(case: Case) -> None:
             rest = others["witness"].drop_sel(artifact=case.stage)
             others["witness"] = xr.concat([rest, row], "artifact", data_vars="minimal")
         others["evidence"] = _evidence(others, config)
-        assess(parse_ledger(ledger), others)
+        assess(ledger, others)
         if case.stage.startswith(("fig", "ext_")):
             _draw(case.stage, data)
         for table in {case.stage, "witness"} & {"table1", "thresholds", "witness", "forensics"}:

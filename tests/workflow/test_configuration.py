@@ -10,7 +10,11 @@ from pathlib import Path
 import pytest
 import yaml
 
-from bouncing_ball.configuration.check import ConfigurationError, check_configuration
+from bouncing_ball.configuration.check import (
+    ConfigurationError,
+    check_configuration,
+    check_orbits,
+)
 
 ROOT = Path(__file__).resolve().parents[2]
 CONFIG = yaml.safe_load((ROOT / "config" / "config.yaml").read_text(encoding="utf-8"))
@@ -87,6 +91,28 @@ def test_a_mistake_is_named_in_one_line(keys, value, message):
         check_configuration(changed(keys, value), SCHEMA)
     assert message in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("figure", "parameters", "said"),
+    [
+        ("fig07", {"frequency_ratio": 0.3}, "no 1-T orbit at Λ = 1 for ϖ = 0.3"),
+        ("fig12", {"frequency_ratio": [5.0, 0.3]}, "figures.fig12.frequency_ratio = 0.3: no 1-T"),
+        (
+            "fig07",
+            {"n": 2, "restitution": 0.3, "amplitude": 50.0, "frequency_ratio": 0.8},
+            "is inadmissible: another impact",
+        ),
+    ],
+)
+def test_a_time_history_without_an_orbit_is_refused(figure, parameters, said):
+    config = copy.deepcopy(CONFIG)
+    config["figures"][figure] |= parameters
+    check_configuration(config, SCHEMA)
+    with pytest.raises(ConfigurationError) as caught:
+        check_orbits(config)
+    assert said in str(caught.value) and "\n" not in str(caught.value)
+    check_orbits(CONFIG)
 
 
 def test_the_workflow_stops_at_once_and_touches_nothing(complete):

@@ -22,7 +22,7 @@ if package is None or Path(package.origin).resolve().parent != HERE:
     )
 
 from bouncing_ball.audit.claims.ledger_file import read_ledger
-from bouncing_ball.configuration.check import check_configuration
+from bouncing_ball.configuration.check import check_configuration, check_orbits
 from bouncing_ball.configuration.stages import STAGES, Kind, names, studied
 from bouncing_ball.errors import ModelError
 from bouncing_ball.configuration.yaml_file import read_yaml
@@ -43,6 +43,8 @@ try:
         read_yaml(where)
     where = "configuration"
     check_configuration(config, read_yaml(Path(workflow.basedir, "config/schema.yaml")))
+    if workflow.is_main_process:  # jobs need not look again
+        check_orbits(config)
     where = "config/claims.yaml"
     LEDGER = read_ledger(Path(workflow.basedir, "config"), set(DATASETS) - {"claims"})
     # All that parameters and settings of the stages are taken from.

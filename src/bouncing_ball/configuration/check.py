@@ -226,6 +226,33 @@ def _check_existence(config: Mapping[str, Any]) -> None:
             )
 
 
+def check_orbits(config: Mapping[str, Any]) -> None:
+    """Raise unless the orbits whose motion is drawn are orbits of the ball (Figs. 7 and 12).
+
+    A sweep has a gap where there is no orbit; a time history needs one.
+
+    Raises
+    ------
+    ConfigurationError
+        One line that names the figure and says what is missing.
+    """
+    # Imported here: to refuse a mistyped key needs no scipy.
+    from bouncing_ball.impacts.spring_damper import Contact
+    from bouncing_ball.orbits.contact_model import ContactModel
+
+    for name in ("fig07", "fig12"):
+        part = config["figures"][name]
+        ratios = part["frequency_ratio"]
+        for ratio in ratios if isinstance(ratios, list) else [ratios]:
+            contact = Contact.from_restitution(part["restitution"], ratio, config["release"])
+            try:
+                ContactModel(contact).require_admissible(part["n"], part["amplitude"])
+            except ValueError as error:
+                raise ConfigurationError(
+                    f"figures.{name}.frequency_ratio = {ratio}: {error}"
+                ) from None
+
+
 def check_schema(mapping: Mapping[str, Any], schema: Mapping[str, Any]) -> None:
     """Raise on the first violation of a schema, or number that is not finite.
 

@@ -414,6 +414,22 @@ class ImpactModel(Record, ABC):
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ up to which the ball stays on the table."""
 
+    def require_admissible(self, n: int, amplitude: float, side: Side = Side.STABLE) -> Orbit:
+        """:meth:`require_orbit`, if it is one of the ball.
+
+        Raises
+        ------
+        NoOrbitError
+            If there is none, or if it is inadmissible.
+        """
+        orbit = self.require_orbit(n, amplitude, side)
+        if not orbit.is_admissible():
+            raise NoOrbitError(
+                f"the {n}-T orbit at Λ = {amplitude:g} for {self.label} is inadmissible: "
+                "another impact or release comes first"
+            )
+        return orbit
+
     def require_orbit(self, n: int, amplitude: float, side: Side = Side.STABLE) -> Orbit:
         """The one orbit at Λ on a side of the saddle-node.
 

@@ -7,23 +7,10 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.contact_model import ContactModel
 from bouncing_ball.orbits.interface import Orbit
 from bouncing_ball.studies.parameters import contact
-
-
-def _orbit(touch: Contact, n: int, amplitude: float) -> Orbit:
-    """The admissible orbit on the stable side."""
-    orbit = ContactModel(touch).require_orbit(n, amplitude)
-    if not orbit.is_admissible():
-        raise NoOrbitError(
-            f"the {n}-T orbit at Λ = {amplitude:g}, ϖ = {float(touch.frequency_ratio):g} is "
-            "inadmissible: another impact or release comes first"
-        )
-    return orbit
 
 
 def _cycle(orbit: Orbit, samples: int) -> tuple[np.ndarray, ...]:
@@ -51,7 +38,7 @@ def contact_history(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     """
     n, lam = parameters["n"], parameters["amplitude"]
     touch = contact(parameters["frequency_ratio"], parameters["restitution"], release)
-    orbit = _orbit(touch, n, lam)
+    orbit = ContactModel(touch).require_admissible(n, lam)
     time, ball, velocity, touching = _cycle(orbit, parameters["samples"])
     return describe(
         xr.Dataset(
@@ -89,7 +76,7 @@ def both_histories(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         "bounce_velocity": [],
     }
     for ratio in ratios:
-        orbit = _orbit(contact(ratio, r, release), n, lam)
+        orbit = ContactModel(contact(ratio, r, release)).require_admissible(n, lam)
         time, ball, _, touching = _cycle(orbit, parameters["samples"])
         for name, values in zip(columns, (time + orbit.phase, ball, touching), strict=True):
             columns[name].append(values)

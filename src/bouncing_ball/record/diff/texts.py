@@ -1,9 +1,11 @@
 """Texts line by line: words as they are, numbers as their data allow."""
 
 import re
+from bisect import bisect_left
+from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass
 from decimal import Decimal
-from difflib import SequenceMatcher
 from itertools import zip_longest
 
 from bouncing_ball.record.diff.outcome import Outcome, worst
@@ -11,9 +13,6 @@ from bouncing_ball.record.diff.outcome import Outcome, worst
 # A number as it is printed, with its sign and exponent. An exponent of more digits
 # belongs to no number of ours, and Decimal would refuse it.
 _NUMBER = re.compile(r"[-+]?[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]{1,4}(?![0-9]))?")
-# Up to so many changed lines, those that were put in or left out are found; more are
-# taken in their order, as finding them takes up to the cube of their number.
-_ALIGNED = 400
 
 
 @dataclass(frozen=True)
@@ -73,26 +72,62 @@ def may_be_rounding(old: str, new: str) -> bool:
     )
 
 
-def _changed(before: list[str], after: list[str]) -> list[tuple[int, str | None, str | None]]:
-    """Number of the line and both sides of what is not the same, line against line."""
-    start = 0
-    while start < min(len(before), len(after)) and before[start] == after[start]:
-        start += 1
-    end = 0
-    while end < min(len(before), len(after)) - start and before[-1 - end] == after[-1 - end]:
-        end += 1
-    before, after = before[start : len(before) - end], after[start : len(after) - end]
-    blocks = [(0, len(before), 0, len(after))]
-    if len(before) != len(after) and max(len(before), len(after)) <= _ALIGNED:
-        # Numbers taken out, so that a line is found whose digits have moved.
-        words, new_words = ([_NUMBER.sub("#", line) for line in side] for side in (before, after))
-        codes = SequenceMatcher(None, words, new_words, autojunk=False).get_opcodes()
-        blocks = [code[1:] for code in codes]
+def _without_numbers(line: str) -> str:
+    return _NUMBER.sub("#", line)
+
+
+_Key = Callable[[str], str]
+_KEYS: tuple[_Key, ...] = (str, _without_numbers)
+
+
+def _pairs(before: list[str], after: list[str], key: _Key) -> list[tuple[int, int]]:
+    """Places of lines whose key is there once on each side, in an order that both have.
+
+    The longest such list, by patience sorting.
+    """
+    places = []
+    for side in (before, after):
+        keys = list(map(key, side))
+        count = Counter(keys)
+        places.append({each: k for k, each in enumerate(keys) if count[each] == 1})
+    old, new = places
+    # Of the lists of each length, the one that ends first; and what comes before a pair.
+    ends: list[tuple[int, int]] = []
+    previous: dict[tuple[int, int], tuple[int, int] | None] = {}
+    for line, place in old.items():
+        if line in new:
+            pair = place, new[line]
+            length = bisect_left(ends, pair[1], key=lambda end: end[1])
+            previous[pair] = ends[length - 1] if length else None
+            ends[length:] = [pair, *ends[length + 1 :]]
     found = []
-    for low, high, new_low, new_high in blocks:
-        pairs = zip_longest(before[low:high], after[new_low:new_high])
-        found += [(start + low + k + 1, *pair) for k, pair in enumerate(pairs)]
-    return [each for each in found if each[1] != each[2]]
+    last = ends[-1] if ends else None
+    while last is not None:
+        found.append(last)
+        last = previous[last]
+    return found[::-1]
+
+
+def _changed(
+    before: list[str], after: list[str], first: int = 1, keys: tuple[_Key, ...] = _KEYS
+) -> list[tuple[int, str | None, str | None]]:
+    """Number of the line and both sides of what is not the same.
+
+    Between lines that are found on both sides as they are, those that are found
+    with their numbers taken out; between these, one line after the other.
+    """
+    if not (keys and before and after):
+        sides = enumerate(zip_longest(before, after), start=first)
+        return [(number, old, new) for number, (old, new) in sides if old != new]
+    found = []
+    low = new_low = 0
+    for high, new_high in [*_pairs(before, after, keys[0]), (len(before), len(after))]:
+        between = before[low:high], after[new_low:new_high]
+        found += _changed(*between, first=first + low, keys=keys[1:])
+        if high < len(before) and before[high] != after[new_high]:
+            found.append((first + high, before[high], after[new_high]))
+        low, new_low = high + 1, new_high + 1
+    return found
 
 
 def compare_texts(record: str, new: str, data: Outcome | None) -> tuple[Line, ...]:

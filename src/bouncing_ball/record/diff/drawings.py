@@ -30,8 +30,8 @@ _CHECKSUM = re.compile(r"\b[a-zA-Z]?[0-9a-f]{10}\b")
 _NUMBER = re.compile(r"-?[0-9]+(?:\.[0-9]+)?(?:e-?[0-9]{1,3})?")
 _PLACES = {"d", "x", "y", "cx", "cy", "x1", "x2", "y1", "y2", "points", "width", "height"}
 _TRANSLATE = re.compile(r"translate\([^()]*\)")
-# Vertices times segments of two lines: 32 MB in each of a handful of arrays.
-_MAX_PAIRS = 2**22
+# Vertices times segments of two lines, three times those of our longest curve.
+_MAX_PAIRS = 2**20
 
 
 @dataclass(frozen=True)
@@ -75,12 +75,14 @@ class _Reader:
         self.names: dict[str, str] = {}
         self.description: list[str] = []
         self.open: list[str] = []
+        # How deep in a block that tells how the drawing was made.
+        self.inside = 0
         self.text: list[str] = []
 
     def _flush(self) -> None:
         text = "".join(self.text).strip()
         self.text.clear()
-        if text and "metadata" not in self.open:
+        if text and not self.inside:
             _check_style(text)
             self.elements.append(Element(" ".join(text.split())))
         elif text and self.open[-1].endswith(" description"):
@@ -89,25 +91,28 @@ class _Reader:
     def start(self, tag: str, attributes: dict[str, str]) -> None:
         self._flush()
         space, _, name = tag.rpartition(" ")
-        inside = "metadata" in self.open
-        if (space == _SVG or not inside) and not (space == _SVG and name in _TAGS):
+        if (space == _SVG or not self.inside) and not (space == _SVG and name in _TAGS):
             raise UnreadableError(f"a <{printable(name, 40)}> in it")
         for key, value in attributes.items():
-            if not inside:
+            if not self.inside:
                 _check_attribute(key, value)
-        self.open.append(name if space == _SVG else tag)
-        if "metadata" not in self.open:
+        self.open.append(tag)
+        if self.inside or name == "metadata":
+            self.inside += 1
+        else:
             self.elements.append(self._element(name, attributes))
 
     def end(self, _: str) -> None:
         self._flush()
         self.open.pop()
-        if "metadata" not in self.open:
+        if self.inside:
+            self.inside -= 1
+        else:
             self.elements.append(Element("end"))
 
     def comment(self, text: str) -> None:
         self._flush()
-        if "metadata" not in self.open:
+        if not self.inside:
             self.elements.append(Element(f"comment {text.strip()}"))
 
     def refuse(self, *_: object) -> None:

@@ -25,7 +25,13 @@ from bouncing_ball.record.diff.outcome import Outcome, worst
 from bouncing_ball.record.diff.pictures import PictureResult, compare_pictures, read_picture
 from bouncing_ball.record.diff.texts import Line, compare_texts, summary
 from bouncing_ball.record.diff.tolerances import Tolerances
-from bouncing_ball.record.reading import UnreadableError, opened_dataset, read_file, reason
+from bouncing_ball.record.reading import (
+    MAX_BYTES,
+    UnreadableError,
+    opened_dataset,
+    read_file,
+    reason,
+)
 
 _VERSIONS = "provenance_versions"
 
@@ -81,12 +87,15 @@ def _text(content: bytes) -> str:
 
 
 _READERS = {".nc": read_data, ".png": read_picture, ".svg": read_drawing}
+# Bytes of what is compared line by line or element by element; twenty times our largest.
+_MAX_TEXT = 2**21
 
 
 def _read(folder: Path, file: str) -> tuple[bytes, Any]:
     """The content of a file, and what it holds: dataset, picture, drawing or text."""
-    content = read_file(folder, file)
-    return content, _READERS.get(PurePosixPath(file).suffix, _text)(content)
+    suffix = PurePosixPath(file).suffix
+    content = read_file(folder, file, MAX_BYTES if suffix in (".nc", ".png") else _MAX_TEXT)
+    return content, _READERS.get(suffix, _text)(content)
 
 
 def redrawn(record: Mapping[Any, Any], new: Mapping[Any, Any]) -> str:

@@ -91,12 +91,18 @@ def test_an_orbit_that_does_not_exist_is_one_line(fresh):
     # The restitution orbit exists there, so the configuration passes; the
     # branch of a contact as soft as this one ends before.
     fresh.configure("figures", "fig07", "frequency_ratio", value=0.2)
+    earlier = [fresh.path / "results" / name for name in ("paper.md", "tally.txt")]
+    (fresh.path / "results").mkdir()
+    for path in earlier:
+        path.write_text("what another configuration gave", encoding="utf-8")
     done = fresh.run("--cores", "1", "fig07", check=False)
     assert done.returncode == 1
     said = [line for line in done.stderr.splitlines() if line.startswith("stage/fig07:")]
     assert len(said) == 1 and "no 1-T orbit" in said[0]
     assert "Traceback" not in done.stderr
     assert not (fresh.path / "results" / "figures" / "fig07.nc").exists()
+    # No article of other parameters is left beside what the run has made.
+    assert not any(path.exists() for path in earlier)
 
 
 def test_configuration_page_is_the_schemas(fresh):

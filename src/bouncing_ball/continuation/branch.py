@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -83,8 +84,79 @@ def solve_at(
     return found.point
 
 
-def _changed(before, after):
-    return (before >= 0) != (after >= 0)
+class _Step(NamedTuple):
+    """A corrected point one step along the branch."""
+
+    point: np.ndarray
+    direction: np.ndarray
+    values: list[float]
+    iterations: int
+    angle: float
+    located: list[tuple[Event, SpecialPoint]]
+
+
+class _Rejected(Exception):
+    """A step that must be shorter; ``ending`` is why the branch ends if it cannot be.
+
+    Without an ending the cause is an error that no shorter step has cured.
+    """
+
+    def __init__(self, ending: str, cause: Exception | None = None):
+        super().__init__(ending)
+        self.ending, self.cause = ending, cause
+
+
+@dataclass(frozen=True)
+class _Walk:
+    """What stays the same along a branch."""
+
+    problem: Problem
+    events: Sequence[Event]
+    control: StepControl
+    settings: NewtonSettings
+
+    def values(self, point: np.ndarray) -> list[float]:
+        return [float(event.function(point)) for event in self.events]
+
+    def step(self, y: np.ndarray, direction: np.ndarray, values: list[float], length: float):
+        """Predict, correct, and locate the events on the way.
+
+        Raises
+        ------
+        _Rejected
+            If the corrector fails, the tangent turns by too much, or an event
+            cannot be located.
+        """
+        predicted = y + length * direction
+        found = newton(self.problem, predicted, plane(direction, predicted), self.settings)
+        small = f"step too small ({length:.1e})"
+        if not found.converged:
+            raise _Rejected(f"{small}: the corrector fails with residual {found.residual:.1e}")
+        turned = tangent(self.problem.jacobian(found.point), direction)
+        angle = float(np.arccos(np.clip(turned @ direction, -1.0, 1.0)))
+        if not angle <= self.control.max_angle:
+            limit = self.control.max_angle
+            raise _Rejected(f"{small}: the tangent turns by more than {limit} rad")
+        after = self.values(found.point)
+        located = self._locate(y, found.point, values, after, length)
+        located.sort(key=lambda pair: float((pair[1].point - y) @ direction))
+        return _Step(found.point, turned, after, found.iterations, angle, located)
+
+    def _locate(self, y, point, before, after, length) -> list[tuple[Event, SpecialPoint]]:
+        """The events whose test functions change sign between two points."""
+        located, failure = [], None
+        for event, left, right in zip(self.events, before, after, strict=True):
+            if (left >= 0) != (right >= 0):
+                try:
+                    located.append((event, locate(self.problem, event, y, point, self.settings)))
+                except LocationError as error:
+                    failure = event, error
+        if failure and not any(event.terminal for event, _ in located):
+            # The step may have left the domain in which the event makes sense.
+            event, error = failure
+            ending = f"{event.reason or event.name} (within {length:.0e})"
+            raise _Rejected(ending, None if event.terminal else error)
+        return located
 
 
 def continue_branch(
@@ -124,72 +196,49 @@ def continue_branch(
     LocationError
         If an announced event cannot be located, down to the smallest step.
     """
+    walk = _Walk(problem, events, control, settings)
     y = solve_at(problem, np.asarray(start, dtype=float), settings)
     direction = null_vector(problem.jacobian(y)) * (1.0 if increasing else -1.0)
-    values = [float(event.function(y)) for event in events]
+    values = walk.values(y)
+    _require_inside(y, events, values)
+    points, tangents, special = [y], [direction], []
+    length, reason = control.initial, f"reached the limit of {max_points} points"
+    while len(points) < max_points:
+        try:
+            step = walk.step(y, direction, values, length)
+        except _Rejected as rejected:
+            shorter = control.after_failure(length)
+            if shorter is not None:
+                length = shorter
+                continue
+            if rejected.cause:
+                raise rejected.cause from None
+            reason = rejected.ending
+            break
+        end = next((k for k, (event, _) in enumerate(step.located) if event.terminal), None)
+        passed = step.located if end is None else step.located[: end + 1]
+        special += [point for _, point in passed]
+        if end is not None:
+            event, last = passed[-1]
+            points.append(last.point)
+            tangents.append(tangent(problem.jacobian(last.point), direction))
+            reason = event.reason or event.name
+            break
+        y, direction, values = step.point, step.direction, step.values
+        points.append(y)
+        tangents.append(direction)
+        length = control.after_success(length, step.iterations, step.angle)
+    return Branch(np.array(points), np.array(tangents), tuple(special), "starting point", reason)
+
+
+def _require_inside(y: np.ndarray, events: Sequence[Event], values: list[float]) -> None:
+    """Raise :class:`ContinuationError` beyond a terminal event."""
     for event, value in zip(events, values, strict=True):
         if event.terminal and value < 0:
             raise ContinuationError(
                 f"the start {np.array2string(y, precision=4)} lies beyond the end of the branch: "
                 f"{event.reason or event.name}"
             )
-    points, tangents, special = [y], [direction], []
-    step, reason = control.initial, f"reached the limit of {max_points} points"
-    while len(points) < max_points:
-        predicted = y + step * direction
-        found = newton(problem, predicted, plane(direction, predicted), settings)
-        accepted = found.converged
-        if accepted:
-            turned = tangent(problem.jacobian(found.point), direction)
-            angle = float(np.arccos(np.clip(turned @ direction, -1.0, 1.0)))
-            accepted = angle <= control.max_angle
-        if not accepted:
-            shorter = control.after_failure(step)
-            if shorter is None:
-                why = (
-                    f"the tangent turns by more than {control.max_angle} rad"
-                    if found.converged
-                    else f"the corrector fails with residual {found.residual:.1e}"
-                )
-                reason = f"step too small ({step:.1e}): {why}"
-                break
-            step = shorter
-            continue
-        new_values = [float(event.function(found.point)) for event in events]
-        located, failure = [], None
-        for event, before, after in zip(events, values, new_values, strict=True):
-            if _changed(before, after):
-                try:
-                    located.append((event, locate(problem, event, y, found.point, settings)))
-                except LocationError as error:
-                    failure = event, error
-        if failure and not any(event.terminal for event, _ in located):
-            # The step may have left the domain in which the event makes sense.
-            event, error = failure
-            shorter = control.after_failure(step)
-            if shorter is not None:
-                step = shorter
-                continue
-            if not event.terminal:
-                raise error
-            reason = f"{event.reason or event.name} (within {step:.0e})"
-            break
-        located.sort(key=lambda pair: float((pair[1].point - y) @ direction))
-        ended = False
-        for event, point in located:
-            special.append(point)
-            if event.terminal:
-                points.append(point.point)
-                tangents.append(tangent(problem.jacobian(point.point), direction))
-                reason, ended = event.reason or event.name, True
-                break
-        if ended:
-            break
-        y, direction, values = found.point, turned, new_values
-        points.append(y)
-        tangents.append(direction)
-        step = control.after_success(step, found.iterations, angle)
-    return Branch(np.array(points), np.array(tangents), tuple(special), "starting point", reason)
 
 
 def continue_both_ways(problem: Problem, start: np.ndarray, **options) -> Branch:

@@ -64,7 +64,7 @@ attack: $(SETUP)
 
 # The results against the accepted record; reports in results/diff/.
 diff: $(SETUP)
-	$(BIN)/snakemake --cores 2 diff
+	$(BIN)/snakemake --cores 2 diff $(QUIETLY)
 
 # make accept REASON='why the record moves' [ALSO='fig05 paper' or ALSO=all]
 # As typed: neither make nor the shell reads anything in it.

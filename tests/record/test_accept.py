@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bouncing_ball.datasets.atomic import replacing
 from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
 from bouncing_ball.record.accept import (
     COLUMNS,
@@ -408,6 +409,17 @@ def test_an_acceptance_killed_at_any_rename_is_completed_by_the_next(world, at):
     assert accepted(world, reason="Moved") == ["nothing to accept"]
 
 
-def test_what_is_halfway_written_is_no_change():
-    ignored = (ROOT / ".gitignore").read_text(encoding="utf-8").splitlines()
-    assert ".*.part.*" in ignored
+def test_what_is_halfway_written_is_no_change(tmp_path):
+    subprocess.run(["git", "init", "--quiet", str(tmp_path)], check=True)
+    shutil.copy(ROOT / ".gitignore", tmp_path)
+    for name in (LOG, "paper.md", "figures/fig08.nc"):
+        with contextlib.suppress(KeyboardInterrupt), replacing(tmp_path / name) as temporary:
+            temporary.write_text("", encoding="utf-8")
+            # What a kill at this point leaves.
+            shutil.copy(temporary, temporary.with_stem(f".killed{temporary.stem}"))
+            raise KeyboardInterrupt
+    done = subprocess.run(
+        ["git", "status", "--porcelain", "--untracked-files=all"],
+        cwd=tmp_path, capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert done.stdout == "?? .gitignore\n"

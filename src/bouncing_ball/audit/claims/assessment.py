@@ -9,6 +9,7 @@ import xarray as xr
 from bouncing_ball.audit.claims.ledger import Claim, Criterion, Explanation, Ledger
 from bouncing_ball.audit.claims.ledger_file import parse_ledger
 from bouncing_ball.audit.claims.verdict import (
+    Decision,
     Finding,
     Verdict,
     decide,
@@ -50,6 +51,33 @@ def _checks(
     return met, "; ".join(words)
 
 
+def _row(claim: Claim, decision: Decision, holds: Mapping[str, bool]) -> dict[str, Any]:
+    """What the dataset says of one claim; ``holds`` names the explanations whose checks do."""
+    finding = decision.finding
+    return {
+        "section": claim.section,
+        "item": claim.item,
+        "kind": claim.kind,
+        "statement": claim.statement,
+        "printed_text": claim.printed,
+        "legibility": claim.legibility,
+        "remark": claim.remark,
+        "condition": claim.condition_text,
+        "decided_by": "; ".join(_condition(claim, criterion) for criterion in claim.criteria),
+        "required": finding.required if finding else claim.printed,
+        "limit": finding.bound if finding else np.nan,
+        "found": finding.value if finding else np.nan,
+        "deviation_units": finding.units if finding else np.nan,
+        "deviation": finding.relative if finding else np.nan,
+        "verdict": str(decision.verdict),
+        "reason": decision.reason,
+        "printed_table": claim.table,
+        "explained_by": claim.explanation,
+        "explained": decision.verdict in (Verdict.REPRODUCED, Verdict.NOT_ASKED)
+        or holds.get(claim.explanation, False),
+    }
+
+
 def assess(ledger: Ledger, data: Mapping[str, xr.Dataset]) -> xr.Dataset:
     """The verdict on each claim of a ledger.
 
@@ -73,38 +101,11 @@ def assess(ledger: Ledger, data: Mapping[str, xr.Dataset]) -> xr.Dataset:
     """
     checks = {part.id: _checks(part, ledger, data) for part in ledger.explanations}
     holds = {name: met for name, (met, _) in checks.items()}
-    rows: dict[str, list] = {}
-    for claim in ledger.claims:
-        decision = decide(claim, ledger, data)
-        finding = decision.finding
-        row = {
-            "section": claim.section,
-            "item": claim.item,
-            "kind": claim.kind,
-            "statement": claim.statement,
-            "printed_text": claim.printed,
-            "legibility": claim.legibility,
-            "remark": claim.remark,
-            "condition": claim.condition_text,
-            "decided_by": "; ".join(_condition(claim, criterion) for criterion in claim.criteria),
-            "required": finding.required if finding else claim.printed,
-            "limit": finding.bound if finding else np.nan,
-            "found": finding.value if finding else np.nan,
-            "deviation_units": finding.units if finding else np.nan,
-            "deviation": finding.relative if finding else np.nan,
-            "verdict": str(decision.verdict),
-            "reason": decision.reason,
-            "printed_table": claim.table,
-            "explained_by": claim.explanation,
-            "explained": decision.verdict in (Verdict.REPRODUCED, Verdict.NOT_ASKED)
-            or holds.get(claim.explanation, False),
-        }
-        for key, value in row.items():
-            rows.setdefault(key, []).append(value)
+    rows = [_row(claim, decide(claim, ledger, data), holds) for claim in ledger.claims]
     return describe(
         xr.Dataset(
             {
-                **{key: ("claim", np.array(values)) for key, values in rows.items()},
+                **{key: ("claim", np.array([row[key] for row in rows])) for key in rows[0]},
                 "explanation_text": (
                     "explanation",
                     [explanation.text for explanation in ledger.explanations],

@@ -10,6 +10,9 @@ from bouncing_ball.record.diff.report_json import to_json
 from bouncing_ball.record.diff.report_terminal import to_terminal
 from bouncing_ball.record.diff.texts import compare_texts
 
+# Most compare whole folders.
+pytestmark = pytest.mark.slow
+
 TEXTS = ["figures/table1.csv", "figures/table1.md", "figures/table1.tex", "paper.md"]
 
 

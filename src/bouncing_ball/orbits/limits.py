@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize.elementwise import find_root
 
-from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
@@ -286,33 +285,3 @@ def absence(
         reason = np.full(missing.shape, Absence.NOT_REACHED)
     reason = np.where(lam < fold, Absence.BELOW_SADDLE_NODE, reason)
     return np.where(missing, reason, Absence.NONE)
-
-
-def require_orbit(
-    contact: Contact, n: int, amplitude: float, side: Side = Side.STABLE
-) -> ContactOrbit:
-    """The one orbit at Λ on a side of the saddle-node.
-
-    Raises
-    ------
-    NoOrbitError
-        If there is none, with the reason.
-
-    Examples
-    --------
-    >>> require_orbit(Contact(10.0, 0.1), 1, 0.2)  # doctest: +ELLIPSIS
-    Traceback (most recent call last):
-    ...
-    bouncing_ball.errors.NoOrbitError: no 1-T orbit at Λ = 0.2 for ϖ = 10, ...
-    """
-    orbit = orbit_at(contact, n, amplitude, side)
-    if np.isnan(orbit.contact_duration):
-        why = str(absence(contact, n, amplitude, side))
-        if why == Absence.BELOW_SADDLE_NODE:
-            fold = branch_point(saddle_node(contact, n), contact, n).amplitude
-            why = f"{why} at Λ = {float(fold):.6g}"
-        raise NoOrbitError(
-            f"no {n}-T orbit at Λ = {amplitude:g} for ϖ = {float(contact.frequency_ratio):g}, "
-            f"ζ = {float(contact.damping_ratio):.4g}: {why}"
-        )
-    return orbit

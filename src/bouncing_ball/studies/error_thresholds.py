@@ -24,7 +24,6 @@ from bouncing_ball.impacts.permanent_contact import (
 from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits import limits
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
-from bouncing_ball.orbits.admissibility import is_admissible
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.studies.parameters import grid
 from bouncing_ball.studies.permanent_contact_curve import permanent_contact
@@ -213,7 +212,7 @@ def height_error(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         ("phase", orbit.phase),
         ("contact_duration", orbit.contact_duration),
         ("impact_velocity", orbit.impact_velocity),
-        ("admissible", is_admissible(orbit)),
+        ("admissible", orbit.is_admissible()),
     ):
         dataset[name] = ("frequency_ratio", values)
     dataset["restitution_max_height"] = restitution_value(Quantity.MAX_HEIGHT, n, r, lam)

@@ -21,6 +21,7 @@ from bouncing_ball.audit.formulas.flow import (
     state,
 )
 from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.motion.contacts import contact_cycle
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.limits import orbit_at, saddle_node
@@ -97,7 +98,7 @@ def orbit_checks(rng, samples) -> dict[str, Check]:
     period = 2 * np.pi * n
     again = contact_cycle(touch, lam, phase, orbit.relative_impact_velocity)
     repeated = (
-        np.angle(np.exp(1j * (again.phase - phase))),
+        reduce_angle(again.phase - phase),
         again.relative_velocity - orbit.relative_impact_velocity,
     )
 

@@ -10,6 +10,7 @@ from scipy.optimize.elementwise import find_root
 from bouncing_ball.audit.formulas import as_printed as printed
 from bouncing_ball.audit.formulas.check import ROUNDING, Check, largest
 from bouncing_ball.audit.formulas.flow import fall_matrix, flow, state
+from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.motion.instants import impact_cycle, lift_off_phase
 
 # Central differences over 1e-5 leave h² f‴/6 and rounding/h, both about 1e-10,
@@ -89,7 +90,7 @@ def restitution_checks(rng, samples) -> dict[str, Check]:
     above = n * np.pi * (1 - r) / (1 + r) * rng.uniform(1.01, 3, samples)
     phi, launch = printed.fixed_point(n, r, above)
     back = impact_cycle(r, above, phi, launch)
-    returned = np.angle(np.exp(1j * (back.phase - phi))), back.velocity - launch
+    returned = reduce_angle(back.phase - phi), back.velocity - launch
 
     # A ball at rest on tables a little below and above the threshold.
     edge = printed.restitution_threshold() + np.array([-1, 1]) * ROUNDING

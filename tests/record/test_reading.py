@@ -3,6 +3,7 @@
 import os
 import signal
 import socket
+import struct
 
 import pytest
 from netCDF4 import Dataset
@@ -135,3 +136,19 @@ def test_a_dataset_at_which_its_library_hangs_or_dies(monkeypatch, end):
     with pytest.raises(UnreadableError) as error, opened_dataset(b"\x89HDF"):
         pass
     assert str(error.value) == "damaged: its reading does not end, or ends the program"
+
+
+def test_one_text_that_stands_for_many(folder, one_line):
+    # 20 000 references to one text of 4 MB: 80 GB, from a file of 4.4 MB.
+    count, length = 20_000, 4_000_000
+    with Dataset(folder / "a.nc", "w") as dataset:
+        dataset.createDimension("t", count)
+        variable = dataset.createVariable("x", str, ("t",), contiguous=True)
+        variable[0] = "y" * length
+    content = bytearray(read_file(folder, "a.nc"))
+    # A reference: length, and place in the heap.
+    start = content.index(struct.pack("<I", length))
+    content[start : start + 16 * count] = content[start : start + 16] * count
+    with pytest.raises(UnreadableError) as error, opened_dataset(bytes(content)):
+        pass
+    one_line(error, "memory")

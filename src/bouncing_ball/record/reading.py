@@ -27,6 +27,8 @@ MAX_VALUES = 2**22
 """Numbers and texts in a dataset, 160 times those of the largest; 32 MB of doubles."""
 MAX_SECONDS = 5
 """Processor time for the reading of a dataset; the largest takes some milliseconds."""
+MAX_MEMORY = 2**29
+"""Bytes, for the reading of a dataset."""
 MAX_PIXELS = 2**23
 """Pixels of a picture, four times those of the largest; about half a gigabyte at work."""
 MAX_FILES = 1000
@@ -167,8 +169,9 @@ def no_file_opened() -> Iterator[None]:
 def _check_end(content: bytes) -> None:
     """Read all of a dataset in a process of its own, which may come to no good end.
 
-    One flipped bit can keep HDF5 busy for ever, or make it end the program; its
-    errors are left to the reading that follows.
+    One flipped bit can keep HDF5 busy for ever, or make it end the program, and
+    many texts of a dataset may be one in its file. What is not read there is not
+    read here.
     """
     from netCDF4 import Dataset
 
@@ -177,16 +180,34 @@ def _check_end(content: bytes) -> None:
         warnings.simplefilter("ignore", DeprecationWarning)
         child = os.fork()
     if child == 0:
+        # What fails before the values are read fails again, and the caller says how.
+        status = 0
         with suppress(BaseException):
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
             resource.setrlimit(resource.RLIMIT_CPU, (MAX_SECONDS, MAX_SECONDS))
+            _limit_memory()
             with no_file_opened(), Dataset("memory", memory=content) as dataset:
                 _check_size(dataset)
+                status = 1
                 for variable in dataset.variables.values():
                     variable[...]
-        os._exit(0)
-    if os.WIFSIGNALED(os.waitpid(child, 0)[1]):
+            status = 0
+        os._exit(status)
+    ended = os.waitpid(child, 0)[1]
+    if os.WIFSIGNALED(ended):
         raise UnreadableError("damaged: its reading does not end, or ends the program")
+    if ended:
+        raise UnreadableError("damaged, or larger than memory")
+
+
+def _limit_memory() -> None:
+    """Let this process take half a gigabyte more; where the system does not say, anything."""
+    try:
+        pages = int(Path("/proc/self/statm").read_text().split()[0])
+    except OSError:
+        return
+    limit = pages * resource.getpagesize() + MAX_MEMORY
+    resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
 
 
 def _check_size(dataset: "Dataset") -> None:

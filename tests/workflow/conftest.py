@@ -196,7 +196,7 @@ def cloned(shared) -> Tree:
 
 @pytest.fixture(scope="session")
 def pristine(shared, cloned) -> Tree:
-    """A complete run. Tests must not change it."""
+    """A complete run. Tests must not change it, nor run in it: other workers copy it."""
 
     def make(folder: Path) -> None:
         copy_tree(cloned.path, folder, with_git=True).run("--cores", "2")

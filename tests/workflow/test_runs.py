@@ -37,8 +37,8 @@ def test_a_run_touches_no_tracked_file(pristine, fresh):
     assert after == before
 
 
-def test_up_to_date_means_nothing_to_do(pristine):
-    assert pristine.planned() == set()
+def test_up_to_date_means_nothing_to_do(complete):
+    assert complete.planned() == set()
 
 
 def whole(tree):

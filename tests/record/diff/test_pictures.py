@@ -15,6 +15,9 @@ from bouncing_ball.record.diff.drawings import BUDGET, compare_drawings, read_dr
 from bouncing_ball.record.diff.outcome import Outcome, status
 from bouncing_ball.record.reading import UnreadableError
 
+# Most compare whole folders.
+pytestmark = pytest.mark.slow
+
 
 def swap(pair, one, two):
     paths = [pair.new / "figures" / name for name in (one, two)]

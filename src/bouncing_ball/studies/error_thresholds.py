@@ -155,7 +155,8 @@ def thresholds(
             return np.log(np.clip(error(np.exp(log_ratio)), 1e-300, 1e3) / tolerance)
 
         bracket = np.log(ratios[last[found]]), np.log(ratios[last[found] + 1])
-        result[found] = np.exp(find_root(excess, bracket, args=(tolerances[found],)).x)
+        with np.errstate(invalid="ignore"):  # of an interpolation that is then not taken
+            result[found] = np.exp(find_root(excess, bracket, args=(tolerances[found],)).x)
     missing = [Status.NEVER_WITHIN if bad else Status.ALWAYS_WITHIN for bad in any_outside]
     statuses = [Status.FOUND if ok else why for ok, why in zip(found, missing, strict=True)]
     return result, statuses

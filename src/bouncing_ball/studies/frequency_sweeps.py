@@ -11,6 +11,7 @@ from bouncing_ball.impacts.damping import damping_ratio
 from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.interface import Orbit
 from bouncing_ball.orbits.limits import orbit_at
 from bouncing_ball.studies.parameters import grid
 
@@ -23,28 +24,44 @@ def sweep(
     return orbit_at(Contact(ratios, zeta, Release(release)), n, amplitude[:, np.newaxis])
 
 
-def stability_along(orbit: ContactOrbit) -> np.ndarray:
+def stability_along(orbit: Orbit) -> np.ndarray:
     """Whether each orbit is stable; false where there is none."""
     return orbit.is_stable()
 
 
+_OBSERVABLES = (
+    "phase",
+    "contact_duration",
+    "release_phase",
+    "impact_velocity",
+    "bounce_velocity",
+    "apparent_restitution",
+    "max_height",
+)
+
+
+def _columns(orbit: Orbit) -> dict[str, np.ndarray]:
+    """What is published of the orbits of one case."""
+    return {
+        **{name: getattr(orbit, name) for name in _OBSERVABLES},
+        "stable": stability_along(orbit),
+        "admissible": orbit.is_admissible(),
+    }
+
+
 def _sweep_dataset(parameters, restitution, amplitude, release) -> xr.Dataset:
     n, ratios = parameters["n"], grid(parameters["frequency_ratio"])
-    orbit = sweep(n, restitution, amplitude, ratios, release)
+    # Case by case: the scans of all at once are gigabytes for 20 001 samples.
+    cases = [
+        _columns(sweep(n, restitution[[k]], amplitude[[k]], ratios, release)[0])
+        for k in range(len(restitution))
+    ]
     dims = ("case", "frequency_ratio")
     return xr.Dataset(
         {
             "restitution": ("case", restitution),
             "amplitude": ("case", amplitude),
-            "phase": (dims, orbit.phase),
-            "contact_duration": (dims, orbit.contact_duration),
-            "release_phase": (dims, orbit.phase + orbit.contact_duration),
-            "impact_velocity": (dims, orbit.impact_velocity),
-            "bounce_velocity": (dims, orbit.bounce_velocity),
-            "apparent_restitution": (dims, orbit.apparent_restitution),
-            "max_height": (dims, orbit.max_height),
-            "stable": (dims, stability_along(orbit)),
-            "admissible": (dims, orbit.is_admissible()),
+            **{name: (dims, np.array([case[name] for case in cases])) for name in cases[0]},
         },
         coords={"frequency_ratio": ratios, "case": np.arange(len(restitution))},
     )

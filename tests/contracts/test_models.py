@@ -121,6 +121,26 @@ def test_the_monodromy_is_the_jacobian_of_the_simulated_map(name, n, above, side
 
 @every_side
 @every_case
+@pytest.mark.parametrize("name", [name for name in MODELS if "corrected" not in name])
+def test_the_jacobian_of_the_contact(name, n, above, side):
+    # Where the force vanishes the map does not feel the time of release, so that
+    # the monodromy would not show an error in it.
+    model, orbit = some_orbit(name, n, above, side)
+    lam = float(orbit.amplitude)
+
+    def contact(state):
+        velocity = state[1] + lam * np.cos(state[0])
+        end = model.simulate(lam, state[0], velocity, 1)
+        ends = end.contact_duration, end.release_displacement, end.relative_release_velocity
+        return np.array([float(x[0]) for x in ends])
+
+    state = np.array([float(orbit.phase), float(orbit.relative_impact_velocity)])
+    expected = differences(contact, state, np.full(2, 1e-3))
+    assert np.abs(orbit.contact_jacobian() - expected).max() < 1e-9 * (1 + np.abs(expected).max())
+
+
+@every_side
+@every_case
 @every_model
 def test_the_determinant_is_the_contraction(name, n, above, side):
     _, orbit = some_orbit(name, n, above, side)

@@ -5,14 +5,16 @@ import pytest
 
 from bouncing_ball.audit.cross_check import (
     BUDGETS,
+    CLOSES,
     FORMULA,
     HOLDS,
     LEAVES,
     CrossCheckError,
     cross_check,
 )
-from bouncing_ball.studies.frequency_sweeps import frequency_sweep
+from bouncing_ball.studies.frequency_sweeps import apparent_restitution, frequency_sweep
 from bouncing_ball.studies.orbit_branches import both_domains, orbit_branches, stability_ranges
+from bouncing_ball.studies.release_rules import release_rules
 from bouncing_ball.studies.restitution_families import restitution_history, restitution_orbits
 
 
@@ -126,3 +128,72 @@ def test_both_models_in_one_dataset_and_the_table(continuation_settings):
     # 21 points and 2 bifurcations of each model; 4 bifurcations of the table.
     assert result.orbits.sel(comparison=FORMULA).values.tolist() == [46, 4]
     assert set(BUDGETS) == set(result.comparison.values)
+
+
+@pytest.mark.parametrize(
+    ("changed", "dropped"),
+    [
+        # The unstable side is inadmissible beyond its grazing orbit.
+        ({"amplitude_max": 3.0}, True),
+        # The formula's X and Y nearly stand still.
+        ({"restitution": 0.99}, False),
+    ],
+)
+def test_branches_of_other_parameters(continuation_settings, changed, dropped):
+    parameters = {
+        "n": 1,
+        "restitution": 0.85,
+        "frequency_ratio": [10.0],
+        "amplitude_max": 1.5,
+        "points": 41,
+    } | changed
+    data = orbit_branches(parameters, "displacement", continuation_settings)
+    result = cross_check(
+        {"fig08": with_attributes(data, parameters, "displacement")}, continuation_settings
+    )
+    closed = int(result.orbits.sel(comparison=CLOSES).squeeze())
+    assert closed == int(data.admissible.sum()) and (closed < 41) == dropped
+
+
+def test_an_orbit_that_is_called_inadmissible_and_is_not_is_compared(
+    branches, continuation_settings
+):
+    branches["admissible"][:] = False
+    result = cross_check({"fig08": branches}, continuation_settings)
+    assert int(result.orbits.sel(comparison=CLOSES).squeeze()) == 82
+
+
+def test_a_sweep_beyond_the_end_of_the_continuation(continuation_settings):
+    parameters = {
+        "n": 1,
+        "cases": [{"restitution": 0.65, "amplitude": 1.2}],
+        "frequency_ratio": {"min": 0.5, "max": 1e3, "samples": 21},
+    }
+    data = apparent_restitution(parameters, "displacement")
+    result = cross_check(
+        {"fig06": with_attributes(data, parameters, "displacement")}, continuation_settings
+    )
+    there = int(np.isfinite(data.contact_duration).sum())
+    assert int(result.orbits.sel(comparison=FORMULA).squeeze()) == there
+
+
+def test_contacts_without_a_saddle_node_are_not_compared(continuation_settings):
+    parameters = {
+        "n": [1],
+        "restitution": 0.85,
+        "frequency_ratio": {"min": 1.0, "max": 10.0, "samples": 5},
+        "thresholds": {
+            "n": 1,
+            "restitution": 0.65,
+            "amplitude": 1.0,
+            "tolerance": 0.01,
+            "quantities": ["permanent_contact"],
+            "frequency_ratio": {"min": 1, "max": 9, "samples": 5},
+        },
+    }
+    data = release_rules(parameters)
+    missing = int(np.isnan(data.bifurcation_amplitude).sum())
+    assert missing > 0
+    result = cross_check({"ext_release": with_attributes(data, parameters)}, continuation_settings)
+    compared = int(result.orbits.sel(comparison=FORMULA).squeeze())
+    assert compared == data.bifurcation_amplitude.size - missing

@@ -24,11 +24,6 @@ def sweep(
     return orbit_at(Contact(ratios, zeta, Release(release)), n, amplitude[:, np.newaxis])
 
 
-def stability_along(orbit: Orbit) -> np.ndarray:
-    """Whether each orbit is stable; false where there is none."""
-    return orbit.is_stable()
-
-
 _OBSERVABLES = (
     "phase",
     "contact_duration",
@@ -44,7 +39,7 @@ def _columns(orbit: Orbit) -> dict[str, np.ndarray]:
     """What is published of the orbits of one case."""
     return {
         **{name: getattr(orbit, name) for name in _OBSERVABLES},
-        "stable": stability_along(orbit),
+        "stable": orbit.is_stable(),
         "admissible": orbit.is_admissible(),
     }
 

@@ -173,6 +173,34 @@ def test_the_corrected_model_answers_too(capsys):
     assert corrected["max_height"] == pytest.approx(spring["max_height"], rel=1e-3)
 
 
+def test_the_error_law(capsys):
+    call = ("error-law", "--n", "1", "--restitution", "0.65", "--amplitude", "1")
+    found = ask(capsys, *call)
+    assert found["coefficients"]["max_height"] == pytest.approx(0.8213674, abs=1e-7)
+    assert found["signed"]["max_height"] == -found["coefficients"]["max_height"]
+    # Nothing to be relative to at r = 1.
+    found = ask(capsys, "error-law", "--restitution", "1", "--amplitude", "0.8")
+    assert found["coefficients"]["saddle_node"] is None
+
+
+def test_the_error_law_is_about_the_contacts_own_r(capsys):
+    contact = ("--damping-ratio", "0.2", "--release", "force", "--amplitude", "1.5")
+    found = ask(capsys, "error-law", *contact)
+    exact = ask(capsys, "orbit", "--frequency-ratio", "1e4", *contact)
+    r = repr(found["measured_restitution"])
+    plain = ask(capsys, "orbit", "--restitution", r, "--amplitude", "1.5")
+    for name in ("max_height", "bounce_velocity", "phase", "apparent_restitution"):
+        error = 1e4 * (exact[name] / plain[name] - 1)
+        # The next order is about 1/ϖ of it, more for the apparent restitution.
+        assert error == pytest.approx(found["signed"][name], rel=2e-2)
+
+
+def test_permanent_contact_has_no_corrected_form(capsys):
+    call = ("--restitution", "0.65", "--frequency-ratio", "9", "--model", "corrected")
+    status, line = refused(capsys, "permanent-contact", *call)
+    assert status == 2 and "no corrected form" in line and "second order" in line
+
+
 def test_the_version(capsys):
     with pytest.raises(SystemExit) as exit_:
         main(["--version"])

@@ -12,6 +12,7 @@ from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.motion.sequence import Status
 from bouncing_ball.orbits.contact_model import ContactModel
 from bouncing_ball.orbits.corrected_model import CorrectedModel
+from bouncing_ball.orbits.error_law import coefficients, permanent_contact_coefficient
 from bouncing_ball.orbits.interface import ImpactModel, Orbit, Side
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 
@@ -126,6 +127,32 @@ def limits(args: argparse.Namespace) -> Answer:
             "is_admissible": bool(orbit.is_admissible()),
         }
     return found | _measured(args)
+
+
+def error_law(args: argparse.Namespace) -> Answer:
+    """K of each quantity: the modulus of its relative error is K/ϖ + O(1/ϖ²).
+
+    The restitution model has the contact's own r. ``signed`` has the sign of the
+    exact value minus the restitution model's; what has no first-order law is null.
+
+    Raises
+    ------
+    NoOrbitError
+        If Λ lies below the saddle-node of the restitution model.
+    """
+    contact = _contact(args)
+    zeta, release = contact.damping_ratio, contact.release
+    law = coefficients(args.n, zeta, args.amplitude, release)._asdict()
+    signed = {name: float(k) if math.isfinite(k) else None for name, k in law.items()}
+    return {
+        "coefficients": {name: k if k is None else abs(k) for name, k in signed.items()},
+        "signed": signed,
+        "second_order": {
+            "permanent_contact": abs(float(permanent_contact_coefficient(zeta, release)))
+        },
+        "measured_restitution": float(contact.restitution),
+        "damping_ratio": float(zeta),
+    }
 
 
 def permanent_contact(args: argparse.Namespace) -> Answer:

@@ -105,6 +105,10 @@ def _add_contact(parser: argparse.ArgumentParser, *, required: bool) -> None:
         metavar="W",
         help="frequency ratio ϖ > 0 of the spring-damper contact",
     )
+    _add_release(parser)
+
+
+def _add_release(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--release",
         choices=["displacement", "force"],
@@ -174,7 +178,15 @@ def parser() -> Parser:
     _add_family(limits)
     _add_contact(limits, required=False)
 
+    law = command("error-law", "error of the restitution model to first order, K/ϖ")
+    _add_family(law)
+    _add_amplitude(law)
+    _add_release(law)
+    # K is the error at ϖ = 1, continued by its law.
+    law.set_defaults(frequency_ratio=1.0)
+
     permanent = command("permanent-contact", "the amplitude up to which the ball stays down")
+    _add_model(permanent)
     _add_contact(permanent, required=True)
 
     simulate = command("simulate", "a sequence of impacts from any initial impact")
@@ -225,6 +237,17 @@ def parser() -> Parser:
     return top
 
 
+def _refuse_still_models(top: Parser, model: str | None) -> None:
+    """Only the contact has a threshold of permanent contact that depends on it."""
+    if model == "corrected":
+        top.error(
+            "permanent-contact has no corrected form: there is no impact to correct, and the "
+            "restitution model's Λ = 1 is right to second order in 1/ϖ already"
+        )
+    if model == "restitution":
+        top.error("permanent-contact is Λ = 1 for --model restitution, whatever its r (Eq. 9)")
+
+
 def parse(arguments: list[str] | None = None) -> argparse.Namespace:
     """Parsed arguments, with the model settled.
 
@@ -233,6 +256,9 @@ def parse(arguments: list[str] | None = None) -> argparse.Namespace:
     top = parser()
     args = top.parse_args(arguments)
     if not hasattr(args, "model"):
+        return args
+    if args.command == "permanent-contact":
+        _refuse_still_models(top, args.model)
         return args
     if args.model is None:
         args.model = "restitution" if args.frequency_ratio is None else "spring-damper"

@@ -34,6 +34,11 @@ SHOWN = {
     "fig15": "restitution_phase",
     "fig16": "threshold_amplitude",
     "ext_release": "error_threshold",
+    "ext_instant": "ball",
+    "ext_orders": "relative_error",
+    "ext_validity": "error_threshold",
+    "ext_fig14": "corrected_max_height",
+    "ext_fig15": "phase",
 }
 
 

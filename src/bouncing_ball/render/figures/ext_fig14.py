@@ -1,0 +1,40 @@
+"""Extension: Figure 14 with the corrected model."""
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from bouncing_ball.render.figures.branches import draw_curve
+from bouncing_ball.render.figures.style import (
+    COLOURS,
+    CONTACT,
+    RESTITUTION,
+    canvas,
+    logarithmic,
+    number,
+)
+
+
+def draw(data: xr.Dataset) -> Figure:
+    """Greatest height in all three models."""
+    figure, axes = canvas(height=2.7)
+    limit = float(data.restitution_max_height)
+    ratio = data.frequency_ratio
+    draw_curve(axes, ratio, data.max_height, data.admissible, color=CONTACT, label="spring-damper")
+    axes.axhline(limit, color=RESTITUTION, linewidth=1.0, label="restitution")
+    axes.plot(
+        ratio, data.corrected_max_height, color=COLOURS[3], linestyle=(0, (3, 2)), label="corrected"
+    )
+    logarithmic(axes)
+    axes.set(
+        xlabel=r"frequency ratio $\varpi$",
+        ylabel=r"greatest height $\max\,z$",
+        xlim=(float(ratio[0]), float(ratio[-1])),
+    )
+    axes.set_ylim(top=1.09 * limit)
+    axes.set_title(
+        rf"$n={data.attrs['n']}$, $r={number(data.attrs['restitution'])}$, "
+        rf"$\Lambda={number(data.attrs['amplitude'])}$",
+        fontsize=9,
+    )
+    axes.legend(loc="lower right")
+    return figure

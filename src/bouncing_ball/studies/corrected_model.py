@@ -1,0 +1,336 @@
+r"""The corrected restitution model against the exact contact (beyond the paper).
+
+Errors are relative to the exact contact's model as in Eqs. 37-38,
+``|q_SD - q|/|q|`` with q of the restitution model *of the contact's own r*, or
+of the corrected one. The law of the first order is that of
+:mod:`bouncing_ball.orbits.error_law`.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.datasets.variables import describe
+from bouncing_ball.impacts.signature import LinearSignature
+from bouncing_ball.impacts.spring_damper import Contact, Release
+from bouncing_ball.orbits import error_law
+from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.corrected_model import CorrectedModel
+from bouncing_ball.orbits.interface import ImpactModel, Side
+from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.studies.error_thresholds import (
+    Quantity,
+    relative_error,
+    restitution_value,
+    thresholds,
+)
+from bouncing_ball.studies.parameters import grid
+
+QUANTITIES = tuple(error_law.FirstOrder._fields)
+"""Those that have a corrected value; permanent contact has no impact to repair."""
+SIMPLE = ("restitution", "corrected")
+"""The models that are compared with the exact one."""
+
+
+def _models(contact: Contact) -> tuple[ContactModel, RestitutionModel, CorrectedModel]:
+    return (
+        ContactModel(contact),
+        RestitutionModel(contact.restitution),
+        CorrectedModel.of_contact(contact),
+    )
+
+
+def value(quantity: str, model: ImpactModel, n, amplitude) -> np.ndarray:
+    """A quantity in any model; NaN where it does not exist."""
+    if quantity == Quantity.SADDLE_NODE:
+        return model.saddle_node(n).amplitude
+    if quantity == Quantity.PERIOD_DOUBLING:
+        return model.period_doubling(n).amplitude
+    return getattr(model.orbit(n, amplitude), quantity)
+
+
+def errors(contact: Contact, n, amplitude, quantities=QUANTITIES) -> np.ndarray:
+    """Signed relative errors, exact over simple model minus one; (model, quantity, ...)."""
+    shape = np.broadcast_shapes(contact.shape, np.shape(n), np.shape(amplitude))
+    exact, *simple = (
+        np.stack([np.broadcast_to(value(q, model, n, amplitude), shape) for q in quantities])
+        for model in _models(contact)
+    )
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.stack([exact / q - 1 for q in simple])
+
+
+def _last_zero(error: np.ndarray, ratios: np.ndarray) -> float:
+    """The largest ϖ at which a signed error passes through zero; NaN if none."""
+    turns = np.flatnonzero(error[1:] * error[:-1] < 0)
+    if not turns.size:
+        return np.nan
+    k = turns[-1]
+    share = error[k] / (error[k] - error[k + 1])
+    return float(np.exp(np.log(ratios[k]) + share * np.log(ratios[k + 1] / ratios[k])))
+
+
+def _finite(error: np.ndarray) -> np.ndarray:
+    """The modulus, infinite where one of the models lacks the quantity."""
+    return np.where(np.isnan(error), np.inf, np.abs(error))
+
+
+def error_law_table(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
+    """K, and the frequency ratio for a tolerance: exact, by the law, corrected."""
+    n, lam, tolerance = (parameters[k] for k in ("n", "amplitude", "tolerance"))
+    ratios, rule = grid(parameters["frequency_ratio"]), Release.of(release)
+    # ζ of Eq. 16; the restitution model has the r that this contact really has.
+    one = Contact.from_restitution(parameters["restitution"], 1.0, rule)
+    zeta = float(one.damping_ratio)
+
+    signed = errors(Contact(ratios, zeta, rule), n, lam)
+    found, statuses = [], []
+    for i in range(len(SIMPLE)):
+        for j, quantity in enumerate(QUANTITIES):
+
+            def error(ratio, i=i, quantity=quantity):
+                contact = Contact(ratio, zeta, rule)
+                return _finite(errors(contact, n, lam, [quantity])[i, 0])
+
+            ratio, status = thresholds(error, [tolerance], ratios, _finite(signed[i, j]))
+            found.append(ratio[0])
+            statuses.append(str(status[0]))
+    shape = len(SIMPLE), len(QUANTITIES)
+    k = np.array(error_law.coefficients(n, zeta, lam, rule), dtype=float)
+    still = float(error_law.permanent_contact_coefficient(zeta, rule))
+    permanent, _ = thresholds(
+        lambda ratio: relative_error(
+            Quantity.PERMANENT_CONTACT, n, 1.0, lam, ratio, rule, damping=zeta
+        ),
+        [tolerance],
+        ratios,
+    )
+    return describe(
+        xr.Dataset(
+            {
+                "coefficient": ("quantity", k),
+                "law_threshold": ("quantity", np.abs(k) / tolerance),
+                "error_threshold": (("model", "quantity"), np.reshape(found, shape)),
+                "threshold_status": (("model", "quantity"), np.reshape(statuses, shape)),
+                "error_zero": ("quantity", [_last_zero(e, ratios) for e in signed[0]]),
+                "permanent_coefficient": ((), still),
+                "permanent_law": ((), float(np.sqrt(abs(still) / tolerance))),
+                "permanent_threshold": ((), float(permanent[0])),
+            },
+            coords={"model": list(SIMPLE), "quantity": list(QUANTITIES)},
+        )
+    )
+
+
+def random_orbits(size: int, seed: int, release: str, places: tuple[float, float] = (0.0, 1.0)):
+    """Random (n, ζ, Λ) in the stable range of the restitution model, ``places`` of it.
+
+    r is even from 0.05 to 0.98, from 0.15 with the force release, whose linear
+    contacts go down to e⁻² only; n from 1 to 5.
+    """
+    rng, rule = np.random.default_rng(seed), Release.of(release)
+    lowest = 0.15 if rule is Release.FORCE else 0.05
+    r = rng.uniform(lowest, 0.98, size)
+    n, model = rng.integers(1, 6, size), RestitutionModel(r)
+    low, high = model.saddle_node(n).amplitude, model.period_doubling(n).amplitude
+    lam = low + rng.uniform(*places, size) * (high - low)
+    zeta = Contact.from_restitution(r, 1.0, rule, measured=True).damping_ratio
+    return n, zeta, lam, rng
+
+
+def _remainder(size: int, seed: int, span: Mapping[str, Any], release: str):
+    """|error - K|/(S δ) of random orbits, and δ."""
+    n, zeta, lam, rng = random_orbits(size, seed, release)
+    omega = np.exp(rng.uniform(np.log(span["min"]), np.log(span["max"]), size))
+    contact = Contact(omega, zeta, Release.of(release))
+    instant = LinearSignature(contact)()
+    small = error_law.small_parameter(n, instant, lam)
+    off = np.abs(errors(contact, n, lam)[0] - np.array(error_law.first_order(n, instant, lam)))
+    return off / (np.array(error_law.scale(n, instant, lam)) * small), small
+
+
+def orders(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
+    """Errors along ϖ for one orbit, and the orders of convergence of random ones."""
+    ratios, rule = grid(parameters["frequency_ratio"]), Release.of(release)
+    one = Contact.from_restitution(parameters["restitution"], ratios, rule)
+    curves = np.abs(errors(one, parameters["n"], parameters["amplitude"]))
+    sample = parameters["random"]
+    n, zeta, lam, _ = random_orbits(sample["samples"], sample["seed"], release, (0.2, 0.95))
+    stiff = sample["stiff_frequency_ratio"]
+    pair = [
+        np.abs(errors(Contact(np.full(lam.shape, k * stiff), zeta, rule), n, lam))
+        for k in (1.0, 2.0)
+    ]
+    span = parameters["frequency_ratio"]
+    remainder, small = _remainder(sample["law_samples"], sample["seed"] + 1, span, release)
+    return describe(
+        xr.Dataset(
+            {
+                "relative_error": (("model", "quantity", "frequency_ratio"), curves),
+                "order": (("model", "quantity", "sample"), np.log2(pair[0] / pair[1])),
+                "law_remainder": (("quantity", "law_sample"), remainder),
+                "small_parameter": ("law_sample", small),
+            },
+            coords={
+                "model": list(SIMPLE),
+                "quantity": list(QUANTITIES),
+                "frequency_ratio": ratios,
+                "sample": np.arange(sample["samples"]),
+                "law_sample": np.arange(sample["law_samples"]),
+            },
+        )
+    )
+
+
+def _crossing(error: np.ndarray, ratios: np.ndarray, tolerance: float) -> np.ndarray:
+    """ϖ after the last crossing of a tolerance along the first axis, interpolated in
+    logarithms; the grid's first where it is never exceeded, NaN where it still is at the last."""
+    outside = error > tolerance
+    last = len(ratios) - 1 - np.argmax(outside[::-1], axis=0)
+    following = np.minimum(last + 1, len(ratios) - 1)
+    left, right = (np.take_along_axis(error, k[np.newaxis], axis=0)[0] for k in (last, following))
+    level = np.log(np.clip(left, 1e-300, 1e3) / tolerance)
+    drop = level - np.log(np.clip(right, 1e-300, 1e3) / tolerance)
+    share = level / np.where(drop > 0, drop, 1.0)
+    at = np.exp(np.log(ratios[last]) + share * np.log(ratios[following] / ratios[last]))
+    at = np.where(outside.any(axis=0), at, ratios[0])
+    return np.where(outside[-1], np.nan, at)
+
+
+def validity(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
+    """The ϖ from which each simple model is right, over r, n and Λ/Λ_SN."""
+    ratios, rule = grid(parameters["frequency_ratio"]), Release.of(release)
+    families, r = np.array(parameters["n"]), np.array(parameters["restitution"])
+    places = np.array(parameters["amplitude_ratio"])
+    threshold = np.full((len(SIMPLE), len(QUANTITIES), len(families), len(places), len(r)), np.nan)
+    # Case by case: the scan for bifurcations of one takes its memory.
+    for i, n in enumerate(families):
+        for k, own in enumerate(r):
+            contact = Contact.from_restitution(own, ratios[:, np.newaxis], rule, measured=True)
+            model = RestitutionModel(float(own))
+            lam = places * float(model.saddle_node(n).amplitude)
+            # Outside the stable range of the restitution model there is nothing to be right about.
+            there = lam <= float(model.period_doubling(n).amplitude)
+            error = _finite(errors(contact, int(n), lam[there]))
+            found = [[_crossing(q, ratios, parameters["tolerance"]) for q in x] for x in error]
+            threshold[:, :, i, there, k] = np.array(found)
+    return describe(
+        xr.Dataset(
+            {
+                "error_threshold": (
+                    ("model", "quantity", "n", "amplitude_ratio", "restitution"),
+                    threshold,
+                )
+            },
+            coords={
+                "model": list(SIMPLE),
+                "quantity": list(QUANTITIES),
+                "n": families,
+                "amplitude_ratio": places,
+                "restitution": r,
+            },
+        )
+    )
+
+
+def height(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
+    """Greatest height along ϖ in all three models (Fig. 14 with a third curve)."""
+    n, lam, ratios = parameters["n"], parameters["amplitude"], grid(parameters["frequency_ratio"])
+    r = parameters["restitution"]
+    contact = Contact.from_restitution(r, ratios, Release.of(release))
+    exact, _, corrected = (m.orbit(n, lam) for m in _models(contact))
+    limit = restitution_value(Quantity.MAX_HEIGHT, n, float(np.max(contact.restitution)), lam)
+    return describe(
+        xr.Dataset(
+            {
+                "max_height": ("frequency_ratio", exact.max_height),
+                "admissible": ("frequency_ratio", exact.is_admissible()),
+                "corrected_max_height": ("frequency_ratio", corrected.max_height),
+                "restitution_max_height": ((), limit),
+            },
+            coords={"frequency_ratio": ratios},
+        )
+    )
+
+
+def domains(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
+    """Phase against Λ in all three models (Fig. 15 with a third curve)."""
+    n, top = parameters["n"], parameters["amplitude_max"]
+    contact = Contact.from_restitution(
+        parameters["restitution"], parameters["frequency_ratio"], Release.of(release)
+    )
+    names = ("spring-damper", *SIMPLE)
+    # Towards the fold by squares: the phase depends on Λ there by a root.
+    share = np.linspace(0.0, 1.0, parameters["points"]) ** 2
+    amplitude, phase, stable, ends = [], [], [], []
+    for model in _models(contact):
+        fold = model.saddle_node(n)
+        low = float(fold.amplitude)
+        lam = low + share * (top - low)
+        sides = [model.orbit(n, lam, side) for side in (Side.UNSTABLE, Side.STABLE)]
+        amplitude.append(np.concatenate([lam[::-1], lam]))
+        phase.append(np.concatenate([sides[0].phase[::-1], sides[1].phase]))
+        stable.append(np.concatenate([sides[0].is_stable()[::-1], sides[1].is_stable()]))
+        flip = model.period_doubling(n)
+        ends.append(
+            [[float(x.amplitude), float(x.phase)] for x in (fold, flip)],
+        )
+    bounds = np.array(ends)
+    dims = ("model", "point")
+    return describe(
+        xr.Dataset(
+            {
+                "amplitude": (dims, np.array(amplitude)),
+                "phase": (dims, np.array(phase)),
+                "stable": (dims, np.array(stable)),
+                "bifurcation_amplitude": (("model", "bound"), bounds[..., 0]),
+                "bifurcation_phase": (("model", "bound"), bounds[..., 1]),
+            },
+            coords={
+                "model": list(names),
+                "point": np.arange(2 * len(share)),
+                "bound": ["saddle-node", "period doubling"],
+            },
+        )
+    )
+
+
+def meeting_flights(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
+    """One contact, and the flights before and after it, continued into it."""
+    contact = Contact.from_restitution(
+        parameters["restitution"], parameters["frequency_ratio"], Release.of(release)
+    )
+    orbit = ContactModel(contact).require_orbit(parameters["n"], parameters["amplitude"])
+    end = float(orbit.contact_duration)
+    time = np.linspace(-0.6 * end, 1.6 * end, parameters["samples"])
+    start = orbit.contact_path(np.zeros(()))
+    before = start[0] + (start[1] - time / 2) * time
+    after, _ = orbit.flight_path(time)
+    inside = (time >= 0) & (time <= end)
+    touching, rate = orbit.contact_path(np.clip(time, 0, end))
+    table = orbit.amplitude * np.sin(orbit.phase + time)
+    gap, closing = touching - table, rate - orbit.amplitude * np.cos(orbit.phase + time)
+    zeta, omega = contact.damping_ratio, contact.frequency_ratio
+    force = np.where(inside, -(2 * zeta * omega * closing + omega**2 * gap), 0.0)
+    # The meeting point of the two parabolas, exact; and where the signature has it.
+    jump = float(orbit.bounce_velocity + end - orbit.impact_velocity)
+    apart = float(orbit.bounce_height - (start[0] + (start[1] - end / 2) * end))
+    meeting = end - apart / jump
+    return describe(
+        xr.Dataset(
+            {
+                "ball": ("time", np.where(time < 0, before, np.where(inside, touching, after))),
+                "table": ("time", table),
+                "flight_before": ("time", before),
+                "flight_after": ("time", after),
+                "contact_force": ("time", force),
+                "contact_duration": ((), end),
+                "meeting_time": ((), meeting),
+                "meeting_height": ((), float(start[0] + (start[1] - meeting / 2) * meeting)),
+                "delay": ((), float(LinearSignature(contact)().delay)),
+            },
+            coords={"time": time},
+        )
+    )

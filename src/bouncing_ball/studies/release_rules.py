@@ -18,8 +18,7 @@ from scipy.optimize.elementwise import find_minimum
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.impacts.damping import damping_ratio, restitution_coefficient
 from bouncing_ball.impacts.spring_damper import Contact, Release
-from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.limits import period_doubling, saddle_node
+from bouncing_ball.orbits.contact_model import ContactModel
 from bouncing_ball.studies.error_thresholds import Quantity, relative_error, thresholds
 from bouncing_ball.studies.parameters import grid
 
@@ -39,35 +38,47 @@ def _lowest_doubling(
         return np.nan
 
     def doubling(log_ratio):
-        contact = Contact(np.exp(log_ratio), zeta, rule)
-        return branch_point(period_doubling(contact, n), contact, n).amplitude
+        model = ContactModel(Contact(np.exp(log_ratio), zeta, rule))
+        return model.period_doubling(n).amplitude
 
     bracket = tuple(np.log(ratios[at + k]) for k in (-1, 0, 1))
     return float(np.exp(find_minimum(doubling, bracket).x))
 
 
-def release_rules(parameters: Mapping[str, Any]) -> xr.Dataset:
-    """Bifurcations and thresholds under both rules, from ``n``, ``restitution``,
-    ``frequency_ratio``, and ``thresholds`` with its own parameters."""
-    families = np.array(parameters["n"])
-    ratios = grid(parameters["frequency_ratio"])
+def _bifurcations(parameters: Mapping[str, Any]) -> xr.Dataset:
+    """Both bifurcations along ϖ under each rule, and the ϖ of the lowest period doubling."""
+    families, ratios = np.array(parameters["n"]), grid(parameters["frequency_ratio"])
     zeta = float(damping_ratio(parameters["restitution"]))
     rules = list(Release)
-    bifurcations = np.empty((len(rules), len(families), len(ratios), 2))
+    amplitudes = np.empty((len(rules), len(families), len(ratios), 2))
     turns = np.empty((len(rules), len(families)))
     for i, rule in enumerate(rules):
-        contact = Contact(ratios, zeta, rule)
+        model = ContactModel(Contact(ratios, zeta, rule))
         for j, n in enumerate(families):
-            for k, find in enumerate((saddle_node, period_doubling)):
-                point = branch_point(find(contact, n), contact, n)
-                bifurcations[i, j, :, k] = point.amplitude
-            turns[i, j] = _lowest_doubling(ratios, bifurcations[i, j, :, 1], zeta, rule, n)
+            amplitudes[i, j, :, 0] = model.saddle_node(n).amplitude
+            amplitudes[i, j, :, 1] = model.period_doubling(n).amplitude
+            turns[i, j] = _lowest_doubling(ratios, amplitudes[i, j, :, 1], zeta, rule, n)
+    dims = ("release", "n", "frequency_ratio", "bound")
+    return xr.Dataset(
+        {
+            "bifurcation_amplitude": (dims, amplitudes),
+            "period_doubling_turn": (dims[:2], turns),
+            "damping_ratio": ((), zeta),
+        },
+        coords={
+            "release": [str(rule) for rule in rules],
+            "n": families,
+            "frequency_ratio": ratios,
+            "bound": ["saddle-node", "period doubling"],
+        },
+    )
 
-    wanted = parameters["thresholds"]
+
+def _thresholds(wanted: Mapping[str, Any]) -> xr.Dataset:
+    """The ϖ above which each quantity is within the tolerance, reading by reading."""
     n, lam, r = wanted["n"], wanted["amplitude"], wanted["restitution"]
     quantities = [Quantity(name) for name in wanted["quantities"]]
-    scan = grid(wanted["frequency_ratio"])
-    loss = float(damping_ratio(r))
+    scan, loss = grid(wanted["frequency_ratio"]), float(damping_ratio(r))
     own = float(restitution_coefficient(loss, Release.FORCE))
     found = np.empty((len(READINGS), len(quantities)))
     statuses = np.empty(found.shape, dtype=object)
@@ -80,26 +91,21 @@ def release_rules(parameters: Mapping[str, Any]) -> xr.Dataset:
 
             value, status = thresholds(error, [wanted["tolerance"]], scan)
             found[i, j], statuses[i, j] = value[0], str(status[0])
-    return describe(
-        xr.Dataset(
-            {
-                "bifurcation_amplitude": (
-                    ("release", "n", "frequency_ratio", "bound"),
-                    bifurcations,
-                ),
-                "period_doubling_turn": (("release", "n"), turns),
-                "error_threshold": (("reading", "quantity"), found),
-                "threshold_status": (("reading", "quantity"), statuses.astype(str)),
-                "damping_ratio": ((), zeta),
-                "force_restitution": ((), own),
-            },
-            coords={
-                "release": [str(rule) for rule in rules],
-                "n": families,
-                "frequency_ratio": ratios,
-                "bound": ["saddle-node", "period doubling"],
-                "reading": [reading for _, reading in READINGS],
-                "quantity": [str(quantity) for quantity in quantities],
-            },
-        )
+    dims = ("reading", "quantity")
+    return xr.Dataset(
+        {
+            "error_threshold": (dims, found),
+            "threshold_status": (dims, statuses.astype(str)),
+            "force_restitution": ((), own),
+        },
+        coords={
+            "reading": [reading for _, reading in READINGS],
+            "quantity": [str(quantity) for quantity in quantities],
+        },
     )
+
+
+def release_rules(parameters: Mapping[str, Any]) -> xr.Dataset:
+    """Bifurcations and thresholds under both rules, from ``n``, ``restitution``,
+    ``frequency_ratio``, and ``thresholds`` with its own parameters."""
+    return describe(_bifurcations(parameters).merge(_thresholds(parameters["thresholds"])))

@@ -172,11 +172,10 @@ def _domains(data: Datasets) -> Found:
         branches = data[name].sortby("frequency_ratio")
         longest.append(float(branches.contact_duration.isel(frequency_ratio=-1).max()))
         soft = branches.isel(frequency_ratio=0)
-        folds = soft.special_kind.values == BOUNDS[0]
-        # A soft branch may fold again, at a higher Λ.
-        lowest = np.argmin(np.where(folds, soft.special_amplitude.values, np.inf))
-        there = soft.special_contact_duration.values[lowest]
-        at_fold.append(there if folds.any() else np.nan)
+        # A soft branch may fold again, at a higher Λ, or not exist at all.
+        folds = soft.where(soft.special_kind == BOUNDS[0], drop=True)
+        order = np.argsort(folds.special_amplitude.values)
+        at_fold.append(next(iter(folds.special_contact_duration.values[order]), np.nan))
     found["contact_duration_stiffest"] = xr.DataArray(longest, {"figure": names})
     found["contact_duration_fold"] = xr.DataArray(at_fold, {"figure": names})
     found["branch_end_gap"] = _end_of_softest(data["fig08"])

@@ -49,10 +49,12 @@ def draw(data: xr.Dataset) -> Figure:
         Line2D([], [], color=start, label=r"spring-damper, $\varphi$"),
         Line2D([], [], color=end, label=r"spring-damper, $\varphi+\tau_b$"),
     ]
+    # The contact may have no such branch.
+    lowest = curve.amplitude.fillna(data.saddle_node_amplitude).min()
     axes.set(
         xlabel=r"amplitude $\Lambda$",
         ylabel="phase of the table over $\\pi$",
-        xlim=(0.9 * float(curve.amplitude.min()), data.attrs["amplitude_max"]),
+        xlim=(0.9 * float(lowest), data.attrs["amplitude_max"]),
     )
     axes.set_title(
         rf"$n={data.attrs['n']}$, $r={number(data.attrs['restitution'])}$, "

@@ -11,6 +11,7 @@ from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits import limits, restitution_orbit
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.error_law import (
+    STATED,
     FirstOrder,
     coefficients,
     first_order,
@@ -94,7 +95,7 @@ def test_the_remainder_where_the_law_is_stated_to_hold(release):
     contact = Contact(10 ** rng.uniform(0, 4, size), zeta, release)
     instant = LinearSignature(contact)()
     small = small_parameter(n, instant, lam)
-    stated = small < 0.3
+    stated = small < STATED
     assert stated.mean() > 0.5
     errors = np.array(relative_errors(n, contact, r, lam))
     off = np.abs(errors - np.array(first_order(n, instant, lam)))

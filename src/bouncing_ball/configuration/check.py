@@ -227,7 +227,7 @@ def _check_existence(config: Mapping[str, Any]) -> None:
 
 
 def check_orbits(config: Mapping[str, Any]) -> None:
-    """Raise unless the orbits whose motion is drawn are orbits of the ball (Figs. 7 and 12).
+    """Raise unless the orbits whose motion is drawn are orbits of the ball.
 
     A sweep has a gap where there is no orbit; a time history needs one.
 
@@ -240,8 +240,12 @@ def check_orbits(config: Mapping[str, Any]) -> None:
     from bouncing_ball.impacts.spring_damper import Contact
     from bouncing_ball.orbits.contact_model import ContactModel
 
-    for name in ("fig07", "fig12"):
-        part = config["figures"][name]
+    for section, name in (
+        ("figures", "fig07"),
+        ("figures", "fig12"),
+        ("extensions", "ext_instant"),
+    ):
+        part = config[section][name]
         ratios = part["frequency_ratio"]
         for ratio in ratios if isinstance(ratios, list) else [ratios]:
             contact = Contact.from_restitution(part["restitution"], ratio, config["release"])
@@ -249,7 +253,7 @@ def check_orbits(config: Mapping[str, Any]) -> None:
                 ContactModel(contact).require_admissible(part["n"], part["amplitude"])
             except ValueError as error:
                 raise ConfigurationError(
-                    f"figures.{name}.frequency_ratio = {ratio}: {error}"
+                    f"{section}.{name}.frequency_ratio = {ratio}: {error}"
                 ) from None
 
 

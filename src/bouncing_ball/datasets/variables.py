@@ -146,6 +146,7 @@ VARIABLES: dict[str, Variable] = {
     "law_sample": Variable("random orbit on which the error law is tried", ""),
     "law_remainder": Variable("remainder of the error law over its stated scale", "M"),
     "small_parameter": Variable("what must be small for the error law", "δ"),
+    "stated_below": Variable("small parameter below which the error law is stated", "δ"),
     "amplitude_ratio": Variable("amplitude over that of the saddle-node", "Λ/Λ_SN"),
     "corrected_max_height": Variable("greatest height, corrected model", "max z"),
     "flight_before": Variable("flight before the contact, continued", "z"),

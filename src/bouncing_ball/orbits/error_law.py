@@ -53,6 +53,9 @@ from bouncing_ball.impacts.signature import Instant, LinearSignature
 from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits import restitution_orbit
 
+STATED = 0.3
+"""δ below which the law is stated."""
+
 
 class FirstOrder(NamedTuple):
     """Relative first-order errors, exact over restitution model minus one.

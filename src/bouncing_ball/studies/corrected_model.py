@@ -172,6 +172,7 @@ def orders(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
                 "order": (("model", "quantity", "sample"), np.log2(pair[0] / pair[1])),
                 "law_remainder": (("quantity", "law_sample"), remainder),
                 "small_parameter": ("law_sample", small),
+                "stated_below": ((), error_law.STATED),
             },
             coords={
                 "model": list(SIMPLE),

@@ -1,0 +1,110 @@
+"""The stages of the corrected model: what they find, and where it stands."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.impacts.spring_damper import Contact, Release
+from bouncing_ball.orbits.error_law import STATED
+from bouncing_ball.studies import corrected_model as study
+
+SPAN = {"min": 1.0, "max": 1e4, "samples": 41}
+ORBIT = {"n": 1, "restitution": 0.65, "amplitude": 1.0}
+RELEASES = list(Release)
+
+
+def test_the_table_of_the_error_law(described):
+    data = described(
+        study.error_law_table({**ORBIT, "tolerance": 0.01, "frequency_ratio": SPAN}, "displacement")
+    )
+    exact = data.error_threshold.sel(model="restitution")
+    # The thresholds of the replication's own table.
+    assert float(exact.sel(quantity="max_height")) == pytest.approx(82.177, abs=1e-3)
+    assert float(data.permanent_threshold) == pytest.approx(9.812, abs=1e-3)
+    # The law is right to 1 % where the threshold lies at a stiff contact.
+    stiff = exact > 50
+    assert stiff.sum() >= 4
+    assert np.all(np.abs(data.law_threshold / exact - 1)[stiff] < 0.01)
+    corrected = data.error_threshold.sel(model="corrected")
+    assert np.all(corrected < exact) and float(corrected.sel(quantity="max_height")) < 3
+    # The accident that makes the restitution model look better than it is.
+    assert float(data.error_zero.sel(quantity="period_doubling")) == pytest.approx(1.9, abs=0.1)
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_orders_of_random_orbits(described, release):
+    random = {"seed": 3, "samples": 200, "stiff_frequency_ratio": 1000.0, "law_samples": 300}
+    data = described(study.orders({**ORBIT, "frequency_ratio": SPAN, "random": random}, release))
+    for model, order in (("restitution", 1), ("corrected", 2)):
+        found = data.order.sel(model=model)
+        # The apparent restitution's first order is small next to its second.
+        loose = found.quantity == "apparent_restitution"
+        middle = found.median("sample")
+        assert np.all(np.abs(middle - order) < np.where(loose, 0.1, 0.01))
+    stated = data.small_parameter < STATED
+    bound = np.where(data["quantity"] == "phase", 4.0, 2.0)
+    assert np.all(data.law_remainder.where(stated).max("law_sample") < bound)
+
+
+def test_where_each_model_is_right(described):
+    data = described(
+        study.validity(
+            {
+                "n": [1, 2],
+                "restitution": [0.5, 0.8],
+                "amplitude_ratio": [1.2, 5.0],
+                "tolerance": 0.01,
+                "frequency_ratio": SPAN,
+            },
+            "displacement",
+        )
+    )
+    height = data.error_threshold.sel(quantity="max_height", amplitude_ratio=1.2, n=1)
+    assert np.all(height.sel(model="corrected") < height.sel(model="restitution") / 5)
+    # Nearly elastic orbits need 1/(nε).
+    assert float(height.sel(model="restitution", restitution=0.8)) == pytest.approx(90, abs=10)
+    # Beyond the period doubling there is no stable orbit to be right about.
+    assert np.all(np.isnan(data.error_threshold.sel(amplitude_ratio=5.0, restitution=0.5)))
+
+
+def test_a_crossing_on_a_grid():
+    ratios = np.geomspace(1.0, 1e4, 9)
+    slow, fast, never, always = 1 / ratios, 1 / ratios**2, 0 * ratios + 1, 0 * ratios + 1e-9
+    found = study._crossing(np.stack([slow, fast, never, always], axis=1), ratios, 0.01)
+    np.testing.assert_allclose(found, [100.0, 10.0, np.nan, 1.0])
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_the_flights_meet_at_the_centroid_of_the_force(described, release):
+    data = described(
+        study.meeting_flights({**ORBIT, "frequency_ratio": 4.0, "samples": 4001}, release)
+    )
+    force, time = data.contact_force.values, data.time.values
+    centroid = np.sum(force * time) / np.sum(force)
+    # The force starts with a jump, which a sum over samples sees to their distance.
+    assert float(data.meeting_time) == pytest.approx(centroid, abs=2 * (time[1] - time[0]))
+    height = np.interp(float(data.meeting_time), time, data.flight_after.values)
+    assert float(data.meeting_height) == pytest.approx(height, abs=1e-5)
+    assert float(data.delay) == pytest.approx(float(data.meeting_time), rel=0.05)
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_three_curves(described, release):
+    heights = described(study.height({**ORBIT, "frequency_ratio": SPAN}, release))
+    stiff = heights.isel(frequency_ratio=-1)
+    limit = float(heights.restitution_max_height)
+    assert float(stiff.max_height) == pytest.approx(limit, rel=1e-3)
+    assert float(stiff.corrected_max_height) == pytest.approx(float(stiff.max_height), rel=1e-8)
+    wanted = {"n": 2, "restitution": 0.65, "frequency_ratio": 10.0, "amplitude_max": 2.2}
+    data = described(study.domains({**wanted, "points": 51}, release))
+    fold = data.bifurcation_amplitude.sel(bound="saddle-node")
+    exact = float(fold.sel(model="spring-damper"))
+    assert abs(float(fold.sel(model="corrected")) / exact - 1) < 0.005
+    assert abs(float(fold.sel(model="restitution")) / exact - 1) > 0.02
+    assert np.all(np.isfinite(data.phase))
+
+
+def test_random_orbits_are_in_the_stable_range():
+    n, zeta, lam, _ = study.random_orbits(500, 1, "force")
+    contact = Contact(1.0, zeta, Release.FORCE)
+    assert np.all((contact.restitution > 0.14) & (contact.restitution < 0.99))
+    assert np.all((n >= 1) & (n <= 5)) and np.all(lam > 0)

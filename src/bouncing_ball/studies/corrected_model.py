@@ -18,13 +18,13 @@ from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits import error_law
 from bouncing_ball.orbits.contact_model import ContactModel
 from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.interface import ImpactModel, Side
+from bouncing_ball.orbits.interface import Side
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.studies.error_thresholds import (
     Quantity,
     relative_error,
-    restitution_value,
     thresholds,
+    value,
 )
 from bouncing_ball.studies.parameters import grid
 
@@ -40,15 +40,6 @@ def _models(contact: Contact) -> tuple[ContactModel, RestitutionModel, Corrected
         RestitutionModel(contact.restitution),
         CorrectedModel.of_contact(contact),
     )
-
-
-def value(quantity: str, model: ImpactModel, n, amplitude) -> np.ndarray:
-    """A quantity in any model; NaN where it does not exist."""
-    if quantity == Quantity.SADDLE_NODE:
-        return model.saddle_node(n).amplitude
-    if quantity == Quantity.PERIOD_DOUBLING:
-        return model.period_doubling(n).amplitude
-    return getattr(model.orbit(n, amplitude), quantity)
 
 
 def errors(contact: Contact, n, amplitude, quantities=QUANTITIES) -> np.ndarray:
@@ -102,7 +93,11 @@ def error_law_table(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     still = float(error_law.permanent_contact_coefficient(zeta, rule))
     permanent, _ = thresholds(
         lambda ratio: relative_error(
-            Quantity.PERMANENT_CONTACT, n, 1.0, lam, ratio, rule, damping=zeta
+            Quantity.PERMANENT_CONTACT,
+            ContactModel(Contact(ratio, zeta, rule)),
+            RestitutionModel(1.0),
+            n,
+            lam,
         ),
         [tolerance],
         ratios,
@@ -241,15 +236,14 @@ def height(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     n, lam, ratios = parameters["n"], parameters["amplitude"], grid(parameters["frequency_ratio"])
     r = parameters["restitution"]
     contact = Contact.from_restitution(r, ratios, Release.of(release))
-    exact, _, corrected = (m.orbit(n, lam) for m in _models(contact))
-    limit = restitution_value(Quantity.MAX_HEIGHT, n, float(np.max(contact.restitution)), lam)
+    exact, simple, corrected = (m.orbit(n, lam) for m in _models(contact))
     return describe(
         xr.Dataset(
             {
                 "max_height": ("frequency_ratio", exact.max_height),
                 "admissible": ("frequency_ratio", exact.is_admissible()),
                 "corrected_max_height": ("frequency_ratio", corrected.max_height),
-                "restitution_max_height": ((), limit),
+                "restitution_max_height": ((), simple.max_height.flat[0]),
             },
             coords={"frequency_ratio": ratios},
         )

@@ -16,16 +16,11 @@ from numpy.typing import ArrayLike
 from scipy.optimize.elementwise import find_root
 
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.impacts.damping import damping_ratio
-from bouncing_ball.impacts.permanent_contact import (
-    RESTITUTION_THRESHOLD,
-    permanent_contact_threshold,
-)
-from bouncing_ball.impacts.spring_damper import Contact, Release
-from bouncing_ball.orbits import limits
-from bouncing_ball.orbits import restitution_orbit as restitution_orbits
-from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.studies.parameters import grid
+from bouncing_ball.impacts.permanent_contact import RESTITUTION_THRESHOLD
+from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.interface import OBSERVABLES, ImpactModel
+from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.studies.parameters import contact, grid
 from bouncing_ball.studies.permanent_contact_curve import permanent_contact
 
 
@@ -49,66 +44,52 @@ class Status(StrEnum):
     NEVER_WITHIN = "outside the tolerance at the largest frequency ratio scanned"
 
 
-def restitution_value(quantity: Quantity, n: int, r: float, amplitude: float) -> float:
-    """The quantity in the restitution model."""
-    if quantity is Quantity.PERMANENT_CONTACT:
-        return RESTITUTION_THRESHOLD
-    if quantity is Quantity.SADDLE_NODE:
-        return float(restitution_orbits.saddle_node(n, r))
-    if quantity is Quantity.PERIOD_DOUBLING:
-        return float(restitution_orbits.period_doubling(n, r))
-    if quantity is Quantity.APPARENT_RESTITUTION:
-        return r
-    if quantity is Quantity.BOUNCE_VELOCITY:
-        return n * np.pi
-    phase = float(restitution_orbits.phase(n, r, amplitude))
-    if quantity is Quantity.PHASE:
-        return phase
-    return float(restitution_orbits.max_height(n, amplitude, phase))
+def value(quantity: str, model: ImpactModel, n: ArrayLike, amplitude: ArrayLike) -> np.ndarray:
+    """A quantity in a model; NaN where it does not exist there.
 
-
-def contact_value(quantity: Quantity, n: int, contact: Contact, amplitude: float) -> np.ndarray:
-    """The quantity in the spring-damper model, NaN where it does not exist."""
-    if quantity is Quantity.PERMANENT_CONTACT:
-        return permanent_contact_threshold(
-            contact.frequency_ratio, contact.damping_ratio, contact.release
-        )
-    if quantity in (Quantity.SADDLE_NODE, Quantity.PERIOD_DOUBLING):
-        find = limits.saddle_node if quantity is Quantity.SADDLE_NODE else limits.period_doubling
-        return branch_point(find(contact, n), contact, n).amplitude
-    return getattr(limits.orbit_at(contact, n, amplitude), quantity.value)
+    Examples
+    --------
+    >>> float(value("bounce_velocity", RestitutionModel(0.5), 1, 2.0)) == np.pi
+    True
+    """
+    if quantity == Quantity.PERMANENT_CONTACT:
+        return model.permanent_contact_threshold()
+    if quantity == Quantity.SADDLE_NODE:
+        return model.saddle_node(n).amplitude
+    if quantity == Quantity.PERIOD_DOUBLING:
+        return model.period_doubling(n).amplitude
+    return getattr(model.orbit(n, amplitude), quantity)
 
 
 def relative_error(
-    quantity: Quantity,
-    n: int,
-    r: float,
-    amplitude: float,
-    ratios: np.ndarray,
-    release: Release = Release.DISPLACEMENT,
-    damping: float | None = None,
+    quantity: str, exact: ImpactModel, simple: ImpactModel, n: int, amplitude: float
 ) -> np.ndarray:
-    """|q_SD - q_CR|/|q_CR| along ϖ (Eqs. 37-38).
+    """|q_SD - q_CR|/|q_CR| of an exact and a simple model (Eqs. 37-38).
 
-    The damping is that of r by Eq. 16 unless ``damping`` gives another ζ.
-    Where the spring-damper model has no such quantity the error is infinite,
-    and so it is where the restitution model's value is 0, which leaves nothing
-    to be relative to (the saddle-node and the phase at r = 1).
+    Where the exact model has no such quantity the error is infinite, and so it
+    is where the simple model's value is 0, which leaves nothing to be relative
+    to (the saddle-node and the phase at r = 1).
+
+    Raises
+    ------
+    NoOrbitError
+        If the simple model has no orbit at Λ to compare with.
 
     Examples
     --------
     Without damping, Λ_SD = 1 - 1/ϖ² above the resonance:
 
-    >>> error = relative_error(Quantity.PERMANENT_CONTACT, 1, 1.0, 1.0, np.array([2.0]))
-    >>> error.tolist()
+    >>> stiff = ContactModel(contact(np.array([2.0]), 1.0, "displacement"))
+    >>> relative_error(Quantity.PERMANENT_CONTACT, stiff, RestitutionModel(1.0), 1, 1.0).tolist()
     [0.25]
     """
-    zeta = float(damping_ratio(r)) if damping is None else damping
-    contact = Contact(ratios, zeta, release)
-    reference = restitution_value(quantity, n, r, amplitude)
+    if quantity in OBSERVABLES:
+        simple.require_orbit(n, amplitude)
+    reference = float(value(quantity, simple, n, amplitude))
+    found = value(quantity, exact, n, amplitude)
     if reference == 0:
-        return np.full(np.shape(ratios), np.inf)
-    error = np.abs(contact_value(quantity, n, contact, amplitude) - reference) / abs(reference)
+        return np.full(np.shape(found), np.inf)
+    error = np.abs(found - reference) / abs(reference)
     return np.where(np.isnan(error), np.inf, error)
 
 
@@ -165,14 +146,15 @@ def thresholds(
 def error_thresholds(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     """Errors along ϖ and thresholds, for every quantity and tolerance."""
     n, r, lam = parameters["n"], parameters["restitution"], parameters["amplitude"]
-    ratios = grid(parameters["frequency_ratio"])
+    ratios, simple = grid(parameters["frequency_ratio"]), RestitutionModel(r)
     tolerances = np.array(parameters["tolerances"], dtype=float)
     quantities = [Quantity(name) for name in parameters["quantities"]]
     errors, roots, statuses = [], [], []
     for quantity in quantities:
 
         def error(ratio, quantity=quantity):
-            return relative_error(quantity, n, r, lam, ratio, Release(release))
+            exact = ContactModel(contact(ratio, r, release))
+            return relative_error(quantity, exact, simple, n, lam)
 
         errors.append(error(ratios))
         found, status = thresholds(error, tolerances, ratios, errors[-1])
@@ -206,8 +188,7 @@ def height_error(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         },
         release,
     )
-    touch = Contact(dataset.frequency_ratio.values, float(damping_ratio(r)), Release(release))
-    orbit = limits.orbit_at(touch, n, lam)
+    orbit = ContactModel(contact(dataset.frequency_ratio.values, r, release)).orbit(n, lam)
     for name, values in (
         ("max_height", orbit.max_height),
         ("phase", orbit.phase),
@@ -216,7 +197,7 @@ def height_error(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         ("admissible", orbit.is_admissible()),
     ):
         dataset[name] = ("frequency_ratio", values)
-    dataset["restitution_max_height"] = restitution_value(Quantity.MAX_HEIGHT, n, r, lam)
+    dataset["restitution_max_height"] = RestitutionModel(r).orbit(n, lam).max_height
     return describe(dataset)
 
 

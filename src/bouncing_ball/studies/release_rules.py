@@ -19,6 +19,7 @@ from bouncing_ball.datasets.variables import describe
 from bouncing_ball.impacts.damping import damping_ratio, restitution_coefficient
 from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.studies.error_thresholds import Quantity, relative_error, thresholds
 from bouncing_ball.studies.parameters import grid
 
@@ -87,7 +88,8 @@ def _thresholds(wanted: Mapping[str, Any]) -> xr.Dataset:
         for j, quantity in enumerate(quantities):
 
             def error(ratio, quantity=quantity, rule=rule, reference=reference):
-                return relative_error(quantity, n, reference, lam, ratio, rule, damping=loss)
+                exact = ContactModel(Contact(ratio, loss, rule))
+                return relative_error(quantity, exact, RestitutionModel(reference), n, lam)
 
             value, status = thresholds(error, [wanted["tolerance"]], scan)
             found[i, j], statuses[i, j] = value[0], str(status[0])

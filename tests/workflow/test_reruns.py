@@ -7,6 +7,10 @@ from bouncing_ball.configuration.stages import STAGES
 PAPER = "Writing results/paper.md"
 
 
+# The figures of the corrected model.
+CORRECTED = ("ext_instant", "ext_orders", "ext_validity", "ext_fig14", "ext_fig15")
+
+
 def made(*names):
     """Messages of the stages that make these datasets."""
     return {f"{name}: {STAGES[name].title}" for name in names}
@@ -105,9 +109,10 @@ def test_a_changed_parameter(complete, keys, value, expected):
             {
                 *made("fig11"),
                 *made("fig14", "fig16", "thresholds"),
-                *made("ext_release"),
-                *drawing("fig11", "fig14", "fig16", "ext_release"),
+                *made("ext_release", *CORRECTED, "ext_error_law"),
+                *drawing("fig11", "fig14", "fig16", "ext_release", *CORRECTED),
                 "Setting thresholds",
+                "Setting ext_error_law",
                 *WITNESS,
                 *EVIDENCE,
                 PAPER,
@@ -117,7 +122,10 @@ def test_a_changed_parameter(complete, keys, value, expected):
         ("configuration/stages.py", set()),
         # A plotting change does not run the science again.
         ("render/figures/fig12.py", drawing("fig12")),
-        ("render/figures/style.py", drawing("ext_release", *(f"fig{k:02d}" for k in range(1, 17)))),
+        (
+            "render/figures/style.py",
+            drawing("ext_release", *CORRECTED, *(f"fig{k:02d}" for k in range(1, 17))),
+        ),
         ("render/tables/table1.py", {"Setting table1", PAPER}),
         ("audit/claims/verdict.py", {*CLAIMS, PAPER}),
         ("audit/claims/tally.py", {PAPER}),

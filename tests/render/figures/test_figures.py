@@ -17,29 +17,8 @@ pytestmark = pytest.mark.slow
 ROOT = Path(__file__).resolve().parents[3]
 CONFIG = yaml.safe_load((ROOT / "config" / "config.yaml").read_text(encoding="utf-8"))
 RELEASE = "displacement"
-# The variable that each figure is about.
-SHOWN = {
-    "fig02": "ball",
-    "fig03": "phase",
-    "fig05": "apparent_restitution",
-    "fig06": "apparent_restitution",
-    "fig07": "ball",
-    "fig08": "phase",
-    "fig09": "release_phase",
-    "fig10": "bounce_velocity",
-    "fig11": "threshold_amplitude",
-    "fig12": "ball",
-    "fig13": "impact_velocity",
-    "fig14": "max_height",
-    "fig15": "restitution_phase",
-    "fig16": "threshold_amplitude",
-    "ext_release": "error_threshold",
-    "ext_instant": "ball",
-    "ext_orders": "relative_error",
-    "ext_validity": "error_threshold",
-    "ext_fig14": "corrected_max_height",
-    "ext_fig15": "phase",
-}
+FIGURES = [STAGES[name] for name in names(Kind.FIGURE, Kind.EXTENSION)]
+WITH_DATA = [stage.name for stage in FIGURES if stage.study]
 
 
 @pytest.fixture(scope="module")
@@ -47,12 +26,11 @@ def datasets():
     from bouncing_ball.datasets.netcdf import parameter_attributes
 
     made = {}
-    for name in names(Kind.FIGURE, Kind.EXTENSION):
+    for name in WITH_DATA:
         stage = STAGES[name]
-        if stage.study:
-            parameters = stage.parameters(CONFIG)
-            made[name] = load(stage.study)(parameters, *stage.settings(CONFIG).values())
-            made[name].attrs = parameter_attributes(parameters | {"release": RELEASE})
+        parameters = stage.parameters(CONFIG)
+        made[name] = load(stage.study)(parameters, *stage.settings(CONFIG).values())
+        made[name].attrs = parameter_attributes(parameters | {"release": RELEASE})
     return made
 
 
@@ -65,18 +43,27 @@ def lines(figure):
     return [line for axes in figure.axes for line in axes.lines]
 
 
-@pytest.mark.parametrize("name", SHOWN)
+@pytest.mark.parametrize("name", WITH_DATA)
 def test_a_figure_follows_its_data(datasets, name):
     data = datasets[name]
-    before = [np.concatenate(line.get_data()) for line in lines(drawn(name, data))]
-    moved = data.assign({SHOWN[name]: data[SHOWN[name]] * 1.5 + 0.1})
-    after = [np.concatenate(line.get_data()) for line in lines(drawn(name, moved))]
-    assert len(before) == len(after)
-    pairs = zip(before, after, strict=True)
-    assert not all(len(a) == len(b) and np.array_equal(a, b, True) for a, b in pairs)
+    moved = data.map(lambda values: values * 1.5 + 0.1 if values.dtype.kind == "f" else values)
+    before, after = drawn(name, data), drawn(name, moved)
+    curves = 0
+    for axes, others in zip(before.axes, after.axes, strict=True):
+        pairs = [
+            (line.get_xydata(), other.get_xydata())
+            for line, other in zip(axes.lines, others.lines, strict=True)
+            if len(line.get_xydata()) > 2  # no limit, no mark
+        ]
+        same = [a.shape == b.shape and np.array_equal(a, b, equal_nan=True) for a, b in pairs]
+        # One may follow from the parameters alone: the table of Figure 12, or the
+        # arrows at the end of a range.
+        assert sum(same) <= 1
+        curves += len(pairs) - sum(same)
+    assert curves
 
 
-@pytest.mark.parametrize("name", SHOWN)
+@pytest.mark.parametrize("name", WITH_DATA)
 def test_axes_have_labels(datasets, name):
     figure = drawn(name, datasets[name])
     assert any(axes.get_xlabel() for axes in figure.axes)

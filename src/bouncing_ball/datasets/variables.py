@@ -161,7 +161,6 @@ VARIABLES: dict[str, Variable] = {
     "disagreement": Variable("largest disagreement between two routes", ""),
     "budget": Variable("disagreement allowed", ""),
     "orbits": Variable("number of orbits or bifurcations compared", ""),
-    "worst": Variable("where the largest disagreement is", ""),
     # formulas
     "formula": Variable("printed formula", ""),
     "compared_with": Variable("what the formula is compared with", ""),

@@ -97,6 +97,19 @@ def _continued(
     return values, needed
 
 
+def _computed(
+    chosen: list[Reading], parameters: Mapping[str, Any]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The bifurcations of all readings, the best values of each, and the steps needed."""
+    model = _model(chosen, parameters)
+    found = bifurcations(model)
+    exact = np.stack([altered_orbit(excess, model).amplitude for excess in found], axis=-1)
+    values, needed = _continued(chosen, found, model, parameters)
+    in_range = np.array([reading.step > 0 for reading in chosen])[:, None, None, None]
+    best = np.where(in_range, values, exact)
+    return _rewritten(chosen, exact, parameters), _rewritten(chosen, best, parameters), needed
+
+
 def _order(distance: xr.DataArray, in_range: np.ndarray) -> np.ndarray:
     """The closest to the softer rows first, then to all rows; those that choose their
     values from a range, and those that lack an orbit, behind the others."""
@@ -128,8 +141,8 @@ def forensics(parameters: Mapping[str, Any], printed: Mapping[str, Any]) -> xr.D
         ``computed`` and ``difference`` (in last digits) over (reading,
         frequency_ratio, n, bound), sorted by ``rank``: the rms difference over
         the softer rows, as a reading of the stiffest row alone explains nothing of
-        the others, then over all; but behind the others those readings that choose their values
-        from a range, with the printed ones in view.
+        the others, then over all. Readings that choose their values from a range,
+        with the printed ones in view, come behind the others.
 
     Raises
     ------
@@ -142,14 +155,9 @@ def forensics(parameters: Mapping[str, Any], printed: Mapping[str, Any]) -> xr.D
     entries = np.array(printed["values"], dtype=float)
     ratios = np.array(printed["frequency_ratio"], dtype=float)
     chosen = readings(parameters)
-    model = _model(chosen, parameters)
-    found = bifurcations(model)
-    exact = np.stack([altered_orbit(excess, model).amplitude for excess in found], axis=-1)
-    values, needed = _continued(chosen, found, model, parameters)
+    exact, best, needed = _computed(chosen, parameters)
     in_range = np.array([reading.step > 0 for reading in chosen])
     truncated = np.array([reading.truncated for reading in chosen])[:, None, None, None]
-    best = np.where(in_range[:, None, None, None], values, exact)
-    exact, best = (_rewritten(chosen, x, parameters) for x in (exact, best))
     computed = np.where(truncated, np.floor(best / unit) * unit, best)
     difference = (computed - entries) / unit
     # No orbit has a smaller Λ than the fold: what is printed below it, by more
@@ -157,7 +165,6 @@ def forensics(parameters: Mapping[str, Any], printed: Mapping[str, Any]) -> xr.D
     hidden = np.where(truncated[..., 0], 1.0, 0.5)
     unreachable = np.sum((exact - entries)[..., 0] / unit > hidden, axis=(1, 2))
     groups = _groups(ratios)
-    distances = _distances(difference, groups)
     dims = ("reading", "frequency_ratio", "n", "bound")
     dataset = xr.Dataset(
         {
@@ -168,7 +175,7 @@ def forensics(parameters: Mapping[str, Any], printed: Mapping[str, Any]) -> xr.D
             "unreachable": ("reading", unreachable),
             "chosen_in_range": ("reading", in_range),
             "description": ("reading", [reading.description for reading in chosen]),
-            **distances,
+            **_distances(difference, groups),
         },
         coords={
             "reading": [reading.name for reading in chosen],

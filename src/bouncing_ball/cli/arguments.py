@@ -140,28 +140,12 @@ def _add_amplitude(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def parser() -> Parser:
-    """The parser of all subcommands."""
-    top = Parser(
-        prog="bouncing-ball",
-        description="Periodic orbits of a ball on a vibrating table. All quantities are "
-        "dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g.",
-    )
-    top.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
-    commands = top.add_subparsers(dest="command", required=True, parser_class=Parser)
-
-    def command(name: str, text: str) -> Parser:
-        sub = commands.add_parser(name, help=text, description=text)
-        sub.add_argument("--json", action="store_true", help="one JSON object, full precision")
-        _add_damping(sub)
-        return sub
-
-    orbit = command("orbit", "the n-T orbit at an amplitude")
-    _add_model(orbit)
-    _add_family(orbit)
-    _add_amplitude(orbit)
-    _add_contact(orbit, required=False)
-    which = orbit.add_mutually_exclusive_group()
+def _add_orbit(sub: Parser) -> None:
+    _add_model(sub)
+    _add_family(sub)
+    _add_amplitude(sub)
+    _add_contact(sub, required=False)
+    which = sub.add_mutually_exclusive_group()
     which.add_argument(
         "--side",
         choices=["stable", "unstable", "all"],
@@ -173,38 +157,87 @@ def parser() -> Parser:
         "--index", type=_count(1000), metavar="K", help="the K-th of --side all, from 1"
     )
 
-    limits = command("limits", "saddle-node and period doubling of the n-T orbits")
-    _add_model(limits)
-    _add_family(limits)
-    _add_contact(limits, required=False)
 
-    law = command("error-law", "error of the restitution model to first order, K/ϖ")
-    _add_family(law)
-    _add_amplitude(law)
-    _add_release(law)
+def _add_limits(sub: Parser) -> None:
+    _add_model(sub)
+    _add_family(sub)
+    _add_contact(sub, required=False)
+
+
+def _add_error_law(sub: Parser) -> None:
+    _add_family(sub)
+    _add_amplitude(sub)
+    _add_release(sub)
     # K is the error at ϖ = 1, continued by its law.
-    law.set_defaults(frequency_ratio=1.0)
+    sub.set_defaults(frequency_ratio=1.0)
 
-    permanent = command("permanent-contact", "the amplitude up to which the ball stays down")
-    _add_model(permanent)
-    _add_contact(permanent, required=True)
 
-    simulate = command("simulate", "a sequence of impacts from any initial impact")
-    _add_model(simulate)
-    _add_amplitude(simulate)
-    _add_contact(simulate, required=False)
-    simulate.add_argument("--impacts", type=_count(_MOST_IMPACTS), default=100, help="default: 100")
-    simulate.add_argument(
+def _add_permanent_contact(sub: Parser) -> None:
+    _add_model(sub)
+    _add_contact(sub, required=True)
+
+
+def _add_simulate(sub: Parser) -> None:
+    _add_model(sub)
+    _add_amplitude(sub)
+    _add_contact(sub, required=False)
+    sub.add_argument("--impacts", type=_count(_MOST_IMPACTS), default=100, help="default: 100")
+    sub.add_argument(
         "--phase",
         type=_number(-math.inf, math.inf),
         default=0.0,
         help="phase of the table at the first impact (default: 0)",
     )
-    simulate.add_argument(
+    sub.add_argument(
         "--velocity",
         type=_number(-math.inf, math.inf),
         help="absolute velocity of the ball before the first impact (default: -π)",
     )
+
+
+def _add_diff(sub: Parser) -> None:
+    sub.add_argument("record", metavar="RECORD", help="folder with the accepted artifacts")
+    sub.add_argument("results", metavar="RESULTS", help="folder with the new artifacts")
+    sub.add_argument(
+        "artifacts", metavar="ARTIFACT", nargs="*", help="as fig08 or table1; default: all"
+    )
+    sub.add_argument(
+        "--tolerances",
+        metavar="FILE",
+        help="default: config/tolerances.yaml of this checkout, else of RECORD",
+    )
+    for name, what in (
+        ("json", "everything that was found, as JSON"),
+        ("markdown", "a summary for continuous integration"),
+        ("html", "one page with all pictures"),
+    ):
+        sub.add_argument(f"--{name}", metavar="FILE", help=what)
+
+
+# The questions to a model: what each is for, and its own arguments.
+_QUESTIONS = {
+    "orbit": ("the n-T orbit at an amplitude", _add_orbit),
+    "limits": ("saddle-node and period doubling of the n-T orbits", _add_limits),
+    "error-law": ("error of the restitution model to first order, K/ϖ", _add_error_law),
+    "permanent-contact": ("the amplitude up to which the ball stays down", _add_permanent_contact),
+    "simulate": ("a sequence of impacts from any initial impact", _add_simulate),
+}
+
+
+def parser() -> Parser:
+    """The parser of all subcommands."""
+    top = Parser(
+        prog="bouncing-ball",
+        description="Periodic orbits of a ball on a vibrating table. All quantities are "
+        "dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g.",
+    )
+    top.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
+    commands = top.add_subparsers(dest="command", required=True, parser_class=Parser)
+    for name, (text, add_arguments) in _QUESTIONS.items():
+        sub = commands.add_parser(name, help=text, description=text)
+        sub.add_argument("--json", action="store_true", help="one JSON object, full precision")
+        _add_damping(sub)
+        add_arguments(sub)
 
     text = "where a figure, dataset or table comes from, and the command that makes it again"
     explain = commands.add_parser("explain", help=text, description=text)
@@ -218,22 +251,7 @@ def parser() -> Parser:
         "the budgets of the tolerance file. Exit status: 0 the same, 1 differs, 2 something could "
         "not be compared.",
     )
-    diff.add_argument("record", metavar="RECORD", help="folder with the accepted artifacts")
-    diff.add_argument("results", metavar="RESULTS", help="folder with the new artifacts")
-    diff.add_argument(
-        "artifacts", metavar="ARTIFACT", nargs="*", help="as fig08 or table1; default: all"
-    )
-    diff.add_argument(
-        "--tolerances",
-        metavar="FILE",
-        help="default: config/tolerances.yaml of this checkout, else of RECORD",
-    )
-    for name, what in (
-        ("json", "everything that was found, as JSON"),
-        ("markdown", "a summary for continuous integration"),
-        ("html", "one page with all pictures"),
-    ):
-        diff.add_argument(f"--{name}", metavar="FILE", help=what)
+    _add_diff(diff)
     return top
 
 

@@ -82,6 +82,26 @@ def responses(time: ArrayLike, frequency_ratio: ArrayLike, damping_ratio: ArrayL
     )
 
 
+def _jacobian(rows, phase, amplitude, omega, zeta) -> np.ndarray:
+    """Derivatives of δ and δ′ by the :data:`ARGUMENTS`.
+
+    A row holds those by s, δ₀ and δ′₀, the response to the table, whose phase is φ
+    and whose size Λ, and the derivatives by a = ζϖ and q = ϖ².
+    """
+    cosine, sine = np.cos(phase), np.sin(phase)
+    x, y = amplitude * cosine, amplitude * sine
+    jacobian = np.empty((*phase.shape, 2, len(ARGUMENTS)))
+    for row, (by_time, by_d0, by_v0, forced, by_a, by_q) in enumerate(rows):
+        jacobian[..., row, 0] = by_time
+        jacobian[..., row, 1] = by_d0
+        jacobian[..., row, 2] = by_v0
+        jacobian[..., row, 3] = x * np.real(forced) - y * np.imag(forced)
+        jacobian[..., row, 4] = cosine * np.imag(forced) + sine * np.real(forced)
+        jacobian[..., row, 5] = zeta * by_a + 2 * omega * by_q
+        jacobian[..., row, 6] = omega * by_a
+    return jacobian
+
+
 def contact_flow(
     time: ArrayLike,
     displacement: ArrayLike,
@@ -139,26 +159,11 @@ def contact_flow(
     d_q = combine(g.rate_d_q + 2 * a * g.d_q, g.d_q, G.d_q, h.d_q)
     v_q = combine(-g.value - q * g.d_q, g.rate_d_q, G.rate_d_q, h.rate_d_q)
 
-    def by_phase(forced):
-        return x * np.real(forced) - y * np.imag(forced)
-
-    def by_amplitude(forced):
-        return np.cos(phi) * np.imag(forced) + np.sin(phi) * np.real(forced)
-
-    jacobian = np.empty((*s.shape, 2, 7))
     rows = (
         (v, g.rate + 2 * a * g.value, g.value, h.value, d_a, d_q),
         (acc, -q * g.value, g.rate, h.rate, v_a, v_q),
     )
-    for row, (by_time, by_d0, by_v0, forced, by_a, by_q) in enumerate(rows):
-        jacobian[..., row, 0] = by_time
-        jacobian[..., row, 1] = by_d0
-        jacobian[..., row, 2] = by_v0
-        jacobian[..., row, 3] = by_phase(forced)
-        jacobian[..., row, 4] = by_amplitude(forced)
-        jacobian[..., row, 5] = zeta * by_a + 2 * omega * by_q
-        jacobian[..., row, 6] = omega * by_a
-    return ContactFlow(d, v, acc, jacobian)
+    return ContactFlow(d, v, acc, _jacobian(rows, phi, lam, omega, zeta))
 
 
 def contact_force(

@@ -53,7 +53,7 @@ class Computation(NamedTuple):
 # formula at its own time, and other samples change nothing about it. Other
 # samples of the formulas are other parameters, and steps from sample to sample,
 # of which some evidence consists, are other steps.
-_NOT_NESTED = ("fig07", "fig12", "formulas", "evidence", "ext_orders", "ext_fig15")
+_NOT_NESTED = ("fig07", "fig12", "formulas", "evidence", "ext_orders")
 
 # Sizes that become 2N - 1.
 _SIZES = ("samples", "points")

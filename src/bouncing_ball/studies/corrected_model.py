@@ -258,20 +258,18 @@ def domains(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     )
     names = ("spring-damper", *SIMPLE)
     # Towards the fold by squares: the phase depends on Λ there by a root.
-    share = np.linspace(0.0, 1.0, parameters["points"]) ** 2
+    share = np.linspace(0.0, 1.0, parameters["points"])[1:] ** 2
     amplitude, phase, stable, ends = [], [], [], []
     for model in _models(contact):
-        fold = model.saddle_node(n)
+        fold, flip = model.saddle_node(n), model.period_doubling(n)
         low = float(fold.amplitude)
         lam = low + share * (top - low)
-        sides = [model.orbit(n, lam, side) for side in (Side.UNSTABLE, Side.STABLE)]
-        amplitude.append(np.concatenate([lam[::-1], lam]))
-        phase.append(np.concatenate([sides[0].phase[::-1], sides[1].phase]))
-        stable.append(np.concatenate([sides[0].is_stable()[::-1], sides[1].is_stable()]))
-        flip = model.period_doubling(n)
-        ends.append(
-            [[float(x.amplitude), float(x.phase)] for x in (fold, flip)],
-        )
+        left, right = (model.orbit(n, lam, side) for side in (Side.UNSTABLE, Side.STABLE))
+        amplitude.append(np.concatenate([lam[::-1], [low], lam]))
+        phase.append(np.concatenate([left.phase[::-1], [float(fold.phase)], right.phase]))
+        # At the fold a multiplier is 1.
+        stable.append(np.concatenate([left.is_stable()[::-1], [False], right.is_stable()]))
+        ends.append([[float(x.amplitude), float(x.phase)] for x in (fold, flip)])
     bounds = np.array(ends)
     dims = ("model", "point")
     return describe(
@@ -285,7 +283,7 @@ def domains(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
             },
             coords={
                 "model": list(names),
-                "point": np.arange(2 * len(share)),
+                "point": np.arange(2 * len(share) + 1),
                 "bound": ["saddle-node", "period doubling"],
             },
         )

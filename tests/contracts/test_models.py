@@ -1,9 +1,13 @@
 """What every model of the impact keeps, whatever its law.
 
-A new model is one more line of :data:`MODELS`. Tolerances are roundings, of
+A new model is one more line of :data:`MODELS`; ``plastic_impact.py`` beside this
+file is an example of one. Tolerances are roundings, of
 times some 2πn and of velocities some nπ, grown by the quantity that is named
 beside them.
 """
+
+import runpy
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,6 +25,7 @@ EPS = np.finfo(float).eps
 SOFT = Contact.from_restitution(0.85, 4.0)
 STIFF = Contact.from_restitution(0.65, 50.0)
 PUSHING = Contact.from_restitution(0.65, 20.0, "force")
+OWN = runpy.run_path(str(Path(__file__).with_name("plastic_impact.py")))
 MODELS = {
     "restitution": RestitutionModel(0.65),
     "elastic": RestitutionModel(1.0),
@@ -30,6 +35,7 @@ MODELS = {
     "undamped contact": ContactModel(Contact(10.0, 0.0)),
     "corrected": CorrectedModel.of_contact(STIFF),
     "corrected, force release": CorrectedModel.of_contact(PUSHING),
+    "one's own": OWN["PlasticModel"](OWN["PlasticImpact"](0.7)),
 }
 DISSIPATIVE = [name for name in MODELS if name not in ("elastic", "undamped contact")]
 # n, and Λ over the saddle-node's and below the table's grazing, Λ > 1 included.

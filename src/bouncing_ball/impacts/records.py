@@ -6,7 +6,7 @@ is that of all elements, and stays a scalar.
 
 import math
 from collections.abc import Callable
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any, Self
 
 import numpy as np
@@ -43,6 +43,7 @@ def in_words(value: Any) -> str:
     )
 
 
+@dataclass(frozen=True, repr=False)
 class Record:
     """What a frozen dataclass of arrays inherits: a shape, indexing, a length.
 
@@ -55,13 +56,13 @@ class Record:
     """
 
     def __repr__(self) -> str:
-        values = (f"{f.name}={in_words(getattr(self, f.name))}" for f in fields(self))  # type: ignore[arg-type]
+        values = (f"{f.name}={in_words(getattr(self, f.name))}" for f in fields(self))
         return f"{type(self).__name__}({', '.join(values)})"
 
     @property
     def shape(self) -> tuple[int, ...]:
         """Common shape of the fields."""
-        return np.broadcast_shapes(*(_shape(getattr(self, f.name)) for f in fields(self)))  # type: ignore[arg-type]
+        return np.broadcast_shapes(*(_shape(getattr(self, f.name)) for f in fields(self)))
 
     @property
     def size(self) -> int:
@@ -74,8 +75,8 @@ class Record:
         return self.shape[0]
 
     def _entries(self, shape: tuple[int, ...], index: Any) -> Self:
-        values = {f.name: getattr(self, f.name) for f in fields(self)}  # type: ignore[arg-type]
-        return replace(self, **{k: _entry(v, shape, index) for k, v in values.items()})  # type: ignore[type-var]
+        values = {f.name: getattr(self, f.name) for f in fields(self)}
+        return replace(self, **{k: _entry(v, shape, index) for k, v in values.items()})
 
     def __getitem__(self, index: Any) -> Self:
         if not self.shape and index != ():
@@ -89,6 +90,6 @@ class Record:
         return self[np.unravel_index(np.arange(self.size), self.shape)]
 
     def _entries_of(self, function: Callable[[Any], Any]) -> Self:
-        values = {f.name: getattr(self, f.name) for f in fields(self)}  # type: ignore[arg-type]
+        values = {f.name: getattr(self, f.name) for f in fields(self)}
         numbers = {k: v if isinstance(v, Record | str) else function(v) for k, v in values.items()}
-        return replace(self, **numbers)  # type: ignore[type-var]
+        return replace(self, **numbers)

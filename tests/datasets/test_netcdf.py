@@ -27,7 +27,7 @@ def data():
             },
             coords={"n": [1, 2], "end": ["unstable side", "stable side"]},
         )
-    ).assign_attrs({"title": "ϖ and Λ", "n": 1, "range.min": 0.5, "tolerances": [0.1, 0.01]})
+    ).assign_attrs({"title": "ϖ and Λ", "n": 1, "range__min": 0.5, "tolerances": [0.1, 0.01]})
 
 
 def test_round_trip(data, tmp_path):
@@ -39,10 +39,19 @@ def test_round_trip(data, tmp_path):
         assert again[name].attrs == data[name].attrs, name
         assert again[name].dtype.kind == data[name].dtype.kind or name in ("special_kind", "end")
     assert again.stable.dtype == bool
-    assert again.attrs["title"] == "ϖ and Λ" and again.attrs["range.min"] == 0.5
+    assert again.attrs["title"] == "ϖ and Λ" and again.attrs["range__min"] == 0.5
     assert again.attrs["tolerances"].tolist() == [0.1, 0.01]
     # The file is closed: it can be replaced and removed.
     path.unlink()
+
+
+def test_coordinates_have_no_fill_value(data, tmp_path):
+    sweep = data.assign_coords(frequency_ratio=("point", [1.0, 10.0, 100.0]), point=[0.0, 0.5, 1.0])
+    write_dataset(sweep, tmp_path / "data.nc")
+    written = xr.open_dataset(tmp_path / "data.nc")
+    filled = {name for name, each in written.variables.items() if "_FillValue" in each.encoding}
+    written.close()
+    assert filled == {"phase", "saddle_node_amplitude"}
 
 
 def test_only_the_target_is_left(data, tmp_path):
@@ -136,9 +145,9 @@ def test_parameters_as_attributes(tmp_path):
         "release": "displacement",
         "flag": 1,
         "amplitude": [1.1, 1, 0.6],
-        "frequency_ratio.min": 1.0,
-        "frequency_ratio.max": 1e3,
-        "frequency_ratio.samples": 7,
+        "frequency_ratio__min": 1.0,
+        "frequency_ratio__max": 1e3,
+        "frequency_ratio__samples": 7,
         "cases": '[{"restitution": 1.0, "amplitude": 0.8}]',
         "quantities": '["max_height", "phase"]',
         "printed": "[[[0.255, 1.032]]]",

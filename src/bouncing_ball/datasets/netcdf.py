@@ -9,38 +9,57 @@ import xarray as xr
 
 from bouncing_ball.datasets.atomic import replacing
 
+CONVENTIONS = "CF-1.11"
+"""The conventions that the files follow."""
+
 
 class DatasetError(ValueError):
     """A file that is not there, or not a whole dataset, in one line."""
 
 
+def attribute_name(parameter: str) -> str:
+    """The attribute that holds a parameter: a name in CF has letters, digits and underscores.
+
+    Examples
+    --------
+    >>> attribute_name("frequency_ratio.min")
+    'frequency_ratio__min'
+    """
+    return parameter.replace(".", "__")
+
+
 def parameter_attributes(parameters: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
-    """Nested parameters as flat netCDF attributes.
+    """Nested parameters as flat netCDF attributes, see :func:`attribute_name`.
 
     Lists of numbers stay lists; anything deeper becomes JSON.
 
     Examples
     --------
     >>> parameter_attributes({"n": 1, "range": {"min": 0.5}, "cases": [{"r": 1}]})
-    {'n': 1, 'range.min': 0.5, 'cases': '[{"r": 1}]'}
+    {'n': 1, 'range__min': 0.5, 'cases': '[{"r": 1}]'}
     """
     flat: dict[str, Any] = {}
     for key, value in parameters.items():
+        name = attribute_name(prefix + key)
         if isinstance(value, Mapping):
-            flat |= parameter_attributes(value, f"{prefix}{key}.")
+            flat |= parameter_attributes(value, f"{name}.")
         elif isinstance(value, list) and not all(type(x) in (int, float) for x in value):
-            flat[prefix + key] = json.dumps(value, ensure_ascii=False)
+            flat[name] = json.dumps(value, ensure_ascii=False)
         elif isinstance(value, bool):
-            flat[prefix + key] = int(value)
+            flat[name] = int(value)
         else:
-            flat[prefix + key] = value
+            flat[name] = value
     return flat
 
 
 def write_dataset(dataset: xr.Dataset, path: str | Path) -> None:
-    """Write a dataset so that the file is either whole or not there."""
+    """Write a dataset by the CF conventions, so that the file is either whole or not there.
+
+    Nothing is missing in a coordinate, so that it has no fill value.
+    """
+    whole = {str(name): {"_FillValue": None} for name in dataset.coords}
     with replacing(path) as temporary:
-        dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4")
+        dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=whole)
 
 
 def read_dataset(path: str | Path) -> xr.Dataset:

@@ -17,6 +17,7 @@ import xarray as xr
 from bouncing_ball.configuration.study import load
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.datasets.netcdf import (
+    CONVENTIONS,
     DatasetError,
     parameter_attributes,
     read_dataset,
@@ -31,6 +32,8 @@ REFERENCE = (
     "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient "
     "and spring-damper models for the bouncing ball problem, DETC2011-47870 (2011)"
 )
+
+HISTORY = "computed from the equations; the attributes provenance_* say by what and from what"
 
 LOGS = "results/logs/stages"
 """Where the jobs that make datasets say what they wrote."""
@@ -130,8 +133,10 @@ def make_dataset(snakemake: Any) -> None:
         inputs = [data] if data else []
         dataset = load(job.study)(*inputs, job.parameters, *job.settings.values())
         dataset.attrs = {
+            "Conventions": CONVENTIONS,
             "title": job.title,
             "references": REFERENCE,
+            "history": HISTORY,
             **(dataset.attrs or parameter_attributes(job.parameters | job.settings)),
             **provenance(snakemake).attributes(),
         }

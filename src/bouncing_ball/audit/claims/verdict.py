@@ -20,6 +20,7 @@ from bouncing_ball.audit.claims.ledger import (
     Relation,
 )
 from bouncing_ball.audit.claims.measure import measured
+from bouncing_ball.datasets.netcdf import attribute_name
 from bouncing_ball.errors import ModelError
 
 # Rounding must not decide what lies exactly on a bound.
@@ -180,7 +181,7 @@ def foreign_parameter(
 ) -> str:
     """The first parameter of the datasets used that is not the paper's, in words; or "".
 
-    The ledger writes a parameter as a dataset's attributes do. It requires those
+    The ledger writes a parameter as the configuration does. It requires those
     under ``every`` of all datasets that have them, those under
     ``dataset.variable`` only for what that variable decides. A mapping with
     ``at_least``, ``at_most`` or ``includes`` requires no more than that.
@@ -199,15 +200,15 @@ def foreign_parameter(
         for measure in (criterion.measure for criterion in part.criteria):
             if measure.dataset == name:
                 own |= ledger.parameters.get(f"{name}.{measure.variable}", {})
-        absent = next((key for key in own if key not in attributes), None)
+        absent = next((key for key in own if attribute_name(key) not in attributes), None)
         if absent is not None:
             raise ModelError(
                 f"{part.id!r} needs {absent} = {_words(own[absent])}, but dataset {name} has no "
                 f"parameter {absent}"
             )
         for key, paper in {**common, **own}.items():
-            if key in attributes and not _agrees(_plain(attributes[key]), paper):
-                given = _plain(attributes[key])
+            given = _plain(attributes.get(attribute_name(key)))
+            if given is not None and not _agrees(given, paper):
                 required = _words(paper)
                 return f"{name} was computed with {key} = {given}; the claim requires {required}"
     return ""

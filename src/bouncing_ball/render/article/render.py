@@ -8,6 +8,7 @@ from typing import Any
 import xarray as xr
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from bouncing_ball.datasets.netcdf import attribute_name
 from bouncing_ball.errors import ModelError
 from bouncing_ball.render.article.citations import Citations
 from bouncing_ball.render.article.claim_texts import Claims
@@ -27,7 +28,7 @@ def paper_parameter(claims: xr.Dataset) -> Callable[[str, str], Any]:
     """Access to the paper's own parameters, as the claims were judged with them."""
 
     def parameter(dataset: str, key: str) -> Any:
-        return claims.attrs[f"paper.{dataset}.{key}"]
+        return claims.attrs[attribute_name(f"paper.{dataset}.{key}")]
 
     return parameter
 

@@ -51,7 +51,7 @@ def _draw_shifts(axes: Axes, data: xr.Dataset) -> None:
 def _draw_thresholds(axes: Axes, data: xr.Dataset) -> None:
     """Threshold of each quantity, one mark for each reading; an arrow where there is none."""
     rows = np.arange(data.sizes["quantity"])[::-1]
-    limit = data.attrs["thresholds.frequency_ratio.max"]
+    limit = data.attrs["thresholds__frequency_ratio__max"]
     for reading, mark, colour in zip(data.reading.values, _MARKS, COLOURS, strict=False):
         found = data.error_threshold.sel(reading=reading).values
         status = data.threshold_status.sel(reading=reading).values
@@ -68,7 +68,7 @@ def _draw_thresholds(axes: Axes, data: xr.Dataset) -> None:
         axes.plot(at_the_end, rows[never], ">", color=colour, markersize=6)
     logarithmic(axes)
     axes.set(
-        xlabel=rf"$\varpi$ for an error of {100 * data.attrs['thresholds.tolerance']:g} %",
+        xlabel=rf"$\varpi$ for an error of {100 * data.attrs['thresholds__tolerance']:g} %",
         xlim=(1, limit),
         yticks=rows,
         ylim=(-0.7, len(rows) - 0.3),
@@ -76,8 +76,8 @@ def _draw_thresholds(axes: Axes, data: xr.Dataset) -> None:
     names = (str(name) for name in data.quantity.values)
     axes.set_yticklabels([_NAMES.get(name, name.replace("_", " ")) for name in names])
     axes.set_title(
-        rf"$n={data.attrs['thresholds.n']}$, $r={number(data.attrs['thresholds.restitution'])}$, "
-        rf"$\Lambda={number(data.attrs['thresholds.amplitude'])}$",
+        rf"$n={data.attrs['thresholds__n']}$, $r={number(data.attrs['thresholds__restitution'])}$, "
+        rf"$\Lambda={number(data.attrs['thresholds__amplitude'])}$",
         fontsize=9,
     )
 

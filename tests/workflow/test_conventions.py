@@ -1,0 +1,33 @@
+"""The datasets by the CF conventions, as far as they bear on what is no field on Earth."""
+
+import re
+
+import netCDF4
+import pytest
+
+from bouncing_ball.configuration.stages import studied
+from bouncing_ball.datasets.netcdf import CONVENTIONS
+
+# CF, section 2.3: "should begin with a letter and be composed of letters, digits, and underscores".
+NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+# Reserved by netCDF itself.
+OWN = {"_FillValue"}
+# CF, section 2.6.2: the description of a file's contents.
+DESCRIPTION = ("title", "history", "references")
+
+
+@pytest.mark.parametrize("name", [stage.name for stage in studied()])
+def test_a_dataset_keeps_the_conventions(pristine, name):
+    with netCDF4.Dataset(pristine.path / "results" / "figures" / f"{name}.nc") as data:
+        assert data.Conventions == CONVENTIONS
+        assert all(data.getncattr(key) for key in DESCRIPTION)
+        named = [*data.dimensions, *data.variables, *data.ncattrs()]
+        for variable in data.variables.values():
+            named += [key for key in variable.ncattrs() if key not in OWN]
+            assert variable.long_name and variable.units
+        assert [key for key in named if not NAME.fullmatch(key)] == []
+        # Names differ by more than case.
+        assert len({key.lower() for key in data.variables}) == len(data.variables)
+        # Nothing is missing in a coordinate.
+        coordinates = [data.variables[key] for key in data.dimensions]
+        assert [each.name for each in coordinates if "_FillValue" in each.ncattrs()] == []

@@ -25,6 +25,7 @@ from bouncing_ball.record.provenance import (
     ProvenanceError,
     dotted,
     file_digest,
+    made_otherwise,
     read_mapping,
 )
 from bouncing_ball.record.recipe import Recipe, Run, gather, recorded
@@ -80,16 +81,7 @@ def differences(made: Provenance, now: Provenance) -> list[str]:
         found.append("the tree was dirty" if made.dirty == "yes" else "the commit is unknown")
     if changed := dotted(read_mapping(made.configuration)):
         found.append(f"configuration with another {', '.join(sorted(changed))}")
-    for part, name in (("sources", "sources"), ("parameters", "parameters"), ("lock", LOCK)):
-        if getattr(made, part) != getattr(now, part):
-            found.append(f"other {name}" if part != "lock" else f"another {name}")
-    before, after = read_mapping(made.inputs), read_mapping(now.inputs)
-    found += [
-        f"another {path}"
-        for path in sorted(before.keys() | after.keys())
-        if before.get(path) != after.get(path)
-    ]
-    return found
+    return found + made_otherwise(made, now)
 
 
 def _objections(recipe: Recipe, run: Run) -> tuple[Provenance | None, list[str]]:

@@ -132,6 +132,35 @@ def read_mapping(text: str) -> dict[str, Any]:
     return mapping
 
 
+def made_otherwise(record: Provenance, new: Provenance) -> list[str]:
+    """What two files were made from that is not the same, by checksums; commits may differ.
+
+    Examples
+    --------
+    >>> one = Provenance(*["1f0e"] * 7, inputs='{"a.nc": "1f0e"}', versions="{}")
+    >>> from dataclasses import replace
+    >>> two = replace(one, sources="2a2a", inputs='{"a.nc": "2a2a"}')
+    >>> made_otherwise(one, two)
+    ['other sources', 'another a.nc']
+    """
+    found = [
+        said
+        for part, said in (
+            ("sources", "other sources"),
+            ("parameters", "other parameters"),
+            ("lock", f"another {LOCK}"),
+        )
+        if getattr(record, part) != getattr(new, part)
+    ]
+    before, after = read_mapping(record.inputs), read_mapping(new.inputs)
+    found += [
+        f"another {path}"
+        for path in sorted(before.keys() | after.keys())
+        if before.get(path) != after.get(path)
+    ]
+    return found
+
+
 def dotted(mapping: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
     """Nested values by their keys in full.
 

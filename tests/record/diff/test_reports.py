@@ -1,15 +1,19 @@
 """The reports: complete, escaped, reproducible, and the exit status of the command."""
 
+import io
 import json
 import re
 import shutil
 import subprocess
 import sys
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
+from PIL import Image
 
 from bouncing_ball.cli.main import main
+from bouncing_ball.datasets.netcdf import write_dataset
 from bouncing_ball.record.diff.report_html import to_html
 from bouncing_ball.record.diff.report_json import to_json
 from bouncing_ball.record.diff.report_markdown import to_markdown
@@ -101,7 +105,9 @@ def test_all_text_is_escaped(pair):
 
 def test_the_page_fetches_nothing(changed):
     page = to_html(changed.compare())
-    assert re.findall(r"(?:src|href|action|data|poster)\s*=\s*[\"'](?!data:image/png;)", page) == []
+    assert (
+        re.findall(r"(?:src|href|action|data|poster)\s*=\s*[\"'](?!data:image/png;|#)", page) == []
+    )
     assert "url(" not in page and "@import" not in page and "<script" not in page
     assert not re.search(r"https?:", page)
 
@@ -114,6 +120,75 @@ def test_pictures_that_are_the_same_are_there_once(changed):
     # Record, new and difference of that one.
     assert page.count("<img") == 7
     assert "difference, × 1" in page
+
+
+def test_a_drift_is_drawn_along_its_curve_and_its_values_are_named(pair):
+    data = pair.dataset("fig08")
+    data.phase.values[0, 100:150] += 0.02
+    pair.write("fig08", data)
+    found = pair.variable("fig08", "phase")
+    ((label, shares),) = found.trace.lines
+    assert found.trace.along == "point" and label.startswith("frequency_ratio = ")
+    assert max(shares) == found.share == found.trace.largest[0].share > 100
+    # Two samples of the curve to a column.
+    over = [column for column, share in enumerate(shares) if share > 1]
+    assert (over[0], over[-1]) == (50, 74)
+    for each in found.trace.largest:
+        assert float(each.new) - float(each.record) == pytest.approx(0.02)
+    page = to_html(pair.compare())
+    assert "phase: drift over its budget, along point" in page
+    assert len(re.findall(r'<path class="dots', page)) == 1
+    # Every value of the largest ones, with its digits marked.
+    texts = re.sub(r"</?mark>", "", page)
+    for each in found.trace.largest:
+        assert each.place in texts and f">{each.record}<" in texts and f">{each.new}<" in texts
+
+
+def test_where_both_sides_come_from(pair):
+    made = {name: pair.dataset("fig05").attrs[f"provenance_{name}"] for name in ("commit", "lock")}
+    for folder, lock in ((pair.record, made["lock"]), (pair.new, "a" * 64)):
+        data = pair.dataset("fig05")
+        data.attrs |= {"provenance_configuration": "{}", "provenance_lock": lock}
+        versions = json.loads(data.attrs["provenance_versions"])
+        if folder == pair.new:
+            data.attrs |= {"provenance_commit": "b" * 40}
+            versions["scipy"] = "9.9"
+        data.attrs["provenance_versions"] = json.dumps(versions)
+        write_dataset(data, folder / "figures" / "fig05.nc")
+    comparison = pair.compare()
+    page = to_html(comparison)
+    assert made["commit"][:10] in page and "b" * 10 in page
+    assert f"another requirements.lock, scipy {version('scipy')} → 9.9" in page
+    found = {each["name"]: each for each in json.loads(to_json(comparison))["artifacts"]}
+    part = found["fig05"]["parts"][0]
+    assert part["made"]["record"]["commit"] == made["commit"]
+    assert part["made"]["new"]["versions"]["scipy"] == "9.9"
+    assert part["made"]["otherwise"] == ["another requirements.lock"]
+
+
+def test_the_number_of_changed_pixels(pair):
+    path = pair.new / "figures" / "fig08.png"
+    with Image.open(path) as picture:
+        changed = picture.convert("RGB")
+    for x in range(7):
+        changed.putpixel((x, 0), (0, 0, 0))
+    changed.save(path)
+    part = pair.part("figures/fig08.png")
+    assert part.picture.changed == 7 and "7 of " in part.note and part.outcome.agrees
+    # Seven pixels of two million are seen all the same.
+    with Image.open(io.BytesIO(part.picture.difference)) as picture:
+        assert picture.getpixel((0, 0)) == (110, 0, 80) and picture.getpixel((20, 20))[0] == 255
+    assert "7 of " in to_html(pair.compare())
+
+
+def test_a_page_has_no_more_room_than_it_has(changed, monkeypatch):
+    whole = to_html(changed.compare())
+    monkeypatch.setattr("bouncing_ball.record.diff.report_html._LARGEST", 1)
+    page = to_html(changed.compare())
+    # One artifact whole, the others by name and outcome.
+    assert page.count("no more room") == len(changed.compare().artifacts) - 1
+    assert len(page) < len(whole) / 2
+    assert re.findall(r"<section id=\S+", page) == re.findall(r"<section id=\S+", whole)
 
 
 def test_reports_are_the_same_every_time_and_name_no_folder(changed, capsys, tmp_path):

@@ -11,6 +11,7 @@ import xarray as xr
 from bouncing_ball.record.diff.drift import curve, pointwise, span
 from bouncing_ball.record.diff.outcome import Outcome, worst
 from bouncing_ball.record.diff.tolerances import Mode, Tolerance, ToleranceError, Tolerances
+from bouncing_ball.record.diff.traces import Trace, place_text, trace, value_text
 
 
 @dataclass(frozen=True)
@@ -20,6 +21,7 @@ class VariableResult:
     ``drift`` and ``budget`` are shares of the variable's scale, ``share`` is
     the one over the other. ``place``, ``record`` and ``new`` say where the
     drift is largest, and the values there. Without numbers they are None.
+    ``trace`` says how it has moved elsewhere.
     """
 
     name: str
@@ -32,15 +34,7 @@ class VariableResult:
     record: str = ""
     new: str = ""
     note: str = ""
-
-
-def _text(value: Any) -> str:
-    """A value in few characters, so that neighbouring numbers look different."""
-    value = value.item() if isinstance(value, np.generic) else value
-    if isinstance(value, np.ndarray):
-        value = value.tolist()
-    text = repr(value) if isinstance(value, float) else str(value)
-    return text if len(text) <= 60 else text[:57] + "..."
+    trace: Trace | None = None
 
 
 def _kind(variable: xr.DataArray) -> str:
@@ -55,15 +49,6 @@ def _same_values(record: xr.DataArray, new: xr.DataArray) -> np.ndarray:
     return np.asarray((a == b) | ((a != a) & (b != b)))
 
 
-def _place(variable: xr.DataArray, index: tuple[int, ...]) -> str:
-    """Coordinates of an entry, or its indices where a dimension has none."""
-    parts = []
-    for name, position in zip(variable.dims, index, strict=True):
-        label = variable[name].values[position] if name in variable.coords else position
-        parts.append(f"{name} = {label:.6g}" if isinstance(label, float) else f"{name} = {label}")
-    return ", ".join(parts)
-
-
 def _attributes(
     record: xr.Dataset | xr.DataArray, new: xr.Dataset | xr.DataArray, rules: Tolerances
 ) -> Iterator[tuple[Outcome, str]]:
@@ -76,7 +61,7 @@ def _attributes(
         elif name not in record.attrs:
             yield Outcome.STRUCTURE, f"attribute {name} is new"
         elif not np.array_equal(np.asarray(record.attrs[name]), np.asarray(new.attrs[name])):
-            change = f"{_text(record.attrs[name])} → {_text(new.attrs[name])}"
+            change = f"{value_text(record.attrs[name])} → {value_text(new.attrs[name])}"
             yield Outcome.DRIFTED, f"attribute {name}: {change}"
 
 
@@ -168,7 +153,7 @@ def _measured(name: str, record: xr.Dataset, new: xr.Dataset, rule: Tolerance) -
     note = ""
     if rule.mode is Mode.CURVE:
         axes = [_spread(data[rule.abscissa], record[name])[index] for data in (record, new)]
-        note = f"over {rule.abscissa}: {' → '.join(dict.fromkeys(map(_text, axes)))}"
+        note = f"over {rule.abscissa}: {' → '.join(dict.fromkeys(map(value_text, axes)))}"
     return VariableResult(
         name,
         Outcome.WITHIN if share <= 1 else Outcome.DRIFTED,
@@ -176,10 +161,11 @@ def _measured(name: str, record: xr.Dataset, new: xr.Dataset, rule: Tolerance) -
         largest,
         rule.budget,
         share,
-        _place(drift, index),
-        _text(record[name].values[index]),
-        _text(new[name].values[index]),
+        place_text(drift, index),
+        value_text(record[name].values[index]),
+        value_text(new[name].values[index]),
         note,
+        trace(record[name], new[name], drift.values / rule.allowed, rule.along),
     )
 
 
@@ -196,10 +182,11 @@ def _exactly(
         math.inf,
         0.0,
         math.inf,
-        _place(record, index),
-        _text(record.values[index]),
-        _text(new.values[index]),
+        place_text(record, index),
+        value_text(record.values[index]),
+        value_text(new.values[index]),
         f"{count}; {note}" if note else count,
+        trace(record, new, np.where(same, 0.0, np.inf)),
     )
 
 

@@ -12,7 +12,8 @@ the reason, and the others are compared all the same.
 import json
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -25,6 +26,7 @@ from bouncing_ball.record.diff.outcome import Outcome, worst
 from bouncing_ball.record.diff.pictures import PictureResult, compare_pictures, read_picture
 from bouncing_ball.record.diff.texts import Line, compare_texts, summary
 from bouncing_ball.record.diff.tolerances import Tolerances
+from bouncing_ball.record.provenance import Provenance, ProvenanceError
 from bouncing_ball.record.reading import (
     MAX_BYTES,
     UnreadableError,
@@ -58,6 +60,9 @@ class Part:
     picture : PictureResult, optional
     images : tuple
         The record's and the new picture as files, None where there is none.
+    made : tuple
+        Where the record's and the new file say that they come from, None where
+        they do not.
     """
 
     file: str
@@ -69,6 +74,7 @@ class Part:
     lines: tuple[Line, ...] = ()
     picture: PictureResult | None = None
     images: tuple[bytes | None, bytes | None] = (None, None)
+    made: tuple[Provenance | None, Provenance | None] = (None, None)
 
 
 def read_data(content: bytes) -> xr.Dataset:
@@ -115,6 +121,15 @@ def redrawn(record: Mapping[Any, Any], new: Mapping[Any, Any]) -> str:
         except (ValueError, KeyError, TypeError, RecursionError):
             return ""
     return f"drawn by matplotlib {found[0]} → {found[1]}" if found[0] != found[1] else ""
+
+
+def _made(side: Any) -> Provenance | None:
+    """What a dataset, a picture or a drawing says of where it comes from."""
+    for name in ("attrs", "info", "metadata"):
+        if isinstance(said := getattr(side, name, None), Mapping):
+            with suppress(ProvenanceError):
+                return Provenance.of(said)
+    return None
 
 
 def _joined(*notes: str) -> str:
@@ -217,11 +232,13 @@ def judge(
                 reading = "new: "
                 contents[1], sides[1] = _read(after, file)
             reading = ""
+            made = (_made(sides[0]), _made(sides[1]))
             if before is not None and after is not None:
-                return _compared(file, artifact, contents, sides, rules, data)
+                part = _compared(file, artifact, contents, sides, rules, data)
+                return replace(part, made=made)
         # By intent: what the libraries raise on a file made to confuse them has no end.
         except Exception as error:
             return Part(file, Outcome.UNREADABLE, note=f"{reading}{reason(error)}")
     outcome = Outcome.EXTRA if before is None else Outcome.MISSING
     images = (contents[0], contents[1]) if file.endswith(".png") else (None, None)
-    return Part(file, outcome, images=images)
+    return Part(file, outcome, images=images, made=made)

@@ -5,13 +5,16 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.testing.compare import calculate_rms
-from PIL import Image, UnidentifiedImageError
+from PIL import Image, ImageFilter, UnidentifiedImageError
 
 from bouncing_ball.record.diff.outcome import Outcome
 from bouncing_ball.record.reading import MAX_PIXELS, UnreadableError, reason
 
 # Grey levels of a pixel.
 _LEVELS = 255
+# What has changed on the picture of the differences: its colour, and the least of its cover.
+_INK = np.array([110, 0, 80])
+_FAINTEST = 128
 
 
 @dataclass(frozen=True)
@@ -19,13 +22,16 @@ class PictureResult:
     """What became of a picture.
 
     ``rms`` is the root mean square difference in grey levels of 255, None if
-    the sizes differ; ``difference`` a PNG file, dark where the two differ,
-    the differences multiplied by ``amplified``.
+    the sizes differ; ``changed`` the number of pixels that are not the same, of
+    ``pixels``. ``difference`` is a PNG file: the record in light grey, and over it
+    what has changed, darker the more, the differences multiplied by ``amplified``.
     """
 
     outcome: Outcome
     rms: float | None = None
     share: float | None = None
+    changed: int = 0
+    pixels: int = 0
     difference: bytes | None = None
     amplified: int = 1
     note: str = ""
@@ -62,12 +68,20 @@ def _pixels(picture: Image.Image) -> np.ndarray:
     return np.asarray(Image.alpha_composite(ground, whole).convert("RGB"), dtype=np.int16)
 
 
-def _difference(record: np.ndarray, new: np.ndarray) -> tuple[bytes, int]:
-    """A grey PNG of the differences and the factor that makes them visible."""
-    distance = np.abs(new - record).max(axis=-1)
+def _difference(record: np.ndarray, distance: np.ndarray) -> tuple[bytes, int]:
+    """The record in light grey with what has changed on it, and the factor that shows it.
+
+    Every changed pixel is drawn five wide, and so dark that it can be seen in a
+    picture that is shown smaller than it is.
+    """
     factor = max(1, _LEVELS // int(distance.max()))
+    strength = np.where(distance > 0, np.maximum(factor * distance, _FAINTEST), 0)
+    wide = Image.fromarray(strength.astype(np.uint8)).filter(ImageFilter.MaxFilter(5))
+    cover = np.asarray(wide)[..., None] / _LEVELS
+    ground = _LEVELS - (_LEVELS - record.mean(axis=-1, keepdims=True)) / 4
     file = io.BytesIO()
-    Image.fromarray((_LEVELS - factor * distance).astype(np.uint8)).save(file, "PNG")
+    mixed = (1 - cover) * ground + cover * _INK
+    Image.fromarray(mixed.round().astype(np.uint8)).save(file, "PNG")
     return file.getvalue(), factor
 
 
@@ -89,5 +103,8 @@ def compare_pictures(record: Image.Image, new: Image.Image, budget: float) -> Pi
     if rms == 0:
         return PictureResult(Outcome.IDENTICAL, 0.0, 0.0)
     outcome = Outcome.WITHIN if rms <= budget else Outcome.DRIFTED
-    note = f"rms {rms:.2g} of 255"
-    return PictureResult(outcome, rms, rms / budget, *_difference(before, after), note)
+    distance = np.abs(after - before).max(axis=-1)
+    changed = int(np.count_nonzero(distance))
+    note = f"rms {rms:.2g} of 255, {changed} of {distance.size} pixels changed"
+    drawn = _difference(before, distance)
+    return PictureResult(outcome, rms, rms / budget, changed, distance.size, *drawn, note)

@@ -3,12 +3,14 @@
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Any
 
+from bouncing_ball.record.diff.data import VariableResult
 from bouncing_ball.record.diff.folders import Artifact, Comparison
 from bouncing_ball.record.diff.outcome import status
 from bouncing_ball.record.diff.parts import Part
+from bouncing_ball.record.provenance import Provenance, made_otherwise, read_mapping
 from bouncing_ball.record.reading import printable
 
 
@@ -23,6 +25,24 @@ def _plain(value: Any) -> Any:
     return str(value) if isinstance(value, float) and not math.isfinite(value) else value
 
 
+def _variable(result: VariableResult) -> dict[str, Any]:
+    largest = [] if result.trace is None else [asdict(each) for each in result.trace.largest]
+    found = asdict(replace(result, trace=None)) | {"largest": largest}
+    del found["trace"]
+    return found
+
+
+def _made(record: Provenance | None, new: Provenance | None) -> dict[str, Any]:
+    """Commits, versions, and what else the two sides were made from that differs."""
+    sides = {"record": record, "new": new}
+    found: dict[str, Any] = {
+        name: {"commit": side.commit, "dirty": side.dirty, "versions": read_mapping(side.versions)}
+        for name, side in sides.items()
+        if side is not None
+    }
+    return found | {"otherwise": made_otherwise(record, new) if record and new else []}
+
+
 def _part(part: Part) -> dict[str, Any]:
     found: dict[str, Any] = {
         "file": part.file,
@@ -33,8 +53,11 @@ def _part(part: Part) -> dict[str, Any]:
     }
     if part.picture is not None:
         found["rms"] = part.picture.rms
+        found["changed_pixels"] = part.picture.changed
+    if any(part.made):
+        found["made"] = _made(*part.made)
     if part.variables:
-        found["variables"] = [asdict(result) for result in part.variables]
+        found["variables"] = [_variable(result) for result in part.variables]
     if part.lines:
         found["lines"] = [asdict(line) for line in part.lines]
     return found

@@ -35,12 +35,13 @@ def test_the_parts_of_an_article_are_there(text):
         "Introduction",
         "Methods",
         "Results, figure by figure",
-        "All claims",
         "What did not reproduce, and why",
         "Beyond the paper",
+        "Discussion",
         "Conclusion",
         "Reproducibility",
         "References",
+        "Supplement: the ledger of claims",
     ]
 
 
@@ -57,7 +58,7 @@ def test_every_figure_and_table_is_shown(text, pristine):
 
 def test_every_claim_stands_with_its_verdict(text, run):
     claims = run[1]["claims"]
-    text = text[text.index("## All claims") : text.index("## What did not")]
+    text = text[text.index("## Supplement") :]
     for name, verdict in zip(claims.claim.values, claims.verdict.values, strict=True):
         rows = [line for line in text.splitlines() if line.startswith(f"| {name} |")]
         assert len(rows) == 1 and rows[0].endswith(f"| {verdict} |")

@@ -9,7 +9,7 @@ import xarray as xr
 import yaml
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.render.article.citations import Citations
+from bouncing_ball.render.article.citations import READ, Citations
 from bouncing_ball.render.article.claim_texts import Claims
 from bouncing_ball.render.article.numbers import value_at
 from bouncing_ball.render.article.places import places
@@ -154,10 +154,21 @@ def test_a_doi_that_was_not_checked_says_so():
     assert cited.listing() == "1. A. doi:10.1/x (DOI not checked)."
 
 
+def test_a_work_that_was_not_read_says_so():
+    works = {"a": {"text": "A.", "read": "no"}, "b": {"text": "B.", "read": "abstract"}}
+    cited = Citations(works)
+    cited.cite("a", "b")
+    assert cited.listing().splitlines() == [
+        "1. A. No DOI found. Not read: cited from memory.",
+        "2. B. No DOI found. Read in part: an abstract or a passage.",
+    ]
+
+
 @pytest.mark.parametrize("key", REFERENCES)
 def test_references_are_whole(key):
     entry = REFERENCES[key]
-    assert set(entry) <= {"text", "doi", "doi_checked"}
+    assert set(entry) <= {"text", "doi", "doi_checked", "read"}
+    assert entry.get("read", "abstract") in READ
     assert entry["text"].rstrip().endswith(".")
     if "doi" in entry:
         assert re.fullmatch(r"10\.\d{4,5}/\S+", entry["doi"])

@@ -5,6 +5,13 @@ from typing import Any
 
 from bouncing_ball.errors import ModelError
 
+READ = {
+    "abstract": "Read in part: an abstract or a passage.",
+    "cited": "Not read: known from what others write of it.",
+    "no": "Not read: cited from memory.",
+}
+"""How far a work could be read, in words, by the value of ``read`` in its entry."""
+
 
 class Citations:
     """Numbers references as they are cited, then lists them.
@@ -13,7 +20,8 @@ class Citations:
     ----------
     references : mapping
         By key: ``text``, and ``doi`` where there is one with ``doi_checked``,
-        whether another source was found that gives this DOI to this work.
+        whether another source was found that gives this DOI to this work, and
+        ``read`` where it is known how far it was read, see :data:`READ`.
 
     Examples
     --------
@@ -53,6 +61,8 @@ class Citations:
             tail = "No DOI found." if doi is None else f"doi:{doi}"
             if doi is not None:
                 tail += "." if entry["doi_checked"] else " (DOI not checked)."
+            if "read" in entry:
+                tail += f" {READ[entry['read']]}"
             lines.append(f"{number}. {entry['text']} {tail}")
         return "\n".join(lines)
 

@@ -222,7 +222,7 @@ _MODELS: tuple[Stage, ...] = (
     _figure(
         13,
         "Poincaré map of both models along the frequency ratio",
-        "studies.frequency_sweeps.frequency_sweep",
+        "studies.frequency_sweeps.poincare_map",
         "n restitution amplitude:amplitudes frequency_ratio:span",
         ("release",),
         cross_checked=True,

@@ -55,6 +55,7 @@ VARIABLES: dict[str, Variable] = {
     "max_height": Variable(
         "greatest height of the ball over the cycle", "max z", equation="Eq. 37"
     ),
+    "labelled": Variable("whether the figure marks this frequency ratio", ""),
     "stable": Variable("whether both Floquet multipliers are inside the unit circle", "|μ| < 1"),
     "admissible": Variable("whether nothing else happens during the orbit", ""),
     "restitution_admissible": Variable(

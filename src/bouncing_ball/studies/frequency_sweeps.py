@@ -15,6 +15,9 @@ from bouncing_ball.orbits.interface import Orbit
 from bouncing_ball.orbits.limits import orbit_at
 from bouncing_ball.studies.parameters import grid
 
+# Relative distance of two frequency ratios that are one but for the rounding of a grid.
+_ROUNDING = 1e-12
+
 
 def sweep(
     n: int, restitution: np.ndarray, amplitude: np.ndarray, ratios: np.ndarray, release: str
@@ -44,8 +47,32 @@ def _columns(orbit: Orbit) -> dict[str, np.ndarray]:
     }
 
 
-def _sweep_dataset(parameters, restitution, amplitude, release) -> xr.Dataset:
-    n, ratios = parameters["n"], grid(parameters["frequency_ratio"])
+def with_round_values(ratios: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """A grid of ϖ with 2, 5 and the decades of its range, and where these are.
+
+    A sample that is one of them but for rounding makes room for it.
+
+    Examples
+    --------
+    >>> ratios, labelled = with_round_values(np.array([1.0, 4.0, 10.0 + 1e-14]))
+    >>> ratios.tolist(), labelled.tolist()
+    ([1.0, 2.0, 4.0, 5.0, 10.0], [True, True, False, True, True])
+    """
+    decades = 10.0 ** np.arange(np.floor(np.log10(ratios[0])), np.log10(ratios[-1]) + 1)
+    round_values = np.union1d(decades, [2.0, 5.0])
+    inside = (round_values >= ratios[0] * (1 - _ROUNDING)) & (
+        round_values <= ratios[-1] * (1 + _ROUNDING)
+    )
+    round_values = round_values[inside]
+    distance = np.abs(ratios[:, np.newaxis] / round_values - 1)
+    kept = ratios[np.all(distance > _ROUNDING, axis=1)]
+    merged = np.union1d(kept, round_values)
+    return merged, np.isin(merged, round_values)
+
+
+def _sweep_dataset(parameters, restitution, amplitude, release, ratios=None) -> xr.Dataset:
+    n = parameters["n"]
+    ratios = grid(parameters["frequency_ratio"]) if ratios is None else ratios
     # Case by case: the scans of all at once are gigabytes for 20 001 samples.
     cases = [
         _columns(sweep(n, restitution[[k]], amplitude[[k]], ratios, release)[0])
@@ -70,15 +97,24 @@ def apparent_restitution(parameters: Mapping[str, Any], release: str) -> xr.Data
     return describe(_sweep_dataset(parameters, restitution, amplitude, release))
 
 
-def frequency_sweep(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
+def frequency_sweep(
+    parameters: Mapping[str, Any], release: str, ratios: np.ndarray | None = None
+) -> xr.Dataset:
     """The orbits along ϖ for one r and several Λ, with their restitution
-    limits (Figs. 10 and 13)."""
+    limits (Fig. 10); at other ϖ than the configured ones, if given."""
     amplitude = np.array(parameters["amplitude"], dtype=float)
     r = parameters["restitution"]
     restitution = np.full_like(amplitude, r)
-    dataset = _sweep_dataset(parameters, restitution, amplitude, release)
+    dataset = _sweep_dataset(parameters, restitution, amplitude, release, ratios)
     n = parameters["n"]
     dataset["restitution_phase"] = ("case", restitution_orbits.phase(n, r, amplitude))
     dataset["restitution_bounce_velocity"] = ((), n * np.pi)
     dataset["restitution_impact_velocity"] = ((), -n * np.pi)
     return describe(dataset)
+
+
+def poincare_map(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
+    """The same at round ϖ too, which are labelled in Fig. 13."""
+    ratios, labelled = with_round_values(grid(parameters["frequency_ratio"]))
+    dataset = frequency_sweep(parameters, release, ratios)
+    return describe(dataset.assign(labelled=("frequency_ratio", labelled)))

@@ -1,5 +1,6 @@
 """Branches with stability and bifurcations, drawn alike in Figs. 3, 8, 9, 15."""
 
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -54,6 +55,41 @@ def draw_period_doublings(axes: Axes, x, y, colour: str) -> None:
 def draw_grazings(axes: Axes, x, y, colour: str) -> None:
     """Markers of the limits of admissibility."""
     axes.plot(x, y, color=colour, zorder=4, **GRAZING)
+
+
+def _apart(values: np.ndarray, gap: float) -> np.ndarray:
+    """Increasing values moved as little as keeps them ``gap`` apart.
+
+    Examples
+    --------
+    >>> _apart(np.array([0.0, 1.0, 1.0]), 0.5).tolist()
+    [0.0, 0.75, 1.25]
+    """
+    steps = gap * np.arange(len(values))
+    above = np.maximum.accumulate(values - steps)
+    below = np.minimum.accumulate((values - steps)[::-1])[::-1]
+    return (above + below) / 2 + steps
+
+
+def label_ends(axes: Axes, ends: Sequence[tuple[float, float, str]], gap: float) -> None:
+    """Names of curves right of the axes, each with a line to its end (x, y).
+
+    ``gap`` is the least distance of two names, in parts of the axes' height.
+    """
+    found = sorted((end for end in ends if np.isfinite(end[1])), key=lambda end: end[1])
+    low, high = axes.get_ylim()
+    places = _apart(np.array([y for _, y, _ in found]), gap * (high - low))
+    for (x, y, name), place in zip(found, places, strict=True):
+        axes.annotate(
+            name,
+            (x, y),
+            xytext=(1.045, place),
+            textcoords=axes.get_yaxis_transform(),
+            va="center",
+            fontsize=8,
+            annotation_clip=False,
+            arrowprops={"arrowstyle": "-", "color": "#5f5f5f", "linewidth": 0.5, "shrinkB": 1},
+        )
 
 
 def legend_handles(colour: str = "black", inadmissible: bool = False) -> list[Line2D]:

@@ -10,6 +10,7 @@ from bouncing_ball.render.figures.branches import (
     draw_grazings,
     draw_period_doublings,
     draw_saddle_nodes,
+    label_ends,
     legend_handles,
 )
 from bouncing_ball.render.figures.style import COLOURS, END, WIDE, canvas, number
@@ -27,48 +28,69 @@ def draw_special(axes, curve: xr.Dataset, phase: xr.DataArray, colour: str) -> N
         mark(axes, curve.special_amplitude.values[at], phase.values[at] / np.pi, colour)
 
 
-def draw_ends(axes, curve: xr.Dataset, phase: xr.DataArray, colour: str) -> None:
-    """A cross where a branch ends inside the window, and not at its edge."""
-    for at, reason in zip((0, -1), curve.end_reason.values, strict=True):
-        if not str(reason).startswith("left the window"):
-            axes.plot(float(curve.amplitude[at]), float(phase[at]), color=colour, **END)
+def draw_ends(axes, curve: xr.Dataset, phase: xr.DataArray, colour: str) -> bool:
+    """A cross where a branch ends inside the window, and whether there is one."""
+    inside = [not str(reason).startswith("left the window") for reason in curve.end_reason.values]
+    for at in np.array([0, -1])[inside]:
+        axes.plot(float(curve.amplitude[at]), float(phase[at]), color=colour, **END)
+    return any(inside)
+
+
+def up_to_second_saddle_node(curve: xr.Dataset) -> xr.Dataset:
+    """The branch from its other end to the saddle-node at which its unstable side turns back.
+
+    Beyond it the contact is longer than at it. A branch whose unstable side
+    does not turn back is returned as it is.
+    """
+    durations = curve.special_contact_duration.values[curve.special_kind.values == "saddle-node"]
+    if len(durations) < 2:
+        return curve
+    longest = np.sort(durations)[1]
+    part = curve.isel(
+        point=curve.contact_duration.values <= longest,
+        special=curve.special_contact_duration.values <= longest,
+    )
+    # Cut there, it does not end there.
+    stable_side = part.end_reason.values[-1]
+    return part.assign(end_reason=("end", ["left the window of the figure", stable_side]))
 
 
 def draw_domains(data: xr.Dataset) -> Figure:
-    """Phases of the table at the start and at the end of contact against Λ."""
-    figure, panels = canvas(WIDE, 3.3, columns=2, sharex=True, sharey=True)
-    ratios = data.frequency_ratio.values
-    for colour, ratio in zip(COLOURS, ratios, strict=False):
-        curve = data.sel(frequency_ratio=ratio)
+    """Phases of the table at the start and at the end of contact against Λ, in one panel."""
+    figure, axes = canvas(WIDE, 4.2)
+    names, inside, admissible = [], [], []
+    for k, ratio in enumerate(data.frequency_ratio.values):
+        curve, colour = (
+            up_to_second_saddle_node(data.sel(frequency_ratio=ratio)),
+            COLOURS[k % len(COLOURS)],
+        )
         special_release = curve.special_phase + curve.special_contact_duration
-        for axes, phase, special in (
-            (panels[0], curve.phase, curve.special_phase),
-            (panels[1], curve.release_phase, special_release),
+        for symbol, phase, special in (
+            (r"\varphi", curve.phase, curve.special_phase),
+            (r"\varphi+\tau_b", curve.release_phase, special_release),
         ):
-            draw_branch(
-                axes, curve.amplitude, phase / np.pi, curve.stable, curve.admissible, colour
-            )
+            y = phase / np.pi
+            draw_branch(axes, curve.amplitude, y, curve.stable, curve.admissible, colour)
             draw_special(axes, curve, special, colour)
-            draw_ends(axes, curve, phase / np.pi, colour)
-    panels[0].set_ylabel("phase of the table over $\\pi$")
-    panels[0].set_title(r"start of contact, $\varphi/\pi$", fontsize=9)
-    panels[1].set_title(r"end of contact, $(\varphi+\tau_b)/\pi$", fontsize=9)
-    for axes in panels:
-        axes.set(xlabel=r"amplitude $\Lambda$", xlim=(0, data.attrs["amplitude_max"]))
-    contacts = [
-        Line2D([], [], color=colour, linewidth=1.3, label=rf"$\varpi={number(ratio)}$")
-        for colour, ratio in zip(COLOURS, ratios, strict=False)
-    ]
-    inside = any(not str(r).startswith("left the window") for r in data.end_reason.values.flat)
-    markers = legend_handles("#5f5f5f", inadmissible=not bool(data.admissible.all()))
-    if inside:
+            inside.append(draw_ends(axes, curve, y, colour))
+            name = rf"$\varpi={number(ratio)}$: ${symbol}$"
+            names.append((float(curve.amplitude[-1]), float(y[-1]), name))
+        admissible.append(bool(curve.admissible.all()))
+    axes.set(
+        xlabel=r"amplitude $\Lambda$",
+        ylabel="phase of the table over $\\pi$",
+        xlim=(0, data.attrs["amplitude_max"]),
+    )
+    label_ends(axes, names, 0.05)
+    markers = legend_handles("#5f5f5f", inadmissible=not all(admissible))
+    if any(inside):
         markers.append(Line2D([], [], color="#5f5f5f", label="end of branch", **END))
     figure.legend(
-        handles=[*contacts, *markers],
+        handles=markers,
         loc="outside lower center",
-        ncols=len(contacts) + len(markers),
+        ncols=len(markers),
         columnspacing=1.2,
         handletextpad=0.5,
     )
-    figure.suptitle(rf"$n={data.attrs['n']}$, $r={number(data.attrs['restitution'])}$", fontsize=9)
+    axes.set_title(rf"$n={data.attrs['n']}$, $r={number(data.attrs['restitution'])}$", fontsize=9)
     return figure

@@ -49,10 +49,14 @@ def _draw_shifts(axes: Axes, data: xr.Dataset) -> None:
 
 
 def _draw_thresholds(axes: Axes, data: xr.Dataset) -> None:
-    """Threshold of each quantity, one mark for each reading; an arrow where there is none."""
+    """Threshold of each quantity, one mark for each reading; an arrow where there is none.
+
+    The marks of a quantity stand below one another, in the order of the legend.
+    """
     rows = np.arange(data.sizes["quantity"])[::-1]
     limit = data.attrs["thresholds__frequency_ratio__max"]
-    for reading, mark, colour in zip(data.reading.values, _MARKS, COLOURS, strict=False):
+    for k, (reading, mark) in enumerate(zip(data.reading.values, _MARKS, strict=False)):
+        colour, places = COLOURS[k], rows + 0.24 * (1 - k)
         found = data.error_threshold.sel(reading=reading).values
         status = data.threshold_status.sel(reading=reading).values
         face = "none" if mark == "s" else colour
@@ -62,10 +66,12 @@ def _draw_thresholds(axes: Axes, data: xr.Dataset) -> None:
             "markersize": 5,
             "markerfacecolor": face,
         }
-        axes.plot(found, rows, mark, **look)
+        axes.plot(found, places, mark, **look)
         never = np.array([text.startswith("outside") for text in status])
         at_the_end = np.full(never.sum(), limit / 1.25)
-        axes.plot(at_the_end, rows[never], ">", color=colour, markersize=6)
+        axes.plot(at_the_end, places[never], ">", color=colour, markersize=6)
+    for row in rows[:-1]:
+        axes.axhline(row - 0.5, **GUIDE)
     logarithmic(axes)
     axes.set(
         xlabel=rf"$\varpi$ for an error of {100 * data.attrs['thresholds__tolerance']:g} %",
@@ -84,7 +90,7 @@ def _draw_thresholds(axes: Axes, data: xr.Dataset) -> None:
 
 def draw(data: xr.Dataset) -> Figure:
     """Shift of the bifurcations (left) and thresholds of each quantity (right)."""
-    figure, (left, right) = canvas(WIDE, 3.2, columns=2, width_ratios=(1.0, 1.25))
+    figure, (left, right) = canvas(WIDE, 3.8, columns=2, width_ratios=(1.0, 1.25))
     _draw_shifts(left, data)
     _draw_thresholds(right, data)
     # What the arrows mean, in the colour of none of the readings.

@@ -9,7 +9,7 @@ from bouncing_ball.render.figures.style import canvas
 def draw() -> Figure:
     """Ball in flight over the table, without contact elements."""
     figure, axes = canvas(2.6, 1.5)
-    schematic.blank(axes, (-0.6, 5.2), (0.4, 3.45))
+    schematic.blank(axes, (-0.56, 4.42), (0.4, 3.45))
     schematic.ball(axes, 1.7, 2.7, 0.42)
     schematic.table(axes, 0.5, 1.0, 2.4, 0.45)
     axes.text(0.36, 0.78, r"$M=\infty$", ha="right", va="center")

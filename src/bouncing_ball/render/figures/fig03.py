@@ -9,6 +9,7 @@ from bouncing_ball.render.figures.branches import (
     draw_grazings,
     draw_period_doublings,
     draw_saddle_nodes,
+    label_ends,
     legend_handles,
 )
 from bouncing_ball.render.figures.style import RESTITUTION, canvas, number
@@ -16,7 +17,8 @@ from bouncing_ball.render.figures.style import RESTITUTION, canvas, number
 
 def draw(data: xr.Dataset) -> Figure:
     """Phase against amplitude, one branch for each family."""
-    figure, axes = canvas(height=3.2)
+    figure, axes = canvas(4.2, height=3.6)
+    ends = []
     for n in data.n.values:
         family = data.sel(n=n)
         phase = family.phase / np.pi
@@ -32,26 +34,21 @@ def draw(data: xr.Dataset) -> Figure:
             float(exact.period_doubling_phase) / np.pi,
             RESTITUTION,
         )
-        axes.annotate(
-            f"$n={n}$",
-            node,
-            xytext=(-4, 0),
-            textcoords="offset points",
-            ha="right",
-            va="center",
-            fontsize=8,
-        )
+        last = int(np.nanargmax(phase.values))
+        ends.append((float(family.amplitude[last]), float(phase[last]), f"$n={n}$"))
     axes.set(
         xlabel=r"amplitude $\Lambda$",
         ylabel=r"phase $\varphi/\pi$",
         xlim=(0, data.attrs["amplitude_max"]),
-        ylim=(-0.55, 0.72),
+        ylim=(-0.52, 0.52),
     )
+    label_ends(axes, ends, 0.055)
     axes.set_title(rf"$r={number(data.attrs['restitution'])}$", fontsize=9)
-    axes.legend(
+    figure.legend(
         handles=legend_handles(inadmissible=not bool(data.admissible.all())),
-        loc="upper left",
-        ncols=2,
+        loc="outside lower center",
+        ncols=4,
         columnspacing=1.2,
+        handletextpad=0.5,
     )
     return figure

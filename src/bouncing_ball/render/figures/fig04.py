@@ -9,7 +9,7 @@ from bouncing_ball.render.figures.style import canvas
 def draw() -> Figure:
     """Ball over a spring and a dashpot that stand on the table."""
     figure, axes = canvas(2.8, 1.5)
-    schematic.blank(axes, (-0.6, 5.9), (0.4, 3.5))
+    schematic.blank(axes, (-0.58, 4.91), (0.4, 3.5))
     schematic.ball(axes, 1.7, 2.95, 0.42)
     axes.plot([1.15, 2.25], [2.3, 2.3], **schematic.LINE)
     schematic.spring(axes, 1.35, 1.0, 2.3)

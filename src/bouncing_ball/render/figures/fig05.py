@@ -29,7 +29,6 @@ def draw(data: xr.Dataset) -> Figure:
             ha="right",
             va="top",
             fontsize=8,
-            color=colour,
         )
     logarithmic(axes)
     axes.set(

@@ -36,9 +36,9 @@ def _instants(data: xr.Dataset) -> list[Instant]:
     duration, end = float(data.contact_duration), float(data.time[-1])
     before, after = float(data.impact_velocity), float(data.bounce_velocity)
     return [
-        Instant(0.0, float(ball[0]), before, r"$\tau_i=0$", r"$z_i^{\prime}$"),
-        Instant(duration, released, after, r"$\tau_b$", r"$z_b^{\prime}$"),
-        Instant(end, float(ball[-1]), before, r"$\tau_2=\tau_i+2\pi n$", r"$z_2^{\prime}$"),
+        Instant(0.0, float(ball[0]), before, r"$\tau_i=0$", r"$z′_i$"),
+        Instant(duration, released, after, r"$\tau_b$", r"$z′_b$"),
+        Instant(end, float(ball[-1]), before, r"$\tau_2=\tau_i+2\pi n$", r"$z′_2$"),
     ]
 
 

@@ -21,7 +21,7 @@ def draw(data: xr.Dataset) -> Figure:
         fontsize=8,
     )
     draw_amplitudes(axes, data, "bounce_velocity")
-    axes.set_ylabel(r"bouncing-off velocity $z_b^{\prime}$")
+    axes.set_ylabel(r"bouncing-off velocity $z′_b$")
     axes.legend(
         loc="lower right",
         title=rf"$n={data.attrs['n']}$, $r={number(data.attrs['restitution'])}$",

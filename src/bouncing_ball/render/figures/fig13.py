@@ -8,65 +8,59 @@ from matplotlib.figure import Figure
 from bouncing_ball.render.figures.branches import draw_curve
 from bouncing_ball.render.figures.style import COLOURS, RESTITUTION, Look, canvas, number
 
-
-def _marked(ratios: np.ndarray) -> list[float]:
-    """The decades of ϖ in the range, and 2 and 5."""
-    marked = {*(10.0**k for k in range(-2, 9)), 2.0, 5.0}
-    return sorted(value for value in marked if ratios[0] <= value <= ratios[-1])
+# Above this frequency ratio the points crowd at that of the restitution model.
+_NAMED_UP_TO = 10.0
+_LIMIT: Look = {"markersize": 9, "zorder": 5, "linestyle": "none", "color": RESTITUTION}
 
 
-def _draw_trace(axes: Axes, ratios: np.ndarray, phase, velocity, admissible, **look) -> None:
-    """Phase and velocity as ϖ varies, a few of its values marked, the small ones named."""
-    draw_curve(axes, phase / np.pi, velocity, admissible, **look)
-    for value in _marked(ratios):
-        at = int(np.argmin(np.abs(ratios - value)))
-        point = float(phase[at]) / np.pi, float(velocity[at])
-        axes.plot(*point, "o", color=look["color"], markersize=3)
-        if value <= 10.0:
+def _draw_trace(axes: Axes, curve: xr.Dataset, phase, velocity, label, **look) -> None:
+    """Phase and velocity over π as ϖ varies, its round values marked, the small ones named."""
+    x, y = phase.values / np.pi, velocity.values / np.pi
+    line = {"color": look["color"], "linestyle": look["linestyle"]}
+    draw_curve(axes, x, y, curve.admissible, **line)
+    axes.plot([], [], marker="o", markersize=4, label=label, **look)
+    for k, at in enumerate(np.flatnonzero(curve.labelled.values)):
+        axes.plot(x[at], y[at], marker="o", markersize=4, **look)
+        ratio = float(curve.frequency_ratio[at])
+        if ratio <= _NAMED_UP_TO:
             axes.annotate(
-                rf"$\varpi={ratios[at]:.3g}$",
-                point,
-                xytext=(5, -1),
+                rf"$\varpi={number(ratio)}$",
+                (x[at], y[at]),
+                # Neighbours on both sides of the curve.
+                xytext=(5, 4) if k % 2 == 0 else (-5, -4),
                 textcoords="offset points",
-                fontsize=7,
+                fontsize=8,
+                ha="left" if k % 2 == 0 else "right",
                 va="center",
             )
 
 
-def _draw_limit(axes: Axes, phase, velocity, label: str | None) -> None:
-    """The point of the restitution model."""
-    look: Look = {"markersize": 9, "zorder": 5, "linestyle": "none", "color": RESTITUTION}
-    axes.plot(float(phase) / np.pi, float(velocity), "*", label=label, **look)
-
-
 def draw(data: xr.Dataset) -> Figure:
-    """Phase and velocity at the end (above) and at the start (below) of contact.
+    """Phase and velocity, over π, at the start and at the end of contact.
 
-    Each curve is traced by ϖ; a few values are marked on it.
+    Each curve is traced by ϖ; a few of its values are marked on it.
     """
-    figure, (above, below) = canvas(3.6, 4.0, rows=2, sharex=True)
-    ratios = data.frequency_ratio.values
+    figure, axes = canvas(4.4, 4.0)
     for k, case in enumerate(data.case.values):
         curve = data.sel(case=case)
-        end = (above, curve.release_phase, curve.bounce_velocity, data.restitution_bounce_velocity)
-        start = (below, curve.phase, curve.impact_velocity, data.restitution_impact_velocity)
-        for (axes, phase, velocity, limit), symbol in (
-            (end, r"end of contact $(\varphi+\tau_b,\,z_b^{\prime})$"),
-            (start, r"start of contact $(\varphi,\,z_i^{\prime})$"),
+        colour = COLOURS[1 + k % (len(COLOURS) - 1)]
+        end = (curve.release_phase, curve.bounce_velocity, data.restitution_bounce_velocity)
+        start = (curve.phase, curve.impact_velocity, data.restitution_impact_velocity)
+        for (phase, velocity, limit), name, dashes, face in (
+            (end, r"end of contact, $(\varphi+\tau_b,\,z′_b)$", "-", colour),
+            (start, r"start of contact, $(\varphi,\,z′_i)$", (0, (4, 1.5)), "white"),
         ):
+            look = {"color": colour, "linestyle": dashes, "markerfacecolor": face}
             # Named once for all cases.
-            labels = (symbol, "restitution model") if k == 0 else (None, None)
-            look = {"color": COLOURS[1 + k % (len(COLOURS) - 1)], "label": labels[0]}
-            _draw_trace(axes, ratios, phase, velocity, curve.admissible, **look)
-            _draw_limit(axes, curve.restitution_phase, limit, labels[1])
-    above.set_ylabel(r"velocity after contact $z_b^{\prime}$")
-    below.set_ylabel(r"velocity before contact $z_i^{\prime}$")
-    below.set_xlabel(r"phase of the table over $\pi$")
-    for axes in (above, below):
-        axes.margins(x=0.12)
-    above.legend(loc="best")
-    below.legend(loc="best")
-    above.set_title(
+            _draw_trace(axes, curve, phase, velocity, name if k == 0 else None, **look)
+            point = float(curve.restitution_phase) / np.pi, float(limit) / np.pi
+            axes.plot(*point, "*", **_LIMIT)
+    axes.plot([], [], "*", label="restitution model", **_LIMIT)
+    axes.set(xlabel=r"phase of the table over $\pi$", ylabel=r"velocity of the ball, $z′/\pi$")
+    axes.margins(x=0.14)
+    axes.axhline(0.0, color="#8c8c8c", linewidth=0.5)
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=2)
+    axes.set_title(
         rf"$n={data.attrs['n']}$, $r={number(data.attrs['restitution'])}$, "
         + ", ".join(rf"$\Lambda={number(x)}$" for x in data["amplitude"].values),
         fontsize=9,

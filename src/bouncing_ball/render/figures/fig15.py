@@ -3,12 +3,12 @@
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from bouncing_ball.render.figures.branches import (
     draw_branch,
     draw_period_doublings,
     draw_saddle_nodes,
+    label_ends,
     legend_handles,
 )
 from bouncing_ball.render.figures.domains import draw_special
@@ -17,7 +17,7 @@ from bouncing_ball.render.figures.style import COLOURS, RESTITUTION, canvas, num
 
 def draw(data: xr.Dataset) -> Figure:
     """Phases of both models against Λ."""
-    figure, axes = canvas(4.6, 3.4)
+    figure, axes = canvas(5.6, 3.4)
     draw_branch(
         axes,
         data.restitution_amplitude,
@@ -44,11 +44,11 @@ def draw(data: xr.Dataset) -> Figure:
     )
     draw_special(axes, curve, curve.special_phase, start)
     draw_special(axes, curve, release, end)
-    models = [
-        Line2D([], [], color=RESTITUTION, label=r"restitution, $\varphi$"),
-        Line2D([], [], color=start, label=r"spring-damper, $\varphi$"),
-        Line2D([], [], color=end, label=r"spring-damper, $\varphi+\tau_b$"),
-    ]
+    names = (
+        (curve.amplitude, curve.release_phase, r"spring-damper, $\varphi+\tau_b$"),
+        (data.restitution_amplitude, data.restitution_phase, r"restitution, $\varphi$"),
+        (curve.amplitude, curve.phase, r"spring-damper, $\varphi$"),
+    )
     # The contact may have no such branch.
     lowest = curve.amplitude.fillna(data.saddle_node_amplitude).min()
     axes.set(
@@ -61,10 +61,20 @@ def draw(data: xr.Dataset) -> Figure:
         rf"$\varpi={number(float(curve.frequency_ratio))}$",
         fontsize=9,
     )
+    # The restitution branch runs the same way or the other: its upper end is meant.
+    ends = [(int(np.nanargmax(phase)) if phase.notnull().any() else 0) for _, phase, _ in names]
+    label_ends(
+        axes,
+        [
+            (float(x[at]), float(y[at]) / np.pi, name)
+            for (x, y, name), at in zip(names, ends, strict=True)
+        ],
+        0.07,
+    )
     figure.legend(
-        handles=[*models, *legend_handles("#5f5f5f", inadmissible=not bool(data.admissible.all()))],
+        handles=legend_handles("#5f5f5f", inadmissible=not bool(data.admissible.all())),
         loc="outside lower center",
-        ncols=3,
+        ncols=4,
         columnspacing=1.0,
         handletextpad=0.5,
     )

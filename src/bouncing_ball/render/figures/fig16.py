@@ -5,16 +5,16 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from bouncing_ball.render.figures.style import CONTACT, RESTITUTION, canvas
-from bouncing_ball.render.figures.thresholds import draw_threshold, mark_error_threshold
+from bouncing_ball.render.figures.thresholds import draw_error, draw_threshold
 
 
 def draw(data: xr.Dataset) -> Figure:
-    """Fig. 11 with the restitution model and the threshold of the relative error."""
-    figure, axes = canvas(height=2.6)
+    """Fig. 11 with the restitution model; below, the relative error and its threshold."""
+    figure, (axes, below) = canvas(height=4.2, rows=2, sharex=True)
     draw_threshold(axes, data)
     high = axes.get_xlim()[1]
     limit = float(data.restitution_threshold)
-    axes.axhline(limit, color=RESTITUTION, linewidth=1.0)
+    axes.axhline(limit, color=RESTITUTION, linewidth=1.0, linestyle="--")
     axes.annotate(
         r"$\Lambda_{CR}$",
         (high, limit),
@@ -34,6 +34,7 @@ def draw(data: xr.Dataset) -> Figure:
         color=CONTACT,
         fontsize=8,
     )
-    axes.set_ylabel(r"threshold amplitude $\Lambda$")
-    mark_error_threshold(axes, data, "PC", digits=2, height=0.82, side="right")
+    axes.set(xlabel="", ylabel=r"threshold amplitude $\Lambda$")
+    draw_error(below, data, "PC", digits=2)
+    below.set_xlabel(r"frequency ratio $\varpi$")
     return figure

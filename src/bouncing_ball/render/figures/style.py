@@ -17,9 +17,10 @@ WIDTH = 3.4
 WIDE = 7.0
 """Width of a two-column figure in inches."""
 
-# Okabe and Ito's colours, which colour-blind readers can distinguish, in an order in
-# which neighbours differ in greyscale too (grey levels 0, 87, 162, 119, 158).
-COLOURS = ("#000000", "#0072B2", "#E69F00", "#D55E00", "#56B4E9")
+# The hues of Okabe and Ito, which colour-blind readers can distinguish, darkened to a
+# contrast of at least 3:1 with white, in an order in which neighbours differ in
+# greyscale too (grey levels 0, 87, 132, 85, 130).
+COLOURS = ("#000000", "#0072B2", "#C77C00", "#AA3A00", "#3F96CC")
 RESTITUTION = "#000000"
 CONTACT = "#0072B2"
 TABLE = "#8c8c8c"
@@ -28,12 +29,19 @@ Look = dict[str, Any]
 
 GUIDE: Look = {"color": "#8c8c8c", "linewidth": 0.7, "linestyle": (0, (1, 1.5))}
 
-SADDLE_NODE: Look = {"marker": "o", "markersize": 4.5, "linestyle": "none"}
+# Hollow, so that markers which coincide can all be seen.
+SADDLE_NODE: Look = {
+    "marker": "o",
+    "markersize": 5,
+    "linestyle": "none",
+    "markerfacecolor": "none",
+    "markeredgewidth": 1.0,
+}
 PERIOD_DOUBLING: Look = {
     "marker": "s",
-    "markersize": 4.5,
+    "markersize": 5,
     "linestyle": "none",
-    "markerfacecolor": "white",
+    "markerfacecolor": "none",
     "markeredgewidth": 1.0,
 }
 STABLE: Look = {"linestyle": "-", "linewidth": 1.3}

@@ -37,24 +37,30 @@ def draw_threshold(axes: Axes, data: xr.Dataset) -> None:
     )
 
 
-def mark_error_threshold(
-    axes: Axes, data: xr.Dataset, name: str, digits: int, height: float, side: str
-) -> None:
-    """The ϖ from which the error stays below the tolerance, if it is in the range.
-
-    Labelled on the ``side`` of its line, at a height in parts of the axes.
-    """
-    found = float(data.error_threshold.squeeze())
-    if np.isnan(found):
-        return
-    percent = 100 * float(data.tolerance[0])
-    axes.axvline(found, **GUIDE)
+def draw_error(axes: Axes, data: xr.Dataset, name: str, digits: int) -> None:
+    """The relative error on a logarithmic axis, the tolerance, and the ϖ of the last crossing."""
+    error, tolerance = data.relative_error.squeeze("quantity"), float(data.tolerance[0])
+    shown = np.isfinite(error.values) & (error.values > 0)
+    axes.plot(data.frequency_ratio.values[shown], error.values[shown], color=CONTACT)
+    axes.axhline(tolerance, **GUIDE)
     axes.annotate(
-        rf"$\varpi_{{{name},{percent:g}\%}}={found:.{digits}f}$",
-        (found, height),
-        xycoords=("data", "axes fraction"),
-        xytext=(-4 if side == "left" else 4, 0),
+        rf"{100 * tolerance:g} %",
+        (float(data.frequency_ratio[-1]), tolerance),
+        xytext=(0, 2),
         textcoords="offset points",
-        ha="right" if side == "left" else "left",
+        ha="right",
         fontsize=8,
     )
+    found = float(data.error_threshold.squeeze())
+    if np.isfinite(found):
+        axes.axvline(found, **GUIDE)
+        axes.plot(found, tolerance, "o", color="black", markersize=4)
+        axes.annotate(
+            rf"$\varpi_{{{name},{100 * tolerance:g}\%}}={found:.{digits}f}$",
+            (found, tolerance),
+            xytext=(5, 5),
+            textcoords="offset points",
+            fontsize=8,
+        )
+    logarithmic(axes)
+    axes.set(yscale="log", ylabel="relative error")

@@ -113,6 +113,35 @@ def test_contact_filling_the_cycle_is_permanent_contact(n):
         assert 0 < -float(point.u) < flight
 
 
+@pytest.mark.parametrize("restitution", [0.3, 0.65, 0.85, 0.95])
+@pytest.mark.parametrize("omega", [1.05, 1.2, 2.0, 5.0, 10.0, 100.0])
+def test_permanent_contact_continues_into_a_stable_orbit(restitution, omega):
+    # docs/closed-form.md, (9) and (10): both remainders are of first order in the
+    # flight, and fall to a half with it.
+    contact = Contact.from_restitution(restitution, omega)
+    flight = np.array([2e-2, 1e-2]) / omega
+    excess = (2 * np.pi - flight) * contact.damped_frequency - contact.free_angle
+    point = branch_point(excess, contact, 1)
+    zeta = contact.damping_ratio
+    threshold = permanent_contact_threshold(omega, zeta)
+    rise = 8 * (point.amplitude / threshold - 1) / flight**2 - 1
+    assert np.all(np.abs(rise) < 0.05)
+    # The rounding of Λ, below 1e-13 (section 5 there), over T²/8.
+    rounding = 8e-13 / flight[1] ** 2
+    assert rise[1] == pytest.approx(rise[0] / 2, rel=0.1, abs=rounding)
+    decay = np.exp(-2 * np.pi * zeta * omega)
+    trace = 2 * decay * np.cos(2 * np.pi * contact.damped_frequency)
+    error = point.trace - trace
+    # The trace divides by the velocities at impact and release, of order T/ϖ².
+    rounding = 64 * EPS * omega**2 / flight[1]
+    assert error[1] == pytest.approx(error[0] / 2, rel=0.1, abs=rounding)
+    assert point.determinant == pytest.approx(decay**2, rel=2 * zeta * omega * flight[0] * 1.1)
+    # At ϖ = 100 a flight of 1e-3 rises by 1e-11, well above the rounding of heights.
+    excess = (2 * np.pi - 1e-3) * contact.damped_frequency - contact.free_angle
+    orbit = ContactOrbit.from_branch(branch_point(excess, contact, 1), contact, 1)
+    assert bool(orbit.is_stable()) and bool(orbit.is_admissible())
+
+
 @pytest.mark.parametrize(("omega", "zeta"), [(2.0, 0.05), (5.0, 0.1), (3.0, 0.4)])
 def test_a_contact_of_several_periods_opens_in_every_one(omega, zeta):
     # As D → 2πn: one orbit of the ball for n = 1, none for n ≥ 2, whose contact

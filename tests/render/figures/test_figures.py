@@ -10,7 +10,16 @@ import yaml
 from bouncing_ball.configuration.stages import STAGES, Kind, names
 from bouncing_ball.configuration.study import load
 from bouncing_ball.record.carriers import read_attributes
-from bouncing_ball.render.figures.style import INADMISSIBLE, STABLE, UNSTABLE, number, save, style
+from bouncing_ball.render.figures.domains import up_to_second_saddle_node
+from bouncing_ball.render.figures.style import (
+    COLOURS,
+    INADMISSIBLE,
+    STABLE,
+    UNSTABLE,
+    number,
+    save,
+    style,
+)
 
 pytestmark = pytest.mark.slow
 
@@ -82,7 +91,7 @@ def test_schematics_are_drawn(name):
 def test_figure_7_marks_the_instants_and_velocities(datasets):
     (axes,) = drawn("fig07", datasets["fig07"]).axes
     words = " ".join(text.get_text() for text in axes.texts)
-    for symbol in (r"\tau_i", r"\tau_b", r"\tau_2", "z_i", "z_b", "z_2"):
+    for symbol in (r"\tau_i", r"\tau_b", r"\tau_2", "z′_i", "z′_b", "z′_2"):
         assert symbol in words
 
 
@@ -111,6 +120,64 @@ def test_markers_stand_at_the_bifurcations(datasets):
     shown = np.concatenate([line.get_xdata() for line in marks])
     at = data.special_amplitude.values[data.special_kind.values == "period doubling"]
     assert np.all(np.isin(at, shown))
+
+
+@pytest.mark.parametrize("name", ["fig08", "fig09", "fig15"])
+def test_every_curve_is_named_at_its_end(datasets, name):
+    data = datasets[name]
+    (axes,) = drawn(name, data).axes
+    ends = {tuple(text.xy) for text in axes.texts}
+    drawn_ends = {
+        (float(curve.amplitude[-1]), float(curve[phase][-1]) / np.pi)
+        for _, curve in data.groupby("frequency_ratio")
+        for curve in [curve.squeeze("frequency_ratio")]
+        for phase in ("phase", "release_phase")
+    }
+    assert drawn_ends <= ends
+    places = np.sort([text.get_position()[1] for text in axes.texts])
+    # Eight points of a text; the panel is at least 2.5 inches high.
+    assert np.diff(places).min() >= 8 / (72 * 2.5) * 0.4 * np.ptp(axes.get_ylim())
+
+
+def test_figure_8_is_drawn_up_to_where_its_softest_branch_turns_back(datasets):
+    data = datasets["fig08"]
+    soft = data.sel(frequency_ratio=2.0)
+    turns = soft.special_amplitude.values[soft.special_kind.values == "saddle-node"]
+    assert len(turns) == 2
+    part = up_to_second_saddle_node(soft)
+    assert part.sizes["point"] < soft.sizes["point"]
+    assert float(part.contact_duration.max()) < float(soft.contact_duration.max())
+    # Up to the turn, but for one step along the branch.
+    assert float(part.amplitude[0]) == pytest.approx(turns.max(), abs=1e-3)
+    shown = np.concatenate([line.get_ydata() for line in lines(drawn("fig08", data))])
+    assert np.nanmin(shown) >= float(part.phase.min()) / np.pi - 1e-3
+    stiff = data.sel(frequency_ratio=10.0)
+    assert up_to_second_saddle_node(stiff) is stiff
+
+
+def test_figure_13_marks_round_frequency_ratios(datasets):
+    (axes,) = drawn("fig13", datasets["fig13"]).axes
+    words = {text.get_text() for text in axes.texts}
+    assert words == {rf"$\varpi={ratio}$" for ratio in (1, 2, 5, 10)}
+
+
+@pytest.mark.parametrize("name", ["fig14", "fig16"])
+def test_the_crossing_of_the_tolerance_lies_on_the_error(datasets, name):
+    data = datasets[name]
+    below = drawn(name, data).axes[1]
+    assert below.get_yscale() == "log"
+    curve = max(below.lines, key=lambda line: len(line.get_xdata()))
+    at = np.interp(np.log(data.error_threshold.item()), *np.log(curve.get_data()))
+    assert np.exp(at) == pytest.approx(data.attrs["tolerance"], rel=1e-3)
+
+
+def test_colours_are_legible_on_white_and_apart_in_grey():
+    channels = np.array([[int(c[k : k + 2], 16) for k in (1, 3, 5)] for c in COLOURS]) / 255
+    linear = np.where(channels <= 0.04045, channels / 12.92, ((channels + 0.055) / 1.055) ** 2.4)
+    # WCAG 2.1: relative luminance, and a contrast of 3:1 for graphical objects.
+    assert np.all(1.05 / (linear @ [0.2126, 0.7152, 0.0722] + 0.05) >= 3)
+    grey = 255 * channels @ [0.299, 0.587, 0.114]
+    assert np.abs(np.diff(grey)).min() > 40
 
 
 @pytest.mark.parametrize("kind", ["png", "svg"])

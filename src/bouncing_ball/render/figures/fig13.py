@@ -14,7 +14,10 @@ _LIMIT: Look = {"markersize": 9, "zorder": 5, "linestyle": "none", "color": REST
 
 
 def _draw_trace(axes: Axes, curve: xr.Dataset, phase, velocity, label, **look) -> None:
-    """Phase and velocity over π as ϖ varies, its round values marked, the small ones named."""
+    """Phase and velocity over π as ϖ varies, its round values marked.
+
+    Of a curve with a label the small values are named; the next one's would overlap.
+    """
     x, y = phase.values / np.pi, velocity.values / np.pi
     line = {"color": look["color"], "linestyle": look["linestyle"]}
     draw_curve(axes, x, y, curve.admissible, **line)
@@ -22,7 +25,7 @@ def _draw_trace(axes: Axes, curve: xr.Dataset, phase, velocity, label, **look) -
     for k, at in enumerate(np.flatnonzero(curve.labelled.values)):
         axes.plot(x[at], y[at], marker="o", markersize=4, **look)
         ratio = float(curve.frequency_ratio[at])
-        if ratio <= _NAMED_UP_TO:
+        if label and ratio <= _NAMED_UP_TO:
             axes.annotate(
                 rf"$\varpi={number(ratio)}$",
                 (x[at], y[at]),

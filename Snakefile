@@ -43,3 +43,5 @@ include: "workflow/rules/record.smk"
 # The results against the record, and what the budgets of that come from.
 include: "workflow/rules/diff.smk"
 include: "workflow/rules/convergence.smk"
+# The error law, on more orbits than a run can take.
+include: "workflow/rules/error_law.smk"

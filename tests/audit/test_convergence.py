@@ -107,12 +107,18 @@ def test_a_known_sensitivity():
     }
 
 
-class Outputs(list):
-    """A job's outputs, in order and by name."""
+class Named(list):
+    """A job's files or parameters, in order and by name, as Snakemake gives them."""
 
     def __init__(self, **named):
         super().__init__(named.values())
         self.__dict__.update(named)
+
+    def get(self, name, default):
+        return self.__dict__.get(name, default)
+
+    def items(self):
+        return self.__dict__.items()
 
 
 @pytest.mark.slow
@@ -122,10 +128,12 @@ def test_the_script_writes_the_table(config, tmp_path, monkeypatch):
     job = SimpleNamespace(
         rule="convergence",
         wildcards=(),
-        input=SimpleNamespace(tolerances=ROOT / "config" / "tolerances.yaml"),
-        output=Outputs(changes=tmp_path / "convergence.csv"),
-        params=SimpleNamespace(run=config | {"printed": {}}, figures=["fig11"]),
+        input=Named(tolerances=ROOT / "config" / "tolerances.yaml"),
+        output=Named(changes=tmp_path / "convergence.csv"),
+        params=Named(run=config | {"printed": {}}, figures=["fig11"]),
+        config=config,
         log=[tmp_path / "log"],
+        scriptdir=str(ROOT / "workflow" / "scripts"),
     )
     # An interrupted job ends at once, but the tests are not to.
     monkeypatch.setattr("signal.signal", lambda *_: None)

@@ -72,6 +72,10 @@ class FirstOrder(NamedTuple):
     period_doubling: np.ndarray
 
 
+REMAINDER = FirstOrder(*(np.array(bound) for bound in (2.0, 2.0, 4.0, 2.0, 2.0, 2.0)))
+"""M of each quantity: the stated remainder is M S δ. Measured, not proved."""
+
+
 def first_order(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> FirstOrder:
     """Relative errors of the restitution model at the stable side's orbit.
 

@@ -6,8 +6,8 @@ of the corrected one. The law of the first order is that of
 :mod:`bouncing_ball.orbits.error_law`.
 """
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -119,7 +119,9 @@ def error_law_table(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     )
 
 
-def random_orbits(size: int, seed: int, release: str, places: tuple[float, float] = (0.0, 1.0)):
+def random_orbits(
+    size: int, seed: int | Sequence[int], release: str, places: tuple[float, float] = (0.0, 1.0)
+):
     """Random (n, ζ, Λ) in the stable range of the restitution model, ``places`` of it.
 
     r is even from 0.05 to 0.98, from 0.15 with the force release, whose linear
@@ -135,15 +137,34 @@ def random_orbits(size: int, seed: int, release: str, places: tuple[float, float
     return n, zeta, lam, rng
 
 
-def _remainder(size: int, seed: int, span: Mapping[str, Any], release: str):
-    """|error - K|/(S δ) of random orbits, and δ."""
+class LawErrors(NamedTuple):
+    """Errors of random orbits beside the error law; rows are the quantities."""
+
+    frequency_ratio: np.ndarray
+    restitution: np.ndarray
+    """Signed relative error of the restitution model."""
+    corrected: np.ndarray
+    law: np.ndarray
+    """K/ϖ, what the law says of the first."""
+    remainder: np.ndarray
+    """|error - K/ϖ|/(S δ), which the law states to be below M."""
+    small_parameter: np.ndarray
+    """δ of each orbit."""
+
+
+def law_errors(
+    size: int, seed: int | Sequence[int], span: Mapping[str, Any], release: str
+) -> LawErrors:
+    """Errors of random orbits of the whole stable range, ϖ even in its logarithm."""
     n, zeta, lam, rng = random_orbits(size, seed, release)
     omega = np.exp(rng.uniform(np.log(span["min"]), np.log(span["max"]), size))
     contact = Contact(omega, zeta, Release.of(release))
     instant = LinearSignature(contact)()
     small = error_law.small_parameter(n, instant, lam)
-    off = np.abs(errors(contact, n, lam)[0] - np.array(error_law.first_order(n, instant, lam)))
-    return off / (np.array(error_law.scale(n, instant, lam)) * small), small
+    law = np.array(error_law.first_order(n, instant, lam))
+    restitution, corrected = errors(contact, n, lam)
+    remainder = np.abs(restitution - law) / (np.array(error_law.scale(n, instant, lam)) * small)
+    return LawErrors(omega, restitution, corrected, law, remainder, small)
 
 
 def orders(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
@@ -159,14 +180,14 @@ def orders(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         for k in (1.0, 2.0)
     ]
     span = parameters["frequency_ratio"]
-    remainder, small = _remainder(sample["law_samples"], sample["seed"] + 1, span, release)
+    law = law_errors(sample["law_samples"], sample["seed"] + 1, span, release)
     return describe(
         xr.Dataset(
             {
                 "relative_error": (("model", "quantity", "frequency_ratio"), curves),
                 "order": (("model", "quantity", "sample"), np.log2(pair[0] / pair[1])),
-                "law_remainder": (("quantity", "law_sample"), remainder),
-                "small_parameter": ("law_sample", small),
+                "law_remainder": (("quantity", "law_sample"), law.remainder),
+                "small_parameter": ("law_sample", law.small_parameter),
                 "stated_below": ((), error_law.STATED),
             },
             coords={

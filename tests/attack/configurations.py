@@ -23,7 +23,8 @@ from bouncing_ball.audit.claims.assessment import assess
 from bouncing_ball.audit.claims.ledger_file import read_ledger
 from bouncing_ball.audit.cross_check import cross_check
 from bouncing_ball.audit.evidence import evidence
-from bouncing_ball.configuration.check import check_configuration, check_orbits, resolved
+from bouncing_ball.configuration.check import check_configuration, check_orbits
+from bouncing_ball.configuration.conformity import resolved
 from bouncing_ball.configuration.schema import configuration_schema
 from bouncing_ball.configuration.stages import STAGES, studied
 from bouncing_ball.configuration.study import load

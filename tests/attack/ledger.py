@@ -19,7 +19,7 @@ import xarray as xr
 
 from bouncing_ball.audit.claims.assessment import assess
 from bouncing_ball.audit.claims.ledger_file import parse_ledger, read_ledger
-from bouncing_ball.configuration.check import check_schema
+from bouncing_ball.configuration.conformity import check_schema
 from bouncing_ball.configuration.stages import STAGES, Kind, names
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.netcdf import read_dataset

@@ -2,6 +2,7 @@
 
 import csv
 import runpy
+import sys
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -135,6 +136,8 @@ def test_the_script_writes_the_table(config, tmp_path, monkeypatch):
         log=[tmp_path / "log"],
         scriptdir=str(ROOT / "workflow" / "scripts"),
     )
+    # The script as Snakemake runs it: a copy, under its own name.
+    monkeypatch.setattr(sys.modules["__main__"], "__file__", "somewhere/convergence.py")
     # An interrupted job ends at once, but the tests are not to.
     monkeypatch.setattr("signal.signal", lambda *_: None)
     runpy.run_path(str(ROOT / "workflow/scripts/convergence.py"), {"snakemake": job})

@@ -10,7 +10,7 @@ import yaml
 
 from bouncing_ball.audit.claims.ledger_file import parse_ledger, read_ledger
 from bouncing_ball.audit.evidence import evidence
-from bouncing_ball.configuration.check import ConfigurationError, check_schema
+from bouncing_ball.configuration.conformity import ConfigurationError, check_schema
 from bouncing_ball.datasets.netcdf import attribute_name, parameter_attributes, read_dataset
 from bouncing_ball.errors import ModelError
 

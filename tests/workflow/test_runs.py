@@ -6,7 +6,7 @@ import signal
 import pytest
 import yaml
 
-from bouncing_ball.configuration.stages import Kind, names, studied
+from bouncing_ball.configuration.stages import Kind, names, studied, tables
 
 PAPER_FIGURES = names(Kind.FIGURE)
 FIGURES = names(Kind.FIGURE, Kind.EXTENSION)
@@ -25,10 +25,8 @@ def test_a_run_makes_every_figure_and_table(pristine):
     made = set(pristine.contents("results"))
     pictures = {f"figures/{name}.{kind}" for name in FIGURES for kind in ("png", "svg")}
     data = {f"figures/{stage.name}.nc" for stage in studied()}
-    tables = {
-        f"figures/{name}.{kind}" for name in names(Kind.TABLE) for kind in ("csv", "md", "tex")
-    }
-    assert made == pictures | data | tables | {"paper.md", "tally.txt"}
+    texts = {f"figures/{name}.{kind}" for name in tables() for kind in ("csv", "md", "tex")}
+    assert made == pictures | data | texts | {"paper.md", "tally.txt"}
 
 
 def test_a_run_touches_no_tracked_file(pristine, fresh):

@@ -23,7 +23,7 @@ if package is None or Path(package.origin).resolve().parent != HERE:
 
 from bouncing_ball.audit.claims.ledger_file import read_ledger
 from bouncing_ball.configuration.check import check_configuration, check_orbits
-from bouncing_ball.configuration.stages import STAGES, Kind, names, studied
+from bouncing_ball.configuration.stages import STAGES, Kind, names, studied, tables
 from bouncing_ball.errors import ModelError
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.pipeline.pieces import check_pieces
@@ -33,7 +33,7 @@ from bouncing_ball.pipeline.sources import sources
 logger.addFilter(lambda record: not str(record.msg).startswith(("Select jobs", "Execute ")))
 
 FIGURES = names(Kind.FIGURE, Kind.EXTENSION)
-TABLES = names(Kind.TABLE)
+TABLES = tables()
 DATASETS = [stage.name for stage in studied()]
 
 where = "configuration"
@@ -65,13 +65,13 @@ def datasets(artifacts):
 
 def files(artifacts):
     """All that is published of artifacts: the dataset, and what is made from it."""
-    rendered = {Kind.TABLE: ["csv", "md", "tex"], Kind.DATASET: []}
     return [
         f"results/figures/{name}.{kind}"
         for name in artifacts
         for kind in [
             *(["nc"] if STAGES[name].study else []),
-            *rendered.get(STAGES[name].kind, ["png", "svg"]),
+            *(["png", "svg"] if name in FIGURES else []),
+            *(["csv", "md", "tex"] if name in TABLES else []),
         ]
     ]
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import yaml
 
-from bouncing_ball.configuration.check import resolved
+from bouncing_ball.configuration.conformity import resolved
 from bouncing_ball.configuration.schema import configuration_schema
 from bouncing_ball.configuration.stages import STAGES
 from bouncing_ball.configuration.yaml_file import read_yaml

@@ -42,6 +42,8 @@ class Stage:
     """Settings of the whole run: ``release``, ``continuation``, ``printed`` (Table 1)."""
     reads: tuple[str, ...] = ()
     """Artifacts whose datasets the study takes first, as a mapping by name."""
+    tabulated: bool = False
+    """Whether the dataset of a figure is set as a table too."""
     cross_checked: bool = False
     """Whether it shows orbits or bifurcations, which other routes must confirm."""
     evidence: bool = False
@@ -119,7 +121,13 @@ def _figure(
 
 
 def _corrected(
-    name: str, title: str, study: str, keys: str, *, kind: Kind = Kind.EXTENSION
+    name: str,
+    title: str,
+    study: str,
+    keys: str,
+    *,
+    kind: Kind = Kind.EXTENSION,
+    tabulated: bool = False,
 ) -> Stage:
     """An extension about the corrected restitution model."""
     return Stage(
@@ -130,6 +138,7 @@ def _corrected(
         f"extensions.ext_{name}",
         keys,
         ("release",),
+        tabulated=tabulated,
     )
 
 
@@ -311,6 +320,7 @@ _MODELS: tuple[Stage, ...] = (
         "validity",
         "n:families restitution:own_restitutions amplitude_ratio:amplitude_ratios tolerance"
         " frequency_ratio:span",
+        tabulated=True,
     ),
     _corrected(
         "fig14",
@@ -381,6 +391,17 @@ def names(*kinds: Kind) -> list[str]:
     'ext_release'
     """
     return [stage.name for stage in STAGES.values() if stage.kind in kinds]
+
+
+def tables() -> list[str]:
+    """Artifacts that are set as tables, those with a figure included.
+
+    Examples
+    --------
+    >>> tables()[:2], "ext_validity" in tables()
+    (['table1', 'thresholds'], True)
+    """
+    return [name for name, stage in STAGES.items() if stage.kind is Kind.TABLE or stage.tabulated]
 
 
 def studied() -> Iterator[Stage]:

@@ -136,6 +136,9 @@ VARIABLES: dict[str, Variable] = {
     # the corrected restitution model
     "model": Variable("model of the impact", ""),
     "coefficient": Variable("relative error times the frequency ratio, to first order", "K"),
+    "second_order": Variable(
+        "relative error of the corrected model times the squared frequency ratio", "C"
+    ),
     "law_threshold": Variable("frequency ratio for the tolerance by the error law", "|K|/ε"),
     "error_zero": Variable("frequency ratio at which the error passes through zero", "ϖ"),
     "permanent_coefficient": Variable(

@@ -62,6 +62,8 @@ def check_pieces(stages: Mapping[str, Stage], run: Mapping[str, Any]) -> None:
         if stage.kind in _RENDERERS:
             package, function = _RENDERERS[stage.kind]
             _require_function(stage, f"{package}.{stage.name}.{function}")
+        if stage.tabulated:
+            _require_function(stage, f"render.tables.{stage.name}.rows")
         if stage.study:
             _require_function(stage, stage.study)
             _require_keys(stage, run)

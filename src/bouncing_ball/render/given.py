@@ -15,6 +15,7 @@ T = TypeVar("T")
 _MAY_BE_EMPTY = {
     "difference",
     "error_threshold",
+    "error_zero",
     "grazing_amplitude",
     "grazing_phase",
     "period_doubling_turn",

@@ -53,14 +53,29 @@ def errors(contact: Contact, n, amplitude, quantities=QUANTITIES) -> np.ndarray:
         return np.stack([exact / q - 1 for q in simple])
 
 
-def _last_zero(error: np.ndarray, ratios: np.ndarray) -> float:
-    """The largest ϖ at which a signed error passes through zero; NaN if none."""
-    turns = np.flatnonzero(error[1:] * error[:-1] < 0)
-    if not turns.size:
-        return np.nan
-    k = turns[-1]
-    share = error[k] / (error[k] - error[k + 1])
-    return float(np.exp(np.log(ratios[k]) + share * np.log(ratios[k + 1] / ratios[k])))
+def _last_zero(error: np.ndarray, ratios: np.ndarray) -> np.ndarray:
+    """The largest ϖ at which signed errors pass through zero along the first axis; NaN if none."""
+    turns = error[1:] * error[:-1] < 0
+    last = np.asarray(len(turns) - 1 - np.argmax(turns[::-1], axis=0))
+    left, right = (np.take_along_axis(error, k[np.newaxis], axis=0)[0] for k in (last, last + 1))
+    there = turns.any(axis=0)
+    share = np.where(there, left, 0.0) / np.where(there, left - right, 1.0)
+    at = np.exp(np.log(ratios[last]) + share * np.log(ratios[last + 1] / ratios[last]))
+    return np.where(there, at, np.nan)
+
+
+_STIFF = 500.0
+"""ϖ at which the second order is all of the corrected model's error, and rounding none of it."""
+
+
+def _second_order(zeta: float, rule: Release, n, amplitude) -> np.ndarray:
+    """C of each quantity: the corrected model's relative error is C/ϖ² + O(1/ϖ³).
+
+    Measured at two stiff contacts, and the third order taken off (Richardson).
+    """
+    ratios = np.array([_STIFF, 2 * _STIFF])
+    once, twice = (errors(Contact(ratios, zeta, rule), n, amplitude)[1] * ratios**2).T
+    return 2 * twice - once
 
 
 def _finite(error: np.ndarray) -> np.ndarray:
@@ -109,7 +124,8 @@ def error_law_table(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
                 "law_threshold": ("quantity", np.abs(k) / tolerance),
                 "error_threshold": (("model", "quantity"), np.reshape(found, shape)),
                 "threshold_status": (("model", "quantity"), np.reshape(statuses, shape)),
-                "error_zero": ("quantity", [_last_zero(e, ratios) for e in signed[0]]),
+                "error_zero": ("quantity", _last_zero(signed[0].T, ratios)),
+                "second_order": ("quantity", _second_order(zeta, rule, n, lam)),
                 "permanent_coefficient": ((), still),
                 "permanent_law": ((), float(np.sqrt(abs(still) / tolerance))),
                 "permanent_threshold": ((), float(permanent[0])),
@@ -217,11 +233,15 @@ def _crossing(error: np.ndarray, ratios: np.ndarray, tolerance: float) -> np.nda
 
 
 def validity(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
-    """The ϖ from which each simple model is right, over r, n and Λ/Λ_SN."""
+    """The ϖ from which each simple model is right, over r, n and Λ/Λ_SN.
+
+    Beside it, where the restitution model's error passes through zero by accident.
+    """
     ratios, rule = grid(parameters["frequency_ratio"]), Release.of(release)
     families, r = np.array(parameters["n"]), np.array(parameters["restitution"])
     places = np.array(parameters["amplitude_ratio"])
-    threshold = np.full((len(SIMPLE), len(QUANTITIES), len(families), len(places), len(r)), np.nan)
+    shape = len(QUANTITIES), len(families), len(places), len(r)
+    threshold, zero = np.full((len(SIMPLE), *shape), np.nan), np.full(shape, np.nan)
     # Case by case: the scan for bifurcations of one takes its memory.
     for i, n in enumerate(families):
         for k, own in enumerate(r):
@@ -230,8 +250,11 @@ def validity(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
             lam = places * float(model.saddle_node(n).amplitude)
             # Outside the stable range of the restitution model there is nothing to be right about.
             there = lam <= float(model.period_doubling(n).amplitude)
-            error = _finite(errors(contact, int(n), lam[there]))
-            found = [[_crossing(q, ratios, parameters["tolerance"]) for q in x] for x in error]
+            signed = errors(contact, int(n), lam[there])
+            zero[:, i, there, k] = [_last_zero(error, ratios) for error in signed[0]]
+            found = [
+                [_crossing(_finite(q), ratios, parameters["tolerance"]) for q in x] for x in signed
+            ]
             threshold[:, :, i, there, k] = np.array(found)
     return describe(
         xr.Dataset(
@@ -239,7 +262,8 @@ def validity(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
                 "error_threshold": (
                     ("model", "quantity", "n", "amplitude_ratio", "restitution"),
                     threshold,
-                )
+                ),
+                "error_zero": (("quantity", "n", "amplitude_ratio", "restitution"), zero),
             },
             coords={
                 "model": list(SIMPLE),

@@ -6,6 +6,7 @@ sample's: too long for every run, so that the pipeline makes them on request.
 """
 
 from collections.abc import Iterator, Mapping
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -45,7 +46,7 @@ def sample(size: int, seed: int, span: Mapping[str, Any], release: str) -> LawEr
 
 def summary(drawn: LawErrors, release: str) -> Iterator[list[str]]:
     """One row for each quantity and range of ϖ, the whole range first."""
-    ranges = [(DECADES[0], DECADES[-1]), *zip(DECADES[:-1], DECADES[1:], strict=True)]
+    ranges = [(DECADES[0], DECADES[-1]), *pairwise(DECADES)]
     for k, quantity in enumerate(QUANTITIES):
         for low, high in ranges:
             inside = (drawn.frequency_ratio >= low) & (drawn.frequency_ratio <= high)

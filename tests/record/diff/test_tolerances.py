@@ -7,7 +7,7 @@ import pytest
 import yaml
 
 from bouncing_ball.audit.convergence import computations, variations
-from bouncing_ball.configuration.check import ConfigurationError
+from bouncing_ball.configuration.yaml_file import ConfigurationError
 from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.datasets.variables import VARIABLES
 from bouncing_ball.record.diff.budgets import (

@@ -16,7 +16,7 @@ from bouncing_ball.audit.claims.ledger import (
     Measure,
     Relation,
 )
-from bouncing_ball.configuration.check import check_schema
+from bouncing_ball.configuration.conformity import check_schema
 from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
 from bouncing_ball.errors import ModelError
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from bouncing_ball.configuration.check import check_schema
+from bouncing_ball.configuration.conformity import check_schema
 from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
 from bouncing_ball.record.diff.tolerances import ToleranceError, Tolerances, tolerances_from
 

@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from bouncing_ball.render.figures.quantities import NAMES
 from bouncing_ball.render.figures.style import (
     COLOURS,
     GUIDE,
@@ -41,7 +42,7 @@ def draw(data: xr.Dataset) -> Figure:
             )
         logarithmic(axes)
         axes.set_yscale("log")
-        axes.set_title(str(quantity).replace("_", " "), fontsize=9)
+        axes.set_title(NAMES[str(quantity)], fontsize=9)
         axes.set(xlim=(ratio[0], ratio[-1]), ylim=(1e-9, 3.0))
     for axes in panels[-1]:
         axes.set_xlabel(r"frequency ratio $\varpi$")

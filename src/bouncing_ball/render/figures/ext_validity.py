@@ -1,52 +1,86 @@
 """Extension: the frequency ratio from which each model is right."""
 
+from collections.abc import Iterator
+
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bouncing_ball.render.figures.style import COLOURS, WIDE, canvas
+from bouncing_ball.render.accidents import accidental
+from bouncing_ball.render.figures.quantities import NAMES
+from bouncing_ball.render.figures.style import COLOURS, RESTITUTION, WIDE, Look, canvas
 
-_LOOKS = ("-", (0, (4, 1.5)), (0, (1, 1.2)), "-.", (0, (6, 1, 1, 1)))
+# Bands that differ in grey and by their hatching; lines that differ by their dashes.
+_MODELS: dict[str, tuple[str, Look]] = {
+    "restitution": (RESTITUTION, {"linestyle": "-", "linewidth": 1.2}),
+    "corrected": (COLOURS[3], {"linestyle": (0, (3, 1.5)), "linewidth": 1.2}),
+}
 
 
 def draw(data: xr.Dataset) -> Figure:
-    """One panel for each quantity: thick the restitution model, thin the corrected one."""
-    figure, panels = canvas(WIDE, 4.4, rows=2, columns=3, sharex=True, sharey=True)
-    for axes, quantity in zip(np.ravel(panels), data.quantity.values, strict=True):
-        for n, colour in zip(data.n.values, COLOURS, strict=False):
-            for place, look in zip(data.amplitude_ratio.values, _LOOKS, strict=False):
-                for model, width in (("restitution", 1.9), ("corrected", 0.9)):
-                    found = data.error_threshold.sel(
-                        model=model, quantity=quantity, n=n, amplitude_ratio=place
-                    )
-                    axes.plot(
-                        data.restitution, found, color=colour, linestyle=look, linewidth=width
-                    )
+    """One panel for each quantity: a band over n and Λ for each model, and one orbit's line."""
+    figure, panels = canvas(WIDE, 4.6, rows=2, columns=3, sharex=True, sharey=True)
+    middle = float(data.amplitude_ratio[data.sizes["amplitude_ratio"] // 2])
+    line = {"n": int(data.n[0]), "amplitude_ratio": middle}
+    for axes, quantity in zip(np.ravel(panels), data["quantity"].values, strict=True):
+        for model, (colour, look) in _MODELS.items():
+            part = data.error_threshold.sel(quantity=quantity, model=model)
+            _band(axes, part, colour, hatch="////" if model == "corrected" else None)
+            axes.plot(data.restitution, part.sel(line), color=colour, label=model, **look)
+        _accidents(axes, data.sel(quantity=quantity, **line))
         axes.set_yscale("log")
-        axes.set_title(str(quantity).replace("_", " "), fontsize=9)
+        axes.set_title(NAMES[str(quantity)], fontsize=9)
         axes.grid(visible=True, axis="y", linewidth=0.3)
     for axes in panels[-1]:
         axes.set_xlabel("restitution coefficient $r$")
     for axes in panels[:, 0]:
         axes.set_ylabel(rf"$\varpi$ for {100 * data.attrs['tolerance']:g} %")
-    first = panels[0, 0]
-    handles = [
-        *(
-            first.plot([], [], color=colour, label=f"$n={n}$")[0]
-            for n, colour in zip(data.n.values, COLOURS, strict=False)
-        ),
-        *(
-            first.plot(
-                [],
-                [],
-                color="#5f5f5f",
-                linestyle=look,
-                label=rf"$\Lambda={place:g}\,\Lambda_{{SN}}$",
-            )[0]
-            for place, look in zip(data.amplitude_ratio.values, _LOOKS, strict=False)
-        ),
-        first.plot([], [], color="#5f5f5f", linewidth=1.9, label="restitution")[0],
-        first.plot([], [], color="#5f5f5f", linewidth=0.9, label="corrected")[0],
-    ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=4)
+    figure.suptitle(
+        rf"lines: $n={line['n']}$, $\Lambda={middle:g}\,\Lambda_{{SN}}$; bands: all $n$ of "
+        rf"{_listed(data.n)} and $\Lambda/\Lambda_{{SN}}$ of {_listed(data.amplitude_ratio)}",
+        fontsize=9,
+    )
+    handles = dict(_handles(np.ravel(panels)))
+    figure.legend(
+        list(handles.values()), list(handles), loc="outside lower center", ncols=len(handles)
+    )
     return figure
+
+
+def _band(axes: Axes, found: xr.DataArray, colour: str, hatch: str | None) -> None:
+    over = ("n", "amplitude_ratio")
+    axes.fill_between(
+        found.restitution,
+        found.min(over),
+        found.max(over),
+        facecolor="none" if hatch else "#d0d0d0",
+        edgecolor=colour if hatch else "none",
+        hatch=hatch,
+        linewidth=0.4,
+        alpha=0.5 if hatch else 1.0,
+    )
+
+
+def _accidents(axes: Axes, data: xr.Dataset) -> None:
+    """Rings where the restitution model's error is small because it passes through zero."""
+    there = accidental(data)
+    axes.plot(
+        data.restitution[there],
+        data.error_threshold.sel(model="restitution")[there],
+        "o",
+        color=RESTITUTION,
+        markerfacecolor="white",
+        markersize=4.5,
+        label="restitution, within the tolerance by an accidental zero",
+    )
+
+
+def _handles(panels) -> Iterator[tuple[str, object]]:
+    for axes in panels:
+        handles, labels = axes.get_legend_handles_labels()
+        yield from zip(labels, handles, strict=True)
+
+
+def _listed(values: xr.DataArray) -> str:
+    return ", ".join(f"{value:g}" for value in values.values)

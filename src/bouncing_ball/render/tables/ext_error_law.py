@@ -9,16 +9,17 @@ import xarray as xr
 def rows(data: xr.Dataset) -> tuple[Sequence[str], list[list[str]]]:
     """One row for each quantity; the permanent contact last, without a correction.
 
-    The last column is the ϖ at which the restitution model's error passes
-    through zero by accident.
+    C is the corrected model's error times ϖ²; the last column is the ϖ at which
+    the restitution model's error passes through zero by accident.
     """
-    header = ["quantity", "K", "law", "restitution", "corrected", "error zero at"]
+    header = ["quantity", "K", "C", "law", "restitution", "corrected", "error zero at"]
     body = []
     for quantity in data.quantity.values:
         part = data.sel(quantity=quantity)
         line = [
             str(quantity).replace("_", " "),
             f"{float(part.coefficient):.4f}",
+            f"{float(part.second_order):.4f}",
             f"{float(part.law_threshold):.4g}",
         ]
         for model in data.model.values:
@@ -31,6 +32,7 @@ def rows(data: xr.Dataset) -> tuple[Sequence[str], list[list[str]]]:
         [
             "permanent contact, second order",
             f"{float(data.permanent_coefficient):.4f}",
+            "–",
             f"{float(data.permanent_law):.4g}",
             f"{float(data.permanent_threshold):.4g}",
             "–",

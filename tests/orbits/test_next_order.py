@@ -1,4 +1,4 @@
-"""The third order of docs/impact-as-an-instant.md, which the package does not use."""
+"""The third order of docs/error-law.md, which the package does not use."""
 
 import numpy as np
 import pytest

@@ -1,9 +1,11 @@
 """Extension: the frequency ratio from which each model is right."""
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -22,13 +24,13 @@ def draw(data: xr.Dataset) -> Figure:
     """One panel for each quantity: a band over n and Λ for each model, and one orbit's line."""
     figure, panels = canvas(WIDE, 4.6, rows=2, columns=3, sharex=True, sharey=True)
     middle = float(data.amplitude_ratio[data.sizes["amplitude_ratio"] // 2])
-    line = {"n": int(data.n[0]), "amplitude_ratio": middle}
+    line: dict[str, Any] = {"n": int(data.n[0]), "amplitude_ratio": middle}
     for axes, quantity in zip(np.ravel(panels), data["quantity"].values, strict=True):
         for model, (colour, look) in _MODELS.items():
             part = data.error_threshold.sel(quantity=quantity, model=model)
             _band(axes, part, colour, hatch="////" if model == "corrected" else None)
             axes.plot(data.restitution, part.sel(line), color=colour, label=model, **look)
-        _accidents(axes, data.sel(quantity=quantity, **line))
+        _accidents(axes, data.sel({"quantity": quantity} | line))
         axes.set_yscale("log")
         axes.set_title(NAMES[str(quantity)], fontsize=9)
         axes.grid(visible=True, axis="y", linewidth=0.3)
@@ -76,7 +78,7 @@ def _accidents(axes: Axes, data: xr.Dataset) -> None:
     )
 
 
-def _handles(panels) -> Iterator[tuple[str, object]]:
+def _handles(panels) -> Iterator[tuple[str, Artist]]:
     for axes in panels:
         handles, labels = axes.get_legend_handles_labels()
         yield from zip(labels, handles, strict=True)

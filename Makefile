@@ -67,10 +67,11 @@ attack: $(SETUP)
 diff: $(SETUP)
 	$(BIN)/snakemake --cores 2 diff $(QUIETLY)
 
-# make accept REASON='why the record moves' [ALSO='fig05 paper' or ALSO=all]
+# make accept REASON='why it moved' ONLY='fig08 table1'; with more reasons than one:
+# make accept REASON='a finer step | another root' ONLY='fig08 table1 | fig05'
 # As typed: neither make nor the shell reads anything in it.
 override export REASON := $(value REASON)
-override export ALSO := $(value ALSO)
+override export ONLY := $(value ONLY)
 accept: $(SETUP)
 	$(BIN)/snakemake --cores 1 accept
 

@@ -20,10 +20,10 @@ from bouncing_ball.record.accept import (
     COLUMNS,
     LOG,
     accept,
+    chosen,
     commits,
     log_with,
     made_from,
-    moved,
     replace_record,
 )
 from bouncing_ball.record.diff.outcome import Outcome
@@ -57,10 +57,10 @@ def world(template, tmp_path, monkeypatch):
     return SmallRun(folder)
 
 
-def accepted(world, reason=REASON, also="", now=None):
+def accepted(world, reason=REASON, only="", now=None):
     run = world.run()
     run = Run(run.repository, now or run.now, run.configuration)
-    return accept(run, Path("results"), world.recipes(), world.files(), reason, also)
+    return accept(run, Path("results"), world.recipes(), world.files(), reason, only)
 
 
 def contents(*folders):
@@ -125,12 +125,13 @@ def test_what_is_within_its_budget_stays(world):
     assert contents("figures") == before
 
 
-@pytest.mark.parametrize("also", ["fig11", "all"])
-def test_what_is_within_its_budget_moves_if_asked_for(world, also):
+@pytest.mark.parametrize("only", ["fig11", "all"])
+def test_what_is_within_its_budget_moves_if_asked_for(world, only):
     accepted(world)
     within(world)
-    refused(world, "no artifact fig99 to be copied", also="fig11 fig99")
-    accepted(world, reason="Asked for", also=also)
+    refused(world, "no artifact fig99 to be accepted", only="fig11 fig99")
+    assert accepted(world, only="moved") == ["nothing to accept"]
+    accepted(world, reason="Asked for", only=only)
     assert entries()[-1]["changes"] == "fig11 within budget"
     assert Path("figures/fig11.nc").read_bytes() == Path("results/figures/fig11.nc").read_bytes()
 
@@ -139,27 +140,99 @@ def test_what_has_moved_is_copied_and_named_and_nothing_else(world):
     accepted(world)
     before = contents("figures")
     drift(world)
-    (Path("figures") / "old.png").write_bytes(b"of an older version")
     lines = accepted(world, reason="Moved")
-    assert entries()[-1]["changes"] == "fig11 drifted; old removed"
+    assert entries()[-1]["changes"] == "fig11 drifted"
     after = contents("figures")
-    assert {name for name in after if after[name] != before.get(name)} == {
-        LOG,
-        *(f"figures/fig11.{kind}" for kind in ("nc", "png", "svg")),
-    }
-    assert "removed figures/old.png" in lines and not Path("figures/old.png").exists()
+    moved = {LOG, *(f"figures/fig11.{kind}" for kind in ("nc", "png", "svg"))}
+    assert {name for name in after if after[name] != before.get(name)} == moved
+    assert {*lines} == moved - {LOG}
+
+
+def move_two(world):
+    """Two artifacts that have moved, and one that is no more."""
+    accepted(world)
+    nudge("relative_error", "thresholds", 1e-2)(world)
+    drift(world)
+    (Path("figures") / "old.png").write_bytes(b"of an older version")
+
+
+def test_nothing_is_accepted_in_bulk_by_accident(world):
+    move_two(world)
+    refused(world, "3 artifacts have moved: fig11, old, thresholds; look at each", "ONLY=moved")
+    accepted(world, only="moved")
+    assert entries()[-1]["changes"] == "fig11 drifted; old removed; thresholds drifted"
+
+
+def test_one_artifact_and_the_others_later(world):
+    move_two(world)
+    before = contents("figures")
+    lines = accepted(world, reason="Looked at", only="fig11")
+    assert entries()[-1]["changes"] == "fig11 drifted"
+    after = contents("figures")
+    assert all("fig11" in name or after[name] == before[name] for name in before if name != LOG)
+    assert {*lines} == {f"figures/fig11.{kind}" for kind in ("nc", "png", "svg")}
+    assert accepted(world, reason="No more", only="old") == ["removed figures/old.png"]
+    accepted(world, reason="The last needs no name")
+    assert [entry["reason"] for entry in entries()[1:]] == [
+        "Looked at", "No more", "The last needs no name"
+    ]  # fmt: skip
+
+
+def test_each_with_its_own_reason(world, capsys):
+    move_two(world)
+    capsys.readouterr()
+    accepted(world, reason="A finer step | Another root", only="fig11 | thresholds, old")
+    assert [(entry["number"], entry["reason"], entry["changes"]) for entry in entries()[1:]] == [
+        ("2", "A finer step", "fig11 drifted"),
+        ("3", "Another root", "old removed; thresholds drifted"),
+    ]
+    said = capsys.readouterr().out
+    assert "Accepted fig11 drifted; reason: A finer step\n" in said
+
+
+@pytest.mark.parametrize(
+    ("only", "reason", "said"),
+    [
+        ("fig11 | old", "one", "ONLY has 2 groups and REASON 1: a reason for each"),
+        ("fig11 | old", "one | ", "say why"),
+        ("fig11 | old", "one | two | three", "ONLY has 2 groups and REASON 3"),
+        ("fig11 | ", "one | two", "a group of ONLY names no artifact"),
+        ("fig11 | old fig11", "one | two", "fig11 is named twice"),
+        ("fig11 | all", "one | two", "fig11 is named twice"),
+    ],
+)
+def test_reasons_and_artifacts_go_together(world, only, reason, said):
+    move_two(world)
+    refused(world, said, only=only, reason=reason)
+
+
+def change_text(world):
+    """The text moves by a digit that may follow its data."""
+    paper = Path("results/paper.md")
+    paper.write_text(paper.read_text(encoding="utf-8").replace("0.25", "0.26"), encoding="utf-8")
+    world.sign("paper.md")
 
 
 def test_a_text_moves_with_what_it_is_made_from(world):
     accepted(world)
     drift(world)
-    # A digit that may follow its data.
-    paper = Path("results/paper.md")
-    paper.write_text(paper.read_text(encoding="utf-8").replace("0.25", "0.26"), encoding="utf-8")
-    world.sign("paper.md")
-    accepted(world)
+    change_text(world)
+    accepted(world, only="fig11")
     names = {part.split()[0] for part in entries()[-1]["changes"].split("; ")}
     assert names == {"fig11", "paper"}
+
+
+def test_a_text_moves_with_all_that_it_is_made_from_or_not_at_all(world):
+    move_two(world)
+    change_text(world)
+    for only, missed in (
+        ("fig11", "thresholds"), ("thresholds", "fig11"), ("paper", "fig11, thresholds"),
+    ):  # fmt: skip
+        refused(world, f"paper is made from {missed} too, which moved: name", only=only)
+    accepted(world, only="fig11 | thresholds", reason="one | two")
+    assert [entry["changes"] for entry in entries()[1:]] == [
+        "fig11 drifted", "paper drifted; thresholds drifted"
+    ]  # fmt: skip
 
 
 def test_which_artifacts_move():
@@ -170,12 +243,17 @@ def test_which_artifacts_move():
     }  # fmt: skip
     reads = {
         "evidence": {"fig08"},
-        "claims": {"evidence"},
+        # By way of what is not published.
+        "claims": {"tally"},
+        "tally": {"evidence"},
         "witness": {"fig08"},
         "paper": {"fig05"},
     }
-    assert moved(outcomes, reads) == {"fig08", "fig99", "old", "evidence", "claims"}
-    assert moved(dict.fromkeys(outcomes, Outcome.WITHIN), reads) == set()
+    assert chosen(outcomes, reads, [["moved"]]) == [{"fig08", "fig99", "old", "evidence", "claims"}]
+    assert chosen(outcomes, reads, [["fig08"], ["old"]]) == [
+        {"fig08", "evidence", "claims"}, {"old"}
+    ]  # fmt: skip
+    assert chosen(dict.fromkeys(outcomes, Outcome.WITHIN), reads, [[]]) == [set()]
 
 
 def test_what_is_made_from_what(world):
@@ -382,7 +460,8 @@ from bouncing_ball.record import accept as module
 from bouncing_ball.datasets import atomic
 world = runpy.run_path(sys.argv[2])["SmallRun"](Path.cwd())
 atomic.os.replace = dying(os.replace)
-module.accept(world.run(), Path("results"), world.recipes(), world.files(), sys.argv[3], "")
+run = world.run(), Path("results"), world.recipes(), world.files()
+module.accept(*run, *sys.argv[3:])
 """
 
 
@@ -393,7 +472,9 @@ def test_an_acceptance_killed_at_any_rename_is_completed_by_the_next(world, at):
     before = contents("figures")
     script = str(ROOT / "tests" / "attack" / "provenance.py")
     done = subprocess.run(
-        [sys.executable, "-c", KILLED, str(at), script, "Moved"], capture_output=True, check=False
+        [sys.executable, "-c", KILLED, str(at), script, "Moved", ""],
+        capture_output=True,
+        check=False,
     )
     assert done.returncode == 9, done.stderr
     assert list(Path("figures").glob(".*.part.*"))
@@ -407,6 +488,22 @@ def test_an_acceptance_killed_at_any_rename_is_completed_by_the_next(world, at):
         ("Moved", "fig11 drifted")
     ]
     assert accepted(world, reason="Moved") == ["nothing to accept"]
+
+
+def test_two_entries_killed_are_completed_by_the_same_command(world):
+    move_two(world)
+    script = str(ROOT / "tests" / "attack" / "provenance.py")
+    typed = ["A finer step | Another root", "fig11 | thresholds old"]
+    done = subprocess.run(
+        [sys.executable, "-c", KILLED, "3", script, *typed], capture_output=True, check=False
+    )
+    assert done.returncode == 9, done.stderr
+    accepted(world, *typed)
+    assert [(entry["reason"], entry["changes"]) for entry in entries()[1:]] == [
+        ("A finer step", "fig11 drifted"),
+        ("Another root", "old removed; thresholds drifted"),
+    ]
+    assert accepted(world) == ["nothing to accept"] and not Path("figures/old.png").exists()
 
 
 def test_what_is_halfway_written_is_no_change(tmp_path):

@@ -18,7 +18,7 @@ REASON = """costs $5: "new" form of Eq. 8; it's `date` \\ 100 % #1"""
 @pytest.fixture
 def tree(complete, monkeypatch):
     """A complete run, and no reason or request left over from whoever runs the tests."""
-    for name in ("REASON", "ALSO"):
+    for name in ("REASON", "ONLY"):
         monkeypatch.delenv(name, raising=False)
     return complete
 
@@ -63,6 +63,9 @@ def test_what_has_moved_becomes_the_record(tree, monkeypatch):
     assert "say why the record changes" in refused(tree)
 
     monkeypatch.setenv("REASON", REASON)
+    said = refused(tree)
+    assert "artifacts have moved: " in said and "fig11" in said and "look at each" in said
+    monkeypatch.setenv("ONLY", "moved")
     done = tree.run("--cores", "1", "accept")
     commit = tree.git("rev-parse", "HEAD")
     assert f"files made at commit {commit}\n" in done.stdout and REASON in done.stdout

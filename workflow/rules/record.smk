@@ -1,6 +1,6 @@
 # The accepted record: figures/ and paper.md, which git holds, with accepted.csv,
 # which says why it moved. Only this target writes there:
-#     REASON="…" snakemake --cores 1 accept
+#     ONLY="fig08 | table1" REASON="… | …" snakemake --cores 1 accept
 # It has no output and no benchmark, so that it looks at the record each time.
 
 from bouncing_ball.record.recipe import planned

@@ -11,6 +11,6 @@ with logged(snakemake) as lines:
     results = Path("results")
     files = sorted({Path(path).relative_to(results).as_posix() for path in snakemake.input})
     # Not by --config, which takes a colon or a hash of the reason for its own.
-    reason, also = (os.environ.get(name, "") for name in ("REASON", "ALSO"))
+    reason, only = (os.environ.get(name, "") for name in ("REASON", "ONLY"))
     run = Run.of(Path(snakemake.params.record).resolve(), snakemake.config)
-    lines += accept(run, results, snakemake.params.recipes, files, reason, also)
+    lines += accept(run, results, snakemake.params.recipes, files, reason, only)

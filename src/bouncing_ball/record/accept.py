@@ -5,10 +5,12 @@ are, and ``accepted.csv``, in which every acceptance says why the record moved.
 
 An artifact that says the same within its budgets stays as it is, with the commit
 that it names: another processor moves most of them, and git would grow by what
-has not changed. What has moved is copied, and with it what is made from it and
-differs at all: the verdicts and the paper follow the numbers that they are
-about. So the files of the record agree with each other within the budgets, and
-a text quotes the tables beside it.
+has not changed. What has moved is copied if it is named, with a reason of its
+own: a whole run accepted in one go brings in what nobody looked at. With it is
+copied what is made from it and differs at all: the verdicts and the paper follow
+the numbers that they are about. What is made from something else that has moved
+is refused without it. So the files of the record agree with each other within
+the budgets, and a text quotes the tables beside it.
 """
 
 import csv
@@ -18,6 +20,7 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
+from itertools import takewhile
 from pathlib import Path
 
 from bouncing_ball.datasets.atomic import replacing
@@ -32,8 +35,11 @@ from bouncing_ball.record.revision import Revision
 
 LOG = "accepted.csv"
 COLUMNS = ("number", "commit", "reason", "changes")
+MOVED = "moved"
+"""In place of the names of artifacts: all that have moved."""
 ALL = "all"
-"""In place of the names of artifacts that are copied although they have not moved."""
+"""In place of the names of artifacts: all, within their budgets or not."""
+_BETWEEN = "|"
 
 
 def check_reason(reason: str) -> None:
@@ -42,6 +48,35 @@ def check_reason(reason: str) -> None:
         raise RefusedError("say why the record changes: make accept REASON='…'")
     if not reason.isprintable():
         raise RefusedError("the reason is one line of text")
+
+
+def groups(only: str, reason: str) -> list[tuple[list[str], str]]:
+    """Names of artifacts and their reason, group by group.
+
+    Raises
+    ------
+    RefusedError
+        If there are not as many reasons as groups, or one of them is none.
+
+    Examples
+    --------
+    >>> groups("fig08, table1 | fig05", "a finer step | another root")
+    [(['fig08', 'table1'], 'a finer step'), (['fig05'], 'another root')]
+    >>> groups("fig08", "one | reason")
+    [(['fig08'], 'one | reason')]
+    """
+    named = [part.replace(",", " ").split() for part in only.split(_BETWEEN)]
+    reasons = reason.split(_BETWEEN) if len(named) > 1 else [reason]
+    for each in reasons:
+        check_reason(each)
+    if len(named) != len(reasons):
+        raise RefusedError(
+            f"ONLY has {len(named)} groups and REASON {len(reasons)}: a reason for each, "
+            f"with {_BETWEEN} between them"
+        )
+    if len(named) > 1 and not all(named):
+        raise RefusedError("a group of ONLY names no artifact")
+    return list(zip(named, (each.strip() for each in reasons), strict=True))
 
 
 def check_tree(now: Revision) -> None:
@@ -83,44 +118,140 @@ def made_from(recipes: Iterable[Recipe]) -> dict[str, set[str]]:
     return found
 
 
-def moved(outcomes: Mapping[str, Outcome], reads: Mapping[str, Collection[str]]) -> set[str]:
-    """The artifacts that say something else, and those made from them that differ at all.
+def behind(name: str, reads: Mapping[str, Collection[str]]) -> set[str]:
+    """All that an artifact is made from, straight or not.
+
+    Examples
+    --------
+    >>> sorted(behind("paper", {"paper": ["claims"], "claims": ["evidence"]}))
+    ['claims', 'evidence']
+    """
+    found: set[str] = set()
+    new = set(reads.get(name, ()))
+    while new:
+        found |= new
+        new = {more for each in new for more in reads.get(each, ())} - found
+    return found
+
+
+def followers(
+    names: Collection[str], outcomes: Mapping[str, Outcome], reads: Mapping[str, Collection[str]]
+) -> set[str]:
+    """What is made from some artifacts and differs at all.
 
     Examples
     --------
     >>> outcomes = dict.fromkeys(["fig08", "paper", "fig05"], Outcome.WITHIN)
-    >>> sorted(moved(outcomes | {"fig08": Outcome.DRIFTED}, {"paper": ["fig05", "fig08"]}))
-    ['fig08', 'paper']
+    >>> followers({"fig08"}, outcomes, {"paper": ["fig05", "fig08"]})
+    {'paper'}
     """
-    found = {name for name, outcome in outcomes.items() if not outcome.agrees}
-    differ = {name for name, outcome in outcomes.items() if outcome is not Outcome.IDENTICAL}
-    while more := {name for name in differ - found if found & set(reads.get(name, ()))}:
-        found |= more
+    return {
+        name
+        for name, outcome in outcomes.items()
+        if outcome is not Outcome.IDENTICAL and not behind(name, reads).isdisjoint(names)
+    }
+
+
+def _named(
+    asked: Sequence[str], outcomes: Mapping[str, Outcome], reads: Mapping[str, Collection[str]]
+) -> set[str]:
+    """The artifacts of a group, or what it says in place of their names."""
+    differ = {name for name, outcome in outcomes.items() if not outcome.agrees}
+    if list(asked) == [ALL]:
+        return set(outcomes)
+    if list(asked) == [MOVED]:
+        return differ
+    if unknown := set(asked) - outcomes.keys():
+        raise RefusedError(f"no artifact {', '.join(sorted(unknown))} to be accepted")
+    if asked:
+        return set(asked)
+    own = sorted(differ - followers(differ, outcomes, reads))
+    # In a first record there is nothing to look at.
+    if len(own) > 1 and set(outcomes.values()) != {Outcome.EXTRA}:
+        raise RefusedError(
+            f"{len(own)} artifacts have moved: {', '.join(own)}; look at each and name it with "
+            f"its reason: ONLY='{own[0]} {_BETWEEN} {own[1]}' REASON='… {_BETWEEN} …', "
+            f"or all of them with one: ONLY={MOVED}"
+        )
+    return differ
+
+
+def _left_out(
+    name: str,
+    names: Collection[str],
+    outcomes: Mapping[str, Outcome],
+    reads: Mapping[str, Collection[str]],
+) -> list[str]:
+    """What an artifact is made from that has moved and is not among some names."""
+    missed = behind(name, reads) - set(names)
+    return sorted(each for each in missed if each in outcomes and not outcomes[each].agrees)
+
+
+def chosen(
+    outcomes: Mapping[str, Outcome],
+    reads: Mapping[str, Collection[str]],
+    asked: Sequence[Sequence[str]],
+) -> list[set[str]]:
+    """For each group of names, the artifacts to be copied: these, and what follows them.
+
+    What follows artifacts of several groups is among the last of them.
+
+    Raises
+    ------
+    RefusedError
+        If a name is unknown or in two groups; if nothing is named and several
+        artifacts have moved, each by itself; or if what would be copied is made
+        from something that has moved and would not.
+
+    Examples
+    --------
+    >>> outcomes = {"fig05": Outcome.DRIFTED, "fig08": Outcome.DRIFTED, "paper": Outcome.WITHIN}
+    >>> reads = {"paper": ["fig05", "fig08"]}
+    >>> [sorted(group) for group in chosen(outcomes, reads, [["fig08"], ["fig05"]])]
+    [['fig08'], ['fig05', 'paper']]
+    >>> chosen(outcomes, reads, [["fig08"]])
+    Traceback (most recent call last):
+    ...
+    bouncing_ball.record.proof.RefusedError: paper is made from fig05 too, which moved: name fig05
+    """
+    found = [_named(names, outcomes, reads) for names in asked]
+    named: set[str] = set()
+    for names in found:
+        if twice := sorted(named & names):
+            raise RefusedError(f"{twice[0]} is named twice")
+        named |= names
+    following = followers(named, outcomes, reads) - named
+    for name in sorted(named | following):
+        if left := _left_out(name, named | following, outcomes, reads):
+            raise RefusedError(
+                f"{name} is made from {', '.join(left)} too, which moved: name {' '.join(left)}"
+            )
+    for name in following:
+        [names for names in found if not behind(name, reads).isdisjoint(names)][-1].add(name)
     return found
 
 
 @dataclass(frozen=True)
 class Entry:
-    """The last entry of the log: for what, and which artifacts it names."""
+    """An entry of the log: for what, and which artifacts it names."""
 
     commit: str
     reason: str
     names: frozenset[str]
 
 
-def last_entry(text: str) -> Entry | None:
-    """The last entry of a log, if there is one.
+def entries(text: str) -> list[Entry]:
+    """All entries of a log.
 
     Examples
     --------
-    >>> last_entry(log_with("", "1f0e", "Eq. 8, exact", {"fig03": "drifted"}))
-    Entry(commit='1f0e', reason='Eq. 8, exact', names=frozenset({'fig03'}))
+    >>> entries(log_with("", "1f0e", "Eq. 8, exact", {"fig03": "drifted"}))
+    [Entry(commit='1f0e', reason='Eq. 8, exact', names=frozenset({'fig03'}))]
     """
-    rows = list(csv.reader(io.StringIO(text)))[1:]
-    if not rows:
-        return None
-    _, commit, reason, changes = rows[-1]
-    return Entry(commit, reason, frozenset(part.split()[0] for part in changes.split("; ")))
+    return [
+        Entry(commit, reason, frozenset(part.split()[0] for part in changes.split("; ")))
+        for _, commit, reason, changes in list(csv.reader(io.StringIO(text)))[1:]
+    ]
 
 
 def log_with(text: str, commit: str, reason: str, changes: Mapping[str, str]) -> str:
@@ -133,10 +264,9 @@ def log_with(text: str, commit: str, reason: str, changes: Mapping[str, str]) ->
     1,1f0e,"Eq. 8, exact",fig03 drifted
     """
     rows = list(csv.reader(io.StringIO(text))) or [list(COLUMNS)]
-    said = "; ".join(f"{name} {change}" for name, change in sorted(changes.items()))
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
-    writer.writerows([*rows, [len(rows), commit, reason.strip(), said]])
+    writer.writerows([*rows, [len(rows), commit, reason.strip(), _said(changes)]])
     return out.getvalue()
 
 
@@ -161,13 +291,14 @@ def replace_record(
     return [*copied, *(f"removed figures/{path.name}" for path in removed)]
 
 
-def begun(record: Path, log: str, commit: str, reason: str) -> frozenset[str]:
-    """What an acceptance of this commit for this reason, killed on its way, was to copy."""
-    left = halfway(record) | halfway(record / "figures")
-    last = last_entry(log)
-    if not left or last is None or (last.commit, last.reason) != (commit, reason):
+def begun(record: Path, log: str, commit: str, reasons: Collection[str]) -> frozenset[str]:
+    """What an acceptance of this commit for these reasons, killed on its way, was to copy."""
+    if not halfway(record) | halfway(record / "figures"):
         return frozenset()
-    return last.names
+    last = takewhile(
+        lambda entry: entry.commit == commit and entry.reason in reasons, reversed(entries(log))
+    )
+    return frozenset().union(*(entry.names for entry in last))
 
 
 def compare(record: Path, results: Path) -> dict[str, Outcome]:
@@ -209,16 +340,12 @@ def check(run: Run, results: Path, recipes: Sequence[Recipe], files: Sequence[st
     print(*commits(published.values(), run.now), sep="\n")
 
 
-def chosen(outcomes: Mapping[str, Outcome], recipes: Iterable[Recipe], also: str) -> set[str]:
-    """The artifacts to be copied: those that have moved, and those asked for."""
-    asked = set(outcomes if also == ALL else also.split())
-    if unknown := asked - outcomes.keys():
-        raise RefusedError(f"no artifact {', '.join(sorted(unknown))} to be copied as well")
-    return moved(outcomes, made_from(recipes)) | asked
+def _said(changes: Mapping[str, str]) -> str:
+    return "; ".join(f"{name} {change}" for name, change in sorted(changes.items()))
 
 
 def accept(
-    run: Run, results: Path, recipes: Sequence[Recipe], files: Sequence[str], reason: str, also: str
+    run: Run, results: Path, recipes: Sequence[Recipe], files: Sequence[str], reason: str, only: str
 ) -> list[str]:
     """Make the results the record; the lines of the job's log.
 
@@ -234,36 +361,49 @@ def accept(
     reason : str
         Why the record moves. The same reason completes an acceptance that was
         killed: the rest of what its entry names is copied.
-    also : str
-        Names of artifacts to be copied although they have not moved, or ``all``.
+    only : str
+        Names of artifacts, ``moved`` or ``all``; nothing for the one that has moved.
+        Groups with ``|`` between them have as many reasons, and entries of the log.
 
     Raises
     ------
     RefusedError
-        If there is no reason, the tree is dirty or unknown, or a result is not
-        what the commit makes (:func:`~bouncing_ball.record.proof.check_made`).
+        If there is no reason, the tree is dirty or unknown, a result is not what
+        the commit makes (:func:`~bouncing_ball.record.proof.check_made`), or what is
+        asked for does not go together (:func:`chosen`).
         Nothing is touched then.
     """
-    check_reason(reason)
+    wanted = groups(only, reason)
     check(run, results, recipes, files)
     record, commit = run.repository, run.now.commit
     outcomes = compare(record, results)
     log = (record / LOG).read_text(encoding="utf-8") if (record / LOG).is_file() else ""
-    started = begun(record, log, commit, reason.strip())
-    names = chosen(outcomes, recipes, also) | started
+    started = begun(record, log, commit, [why for _, why in wanted])
+    # What was removed before the end is no more, on either side.
+    outcomes |= dict.fromkeys(started - outcomes.keys(), Outcome.IDENTICAL)
+    parts = chosen(outcomes, made_from(recipes), [asked for asked, _ in wanted])
+    names = started.union(*parts)
     copied = [
         file
         for file in files
         if Path(file).stem in names and not _same(results / file, record / file)
     ]
-    removed = stale(record / "figures", [record / file for file in files])
+    # What is no artifact any longer has no name to be asked for by.
+    removed = [
+        path
+        for path in stale(record / "figures", [record / file for file in files])
+        if path.stem in names or path.stem not in outcomes
+    ]
     changes = dict.fromkeys((path.stem for path in removed), "removed")
     changes |= {Path(file).stem: _change(outcomes[Path(file).stem]) for file in copied}
     if not changes:
         print("Nothing to accept: the record says what the results say.")
         return ["nothing to accept"]
-    if not changes.keys() <= started:
-        log = log_with(log, commit, reason, changes)
-    lines = replace_record(record, results, copied, removed, log)
-    print(f"Accepted, reason: {reason.strip()}", flush=True)
-    return lines
+    parts[-1] |= changes.keys() - outcomes.keys()
+    for part, (_, why) in zip(parts, wanted, strict=True):
+        moved = {name: change for name, change in changes.items() if name in part}
+        if moved and not changes.keys() <= started:
+            log = log_with(log, commit, why, moved)
+        if moved:
+            print(f"Accepted {_said(moved)}; reason: {why}", flush=True)
+    return replace_record(record, results, copied, removed, log)

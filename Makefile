@@ -19,7 +19,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
 # One thing after another: clean, run and compare share results/.
 .NOTPARALLEL:
-.PHONY: all setup lint test quick test-long attack diff accept report clean ci setup-newest newest config-docs lock
+.PHONY: all setup lint test quick test-long attack diff accept report clean ci setup-newest newest config-docs codecheck lock
 
 all: $(SETUP)
 	$(BIN)/snakemake --cores 2 $(QUIETLY)
@@ -97,6 +97,9 @@ newest: setup-newest clean
 
 config-docs: setup
 	$(BIN)/python -m bouncing_ball.configuration.documentation
+
+codecheck: setup
+	$(BIN)/python -m bouncing_ball.pipeline.codecheck
 
 # For maintainers; needs uv.
 lock:

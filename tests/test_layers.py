@@ -37,7 +37,7 @@ ALLOWED = {
         {"datasets", "configuration"},
         {"numpy", "xarray", "netCDF4", "matplotlib", "PIL", "jinja2"},
     ),
-    "pipeline": ({"datasets", "configuration", "record"}, {"xarray"}),
+    "pipeline": ({"datasets", "configuration", "record"}, {"xarray", "yaml"}),
     "cli": (
         {"datasets", "impacts", "motion", "orbits", "configuration", "record"},
         {"numpy"},

@@ -12,8 +12,10 @@ if shlex.quote(sys.executable) != sys.executable:
         f"{sys.executable}: a path of Python with a space or a quote in it; put the .venv elsewhere"
     )
 
+# The repository, whichever Snakefile was called.
+ROOT = os.path.abspath(Path(str(workflow.current_basedir), "..", ".."))
 # Not the code of another checkout, whose environment this may be.
-HERE = Path(workflow.basedir, "src", "bouncing_ball").resolve()
+HERE = Path(ROOT, "src", "bouncing_ball").resolve()
 package = find_spec("bouncing_ball")
 if package is None or Path(package.origin).resolve().parent != HERE:
     found = Path(package.origin).parent if package else "nowhere"
@@ -42,11 +44,11 @@ try:
     for where in map(os.path.relpath, workflow.configfiles):
         read_yaml(where)
     where = "configuration"
-    check_configuration(config, read_yaml(Path(workflow.basedir, "config/schema.yaml")))
+    check_configuration(config, read_yaml(Path(ROOT, "config/schema.yaml")))
     if workflow.is_main_process:  # jobs need not look again
         check_orbits(config)
     where = "config/claims.yaml"
-    LEDGER = read_ledger(Path(workflow.basedir, "config"), set(DATASETS) - {"claims"})
+    LEDGER = read_ledger(Path(ROOT, "config"), set(DATASETS) - {"claims"})
     # All that parameters and settings of the stages are taken from.
     RUN = config | {"printed": LEDGER.table("Table 1"), "ledger": LEDGER.source}
     where = "stages"
@@ -77,7 +79,7 @@ def files(artifacts):
 
 
 def captioned(name):
-    return Path(workflow.basedir, f"workflow/report/{name}.rst").is_file()
+    return Path(ROOT, f"workflow/report/{name}.rst").is_file()
 
 
 def reads(stage):

@@ -11,7 +11,7 @@ rule diff:
         rules.accept.input,
         tolerances="config/tolerances.yaml",
     params:
-        record=workflow.basedir,
+        record=ROOT,
     log:
         "results/logs/diff.log",
     script:

@@ -1,6 +1,6 @@
 # The replication article, every number from a dataset, and the tally of the claims.
 
-ARTICLE = Path(workflow.basedir, "workflow/report/paper")
+ARTICLE = Path(ROOT, "workflow/report/paper")
 
 
 rule paper:

@@ -13,7 +13,7 @@ rule accept:
         artifacts=rules.all.input.artifacts,
         paper=rules.paper.output.paper,
     params:
-        record=workflow.basedir,
+        record=ROOT,
         recipes=lambda wildcards: planned(workflow.dag),
     log:
         "results/logs/accept.log",

@@ -6,8 +6,11 @@ that is not the top of its own repository, the answer is "unknown".
 
 import os
 import subprocess
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import NamedTuple
+
+from bouncing_ball.errors import ModelError
 
 RECORD = ("figures", "paper.md", "accepted.csv")
 """What git holds of the results; a change there changes no result."""
@@ -77,6 +80,20 @@ def revision(folder: Path) -> Revision:
         *(f":(exclude){name}" for name in RECORD),
     )
     return UNKNOWN if status is None else parse_status(status)
+
+
+def commit_date(folder: Path) -> str:
+    """The day of the commit checked out in a folder, in UTC.
+
+    Raises
+    ------
+    ModelError
+        If git knows none.
+    """
+    seconds = _git(folder, "show", "--no-patch", "--format=%ct", "HEAD")
+    if not seconds:
+        raise ModelError(f"no commit in {folder} to take the date from")
+    return datetime.fromtimestamp(int(seconds), UTC).date().isoformat()
 
 
 def checkout(*starts: Path) -> Path | None:

@@ -8,14 +8,16 @@ import pytest
 from bouncing_ball.audit.claims.assessment import assess
 from bouncing_ball.audit.claims.ledger_file import read_ledger
 from bouncing_ball.audit.evidence import evidence
+from bouncing_ball.configuration.stages import tables
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.render.article.render import render_article
+from bouncing_ball.render.tables.error_law import law_table
 from bouncing_ball.render.tables.formats import to_csv, to_latex, to_markdown
 
 ROOT = Path(__file__).resolve().parents[2]
 TEMPLATES = ROOT / "workflow" / "report" / "paper"
-TABLES = ("table1", "thresholds", "witness", "forensics", "formulas", "claims")
+TABLES = tables()
 DERIVED = ("evidence", "claims")
 
 
@@ -38,8 +40,10 @@ def all_texts(data):
         for form in (to_csv, to_latex, to_markdown):
             made[name, form.__name__] = form(*rows)
     references = read_yaml(TEMPLATES / "references.yaml")
-    tables = {name: made[name, "to_markdown"] for name in TABLES}
-    made["article"] = render_article(TEMPLATES, data, tables, references)
+    texts = {name: made[name, "to_markdown"] for name in TABLES}
+    summary = (ROOT / "config" / "error_law.csv").read_text(encoding="utf-8")
+    texts["error_law"] = law_table(summary)
+    made["article"] = render_article(TEMPLATES, data, texts, references)
     return made
 
 

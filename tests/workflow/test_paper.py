@@ -10,6 +10,7 @@ import yaml
 from bouncing_ball.audit.claims.verdict import Verdict
 from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.render.article.render import render_article
+from bouncing_ball.render.tables.error_law import law_table
 
 
 @pytest.fixture(scope="module")
@@ -19,6 +20,8 @@ def run(pristine):
     results = pristine.path / "results" / "figures"
     data = {path.stem: read_dataset(path) for path in sorted(results.glob("*.nc"))}
     tables = {path.stem: path.read_text(encoding="utf-8") for path in results.glob("*.md")}
+    summary = pristine.path / "config" / "error_law.csv"
+    tables["error_law"] = law_table(summary.read_text(encoding="utf-8"))
     references = yaml.safe_load((folder / "references.yaml").read_text(encoding="utf-8"))
     return folder, data, tables, references
 

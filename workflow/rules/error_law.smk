@@ -5,7 +5,7 @@
 
 rule error_law:
     message:
-        "Error law on random orbits: some three minutes"
+        "Error law on random orbits: some minutes"
     input:
         source=modules("studies.law_distribution", "datasets.files", "render.tables.formats"),
     output:

@@ -8,11 +8,13 @@ rule paper:
         "Writing results/paper.md"
     input:
         templates=sorted(os.path.relpath(path) for path in ARTICLE.glob("*.md.j2")),
+        error_law="config/error_law.csv",
         references=os.path.relpath(ARTICLE / "references.yaml"),
         data=datasets(DATASETS),
         tables=expand("results/figures/{table}.md", table=TABLES),
         source=modules(
             "render.article.render",
+            "render.tables.error_law",
             "audit.claims.tally",
             "datasets.files",
             "datasets.netcdf",

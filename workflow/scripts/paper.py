@@ -7,6 +7,7 @@ from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.pipeline.job import logged, read_input
 from bouncing_ball.render.article.render import render_article
+from bouncing_ball.render.tables.error_law import law_table
 
 
 def text_of(path):
@@ -16,6 +17,7 @@ def text_of(path):
 with logged(snakemake) as lines:
     data = {Path(path).stem: read_input(path) for path in snakemake.input.data}
     tables = {Path(path).stem: text_of(path) for path in snakemake.input.tables}
+    tables["error_law"] = law_table(text_of(snakemake.input.error_law))
     references = read_yaml(snakemake.input.references)
     folder = Path(snakemake.input.templates[0]).parent
     write_text(snakemake.output.paper, render_article(folder, data, tables, references))

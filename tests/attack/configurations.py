@@ -26,7 +26,7 @@ from bouncing_ball.audit.evidence import evidence
 from bouncing_ball.configuration.check import check_configuration, check_orbits
 from bouncing_ball.configuration.conformity import resolved
 from bouncing_ball.configuration.schema import configuration_schema
-from bouncing_ball.configuration.stages import STAGES, studied
+from bouncing_ball.configuration.stages import STAGES, Kind, names, studied
 from bouncing_ball.configuration.study import load
 from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
 from bouncing_ball.datasets.netcdf import parameter_attributes
@@ -150,9 +150,9 @@ def _made_to_exist(part: dict[str, Any], stage: str, rng: np.random.Generator) -
 def drawn(rng: np.random.Generator, kind: str, stage: str = "") -> Case:
     """The project's configuration with the section of one stage drawn anew."""
     config, schema = _project()[0], _schema()
-    names = [(section, name) for section in SECTIONS for name in config[section]]
-    names = [pair for pair in names if pair[1] != "evidence" and stage in ("", pair[1])]
-    section, name = names[rng.integers(len(names))]
+    pairs = [(section, name) for section in SECTIONS for name in config[section]]
+    pairs = [pair for pair in pairs if pair[1] != "evidence" and stage in ("", pair[1])]
+    section, name = pairs[rng.integers(len(pairs))]
     rules = schema["properties"][section]["properties"][name]
     part = _drawn(rules, config[section][name], schema, rng, kind)
     _made_to_exist(part, name, rng)
@@ -195,8 +195,8 @@ def _others() -> dict[str, xr.Dataset]:
         return min(value, _SIZES.get(key, 31)) if key in _SIZES else value
 
     small = coarse(config)
-    names = [stage.name for stage in studied() if not stage.reads and stage.section != "ledger"]
-    data = {name: _dataset(name, small) for name in names}
+    alone = [stage.name for stage in studied() if not stage.reads and stage.section != "ledger"]
+    data = {name: _dataset(name, small) for name in alone}
     crossed = {name: data[name] for name in STAGES["witness"].reads}
     data["witness"] = cross_check(crossed, config["continuation"])
     data["evidence"] = _evidence(data, config)
@@ -223,9 +223,10 @@ def run(case: Case) -> None:
             others["witness"] = xr.concat([rest, row], "artifact", data_vars="minimal")
         others["evidence"] = _evidence(others, config)
         assess(ledger, others)
-        if case.stage.startswith(("fig", "ext_")):
+        if STAGES[case.stage].kind in (Kind.FIGURE, Kind.EXTENSION):
             _draw(case.stage, data)
-        for table in {case.stage, "witness"} & {"table1", "thresholds", "witness", "forensics"}:
+        tables = {case.stage, "witness"} & set(names(Kind.TABLE))
+        for table in tables:
             import_module(f"bouncing_ball.render.tables.{table}").rows(others[table])
     except ConfigurationError as error:
         raise RuntimeError(f"refused late: {error}") from error

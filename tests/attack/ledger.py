@@ -151,7 +151,7 @@ def attack(seed: int, seconds: float) -> tuple[int, int, list[str]]:
         name for name in names(*Kind) if STAGES[name].kind is not Kind.DATASET and name in data
     ]
     tried, fallen = 0, []
-    while time.monotonic() < end:
+    while time.monotonic() < end or not tried:
         if tried % 3 == 0:
             other, what = mutated(mapping, rng)
             said = fault(lambda other=other: judged(other, schema, data))

@@ -292,6 +292,7 @@ def write_ledger(folder, mapping):
         (on("sticking", kind="guess"), "claims['sticking'].kind = 'guess' must be one of number,"),
         (on("sticking", legibility="bad"), "legibility = 'bad' must be one of clear, damaged,"),
         (on("sticking", statement=""), "claims['sticking'].statement = '' must not be empty"),
+        (on("sticking", item="a" * 5000), "... must have at most 1000 characters (a text"),
         (
             lambda m: entry(m, "stiff row")["decided_by"].update(reduce="mean"),
             "claims['stiff row'].decided_by.reduce = 'mean' must be one of max, min, sum",

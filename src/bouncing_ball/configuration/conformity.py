@@ -84,6 +84,8 @@ def _allowed(error: ValidationError) -> str:
             words = "must not repeat an item"
         case "minLength":
             words = "must not be empty"
+        case "maxLength":
+            words = f"must have at most {limit} characters"
         case "minProperties":
             words = f"must have at least {limit} key{'s' if limit > 1 else ''}"
         case "pattern" | "oneOf" if notes:

@@ -7,8 +7,10 @@ of a text. Inputs are known by their content: so a dataset changed together with
 the checksum in its log is found by what was made from it. No time of a file
 counts.
 
-A file that nothing is made from, changed with its own log, passes. To find that,
-make everything again, ``snakemake --forceall``.
+What is changed together with its log and all that is made from it passes: a table
+and its log, or a dataset and its log, after which all else was made again. Only
+making everything again tells, ``make clean all diff``, as continuous integration
+does with each commit.
 """
 
 import json

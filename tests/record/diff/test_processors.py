@@ -31,14 +31,14 @@ OLDER = {
 PROGRAM = """
 import json, sys
 from pathlib import Path
-import yaml
 from numpy._core._multiarray_umath import __cpu_features__
 from bouncing_ball.datasets.netcdf import write_dataset
 from bouncing_ball.audit.claims.ledger_file import read_ledger
-from bouncing_ball.audit.convergence import stages
+from bouncing_ball.audit.convergence import computations
+from bouncing_ball.configuration.yaml_file import read_yaml
 folder = Path(sys.argv[1])
-config = yaml.safe_load((folder / "config.yaml").read_text(encoding="utf-8"))
-made = stages(config, read_ledger(folder).table("Table 1"), ["table1"])
+config = read_yaml(folder / "config.yaml")
+made = computations({**config, "printed": read_ledger(folder).table("Table 1")})
 for name in sys.argv[3:]:
     write_dataset(made[name].run(), Path(sys.argv[2], f"{name}.nc"))
 print(json.dumps([name for name, there in __cpu_features__.items() if there]))

@@ -2,7 +2,7 @@
 
 import pytest
 
-from bouncing_ball.configuration.stages import STAGES
+from bouncing_ball.configuration.stages import STAGES, Kind, names
 
 PAPER = "Writing results/paper.md"
 
@@ -107,9 +107,9 @@ def test_a_changed_parameter(complete, keys, value, expected):
         (
             "impacts/permanent_contact.py",
             {
-                *made("fig08", "fig09", "fig11", "fig12", "fig14", "fig15", "fig16"),
+                *made("fig07", "fig08", "fig09", "fig11", "fig12", "fig14", "fig15", "fig16"),
                 *made("table1", "thresholds", "ext_release", *CORRECTED, "ext_error_law"),
-                *drawing("fig08", "fig09", "fig11", "fig12", "fig14", "fig15", "fig16"),
+                *drawing("fig07", "fig08", "fig09", "fig11", "fig12", "fig14", "fig15", "fig16"),
                 *drawing("ext_release", *CORRECTED),
                 "Setting table1",
                 "Setting thresholds",
@@ -125,7 +125,7 @@ def test_a_changed_parameter(complete, keys, value, expected):
         ("render/figures/fig12.py", drawing("fig12")),
         (
             "render/figures/style.py",
-            drawing("ext_release", *CORRECTED, *(f"fig{k:02d}" for k in range(1, 17))),
+            drawing(*names(Kind.FIGURE, Kind.EXTENSION)),
         ),
         ("render/tables/table1.py", {"Setting table1", PAPER}),
         ("audit/claims/verdict.py", {*CLAIMS, PAPER}),

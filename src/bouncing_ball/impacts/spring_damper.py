@@ -17,6 +17,8 @@ that to e^{is}, all from :mod:`bouncing_ball.impacts.oscillator`.
 All quantities are dimensionless: time Ωt, length Ω²y/g.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -226,7 +228,7 @@ class Contact(Record):
         release: str = Release.DISPLACEMENT,
         *,
         measured: bool = False,
-    ) -> "Contact":
+    ) -> Contact:
         """The contact whose damping is that of a restitution coefficient r.
 
         Parameters

@@ -4,6 +4,8 @@ Each takes the parameters of a model: r alone is the restitution model, r and ϖ
 are a spring-damper contact with the damping of r by Eq. 16.
 """
 
+from __future__ import annotations
+
 import math
 from typing import NamedTuple
 

@@ -1,5 +1,7 @@
 """The spring-damper model: a contact and its n-T orbits."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import ClassVar
 

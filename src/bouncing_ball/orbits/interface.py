@@ -15,6 +15,8 @@ once. Models and orbits are arrays: all fields broadcast, and both are indexed,
 at τ_b = D, the next one starts at τ_2 = 2πn. Everything is dimensionless.
 """
 
+from __future__ import annotations
+
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from enum import StrEnum
@@ -54,7 +56,7 @@ class Side(StrEnum):
     UNSTABLE = "unstable"
 
     @classmethod
-    def of(cls, side: str) -> "Side":
+    def of(cls, side: str) -> Side:
         """The side of a name; ModelError for another.
 
         Examples
@@ -314,7 +316,7 @@ class Orbit(Record, ABC):
         """Largest defect of the model's equations."""
         return np.max(np.abs(self.residual()), axis=-1)
 
-    def distance(self, other: "Orbit") -> np.ndarray:
+    def distance(self, other: Orbit) -> np.ndarray:
         """Largest difference in Λ, φ, contact duration in its own time, and z′_i."""
         differences = (
             self.amplitude - other.amplitude,

@@ -1,5 +1,7 @@
 """The restitution-coefficient model and its n-T orbits, with the model interface."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import ClassVar
 

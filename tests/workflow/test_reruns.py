@@ -114,6 +114,7 @@ def test_a_changed_parameter(complete, keys, value, expected):
                 "Setting table1",
                 "Setting thresholds",
                 "Setting ext_error_law",
+                "Setting ext_validity",
                 *WITNESS,
                 *EVIDENCE,
                 PAPER,

@@ -24,8 +24,12 @@ def sweep(apparent, restitution, amplitude, **more):
     amplitude, r = np.array(amplitude), np.array(restitution)
     off = 1 + 0.1 / np.array(RATIO)
     phase = np.arccos(np.pi / amplitude * (1 - r) / (1 + r))
+    height = amplitude * np.sin(phase) + np.pi**2 / 2
     values |= {
         "phase": (("case", "frequency_ratio"), phase[:, np.newaxis] * off),
+        "max_height": (("case", "frequency_ratio"), height[:, np.newaxis] * off),
+        # On its way up the table stands still: the ball leaves it with its own velocity.
+        "release_phase": (("case", "frequency_ratio"), np.full((cases, 4), np.pi / 2)),
         "bounce_velocity": (("case", "frequency_ratio"), np.pi * np.ones((cases, 1)) * off),
     }
     coords = {"frequency_ratio": RATIO, "case": np.arange(cases)}
@@ -110,6 +114,7 @@ def make():
             {
                 "contact_duration": (("frequency_ratio", "point"), [[5.0, 4.0], [0.4, 0.3]]),
                 "admissible": (("frequency_ratio", "point"), np.ones((2, 2), dtype=bool)),
+                "amplitude": (("frequency_ratio", "point"), [[0.5, 1.0], [1.0, 0.5]]),
                 # No saddle-node.
                 "special_kind": (("frequency_ratio", "special"), [[DOUBLING], [NODE]]),
                 "special_amplitude": (("frequency_ratio", "special"), [[1.0], [0.5]]),
@@ -210,6 +215,11 @@ EXPECTED = {
     "apparent_restitution_rebound": [0.0, 0.1, 0.0, 0.0],
     "apparent_restitution_dip": [0.1, 0.1, 0.0, 0.0],
     "apparent_restitution_spread": 0.1,
+    # From Λ = 1.1 to 1.2, at the softest contact.
+    "apparent_restitution_order": -0.1,
+    # r_a is r at both ends of the last decade; Λ cos φ = π/3.
+    "apparent_restitution_law_error": 1 - np.sqrt(1.1**2 - (np.pi / 3) ** 2),
+    "short_of_lift": 1 - np.sqrt(1.2**2 - (np.pi / 3) ** 2),
     "bounce_velocity_error_soft": 0.25,
     # 0.2 and 0.05 on the line 0.5/ϖ; no sample is within 0.0001.
     "bounce_velocity_departure": [2.5, 10.0, np.nan],
@@ -226,15 +236,29 @@ EXPECTED = {
     "contact_duration_stiffest": [0.2, 0.4],
     "contact_duration_fold": [2.5, np.nan],
     "branch_end_gap": 0.125,
-    # Phase, velocity, r_a at ϖ = 100; that of fig10 is given, against π.
+    # Height, velocity, r_a, phase and phase in cycles from ϖ = 100 on; the velocity of fig10 is
+    # given, against π.
     "stiff_orbit_error": [
-        [0.001, 0.001, 0.02],
-        [0.001, 0.001, 0.05],
-        [0.001, 0.001, 0.0],
-        [0.001, 0.001, 0.0],
-        [0.001, 3.998 / np.pi - 1, 0.0],
-        [0.001, 3.999 / np.pi - 1, 0.0],
+        [0.001, velocity, apparent, 0.001, 0.001 * np.arccos(np.pi * x) / (2 * np.pi)]
+        for velocity, apparent, x in (
+            (0.001, 0.02, 1 / 6),
+            (0.001, 0.05, 0.0),
+            (0.001, 0.0, 1 / 3.3),
+            (0.001, 0.0, 1 / 3.6),
+            (3.998 / np.pi - 1, 0.0, 1 / 6),
+            (3.999 / np.pi - 1, 0.0, 1 / 9),
+        )
     ],
+    # 2ζϖ z′_b at the stiffest contact of fig10, ζ that of r = 1/2.
+    "release_pull": 2 * 3.999e3 * np.log(2) / np.hypot(np.pi, np.log(2)),
+    # The stiff branch of fig08 stays at one Λ.
+    "durations_at_one_amplitude": 0,
+    "existence_domains": 2,
+    "lowest_amplitude": 0.9,
+    # From 2 to 2.125 at the period doubling, from 1 to 0.5 at the saddle-node.
+    "printed_slight_move": 0.5,
+    # At ϖ = 20, from 1.75 to 1; families that Table 1 has not are left out.
+    "release_rule_move": 0.75,
     # The last saddle-node, 0.9, and the first doubling after it, 1.9.
     "range_error": [0.1, 0.05],
     "computed_softening": [[[-0.5, -0.5]], [[-0.25, 1.0]]],
@@ -348,6 +372,46 @@ def test_a_threshold_below_the_minimum_of_eq_34(data):
     # Λ_SD ≥ 2ζ√(1-ζ²) ≈ 0.94: it is 0.75 nowhere.
     data["fig16"]["damping_ratio"] = 0.6
     assert np.isnan(evidence(data, SETTINGS).permanent_contact_inverse)
+
+
+def test_the_law_of_the_stiff_end_is_met_where_it_holds(data):
+    # r_a - r of first and second order in 1/ϖ: the second one does not disturb the limit.
+    sweep = data["fig06"]
+    r, lam = sweep.restitution.values[:, np.newaxis], sweep.amplitude.values[:, np.newaxis]
+    short = 1 - np.sqrt(lam**2 - (np.pi * (1 - r) / (1 + r)) ** 2)
+    zeta = -np.log(r) / np.hypot(np.pi, np.log(r))
+    first = -zeta * (1 + r) ** 2 * short / np.pi
+    sweep.apparent_restitution[:] = r + first / RATIO + 7 / np.array(RATIO) ** 2
+    result = evidence(data, SETTINGS)
+    assert result.apparent_restitution_law_error.item() == pytest.approx(0, abs=1e-9)
+    sweep.apparent_restitution[:] = r + 2 * first / RATIO
+    result = evidence(data, SETTINGS)
+    assert result.apparent_restitution_law_error.item() == pytest.approx(abs(short).max())
+
+
+def test_a_single_curve_has_no_order(data):
+    data["fig06"] = data["fig06"].isel(case=[0])
+    assert np.isnan(evidence(data, SETTINGS).apparent_restitution_order)
+
+
+def test_a_figure_over_the_amplitude_counts_as_one_of_domains(data):
+    data["fig10"]["special_kind"] = ("special", [NODE])
+    assert evidence(data, SETTINGS).existence_domains.item() == 3
+
+
+def test_branches_that_fold_share_an_amplitude(data):
+    for name in ("fig08", "fig09"):
+        data[name] = data[name].drop_vars("amplitude", errors="ignore").drop_dims("point")
+        shape = ("frequency_ratio", "point")
+        # Three durations at Λ = 2.5, and two at Λ = 1.5 with one entry missing.
+        folded = [[1.0, 3.0, 2.0, 4.0], [2.0, 1.0, 2.0, np.nan]]
+        data[name]["amplitude"] = (shape, folded)
+        data[name]["contact_duration"] = (shape, np.ones((2, 4)))
+        data[name]["admissible"] = (shape, np.ones((2, 4), dtype=bool))
+    assert evidence(data, SETTINGS).durations_at_one_amplitude.item() == 2
+    for name in ("fig08", "fig09"):
+        data[name]["amplitude"][1] = data[name]["amplitude"][0]
+    assert evidence(data, SETTINGS).durations_at_one_amplitude.item() == 3
 
 
 def test_a_missing_dataset(data):

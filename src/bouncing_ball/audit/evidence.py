@@ -16,6 +16,7 @@ import xarray as xr
 
 from bouncing_ball.audit.formulas import as_printed as printed
 from bouncing_ball.datasets.variables import describe
+from bouncing_ball.orbits import restitution_orbit
 
 Datasets = Mapping[str, xr.Dataset]
 Found = dict[str, xr.DataArray]
@@ -82,12 +83,38 @@ def _apparent_restitution(data: Datasets, stiff: float) -> Found:
         ):
             named = values.reset_coords(drop=True).rename(case="curve")
             found[key].append(named.assign_coords(curve=_curves(name, sweep)))
-    drawn = data["fig06"].apparent_restitution
     return {
-        **{
-            f"apparent_restitution_{key}": xr.concat(parts, "curve") for key, parts in found.items()
-        },
-        "apparent_restitution_spread": (drawn.max("case") - drawn.min("case")).max(),
+        f"apparent_restitution_{key}": xr.concat(parts, "curve") for key, parts in found.items()
+    } | _curves_of_fig06(data["fig06"])
+
+
+@np.errstate(divide="ignore", invalid="ignore")  # without damping there is no dip
+def _curves_of_fig06(sweep: xr.Dataset) -> Found:
+    """Order of the three curves of Fig. 6, and the law of their stiff end.
+
+    To first order in 1/ϖ, ``r_a - r = -ζ(1 + r)²(1 - Λ sin φ)/(nπϖ)`` with the
+    phase of Eq. 6: r_a comes from below r exactly where Λ sin φ < 1. The limit of
+    nπϖ(r_a - r) is extrapolated from the two ends of the stiffest decade.
+    """
+    apparent, ratio = sweep.apparent_restitution, sweep.frequency_ratio
+    spread = apparent.max("case") - apparent.min("case")
+    widest = apparent.isel(frequency_ratio=int(np.nan_to_num(spread.values, nan=-1.0).argmax()))
+    steps = np.diff(widest.values[np.argsort(sweep.amplitude.values)])
+
+    n, r = sweep.attrs["n"], sweep.restitution
+    phase, _ = printed.fixed_point(n, r, sweep.amplitude)
+    short_of_lift = 1 - sweep.amplitude * np.sin(phase)
+    scaled = n * np.pi * ratio * (apparent - r)
+    stiffest = ratio.values[-1]
+    softer = int(np.argmin(np.abs(np.log(ratio.values / (stiffest / 10)))))
+    pair = [(scaled * ratio).isel(frequency_ratio=k) for k in (-1, softer)]
+    limit = (pair[0] - pair[1]) / (stiffest - ratio.values[softer])
+    measured = -limit / (printed.damping_ratio(r) * (1 + r) ** 2)
+    return {
+        "apparent_restitution_spread": spread.max(),
+        "apparent_restitution_order": xr.DataArray(steps.min() if steps.size else np.nan),
+        "apparent_restitution_law_error": np.abs(measured - short_of_lift).max(),
+        "short_of_lift": short_of_lift.min(),
     }
 
 
@@ -99,23 +126,37 @@ def _curves(name: str, sweep: xr.Dataset) -> list[str]:
 
 @np.errstate(divide="ignore", invalid="ignore")  # the phase is 0 at the saddle-node
 def _stiff_orbits(data: Datasets, stiff: float) -> Found:
-    """Figs. 5, 6 and 10: relative errors of the restitution model among stiff contacts."""
-    parts = []
+    """Figs. 5, 6 and 10: errors of the restitution model among stiff contacts.
+
+    They are relative; that of a phase depends on its origin, and is there as a
+    share of a cycle too. With it how hard the contacts pull at release.
+    """
+    parts, pulls = [], []
     for name in ("fig05", "fig06", "fig10"):
         sweep = data[name]
-        phase, velocity = printed.fixed_point(sweep.attrs["n"], sweep.restitution, sweep.amplitude)
+        n, r, lam = sweep.attrs["n"], sweep.restitution, sweep.amplitude
+        phase, velocity = printed.fixed_point(n, r, lam)
         rigid = {
-            "phase": phase,
+            "max_height": restitution_orbit.max_height(n, lam, phase),
             "bounce_velocity": velocity,
-            "apparent_restitution": sweep.restitution,
+            "apparent_restitution": r,
+            "phase": phase,
         }
-        errors = [
-            np.abs(sweep[key] / value - 1).reset_coords(drop=True) for key, value in rigid.items()
-        ]
-        joined = xr.concat(errors, xr.Variable("measure", list(rigid)))
+        errors = {
+            **{key: np.abs(sweep[key] / value - 1) for key, value in rigid.items()},
+            "phase in cycles": np.abs(sweep.phase - phase) / (2 * np.pi),
+        }
+        columns = [values.reset_coords(drop=True) for values in errors.values()]
+        joined = xr.concat(columns, xr.Variable("measure", list(errors)))
         worst = _worst_when_stiff(joined, stiff).rename(case="orbit")
         parts.append(worst.assign_coords(orbit=_curves(name, sweep)))
-    return {"stiff_orbit_error": xr.concat(parts, "orbit").transpose("orbit", "measure")}
+        leaving = sweep.bounce_velocity - lam * np.cos(sweep.release_phase)
+        pull = 2 * printed.damping_ratio(r) * sweep.frequency_ratio * leaving
+        pulls.append(float(pull.max()))
+    return {
+        "stiff_orbit_error": xr.concat(parts, "orbit").transpose("orbit", "measure"),
+        "release_pull": xr.DataArray(max(pulls)),
+    }
 
 
 def _bounce(data: Datasets) -> Found:
@@ -179,12 +220,39 @@ def _domains(data: Datasets) -> Found:
     found["contact_duration_stiffest"] = xr.DataArray(longest, {"figure": names})
     found["contact_duration_fold"] = xr.DataArray(at_fold, {"figure": names})
     found["branch_end_gap"] = _end_of_softest(data["fig08"])
+    shared = [_durations_at_once(row) for name in names for row in _branches(data[name])]
+    found["durations_at_one_amplitude"] = xr.DataArray(min(shared, default=0))
+    domains = [name for name in ("fig08", "fig09", "fig10") if "special_kind" in data[name]]
+    found["existence_domains"] = xr.DataArray(len(domains))
 
     both = data["fig15"].isel(frequency_ratio=0)
     rigid = np.array([both.saddle_node_amplitude, both.period_doubling_amplitude])
     soft = _first_range(both.special_kind.values, both.special_amplitude.values)
     found["range_error"] = xr.DataArray(np.abs(soft / rigid - 1), {"bound": list(BOUNDS)})
+    found["lowest_amplitude"] = xr.DataArray(np.fmin(soft[0], rigid[0]))
     return found
+
+
+def _branches(figure: xr.Dataset) -> list[np.ndarray]:
+    """Λ along each branch of a figure that has one."""
+    rows = [row[np.isfinite(row)] for row in figure.amplitude.values]
+    return [row for row in rows if row.size > 1]
+
+
+def _durations_at_once(amplitude: np.ndarray) -> int:
+    """How many points of a sampled branch share one Λ, at most.
+
+    Examples
+    --------
+    >>> _durations_at_once(np.array([2.0, 1.0, 3.0])), _durations_at_once(np.array([1.0, 2.0]))
+    (2, 1)
+    """
+    steps = np.sort([amplitude[:-1], amplitude[1:]], axis=0)
+    below, above = np.sort(steps[0]), np.sort(steps[1])
+    levels = np.unique(amplitude)
+    between = (levels[:-1] + levels[1:]) / 2
+    crossings = np.searchsorted(below, between) - np.searchsorted(above, between)
+    return int(crossings.max(initial=0))
 
 
 def _end_of_softest(branches: xr.Dataset) -> xr.DataArray:
@@ -225,6 +293,9 @@ def _table(data: Datasets) -> Found:
         found[f"{source}_softening"] = _softer_rows(ends.diff("frequency_ratio"), table)
         stiffest = ends.isel(frequency_ratio=0, drop=True)
         found[f"{source}_stiff_difference"] = np.abs(stiffest - table.restitution_range)
+    # From the stiffest row to the next one, which the paper calls slight.
+    moves = _softer_rows(table.printed.diff("frequency_ratio"), table).isel(frequency_ratio=0)
+    found["printed_slight_move"] = np.abs(moves / stiffest).max()
     width = table.computed.sel(bound=doubling) - table.computed.sel(bound=node)
     found["computed_widening"] = _softer_rows(width.diff("frequency_ratio"), table)
     exact = table.restitution_range.sel(impact_map="exact")
@@ -238,6 +309,8 @@ def _table(data: Datasets) -> Found:
     turns = data["ext_release"].period_doubling_turn.reindex(n=table.n)
     found["period_doubling_lowest"] = turns.sel(release="displacement")
     found["period_doubling_drop"] = curve.isel(frequency_ratio=-1, drop=True) - lowest
+    by_rule = [curves.sel(release=rule, drop=True) for rule in ("displacement", "force")]
+    found["release_rule_move"] = np.abs(by_rule[1] - by_rule[0]).max()
     return found
 
 

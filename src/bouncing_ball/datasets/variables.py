@@ -171,6 +171,8 @@ VARIABLES: dict[str, Variable] = {
     "static_error": Variable(
         "relative error of Eq. 16 on a table at rest, with gravity", "", equation="Eq. 16"
     ),
+    "curve_points": Variable("random points of the explicit curve", ""),
+    "curve_points_admissible": Variable("those of them with one impact per period", ""),
     # evidence for statements in words
     "curve": Variable("curve of a figure", ""),
     "figure": Variable("figure", ""),
@@ -183,6 +185,15 @@ VARIABLES: dict[str, Variable] = {
     ),
     "apparent_restitution_dip": Variable("largest r - r_a", "", equation="Eq. 17"),
     "apparent_restitution_spread": Variable("largest spread of r_a over Λ", "", equation="Eq. 17"),
+    "apparent_restitution_order": Variable(
+        "smallest rise of r_a from one Λ of Fig. 6 to the next larger one, where they differ most",
+        "",
+        equation="Eq. 17",
+    ),
+    "apparent_restitution_law_error": Variable(
+        "largest error of 1 - Λ sin φ as the limit of nπϖ(r - r_a)/[ζ(1 + r)²] on Fig. 6", ""
+    ),
+    "short_of_lift": Variable("smallest 1 - Λ sin φ of Fig. 6, with φ of Eq. 6", ""),
     "bounce_velocity_error_soft": Variable("smallest |z′_b - nπ|/(nπ) at the softest contact", ""),
     "bounce_velocity_departure": Variable("ϖ above which z′_b is nπ within the tolerance", "ϖ"),
     "bounce_velocity_spread_end": Variable(
@@ -221,6 +232,20 @@ VARIABLES: dict[str, Variable] = {
     "orbit": Variable("orbit along the frequency ratio, curve of a figure", ""),
     "measure": Variable("quantity compared along these orbits", ""),
     "stiff_orbit_error": Variable("largest relative error of an orbit among stiff contacts", ""),
+    "release_pull": Variable("largest pull of a contact at release, in weights of the ball", ""),
+    "release_rule_move": Variable(
+        "largest move of an end of the stability range with the other rule of release", "Λ"
+    ),
+    "durations_at_one_amplitude": Variable(
+        "contact durations that share some Λ, on the branch with the fewest", ""
+    ),
+    "existence_domains": Variable("figures among Figs. 8-10 that show existence domains", ""),
+    "lowest_amplitude": Variable("smallest saddle-node of both models in Fig. 15", "Λ"),
+    "printed_slight_move": Variable(
+        "largest relative move of a printed end from the stiffest row to the next",
+        "",
+        equation="Table 1",
+    ),
     "branch_end_gap": Variable(
         "distance of the end of the softest branch from the threshold of permanent contact", "Λ"
     ),
@@ -240,6 +265,8 @@ VARIABLES: dict[str, Variable] = {
     "section": Variable("section of the paper", ""),
     "item": Variable("figure, table or equation of the paper", ""),
     "kind": Variable("number, formula or statement", ""),
+    "group": Variable("what the claim is counted as", ""),
+    "restates": Variable("claim that it says again", ""),
     "statement": Variable("what the claim says", ""),
     "printed_text": Variable("the number as printed", ""),
     "legibility": Variable("how legible the claim is in the text at hand", ""),

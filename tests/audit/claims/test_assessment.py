@@ -25,6 +25,8 @@ def test_what_is_said_of_each_claim(ledger, number, statement, data, described):
         "section": "Results",
         "item": "Fig. 14",
         "kind": "number",
+        "group": "number",
+        "restates": "",
         "statement": "the threshold",
         "printed_text": "82",
         "legibility": "clear",

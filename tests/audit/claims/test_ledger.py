@@ -75,6 +75,40 @@ def test_the_first_explanation_that_fits_is_taken(ledger, table):
     assert names == ["second", "first", "second", "first", "", "", "first", "first"]
 
 
+def test_entries_of_a_table_restate_a_claim_where_they_say(ledger, table, number):
+    table["restates"] = [{"where": {"n": 2, "bound": "high"}, "name": "height"}]
+    claims = parsed(ledger, number, table).claims[1:]
+    assert [claim.restates for claim in claims] == ["", "", "", "height"] * 2
+    assert [claim.group for claim in claims] == [*["number"] * 3, "restatement"] * 2
+
+
+@pytest.mark.parametrize("other", ["depth", "height", "again"])
+def test_only_a_claim_that_stands_alone_can_be_restated(ledger, number, other, one_line):
+    again = number | {"id": "again", "restates": "height"}
+    third = number | {"id": "third", "restates": other}
+    if other == "height":
+        assert parsed(ledger, number, again, third).claims[2].restates == "height"
+        return
+    with pytest.raises(ModelError) as error:
+        parsed(ledger, number, again, third)
+    one_line(error, f"claim 'third' restates {other!r}, which is no claim that stands alone")
+
+
+@pytest.mark.parametrize(
+    ("kind", "legibility", "group"),
+    [
+        ("number", "damaged", "number"),
+        ("statement", "clear", "statement"),
+        ("formula", "clear", "statement"),
+        ("formula", "damaged", "restored formula"),
+        ("formula", "unreadable", "restored formula"),
+    ],
+)
+def test_what_a_claim_is_counted_as(ledger, number, kind, legibility, group):
+    change = {"kind": kind, "legibility": legibility}
+    assert parsed(ledger, number | change).claims[0].group == group
+
+
 def test_a_printed_table_as_numbers_with_the_parameters_behind_it(table, one_line):
     book = parse_ledger(
         {
@@ -132,6 +166,10 @@ def test_a_printed_table_as_numbers_with_the_parameters_behind_it(table, one_lin
         (
             lambda t: t["explanation"][0].update(where={"r": 1}),
             "'first' is for r, which is not one of frequency_ratio, n, bound",
+        ),
+        (
+            lambda t: t.update(restates=[{"where": {"r": 1}, "name": "height"}]),
+            "the restates 'height' is for r, which is not one of frequency_ratio, n, bound",
         ),
     ],
 )

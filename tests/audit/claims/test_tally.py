@@ -6,38 +6,52 @@ from bouncing_ball.audit.claims.assessment import assess
 from bouncing_ball.audit.claims.tally import tally
 
 
-def verdicts(*pairs):
-    names, explained = zip(*pairs, strict=True)
-    return xr.Dataset({"verdict": ("claim", list(names)), "explained": ("claim", list(explained))})
+def verdicts(*rows):
+    """Group, verdict and whether it is explained, claim by claim."""
+    names = ("group", "verdict", "explained")
+    columns = zip(*rows, strict=True)
+    return xr.Dataset(
+        {name: ("claim", list(column)) for name, column in zip(names, columns, strict=True)}
+    )
 
 
-def test_counts_from_the_best_to_the_worst():
+def test_counts_from_the_best_to_the_worst_group_by_group():
     line = tally(
         verdicts(
-            ("contradicted", True),
-            ("close", True),
-            ("reproduced", True),
-            ("undecidable", True),
-            ("reproduced", True),
+            ("restatement", "contradicted", True),
+            ("number", "contradicted", True),
+            ("number", "close", True),
+            ("statement", "reproduced", True),
+            ("statement", "undecidable", True),
+            ("number", "reproduced", True),
+            ("restored formula", "reproduced", True),
         ),
         16,
     )
+    # The restatement is none of the six.
     assert line == (
-        "16 figures, Table 1, 5 claims: 2 reproduced, 1 close, 1 contradicted, 1 undecidable"
+        "16 figures, Table 1, 6 claims; 1 restored formula: 1 reproduced; "
+        "3 numbers: 1 reproduced, 1 close, 1 contradicted; "
+        "2 statements: 1 reproduced, 1 undecidable; 1 restatement: 1 contradicted"
     )
 
 
 def test_what_is_not_asked_is_counted_where_there_is_any():
-    line = tally(verdicts(("not asked", True), ("reproduced", True)), 2)
-    assert line.endswith(
-        "2 claims: 1 reproduced, 0 close, 0 contradicted, 0 undecidable, 1 not asked"
-    )
+    line = tally(verdicts(("number", "not asked", True), ("number", "reproduced", True)), 2)
+    assert line == "2 figures, Table 1, 2 claims; 2 numbers: 1 reproduced, 1 not asked"
 
 
 def test_what_is_not_explained_is_counted():
-    line = tally(verdicts(("contradicted", False), ("close", True), ("undecidable", False)), 2)
-    assert line.endswith("1 undecidable; 2 without explanation")
-    assert tally(verdicts(("contradicted", True)), 2).endswith("0 undecidable")
+    line = tally(
+        verdicts(
+            ("number", "contradicted", False),
+            ("number", "close", True),
+            ("restatement", "undecidable", False),
+        ),
+        2,
+    )
+    assert line.endswith("; 1 restatement: 1 undecidable; 2 without explanation")
+    assert tally(verdicts(("number", "contradicted", True)), 2).endswith("1 contradicted")
 
 
 def test_an_explanation_that_fails_shows_in_the_line(ledger, number, statement, turns, data):
@@ -46,6 +60,6 @@ def test_an_explanation_that_fails_shows_in_the_line(ledger, number, statement, 
     turns["checks"][0]["condition"] = {"above": "0"}
     book = ledger(number, statement, explanations=[turns])
     assert tally(assess(book, data), 16) == (
-        "16 figures, Table 1, 2 claims: 1 reproduced, 0 close, 1 contradicted, 0 undecidable; "
+        "16 figures, Table 1, 2 claims; 1 number: 1 reproduced; 1 statement: 1 contradicted; "
         "1 without explanation"
     )

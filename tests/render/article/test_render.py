@@ -25,6 +25,8 @@ def claims(**changes):
     """Two claims, one reproduced and one contradicted and explained."""
     columns = {
         "kind": ["number", "number"],
+        "group": ["number", "number"],
+        "restates": ["", ""],
         "item": ["Fig. 14", "Eq. 38, Fig. 16"],
         "condition": ["", ""],
         "legibility": ["clear", "clear"],
@@ -106,6 +108,13 @@ def test_explanations_are_those_of_claims_not_reproduced():
     assert [part["name"] for part in found] == ["by Eq. 34"]
     assert [claim.id for claim in found[0]["claims"]] == ["contact"]
     assert Claims(claims(verdict=["reproduced", "reproduced"])).explanations() == []
+
+
+def test_restatements_are_counted_apart():
+    shown = Claims(claims(group=["number", "restatement"], restates=["", "heights"]))
+    assert (shown.count(), shown.count(group="all")) == (1, 2)
+    assert (shown.count("contradicted"), shown.count("contradicted", group="all")) == (0, 1)
+    assert (shown.count(group="restatement"), shown.count(group="statement")) == (1, 0)
 
 
 def test_claims_by_place():

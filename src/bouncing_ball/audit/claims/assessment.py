@@ -58,6 +58,8 @@ def _row(claim: Claim, decision: Decision, holds: Mapping[str, bool]) -> dict[st
         "section": claim.section,
         "item": claim.item,
         "kind": claim.kind,
+        "group": claim.group,
+        "restates": claim.restates,
         "statement": claim.statement,
         "printed_text": claim.printed,
         "legibility": claim.legibility,

@@ -94,6 +94,8 @@ class Claim:
         Name of the explanation if it is not reproduced; empty if none.
     table : str
         The printed table whose entry it is; empty if none.
+    restates : str
+        Id of the claim that it says again; empty if it stands alone.
     """
 
     id: str
@@ -110,6 +112,21 @@ class Claim:
     uses: tuple[str, ...]
     explanation: str
     table: str = ""
+    restates: str = ""
+
+    @property
+    def group(self) -> str:
+        """What it is counted as.
+
+        A restatement apart from what stands alone, and a formula whose signs had
+        to be restored apart from a number: the check shows that the restored form
+        is right, not that the paper printed it.
+        """
+        if self.restates:
+            return "restatement"
+        if self.kind == "formula":
+            return "statement" if self.legibility == "clear" else "restored formula"
+        return self.kind
 
 
 @dataclass(frozen=True)

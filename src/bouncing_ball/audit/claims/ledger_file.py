@@ -66,6 +66,7 @@ def _claim(entry: Mapping[str, Any]) -> Claim:
         uses=_uses(entry, criteria),
         explanation=entry.get("explanation", ""),
         table=entry.get("table", ""),
+        restates=entry.get("restates", ""),
     )
 
 
@@ -91,17 +92,17 @@ def _entry(entry: Mapping[str, Any], place) -> str:
     return printed
 
 
-def _chosen_explanation(entry: Mapping[str, Any], at: Mapping[str, Any]) -> str:
-    """The first explanation of a table whose ``where`` fits; empty if none does."""
-    for rule in entry["explanation"]:
+def _by_place(entry: Mapping[str, Any], key: str, at: Mapping[str, Any]) -> str:
+    """The first name under a key of a table whose ``where`` fits; empty if none does."""
+    for rule in entry.get(key, []):
         where = rule.get("where", {})
-        strange = next((key for key in where if key not in at), None)
+        strange = next((axis for axis in where if axis not in at), None)
         if strange is not None:
             raise ModelError(
-                f"table {entry['id']!r}: the explanation {rule['name']!r} is for {strange}, which "
-                f"is not one of {', '.join(at)}"
+                f"table {entry['id']!r}: the {key} {rule['name']!r} is for {strange}, which is "
+                f"not one of {', '.join(at)}"
             )
-        if all(at[key] == value for key, value in where.items()):
+        if all(at[axis] == value for axis, value in where.items()):
             return rule["name"]
     return ""
 
@@ -141,7 +142,8 @@ def _cells(entry: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
             "printed": _entry(entry, place),
             "remark": entry.get("remark", ""),
             "decided_by": {**source, "at": {**source.get("at", {}), **at}},
-            "explanation": _chosen_explanation(entry, at),
+            "explanation": _by_place(entry, "explanation", at),
+            "restates": _by_place(entry, "restates", at),
             "uses": entry.get("uses", []),
         }
 
@@ -168,14 +170,25 @@ def _once(kind: str, names: Sequence[str]) -> None:
             raise ModelError(f"{kind} {name!r} is defined twice in the ledger")
 
 
+def _check_restatements(claims: Sequence[Claim]) -> None:
+    alone = [claim.id for claim in claims if not claim.restates]
+    for claim in claims:
+        if claim.restates and claim.restates not in alone:
+            raise ModelError(
+                f"claim {claim.id!r} restates {claim.restates!r}, which is no claim that stands "
+                "alone"
+            )
+
+
 def parse_ledger(mapping: Mapping[str, Any]) -> Ledger:
     """The ledger from its mapping; tables become one claim for each number.
 
     Raises
     ------
     ModelError
-        If a name is defined twice, a claim names an unknown explanation, or a
-        printed table does not have the shape of its axes.
+        If a name is defined twice, a claim names an unknown explanation or
+        restates one that does not stand alone, or a printed table does not have
+        the shape of its axes.
     """
     explanations = tuple(_explanation(entry) for entry in mapping["explanations"])
     _once("explanation", [explanation.id for explanation in explanations])
@@ -185,6 +198,7 @@ def parse_ledger(mapping: Mapping[str, Any]) -> Ledger:
         parts = _cells(entry) if entry["kind"] == "table" else [entry]
         claims += [_claim(part) for part in parts]
     _once("claim", [claim.id for claim in claims])
+    _check_restatements(claims)
     known = {explanation.id for explanation in explanations}
     for claim in claims:
         if claim.explanation and claim.explanation not in known:

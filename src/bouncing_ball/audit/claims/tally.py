@@ -5,24 +5,37 @@ import xarray as xr
 
 from bouncing_ball.audit.claims.verdict import Verdict
 
+# Restatements, which are counted apart, come last.
+_GROUPS = ("restored formula", "number", "statement", "restatement")
+
+
+def _counts(verdicts: np.ndarray) -> str:
+    numbers = {verdict: int(np.sum(verdicts == str(verdict))) for verdict in Verdict}
+    return ", ".join(f"{number} {verdict}" for verdict, number in numbers.items() if number)
+
 
 def tally(claims: xr.Dataset, figures: int) -> str:
-    """Figures made, claims and verdicts in one line.
+    """Figures made, claims and verdicts in one line, group by group.
 
-    Claims that were not asked are counted where there are any.
+    Independent claims are counted apart from their restatements, and formulas
+    that had to be restored apart from numbers.
 
     Examples
     --------
     >>> claims = xr.Dataset({"verdict": ("claim", ["close", "close", "reproduced"]),
+    ...                      "group": ("claim", ["number", "restatement", "number"]),
     ...                      "explained": ("claim", [True, True, True])})
     >>> tally(claims, 16)
-    '16 figures, Table 1, 3 claims: 1 reproduced, 2 close, 0 contradicted, 0 undecidable'
+    '16 figures, Table 1, 2 claims; 2 numbers: 1 reproduced, 1 close; 1 restatement: 1 close'
     """
-    verdicts = claims.verdict.values
-    numbers = {verdict: int(np.sum(verdicts == str(verdict))) for verdict in Verdict}
-    if not numbers[Verdict.NOT_ASKED]:
-        del numbers[Verdict.NOT_ASKED]
-    counts = ", ".join(f"{number} {verdict}" for verdict, number in numbers.items())
-    line = f"{figures} figures, Table 1, {verdicts.size} claims: {counts}"
+    verdicts, groups = claims.verdict.values, claims.group.values
+    parts = [f"{figures} figures, Table 1, {np.sum(groups != _GROUPS[-1])} claims"]
+    for group in _GROUPS:
+        own = verdicts[groups == group]
+        if own.size:
+            plural = "s" if own.size > 1 else ""
+            parts.append(f"{own.size} {group}{plural}: {_counts(own)}")
     unexplained = int(np.sum(~claims.explained.values.astype(bool)))
-    return f"{line}; {unexplained} without explanation" if unexplained else line
+    if unexplained:
+        parts.append(f"{unexplained} without explanation")
+    return "; ".join(parts)

@@ -17,6 +17,7 @@ from bouncing_ball.audit.formulas.contact_equations import (
     damping_checks,
     motion_checks,
     orbit_checks,
+    points_with_one_impact,
     static_error,
 )
 from bouncing_ball.audit.formulas.permanent_contact_equations import permanent_contact_checks
@@ -39,13 +40,16 @@ def formulas(parameters: Mapping[str, Any]) -> xr.Dataset:
     Parameters
     ----------
     parameters : mapping
-        ``samples``, ``seed``, and ``static`` with the ``restitution``,
-        ``frequency_ratio`` and ``velocity`` of an impact on a table at rest.
+        ``samples``, ``seed``, ``curve_points``, and ``static`` with the
+        ``restitution``, ``frequency_ratio`` and ``velocity`` of an impact on a
+        table at rest.
     """
     rng = np.random.default_rng(parameters["seed"])
     checks: dict[str, Check] = {}
     for part in _PARTS:
         checks |= part(rng, parameters["samples"])
+    points = parameters["curve_points"]
+    admissible = points_with_one_impact(rng, points)
     disagreement, budget, comparison = zip(*checks.values(), strict=True)
     return describe(
         xr.Dataset(
@@ -54,6 +58,8 @@ def formulas(parameters: Mapping[str, Any]) -> xr.Dataset:
                 "budget": ("formula", np.array(budget)),
                 "compared_with": ("formula", np.array(comparison)),
                 "static_error": static_error(parameters["static"]),
+                "curve_points": ((), points),
+                "curve_points_admissible": ((), admissible),
             },
             coords={"formula": list(checks)},
         )

@@ -7,6 +7,22 @@ computed from them. All quantities are dimensionless; the functions broadcast.
 import numpy as np
 
 
+def restitution_law(before, table, restitution):
+    """Eq. 2: ẏ⁺ from ẏ⁻ and the table's velocity, ẏ⁺ - ẇ = -r (ẏ⁻ - ẇ).
+
+    Examples
+    --------
+    >>> restitution_law(-3.0, 1.0, 0.5)
+    3.0
+    """
+    return table - restitution * (before - table)
+
+
+def impact_velocity(time, start, velocity, gravity):
+    """Eq. 3: ẏ⁻ = -g (t₁ - t₀) + ẏ(t₀), just before the impact."""
+    return -gravity * (time - start) + velocity
+
+
 def free_flight(time, start, height, velocity):
     """Eq. 4: height and velocity of the ball in flight since τ₀, from z₀ and z′₀."""
     since = time - start

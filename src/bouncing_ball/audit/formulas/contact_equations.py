@@ -24,6 +24,7 @@ from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.motion.contacts import contact_cycle
 from bouncing_ball.orbits.closed_form import branch_point
+from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.limits import orbit_at, saddle_node
 
 # The faintest rebound that a double can hold.
@@ -67,11 +68,11 @@ def motion_checks(rng, samples) -> dict[str, Check]:
     flown = flow(fall_matrix(), since, state(lam * np.sin(release + phase), thrown, 0.0))
     flight = printed.flight(release + since, release, thrown, lam, phase)
     return {
-        "definition of ϖ": Check(
-            scaled(1 / omega), ROUNDING, "Eq. 10 in physical units, ϖ = Ω/ω as printed"
+        "ϖ = Ω/ω, Ω of the table": Check(
+            scaled(1 / omega), ROUNDING, "Eq. 10 in physical units; one of two readings"
         ),
-        "definition of ϖ, inverted": Check(
-            scaled(omega), ROUNDING, "Eq. 10 in physical units, ϖ = ω/Ω"
+        "ϖ = Ω/ω, Ω of the contact": Check(
+            scaled(omega), ROUNDING, "Eq. 10 in physical units; the other reading"
         ),
         "Eqs. 12-13": Check(
             largest((height - there[:, 0]) / scale, (velocity - there[:, 1]) / scale),
@@ -109,6 +110,8 @@ def orbit_checks(rng, samples) -> dict[str, Check]:
     # Eq. 24 gives z′_b.
     at_impact = printed.flight(period, end, at_release[1], lam, phase)
     table = lam * np.sin(phase + end), lam * np.sin(period + phase)
+    # Eqs. 16 and 17 give numbers, no motion: the contact would last to the next impact.
+    held = _printed_contact(period, omega, zeta, lam, phase, impact)
     return {
         # Eqs. 21-22 give A and B; Eqs. 23-26 are left.
         "Eqs. 21-26": Check(
@@ -122,8 +125,30 @@ def orbit_checks(rng, samples) -> dict[str, Check]:
             ROUNDING,
             "orbits that repeat in the simulation",
         ),
+        "Eqs. 21-26 by Eqs. 12, 13, 16, 17": Check(
+            largest(held[0] - table[1], held[1] - impact),
+            ROUNDING,
+            "orbits that repeat in the simulation",
+        ),
         "Eq. 27": Check(largest(thrown - released), ROUNDING, "matrix exponential of Eq. 11"),
     }
+
+
+def points_with_one_impact(rng, points: int) -> int:
+    """How many of so many random points of the explicit curve are orbits of the ball.
+
+    The curve asks that a contact ends after D and that the ball is back after a
+    flight, not that it touched the table in between, or left it.
+    """
+    omega, zeta = np.exp(rng.uniform(0, 5, points)), rng.uniform(0.01, 0.3, points)
+    n = rng.integers(1, 6, points)
+    touch = Contact(omega, zeta)
+    # From half a free contact to two, or to the whole cycle.
+    longest = np.minimum(2.0, 2 * np.pi * n * touch.damped_frequency / np.pi)
+    duration = np.pi / touch.damped_frequency * rng.uniform(0.5, longest)
+    excess = duration * touch.damped_frequency - touch.free_angle
+    orbit = ContactOrbit.from_branch(branch_point(excess, touch, n), touch, n)
+    return int(np.sum(orbit.is_admissible()))
 
 
 def _measured_restitution(r, frequency_ratio, velocity, gravity):

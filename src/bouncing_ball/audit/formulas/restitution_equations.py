@@ -75,8 +75,31 @@ def _free_flight(rng, samples) -> Check:
     )
 
 
+def _impact(r, lam, phase, velocity, cycle) -> dict[str, Check]:
+    """Eqs. 2 and 3 in metres and seconds, against a simulated flight and impact."""
+    big_omega, gravity = 40.0, 9.81
+    speed, landing = gravity / big_omega, (phase + cycle.time) / big_omega
+    start, thrown = phase / big_omega, velocity * speed
+    before = printed.impact_velocity(landing, start, thrown, gravity)
+    table = lam * speed * np.cos(big_omega * landing)
+    after = printed.restitution_law(before, table, r)
+    fallen = flow(fall_matrix(gravity), landing - start, state(0.0, thrown, 0.0))
+    return {
+        "Eq. 2": Check(
+            largest(after / speed - cycle.velocity),
+            ROUNDING,
+            "simulated flight and impact, in metres and seconds",
+        ),
+        "Eq. 3": Check(
+            largest((before - fallen[:, 1]) / speed),
+            ROUNDING,
+            "matrix exponential of the free fall, in metres and seconds",
+        ),
+    }
+
+
 def restitution_checks(rng, samples) -> dict[str, Check]:
-    """Checks of Eqs. 4 to 9 on random parameters."""
+    """Checks of Eqs. 2 to 9 on random parameters."""
     r, lam = rng.uniform(0.1, 0.95, samples), rng.uniform(0.1, 3, samples)
     phase = rng.uniform(-np.pi, np.pi, samples)
     velocity = lam + rng.uniform(0.5, 6, samples)
@@ -103,6 +126,7 @@ def restitution_checks(rng, samples) -> dict[str, Check]:
     lift = 2 * (1 + r * r) / (1 + r) ** 2
     corrected = np.hypot(lift, n * np.pi * (1 - r) / (1 + r))
     return {
+        **_impact(r, lam, phase, velocity, cycle),
         "Eq. 4": _free_flight(rng, samples),
         "Eq. 5": Check(
             largest(defect, bounced - cycle.velocity), ROUNDING, "simulated flight and impact"

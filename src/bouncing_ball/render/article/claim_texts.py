@@ -48,25 +48,27 @@ class Claims:
         self._shown |= {claim.id for claim in found}
         return found
 
-    def count(self, verdict: str = "", *, table: str = "") -> int:
-        """How many claims have a verdict, or how many there are; of one table if named."""
+    def count(self, verdict: str = "", *, table: str = "", group: str = "independent") -> int:
+        """How many claims have a verdict, or how many there are; of one table if named.
+
+        ``group`` is what they are counted as: ``independent`` for all but
+        restatements, ``all``, or one group.
+        """
+        wanted = {
+            "all": lambda claim: True,
+            "independent": lambda claim: claim.group != "restatement",
+        }.get(group, lambda claim: claim.group == group)
         return sum(
             1
             for claim in self._claims
-            if verdict in ("", claim.verdict) and table in ("", claim.printed_table)
+            if wanted(claim)
+            and verdict in ("", claim.verdict)
+            and table in ("", claim.printed_table)
         )
 
     def all(self, verdict: str) -> list[ClaimRow]:
         """All claims with a verdict."""
         return [claim for claim in self._claims if claim.verdict == verdict]
-
-    def restored(self) -> int:
-        """How many of the reproduced claims are formulas whose signs had to be restored."""
-        return sum(
-            1
-            for claim in self._claims
-            if (claim.kind, claim.legibility, claim.verdict) == ("formula", "damaged", "reproduced")
-        )
 
     def asked(self, name: str) -> bool:
         """Whether a claim has a verdict: the run has the paper's parameters for it."""

@@ -137,7 +137,9 @@ def test_the_script_writes_the_table(config, tmp_path, monkeypatch):
         scriptdir=str(ROOT / "workflow" / "scripts"),
     )
     # The script as Snakemake runs it: a copy, under its own name.
-    monkeypatch.setattr(sys.modules["__main__"], "__file__", "somewhere/convergence.py")
+    monkeypatch.setattr(
+        sys.modules["__main__"], "__file__", "somewhere/convergence.py", raising=False
+    )
     # An interrupted job ends at once, but the tests are not to.
     monkeypatch.setattr("signal.signal", lambda *_: None)
     runpy.run_path(str(ROOT / "workflow/scripts/convergence.py"), {"snakemake": job})

@@ -75,7 +75,7 @@ CONFIG = read_yaml(ROOT / "config" / "config.yaml")
 @pytest.fixture
 def job(monkeypatch):
     """What a script sees of Snakemake, and the script's own name."""
-    monkeypatch.setattr(sys.modules["__main__"], "__file__", "somewhere/table.py")
+    monkeypatch.setattr(sys.modules["__main__"], "__file__", "somewhere/table.py", raising=False)
     monkeypatch.setattr(recipe_module, "revision", lambda _: Revision(COMMIT, "no"))
 
     def make(output="results/figures/fig11.png", inputs=(), params=None, config=CONFIG):

@@ -41,12 +41,16 @@ def empty_variables(data: xr.Dataset) -> list[str]:
     >>> empty_variables(xr.Dataset({"phase": ("point", [np.nan, np.nan]), "n": 1.0}))
     ['phase']
     """
-    return [
+    empty = [
         str(name)
         for name, values in data.variables.items()
-        if values.dtype.kind in "fc" and name not in _MAY_BE_EMPTY
-        if not np.isfinite(values.values).any()
+        if values.dtype.kind in "fc" and not np.isfinite(values.values).any()
     ]
+    numbers = [str(name) for name, values in data.data_vars.items() if values.dtype.kind in "fc"]
+    # Each of some may be empty, but not all that there is.
+    if numbers and set(numbers) <= set(empty):
+        return empty
+    return [name for name in empty if name not in _MAY_BE_EMPTY]
 
 
 def from_dataset(render: Callable[[xr.Dataset], T], data: xr.Dataset, path: str) -> T:

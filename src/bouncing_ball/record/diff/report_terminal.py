@@ -32,8 +32,8 @@ def share_text(share: float | None) -> str:
 
     Examples
     --------
-    >>> [share_text(share) for share in (None, 0.0, 0.00123, 1.46, 150.0, 12345.0)]
-    ['', '0 %', '0.123 %', '146 %', '150 ×', '12 300 ×']
+    >>> [share_text(share) for share in (None, 0.0, 0.00123, 1.46, 79.4, 12345.0)]
+    ['', '0 %', '0.123 %', '146 %', '79.4 ×', '12 300 ×']
     >>> [share_text(share) for share in (1e-9, 2.5e8, float("inf"))]
     ['< 0.001 %', '> 1 000 000 ×', '∞']
     """
@@ -46,7 +46,7 @@ def share_text(share: float | None) -> str:
     if share < 9.995:
         return f"{100 * share:.3g} %"
     rounded = float(f"{share:.3g}")
-    return "> 1 000 000 ×" if rounded > 1e6 else f"{rounded:,.16g} ×".replace(",", " ")
+    return "> 1 000 000 ×" if rounded > 1e6 else f"{rounded:,.10g} ×".replace(",", " ")
 
 
 def remarks(artifact: Artifact) -> list[str]:

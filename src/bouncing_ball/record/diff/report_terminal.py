@@ -92,9 +92,13 @@ def excerpts(record: str | None, new: str | None, width: int = 60) -> tuple[str,
     ('All of the r…', '(none)')
     >>> excerpts("All of the readings are right", "All of the readings are wrong", width=12)
     ('…dings are ri…', '…dings are wr…')
+    >>> excerpts("All of the readings", "All of the readings indeed", width=17)
+    ('…e readings', '…e readings indeed')
     """
     pairs = enumerate(zip(record or "", new or "", strict=False))
-    start = max(0, next((k for k, (old, each) in pairs if old != each), 0) - 10)
+    # One that only goes on differs where the other ends.
+    ends = min(len(record or ""), len(new or ""))
+    start = max(0, next((k for k, (old, each) in pairs if old != each), ends) - 10)
 
     def part(text: str | None) -> str:
         if text is None:

@@ -395,8 +395,10 @@ def test_a_single_curve_has_no_order(data):
 
 
 def test_a_figure_over_the_amplitude_counts_as_one_of_domains(data):
-    data["fig10"]["special_kind"] = ("special", [NODE])
+    data["fig10"]["special_amplitude"] = ("special", [1.0])
     assert evidence(data, SETTINGS).existence_domains.item() == 3
+    data["fig09"]["special_amplitude"][:] = np.nan
+    assert evidence(data, SETTINGS).existence_domains.item() == 2
 
 
 def test_branches_that_fold_share_an_amplitude(data):

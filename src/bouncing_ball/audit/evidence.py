@@ -23,6 +23,7 @@ Found = dict[str, xr.DataArray]
 BOUNDS = ("saddle-node", "period doubling")
 # A logarithmic grid meets its round numbers, and a sample a bifurcation, but for rounding.
 _GRID = 1e-9
+_EMPTY = np.empty(0)
 
 
 def last_crossing(error: np.ndarray, ratio: np.ndarray, tolerance: float) -> float:
@@ -220,10 +221,12 @@ def _domains(data: Datasets) -> Found:
     found["contact_duration_stiffest"] = xr.DataArray(longest, {"figure": names})
     found["contact_duration_fold"] = xr.DataArray(at_fold, {"figure": names})
     found["branch_end_gap"] = _end_of_softest(data["fig08"])
-    shared = [_durations_at_once(row) for name in names for row in _branches(data[name])]
-    found["durations_at_one_amplitude"] = xr.DataArray(min(shared, default=0))
-    domains = [name for name in ("fig08", "fig09", "fig10") if "special_kind" in data[name]]
-    found["existence_domains"] = xr.DataArray(len(domains))
+    found["durations_at_one_amplitude"] = xr.DataArray(
+        min(_durations_at_once(row) for name in names for row in _branches(data[name]) or [_EMPTY])
+    )
+    bifurcations = [data[f"fig{k:02d}"].get("special_amplitude") for k in (8, 9, 10)]
+    shown = [np.isfinite(values).any() for values in bifurcations if values is not None]
+    found["existence_domains"] = xr.DataArray(int(sum(shown)))
 
     both = data["fig15"].isel(frequency_ratio=0)
     rigid = np.array([both.saddle_node_amplitude, both.period_doubling_amplitude])

@@ -10,6 +10,7 @@ from bouncing_ball.audit.forensics.altered_model import (
     altered_orbit,
 )
 from bouncing_ball.audit.forensics.bifurcations import bifurcations
+from bouncing_ball.audit.forensics.ranking import ALL_ROWS, SOFTER_ROWS, forensics
 from bouncing_ball.audit.forensics.readings import (
     BASELINE,
     FORMULA,
@@ -19,7 +20,6 @@ from bouncing_ball.audit.forensics.readings import (
     readings,
 )
 from bouncing_ball.audit.forensics.steps import attainable, nearby
-from bouncing_ball.audit.forensics.study import ALL_ROWS, SOFTER_ROWS, forensics
 from bouncing_ball.errors import ModelError
 from bouncing_ball.impacts.damping import damping_ratio
 from bouncing_ball.impacts.spring_damper import Contact, Release

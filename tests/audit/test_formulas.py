@@ -9,8 +9,8 @@ from scipy.integrate import quad, solve_ivp
 from bouncing_ball.audit.formulas import as_printed as printed
 from bouncing_ball.audit.formulas import formulas
 from bouncing_ball.audit.formulas import permanent_contact_equations as steady
-from bouncing_ball.audit.formulas.check import ROUNDING, largest
 from bouncing_ball.audit.formulas.contact_equations import _measured_restitution
+from bouncing_ball.audit.formulas.disagreement import ROUNDING, largest
 from bouncing_ball.audit.formulas.flow import contact_matrix, fall_matrix, flow, state
 from bouncing_ball.audit.formulas.restitution_equations import (
     _exact_cycle,

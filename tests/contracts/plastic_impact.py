@@ -115,6 +115,7 @@ class PlasticModel(ImpactModel):
     law: PlasticImpact
 
     name: ClassVar[str] = "plastic"
+    orbit_type: ClassVar[type[Orbit]] = PlasticOrbit
 
     @property
     def label(self):
@@ -124,13 +125,6 @@ class PlasticModel(ImpactModel):
         """Λ cos φ of the n-T orbits: Λ of the saddle-node."""
         check_index(n)
         return self.law.speed(n) - np.pi * np.asarray(n)
-
-    def orbit_of(self, n, amplitude, phase, contact_duration=0.0, impact_velocity=None):
-        velocity = -np.pi * np.asarray(n) if impact_velocity is None else impact_velocity
-        missing = np.where(np.isnan(phase), np.nan, 0.0)
-        values = (amplitude, phase, contact_duration + missing, velocity + missing)
-        arrays = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in values))
-        return PlasticOrbit(n, self.law, *arrays)
 
     def orbit(self, n, amplitude, side=Side.STABLE):
         level, lam = self._level(n), np.asarray(amplitude, dtype=float)

@@ -109,7 +109,7 @@ def test_restitution_orbits_graze():
     lam = np.linspace(0.3, 4.0, 200)
     fold = np.pi * 0.15 / 1.85
     phase = -np.arccos(fold / lam)
-    admissible = RestitutionOrbit.at(1, 0.85, lam, phase).is_admissible()
+    admissible = RestitutionOrbit.of(1, 0.85, lam, phase).is_admissible()
     assert admissible[0] and not admissible[-1]
     assert np.sum(np.diff(admissible.astype(int)) != 0) == 1
     time = np.linspace(0, 2 * np.pi, 4001)[1:-1, np.newaxis]

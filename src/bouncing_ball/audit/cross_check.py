@@ -27,7 +27,6 @@ from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.motion.angles import reduce_angle
-from bouncing_ball.orbits.contact_system import OrbitSystem
 from bouncing_ball.orbits.interface import ImpactModel, Orbit, Route, System
 from bouncing_ball.orbits.stability import period_doubling_function, saddle_node_function
 from bouncing_ball.studies.orbit_branches import SADDLE_NODE, controls, followed_from_stiff
@@ -201,7 +200,7 @@ def _along_frequency_ratio(shown: Shown, y: np.ndarray, settings) -> np.ndarray:
 def _guesses(shown: Shown, y: np.ndarray, settings) -> Iterator[np.ndarray]:
     """Where Newton's method starts: on a continued branch, then a little off."""
     try:
-        if isinstance(shown.model.system(int(shown.orbit.n)), OrbitSystem):
+        if shown.model.softens:
             yield _along_frequency_ratio(shown, y, settings)
         else:
             yield _along_amplitude(shown, y, settings)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError
@@ -27,7 +28,7 @@ class Limits(NamedTuple):
 
 
 def model(
-    restitution: ArrayLike,
+    restitution: float | np.ndarray,
     frequency_ratio: ArrayLike | None = None,
     release: str = "displacement",
 ) -> ImpactModel:
@@ -56,7 +57,7 @@ def model(
         return ContactModel(Contact.from_restitution(restitution, frequency_ratio, release))
     if release != "displacement":
         raise ModelError("a release needs a contact: give its frequency ratio ϖ as well")
-    return RestitutionModel(restitution)  # type: ignore[arg-type]
+    return RestitutionModel(restitution)
 
 
 def orbit(

@@ -16,7 +16,7 @@ from bouncing_ball.orbits import limits
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
-from bouncing_ball.orbits.interface import ImpactModel, Side
+from bouncing_ball.orbits.interface import ImpactModel, Orbit, Side
 from bouncing_ball.orbits.projection import nearest_excess
 
 
@@ -39,6 +39,8 @@ class ContactModel(ImpactModel):
     contact: Contact
 
     name: ClassVar[str] = "spring-damper"
+    orbit_type: ClassVar[type[Orbit]] = ContactOrbit
+    softens: ClassVar[bool] = True
 
     @property
     def label(self) -> str:
@@ -68,19 +70,6 @@ class ContactModel(ImpactModel):
 
     def _on_branch(self, excess: np.ndarray, n) -> ContactOrbit:
         return ContactOrbit.from_branch(branch_point(excess, self.contact, n), self.contact, n)
-
-    def orbit_of(
-        self,
-        n: ArrayLike,
-        amplitude: ArrayLike,
-        phase: ArrayLike,
-        contact_duration: ArrayLike,
-        impact_velocity: ArrayLike,
-    ) -> ContactOrbit:
-        """Orbits known by their numbers."""
-        values = (amplitude, phase, contact_duration, impact_velocity)
-        columns = (np.asarray(x, dtype=float) for x in values)
-        return ContactOrbit(n, self.contact, *columns)  # type: ignore[arg-type]
 
     def nearest(self, orbit: ContactOrbit) -> ContactOrbit:
         """The orbits of the closed form nearest to given ones in (Λ cos φ, Λ sin φ)."""

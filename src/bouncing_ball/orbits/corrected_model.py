@@ -15,7 +15,7 @@ from bouncing_ball.motion.sequence import Cycle, ImpactSequence
 from bouncing_ball.orbits import corrected_branch as formulas
 from bouncing_ball.orbits.corrected_orbit import CorrectedOrbit
 from bouncing_ball.orbits.corrected_system import CorrectedSystem
-from bouncing_ball.orbits.interface import Absence, ImpactModel, Side, check_index
+from bouncing_ball.orbits.interface import Absence, ImpactModel, Orbit, Side, check_index
 
 
 @dataclass(frozen=True, repr=False)
@@ -43,6 +43,7 @@ class CorrectedModel(ImpactModel):
     law: Signature
 
     name: ClassVar[str] = "corrected"
+    orbit_type: ClassVar[type[Orbit]] = CorrectedOrbit
 
     def __post_init__(self):
         if not self.law.is_constant:
@@ -102,19 +103,6 @@ class CorrectedModel(ImpactModel):
         check_index(n)
         lam, phase = formulas.period_doubling(n, self.instant)
         return CorrectedOrbit.at(n, self.law, lam, phase)
-
-    def orbit_of(
-        self,
-        n: ArrayLike,
-        amplitude: ArrayLike,
-        phase: ArrayLike,
-        contact_duration: ArrayLike,
-        impact_velocity: ArrayLike,
-    ) -> CorrectedOrbit:
-        """Orbits known by their numbers."""
-        values = (amplitude, phase, contact_duration, impact_velocity)
-        columns = (np.asarray(x, dtype=float) for x in values)
-        return CorrectedOrbit(n, self.law, *columns)  # type: ignore[arg-type]
 
     def nearest(self, orbit: CorrectedOrbit) -> CorrectedOrbit:
         """The nearest orbits of the closed form, a straight line in (Λ cos ψ, Λ sin ψ)."""

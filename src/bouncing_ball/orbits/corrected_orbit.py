@@ -35,11 +35,7 @@ class CorrectedOrbit(Orbit):
         launch = np.asarray(n) * np.pi
         hit = impact(law, amplitude, phase, -launch)
         delay, duration = hit.instant.delay, hit.instant.duration
-        columns = (amplitude, hit.phase - delay, duration, delay - launch)
-        columns = np.broadcast_arrays(*columns)
-        missing = np.where(np.isnan(columns[1]), np.nan, 0.0)
-        lam, *rest = (np.asarray(x, dtype=float) for x in columns)
-        return cls(n, law, lam, *(x + missing for x in rest))  # type: ignore[arg-type]
+        return cls.of(n, law, amplitude, hit.phase - delay, duration, delay - launch)
 
     @cached_property
     def instant(self) -> Instant:

@@ -18,9 +18,9 @@ at τ_b = D, the next one starts at τ_2 = 2πn. Everything is dimensionless.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import StrEnum
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar, Protocol, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -123,7 +123,7 @@ class Orbit(Record, ABC):
         Absolute velocity z′_i of the ball at the start of contact.
     """
 
-    n: int | np.ndarray
+    n: Any
     law: Any
     amplitude: np.ndarray
     phase: np.ndarray
@@ -134,6 +134,25 @@ class Orbit(Record, ABC):
         names = ("n", "law", *OBSERVABLES)
         values = (f"  {name:<22}{in_words(getattr(self, name))}" for name in names)
         return "\n".join([type(self).__name__, *values])
+
+    @classmethod
+    def of(
+        cls,
+        n: ArrayLike,
+        law: Any,
+        amplitude: ArrayLike,
+        phase: ArrayLike,
+        contact_duration: ArrayLike = 0.0,
+        impact_velocity: ArrayLike | None = None,
+    ) -> Self:
+        """Orbits known by their numbers; none where the phase is NaN.
+
+        Λ and φ are enough where the impact takes no time: z′_i is then -nπ.
+        """
+        velocity = -np.asarray(n) * np.pi if impact_velocity is None else impact_velocity
+        missing = np.where(np.isnan(phase), np.nan, 0.0)
+        values = (amplitude, phase, contact_duration + missing, velocity + missing)
+        return cls(n, law, *np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in values)))
 
     # What a model's orbits add.
 
@@ -357,6 +376,9 @@ class ImpactModel(Record, ABC):
 
     name: ClassVar[str]
     routes: ClassVar[frozenset[Route]] = frozenset(Route)
+    orbit_type: ClassVar[type[Orbit]]
+    softens: ClassVar[bool] = False
+    """Whether its orbits are followed along ϖ, from those of the restitution model."""
 
     @property
     @abstractmethod
@@ -384,17 +406,6 @@ class ImpactModel(Record, ABC):
         """The orbits at the period doubling nearest to it; NaN where there is none."""
 
     @abstractmethod
-    def orbit_of(
-        self,
-        n: ArrayLike,
-        amplitude: ArrayLike,
-        phase: ArrayLike,
-        contact_duration: ArrayLike,
-        impact_velocity: ArrayLike,
-    ) -> Orbit:
-        """Orbits known by their numbers, as a dataset has them."""
-
-    @abstractmethod
     def nearest(self, orbit: Any) -> Orbit:
         """The orbits of the closed form nearest to given ones (route FORMULA)."""
 
@@ -415,6 +426,18 @@ class ImpactModel(Record, ABC):
     @abstractmethod
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ up to which the ball stays on the table."""
+
+    def orbit_of(
+        self,
+        n: ArrayLike,
+        amplitude: ArrayLike,
+        phase: ArrayLike,
+        contact_duration: ArrayLike = 0.0,
+        impact_velocity: ArrayLike | None = None,
+    ) -> Any:
+        """Orbits known by their numbers, as a dataset has them: :meth:`Orbit.of`."""
+        (law,) = (getattr(self, field.name) for field in fields(self))
+        return self.orbit_type.of(n, law, amplitude, phase, contact_duration, impact_velocity)
 
     def require_admissible(self, n: int, amplitude: float, side: Side = Side.STABLE) -> Orbit:
         """:meth:`require_orbit`, if it is one of the ball.

@@ -13,7 +13,7 @@ from bouncing_ball.impacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.motion.instants import section_cycle, simulate
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence
 from bouncing_ball.orbits import restitution_orbit as formulas
-from bouncing_ball.orbits.interface import Absence, ImpactModel, Side
+from bouncing_ball.orbits.interface import Absence, ImpactModel, Orbit, Side
 from bouncing_ball.orbits.restitution_orbit import RestitutionOrbit
 from bouncing_ball.orbits.restitution_system import RestitutionSystem
 
@@ -37,6 +37,7 @@ class RestitutionModel(ImpactModel):
     restitution: float | np.ndarray
 
     name: ClassVar[str] = "restitution"
+    orbit_type: ClassVar[type[Orbit]] = RestitutionOrbit
 
     def __post_init__(self):
         formulas.check_family(1, self.restitution)
@@ -46,9 +47,6 @@ class RestitutionModel(ImpactModel):
         """r."""
         return f"r = {float(self.restitution):g}"
 
-    def _orbit(self, n, amplitude, phase) -> RestitutionOrbit:
-        return RestitutionOrbit.at(n, self.restitution, amplitude, phase)
-
     def orbit(
         self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE
     ) -> RestitutionOrbit:
@@ -56,14 +54,14 @@ class RestitutionModel(ImpactModel):
         fold, lam = formulas.saddle_node(n, self.restitution), np.asarray(amplitude, dtype=float)
         there = lam >= fold
         phase = formulas.phase(n, self.restitution, np.where(there, lam, fold), side == Side.STABLE)
-        return self._orbit(n, lam, np.where(there, phase, np.nan))
+        return self.orbit_of(n, lam, np.where(there, phase, np.nan))
 
     def orbits(self, n: int, amplitude: float) -> RestitutionOrbit:
         """Both n-T orbits at one Λ, the stable side first; one at the saddle-node."""
         both = np.stack([self.orbit(n, amplitude, side).phase for side in Side])
         distinct = np.isfinite(both) & [True, bool(both[0] != both[1])]
         phases = both[distinct]
-        return self._orbit(n, np.full_like(phases, amplitude), phases)
+        return self.orbit_of(n, np.full_like(phases, amplitude), phases)
 
     def absence(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> np.ndarray:
         """Why :meth:`orbit` finds none."""
@@ -72,34 +70,19 @@ class RestitutionModel(ImpactModel):
 
     def saddle_node(self, n: ArrayLike) -> RestitutionOrbit:
         """The orbits at the saddle-node, φ = 0."""
-        return self._orbit(n, formulas.saddle_node(n, self.restitution), 0.0)
+        return self.orbit_of(n, formulas.saddle_node(n, self.restitution), 0.0)
 
     def period_doubling(self, n: ArrayLike) -> RestitutionOrbit:
         """The orbits at the period doubling of the exact map."""
         lam = formulas.period_doubling(n, self.restitution)
-        return self._orbit(n, lam, formulas.phase(n, self.restitution, lam))
-
-    def orbit_of(
-        self,
-        n: ArrayLike,
-        amplitude: ArrayLike,
-        phase: ArrayLike,
-        contact_duration: ArrayLike = 0.0,
-        impact_velocity: ArrayLike | None = None,
-    ) -> RestitutionOrbit:
-        """Orbits known by their numbers; Λ and φ are enough."""
-        velocity = -np.asarray(n) * np.pi if impact_velocity is None else impact_velocity
-        values = np.broadcast_arrays(
-            *(np.asarray(x, dtype=float) for x in (amplitude, phase, contact_duration, velocity))
-        )
-        return RestitutionOrbit(n, self.restitution, *values)  # type: ignore[arg-type]
+        return self.orbit_of(n, lam, formulas.phase(n, self.restitution, lam))
 
     def nearest(self, orbit: RestitutionOrbit) -> RestitutionOrbit:
         """The nearest orbits of the closed form, the line Λ cos φ = Λ_SN."""
         fold = formulas.saddle_node(orbit.n, orbit.restitution)
         lift = orbit.amplitude * np.sin(orbit.phase)
         lam, phase = np.hypot(fold, lift), np.arctan2(lift, fold)
-        return RestitutionOrbit.at(orbit.n, orbit.restitution, lam, phase)
+        return self.orbit_of(orbit.n, lam, phase)
 
     def system(self, n: int | np.ndarray) -> RestitutionSystem:
         """The fixed points of the exact map, continued in Λ."""

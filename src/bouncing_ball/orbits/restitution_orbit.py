@@ -17,7 +17,6 @@ All quantities are dimensionless.
 """
 
 from enum import StrEnum
-from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -208,20 +207,10 @@ class RestitutionOrbit(Orbit):
 
     Examples
     --------
-    >>> orbit = RestitutionOrbit.at(1, 0.5, 1.2, 0.5)
+    >>> orbit = RestitutionOrbit.of(1, 0.5, 1.2, 0.5)
     >>> float(orbit.bounce_velocity) == np.pi, float(orbit.determinant())
     (True, 0.25)
     """
-
-    @classmethod
-    def at(
-        cls, n: ArrayLike, restitution: ArrayLike, amplitude: ArrayLike, phase: ArrayLike
-    ) -> Self:
-        """The orbits at given Λ and φ, with the impact velocity -nπ."""
-        lam, angle = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in (amplitude, phase)))
-        missing = np.where(np.isnan(angle), np.nan, 0.0)
-        launch = np.asarray(n) * np.pi
-        return cls(n, restitution, lam, angle, missing, missing - launch)  # type: ignore[arg-type]
 
     @property
     def restitution(self) -> np.ndarray:
@@ -260,7 +249,7 @@ class RestitutionOrbit(Orbit):
         --------
         Over a table that accelerates less than gravity nothing can happen:
 
-        >>> bool(RestitutionOrbit.at(1, 0.5, 0.8, 1.2).is_admissible())
+        >>> bool(RestitutionOrbit.of(1, 0.5, 0.8, 1.2).is_admissible())
         True
         """
         velocity, lam = self.relative_bounce_velocity, self.amplitude

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball.orbits.error_law import REMAINDER, STATED
-from bouncing_ball.studies.corrected_model import QUANTITIES, LawErrors, law_errors
+from bouncing_ball.studies.model_errors import QUANTITIES, LawErrors, law_errors
 
 BATCH = 5000
 """Orbits at a time: the scan for their bifurcations takes the memory."""

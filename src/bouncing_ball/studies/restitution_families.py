@@ -20,7 +20,7 @@ def _grazing(n: int, r: float, top: float) -> tuple[float, float]:
 
     def admissible(amplitude):
         phase = orbits.phase(n, r, amplitude, stable_side=False)
-        return bool(RestitutionOrbit.at(n, r, amplitude, phase).is_admissible())
+        return bool(RestitutionOrbit.of(n, r, amplitude, phase).is_admissible())
 
     if admissible(high):
         return np.nan, np.nan
@@ -45,7 +45,7 @@ def restitution_orbits(parameters: Mapping[str, Any]) -> xr.Dataset:
     r, top = parameters["restitution"], parameters["amplitude_max"]
     fold = orbits.saddle_node(n, r)
     amplitude, phase = orbits.branch(n, r, top, parameters["points"])
-    shown = RestitutionOrbit.at(n[:, np.newaxis], r, amplitude, phase)
+    shown = RestitutionOrbit.of(n[:, np.newaxis], r, amplitude, phase)
     stable, admissible = shown.is_stable(), shown.is_admissible()
     grazing = np.array([_grazing(int(k), r, top) for k in n])
     maps = list(ImpactMap)

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.audit.formulas.check import Check
 from bouncing_ball.audit.formulas.contact_equations import (
     damping_checks,
     motion_checks,
@@ -20,6 +19,7 @@ from bouncing_ball.audit.formulas.contact_equations import (
     points_with_one_impact,
     static_error,
 )
+from bouncing_ball.audit.formulas.disagreement import Check
 from bouncing_ball.audit.formulas.permanent_contact_equations import permanent_contact_checks
 from bouncing_ball.audit.formulas.restitution_equations import restitution_checks
 from bouncing_ball.datasets.variables import describe

@@ -12,7 +12,7 @@ import xarray as xr
 from scipy.optimize.elementwise import find_root
 
 from bouncing_ball.audit.formulas import as_printed as printed
-from bouncing_ball.audit.formulas.check import ROUNDING, Check, largest
+from bouncing_ball.audit.formulas.disagreement import ROUNDING, Check, largest
 from bouncing_ball.audit.formulas.flow import (
     contact_matrix,
     fall_matrix,

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize.elementwise import find_root
 
 from bouncing_ball.audit.formulas import as_printed as printed
-from bouncing_ball.audit.formulas.check import ROUNDING, Check, largest
+from bouncing_ball.audit.formulas.disagreement import ROUNDING, Check, largest
 from bouncing_ball.audit.formulas.flow import fall_matrix, flow, state
 from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.motion.instants import impact_cycle, lift_off_phase

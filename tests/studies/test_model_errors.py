@@ -5,7 +5,7 @@ import pytest
 
 from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits.error_law import STATED
-from bouncing_ball.studies import corrected_model as study
+from bouncing_ball.studies import model_errors as study
 
 SPAN = {"min": 1.0, "max": 1e4, "samples": 41}
 ORBIT = {"n": 1, "restitution": 0.65, "amplitude": 1.0}

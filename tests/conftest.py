@@ -6,6 +6,7 @@ own solution of the contact, Brent's method, and free flight.
 
 import math
 import os
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -14,7 +15,14 @@ from hypothesis import HealthCheck, settings
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
+from bouncing_ball.audit.evidence import evidence
+from bouncing_ball.configuration.stages import studied
+from bouncing_ball.configuration.study import load
+from bouncing_ball.configuration.yaml_file import read_yaml
+from bouncing_ball.datasets.netcdf import parameter_attributes, read_dataset
 from bouncing_ball.datasets.variables import VARIABLES
+
+ROOT = Path(__file__).resolve().parents[1]
 
 settings.register_profile(
     "deterministic",
@@ -108,6 +116,21 @@ def _cycle(phase, u, n, lam, omega, zeta, duration, force_release=False):
 def reference():
     """Independent implementations: ``contact_state``, ``paper_contact`` and ``cycle``."""
     return SimpleNamespace(contact_state=_contact_state, paper_contact=_paper_contact, cycle=_cycle)
+
+
+@pytest.fixture(scope="session")
+def record_and_new():
+    """The accepted datasets by name; of stages new since then, and the evidence, computed."""
+    data = {path.stem: read_dataset(path) for path in sorted((ROOT / "figures").glob("*.nc"))}
+    run = read_yaml(ROOT / "config" / "config.yaml")
+    for stage in studied():
+        if stage.name not in data and not stage.reads:
+            parameters = stage.parameters(run)
+            made = load(stage.study)(parameters, *stage.settings(run).values())
+            named = parameter_attributes({**parameters, **stage.settings(run)})
+            data[stage.name] = made.assign_attrs(named)
+    limits = run["studies"]["evidence"]
+    return data | {"evidence": evidence(data, limits).assign_attrs(limits)}
 
 
 @pytest.fixture(scope="session")

@@ -161,6 +161,14 @@ def make():
                 "impact_map": ["exact", "holmes"],
             },
         ),
+        # Two periods of one kind; of the two motions without any, the second is no chaos.
+        "motions": xr.Dataset(
+            {
+                "motion_period": ("case", [1, 1, 0, 0]),
+                "lyapunov_exponent": ("case", [-0.2, -0.2, 1.0, 0.01]),
+                "lyapunov_error": ("case", [0.0, 0.0, 0.01, 0.01]),
+            }
+        ),
         "ext_release": xr.Dataset(
             {
                 "bifurcation_amplitude": (
@@ -229,6 +237,7 @@ EXPECTED = {
     "max_height_rise": 0.25,
     "phase_error": 0.01,
     "release_phase_error": 0.03,
+    "motion_kinds": 2,
     "stiffest_error": [0.001, 0.008],
     "softest_error": [np.inf, 0.3],
     "stability_exceptions": 0,
@@ -414,6 +423,14 @@ def test_branches_that_fold_share_an_amplitude(data):
     for name in ("fig08", "fig09"):
         data[name]["amplitude"][1] = data[name]["amplitude"][0]
     assert evidence(data, SETTINGS).durations_at_one_amplitude.item() == 3
+
+
+def test_kinds_of_motion_are_counted_once_and_only_beyond_doubt(data):
+    motions = data["motions"]
+    motions.motion_period[1] = 2
+    assert evidence(data, SETTINGS).motion_kinds.item() == 3
+    motions.lyapunov_error[2] = 0.25
+    assert evidence(data, SETTINGS).motion_kinds.item() == 2
 
 
 def test_a_missing_dataset(data):

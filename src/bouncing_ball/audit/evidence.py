@@ -24,6 +24,8 @@ BOUNDS = ("saddle-node", "period doubling")
 # A logarithmic grid meets its round numbers, and a sample a bifurcation, but for rounding.
 _GRID = 1e-9
 _EMPTY = np.empty(0)
+# Standard errors beyond which a sign is no accident: once in three million by chance.
+_SIGNIFICANT = 5
 
 
 def last_crossing(error: np.ndarray, ratio: np.ndarray, tolerance: float) -> float:
@@ -335,6 +337,22 @@ def _permanent_contact(figure: xr.Dataset, printed_ratio: float) -> Found:
     }
 
 
+def _motions(data: Datasets) -> Found:
+    """Kinds of motion among those looked at, each counted once.
+
+    Chaotic is what has no period and an exponent that is positive beyond its
+    sampling error.
+    """
+    motions = data["motions"]
+    length, exponent = motions.motion_period, motions.lyapunov_exponent
+    kinds = [
+        length == 1,
+        length > 1,
+        (length == 0) & (exponent > _SIGNIFICANT * motions.lyapunov_error),
+    ]
+    return {"motion_kinds": xr.DataArray(sum(bool(kind.any()) for kind in kinds))}
+
+
 def evidence(data: Datasets, parameters: Mapping[str, Any]) -> xr.Dataset:
     """All numbers by which statements of the paper are decided.
 
@@ -342,7 +360,7 @@ def evidence(data: Datasets, parameters: Mapping[str, Any]) -> xr.Dataset:
     ----------
     data : mapping of str to xarray.Dataset
         Figs. 3, 5, 6, 8, 9, 10, 13, 14, 15, 16, Table 1, the table of
-        thresholds and the extension on release rules, by name.
+        thresholds, the kinds of motion and the extension on release rules, by name.
     parameters : mapping
         ``stiff_frequency_ratio``, from which on the paper takes both models for
         the same, and ``permanent_contact_frequency_ratio``, its own threshold.
@@ -353,7 +371,7 @@ def evidence(data: Datasets, parameters: Mapping[str, Any]) -> xr.Dataset:
         If a dataset is missing.
     """
     stiff = parameters["stiff_frequency_ratio"]
-    parts: list[Callable[[Datasets], Found]] = [_bounce, _convergence, _domains, _table]
+    parts: list[Callable[[Datasets], Found]] = [_bounce, _convergence, _domains, _table, _motions]
     found = _apparent_restitution(data, stiff) | _stiff_orbits(data, stiff)
     for part in parts:
         found |= part(data)

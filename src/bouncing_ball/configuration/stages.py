@@ -285,6 +285,15 @@ _MODELS: tuple[Stage, ...] = (
         evidence=True,
     ),
     Stage(
+        "motions",
+        Kind.DATASET,
+        "Kinds of motion of the restitution model",
+        "studies.kinds_of_motion.kinds_of_motion",
+        "studies.motions",
+        "n restitution:lossy_restitution amplitude:amplitudes ensemble",
+        evidence=True,
+    ),
+    Stage(
         "ext_release",
         Kind.EXTENSION,
         "Bifurcations and thresholds under both release rules",

@@ -127,6 +127,10 @@ VARIABLES: dict[str, Variable] = {
         equation="Eqs. 37-38",
     ),
     "threshold_status": Variable("whether the threshold lies within the range scanned", ""),
+    # kinds of motion
+    "motion_period": Variable("impacts after which the motion repeats, 0 if it does not", ""),
+    "lyapunov_exponent": Variable("largest Lyapunov exponent, per impact", "λ"),
+    "lyapunov_error": Variable("standard error of the largest Lyapunov exponent", ""),
     # release rules
     "release": Variable("what ends a contact", ""),
     "reading": Variable("what is assumed, one reading of the paper each", ""),
@@ -204,6 +208,7 @@ VARIABLES: dict[str, Variable] = {
     "max_height_rise": Variable("smallest rise of max z from contact to contact", ""),
     "phase_error": Variable("|φ - φ_CR|/φ_CR at the stiffest contact", ""),
     "release_phase_error": Variable("|φ + τ_b - φ_CR|/φ_CR at the stiffest contact", ""),
+    "motion_kinds": Variable("kinds of motion found: periodic, subharmonic, chaotic", ""),
     "stiffest_error": Variable("relative error at the stiffest contact scanned", ""),
     "softest_error": Variable("relative error at the softest contact scanned", ""),
     "stability_exceptions": Variable(

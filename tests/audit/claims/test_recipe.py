@@ -9,7 +9,6 @@ import yaml
 
 from bouncing_ball.audit.claims.assessment import assess
 from bouncing_ball.audit.claims.ledger_file import read_ledger
-from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.errors import ModelError
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -30,11 +29,10 @@ def write(folder, new):
     (folder / "claims.yaml").write_text(before + new + mark + after, encoding="utf-8")
 
 
-def test_the_new_claim_gets_a_verdict_and_the_others_keep_theirs(tmp_path):
+def test_the_new_claim_gets_a_verdict_and_the_others_keep_theirs(tmp_path, record_and_new):
     write(tmp_path, entry())
-    data = {path.stem: read_dataset(path) for path in (ROOT / "figures").glob("*.nc")}
-    before = assess(read_ledger(ROOT / "config"), data).verdict
-    after = assess(read_ledger(tmp_path), data).verdict
+    before = assess(read_ledger(ROOT / "config"), record_and_new).verdict
+    after = assess(read_ledger(tmp_path), record_and_new).verdict
     name = yaml.safe_load(entry())[0]["id"]
     assert after.claim.values.tolist() == [*before.claim.values.tolist(), name]
     assert after.sel(claim=name).item() == "reproduced"

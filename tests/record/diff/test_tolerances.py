@@ -65,11 +65,11 @@ def test_every_variable_of_the_record_has_an_entry_and_is_in_the_study(name, rul
             assert not isinstance(other, str) or other in {*data.variables, *data.dims}
 
 
-def test_no_entry_is_idle(rules):
-    names = {path: set(map(str, read_dataset(path).variables)) for path in RECORD.values()}
+def test_no_entry_is_idle(rules, record_and_new):
+    names = {name: set(map(str, data.variables)) for name, data in record_and_new.items()}
     assert set(rules.variables) <= set().union(*names.values())
     for artifact, part in rules.artifacts.items():
-        assert set(part) <= names[RECORD[artifact]]
+        assert set(part) <= names[artifact]
     assert set(rules.variables) <= set(VARIABLES)
 
 

@@ -1,0 +1,121 @@
+r"""Whether a motion repeats, and how fast its neighbours leave it.
+
+The largest Lyapunov exponent is the mean logarithm of the stretching of a small
+perturbation from impact to impact, here by the exact Jacobian of the impact map.
+Positive: neighbours part exponentially. It is a mean over a finite motion. A
+ball that sticks to the table forgets where it came from, and the motion after it
+is that of any other ball that sticks: what is measured ends there.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from bouncing_ball.impacts.restitution_map import exact_map_jacobian
+from bouncing_ball.motion.angles import reduce_angle
+from bouncing_ball.motion.sequence import ImpactSequence
+
+
+def period(sequence: ImpactSequence, longest: int, closeness: float) -> np.ndarray:
+    """After how many impacts each motion repeats at its end; 0 if it does not.
+
+    Parameters
+    ----------
+    sequence : ImpactSequence
+    longest : int
+        Periods looked for, at most; the last ``longest`` impacts must all have
+        a partner one period earlier.
+    closeness : float
+        Differences in phase and relative velocity that count as none.
+
+    Examples
+    --------
+    >>> from bouncing_ball.motion.instants import simulate
+    >>> period(simulate(1.0, 0.0, 0.0, np.pi, 8), 4, 1e-9).tolist()
+    1
+
+    Raises
+    ------
+    ValueError
+        If the sequence is shorter than twice the longest period.
+    """
+    rows = len(sequence.time)
+    if rows < 2 * longest:
+        raise ValueError(f"{rows} impacts do not show a period of {longest}: twice as many do")
+    found = np.zeros(sequence.status.shape, dtype=int)
+    last = slice(rows - longest, rows)
+    for k in range(longest, 0, -1):
+        before = slice(last.start - k, last.stop - k)
+        turned = reduce_angle(sequence.phase[last] - sequence.phase[before])
+        faster = sequence.relative_velocity[last] - sequence.relative_velocity[before]
+        same = np.maximum(np.abs(turned), np.abs(faster)).max(axis=0) < closeness
+        found[same] = k
+    return found
+
+
+class Stretching(NamedTuple):
+    """Logarithm of the growth of a perturbation, and the impacts that it took, by ball."""
+
+    logarithm: np.ndarray
+    impacts: np.ndarray
+
+    def exponent(self) -> tuple[float, float]:
+        """Largest Lyapunov exponent per impact over all balls, and its standard error.
+
+        NaN where no ball has an impact.
+
+        Examples
+        --------
+        >>> Stretching(np.array([3.0, 5.0]), np.array([4, 4])).exponent()
+        (1.0, 0.25)
+        """
+        total = self.impacts.sum()
+        if not total:
+            return np.nan, np.nan
+        mean = self.logarithm.sum() / total
+        balls = self.impacts.size
+        spread = np.sum((self.logarithm - mean * self.impacts) ** 2) * balls / max(balls - 1, 1)
+        return float(mean), float(np.sqrt(spread) / total)
+
+
+def stretching(sequence: ImpactSequence, restitution: float, skip: int) -> Stretching:
+    """How balls of the restitution model part from their neighbours, until they stick.
+
+    Parameters
+    ----------
+    sequence : ImpactSequence
+        Of the restitution model.
+    restitution : float
+        r.
+    skip : int
+        Impacts that are left out at the start; they turn the perturbation into
+        the direction of growth.
+
+    Examples
+    --------
+    On a table at rest a velocity only shrinks, and a phase stays off for ever:
+
+    >>> from bouncing_ball.motion.instants import simulate
+    >>> parting = stretching(simulate(0.5, 0.0, 0.0, [4.0, 3.0], 16), 0.5, 12)
+    >>> round(parting.exponent()[0], 5), parting.impacts.tolist()
+    (0.0, [3, 3])
+    """
+    flight = np.diff(sequence.time, axis=0)
+    free = np.logical_and.accumulate(sequence.contact_duration[:-1] == 0, axis=0)
+    free &= np.isfinite(flight)
+    jacobian = np.broadcast_to(np.eye(2), (*flight.shape, 2, 2)).copy()
+    jacobian[free] = exact_map_jacobian(
+        flight[free],
+        sequence.phase[:-1][free],
+        sequence.release_velocity[:-1][free],
+        np.broadcast_to(sequence.amplitude, flight.shape)[free],
+        restitution,
+    )
+    growth = np.zeros(flight.shape)
+    a, b = np.ones(flight.shape[1:]), np.zeros(flight.shape[1:])
+    for row, step in enumerate(jacobian):
+        a, b = step[..., 0, 0] * a + step[..., 0, 1] * b, step[..., 1, 0] * a + step[..., 1, 1] * b
+        length = np.hypot(a, b)
+        a, b = a / length, b / length
+        growth[row] = np.log(length)
+    return Stretching(growth[skip:].sum(axis=0), free[skip:].sum(axis=0))

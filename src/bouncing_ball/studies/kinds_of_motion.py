@@ -1,0 +1,57 @@
+"""Periodic, subharmonic and chaotic motion of the restitution model."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.datasets.variables import describe
+from bouncing_ball.motion.regularity import Stretching, period, stretching
+from bouncing_ball.orbits.restitution_model import RestitutionModel
+
+# Two states are the same within this: a chaotic motion comes so close to an earlier
+# state once in 10⁸ impacts, and a stable one comes closer by any factor below 1.
+_SAME = 1e-6
+
+
+def kinds_of_motion(parameters: Mapping[str, Any]) -> xr.Dataset:
+    """What the balls do that start beside an n-T orbit, one motion for each Λ.
+
+    From ``n``, ``restitution``, ``amplitude`` (a list) and ``ensemble``: the
+    number of ``balls``, which start with equal steps of the phase up to
+    ``displacement`` after that of the orbit; the ``transient`` impacts that are not looked at, the
+    ``impacts`` that are, and the ``longest_period`` looked for.
+
+    The period is 0 unless all balls have the same one. The exponent is that of
+    all balls together, each until it sticks.
+
+    Raises
+    ------
+    NoOrbitError
+        If an amplitude lies below the saddle-node.
+    """
+    n, r = parameters["n"], parameters["restitution"]
+    amplitude, ensemble = np.array(parameters["amplitude"]), parameters["ensemble"]
+    model, balls = RestitutionModel(r), ensemble["balls"]
+    orbits = [model.require_orbit(n, lam) for lam in amplitude]
+    phase = np.array([orbit.phase for orbit in orbits])[:, np.newaxis]
+    velocity = np.array([orbit.impact_velocity for orbit in orbits])[:, np.newaxis]
+    beside = phase + ensemble["displacement"] * np.arange(1, balls + 1) / balls
+    impacts = ensemble["transient"] + ensemble["impacts"]
+    sequence = model.simulate(amplitude[:, np.newaxis], beside, velocity, impacts + 1)
+
+    periods = period(sequence, ensemble["longest_period"], _SAME)
+    shared = np.where(np.ptp(periods, axis=1) == 0, periods[:, 0], 0)
+    growth = stretching(sequence, r, ensemble["transient"])
+    exponents = np.array([Stretching(*rows).exponent() for rows in zip(*growth, strict=True)])
+    return describe(
+        xr.Dataset(
+            {
+                "amplitude": ("case", amplitude),
+                "motion_period": ("case", shared),
+                "lyapunov_exponent": ("case", exponents[:, 0]),
+                "lyapunov_error": ("case", exponents[:, 1]),
+            }
+        )
+    )

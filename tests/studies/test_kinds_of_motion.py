@@ -1,0 +1,43 @@
+"""Kinds of motion beside the 1-T orbit."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.studies.kinds_of_motion import kinds_of_motion
+
+SMALL = {
+    "n": 1,
+    "restitution": 0.85,
+    "amplitude": [1.0, 1.1, 2.0],
+    "ensemble": {
+        "balls": 40,
+        "displacement": 0.01,
+        "transient": 200,
+        "impacts": 200,
+        "longest_period": 8,
+    },
+}
+
+
+def test_period_one_two_and_chaos():
+    motions = kinds_of_motion(SMALL)
+    assert motions.motion_period.values.tolist() == [1, 2, 0]
+    # Complex multipliers of modulus r, of both orbits.
+    assert motions.lyapunov_exponent.values[:2] == pytest.approx(np.log(0.85), abs=0.005)
+    assert motions.lyapunov_error.values[0] < 1e-4
+    # Measured with 10⁵ impacts: 1.166 ± 0.003.
+    error = motions.lyapunov_error.values[2]
+    assert 0.005 < error < 0.05
+    assert abs(motions.lyapunov_exponent.values[2] - 1.166) < 5 * error
+
+
+def test_balls_that_go_different_ways_share_no_period():
+    # From farther away some reach the orbit of period 3.
+    far = SMALL | {"ensemble": SMALL["ensemble"] | {"displacement": 1.0}}
+    assert kinds_of_motion(far | {"amplitude": [1.0]}).motion_period.values.tolist() == [0]
+
+
+def test_an_amplitude_without_orbit():
+    with pytest.raises(NoOrbitError, match=r"no 1-T orbit at Λ = 0\.2"):
+        kinds_of_motion(SMALL | {"amplitude": [0.2]})

@@ -69,9 +69,19 @@ def _record(tmp_path_factory) -> Path:
     return folder
 
 
+def _two(record: Path, folder: Path, rules: Tolerances) -> Pair:
+    for side in ("record", "new"):
+        shutil.copytree(record, folder / side)
+    return Pair(folder / "record", folder / "new", rules)
+
+
 @pytest.fixture
 def pair(_record, rules, tmp_path) -> Pair:
     """Two equal folders."""
-    for side in ("record", "new"):
-        shutil.copytree(_record, tmp_path / side)
-    return Pair(tmp_path / "record", tmp_path / "new", rules)
+    return _two(_record, tmp_path, rules)
+
+
+@pytest.fixture(scope="module")
+def kept_pair(_record, rules, tmp_path_factory) -> Pair:
+    """Two equal folders, changed once for all tests of a module."""
+    return _two(_record, tmp_path_factory.mktemp("kept"), rules)

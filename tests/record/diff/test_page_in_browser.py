@@ -143,22 +143,26 @@ def observe(folder, width):
     return json.loads(unescaped)
 
 
-@pytest.fixture
-def page(pair, tmp_path):
+@pytest.fixture(scope="module")
+def page(kept_pair, tmp_path_factory):
     """A page with a drifted, a missing, a within-budget and a swapped figure."""
+    pair = kept_pair
     data = pair.dataset("fig05")
     data.phase.values[1, 40] += 1e-3
     pair.write("fig05", data)
     shutil.copyfile(pair.new / "figures" / "fig08.png", pair.new / "figures" / "fig09.png")
     (pair.new / "figures" / "fig01.svg").unlink()
-    folder = tmp_path / "browser"
-    folder.mkdir()
+    folder = tmp_path_factory.mktemp("browser")
     (folder / "page.html").write_text(to_html(pair.compare()), encoding="utf-8")
     return folder
 
 
-def test_the_browser_shows_every_picture_and_the_worst_first(page, pair):
-    seen = observe(page, 1200)
+@pytest.fixture(scope="module")
+def seen(page):
+    return observe(page, 1200)
+
+
+def test_the_browser_shows_every_picture_and_the_worst_first(seen, kept_pair):
     assert seen["title"] == "Artifacts against the record"
     found = {image["alt"]: image for image in seen["images"]}
     assert set(found) == {
@@ -172,7 +176,7 @@ def test_the_browser_shows_every_picture_and_the_worst_first(page, pair):
     for image in found.values():
         assert image["drawn"] and image["width"] > 0 and image["height"] > 0, image
     for name in ("fig09, record", "fig09, new", "fig09, difference"):
-        with Image.open(pair.record / "figures" / "fig09.png") as picture:
+        with Image.open(kept_pair.record / "figures" / "fig09.png") as picture:
             assert (found[name]["width"], found[name]["height"]) == picture.size
     sections = [(part["name"], part["outcome"], part["open"]) for part in seen["sections"]]
     assert sections[:3] == [
@@ -189,8 +193,7 @@ def test_the_browser_shows_every_picture_and_the_worst_first(page, pair):
     assert [name for name in seen["fetched"] if not name.startswith("data:")] == []
 
 
-def test_side_by_side_then_one_upon_the_other(page):
-    seen = observe(page, 1200)
+def test_side_by_side_then_one_upon_the_other(seen):
     modes = seen["modes"]
     assert list(modes) == [
         "side by side", "record", "new", "blink", "wipe", "difference", "large"
@@ -221,8 +224,7 @@ def test_side_by_side_then_one_upon_the_other(page):
     assert modes["large"][2]["picture"] > 1.2 * modes["difference"][2]["picture"]
 
 
-def test_a_list_to_jump_by_and_only_what_moved(page):
-    seen = observe(page, 1200)
+def test_a_list_to_jump_by_and_only_what_moved(seen):
     names = [part["name"] for part in seen["sections"]]
     assert seen["links"] == names
     moved = [part["name"] for part in seen["sections"] if part["open"]]
@@ -232,12 +234,12 @@ def test_a_list_to_jump_by_and_only_what_moved(page):
     assert len(seen["drifts"]) == 1
 
 
-def test_the_browser_would_see_a_picture_that_is_broken(page):
-    path = page / "page.html"
-    text = path.read_text(encoding="utf-8")
+def test_the_browser_would_see_a_picture_that_is_broken(page, tmp_path):
+    path = tmp_path / "page.html"
+    text = (page / path.name).read_text(encoding="utf-8")
     start = text.index("data:image/png;base64,") + len("data:image/png;base64,")
     path.write_text(text[:start] + "AAAA" + text[start + 4 :], encoding="utf-8")
-    seen = observe(page, 1200)
+    seen = observe(tmp_path, 1200)
     assert [image["drawn"] for image in seen["images"]].count(False) == 1
 
 

@@ -59,10 +59,10 @@ def test_another_figures_picture(pair, kind, versions, decides):
     if versions is not None:
         for name in ("fig08", "fig09"):
             drawn_by(pair.new / "figures" / f"{name}.{kind}", versions)
-    found = {each.name: each for each in pair.compare().artifacts}
-    part = next(part for part in found["fig08"].parts if part.file == f"figures/fig08.{kind}")
+    found = pair.artifact("fig08")
+    part = next(part for part in found.parts if part.file == f"figures/fig08.{kind}")
     assert part.outcome is Outcome.DRIFTED and part.decides is decides and part.share > 10
-    assert found["fig08"].outcome is (Outcome.DRIFTED if decides else Outcome.WITHIN)
+    assert found.outcome is (Outcome.DRIFTED if decides else Outcome.WITHIN)
     assert decides or "drawn by matplotlib" in part.note
 
 

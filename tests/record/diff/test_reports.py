@@ -31,9 +31,10 @@ def command(capsys, *arguments):
     return exit_.value.code, out, err
 
 
-@pytest.fixture
-def changed(pair):
+@pytest.fixture(scope="module")
+def changed(kept_pair):
     """One artifact of each outcome but the last."""
+    pair = kept_pair
     data = pair.dataset("fig05")
     data.phase.values[1, 40] += 1e-3
     pair.write("fig05", data)
@@ -46,8 +47,13 @@ def changed(pair):
     return pair
 
 
-def test_the_terminal_in_short(changed):
-    lines = to_terminal(changed.compare()).splitlines()
+@pytest.fixture(scope="module")
+def comparison(changed):
+    return changed.compare()
+
+
+def test_the_terminal_in_short(comparison):
+    lines = to_terminal(comparison).splitlines()
     assert lines[0].split() == ["artifact", "outcome", "of", "budget", "what"]
     assert [line.split()[0] for line in lines[1:-1]] == [
         "fig99",
@@ -65,8 +71,7 @@ def test_the_terminal_in_short(changed):
     )
 
 
-def test_json_holds_everything(changed):
-    comparison = changed.compare()
+def test_json_holds_everything(changed, comparison):
     content = json.loads(to_json(comparison))
     assert content["status"] == 1 and content["outcome"] == "extra"
     assert [found["name"] for found in content["artifacts"]][:2] == ["fig99", "table1"]
@@ -81,8 +86,8 @@ def test_json_holds_everything(changed):
     assert {"paper.md", "figures/fig99.png", "figures/witness.csv"} <= files
 
 
-def test_markdown_is_one_table(changed):
-    text = to_markdown(changed.compare())
+def test_markdown_is_one_table(comparison):
+    text = to_markdown(comparison)
     rows = [line for line in text.splitlines() if line.startswith("|")]
     # Header, rule, and one row for each artifact that is not identical.
     assert len(rows) == 2 + 5
@@ -103,8 +108,8 @@ def test_all_text_is_escaped(pair):
     assert json.loads(to_json(comparison))["outcome"] == "drifted"
 
 
-def test_the_page_fetches_nothing(changed):
-    page = to_html(changed.compare())
+def test_the_page_fetches_nothing(comparison):
+    page = to_html(comparison)
     assert (
         re.findall(r"(?:src|href|action|data|poster)\s*=\s*[\"'](?!data:image/png;|#)", page) == []
     )
@@ -112,13 +117,13 @@ def test_the_page_fetches_nothing(changed):
     assert not re.search(r"https?:", page)
 
 
-def test_pictures_that_are_the_same_are_there_once(changed):
-    page = to_html(changed.compare())
-    assert page.count("<img") == 5
-    shutil.copyfile(changed.new / "figures" / "fig08.png", changed.new / "figures" / "fig09.png")
-    page = to_html(changed.compare())
-    # Record, new and difference of that one.
-    assert page.count("<img") == 7
+def test_pictures_that_are_the_same_are_there_once(pair, comparison):
+    # Those of four artifacts, and one that the record has not.
+    assert to_html(comparison).count("<img") == 5
+    shutil.copyfile(pair.new / "figures" / "fig08.png", pair.new / "figures" / "fig09.png")
+    page = to_html(pair.compare())
+    # Record, new and difference of that one, and three that are the same.
+    assert page.count("<img") == 6
     assert "difference, × 1" in page
 
 
@@ -181,12 +186,12 @@ def test_the_number_of_changed_pixels(pair):
     assert "7 of " in to_html(pair.compare())
 
 
-def test_a_page_has_no_more_room_than_it_has(changed, monkeypatch):
-    whole = to_html(changed.compare())
+def test_a_page_has_no_more_room_than_it_has(comparison, monkeypatch):
+    whole = to_html(comparison)
     monkeypatch.setattr("bouncing_ball.record.diff.report_html._LARGEST", 1)
-    page = to_html(changed.compare())
+    page = to_html(comparison)
     # One artifact whole, the others by name and outcome.
-    assert page.count("no more room") == len(changed.compare().artifacts) - 1
+    assert page.count("no more room") == len(comparison.artifacts) - 1
     assert len(page) < len(whole) / 2
     assert re.findall(r"<section id=\S+", page) == re.findall(r"<section id=\S+", whole)
 

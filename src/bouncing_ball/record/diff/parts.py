@@ -97,11 +97,15 @@ _READERS = {".nc": read_data, ".png": read_picture, ".svg": read_drawing}
 _MAX_TEXT = 2**21
 
 
-def _read(folder: Path, file: str) -> tuple[bytes, Any]:
-    """The content of a file, and what it holds: dataset, picture, drawing or text."""
-    suffix = PurePosixPath(file).suffix
-    content = read_file(folder, file, MAX_BYTES if suffix in (".nc", ".png") else _MAX_TEXT)
-    return content, _READERS.get(suffix, _text)(content)
+def _read(folder: Path, file: str) -> bytes:
+    """The content of a file."""
+    binary = PurePosixPath(file).suffix in (".nc", ".png")
+    return read_file(folder, file, MAX_BYTES if binary else _MAX_TEXT)
+
+
+def _held(file: str, content: bytes) -> Any:
+    """What a file holds: dataset, picture, drawing or text."""
+    return _READERS.get(PurePosixPath(file).suffix, _text)(content)
 
 
 def redrawn(record: Mapping[Any, Any], new: Mapping[Any, Any]) -> str:
@@ -227,10 +231,14 @@ def judge(
         try:
             if before is not None:
                 reading = "record: "
-                contents[0], sides[0] = _read(before, file)
+                contents[0] = _read(before, file)
+                sides[0] = _held(file, contents[0])
             if after is not None:
                 reading = "new: "
-                contents[1], sides[1] = _read(after, file)
+                contents[1] = _read(after, file)
+                # Most files are the same bytes, and what they hold is known.
+                same = contents[1] == contents[0]
+                sides[1] = sides[0] if same else _held(file, contents[1])
             reading = ""
             made = (_made(sides[0]), _made(sides[1]))
             if before is not None and after is not None:

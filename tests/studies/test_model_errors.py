@@ -66,11 +66,25 @@ def test_where_each_model_is_right(described):
     assert np.all(np.isnan(data.error_threshold.sel(amplitude_ratio=5.0, restitution=0.5)))
 
 
-def test_a_crossing_on_a_grid():
-    ratios = np.geomspace(1.0, 1e4, 9)
-    slow, fast, never, always = 1 / ratios, 1 / ratios**2, 0 * ratios + 1, 0 * ratios + 1e-9
-    found = study._crossing(np.stack([slow, fast, never, always], axis=1), ratios, 0.01)
-    np.testing.assert_allclose(found, [100.0, 10.0, np.nan, 1.0])
+def test_thresholds_and_zeros_are_exact():
+    """At its threshold an error is the tolerance, at its zero it is nothing."""
+    zeta, n, lam = np.array([0.136, 0.05]), np.array([1, 1]), np.array([1.0, 0.9])
+    ratios, rule = np.geomspace(1.0, 1e4, 61), Release.DISPLACEMENT
+    found = study.search(zeta, rule, n, lam, ratios, 0.01)
+    assert np.all(found.threshold[found.status == "found"] > 1.0) and np.isfinite(found.zero).any()
+    for k, quantity in enumerate(study.QUANTITIES):
+        for orbit in range(2):
+
+            def error(ratio, k=orbit, quantity=quantity):
+                return study.errors(Contact(ratio, zeta[k], rule), n[k], lam[k], [quantity])[:, 0]
+
+            for i in range(2):
+                if found.status[i, k, orbit] == "found":
+                    assert abs(error(found.threshold[i, k, orbit])[i]) == pytest.approx(
+                        0.01, rel=1e-9
+                    )
+            if np.isfinite(found.zero[k, orbit]):
+                assert abs(error(found.zero[k, orbit])[0]) < 1e-12
 
 
 @pytest.mark.parametrize("release", RELEASES)

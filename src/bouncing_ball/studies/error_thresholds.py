@@ -6,20 +6,21 @@ permanent contact). The threshold for a tolerance is the ϖ above which the
 error stays below it, within the range scanned.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from enum import StrEnum
+from functools import cache
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
-from scipy.optimize.elementwise import find_root
 
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.impacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.orbits.contact_model import ContactModel
 from bouncing_ball.orbits.interface import OBSERVABLES, ImpactModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.studies.crossings import last_crossing
 from bouncing_ball.studies.parameters import contact, grid
 from bouncing_ball.studies.permanent_contact_curve import permanent_contact
 
@@ -52,13 +53,20 @@ def value(quantity: str, model: ImpactModel, n: ArrayLike, amplitude: ArrayLike)
     >>> float(value("bounce_velocity", RestitutionModel(0.5), 1, 2.0)) == np.pi
     True
     """
-    if quantity == Quantity.PERMANENT_CONTACT:
-        return model.permanent_contact_threshold()
-    if quantity == Quantity.SADDLE_NODE:
-        return model.saddle_node(n).amplitude
-    if quantity == Quantity.PERIOD_DOUBLING:
-        return model.period_doubling(n).amplitude
-    return getattr(model.orbit(n, amplitude), quantity)
+    return values([quantity], model, n, amplitude)[0]
+
+
+def values(
+    quantities: Iterable[str], model: ImpactModel, n: ArrayLike, amplitude: ArrayLike
+) -> list[np.ndarray]:
+    """Several quantities in a model, from one search for the orbit."""
+    orbit = cache(lambda: model.orbit(n, amplitude))
+    special: dict[str, Callable[[], np.ndarray]] = {
+        Quantity.PERMANENT_CONTACT: model.permanent_contact_threshold,
+        Quantity.SADDLE_NODE: lambda: model.saddle_node(n).amplitude,
+        Quantity.PERIOD_DOUBLING: lambda: model.period_doubling(n).amplitude,
+    }
+    return [special[q]() if q in special else getattr(orbit(), q) for q in quantities]
 
 
 def relative_error(
@@ -93,6 +101,32 @@ def relative_error(
     return np.where(np.isnan(error), np.inf, error)
 
 
+def excess(error: np.ndarray, tolerance: ArrayLike) -> np.ndarray:
+    """ln(error/tolerance), nearly a straight line in ln ϖ.
+
+    Bounded, so that an infinite or vanishing error does not upset a root finder.
+
+    Examples
+    --------
+    >>> excess(np.array([0.01, 0.0]), 0.01) < np.array([1.0, -600.0])
+    array([ True,  True])
+    """
+    return np.log(np.clip(error, 1e-300, 1e3) / tolerance)
+
+
+def status(outside: np.ndarray) -> Status:
+    """Outcome of the search for a threshold, from where a scanned error exceeds the tolerance.
+
+    Examples
+    --------
+    >>> status(np.array([True, False])).name
+    'FOUND'
+    """
+    if outside[-1]:
+        return Status.NEVER_WITHIN
+    return Status.FOUND if outside.any() else Status.ALWAYS_WITHIN
+
+
 def thresholds(
     error: Callable[[np.ndarray], np.ndarray],
     tolerances: ArrayLike,
@@ -125,22 +159,12 @@ def thresholds(
     tolerances = np.asarray(tolerances, dtype=float)
     scanned = error(ratios) if scanned is None else scanned
     outside = scanned > tolerances[:, np.newaxis]
-    any_outside = np.any(outside, axis=1)
-    last = len(ratios) - 1 - np.argmax(outside[:, ::-1], axis=1)
-    found = any_outside & (last < len(ratios) - 1)
-    result = np.full(len(tolerances), np.nan)
-    if np.any(found):
-        # In logarithms the error is nearly a straight line. Bounded, so that an
-        # infinite or vanishing error does not upset the bracketing.
-        def excess(log_ratio, tolerance):
-            return np.log(np.clip(error(np.exp(log_ratio)), 1e-300, 1e3) / tolerance)
-
-        bracket = np.log(ratios[last[found]]), np.log(ratios[last[found] + 1])
-        with np.errstate(invalid="ignore"):  # of an interpolation that is then not taken
-            result[found] = np.exp(find_root(excess, bracket, args=(tolerances[found],)).x)
-    missing = [Status.NEVER_WITHIN if bad else Status.ALWAYS_WITHIN for bad in any_outside]
-    statuses = [Status.FOUND if ok else why for ok, why in zip(found, missing, strict=True)]
-    return result, statuses
+    result = last_crossing(
+        lambda ratio, which: excess(error(ratio), tolerances[which]),
+        ratios,
+        excess(scanned, tolerances[:, np.newaxis]),
+    )
+    return np.where(outside[:, -1], np.nan, result), [status(row) for row in outside]
 
 
 def error_thresholds(parameters: Mapping[str, Any], release: str) -> xr.Dataset:

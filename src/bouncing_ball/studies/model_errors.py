@@ -20,11 +20,15 @@ from bouncing_ball.orbits.contact_model import ContactModel
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.interface import Side
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.studies.crossings import last_crossing
 from bouncing_ball.studies.error_thresholds import (
     Quantity,
+    Status,
+    excess,
     relative_error,
+    status,
     thresholds,
-    value,
+    values,
 )
 from bouncing_ball.studies.parameters import grid
 
@@ -46,22 +50,58 @@ def errors(contact: Contact, n, amplitude, quantities=QUANTITIES) -> np.ndarray:
     """Signed relative errors, exact over simple model minus one; (model, quantity, ...)."""
     shape = np.broadcast_shapes(contact.shape, np.shape(n), np.shape(amplitude))
     exact, *simple = (
-        np.stack([np.broadcast_to(value(q, model, n, amplitude), shape) for q in quantities])
+        np.stack([np.broadcast_to(q, shape) for q in values(quantities, model, n, amplitude)])
         for model in _models(contact)
     )
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.stack([exact / q - 1 for q in simple])
 
 
-def _last_zero(error: np.ndarray, ratios: np.ndarray) -> np.ndarray:
-    """The largest ϖ at which signed errors pass through zero along the first axis; NaN if none."""
-    turns = error[1:] * error[:-1] < 0
-    last = np.asarray(len(turns) - 1 - np.argmax(turns[::-1], axis=0))
-    left, right = (np.take_along_axis(error, k[np.newaxis], axis=0)[0] for k in (last, last + 1))
-    there = turns.any(axis=0)
-    share = np.where(there, left, 0.0) / np.where(there, left - right, 1.0)
-    at = np.exp(np.log(ratios[last]) + share * np.log(ratios[last + 1] / ratios[last]))
-    return np.where(there, at, np.nan)
+class Search(NamedTuple):
+    """From which ϖ on each model is right, of several orbits; (model, quantity, orbit)."""
+
+    threshold: np.ndarray
+    """NaN where the status is not ``FOUND``."""
+    status: np.ndarray
+    zero: np.ndarray
+    """Where the restitution model's error passes through zero by accident, the largest ϖ;
+    (quantity, orbit), NaN if it does not."""
+
+
+def search(zeta, rule: Release, n, amplitude, ratios: np.ndarray, tolerance: float) -> Search:
+    """Thresholds and zeros of the errors, on a grid and then to the last digit.
+
+    ``zeta``, ``n`` and ``amplitude`` are those of the orbits, one-dimensional.
+    """
+    zeta, n, lam = np.broadcast_arrays(zeta, n, amplitude)
+    shape = len(SIMPLE), len(QUANTITIES), lam.size
+
+    def error(ratio: np.ndarray, number: np.ndarray) -> np.ndarray:
+        """Signed errors of numbered (model, quantity, orbit), each at its own ϖ."""
+        model, quantity, orbit = np.unravel_index(number, shape)
+        found = np.empty(len(number))
+        for k in np.unique(quantity):
+            at = np.flatnonzero(quantity == k)
+            contact = Contact(ratio[at], zeta[orbit[at]], rule)
+            both = errors(contact, n[orbit[at]], lam[orbit[at]], [QUANTITIES[k]])[:, 0]
+            found[at] = both[model[at], np.arange(at.size)]
+        return found
+
+    signed = errors(Contact(ratios[:, np.newaxis], zeta, rule), n, lam)
+    scanned = np.moveaxis(signed, 2, -1).reshape(-1, ratios.size)
+    outside = _finite(scanned) > tolerance
+    threshold = last_crossing(
+        lambda ratio, number: excess(_finite(error(ratio, number)), tolerance),
+        ratios,
+        excess(_finite(scanned), tolerance),
+    )
+    # The restitution model's errors come first.
+    zero = last_crossing(error, ratios, scanned[: lam.size * len(QUANTITIES)])
+    return Search(
+        np.where(outside[:, -1], np.nan, threshold).reshape(shape),
+        np.array([str(status(row)) for row in outside]).reshape(shape),
+        zero.reshape(shape[1:]),
+    )
 
 
 _STIFF = 500.0
@@ -91,19 +131,7 @@ def error_law_table(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     one = Contact.from_restitution(parameters["restitution"], 1.0, rule)
     zeta = float(one.damping_ratio)
 
-    signed = errors(Contact(ratios, zeta, rule), n, lam)
-    found, statuses = [], []
-    for i in range(len(SIMPLE)):
-        for j, quantity in enumerate(QUANTITIES):
-
-            def error(ratio, i=i, quantity=quantity):
-                contact = Contact(ratio, zeta, rule)
-                return _finite(errors(contact, n, lam, [quantity])[i, 0])
-
-            ratio, status = thresholds(error, [tolerance], ratios, _finite(signed[i, j]))
-            found.append(ratio[0])
-            statuses.append(str(status[0]))
-    shape = len(SIMPLE), len(QUANTITIES)
+    found = search([zeta], rule, n, lam, ratios, tolerance)
     k = np.array(error_law.coefficients(n, zeta, lam, rule), dtype=float)
     still = float(error_law.permanent_contact_coefficient(zeta, rule))
     permanent, _ = thresholds(
@@ -122,9 +150,9 @@ def error_law_table(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
             {
                 "coefficient": ("quantity", k),
                 "law_threshold": ("quantity", np.abs(k) / tolerance),
-                "error_threshold": (("model", "quantity"), np.reshape(found, shape)),
-                "threshold_status": (("model", "quantity"), np.reshape(statuses, shape)),
-                "error_zero": ("quantity", _last_zero(signed[0].T, ratios)),
+                "error_threshold": (("model", "quantity"), found.threshold[..., 0]),
+                "threshold_status": (("model", "quantity"), found.status[..., 0]),
+                "error_zero": ("quantity", found.zero[:, 0]),
                 "second_order": ("quantity", _second_order(zeta, rule, n, lam)),
                 "permanent_coefficient": ((), still),
                 "permanent_law": ((), float(np.sqrt(abs(still) / tolerance))),
@@ -217,45 +245,25 @@ def orders(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     )
 
 
-def _crossing(error: np.ndarray, ratios: np.ndarray, tolerance: float) -> np.ndarray:
-    """ϖ after the last crossing of a tolerance along the first axis, interpolated in
-    logarithms; the grid's first where it is never exceeded, NaN where it still is at the last."""
-    outside = error > tolerance
-    last = len(ratios) - 1 - np.argmax(outside[::-1], axis=0)
-    following = np.minimum(last + 1, len(ratios) - 1)
-    left, right = (np.take_along_axis(error, k[np.newaxis], axis=0)[0] for k in (last, following))
-    level = np.log(np.clip(left, 1e-300, 1e3) / tolerance)
-    drop = level - np.log(np.clip(right, 1e-300, 1e3) / tolerance)
-    share = level / np.where(drop > 0, drop, 1.0)
-    at = np.exp(np.log(ratios[last]) + share * np.log(ratios[following] / ratios[last]))
-    at = np.where(outside.any(axis=0), at, ratios[0])
-    return np.where(outside[-1], np.nan, at)
-
-
 def validity(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     """The ϖ from which each simple model is right, over r, n and Λ/Λ_SN.
 
     Beside it, where the restitution model's error passes through zero by accident.
     """
     ratios, rule = grid(parameters["frequency_ratio"]), Release.of(release)
-    families, r = np.array(parameters["n"]), np.array(parameters["restitution"])
-    places = np.array(parameters["amplitude_ratio"])
-    shape = len(QUANTITIES), len(families), len(places), len(r)
-    threshold, zero = np.full((len(SIMPLE), *shape), np.nan), np.full(shape, np.nan)
-    # Case by case: the scan for bifurcations of one takes its memory.
-    for i, n in enumerate(families):
-        for k, own in enumerate(r):
-            contact = Contact.from_restitution(own, ratios[:, np.newaxis], rule, measured=True)
-            model = RestitutionModel(float(own))
-            lam = places * float(model.saddle_node(n).amplitude)
-            # Outside the stable range of the restitution model there is nothing to be right about.
-            there = lam <= float(model.period_doubling(n).amplitude)
-            signed = errors(contact, int(n), lam[there])
-            zero[:, i, there, k] = [_last_zero(error, ratios) for error in signed[0]]
-            found = [
-                [_crossing(_finite(q), ratios, parameters["tolerance"]) for q in x] for x in signed
-            ]
-            threshold[:, :, i, there, k] = np.array(found)
+    axes = [np.array(parameters[k]) for k in ("n", "amplitude_ratio", "restitution")]
+    n, places, r = np.meshgrid(*axes, indexing="ij")
+    model = RestitutionModel(r)
+    lam = places * model.saddle_node(n).amplitude
+    # Outside the stable range of the restitution model there is nothing to be right about.
+    there = lam <= model.period_doubling(n).amplitude
+    zeta = np.asarray(Contact.from_restitution(r, 1.0, rule, measured=True).damping_ratio)
+    found = search(zeta[there], rule, n[there], lam[there], ratios, parameters["tolerance"])
+    threshold = np.full((len(SIMPLE), len(QUANTITIES), *r.shape), np.nan)
+    zero = np.full(threshold.shape[1:], np.nan)
+    always = found.status == Status.ALWAYS_WITHIN
+    threshold[..., there] = np.where(always, ratios[0], found.threshold)
+    zero[..., there] = found.zero
     return describe(
         xr.Dataset(
             {
@@ -268,9 +276,9 @@ def validity(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
             coords={
                 "model": list(SIMPLE),
                 "quantity": list(QUANTITIES),
-                "n": families,
-                "amplitude_ratio": places,
-                "restitution": r,
+                "n": axes[0],
+                "amplitude_ratio": axes[1],
+                "restitution": axes[2],
             },
         )
     )

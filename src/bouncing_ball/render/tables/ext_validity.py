@@ -51,5 +51,4 @@ def _bounded(found: float, attributes: Mapping[str, Any]) -> str:
     lowest, highest = (attributes[f"frequency_ratio__{end}"] for end in ("min", "max"))
     if np.isnan(found):
         return f"> {highest:g}"
-    # The end of the range itself, but for the rounding of an interpolation.
-    return f"< {lowest:g}" if found <= lowest * (1 + 1e-6) else f"{found:.3g}"
+    return f"< {lowest:g}" if found <= lowest else f"{found:.3g}"

@@ -51,4 +51,5 @@ def _bounded(found: float, attributes: Mapping[str, Any]) -> str:
     lowest, highest = (attributes[f"frequency_ratio__{end}"] for end in ("min", "max"))
     if np.isnan(found):
         return f"> {highest:g}"
-    return f"< {lowest:g}" if found <= lowest else f"{found:.3g}"
+    # The end of the range itself, but for rounding.
+    return f"< {lowest:g}" if found <= lowest * (1 + 1e-6) else f"{found:.3g}"

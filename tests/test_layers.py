@@ -25,6 +25,8 @@ ALLOWED = {
         {"datasets", "impacts", "continuation", "motion", "orbits"},
         {"numpy", "scipy", "xarray"},
     ),
+    # Units are parsed at the edge, and pint is imported there when it is asked for.
+    "calculator": ({"impacts", "orbits", "studies"}, {"numpy", "pint"}),
     # Studies are imported by name when they are run.
     "configuration": ({"impacts", "orbits"}, {"yaml", "jsonschema", BY_NAME}),
     "audit": (
@@ -39,7 +41,16 @@ ALLOWED = {
     ),
     "pipeline": ({"datasets", "configuration", "record"}, {"xarray", "yaml"}),
     "cli": (
-        {"datasets", "impacts", "motion", "orbits", "configuration", "record"},
+        {
+            "datasets",
+            "impacts",
+            "motion",
+            "orbits",
+            "calculator",
+            "configuration",
+            "render",
+            "record",
+        },
         {"numpy"},
     ),
 }

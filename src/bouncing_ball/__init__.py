@@ -24,6 +24,7 @@ The layers, each importing only what lies above it in this list (and the errors)
 ``motion``        event-driven simulation, from any initial state
 ``orbits``        n-T orbits, their stability and bifurcations
 ``studies``       the stages of the pipeline: parameters in, datasets out
+``calculator``    units, cases and verdicts for an engineer's own contact
 ``configuration`` the parameters of a run, read and checked
 ``audit``         the paper under audit: claims, formulas, Table 1, every orbit by three routes
 ``render``        figures, tables and the article; they compute nothing
@@ -44,6 +45,7 @@ _PUBLIC = {
     "limits": "orbits.calls",
     "simulate": "orbits.calls",
     "model": "orbits.calls",
+    "design": "calculator.calls",
     "Contact": "impacts.spring_damper",
     "ContactModel": "orbits.contact_model",
     "RestitutionModel": "orbits.restitution_model",

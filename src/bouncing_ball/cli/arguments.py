@@ -214,6 +214,61 @@ def _add_diff(sub: Parser) -> None:
         sub.add_argument(f"--{name}", metavar="FILE", help=what)
 
 
+# The calculator's parameters, with an example of each: what is read with its unit.
+_DESIGN = {
+    "the table": {
+        "frequency": "50 Hz; in cycles, or with its unit in rad/s or rpm",
+        "angular-frequency": "314 rad/s, in place of --frequency",
+        "period": "20 ms, in place of --frequency",
+        "amplitude": "0.1 mm",
+        "acceleration": "0.8 g, in place of --amplitude",
+        "gravity": "9.80665 m/s^2, the default",
+    },
+    "the ball, and how stiff its contact is; without it one is chosen": {
+        "mass": "20 g",
+        "stiffness": "1e7 N/m",
+        "contact-time": "0.1 ms, of a free impact, in place of --stiffness",
+        "reduced-modulus": "115 GPa, E* of a Hertz contact, with --radius",
+        "radius": "5 mm, of a Hertz contact",
+    },
+    "how much the contact loses": {
+        "damping": "10 N s/m, with --stiffness",
+        "damping-ratio": "0.05",
+        "restitution": "0.85, by Eq. 16",
+        "measured-restitution": "0.85, of a free impact under --release",
+        "drop-height": "1 m, of a drop test, with --rebound-height",
+        "rebound-height": "72 cm",
+    },
+}
+
+
+def _add_design(sub: Parser) -> None:
+    """Texts: what they mean is the calculator's to say."""
+    for title, options in _DESIGN.items():
+        group = sub.add_argument_group(title)
+        for name, example in options.items():
+            group.add_argument(f"--{name}", metavar="X", help=f"such as {example}")
+    group = sub.add_argument_group("the question")
+    group.add_argument("--n", type=_count(1000), help="index of the family (default: the first)")
+    group.add_argument(
+        "--release",
+        choices=["displacement", "force"],
+        default="displacement",
+        help="what ends a contact (default: displacement, the paper's)",
+    )
+    group.add_argument(
+        "--quantity",
+        default="max_height",
+        metavar="NAME",
+        help="what must be right: max_height (default), bounce_velocity, phase, "
+        "apparent_restitution, saddle_node, period_doubling or permanent_contact",
+    )
+    group.add_argument(
+        "--tolerance", default="0.01", metavar="X", help="how far it may be off (default: 1 %%)"
+    )
+    sub.add_argument("--json", action="store_true", help="one JSON object, full precision")
+
+
 # The questions to a model: what each is for, and its own arguments.
 _QUESTIONS = {
     "orbit": ("the n-T orbit at an amplitude", _add_orbit),
@@ -238,6 +293,16 @@ def parser() -> Parser:
         sub.add_argument("--json", action="store_true", help="one JSON object, full precision")
         _add_damping(sub)
         add_arguments(sub)
+
+    design = commands.add_parser(
+        "design",
+        help="a contact with units: is a restitution coefficient enough, or which contact is",
+        description="A contact in physical units. With a stiffness: is the restitution model good "
+        "enough for it, and what does it get wrong? Without one: which stiffness, contact time and "
+        "damping does a simulation need? A plain number is in SI units. Exit status: 0, 1 if there "
+        "is no such orbit, 2 on a mistake.",
+    )
+    _add_design(design)
 
     text = "where a figure, dataset or table comes from, and the command that makes it again"
     explain = commands.add_parser("explain", help=text, description=text)

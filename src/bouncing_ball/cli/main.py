@@ -68,7 +68,8 @@ def _run(args: argparse.Namespace) -> None:
 
         diff.run(args)
     try:
-        answer, readable = (_explained if args.command == "explain" else _answered)(args)
+        others = {"explain": _explained, "design": _designed}
+        answer, readable = others.get(args.command, _answered)(args)
     except ValueError as error:
         if args.json:
             print_lines([to_json({"error": str(error)})])
@@ -90,6 +91,17 @@ def _answered(args: argparse.Namespace) -> Answered:
 
     with np.errstate(all="ignore"):
         return getattr(answers, args.command.replace("-", "_"))(args), _readable
+
+
+def _designed(args: argparse.Namespace) -> Answered:
+    """What the calculator says of a contact."""
+    import numpy as np
+
+    from bouncing_ball.cli import design
+
+    with np.errstate(all="ignore"):
+        found = design.asked(args)
+    return design.answer(found), design.lines
 
 
 def _explained(args: argparse.Namespace) -> Answered:

@@ -38,7 +38,8 @@ SIMPLE = ("restitution", "corrected")
 """The models that are compared with the exact one."""
 
 
-def _models(contact: Contact) -> tuple[ContactModel, RestitutionModel, CorrectedModel]:
+def models(contact: Contact) -> tuple[ContactModel, RestitutionModel, CorrectedModel]:
+    """The exact model of a contact, and the simple ones with the contact's own r."""
     return (
         ContactModel(contact),
         RestitutionModel(contact.restitution),
@@ -51,7 +52,7 @@ def errors(contact: Contact, n, amplitude, quantities=QUANTITIES) -> np.ndarray:
     shape = np.broadcast_shapes(contact.shape, np.shape(n), np.shape(amplitude))
     exact, *simple = (
         np.stack([np.broadcast_to(q, shape) for q in values(quantities, model, n, amplitude)])
-        for model in _models(contact)
+        for model in models(contact)
     )
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.stack([exact / q - 1 for q in simple])
@@ -289,7 +290,7 @@ def height(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     n, lam, ratios = parameters["n"], parameters["amplitude"], grid(parameters["frequency_ratio"])
     r = parameters["restitution"]
     contact = Contact.from_restitution(r, ratios, Release.of(release))
-    exact, simple, corrected = (m.orbit(n, lam) for m in _models(contact))
+    exact, simple, corrected = (m.orbit(n, lam) for m in models(contact))
     return describe(
         xr.Dataset(
             {
@@ -313,7 +314,7 @@ def domains(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     # Towards the fold by squares: the phase depends on Λ there by a root.
     share = np.linspace(0.0, 1.0, parameters["points"])[1:] ** 2
     amplitude, phase, stable, ends = [], [], [], []
-    for model in _models(contact):
+    for model in models(contact):
         fold, flip = model.saddle_node(n), model.period_doubling(n)
         low = float(fold.amplitude)
         lam = low + share * (top - low)

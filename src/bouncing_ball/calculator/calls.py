@@ -1,0 +1,240 @@
+"""The calculator as one function, :func:`design`: parameters with units in, a `Design` out."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from bouncing_ball.calculator.case import Case, Table
+from bouncing_ball.calculator.contact_data import (
+    STIFF,
+    loss,
+    stiffness_and_damping,
+    which,
+)
+from bouncing_ball.calculator.design import Design, describe, families, judged
+from bouncing_ball.calculator.needed import RATIOS, Needed, needed
+from bouncing_ball.calculator.units import KINDS, number
+from bouncing_ball.calculator.verdict import QUANTITIES, Verdict, assess, percent
+from bouncing_ball.errors import ModelError, NoOrbitError, require
+from bouncing_ball.impacts.release import Release
+from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.orbits.interface import OBSERVABLES
+from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.studies.error_thresholds import Status
+
+STANDARD_GRAVITY = 9.80665
+"""Standard acceleration of gravity, in m/s²."""
+
+_RATE = ("frequency", "angular_frequency", "period")
+_EXCITATION = ("amplitude", "acceleration")
+_MAY_VANISH = ("damping", "damping_ratio")
+_AT_MOST_ONE = ("restitution", "measured_restitution")
+# Beyond, the squares of ϖ and Λ leave no digits; as on the rest of the command line.
+_LARGEST = 1e8
+
+
+def _read(parameters: dict[str, Any]) -> dict[str, float]:
+    """The quantities that are given, in SI units and in their ranges."""
+    given = {name: number(name, value) for name, value in parameters.items() if value is not None}
+    for name, value in given.items():
+        unit = f" {KINDS[name].unit}" if KINDS[name].unit else ""
+        shown = f"{name} = {value:g}{unit}"
+        if name in _AT_MOST_ONE:
+            require(0 < value <= 1, value, name, "in (0, 1]")
+        elif value < 0 or (value == 0 and name not in _MAY_VANISH):
+            raise ModelError(f"{shown} is not {'≥ 0' if name in _MAY_VANISH else 'positive'}")
+    return given
+
+
+def _table(given: dict[str, float]) -> Table:
+    """The table, from one of the ways to say how fast and one to say how far it moves."""
+    rate = which(given, _RATE, "how fast the table moves")
+    far = which(given, _EXCITATION, "how far the table moves")
+    if rate is None:
+        raise ModelError("how fast the table moves is missing: give frequency, such as 50 Hz")
+    if far is None:
+        raise ModelError(
+            "how far the table moves is missing: give amplitude, such as 0.1 mm, or acceleration, "
+            "such as 2 g"
+        )
+    value = given[rate]
+    omega = {
+        "frequency": 2 * math.pi * value,
+        "angular_frequency": value,
+        "period": 2 * math.pi / value,
+    }[rate]
+    height = given[far] if far == "amplitude" else given[far] / omega**2
+    return Table(omega, height, given.get("gravity", STANDARD_GRAVITY))
+
+
+def _lowest_stable(restitution: float, amplitude: float) -> int:
+    """The family that is meant if none is named: the lowest that is stable at Λ, or n = 1."""
+    families = np.arange(1, 9)
+    orbits = RestitutionModel(restitution).orbit(families, amplitude)
+    stable = orbits.exists & orbits.is_stable()
+    return int(families[np.argmax(stable)])
+
+
+def _impact_speed(table: Table, given: dict[str, float], release: Release, n: int | None) -> float:
+    """v of the restitution model's orbit, for which a Hertz contact becomes a linear one.
+
+    Raises
+    ------
+    NoOrbitError
+        If it has no such orbit.
+    """
+    zeta = loss(given, release)
+    if zeta is None:
+        raise ModelError("damping needs stiffness: a Hertz contact takes a restitution coefficient")
+    r = float(Contact(1.0, zeta, release).restitution)
+    family = n or _lowest_stable(r, table.amplitude)
+    orbit = RestitutionModel(r).require_orbit(family, table.amplitude)
+    return -float(orbit.relative_impact_velocity) * table.speed
+
+
+def _chosen(need: Needed, zeta: float, release: Release, mass: float, table: Table) -> Case:
+    """The softest contact that is within the tolerance."""
+    ratio = RATIOS[0] if need.frequency_ratio is None else need.frequency_ratio
+    own = ratio * table.angular_frequency
+    return Case(mass, table, mass * own * own, 2 * zeta * mass * own, release)
+
+
+def design(
+    *,
+    mass: Any = None,
+    frequency: Any = None,
+    angular_frequency: Any = None,
+    period: Any = None,
+    amplitude: Any = None,
+    acceleration: Any = None,
+    gravity: Any = None,
+    stiffness: Any = None,
+    contact_time: Any = None,
+    reduced_modulus: Any = None,
+    radius: Any = None,
+    damping: Any = None,
+    damping_ratio: Any = None,
+    restitution: Any = None,
+    measured_restitution: Any = None,
+    drop_height: Any = None,
+    rebound_height: Any = None,
+    n: int | None = None,
+    release: str = "displacement",
+    quantity: str = "max_height",
+    tolerance: Any = 0.01,
+) -> Design:
+    """Assess a contact, or choose one.
+
+    Parameters are plain numbers in SI units, texts such as ``"50 Hz"``, or pint
+    quantities. With a stiffness (or a contact time, or E* and R of a Hertz contact)
+    the question is whether the restitution model is good enough for this contact;
+    without one, which contact a simulation needs for the tolerance.
+
+    Parameters
+    ----------
+    mass
+        m of the ball.
+    frequency, angular_frequency, period
+        Of the table; one of them. Hz are cycles, rad/s are not.
+    amplitude, acceleration
+        Of the table; one of them. ``"2 g"`` is twice the standard gravity.
+    gravity
+        9.80665 m/s² if it is not given; in a gear pair the drag torque takes its part.
+    stiffness, contact_time, reduced_modulus, radius
+        k; or the duration of a free impact; or E* and R of a Hertz contact.
+    damping, damping_ratio, restitution, measured_restitution, drop_height, rebound_height
+        c; or ζ; or r by Eq. 16; or r that a free impact really has; or a drop test.
+    n : int, optional
+        Index of the family; without it all of the first eight that exist.
+    release : str
+        "displacement" or "force": what ends a contact.
+    quantity, tolerance
+        What must be right, and how far.
+
+    Raises
+    ------
+    ModelError
+        In one line, if something is missing, contradictory or of the wrong kind.
+    NoOrbitError
+        If no model has an orbit there.
+
+    Examples
+    --------
+    >>> found = design(mass="20 g", frequency="50 Hz", acceleration="0.8 g",
+    ...                stiffness="1e7 N/m", restitution=0.85)
+    >>> round(found.frequency_ratio, 3), found.orbits[0].is_stable, found.is_good_enough
+    (71.176, True, False)
+    """
+    given = _read({name: value for name, value in locals().items() if name in KINDS})
+    rule, epsilon = Release.of(release), given.pop("tolerance")
+    if quantity not in QUANTITIES:
+        raise ModelError(f"unknown quantity {quantity!r}: one of {', '.join(QUANTITIES)}")
+    if n is not None and (n != int(n) or n < 1):
+        raise ModelError(f"index of the family n = {n} is not a positive integer")
+    table = _table(given)
+    if "mass" not in given:
+        raise ModelError("mass is missing: give it, such as 20 g")
+    require(table.amplitude < _LARGEST, table.amplitude, "Λ", f"below {_LARGEST:g}")
+    mass, notes = given["mass"], []
+    stiff = which(given, STIFF, "how stiff the contact is")
+    if stiff is None:
+        return _choose(mass, table, given, rule, n, quantity, epsilon)
+    speed = None
+    if stiff == "reduced_modulus":
+        speed = _impact_speed(table, given, rule, n)
+        notes.append(
+            f"the Hertz contact is replaced by the linear one of the same duration at the impact "
+            f"speed {speed:.3g} m/s of the restitution model's orbit"
+        )
+    case = Case(mass, table, *stiffness_and_damping(mass, given, rule, speed), rule)
+    ratio = float(case.contact.frequency_ratio)
+    require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
+    found = families(case, n)
+    one = judged(found)
+    need = needed(quantity, epsilon, case.zeta, rule, one.n, table.amplitude)
+    return describe(case, found, need, assess(one, need, ratio), notes)
+
+
+def _choose(
+    mass: float,
+    table: Table,
+    given: dict[str, float],
+    release: Release,
+    n: int | None,
+    quantity: str,
+    tolerance: float,
+) -> Design:
+    """The softest contact for a tolerance.
+
+    Raises
+    ------
+    NoOrbitError
+        If the restitution model has no orbit to be right about, or no contact will do.
+    """
+    zeta = loss(given, release)
+    if zeta is None:
+        raise ModelError(
+            "stiffness is missing beside damping; to choose a contact give its restitution instead"
+        )
+    r = float(Contact(1.0, zeta, release).restitution)
+    index = n or _lowest_stable(r, table.amplitude)
+    if quantity in OBSERVABLES:
+        RestitutionModel(r).require_orbit(index, table.amplitude)
+    need = needed(quantity, tolerance, zeta, release, index, table.amplitude)
+    if need.status == Status.NEVER_WITHIN:
+        raise NoOrbitError(
+            f"no contact up to ϖ = {RATIOS[-1]:g} has its {QUANTITIES[quantity]} within "
+            f"{percent(tolerance)} of the restitution model with r = {r:.4g}"
+        )
+    case = _chosen(need, zeta, release, mass, table)
+    verdict = Verdict(
+        True,
+        f"A simulation needs a contact of at least {case.stiffness:.4g} N/m, with a contact time "
+        f"of {case.contact_time:.4g} s or less and a damping of {case.damping:.4g} N s/m at that "
+        f"stiffness: the {QUANTITIES[quantity]} is then within {percent(tolerance)} of the "
+        "restitution model's.",
+        f"the error crosses {percent(tolerance)} for the last time at the frequency ratio "
+        f"ϖ = {float(case.contact.frequency_ratio):.4g}",
+    )
+    return describe(case, families(case, n), need, verdict, ())

@@ -1,0 +1,103 @@
+"""A ball, a vibrating table and a contact between them, in SI units."""
+
+import math
+from dataclasses import dataclass
+
+from bouncing_ball.impacts.release import Release
+from bouncing_ball.impacts.spring_damper import Contact
+
+
+@dataclass(frozen=True)
+class Table:
+    """What excites the ball.
+
+    Parameters
+    ----------
+    angular_frequency, height : float
+        Ω in rad/s and the amplitude A of the table in m.
+    gravity : float
+        g in m/s², or what takes its part: a drag over an inertia.
+
+    Examples
+    --------
+    >>> Table(angular_frequency=2.0, height=2.0, gravity=8.0).amplitude
+    1.0
+    """
+
+    angular_frequency: float
+    height: float
+    gravity: float
+
+    @property
+    def amplitude(self) -> float:
+        """Λ = AΩ²/g."""
+        return self.height * self.angular_frequency**2 / self.gravity
+
+    @property
+    def time(self) -> float:
+        """Unit of time, 1/Ω, in s."""
+        return 1 / self.angular_frequency
+
+    @property
+    def length(self) -> float:
+        """Unit of length, g/Ω², in m."""
+        return self.gravity / self.angular_frequency**2
+
+    @property
+    def speed(self) -> float:
+        """Unit of velocity, g/Ω, in m/s."""
+        return self.gravity / self.angular_frequency
+
+
+@dataclass(frozen=True)
+class Case:
+    """A case to design for.
+
+    Parameters
+    ----------
+    mass : float
+        m in kg.
+    table : Table
+    stiffness, damping : float
+        k in N/m and c in N s/m.
+    release : Release
+        What ends a contact.
+
+    Examples
+    --------
+    >>> case = Case(1.0, Table(1.0, 1.0, 1.0), 100.0, 2.0, Release.DISPLACEMENT)
+    >>> float(case.contact.frequency_ratio), float(case.contact.damping_ratio)
+    (10.0, 0.1)
+    """
+
+    mass: float
+    table: Table
+    stiffness: float
+    damping: float
+    release: Release
+
+    @property
+    def zeta(self) -> float:
+        """ζ = c/(2√(km))."""
+        return self.damping / (2 * math.sqrt(self.stiffness * self.mass))
+
+    @property
+    def contact(self) -> Contact:
+        """ϖ = √(k/m)/Ω, ζ and the release rule."""
+        own = math.sqrt(self.stiffness / self.mass)
+        return Contact(own / self.table.angular_frequency, self.zeta, self.release)
+
+    @property
+    def contact_time(self) -> float:
+        """Duration of a free impact, in s."""
+        return float(self.contact.free_duration) * self.table.time
+
+    @property
+    def static_deflection(self) -> float:
+        """mg/k, in m."""
+        return self.mass * self.table.gravity / self.stiffness
+
+    @property
+    def weight(self) -> float:
+        """mg, in N."""
+        return self.mass * self.table.gravity

@@ -1,0 +1,185 @@
+r"""Stiffness and damping from what is known of a contact.
+
+A linear contact has two numbers, and any two that fix them will do. Of the free
+impact that ends at the angle π - 2α (:mod:`bouncing_ball.impacts.release`) ::
+
+    ω_d t = π - 2α,   ω_d = ω√(1 - ζ²),   k = mω²,   c = 2ζmω
+
+A drop test measures r = √(h′/h), whatever releases the contact. A Hertz contact
+F = (4/3) E* √R p^{3/2} of the same duration at the impact speed v stands for one
+whose stiffness depends on the speed: its greatest compression and its duration
+without damping are ::
+
+    p = (15 m v²/(16 E* √R))^{2/5},    t = (4/5) B(2/5, 1/2) p/v = 2.943 p/v
+
+(Hertz 1881; Johnson, Contact Mechanics, 1985, §11.4). Everything in SI units.
+"""
+
+import math
+from collections.abc import Mapping
+
+from bouncing_ball.errors import ModelError, require
+from bouncing_ball.impacts.damping import damping_ratio
+from bouncing_ball.impacts.release import Release
+from bouncing_ball.impacts.spring_damper import Contact
+
+STIFF = ("stiffness", "contact_time", "reduced_modulus")
+"""What says how stiff a contact is; a modulus goes with a radius."""
+LOSSY = ("damping", "damping_ratio", "restitution", "measured_restitution", "rebound_height")
+"""What says how much it loses; the height of a rebound goes with that of the drop."""
+_PAIRS = {"reduced_modulus": "radius", "rebound_height": "drop_height"}
+
+Given = Mapping[str, float]
+
+
+def _words(names: tuple[str, ...]) -> str:
+    return ", ".join(f"{name} and {_PAIRS[name]}" if name in _PAIRS else name for name in names)
+
+
+def which(given: Given, names: tuple[str, ...], what: str) -> str | None:
+    """The one of some parameters that is given; none is None.
+
+    Raises
+    ------
+    ModelError
+        If there are two, or one of a pair without the other.
+
+    Examples
+    --------
+    >>> which({"stiffness": 1e5}, STIFF, "how stiff the contact is")
+    'stiffness'
+    """
+    for first, second in _PAIRS.items():
+        if first in names and (first in given) != (second in given):
+            raise ModelError(f"{first} and {second} are needed together")
+    found = [name for name in names if name in given]
+    if len(found) > 1:
+        both = " and ".join(found)
+        raise ModelError(f"{both} contradict each other: each says {what}; give one of them")
+    return found[0] if found else None
+
+
+def rebound(drop_height: float, rebound_height: float) -> float:
+    """Restitution coefficient r = √(h′/h) of a drop test.
+
+    Raises
+    ------
+    ModelError
+        If the ball rebounds higher than it was dropped.
+
+    Examples
+    --------
+    >>> rebound(1.0, 0.25)
+    0.5
+    """
+    if rebound_height > drop_height:
+        raise ModelError(
+            f"rebound_height = {rebound_height:g} m is above drop_height = {drop_height:g} m"
+        )
+    return math.sqrt(rebound_height / drop_height)
+
+
+def loss(given: Given, release: Release) -> float | None:
+    """Damping ratio ζ; None where a damping c is given, which needs the stiffness.
+
+    Raises
+    ------
+    ModelError
+        If nothing says it, or two parameters do, or r is out of range.
+    """
+    name = which(given, LOSSY, "how much the contact loses")
+    if name is None:
+        raise ModelError(f"how much the contact loses is missing: give one of {_words(LOSSY)}")
+    if name == "damping":
+        return None
+    if name == "damping_ratio":
+        zeta = given[name]
+        require(zeta < 1, zeta, "damping_ratio", "below 1: the contact would not oscillate")
+        return zeta
+    if name == "rebound_height":
+        measured = rebound(given["drop_height"], given[name])
+        return float(damping_ratio(measured, release))
+    rule = release if name == "measured_restitution" else Release.DISPLACEMENT
+    return float(damping_ratio(given[name], rule))
+
+
+def of_contact_time(mass: float, contact_time: float, zeta: float, release: Release) -> float:
+    """Stiffness k of a contact whose free impact takes a time.
+
+    Examples
+    --------
+    >>> round(of_contact_time(1.0, 3.141592653589793, 0.0, Release.DISPLACEMENT), 15)
+    1.0
+    """
+    # In the unit of time in which the contact's own frequency is 1.
+    omega = float(Contact(1.0, zeta, release).free_duration) / contact_time
+    return mass * omega * omega
+
+
+def hertz_contact_time(mass: float, reduced_modulus: float, radius: float, speed: float) -> float:
+    """Duration of an elastic Hertz impact, in s.
+
+    Parameters
+    ----------
+    mass, reduced_modulus, radius : float
+        m in kg, E* in Pa (1/E* = Σ (1 - ν²)/E) and R in m.
+    speed : float
+        v in m/s.
+
+    Examples
+    --------
+    The constant that simulators print, 2.87 (m²/(R E*² v))^{1/5}:
+
+    >>> round(hertz_contact_time(1.0, 1.0, 1.0, 1.0), 3)
+    2.868
+    """
+    depth = (15 * mass * speed * speed / (16 * reduced_modulus * math.sqrt(radius))) ** 0.4
+    beta = math.gamma(0.4) * math.gamma(0.5) / math.gamma(0.9)
+    return 0.8 * beta * depth / speed
+
+
+def stiffness_and_damping(
+    mass: float, given: Given, release: Release, speed: float | None
+) -> tuple[float, float]:
+    """k and c of a contact of which enough is known.
+
+    Parameters
+    ----------
+    mass : float
+    given : mapping
+        Parameters of :data:`STIFF` and :data:`LOSSY`, with what goes with them.
+    release : Release
+    speed : float or None
+        Impact speed, for which the Hertz contact is replaced by a linear one.
+
+    Raises
+    ------
+    ModelError
+        If they do not suffice or contradict each other.
+
+    Examples
+    --------
+    >>> stiffness_and_damping(1.0, {"stiffness": 4.0, "damping": 0.4}, Release.DISPLACEMENT, None)
+    (4.0, 0.4)
+    """
+    stiff, zeta = which(given, STIFF, "how stiff the contact is"), loss(given, release)
+    if zeta is None:
+        if stiff != "stiffness":
+            raise ModelError("damping needs stiffness: the two make the contact")
+        k, c = given["stiffness"], given["damping"]
+        if c >= 2 * math.sqrt(k * mass):
+            raise ModelError(
+                f"damping = {c:g} N s/m is not below the critical {2 * math.sqrt(k * mass):g} "
+                "N s/m: the contact would not oscillate, and a free impact not end"
+            )
+        return k, c
+    if stiff == "stiffness":
+        k = given["stiffness"]
+    else:
+        time = (
+            given["contact_time"]
+            if stiff == "contact_time"
+            else hertz_contact_time(mass, given["reduced_modulus"], given["radius"], speed or 0.0)
+        )
+        k = of_contact_time(mass, time, zeta, release)
+    return k, 2 * zeta * math.sqrt(k * mass)

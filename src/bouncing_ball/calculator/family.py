@@ -1,0 +1,177 @@
+"""One n-T family of a case: orbit, margins, loads and errors in every model."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from bouncing_ball.calculator.case import Case
+from bouncing_ball.impacts.signature import LinearSignature
+from bouncing_ball.impacts.spring_damper import Contact, contact_force
+from bouncing_ball.orbits import error_law
+from bouncing_ball.orbits.interface import ImpactModel, Orbit
+from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.studies.error_thresholds import Quantity
+from bouncing_ball.studies.model_errors import SIMPLE, errors, models
+
+Errors = dict[str, float | None]
+"""Relative errors by quantity; None where there is nothing to compare, or to divide by."""
+
+# A maximum in contact is looked for among so many samples, then among as many
+# between its neighbours: after six times it is known to 10⁻⁸ of the contact, and
+# its value, next to a maximum, to rounding.
+_SAMPLES, _ZOOMS = 33, 6
+
+
+@dataclass(frozen=True)
+class Standing:
+    """Where a case stands in its family, in one model.
+
+    ``saddle_node`` and ``period_doubling`` are Λ; the margins are the shares by
+    which Λ may fall to the one, ``1 - Λ_SN/Λ``, and rise to the other,
+    ``Λ_PD/Λ - 1``. None where there is no such bifurcation.
+    """
+
+    exists: bool
+    is_stable: bool
+    is_admissible: bool
+    saddle_node: float | None
+    period_doubling: float | None
+    saddle_node_margin: float | None
+    period_doubling_margin: float | None
+
+
+@dataclass(frozen=True)
+class Family:
+    """The n-T orbit of a case, in SI units, and how wrong the simple models are.
+
+    ``exists``, ``is_stable`` and ``is_admissible`` are those of the spring-damper
+    model. The errors are the moduli of relative errors, by the quantities of the
+    ``thresholds`` table: ``errors`` and ``corrected_errors`` exact,
+    ``law_errors`` K/ϖ by the error law, which is stated where ``law_holds``.
+    """
+
+    n: int
+    exists: bool
+    is_stable: bool
+    is_admissible: bool
+    standing: Mapping[str, Standing]
+    contact_duration: float | None
+    impact_speed: float | None
+    max_height: float | None
+    greatest_compression: float | None
+    peak_force: float | None
+    peak_force_over_weight: float | None
+    errors: Errors
+    corrected_errors: Errors
+    law_errors: Errors
+    law_holds: bool
+
+
+def _number(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
+def _standing(model: ImpactModel, orbit: Orbit, n: int, amplitude: float) -> Standing:
+    node = float(model.saddle_node(n).amplitude)
+    doubling = float(model.period_doubling(n).amplitude)
+    there = bool(orbit.exists)
+    return Standing(
+        exists=there,
+        is_stable=there and bool(orbit.is_stable()),
+        is_admissible=there and bool(orbit.is_admissible()),
+        saddle_node=_number(node),
+        period_doubling=_number(doubling),
+        saddle_node_margin=_number(1 - node / amplitude),
+        period_doubling_margin=_number(doubling / amplitude - 1),
+    )
+
+
+def greatest(function: Callable[[np.ndarray], np.ndarray], duration: float) -> float:
+    """Greatest value on [0, duration] of a function with one hump in each sample's width.
+
+    Examples
+    --------
+    >>> round(greatest(np.sin, 3.0), 12)
+    1.0
+    """
+    low, high = 0.0, duration
+    for _ in range(_ZOOMS):
+        time = np.linspace(low, high, _SAMPLES)
+        values = function(time)
+        at, step = int(np.argmax(values)), (high - low) / (_SAMPLES - 1)
+        low, high = max(0.0, time[at] - step), min(duration, time[at] + step)
+    return float(np.max(values))
+
+
+def _loads(case: Case, orbit: Orbit) -> tuple[float, float]:
+    """Greatest compression in m and greatest force over weight, in one contact."""
+    contact, duration = case.contact, float(orbit.contact_duration)
+    start = (0.0, orbit.relative_impact_velocity, orbit.phase, orbit.amplitude)
+
+    def force(time):
+        flow = contact.flow(time, *start)
+        return contact_force(
+            flow.displacement, flow.velocity, contact.frequency_ratio, contact.damping_ratio
+        )
+
+    depth = greatest(lambda time: -contact.flow(time, *start).displacement, duration)
+    return depth * case.table.length, greatest(force, duration)
+
+
+def _by_quantity(values: np.ndarray) -> Errors:
+    return {str(q): _number(float(v)) for q, v in zip(Quantity, values, strict=True)}
+
+
+def law(contact: Contact, n: int, amplitude: float) -> tuple[Errors, bool]:
+    """|K|/ϖ of each quantity, and whether the law is stated there."""
+    absent: Errors = dict.fromkeys(Quantity)
+    if not RestitutionModel(contact.restitution).orbit(n, amplitude).exists:
+        return absent, False
+    instant = LinearSignature(contact)()
+    first = error_law.first_order(n, instant, amplitude)._asdict()
+    second = error_law.permanent_contact_coefficient(contact.damping_ratio, contact.release)
+    first[Quantity.PERMANENT_CONTACT] = second / np.square(contact.frequency_ratio)
+    errors = absent | {name: _number(abs(float(value))) for name, value in first.items()}
+    return errors, bool(error_law.small_parameter(n, instant, amplitude) < error_law.STATED)
+
+
+def family(case: Case, n: int) -> Family:
+    """All that is asked of the n-T orbit.
+
+    Examples
+    --------
+    >>> from bouncing_ball.calculator.case import Table
+    >>> from bouncing_ball.impacts.release import Release
+    >>> case = Case(1.0, Table(1.0, 0.1, 1.0), 100.0, 2.0, Release.DISPLACEMENT)
+    >>> family(case, 1).exists
+    False
+    """
+    contact, lam = case.contact, case.table.amplitude
+    of = {model.name: model for model in models(contact)}
+    orbits = {name: model.orbit(n, lam) for name, model in of.items()}
+    standing = {name: _standing(of[name], orbits[name], n, lam) for name in of}
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found = np.abs(errors(contact, n, lam, tuple(Quantity)))
+    there, orbit = standing["spring-damper"], orbits["spring-damper"]
+    depth, force = _loads(case, orbit) if there.exists else (math.nan, math.nan)
+    law_errors, holds = law(contact, n, lam)
+    unit = case.table
+    return Family(
+        n=n,
+        exists=there.exists,
+        is_stable=there.is_stable,
+        is_admissible=there.is_admissible,
+        standing=standing,
+        contact_duration=_number(float(orbit.contact_duration) * unit.time),
+        impact_speed=_number(-float(orbit.relative_impact_velocity) * unit.speed),
+        max_height=_number(float(orbit.max_height) * unit.length),
+        greatest_compression=_number(depth),
+        peak_force=_number(force * case.weight),
+        peak_force_over_weight=_number(force),
+        errors=_by_quantity(found[SIMPLE.index("restitution")]),
+        corrected_errors=_by_quantity(found[SIMPLE.index("corrected")]),
+        law_errors={str(name): value for name, value in law_errors.items()},
+        law_holds=holds,
+    )

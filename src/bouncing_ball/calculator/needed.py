@@ -1,0 +1,96 @@
+"""The stiffness that a tolerance needs: the exact error, inverted by a root."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from bouncing_ball.calculator.family import law
+from bouncing_ball.impacts.release import Release
+from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.orbits.interface import OBSERVABLES
+from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.studies.error_thresholds import thresholds
+from bouncing_ball.studies.model_errors import SIMPLE, errors
+
+# From contacts that last a good part of the table's period to stiffer ones than
+# any simulation has; so fine that no two crossings are seen as none.
+RATIOS = np.geomspace(1.0, 1e6, 241)
+
+
+NO_ORBIT = "the restitution model has no such orbit"
+"""Status beside those of :class:`~bouncing_ball.studies.error_thresholds.Status`."""
+
+
+@dataclass(frozen=True)
+class Needed:
+    """The contact from which on the error of a quantity stays within a tolerance.
+
+    ``frequency_ratio`` is the largest ϖ at which the restitution model's error
+    crosses the tolerance, if its ``status`` is "found"; ``by_law`` is |K|/ε of the error
+    law (the root of |K₂|/ε for the permanent contact), ``corrected`` the largest crossing
+    of the corrected model. None where there is none; the status says why.
+    """
+
+    quantity: str
+    tolerance: float
+    frequency_ratio: float | None
+    by_law: float | None
+    corrected: float | None
+    status: str
+    corrected_status: str
+
+
+def along(
+    quantity: str, damping_ratio: float, release: Release, n: int, amplitude: float, ratios
+) -> np.ndarray:
+    """Moduli of the relative errors of both simple models along ϖ, shape (2, ...).
+
+    Infinite where the exact model has no such quantity, or the simple one none to
+    be relative to.
+
+    Examples
+    --------
+    >>> found = along("permanent_contact", 0.0, Release.DISPLACEMENT, 1, 1.0, np.array([2.0]))
+    >>> found.tolist()
+    [[0.25], [0.25]]
+    """
+    contact = Contact(ratios, damping_ratio, release)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found = np.abs(errors(contact, n, amplitude, (quantity,))[:, 0])
+    return np.where(np.isnan(found), np.inf, found)
+
+
+def _number(value: float) -> float | None:
+    return value if np.isfinite(value) else None
+
+
+def needed(
+    quantity: str, tolerance: float, damping_ratio: float, release: Release, n: int, lam: float
+) -> Needed:
+    """The ϖ that a tolerance needs, for a contact of this damping.
+
+    Examples
+    --------
+    Λ_SD = 1 - 1/ϖ² without damping:
+
+    >>> found = needed("permanent_contact", 0.01, 0.0, Release.DISPLACEMENT, 1, 1.0)
+    >>> round(found.frequency_ratio, 12), round(found.by_law, 12)
+    (10.0, 10.0)
+    """
+    simple = RestitutionModel(Contact(1.0, damping_ratio, release).restitution)
+    if quantity in OBSERVABLES and not simple.orbit(n, lam).exists:
+        return Needed(quantity, tolerance, None, None, None, NO_ORBIT, NO_ORBIT)
+    found = []
+    for k in range(len(SIMPLE)):
+
+        def error(ratios: np.ndarray, k: int = k) -> np.ndarray:
+            return along(quantity, damping_ratio, release, n, lam, ratios)[k]
+
+        found.append(thresholds(error, np.array([tolerance]), RATIOS))
+    ratios = [_number(float(roots[0])) for roots, _ in found]
+    coefficient = law(Contact(1.0, damping_ratio, release), n, lam)[0][quantity]
+    by_law = None if coefficient is None else coefficient / tolerance
+    if by_law is not None and quantity == "permanent_contact":
+        by_law = by_law**0.5
+    why = [str(statuses[0]) for _, statuses in found]
+    return Needed(quantity, tolerance, ratios[0], by_law, ratios[1], *why)

@@ -1,0 +1,192 @@
+"""Quantities with units, read at the edge: SI floats inside.
+
+A text is one number and, after it, its unit: ``50 Hz``, ``0.5 mm``, ``2e6 N/m``.
+A plain number is in SI units. Only the unit is given to pint, and never an
+expression: texts of a command line are not evaluated.
+
+Hertz and radians per second have the same dimension, and pint takes one for the
+other. Here cycles and radians are kept apart: ``rad/s``, ``rpm`` and ``deg/s``
+are angles over time, ``Hz`` counts cycles, and a bare ``1/s`` is refused.
+"""
+
+import math
+import re
+from functools import cache
+from typing import Any, NamedTuple
+
+from bouncing_ball.errors import ModelError
+
+# A number, and what is left.
+_TEXT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.DOTALL)
+# Letters, products, quotients and powers of one digit. A power of a power would
+# be evaluated, however large.
+_UNIT = re.compile(r"(?:[^\W\d]|[ ·*/%°²³¹⁻]|\^-?\d(?![\d^])|_0|1(?= */)){1,40}")
+
+
+class Kind(NamedTuple):
+    """What a parameter is: its SI unit, its name in words, an example."""
+
+    unit: str
+    words: str
+    example: str
+
+
+KINDS = {
+    "mass": Kind("kg", "a mass", "20 g"),
+    "frequency": Kind("Hz", "a frequency", "50 Hz"),
+    "angular_frequency": Kind("rad/s", "an angular frequency", "314 rad/s"),
+    "period": Kind("s", "a time", "20 ms"),
+    "amplitude": Kind("m", "a length", "0.1 mm"),
+    "acceleration": Kind("m/s^2", "an acceleration", "2 g"),
+    "gravity": Kind("m/s^2", "an acceleration", "9.81 m/s^2"),
+    "stiffness": Kind("N/m", "a stiffness", "1e6 N/m"),
+    "damping": Kind("N*s/m", "a damping", "10 N s/m"),
+    "damping_ratio": Kind("", "a number", "0.05"),
+    "restitution": Kind("", "a number", "0.85"),
+    "measured_restitution": Kind("", "a number", "0.85"),
+    "contact_time": Kind("s", "a time", "50 us"),
+    "drop_height": Kind("m", "a length", "1 m"),
+    "rebound_height": Kind("m", "a length", "70 cm"),
+    "reduced_modulus": Kind("Pa", "a pressure", "115 GPa"),
+    "radius": Kind("m", "a length", "5 mm"),
+    "tolerance": Kind("", "a number", "1 %"),
+}
+"""The parameters that are quantities, by the names of the calculator."""
+
+_CYCLES = {"hertz", "kilohertz", "megahertz", "millihertz", "counts_per_second"}
+# What one calls the standard acceleration of gravity; pint's g is the gram.
+_GRAVITY = {"g", "gn", "g_n", "g0", "g_0"}
+_DIMENSIONS = {
+    "kg": "a mass",
+    "1/s": "a frequency",
+    "s": "a time",
+    "m": "a length",
+    "m/s": "a speed",
+    "m/s^2": "an acceleration",
+    "N/m": "a stiffness",
+    "N*s/m": "a damping",
+    "N": "a force",
+    "Pa": "a pressure",
+    "": "a number without dimension",
+}
+
+
+@cache
+def _registry() -> Any:
+    # Imported where it is needed: it takes half a second, and plain numbers do without.
+    import pint
+
+    return pint.UnitRegistry()
+
+
+def number(name: str, value: Any) -> float:
+    """A parameter in SI units.
+
+    Parameters
+    ----------
+    name : str
+        One of :data:`KINDS`.
+    value : float, str or pint.Quantity
+        A plain number is in SI units.
+
+    Raises
+    ------
+    ModelError
+        In one line, if it is no finite number with a unit of the right kind.
+
+    Examples
+    --------
+    >>> number("stiffness", 2e6), number("stiffness", "2 kN/mm")
+    (2000000.0, 2000000.0)
+    >>> number("frequency", "3000 rpm"), number("acceleration", "2 g")
+    (50.0, 19.6133)
+    >>> number("frequency", "20 ms")
+    Traceback (most recent call last):
+    ...
+    bouncing_ball.errors.ModelError: frequency = 20 ms is a time: it needs a frequency, \
+such as 50 Hz; a period has its own parameter, period
+    """
+    if hasattr(value, "magnitude") and hasattr(value, "units"):
+        magnitude, unit = value.magnitude, str(value.units).replace("dimensionless", "")
+    else:
+        magnitude, unit = _split(name, value)
+    given = f"{name} = {value}"
+    if not unit:
+        return _finite(given, magnitude)
+    factor = _factor(name, given, unit)
+    # To the last digit but one: the digits that a user wrote are kept.
+    return _finite(given, float(f"{float(magnitude) * factor:.15g}"))
+
+
+def _finite(given: str, value: Any) -> float:
+    if isinstance(value, bool) or not math.isfinite(value):
+        raise ModelError(f"{given} is not a finite number")
+    return float(value)
+
+
+def _split(name: str, value: Any) -> tuple[float, str]:
+    """Number and unit of a text; a number has none."""
+    if not isinstance(value, str):
+        try:
+            return float(value), ""
+        except (TypeError, ValueError):
+            raise ModelError(f"{name} = {value!r} is neither a number nor a text") from None
+    found = _TEXT.fullmatch(value)
+    example = KINDS[name].example
+    if found is None:
+        raise ModelError(
+            f"{name} = {value!r} does not begin with a number: write it as {example!r}"
+        )
+    return float(found[1]), found[2]
+
+
+def _factor(name: str, given: str, unit: str) -> float:
+    """What one unit is in SI units."""
+    kind, registry = KINDS[name], _registry()
+    if kind.words == "an acceleration" and unit in _GRAVITY:
+        unit = "standard_gravity"
+    try:
+        if not _UNIT.fullmatch(unit.replace("**", "^")):
+            raise ValueError(unit)
+        parsed = registry.parse_units(unit)
+        one = registry.Quantity(1.0, parsed)
+        # An offset scale, such as °C, has no factor.
+        linear = math.isclose((2 * one).to_root_units().m, 2 * one.to_root_units().m)
+    except Exception:  # pint raises whatever its tokenizer does
+        linear = False
+    if not linear:
+        raise ModelError(f"{given} has no unit that is known: write it as {kind.example!r}")
+    if not one.is_compatible_with(kind.unit or "dimensionless"):
+        raise ModelError(_other_kind(name, given, one))
+    if kind.unit in ("Hz", "rad/s"):
+        return _rate(name, given, one)
+    return float(one.to(kind.unit or "dimensionless").m)
+
+
+def _rate(name: str, given: str, one: Any) -> float:
+    """Cycles or radians in a second, whichever is asked for."""
+    root = one.to_root_units()
+    units = {str(unit) for unit, _ in one.unit_items()}
+    if "radian" in {str(unit) for unit, _ in root.unit_items()}:
+        radians = float(root.m)
+    elif units <= _CYCLES:
+        radians = 2 * math.pi * float(root.m)
+    else:
+        raise ModelError(
+            f"{given} does not say whether it counts cycles or radians: write Hz or rad/s"
+        )
+    return radians if KINDS[name].unit == "rad/s" else radians / (2 * math.pi)
+
+
+def _other_kind(name: str, given: str, one: Any) -> str:
+    found = [words for unit, words in _DIMENSIONS.items() if one.is_compatible_with(unit)]
+    what = found[0] if found else f"of dimension {one.dimensionality}"
+    kind = KINDS[name]
+    text = f"{given} is {what}: it needs {kind.words}, such as {kind.example}"
+    if name == "damping_ratio" and what == "a damping":
+        return f"{text}; a damping has its own parameter, damping"
+    own = {"a time": "period", "a frequency": "frequency", "an acceleration": "acceleration"}
+    table = ("frequency", "angular_frequency", "period", "amplitude", "acceleration")
+    if name in table and what in own:
+        text += f"; {'a period' if what == 'a time' else what} has its own parameter, {own[what]}"
+    return text

@@ -1,0 +1,99 @@
+"""The answer in one sentence, and why."""
+
+from typing import NamedTuple
+
+from bouncing_ball.calculator.family import Family
+from bouncing_ball.calculator.needed import Needed
+
+QUANTITIES = {
+    "max_height": "greatest height",
+    "bounce_velocity": "bouncing-off velocity",
+    "phase": "phase of impact",
+    "apparent_restitution": "apparent restitution",
+    "saddle_node": "saddle-node",
+    "period_doubling": "period doubling",
+    "permanent_contact": "threshold of permanent contact",
+}
+"""The quantities as a sentence calls them."""
+
+
+class Verdict(NamedTuple):
+    """Whether the restitution model is good enough, in one sentence, and the reason."""
+
+    is_good_enough: bool
+    sentence: str
+    reason: str
+
+
+def percent(share: float) -> str:
+    """A share in percent, two digits.
+
+    Examples
+    --------
+    >>> percent(0.0123), percent(2.5e-5)
+    ('1.2 %', '0.0025 %')
+    """
+    return f"{100 * share:.2g} %" if share < 1 else f"{100 * share:.0f} %"
+
+
+def _disagreement(family: Family) -> str | None:
+    """What the restitution model says of the orbit that is not so, before any number."""
+    exact, simple = family.standing["spring-damper"], family.standing["restitution"]
+    for name, there, absent in (
+        ("exists", "an orbit that the contact has", "an orbit that the contact has not"),
+        ("is_admissible", "a motion of the ball", "an orbit of equations only"),
+        ("is_stable", "stable", "unstable"),
+    ):
+        real, claimed = getattr(exact, name), getattr(simple, name)
+        if real == claimed:
+            continue
+        if name == "exists":
+            return f"it misses {there}" if real else f"it has {absent}"
+        return f"it has {there if claimed else absent} what is {there if real else absent}"
+    return None
+
+
+def assess(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
+    """The verdict on a given contact."""
+    name, tolerance = QUANTITIES[needed.quantity], percent(needed.tolerance)
+    found = family.errors[needed.quantity]
+    wrong = _disagreement(family)
+    good = wrong is None and found is not None and found <= needed.tolerance
+    subject = f"the {name} of the {family.n}-T orbit"
+    if good:
+        sentence = (
+            f"The restitution model is good enough: {subject} is {percent(found or 0.0)} off, "
+            f"within {tolerance}."
+        )
+    else:
+        what = wrong or (
+            f"{subject} cannot be compared"
+            if found is None
+            else f"{subject} is {percent(found)} off, beyond {tolerance}"
+        )
+        sentence = f"The restitution model is not good enough: {what}{_instead(family, needed)}."
+    return Verdict(good, sentence, _reason(needed, frequency_ratio, good, tolerance))
+
+
+def _instead(family: Family, needed: Needed) -> str:
+    """Whether the corrected model will do."""
+    found = family.corrected_errors[needed.quantity]
+    exact, corrected = family.standing["spring-damper"], family.standing["corrected"]
+    same = (exact.exists, exact.is_stable) == (corrected.exists, corrected.is_stable)
+    if same and found is not None and found <= needed.tolerance:
+        return f"; the corrected restitution model is, with {percent(found)}"
+    return "; nor is the corrected one: simulate the contact"
+
+
+def _reason(needed: Needed, frequency_ratio: float, good: bool, tolerance: str) -> str:
+    """The contact's ϖ against the one that the tolerance needs."""
+    if needed.frequency_ratio is None:
+        return f"no frequency ratio to compare with: {needed.status}"
+    place = "above" if frequency_ratio >= needed.frequency_ratio else "below"
+    text = (
+        f"the contact's frequency ratio ϖ = {frequency_ratio:.4g} is {place} the "
+        f"ϖ = {needed.frequency_ratio:.4g} from which on the error stays within {tolerance}"
+    )
+    if good and place == "below":
+        text += ": that it is small here is an accident of its passing through zero"
+    return text

@@ -231,14 +231,13 @@ def judge(
         try:
             if before is not None:
                 reading = "record: "
-                contents[0] = _read(before, file)
-                sides[0] = _held(file, contents[0])
+                content = contents[0] = _read(before, file)
+                sides[0] = _held(file, content)
             if after is not None:
                 reading = "new: "
-                contents[1] = _read(after, file)
+                content = contents[1] = _read(after, file)
                 # Most files are the same bytes, and what they hold is known.
-                same = contents[1] == contents[0]
-                sides[1] = sides[0] if same else _held(file, contents[1])
+                sides[1] = sides[0] if content == contents[0] else _held(file, content)
             reading = ""
             made = (_made(sides[0]), _made(sides[1]))
             if before is not None and after is not None:

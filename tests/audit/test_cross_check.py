@@ -23,8 +23,8 @@ def with_attributes(data, parameters, release=None):
     return data
 
 
-@pytest.fixture(params=["displacement", "force"])
-def branches(request, continuation_settings):
+@pytest.fixture(scope="module", params=["displacement", "force"])
+def computed_branches(request, continuation_settings):
     parameters = {
         "n": 1,
         "restitution": 0.85,
@@ -34,6 +34,12 @@ def branches(request, continuation_settings):
     }
     data = orbit_branches(parameters, request.param, continuation_settings)
     return with_attributes(data, parameters, request.param)
+
+
+@pytest.fixture
+def branches(computed_branches):
+    """Both branches under either rule, which a test may change."""
+    return computed_branches.copy(deep=True)
 
 
 def test_branches_agree(branches, continuation_settings):

@@ -1,11 +1,13 @@
 """Copies of the tree in which the workflow is run as a user runs it.
 
-A whole run costs as much as hundreds of other tests: there is one, which all
-workers share, and copies of it.
+A whole run costs as much as hundreds of other tests: there is one, killed and
+resumed on its way, which all workers share, and copies of it.
 """
 
 import compileall
 import fcntl
+import hashlib
+import json
 import os
 import re
 import shutil
@@ -119,16 +121,24 @@ class Tree:
         path.write_text(text.replace(old, new), encoding="utf-8")
 
     def contents(self, folder: str = "") -> dict[str, bytes]:
-        """All files under a folder but logs, measurements and Snakemake's own."""
+        """All files under a folder but logs, measurements and Snakemake's own.
+
+        Neither what was being written when a run was killed: it has another name.
+        """
         base = self.path / folder
         files = (path for path in sorted(base.rglob("*")) if path.is_file())
         names = {str(path.relative_to(base)): path for path in files}
-        skipped = ("logs/", "benchmarks/", ".snakemake/", ".git/")
+        skipped = ("logs/", "benchmarks/", ".snakemake/", ".git/", ".part.")
         return {
             name: path.read_bytes()
             for name, path in names.items()
             if "__pycache__" not in name and not any(part in name for part in skipped)
         }
+
+    def checksums(self, folder: str = "") -> dict[str, str]:
+        """Those of :meth:`contents`."""
+        files = self.contents(folder)
+        return {name: hashlib.sha256(content).hexdigest() for name, content in files.items()}
 
     def interrupt(self, sign: signal.Signals, *arguments: str, after: int) -> None:
         """Start a run and stop it once so many results are there."""
@@ -196,10 +206,21 @@ def cloned(shared) -> Tree:
 
 @pytest.fixture(scope="session")
 def pristine(shared, cloned) -> Tree:
-    """A complete run. Tests must not change it, nor run in it: other workers copy it."""
+    """A complete run. Tests must not change it, nor run in it: other workers copy it.
+
+    It was killed on its way and resumed; what there was then is in ``killed.json``.
+    """
 
     def make(folder: Path) -> None:
-        copy_tree(cloned.path, folder, with_git=True).run("--cores", "2")
+        tree = copy_tree(cloned.path, folder, with_git=True)
+        tree.interrupt(signal.SIGKILL, "--cores", "2", after=4)
+        early = tree.checksums("results")
+        # Snakemake could not remove its lock; it says so and names this command.
+        said = tree.run("--cores", "2", check=False).stderr
+        tree.run("--unlock")
+        tree.run("--cores", "2")
+        found = json.dumps({"early": early, "said": said})
+        (shared / "killed.json").write_text(found, encoding="utf-8")
 
     return made_once(shared / "pristine", make)
 

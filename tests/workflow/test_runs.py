@@ -1,24 +1,30 @@
 """What a user sees: targets by name, reproducible bytes, interruptions."""
 
+import json
 import re
+import shutil
 import signal
+from pathlib import Path
 
 import pytest
 import yaml
 
+from bouncing_ball.configuration.documentation import configuration_page
 from bouncing_ball.configuration.stages import Kind, names, studied, tables
 
+ROOT = Path(__file__).resolve().parents[2]
 PAPER_FIGURES = names(Kind.FIGURE)
 FIGURES = names(Kind.FIGURE, Kind.EXTENSION)
 
 
-def test_one_figure_by_its_name_makes_that_figure_only(fresh):
-    fresh.run("--cores", "2", "fig11")
-    assert set(fresh.contents("results")) == {
-        "figures/fig11.nc",
-        "figures/fig11.png",
-        "figures/fig11.svg",
-    }
+def test_one_figure_by_its_name_makes_that_figure_only(pristine, tmp_path):
+    # In another folder, and at once: the same bytes as those of a whole run.
+    elsewhere = type(pristine)(tmp_path / "elsewhere")
+    shutil.copytree(pristine.path / "config", elsewhere.path / "config")
+    pristine.run("--cores", "1", "fig11", "--directory", str(elsewhere.path))
+    made, expected = elsewhere.contents("results"), pristine.contents("results")
+    assert set(made) == {f"figures/fig11.{kind}" for kind in ("nc", "png", "svg")}
+    assert [name for name in made if made[name] != expected[name]] == []
 
 
 def test_a_run_makes_every_figure_and_table(pristine):
@@ -29,33 +35,26 @@ def test_a_run_makes_every_figure_and_table(pristine):
     assert made == pictures | data | texts | {"paper.md", "tally.txt"}
 
 
-def test_a_run_touches_no_tracked_file(pristine, fresh):
-    before = fresh.contents()
+def test_a_run_touches_no_tracked_file(pristine, cloned):
+    before = cloned.contents()
     after = {k: v for k, v in pristine.contents().items() if not k.startswith("results/")}
     assert after == before
 
 
-def test_up_to_date_means_nothing_to_do(complete):
-    assert complete.planned() == set()
+def test_a_killed_run_was_resumed(pristine):
+    killed = json.loads(pristine.path.with_name("killed.json").read_text(encoding="utf-8"))
+    early, after = killed["early"], pristine.checksums("results")
+    assert 0 < len(early) < len(after)
+    # What is there under its own name is whole, even after a kill, and stays.
+    assert [name for name in early if early[name] != after[name]] == []
+    assert "--unlock" in killed["said"]
 
 
-def whole(tree):
-    """The results under their own names; what is being written has another."""
-    return {name: data for name, data in tree.contents("results").items() if ".part" not in name}
-
-
-def test_a_killed_run_is_resumed_and_gives_the_same_bytes(pristine, fresh):
-    fresh.interrupt(signal.SIGKILL, "--cores", "2", after=4)
-    expected, early = pristine.contents("results"), whole(fresh)
-    assert 0 < len(early) < len(expected)
-    # What is there under its own name is whole, even after a kill.
-    assert [name for name, content in early.items() if content != expected[name]] == []
-    # Snakemake could not remove its lock; it says so and names this command.
-    assert "--unlock" in fresh.run("--cores", "2", check=False).stderr
-    fresh.run("--unlock")
+@pytest.mark.long
+def test_a_run_that_nothing_interrupts_gives_the_same_bytes(pristine, fresh):
     # Another number of jobs at a time, another order.
     fresh.run("--cores", "1")
-    after = whole(fresh)
+    after, expected = fresh.contents("results"), pristine.contents("results")
     assert after.keys() == expected.keys()
     assert [name for name in after if after[name] != expected[name]] == []
 
@@ -65,10 +64,10 @@ def test_an_interrupted_run_is_resumed(pristine, fresh, sign):
     run = ("--cores", "2", "fig11", "fig12")
     fresh.interrupt(sign, *run, after=1)
     expected = pristine.contents("results")
-    early = whole(fresh)
+    early = fresh.contents("results")
     assert all(content == expected[name] for name, content in early.items())
     fresh.run(*run)
-    after = whole(fresh)
+    after = fresh.contents("results")
     kinds = {f"figures/{name}.{kind}" for name in run[2:] for kind in ("nc", "png", "svg")}
     assert early.keys() < after.keys() == kinds
     assert [name for name in after if after[name] != expected[name]] == []
@@ -85,22 +84,8 @@ def test_report_shows_every_figure_offline(complete):
     assert [url for url in loaded if not url.startswith("data:")] == []
 
 
-def test_an_orbit_that_does_not_exist_is_one_line(fresh):
-    # The restitution orbit exists there; the branch of a contact as soft as this
-    # one ends before.
-    fresh.configure("figures", "fig07", "frequency_ratio", value=0.2)
-    done = fresh.run("--cores", "1", "fig07", check=False)
-    assert done.returncode == 1
-    said = [line for line in done.stderr.splitlines() if "fig07" in line]
-    assert len(said) == 1 and "no 1-T orbit" in said[0]
-    assert "Traceback" not in done.stderr
-    assert not (fresh.path / "results").exists()
-
-
-def test_configuration_page_is_the_schemas(fresh):
-    from bouncing_ball.configuration.documentation import configuration_page
-
-    folder = fresh.path / "config"
+def test_configuration_page_is_the_schemas():
+    folder = ROOT / "config"
     schema, config = (
         yaml.safe_load((folder / name).read_text(encoding="utf-8"))
         for name in ("schema.yaml", "config.yaml")

@@ -1,14 +1,11 @@
 """The figures are drawn from their datasets, and from all that they should show."""
 
 from importlib import import_module
-from pathlib import Path
 
 import numpy as np
 import pytest
-import yaml
 
 from bouncing_ball.configuration.stages import STAGES, Kind, names
-from bouncing_ball.configuration.study import load
 from bouncing_ball.record.carriers import read_attributes
 from bouncing_ball.render.figures.domains import up_to_second_saddle_node
 from bouncing_ball.render.figures.style import (
@@ -23,24 +20,8 @@ from bouncing_ball.render.figures.style import (
 
 pytestmark = pytest.mark.slow
 
-ROOT = Path(__file__).resolve().parents[3]
-CONFIG = yaml.safe_load((ROOT / "config" / "config.yaml").read_text(encoding="utf-8"))
-RELEASE = "displacement"
 FIGURES = [STAGES[name] for name in names(Kind.FIGURE, Kind.EXTENSION)]
 WITH_DATA = [stage.name for stage in FIGURES if stage.study]
-
-
-@pytest.fixture(scope="module")
-def datasets():
-    from bouncing_ball.datasets.netcdf import parameter_attributes
-
-    made = {}
-    for name in WITH_DATA:
-        stage = STAGES[name]
-        parameters = stage.parameters(CONFIG)
-        made[name] = load(stage.study)(parameters, *stage.settings(CONFIG).values())
-        made[name].attrs = parameter_attributes(parameters | {"release": RELEASE})
-    return made
 
 
 def drawn(name, *data):
@@ -53,8 +34,8 @@ def lines(figure):
 
 
 @pytest.mark.parametrize("name", WITH_DATA)
-def test_a_figure_follows_its_data(datasets, name):
-    data = datasets[name]
+def test_a_figure_follows_its_data(record, name):
+    data = record[name]
     moved = data.map(lambda values: values * 1.5 + 0.1 if values.dtype.kind == "f" else values)
     before, after = drawn(name, data), drawn(name, moved)
     curves = 0
@@ -73,8 +54,8 @@ def test_a_figure_follows_its_data(datasets, name):
 
 
 @pytest.mark.parametrize("name", WITH_DATA)
-def test_axes_have_labels(datasets, name):
-    figure = drawn(name, datasets[name])
+def test_axes_have_labels(record, name):
+    figure = drawn(name, record[name])
     assert any(axes.get_xlabel() for axes in figure.axes)
     assert any(axes.get_ylabel() or axes.get_yticklabels() for axes in figure.axes)
 
@@ -88,15 +69,15 @@ def test_schematics_are_drawn(name):
         assert {"$k$", "$c$"} <= words
 
 
-def test_figure_7_marks_the_instants_and_velocities(datasets):
-    (axes,) = drawn("fig07", datasets["fig07"]).axes
+def test_figure_7_marks_the_instants_and_velocities(record):
+    (axes,) = drawn("fig07", record["fig07"]).axes
     words = " ".join(text.get_text() for text in axes.texts)
     for symbol in (r"\tau_i", r"\tau_b", r"\tau_2", "z′_i", "z′_b", "z′_2"):
         assert symbol in words
 
 
-def test_stability_is_drawn_solid_dashed_and_dotted(datasets):
-    data = datasets["fig03"]
+def test_stability_is_drawn_solid_dashed_and_dotted(record):
+    data = record["fig03"]
     looks = {line.get_linestyle() for line in lines(drawn("fig03", data))}
     assert {"-", "--"} <= looks or len(looks) > 1
     # Length in each look, in points of the dataset: stable orbits are solid.
@@ -114,17 +95,17 @@ def test_stability_is_drawn_solid_dashed_and_dotted(datasets):
     assert widths == {INADMISSIBLE["linewidth"]} != {UNSTABLE["linewidth"]}
 
 
-def test_markers_stand_at_the_bifurcations(datasets):
-    data = datasets["fig08"].sel(frequency_ratio=10.0)
-    marks = [line for line in lines(drawn("fig08", datasets["fig08"])) if line.get_marker() == "s"]
+def test_markers_stand_at_the_bifurcations(record):
+    data = record["fig08"].sel(frequency_ratio=10.0)
+    marks = [line for line in lines(drawn("fig08", record["fig08"])) if line.get_marker() == "s"]
     shown = np.concatenate([line.get_xdata() for line in marks])
     at = data.special_amplitude.values[data.special_kind.values == "period doubling"]
     assert np.all(np.isin(at, shown))
 
 
 @pytest.mark.parametrize("name", ["fig08", "fig09", "fig15"])
-def test_every_curve_is_named_at_its_end(datasets, name):
-    data = datasets[name]
+def test_every_curve_is_named_at_its_end(record, name):
+    data = record[name]
     (axes,) = drawn(name, data).axes
     ends = {tuple(text.xy) for text in axes.texts}
     drawn_ends = {
@@ -139,8 +120,8 @@ def test_every_curve_is_named_at_its_end(datasets, name):
     assert np.diff(places).min() >= 8 / (72 * 2.5) * 0.4 * np.ptp(axes.get_ylim())
 
 
-def test_figure_8_is_drawn_up_to_where_its_softest_branch_turns_back(datasets):
-    data = datasets["fig08"]
+def test_figure_8_is_drawn_up_to_where_its_softest_branch_turns_back(record):
+    data = record["fig08"]
     soft = data.sel(frequency_ratio=2.0)
     turns = soft.special_amplitude.values[soft.special_kind.values == "saddle-node"]
     assert len(turns) == 2
@@ -155,15 +136,15 @@ def test_figure_8_is_drawn_up_to_where_its_softest_branch_turns_back(datasets):
     assert up_to_second_saddle_node(stiff) is stiff
 
 
-def test_figure_13_marks_round_frequency_ratios(datasets):
-    (axes,) = drawn("fig13", datasets["fig13"]).axes
+def test_figure_13_marks_round_frequency_ratios(record):
+    (axes,) = drawn("fig13", record["fig13"]).axes
     words = {text.get_text() for text in axes.texts}
     assert words == {rf"$\varpi={ratio}$" for ratio in (1, 2, 5, 10)}
 
 
 @pytest.mark.parametrize("name", ["fig14", "fig16"])
-def test_the_crossing_of_the_tolerance_lies_on_the_error(datasets, name):
-    data = datasets[name]
+def test_the_crossing_of_the_tolerance_lies_on_the_error(record, name):
+    data = record[name]
     below = drawn(name, data).axes[1]
     assert below.get_yscale() == "log"
     curve = max(below.lines, key=lambda line: len(line.get_xdata()))
@@ -181,12 +162,12 @@ def test_colours_are_legible_on_white_and_apart_in_grey():
 
 
 @pytest.mark.parametrize("kind", ["png", "svg"])
-def test_files_are_the_same_every_time(datasets, tmp_path, kind):
+def test_files_are_the_same_every_time(record, tmp_path, kind):
     contents = []
     for run in ("first", "second"):
         path = tmp_path / run / f"fig11.{kind}"
         with style():
-            figure = import_module("bouncing_ball.render.figures.fig11").draw(datasets["fig11"])
+            figure = import_module("bouncing_ball.render.figures.fig11").draw(record["fig11"])
             save(figure, path, {"provenance_commit": 'of <"ϖ">'})
         contents.append(path.read_bytes())
         assert read_attributes(path)["provenance_commit"] == 'of <"ϖ">'

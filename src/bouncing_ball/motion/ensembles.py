@@ -11,15 +11,15 @@ from numpy.typing import ArrayLike
 _BLOCK = 8192
 
 
-def blocks(size: int) -> list[slice]:
-    """Slices of about equal length that cover all balls.
+def blocks(size: int, largest: int = _BLOCK) -> list[slice]:
+    """Slices of about equal length that cover all balls, ``largest`` at most.
 
     Examples
     --------
     >>> blocks(3), len(blocks(10_000))
     ([slice(0, 3, None)], 2)
     """
-    edges = np.linspace(0, size, -(-size // _BLOCK) + 1, dtype=int)
+    edges = np.linspace(0, size, -(-size // largest) + 1, dtype=int)
     return [slice(int(a), int(b)) for a, b in pairwise(edges)]
 
 

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.motion.contacts import contact_cycle
+from bouncing_ball.motion.ensembles import blocks
 from bouncing_ball.motion.sequence import Cycle
 from bouncing_ball.orbits.closed_form import BranchPoint
 from bouncing_ball.orbits.interface import Orbit
@@ -18,6 +19,8 @@ from bouncing_ball.orbits.interface import Orbit
 # steps from there.
 _CONTACT_SAMPLES = 33
 _REFINEMENTS = 4
+# Orbits whose samples are in memory at once.
+_BLOCK = 1024
 # Near the undamped resonance the simulation has no steady part to work with;
 # the orbit is then sampled. Same measure as the simulation's own limit.
 _RESONANCE = 1e-4
@@ -62,12 +65,22 @@ class ContactOrbit(Orbit):
         """Greatest absolute height over the cycle.
 
         In flight, if that reaches Λ: in contact the ball stays below the table.
-        Else a long contact may lift it higher with the table; its highest
-        sample is then refined by Newton's method on the velocity.
+        Else a long contact may lift it higher with the table.
         """
-        top = self.flight_top
-        if not np.any(top < self.amplitude):
+        top = np.asarray(self.flight_top)
+        low = np.broadcast_to(top < self.amplitude, self.shape)
+        if not np.any(low):
             return top
+        if not self.shape:
+            return np.maximum(top, self._contact_top())
+        top, lifted = np.array(np.broadcast_to(top, self.shape)), self[low]
+        # The samples of all at once would be gigabytes.
+        parts = [lifted[part]._contact_top() for part in blocks(lifted.size, _BLOCK)]
+        top[low] = np.maximum(top[low], np.concatenate(parts))
+        return top
+
+    def _contact_top(self) -> np.ndarray:
+        """Greatest height in contact: its highest sample, refined by Newton's method."""
         share = np.linspace(0.0, 1.0, _CONTACT_SAMPLES)
         share = share.reshape(-1, *(1,) * np.ndim(self.contact_duration))
         height, _ = self.contact_path(share * self.contact_duration)
@@ -82,7 +95,7 @@ class ContactOrbit(Orbit):
             slope = self._contact_acceleration(time)
             moved = np.where(slope < 0, -velocity / np.where(slope < 0, slope, -1.0), 0.0)
             time = np.clip(time + moved, low, high)
-        return np.maximum(top, self.contact_path(time)[0])
+        return self.contact_path(time)[0]
 
     def _contact_flow(self, time: np.ndarray):
         u = self.relative_impact_velocity

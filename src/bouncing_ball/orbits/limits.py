@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize.elementwise import find_root
 
 from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.motion.ensembles import blocks
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.interface import Absence, Side, check_index
@@ -28,6 +29,8 @@ _SCAN_START = 1e-3
 # 10⁶, and contacts that fill the cycle but for a millionth.
 _SHORTEST = 1e-3
 _FULL = 1e-6
+# Contacts searched at once: as many as keep a scan in some ten megabytes.
+_BLOCK = 1024
 # Width, in parts of its ε and of 1/ϖ, in which the zero of dΛ/dε is looked for next
 # to that of the multiplier: wide against the rounding of the trace (some 1e-9 of
 # these for ϖ = 10⁸), narrow against the distance to the next turn of Λ.
@@ -84,6 +87,15 @@ def _close(function, left, right, found, args):
     return result
 
 
+def _by_blocks(search, release, *columns):
+    """A search for many contacts, few at a time: the scan of each has 121 points."""
+    flat = [np.ravel(column) for column in columns]
+    found = np.empty(flat[0].size)
+    for part in blocks(found.size, _BLOCK):
+        found[part] = search(release, *(column[part] for column in flat))
+    return found.reshape(columns[0].shape)
+
+
 def _fold_function(release):
     def fold(excess, omega, zeta, n):
         return branch_point(excess, Contact(omega, zeta, release), n).fold
@@ -136,14 +148,15 @@ def saddle_node(contact: Contact, n: ArrayLike) -> np.ndarray:
     >>> bool(abs(branch_point(saddle_node(contact, 1), contact, 1).phase) < 1e-3)
     True
     """
-    omega, zeta, n = _columns(contact, n)
+    return _by_blocks(_saddle_node, contact.release, *_columns(contact, n))
+
+
+def _saddle_node(release, omega, zeta, n):
     args = omega, zeta, n
-    low, high = np.broadcast_arrays(*_range(contact, n))
-    grid = _scan(low, high, 1 / omega)
-    floquet = _floquet_function(contact.release, saddle_node_function)
-    root = _zero(floquet, grid, args)
+    grid = _scan(*_range(Contact(omega, zeta, release), n), 1 / omega)
+    root = _zero(_floquet_function(release, saddle_node_function), grid, args)
     width = _NEXT_TO * np.minimum(np.abs(root), 1 / omega)
-    fold, ends = _fold_function(contact.release), (root - width, root + width)
+    fold, ends = _fold_function(release), (root - width, root + width)
     left, right = (fold(x, *args) for x in ends)
     closer = _close(fold, *ends, left * right < 0, args)
     return np.where(np.isnan(closer), root, closer)
@@ -154,13 +167,16 @@ def period_doubling(contact: Contact, n: ArrayLike) -> np.ndarray:
 
     NaN where the stable side has none.
     """
-    omega, zeta, n = _columns(contact, n)
     fold = saddle_node(contact, n)
-    low, high = _range(contact, n)
+    return _by_blocks(_period_doubling, contact.release, *_columns(contact, n), fold)
+
+
+def _period_doubling(release, omega, zeta, n, fold):
+    low, high = _range(Contact(omega, zeta, release), n)
     end = np.where(np.isnan(fold), high, fold)
     # The part of the scan on the stable side; its points beyond collapse there.
     grid = np.minimum(_scan(low, high, 1 / omega), end)
-    flip = _floquet_function(contact.release, period_doubling_function)
+    flip = _floquet_function(release, period_doubling_function)
     return _zero(flip, grid, (omega, zeta, n), last=True)
 
 

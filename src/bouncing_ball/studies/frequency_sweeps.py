@@ -39,7 +39,7 @@ _OBSERVABLES = (
 
 
 def _columns(orbit: Orbit) -> dict[str, np.ndarray]:
-    """What is published of the orbits of one case."""
+    """What is published of the orbits."""
     return {
         **{name: getattr(orbit, name) for name in _OBSERVABLES},
         "stable": orbit.is_stable(),
@@ -73,17 +73,13 @@ def with_round_values(ratios: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def _sweep_dataset(parameters, restitution, amplitude, release, ratios=None) -> xr.Dataset:
     n = parameters["n"]
     ratios = grid(parameters["frequency_ratio"]) if ratios is None else ratios
-    # Case by case: the scans of all at once are gigabytes for 20 001 samples.
-    cases = [
-        _columns(sweep(n, restitution[[k]], amplitude[[k]], ratios, release)[0])
-        for k in range(len(restitution))
-    ]
+    columns = _columns(sweep(n, restitution, amplitude, ratios, release))
     dims = ("case", "frequency_ratio")
     return xr.Dataset(
         {
             "restitution": ("case", restitution),
             "amplitude": ("case", amplitude),
-            **{name: (dims, np.array([case[name] for case in cases])) for name in cases[0]},
+            **{name: (dims, values) for name, values in columns.items()},
         },
         coords={"frequency_ratio": ratios, "case": np.arange(len(restitution))},
     )

@@ -15,16 +15,30 @@ import pytest
 from bouncing_ball.continuation.corrector import NewtonSettings, newton
 from bouncing_ball.continuation.events import vanishing
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.impacts.laws.hunt_crossley import HuntCrossley
+from bouncing_ball.impacts.laws.kuwabara_kono import KuwabaraKono
+from bouncing_ball.impacts.laws.tsuji import Tsuji
 from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits.contact_model import ContactModel
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.interface import OBSERVABLES, Route, Side
+from bouncing_ball.orbits.law_model import LawModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 
 EPS = np.finfo(float).eps
 SOFT = Contact.from_restitution(0.85, 4.0)
 STIFF = Contact.from_restitution(0.65, 50.0)
 PUSHING = Contact.from_restitution(0.65, 20.0, "force")
+HERTZ = {
+    "hunt-crossley": HuntCrossley(2e3, 0.08),
+    "tsuji": Tsuji(500.0, 0.3),
+    "kuwabara-kono": KuwabaraKono(2e3, 0.008),
+}
+# Of contacts and their derivatives: roundings, but for the laws without a closed form,
+# where it is the collocation's convergence, and of a simulated cycle its own tolerance, 1e-12
+# of the velocity in each of some ten steps.
+EXACT = {name: 1e-12 for name in HERTZ}
+SIMULATED = {name: 1e-11 for name in HERTZ}
 OWN = runpy.run_path(str(Path(__file__).with_name("plastic_impact.py")))
 MODELS = {
     "restitution": RestitutionModel(0.65),
@@ -35,6 +49,7 @@ MODELS = {
     "undamped contact": ContactModel(Contact(10.0, 0.0)),
     "corrected": CorrectedModel.of_contact(STIFF),
     "corrected, force release": CorrectedModel.of_contact(PUSHING),
+    **{name: LawModel(law) for name, law in HERTZ.items()},
     "one's own": OWN["PlasticModel"](OWN["PlasticImpact"](0.7)),
 }
 DISSIPATIVE = [name for name in MODELS if name not in ("elastic", "undamped contact")]
@@ -101,10 +116,12 @@ def test_an_orbit_is_a_fixed_point_of_the_simulation(name, n, above, side):
         model.cycle(orbit.amplitude, orbit.phase, u),
         orbit.cycle(orbit.phase, u),
     ):
-        assert abs(cycle.time - 2 * np.pi * n) < 100 * EPS * 2 * np.pi * n * growth
-        assert abs(cycle.relative_velocity - u) < 100 * EPS * 2 * np.pi * n * growth
+        rounding = SIMULATED.get(name, 100 * EPS * 2 * np.pi * n)
+        assert abs(cycle.time - 2 * np.pi * n) < rounding * growth
+        assert abs(cycle.relative_velocity - u) < rounding * growth
     sequence = model.simulate(orbit.amplitude, orbit.phase, orbit.impact_velocity, 2)
-    assert sequence.time[1] == pytest.approx(2 * np.pi * n, abs=1e-12 * growth)
+    missed = SIMULATED.get(name, 1e-12)
+    assert sequence.time[1] == pytest.approx(2 * np.pi * n, abs=missed * growth)
     assert sequence.contact_duration[0] == pytest.approx(orbit.contact_duration, abs=1e-13 * growth)
 
 
@@ -152,7 +169,8 @@ def test_the_determinant_is_the_contraction(name, n, above, side):
     _, orbit = some_orbit(name, n, above, side)
     matrix = orbit.monodromy()
     size = 1 + np.abs(matrix).max() ** 2
-    assert abs(np.linalg.det(matrix) - orbit.determinant()) < 100 * EPS * size
+    missed = EXACT.get(name, 100 * EPS)
+    assert abs(np.linalg.det(matrix) - orbit.determinant()) < missed * size
     trace, det = orbit.trace_and_determinant()
     assert abs(np.trace(matrix) - trace) < 100 * EPS * size
     product = np.prod(orbit.multipliers())

@@ -5,7 +5,7 @@ force release a contact may also start at δ < 0, see
 :mod:`bouncing_ball.motion.resumption`; each such start is an impact.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple, Protocol, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -37,49 +37,89 @@ class Departure(NamedTuple):
     status: np.ndarray
 
 
-def _depart(impact: Impact, constants: Oscillator) -> Departure:
-    x, y = table(impact.phase, constants.amplitude)
-    motion = ContactMotion(constants, impact.displacement, impact.velocity, x, y)
-    end = release(motion)
-    _, lift = table(impact.phase + end.time, constants.amplitude)
-    # Rounding may leave a touch of the table's level with a falling ball.
-    displacement, velocity = motion.state(np.maximum(end.rate, 0.0), lift)
-    status = np.where(end.ended, Status.PERMANENT_CONTACT, Status.BOUNCING)
-    status[end.undecided] = Status.UNDECIDED
-    forever = status != Status.BOUNCING
-    if forever.any():
-        velocity[forever] = np.nan
-        displacement = np.where(forever, np.nan, displacement)
-        end.time[forever] = np.inf
-    return Departure(end.time, displacement, velocity, status)
+class Dynamics(Protocol):
+    """The contacts and flights of balls in a row, whatever the contact's law.
+
+    ``below`` says whether a contact may start or end below the table's level.
+    """
+
+    @property
+    def amplitude(self) -> np.ndarray:
+        """Λ, of all balls or of each."""
+
+    @property
+    def below(self) -> bool:
+        """Whether δ is not always 0 at the ends of a contact."""
+
+    def take(self, which: Any) -> Self:
+        """Those of some of the balls."""
+
+    def depart(self, impact: Impact) -> Departure:
+        """The ends of the contacts that start so."""
+
+    def fly(self, phase: np.ndarray, departure: Departure) -> tuple[Impact, np.ndarray]:
+        """The next impact of balls that leave at a phase, and the time of flight."""
 
 
-def _fly(phase, departure: Departure, constants: Oscillator) -> tuple[Impact, np.ndarray]:
-    """The next impact of balls that leave at a phase, and the time of flight."""
-    x, y = table(phase, constants.amplitude)
-    flight = Flight(departure.displacement, departure.velocity, x, y, constants.amplitude)
-    start, resumed = flight.sure(), None
-    if np.any(constants.lag):
-        slow = np.flatnonzero(~leaves_fast(flight, constants.lag))
-        if slow.size:
-            resumed = resumption(flight.take(slow), constants.take(slow))
-            start[slow] = resumed.time
-    landing = land(flight, start)
-    time, velocity = landing.time, -landing.rate
-    displacement = np.zeros_like(time)
-    if resumed is not None:
-        back = slow[resumed.resumed]
-        time[back] = resumed.time[resumed.resumed]
-        displacement[back] = resumed.displacement[resumed.resumed]
-        velocity[back] = resumed.velocity[resumed.resumed]
-    return Impact(reduce_angle(phase + time), displacement, velocity), time
+class _SpringDamper(NamedTuple):
+    """Of the spring-damper."""
+
+    constants: Oscillator
+
+    @property
+    def amplitude(self) -> np.ndarray:
+        return self.constants.amplitude
+
+    @property
+    def below(self) -> bool:
+        return bool(np.any(self.constants.lag))
+
+    def take(self, which: Any) -> "_SpringDamper":
+        return _SpringDamper(self.constants.take(which))
+
+    def depart(self, impact: Impact) -> Departure:
+        x, y = table(impact.phase, self.amplitude)
+        motion = ContactMotion(self.constants, impact.displacement, impact.velocity, x, y)
+        end = release(motion)
+        _, lift = table(impact.phase + end.time, self.amplitude)
+        # Rounding may leave a touch of the table's level with a falling ball.
+        displacement, velocity = motion.state(np.maximum(end.rate, 0.0), lift)
+        status = np.where(end.ended, Status.PERMANENT_CONTACT, Status.BOUNCING)
+        status[end.undecided] = Status.UNDECIDED
+        forever = status != Status.BOUNCING
+        if forever.any():
+            velocity[forever] = np.nan
+            displacement = np.where(forever, np.nan, displacement)
+            end.time[forever] = np.inf
+        return Departure(end.time, displacement, velocity, status)
+
+    def fly(self, phase: np.ndarray, departure: Departure) -> tuple[Impact, np.ndarray]:
+        constants = self.constants
+        x, y = table(phase, constants.amplitude)
+        flight = Flight(departure.displacement, departure.velocity, x, y, constants.amplitude)
+        start, resumed = flight.sure(), None
+        if self.below:
+            slow = np.flatnonzero(~leaves_fast(flight, constants.lag))
+            if slow.size:
+                resumed = resumption(flight.take(slow), constants.take(slow))
+                start[slow] = resumed.time
+        landing = land(flight, start)
+        time, velocity = landing.time, -landing.rate
+        displacement = np.zeros_like(time)
+        if resumed is not None:
+            back = slow[resumed.resumed]
+            time[back] = resumed.time[resumed.resumed]
+            displacement[back] = resumed.displacement[resumed.resumed]
+            velocity[back] = resumed.velocity[resumed.resumed]
+        return Impact(reduce_angle(phase + time), displacement, velocity), time
 
 
 def _prepare(contact: Contact, amplitude, *states):
     """Constants of the contacts, states as flat arrays, and their shape."""
     parameters = (contact.frequency_ratio, contact.damping_ratio, amplitude)
     (omega, zeta, lam), states, shape = flatten(parameters, states)
-    return oscillator(Contact(omega, zeta, contact.release), lam), states, shape
+    constants = oscillator(Contact(omega, zeta, contact.release), lam)
+    return _SpringDamper(constants), states, shape
 
 
 def _check_impact(phase, velocity, x, amplitude) -> None:
@@ -123,18 +163,29 @@ def simulate(
     >>> sequence.impact_velocity.round(13).tolist()
     [-2.0, -2.0, -2.0]
     """
-    constants, (phase, velocity), shape = _prepare(contact, amplitude, phase, velocity)
-    x, _ = table(phase, constants.amplitude)
-    _check_impact(phase, velocity, x, constants.amplitude)
+    dynamics, (phase, velocity), shape = _prepare(contact, amplitude, phase, velocity)
+    return follow(dynamics, contact, np.asarray(amplitude, float), phase, velocity, shape, impacts)
+
+
+def follow(dynamics: Dynamics, law, amplitude, phase, velocity, shape, impacts) -> ImpactSequence:
+    """The impacts of balls in a row, given back in a shape; see :func:`simulate`.
+
+    Raises
+    ------
+    ModelError
+        If a state is not finite, or a ball rises from the table.
+    """
+    x, _ = table(phase, dynamics.amplitude)
+    _check_impact(phase, velocity, x, dynamics.amplitude)
     size = phase.size
     tables = np.empty((5, impacts, size))
-    gaps = np.empty((2, impacts, size)) if np.any(constants.lag) else None
+    gaps = np.empty((2, impacts, size)) if dynamics.below else None
     status = np.zeros(size, dtype=np.int8)
     relative = np.minimum(velocity - x, 0.0)
     for part in blocks(size):
         _run(
             Impact(reduce_angle(phase[part]), np.zeros_like(phase[part]), relative[part]),
-            constants.take(part),
+            dynamics.take(part),
             tables[:, :, part],
             None if gaps is None else gaps[:, :, part],
             status[part],
@@ -147,8 +198,8 @@ def simulate(
     else:
         below, left_below = gaps.reshape(2, impacts, *shape)
     return ImpactSequence(
-        amplitude=np.broadcast_to(np.asarray(amplitude, dtype=float), shape),
-        contact=contact,
+        amplitude=np.broadcast_to(amplitude, shape),
+        contact=law,
         time=time,
         phase=angle,
         displacement=below,
@@ -160,13 +211,13 @@ def simulate(
     )
 
 
-def _run(impact: Impact, constants: Oscillator, tables, gaps, status) -> None:
+def _run(impact: Impact, dynamics: Dynamics, tables, gaps, status) -> None:
     """Fill the tables of one block, impact by impact."""
     time = np.zeros_like(impact.phase)
     alive = slice(None)
     impacts = tables.shape[1]
     for row in range(impacts):
-        departure = _depart(impact, constants)
+        departure = dynamics.depart(impact)
         record = (time, impact.phase, impact.velocity, departure.duration, departure.velocity)
         for array, values in zip(tables, record, strict=True):
             array[row, alive] = values
@@ -180,12 +231,12 @@ def _run(impact: Impact, constants: Oscillator, tables, gaps, status) -> None:
             for array in (tables, *(() if gaps is None else (gaps,))):
                 array[:, row + 1 :, stopped] = np.nan
             alive = indices[going]
-            constants, time = constants.take(going), time[going]
+            dynamics, time = dynamics.take(going), time[going]
             departure = Departure(*(pick(x, going) for x in departure))
             impact = Impact(*(x[going] for x in impact))
         if row == impacts - 1 or not len(impact.phase):
             break
-        impact, flown = _fly(impact.phase + departure.duration, departure, constants)
+        impact, flown = dynamics.fly(impact.phase + departure.duration, departure)
         time = time + (departure.duration + flown)
 
 
@@ -202,19 +253,25 @@ def contact_cycle(
     >>> round(float(cycle.relative_velocity), 13)
     -2.0
     """
-    constants, (phase, u), shape = _prepare(contact, amplitude, phase, relative_velocity)
+    dynamics, (phase, u), shape = _prepare(contact, amplitude, phase, relative_velocity)
+    return next_impact(dynamics, phase, u, shape)
+
+
+def next_impact(dynamics: Dynamics, phase, relative_velocity, shape) -> Cycle:
+    """The Poincaré map of balls in a row, given back in a shape."""
+    u = relative_velocity
     out = np.full((4, phase.size), np.nan)
     out[3] = np.inf
     for part in blocks(phase.size):
-        here = constants.take(part)
+        here = dynamics.take(part)
         impact = Impact(reduce_angle(phase[part]), np.zeros_like(u[part]), u[part])
-        departure = _depart(impact, here)
+        departure = here.depart(impact)
         going = np.flatnonzero(departure.status == Status.BOUNCING)
         if not going.size:
             continue
         departure = Departure(*(pick(x, going) for x in departure))
         left = impact.phase[going] + departure.duration
-        landed, flown = _fly(left, departure, here.take(going))
+        landed, flown = here.take(going).fly(left, departure)
         rows = (landed.phase, landed.velocity, landed.displacement, departure.duration + flown)
         for row, values in zip(out, rows, strict=True):
             row[part.start + going] = values

@@ -46,7 +46,7 @@ class _Departure(NamedTuple):
     forever: np.ndarray
 
 
-class _Rise:
+class Rise:
     """The motion δ of a ball that was let go below the table's level, while it rises."""
 
     def __init__(self, flight: Flight):
@@ -57,8 +57,8 @@ class _Rise:
         lam = self.flight.amplitude
         return State(displacement, rate, second, third, 1 + lam, lam, lam, rate <= 0)
 
-    def take(self, which: np.ndarray) -> "_Rise":
-        return _Rise(self.flight.take(which))
+    def take(self, which: np.ndarray) -> "Rise":
+        return Rise(self.flight.take(which))
 
     def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
         return time
@@ -73,7 +73,7 @@ def _leaves(flight: Flight) -> tuple[np.ndarray, np.ndarray]:
     unsure = np.flatnonzero(rising & (inside <= 0))
     if unsure.size:
         part = flight.take(unsure)
-        rise = first_zero(_Rise(part), np.zeros(unsure.size))
+        rise = first_zero(Rise(part), np.zeros(unsure.size))
         up = ~(rise.ended | rise.undecided) & (rise.rate > 0)
         rising[unsure] = up
         # From the table's level on, against the strongest relative gravity.

@@ -10,17 +10,11 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.motion.contacts import contact_cycle
-from bouncing_ball.motion.ensembles import blocks
 from bouncing_ball.motion.sequence import Cycle
 from bouncing_ball.orbits.closed_form import BranchPoint
+from bouncing_ball.orbits.highest import highest
 from bouncing_ball.orbits.interface import Orbit
 
-# Samples of a contact among which its highest point is looked for, and Newton
-# steps from there.
-_CONTACT_SAMPLES = 33
-_REFINEMENTS = 4
-# Orbits whose samples are in memory at once.
-_BLOCK = 1024
 # Near the undamped resonance the simulation has no steady part to work with;
 # the orbit is then sampled. Same measure as the simulation's own limit.
 _RESONANCE = 1e-4
@@ -62,46 +56,15 @@ class ContactOrbit(Orbit):
 
     @property
     def max_height(self) -> np.ndarray:
-        """Greatest absolute height over the cycle.
-
-        In flight, if that reaches Λ: in contact the ball stays below the table.
-        Else a long contact may lift it higher with the table.
-        """
-        top = np.asarray(self.flight_top)
-        low = np.broadcast_to(top < self.amplitude, self.shape)
-        if not np.any(low):
-            return top
-        if not self.shape:
-            return np.maximum(top, self._contact_top())
-        top, lifted = np.array(np.broadcast_to(top, self.shape)), self[low]
-        # The samples of all at once would be gigabytes.
-        parts = [lifted[part]._contact_top() for part in blocks(lifted.size, _BLOCK)]
-        top[low] = np.maximum(top[low], np.concatenate(parts))
-        return top
-
-    def _contact_top(self) -> np.ndarray:
-        """Greatest height in contact: its highest sample, refined by Newton's method."""
-        share = np.linspace(0.0, 1.0, _CONTACT_SAMPLES)
-        share = share.reshape(-1, *(1,) * np.ndim(self.contact_duration))
-        height, _ = self.contact_path(share * self.contact_duration)
-        highest = np.argmax(np.where(np.isnan(height), -np.inf, height), axis=0)
-        step = self.contact_duration / (_CONTACT_SAMPLES - 1)
-        centre = highest * step
-        low = np.maximum(centre - step, 0.0)
-        high = np.minimum(centre + step, self.contact_duration)
-        time = centre
-        for _ in range(_REFINEMENTS):
-            _, velocity = self.contact_path(time)
-            slope = self._contact_acceleration(time)
-            moved = np.where(slope < 0, -velocity / np.where(slope < 0, slope, -1.0), 0.0)
-            time = np.clip(time + moved, low, high)
-        return self.contact_path(time)[0]
+        """Greatest absolute height over the cycle, in flight or in contact."""
+        return highest(self)
 
     def _contact_flow(self, time: np.ndarray):
         u = self.relative_impact_velocity
         return self.contact.flow(time, 0.0, u, self.phase, self.amplitude)
 
-    def _contact_acceleration(self, time: np.ndarray) -> np.ndarray:
+    def contact_acceleration(self, time: np.ndarray) -> np.ndarray:
+        """Absolute acceleration in contact."""
         table = self.amplitude * np.sin(self.phase + time)
         return self._contact_flow(time).acceleration - table
 

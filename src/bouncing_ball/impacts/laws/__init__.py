@@ -1,0 +1,1 @@
+"""Contact laws: what pushes the ball, one short module each."""

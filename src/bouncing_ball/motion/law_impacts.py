@@ -1,0 +1,171 @@
+r"""Impacts on a contact of any law: contact, release, flight, landing.
+
+The contact is integrated (:mod:`bouncing_ball.motion.law_motion`), the flight and
+its landing are those of every model, the landing certified to be the first.
+
+A law that lets go where its force vanishes may take hold again while the ball is
+still below the table's level. With κ = -dp/dp′ along the vanishing grip that
+cannot happen to a ball that leaves fast against κ; this is certain for a grip linear in
+p and p′. The grip of slower balls is sampled until they are out of the table: that
+it does not return between two samples is not certified.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.errors import ModelError
+from bouncing_ball.impacts.laws.contact_law import ContactLaw
+from bouncing_ball.impacts.release import Release
+from bouncing_ball.motion import law_motion
+from bouncing_ball.motion.angles import reduce_angle, table
+from bouncing_ball.motion.contacts import Departure, Impact, follow, next_impact
+from bouncing_ball.motion.corrected_impacts import Rise
+from bouncing_ball.motion.ensembles import flatten, pick
+from bouncing_ball.motion.first_zero import first_zero
+from bouncing_ball.motion.landing import Flight, land
+from bouncing_ball.motion.resumption import Resumption, leaves_fast
+from bouncing_ball.motion.sequence import Cycle, ImpactSequence, Status
+
+# Samples of the grip of a slow ball, and bisections of its return.
+_SAMPLES = 65
+_BISECTIONS = 60
+
+
+class _Contact(NamedTuple):
+    """Balls with a contact law, see :class:`bouncing_ball.motion.contacts.Dynamics`."""
+
+    law: ContactLaw
+    amplitude: np.ndarray
+
+    @property
+    def below(self) -> bool:
+        return self.law.release is not Release.DISPLACEMENT
+
+    def take(self, which: Any) -> "_Contact":
+        return _Contact(self.law.take(which), pick(self.amplitude, which))
+
+    def depart(self, impact: Impact) -> Departure:
+        # -0 is no depth.
+        depth = np.maximum(-impact.displacement, 0.0)
+        touch = law_motion.Touch(depth, -impact.velocity, impact.phase, self.amplitude)
+        with np.errstate(all="ignore"):
+            end = law_motion.release(self.law, touch)
+        status = np.where(end.undecided, Status.UNDECIDED, Status.BOUNCING)
+        duration = np.where(end.undecided, np.inf, end.duration)
+        return Departure(duration, -end.depth, np.maximum(-end.rate, 0.0), status)
+
+    def fly(self, phase: np.ndarray, departure: Departure) -> tuple[Impact, np.ndarray]:
+        x, y = table(phase, self.amplitude)
+        flight = Flight(departure.displacement, departure.velocity, x, y, self.amplitude)
+        start = flight.sure()
+        below = np.zeros_like(start)
+        back = np.empty(0, dtype=int)
+        if self.below:
+            depth, rate = -departure.displacement, -departure.velocity
+            slopes = self.law.grip_slopes(depth, rate)
+            lag = slopes.by_rate / slopes.by_penetration
+            slow = np.flatnonzero(~leaves_fast(flight, lag))
+            if slow.size:
+                again = _return(self.law.take(slow), flight.take(slow))
+                start[slow] = again.time
+                back = slow[again.resumed]
+        landing = land(flight, start)
+        time, velocity = landing.time, -landing.rate
+        if back.size:
+            time[back] = again.time[again.resumed]
+            below[back] = again.displacement[again.resumed]
+            velocity[back] = again.velocity[again.resumed]
+        return Impact(reduce_angle(phase + time), below, velocity), time
+
+
+def _return(law: ContactLaw, flight: Flight) -> Resumption:
+    """What happens first to slow balls: out of the table, or held again."""
+    rise = first_zero(Rise(flight), np.zeros_like(flight.velocity))
+
+    def grip(time, which=slice(None)):
+        part = flight if isinstance(which, slice) else flight.take(which)
+        displacement, rate, _, _ = part.gap(time)
+        return law.take(which).grip(np.maximum(-displacement, 0.0), -rate)
+
+    out = ~rise.ended & (rise.rate > 0)
+    # A ball that falls back into the table is held at its highest point at the latest.
+    left, right = np.zeros_like(rise.time), rise.time.copy()
+    held = ~out
+    for share in np.linspace(0, 1, _SAMPLES)[1:-1][::-1]:
+        time = share * rise.time
+        now = grip(time) > 0
+        held |= now
+        right = np.where(now, time, right)
+    # The first sample that is held, and the one before it.
+    left = np.maximum(right - rise.time / (_SAMPLES - 1), 0.0)
+    for _ in range(_BISECTIONS):
+        middle = (left + right) / 2
+        now = grip(middle) > 0
+        left, right = np.where(now, left, middle), np.where(now, middle, right)
+    time = np.where(held, right, rise.time)
+    displacement, velocity, _, _ = flight.gap(time)
+    return Resumption(time, held & (displacement < 0), displacement, velocity)
+
+
+def _prepare(law: ContactLaw, amplitude, *states):
+    lam = np.asarray(amplitude, dtype=float)
+    if not np.all((lam >= 0) & np.isfinite(lam)):
+        raise ModelError(f"amplitude Λ = {lam} is not finite and ≥ 0")
+    (lam, _), states, shape = flatten([lam, np.zeros(law.shape)], states)
+    return _Contact(law.flat(shape), lam), states, shape
+
+
+def simulate(
+    law: ContactLaw,
+    amplitude: ArrayLike,
+    phase: ArrayLike,
+    velocity: ArrayLike,
+    impacts: int,
+) -> ImpactSequence:
+    """Follow balls from an impact through a number of impacts, the first included.
+
+    Parameters
+    ----------
+    law : ContactLaw
+        One law, or one for each ball.
+    amplitude : array_like
+        Λ.
+    phase, velocity : array_like
+        Table phase φ and absolute velocity z′_i of the ball at the first impact.
+    impacts : int
+        Rows of the result, for every ball that does not stay in contact.
+
+    Raises
+    ------
+    ModelError
+        If Λ or a state is not finite, or if a ball rises from the table.
+
+    Examples
+    --------
+    An elastic ball on a hard table at rest keeps its speed:
+
+    >>> from bouncing_ball.impacts.laws.hunt_crossley import HuntCrossley
+    >>> sequence = simulate(HuntCrossley(1e6, 0.0), 0.0, 0.0, -2.0, 3)
+    >>> sequence.impact_velocity.round(11).tolist()
+    [-2.0, -2.0, -2.0]
+    """
+    balls, (phase, velocity), shape = _prepare(law, amplitude, phase, velocity)
+    return follow(balls, law, np.asarray(amplitude, float), phase, velocity, shape, impacts)
+
+
+def law_cycle(
+    law: ContactLaw, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike
+) -> Cycle:
+    """The Poincaré map: from one impact (φ, δ′) to the next.
+
+    Examples
+    --------
+    >>> from bouncing_ball.impacts.laws.hunt_crossley import HuntCrossley
+    >>> cycle = law_cycle(HuntCrossley(1e6, 0.0), 0.0, 0.0, -2.0)
+    >>> round(float(cycle.relative_velocity), 11)
+    -2.0
+    """
+    balls, (phase, u), shape = _prepare(law, amplitude, phase, relative_velocity)
+    return next_impact(balls, phase, u, shape)

@@ -1,0 +1,104 @@
+r"""The equations of the n-T orbits on a contact of any law, for a continuation.
+
+Unknowns (φ, z′_i), the phase and the velocity at the impact; parameter Λ. The contact
+that starts so is solved for inside, so that two equations are left: velocity and
+height of the flight that follows (Eqs. 24-25). All are of order one however short
+the contact is.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from bouncing_ball.continuation.events import Event
+from bouncing_ball.impacts.laws.contact_law import ContactLaw
+from bouncing_ball.orbits.law_orbit import LawOrbit
+from bouncing_ball.orbits.stability import period_doubling_function, saddle_node_function
+
+# Impact velocity and flight time down to which a branch is followed: the equations are
+# singular where they vanish.
+_MARGIN = 1e-4
+
+
+@dataclass(frozen=True)
+class LawSystem:
+    """n-T orbits as a :class:`~bouncing_ball.continuation.problem.Problem`.
+
+    Parameters
+    ----------
+    n : int
+        Index of the family. It and the law's parameters may be arrays along the
+        leading axis of y.
+    law : ContactLaw
+    """
+
+    n: int | np.ndarray
+    law: ContactLaw
+
+    def orbit(self, y: np.ndarray) -> LawOrbit:
+        """The orbits at points y = (φ, z′_i, Λ) of shape (..., 3)."""
+        phase, impact, amplitude = (y[..., k] for k in range(3))
+        return LawOrbit.at(self.n, self.law, amplitude, phase, impact)
+
+    def point(self, orbit: LawOrbit) -> np.ndarray:
+        """y of given orbits."""
+        parts = orbit.phase, orbit.impact_velocity, orbit.amplitude
+        return np.stack(np.broadcast_arrays(*parts), axis=-1)
+
+    def residual(self, y: np.ndarray) -> np.ndarray:
+        """Velocity defect and landing defect, shape (..., 2)."""
+        return self.orbit(y).residual()[..., 1:]
+
+    def jacobian(self, y: np.ndarray) -> np.ndarray:
+        """Exact Jacobian of the residual, shape (..., 2, 3)."""
+        return self.linearised(y)[1]
+
+    def linearised(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Residual and its Jacobian, from one contact."""
+        o = self.orbit(y)
+        lam, end = o.amplitude[..., np.newaxis], o.release_phase[..., np.newaxis]
+        phase, flight = o.phase[..., np.newaxis], o.flight_time[..., np.newaxis]
+        bounce = o.bounce_velocity[..., np.newaxis]
+        # Derivatives along (φ, z′_i, Λ), the last axis.
+        d_phase, d_impact, d_lam = np.eye(3)
+        d_speed = np.cos(phase) * d_lam - lam * np.sin(phase) * d_phase - d_impact
+        by = o.contact.jacobian
+
+        def along(row):
+            by_phase, by_speed, by_lam = (by[..., row, k, np.newaxis] for k in range(3))
+            return by_phase * d_phase + by_speed * d_speed + by_lam * d_lam
+
+        d_duration, d_depth, d_rate = (along(row) for row in range(3))
+        d_end, d_bounce = d_phase + d_duration, d_impact - d_duration
+        velocity = np.cos(end) * d_lam - lam * np.sin(end) * d_end - d_rate - d_bounce
+        landing = (
+            (np.sin(end) - np.sin(phase)) * d_lam
+            + lam * (np.cos(end) * d_end - np.cos(phase) * d_phase)
+            - d_depth
+            + flight * d_bounce
+            - (bounce - flight) * d_duration
+        )
+        return o.residual()[..., 1:], np.stack([velocity, landing], axis=-2)
+
+    def _stability(self, test: Callable) -> Callable[[np.ndarray], np.ndarray]:
+        return lambda y: test(*self.orbit(y).trace_and_determinant())
+
+    def events(self) -> tuple[Event, ...]:
+        """Bifurcations, and the ends of the domain in which an orbit makes sense."""
+        return (
+            Event("saddle-node", self._stability(saddle_node_function)),
+            Event("period doubling", self._stability(period_doubling_function)),
+            Event(
+                "contact lost",
+                lambda y: -self.orbit(y).relative_impact_velocity - _MARGIN,
+                terminal=True,
+                reason="contact lost: the ball no longer closes in on the table at impact",
+            ),
+            Event(
+                "flight lost",
+                lambda y: self.orbit(y).flight_time - _MARGIN,
+                terminal=True,
+                reason="flight lost: the contact fills the whole cycle",
+            ),
+        )

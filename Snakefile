@@ -46,3 +46,5 @@ include: "workflow/rules/diff.smk"
 include: "workflow/rules/convergence.smk"
 # The error law, on more orbits than a run can take.
 include: "workflow/rules/error_law.smk"
+# The atlas of thresholds, on more orbits still.
+include: "workflow/rules/atlas.smk"

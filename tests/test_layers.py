@@ -27,6 +27,10 @@ ALLOWED = {
     ),
     # Units are parsed at the edge, and pint is imported there when it is asked for.
     "calculator": ({"impacts", "orbits", "studies"}, {"numpy", "pint"}),
+    "atlas": (
+        {"datasets", "impacts", "orbits", "studies"},
+        {"numpy", "xarray"},
+    ),
     # Studies are imported by name when they are run.
     "configuration": ({"impacts", "orbits"}, {"yaml", "jsonschema", BY_NAME}),
     "audit": (
@@ -39,7 +43,7 @@ ALLOWED = {
         {"datasets", "configuration"},
         {"numpy", "xarray", "netCDF4", "matplotlib", "PIL", "jinja2"},
     ),
-    "pipeline": ({"datasets", "configuration", "record"}, {"xarray", "yaml"}),
+    "pipeline": ({"datasets", "atlas", "configuration", "record"}, {"xarray", "yaml"}),
     "cli": (
         {
             "datasets",

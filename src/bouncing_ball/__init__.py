@@ -25,6 +25,7 @@ The layers, each importing only what lies above it in this list (and the errors)
 ``orbits``        n-T orbits, their stability and bifurcations
 ``studies``       the stages of the pipeline: parameters in, datasets out
 ``calculator``    units, cases and verdicts for an engineer's own contact
+``atlas``         how stiff is stiff enough, for all orbits: tiles, shards, one file
 ``configuration`` the parameters of a run, read and checked
 ``audit``         the paper under audit: claims, formulas, Table 1, every orbit by three routes
 ``render``        figures, tables and the article; they compute nothing

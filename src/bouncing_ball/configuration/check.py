@@ -33,6 +33,24 @@ def _check_consistency(config: Mapping[str, Any]) -> None:
             raise ConfigurationError(
                 f"{dotted(path)}.min = {span['min']} must be less than max = {span['max']}"
             )
+    _check_atlas(config["atlas"])
+
+
+def _check_atlas(atlas: Mapping[str, Any]) -> None:
+    """The ϖ examined are within the range scanned; the summary's numbers are among the rest."""
+    span = atlas["frequency_ratio"]
+    for value in atlas["examined"]:
+        if not span["min"] <= value <= span["max"]:
+            raise ConfigurationError(
+                f"atlas.examined = {value} must be from frequency_ratio.min = {span['min']} "
+                f"to max = {span['max']}"
+            )
+    for key, allowed in (("tolerance", "tolerances"), ("rule_of_thumb", "examined")):
+        if atlas["summary"][key] not in atlas[allowed]:
+            listed = ", ".join(f"{value:g}" for value in atlas[allowed])
+            raise ConfigurationError(
+                f"atlas.summary.{key} = {atlas['summary'][key]} must be one of {allowed}: {listed}"
+            )
 
 
 def _needs(value: Any, path: tuple = ()) -> Iterator[tuple[tuple, float, list[int], float]]:

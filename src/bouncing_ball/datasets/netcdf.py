@@ -52,14 +52,17 @@ def parameter_attributes(parameters: Mapping[str, Any], prefix: str = "") -> dic
     return flat
 
 
-def write_dataset(dataset: xr.Dataset, path: str | Path) -> None:
+def write_dataset(dataset: xr.Dataset, path: str | Path, *, compressed: bool = False) -> None:
     """Write a dataset by the CF conventions, so that the file is either whole or not there.
 
     Nothing is missing in a coordinate, so that it has no fill value.
     """
-    whole = {str(name): {"_FillValue": None} for name in dataset.coords}
+    encoding: dict[str, dict[str, Any]] = {str(x): {"_FillValue": None} for x in dataset.coords}
+    if compressed:
+        arrays = (name for name, values in dataset.data_vars.items() if values.ndim)
+        encoding |= {str(name): {"zlib": True, "complevel": 4} for name in arrays}
     with replacing(path) as temporary:
-        dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=whole)
+        dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
 
 
 def read_dataset(path: str | Path) -> xr.Dataset:

@@ -163,6 +163,55 @@ VARIABLES: dict[str, Variable] = {
     "meeting_time": Variable("time at which the continued flights meet", "t_c"),
     "meeting_height": Variable("height at which the continued flights meet", "z"),
     "delay": Variable("delay of the instant by the law's signature", "t_c"),
+    # the atlas
+    "row": Variable("row of tiles: a release rule, an index n and a range of r", ""),
+    "position": Variable(
+        "place in the stable range of the restitution model, from its saddle-node at 0 to its "
+        "period doubling at 1",
+        "(Λ - Λ_SN)/(Λ_PD - Λ_SN)",
+    ),
+    "threshold_bin": Variable(
+        "lower end of a bin of thresholds; 0: at every ϖ scanned, infinity: at none", "ϖ"
+    ),
+    "law_bin": Variable("lower end of a bin of error over error law", ""),
+    "largest_threshold": Variable("ϖ from which the error of all nodes is tolerated", "ϖ"),
+    "smallest_threshold": Variable("ϖ from which the error of some node is tolerated", "ϖ"),
+    "threshold_counts": Variable(
+        "number of nodes by the ϖ from which their error is tolerated", ""
+    ),
+    "holding": Variable("number of nodes whose error is tolerated from this ϖ on", ""),
+    "exceeding": Variable("number of nodes whose error exceeds the tolerance at this ϖ", ""),
+    "largest_error": Variable("largest relative error of a node at this ϖ", ""),
+    "worst_restitution": Variable("restitution coefficient of the node with this error", "r"),
+    "worst_amplitude": Variable("amplitude of the node with this error", "Λ"),
+    "absent": Variable("number of nodes for which one of the models has no such quantity", ""),
+    "law_counts": Variable("number of nodes by their error over the error law", ""),
+    "law_stated": Variable("number of nodes for which the error law is stated", ""),
+    "law_exceeding": Variable("number of these beyond the stated remainder", ""),
+    "unstable": Variable("number of nodes whose exact orbit is not stable", ""),
+    "sought": Variable("number of orbits that the walk did not reach, looked for directly", ""),
+    "farthest": Variable("largest relative distance of an orbit's Λ from its node's", ""),
+    "limit_quantity": Variable("limit of the stable range, or of permanent contact", ""),
+    "needed": Variable("ϖ from which the error of all nodes of a tile is tolerated", "ϖ"),
+    "needed_quantile": Variable("ϖ from which the error of a share of nodes is tolerated", "ϖ"),
+    "share": Variable("share of nodes", ""),
+    "holding_share": Variable("share of nodes whose error is tolerated from this ϖ on", ""),
+    "exceeding_share": Variable("share of nodes whose error exceeds the tolerance at this ϖ", ""),
+    "failing_share": Variable("share of a tile's nodes on which the rule of thumb fails", ""),
+    "failing_restitution": Variable("r below which all nodes lie on which it fails", "r"),
+    "failing_position": Variable("position below which all nodes lie on which it fails", ""),
+    "unstable_share": Variable("share of nodes whose exact orbit is not stable", ""),
+    "law_near": Variable("share of nodes whose error is within a tenth of the error law", ""),
+    "worst_error": Variable("largest relative error where the rule of thumb begins", ""),
+    "absent_nodes": Variable("nodes for which one of the models has no such quantity there", ""),
+    "corner_amplitude": Variable("amplitude at the corners of the tiles", "Λ"),
+    "restitution_edge": Variable("ends of the ranges of r", "r"),
+    "position_edge": Variable("ends of the ranges of positions", ""),
+    "law_coefficient": Variable("modulus of the error law's K in the middle of the tile", "|K|"),
+    "sought_orbits": Variable("orbits that the walk did not reach, looked for directly", ""),
+    "resolution": Variable("largest relative step of ϖ: a threshold lies within one", ""),
+    "summary_tolerance": Variable("relative error tolerated in the summary", ""),
+    "rule_of_thumb": Variable("frequency ratio that is said to be enough", "ϖ"),
     # witness
     "artifact": Variable("figure or table whose orbits are compared", ""),
     "comparison": Variable("the two routes compared", ""),
@@ -308,6 +357,17 @@ VARIABLES: dict[str, Variable] = {
     "unreachable": Variable("number of saddle-nodes printed below every computed orbit", ""),
     "chosen_in_range": Variable("whether the reading allows a range, its best value taken", ""),
     "step_needed": Variable("arclength step from which a continued point may round to it", "h"),
+}
+
+
+# The atlas asks of the limits of a family what it asks of its orbits.
+_ASKED = (
+    "largest_threshold smallest_threshold threshold_counts holding exceeding largest_error "
+    "worst_restitution worst_amplitude absent law_counts law_stated law_exceeding needed"
+)
+VARIABLES |= {
+    f"limit_{name}": VARIABLES[name]._replace(long_name=f"{VARIABLES[name].long_name} (limits)")
+    for name in _ASKED.split()
 }
 
 

@@ -7,7 +7,7 @@ object that Snakemake gives them.
 import signal
 import sys
 import traceback
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -87,8 +87,8 @@ def withdraw() -> None:
         Path(path).unlink(missing_ok=True)
 
 
-def read_input(path: str) -> xr.Dataset:
-    """A dataset that another job has made for this one.
+def read_input(path: str, log: str | Path = "") -> xr.Dataset:
+    """A dataset that another job has made for this one, and whose log is that of a stage or given.
 
     Raises
     ------
@@ -96,14 +96,19 @@ def read_input(path: str) -> xr.Dataset:
         If it is not what its job wrote, or is that of another artifact.
     """
     again = f"make it again, snakemake --cores 2 --force {path}"
-    log = Path(LOGS, Path(path).stem).with_suffix(".log")
-    if read_log(log).sums.get(path) != file_digest(path):
+    log = Path(log or Path(LOGS, f"{Path(path).stem}.log"))
+    if not is_as_written(path, log):
         raise DatasetError(f"{path} is not what its job wrote, which {log} says: {again}")
     dataset = read_dataset(path)
     target = dataset.attrs.get(PREFIX + "target")
     if target != path:
         raise DatasetError(f"{path} is the dataset of {target}: {again}")
     return dataset
+
+
+def is_as_written(path: str, log: str | Path) -> bool:
+    """Whether a file that is there has the checksum that the log of its job says."""
+    return read_log(Path(log)).sums.get(path) == file_digest(path)
 
 
 def provenance(snakemake: Any) -> Provenance:
@@ -132,16 +137,24 @@ def make_dataset(snakemake: Any) -> None:
         data = {Path(path).stem: read_input(path) for path in snakemake.input.data}
         inputs = [data] if data else []
         dataset = load(job.study)(*inputs, job.parameters, *job.settings.values())
-        dataset.attrs = {
-            "Conventions": CONVENTIONS,
-            "title": job.title,
-            "references": REFERENCE,
-            "history": HISTORY,
-            **(dataset.attrs or parameter_attributes(job.parameters | job.settings)),
-            **provenance(snakemake).attributes(),
-        }
-        write_dataset(dataset, snakemake.output.data)
+        parameters = dataset.attrs or parameter_attributes(job.parameters | job.settings)
+        publish(snakemake, dataset, parameters)
         sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())
         lines.append(f"{snakemake.output.data}: {sizes}")
         if "end_reason" in dataset:
             lines += [str(reason) for reason in dataset.end_reason.values.ravel()]
+
+
+def publish(
+    snakemake: Any, dataset: xr.Dataset, parameters: Mapping[str, Any], *, compressed: bool = False
+) -> None:
+    """Write the job's dataset, with its title, parameters and provenance as attributes."""
+    dataset.attrs = {
+        "Conventions": CONVENTIONS,
+        "title": snakemake.params.title,
+        "references": REFERENCE,
+        "history": HISTORY,
+        **parameters,
+        **provenance(snakemake).attributes(),
+    }
+    write_dataset(dataset, snakemake.output.data, compressed=compressed)

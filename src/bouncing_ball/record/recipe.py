@@ -43,6 +43,8 @@ class Recipe:
     parameters : str
         Checksum of the job's own parameters, empty without any.
     log : str
+    parts : tuple of str
+        Inputs that are one thing in many files, made with parameters that are the job's too.
     """
 
     outputs: tuple[str, ...]
@@ -50,18 +52,21 @@ class Recipe:
     sources: tuple[str, ...]
     parameters: str
     log: str
+    parts: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, job: Any, script: str | Path) -> Self:
         """The recipe of a job, as its script or as Snakemake's plan knows it."""
         modules = [str(path) for path in job.input.get("source", [])]
+        parts = [str(path) for path in job.input.get("parts", [])]
         parameters = dict(job.params.items())
         return cls(
             outputs=tuple(map(str, job.output)),
-            inputs=tuple(sorted({str(path) for path in job.input} - set(modules))),
+            inputs=tuple(sorted({str(path) for path in job.input} - set(modules) - set(parts))),
             sources=(str(script), *modules),
             parameters=digest(parameters) if parameters else "",
             log=str(job.log[0]),
+            parts=tuple(parts),
         )
 
     @property
@@ -104,6 +109,8 @@ def gather(recipe: Recipe, run: Run) -> Provenance:
     name = PREFIX + "parameters"
     inherited = [str(data[name]) for data in attributes if name in data]
     inputs = {_named(path, run.repository): file_digest(path) for path in recipe.inputs}
+    if recipe.parts:
+        inputs["parts"] = digest([file_digest(path) for path in recipe.parts])
     return Provenance(
         commit=run.now.commit,
         dirty=run.now.dirty,

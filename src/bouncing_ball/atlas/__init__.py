@@ -1,0 +1,1 @@
+"""The atlas: how stiff a contact must be for each model to be right, everywhere."""

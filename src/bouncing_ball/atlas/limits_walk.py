@@ -1,0 +1,114 @@
+r"""Saddle-node and period doubling along ϖ, without a scan for each.
+
+As in :mod:`bouncing_ball.atlas.walk` the walk comes down from the stiffest contact in
+t = ϖε, almost a constant along ϖ. The saddle-node is the zero of ``½ dΛ²/dε``, the period
+doubling that of ``1 + tr + det``, both almost straight along ε: some steps of
+the secant method from the extrapolated t close them. Where these do not converge
+:mod:`bouncing_ball.orbits.limits` looks for the bifurcation.
+"""
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from bouncing_ball.atlas.plan import Nodes
+from bouncing_ball.atlas.walk import extrapolated, stiff_start
+from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.orbits import limits, restitution_orbit
+from bouncing_ball.orbits.closed_form import BranchPoint, branch_point
+from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.corrected_model import CorrectedModel
+from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.stability import period_doubling_function
+
+_SECANTS = 6
+# First step of the secants in t, and the last one at most; t is of the order of 1.
+_STEP = 1e-4
+CLOSED = 1e-8
+"""Last step of t, relative to 1 + |t|. Λ follows t by its square at the saddle-node and
+in proportion at the period doubling, over ϖ: it is closer than this."""
+
+
+def _fold(point: BranchPoint) -> np.ndarray:
+    return point.fold
+
+
+def _flip(point: BranchPoint) -> np.ndarray:
+    return period_doubling_function(point.trace, point.determinant)
+
+
+def limit_errors(nodes: Nodes, ratios: np.ndarray) -> Iterator[tuple[float, np.ndarray]]:
+    """Signed errors of saddle-node, period doubling and permanent contact.
+
+    Yields
+    ------
+    float, ndarray
+        ϖ from the largest to the smallest, and errors of shape (model, quantity, nodes).
+    """
+    n, r, down = nodes.n, nodes.restitution, ratios[::-1]
+    simple = RestitutionModel(r)
+    flip = restitution_orbit.period_doubling(n, r)
+    bounds = nodes.amplitude, flip
+    kinds = (_fold, limits.saddle_node), (_flip, limits.period_doubling)
+    tracks = [
+        _track(test, direct, Nodes(nodes.release, n, r, start), down)
+        for (test, direct), start in zip(kinds, bounds, strict=True)
+    ]
+    for ratio, fold, flip in zip(down, *tracks, strict=True):
+        contact = nodes.contact(ratio)
+        exact = [fold, flip, ContactModel(contact).permanent_contact_threshold()]
+        with np.errstate(divide="ignore"):
+            yield (
+                float(ratio),
+                np.array(
+                    [
+                        np.stack(exact) / np.stack(_bounds(model, n)) - 1
+                        for model in (simple, CorrectedModel.of_contact(contact))
+                    ]
+                ),
+            )
+
+
+def _bounds(model: RestitutionModel | CorrectedModel, n: int) -> list[np.ndarray]:
+    return [
+        model.saddle_node(n).amplitude,
+        model.period_doubling(n).amplitude,
+        model.permanent_contact_threshold(),
+    ]
+
+
+def _track(
+    test: Callable[[BranchPoint], np.ndarray],
+    direct: Callable[[Contact, int], np.ndarray],
+    start: Nodes,
+    down: np.ndarray,
+) -> Iterator[np.ndarray]:
+    """Λ at the zero of a test function for each ϖ of a decreasing sequence."""
+    before, t, n = None, stiff_start(start), start.n
+    for k, ratio in enumerate(down):
+        contact = start.contact(ratio)
+
+        def value(t, contact=contact, ratio=ratio):
+            return test(branch_point(t / ratio, contact, n))
+
+        guess = extrapolated(t, before, down, k)
+        found, closed = _secant(value, guess)
+        if not np.all(closed):
+            found[~closed] = ratio * direct(contact[~closed], n)
+        before, t = (t if k else None), found
+        yield branch_point(found / ratio, contact, n).amplitude
+
+
+def _secant(
+    value: Callable[[np.ndarray], np.ndarray], t: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Zeros of functions of t, one each, and whether the last step was short."""
+    old, t = t, t + _STEP
+    was = value(old)
+    step = np.full(t.shape, _STEP)
+    for _ in range(_SECANTS):
+        now = value(t)
+        rise = now - was
+        step = np.where(rise == 0, 0.0, -now * (t - old) / np.where(rise == 0, 1.0, rise))
+        old, was, t = t, now, t + step
+    return t, np.abs(step) <= CLOSED * (1 + np.abs(t))

@@ -1,0 +1,150 @@
+"""What people ask of the atlas, small enough for the accepted record.
+
+The frequency ratio needed for one tolerance over r, Λ and n; the shares of nodes on
+which a rule of thumb holds; the worst orbits; and how the error law fares.
+"""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.atlas.errors import orbit_law
+from bouncing_ball.atlas.plan import Plan
+from bouncing_ball.datasets.variables import describe
+from bouncing_ball.orbits import restitution_orbit
+
+QUANTILES = (0.5, 0.9, 0.99, 1.0)
+_NEAR = 0.1
+"""What counts as on the law: error over law within this of 1."""
+
+
+def summary(plan: Plan, atlas: xr.Dataset, tolerance: float, rule_of_thumb: float) -> xr.Dataset:
+    """The summary for a tolerance and a rule "ϖ above this is enough".
+
+    Both must be among those of the plan.
+    """
+    one = atlas.sel({"tolerance": tolerance})
+    failing = one.sel({"frequency_ratio": rule_of_thumb})
+    nodes = float(plan.nodes_per_tile)
+    data: dict[str, Any] = {
+        "needed": one.largest_threshold.astype("f4"),
+        "limit_needed": atlas.limit_largest_threshold,
+        "holding_share": _shares(atlas, "holding"),
+        "exceeding_share": _shares(atlas, "exceeding"),
+        "needed_quantile": _quantiles(atlas),
+        "failing_share": (failing.exceeding / nodes).astype("f4"),
+        "failing_restitution": _reach(plan.edges, failing.exceeding, "restitution"),
+        "failing_position": _reach(plan.positions, failing.exceeding, "position"),
+        "unstable_share": _of_nodes(atlas, atlas.unstable),
+        **_law(atlas),
+        **_worst(atlas, rule_of_thumb),
+        **_drawn(plan),
+    }
+    numbers = {
+        "orbits": plan.orbits,
+        "sought_orbits": int(atlas.sought.sum()),
+        "farthest": float(atlas.farthest.max()),
+        "resolution": plan.resolution,
+        "summary_tolerance": tolerance,
+        "rule_of_thumb": rule_of_thumb,
+    }
+    found = xr.Dataset({name: _bare(value) for name, value in (data | numbers).items()})
+    return describe(found)
+
+
+def _bare(value: Any) -> Any:
+    """A variable without the coordinates that were picked from."""
+    return value.reset_coords(drop=True) if isinstance(value, xr.DataArray) else value
+
+
+_TILES = ("restitution", "position")
+
+
+def _nodes(atlas: xr.Dataset) -> xr.DataArray:
+    """Nodes of each rule and n."""
+    counts = atlas.threshold_counts.isel(model=0, quantity=0, tolerance=0, drop=True)
+    return counts.sum(("threshold_bin", *_TILES))
+
+
+def _of_nodes(atlas: xr.Dataset, counts: xr.DataArray) -> xr.DataArray:
+    return counts.sum(_TILES) / _nodes(atlas)
+
+
+def _shares(atlas: xr.Dataset, name: str) -> xr.DataArray:
+    return _of_nodes(atlas, atlas[name])
+
+
+def _quantiles(atlas: xr.Dataset) -> xr.DataArray:
+    """Upper end of the bin of thresholds below which a share of the nodes is."""
+    counts = atlas.threshold_counts.sum(_TILES)
+    share = (counts.cumsum("threshold_bin") / counts.sum("threshold_bin")).values
+    bins = np.append(atlas.threshold_bin.values[1:], np.inf)
+    found = [bins[np.argmax(share >= q, axis=-1)] for q in QUANTILES[:-1]]
+    largest = atlas.largest_threshold.max(_TILES)
+    dims = tuple(d for d in counts.dims if d != "threshold_bin")
+    found.append(largest.transpose(*dims).values)
+    return xr.DataArray(
+        np.stack(found, -1),
+        {d: counts[d] for d in dims} | {"share": list(QUANTILES)},
+        (*dims, "share"),
+    )
+
+
+def _reach(edges: np.ndarray, exceeding: xr.DataArray, along: str) -> xr.DataArray:
+    """Upper end of the last range in which a node fails; 0 where none does."""
+    others = [name for name in _TILES if name != along]
+    fails = exceeding.sum(others) > 0
+    ends = xr.DataArray(edges[1:], {along: exceeding[along]}, (along,))
+    return ends.where(fails, 0.0).max(along)
+
+
+def _law(atlas: xr.Dataset) -> dict[str, xr.DataArray]:
+    """Share of nodes near the law; nodes for which it is stated, and those beyond it."""
+    counts = atlas.law_counts.sum(("n", *_TILES))
+    near = (atlas.law_bin >= 1 - _NEAR) & (atlas.law_bin < 1 + _NEAR)
+    return {
+        "law_near": counts.where(near, 0).sum("law_bin") / counts.sum("law_bin"),
+        "law_stated": atlas.law_stated.sum(("n", *_TILES)),
+        "law_exceeding": atlas.law_exceeding.sum(("n", *_TILES)),
+    }
+
+
+def _worst(atlas: xr.Dataset, ratio: float) -> dict[str, xr.DataArray]:
+    """The node with the largest error at a ϖ, for each rule, n, model and quantity."""
+    there = atlas.sel({"frequency_ratio": ratio})
+    error = there.largest_error.fillna(-np.inf)
+    place = error.argmax(_TILES)
+    return {
+        "worst_error": error.isel(place),
+        "worst_restitution": there.worst_restitution.isel(place),
+        "worst_amplitude": there.worst_amplitude.isel(place),
+        "absent_nodes": there.absent.sum(_TILES),
+    }
+
+
+def _drawn(plan: Plan) -> dict[str, xr.DataArray]:
+    """For the charts: Λ at the corners of the tiles, and |K| in their middles."""
+    r, p = plan.edges, plan.positions
+    n = np.array(plan.families)[:, np.newaxis]
+    # The corners lie at r = 1 too, where there is no saddle-node above Λ = 0.
+    low, high = restitution_orbit.saddle_node(n, r), restitution_orbit.period_doubling(n, r)
+    corners = low[..., np.newaxis] + p * (high - low)[..., np.newaxis]
+    middle_r, middle_p = np.meshgrid((r[1:] + r[:-1]) / 2, (p[1:] + p[:-1]) / 2, indexing="ij")
+    shape = len(plan.releases), len(plan.families), len(r) - 1
+    law: np.ndarray | None = None
+    for row in plan.rows:
+        nodes = plan.placed(row, middle_r[row.restitution], middle_p[row.restitution])
+        values = np.abs(orbit_law(nodes).coefficient).T
+        if law is None:
+            law = np.full((*shape, *values.shape), np.nan, "f4")
+        law[row] = values
+    dims = ("release", "n", "restitution", "position", "quantity")
+    return {
+        "corner_amplitude": xr.DataArray(
+            corners.astype("f4"), dims=("n", "restitution_edge", "position_edge")
+        ),
+        "restitution_edge": xr.DataArray(r, dims="restitution_edge"),
+        "position_edge": xr.DataArray(p, dims="position_edge"),
+        "law_coefficient": xr.DataArray(law, dims=dims),
+    }

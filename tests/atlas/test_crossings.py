@@ -1,0 +1,109 @@
+import numpy as np
+import pytest
+
+from bouncing_ball.atlas.crossings import LastCrossings
+from bouncing_ball.atlas.errors import MODELS, OF_ORBITS, orbit_errors
+from bouncing_ball.atlas.walk import walk
+from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.studies.error_thresholds import Status, thresholds
+from bouncing_ball.studies.model_errors import errors
+
+RATIOS = np.geomspace(1.0, 1e3, 61)
+STEP = RATIOS[1] / RATIOS[0]
+
+
+def found(function, *tolerances, ratios=RATIOS):
+    crossings = LastCrossings(np.array(tolerances), (1,))
+    for ratio in ratios[::-1]:
+        crossings.meet(ratio, np.array([function(ratio)]))
+    return crossings.thresholds()[:, 0]
+
+
+def test_a_power_is_closed_exactly():
+    assert found(lambda w: w**-2.0, 0.01, 0.0004) == pytest.approx([10.0, 50.0], rel=1e-12)
+
+
+def test_the_last_crossing_counts_and_not_the_first():
+    # Within 0.05 below ϖ = 20 and from 100 on, where the error has passed through zero.
+    def error(w):
+        return 0.1 if 20 < w < 50 else 0.01
+
+    assert 50 / STEP < found(error, 0.05)[0] < 50 * STEP
+
+
+def test_an_error_that_changes_its_sign_between_two_ratios():
+    # Straight along ln ϖ below 32: 0.05 at 30 e^(-0.1), between the ratios 10 and 31.6.
+    def error(w):
+        return 0.5 * np.log(30 / min(w, 32.0))
+
+    threshold = found(error, 0.05, ratios=np.geomspace(1.0, 1e3, 7))[0]
+    assert threshold == pytest.approx(30 * np.exp(-0.1), rel=1e-12)
+
+
+def test_an_excursion_between_two_ratios_is_seen():
+    # A bump whose top, 0.0101, is midway between two ratios of the grid.
+    middle = np.sqrt(RATIOS[30] * RATIOS[31])
+
+    def error(w):
+        return max(0.0101 - 0.1 * np.log(w / middle) ** 2, 0.0)
+
+    assert max(error(RATIOS[30]), error(RATIOS[31])) < 0.01
+    threshold = found(error, 0.01)[0]
+    exact = middle * np.exp(np.sqrt(0.0001 / 0.1))
+    assert threshold == pytest.approx(exact, rel=1e-9)
+    assert found(lambda w: -error(w), 0.01)[0] == pytest.approx(exact, rel=1e-9)
+
+
+def test_where_a_model_has_no_orbit_the_error_is_not_tolerated():
+    threshold = found(lambda w: np.nan if w < 10 else 1e-6, 0.01)[0]
+    assert 10 / STEP <= threshold <= 10 * STEP
+    assert found(lambda w: np.nan, 0.01)[0] == np.inf
+    assert found(lambda w: 1e-6, 0.01)[0] == RATIOS[0]
+
+
+def direct(nodes, tolerances, ratios):
+    """Thresholds of one node by scanning a grid and closing the crossings; (m, model, quantity)."""
+    zeta, lam, names = nodes.damping_ratio[0], nodes.amplitude[0], [str(q) for q in OF_ORBITS]
+    scanned = np.abs(errors(Contact(ratios, zeta, nodes.release), nodes.n, lam, names))
+    result = np.empty((len(tolerances), len(MODELS), len(names)))
+    for i, j in np.ndindex(result.shape[1:]):
+
+        def error(w, i=i, j=j):
+            contact = Contact(w, zeta, nodes.release)
+            return np.abs(errors(contact, nodes.n, lam, names[j : j + 1]))[i, 0]
+
+        known = np.nan_to_num(scanned[i, j], nan=np.inf)
+        values, statuses = thresholds(error, tolerances, ratios, known)
+        always = [status is Status.ALWAYS_WITHIN for status in statuses]
+        result[:, i, j] = np.where(always, ratios[0], np.where(np.isnan(values), np.inf, values))
+    return result
+
+
+def compare_with_direct_search(plan, count, seed, points):
+    """Largest ratio of thresholds of random nodes to those of a direct search."""
+    random, worst = np.random.default_rng(seed), 1.0
+    fine = np.geomspace(plan.ratios[0], plan.ratios[-1], points)
+    for _ in range(count):
+        nodes = plan.nodes(plan.rows[random.integers(len(plan.rows))])
+        k = random.integers(len(nodes.amplitude))
+        one = nodes[k : k + 1]
+        crossings = LastCrossings(plan.tolerances, (len(MODELS), len(OF_ORBITS), 1))
+        for step in walk(one, plan.ratios):
+            ratio = step.frequency_ratio
+            crossings.meet(ratio, orbit_errors(step.orbit, one.instant, ratio))
+        ours, theirs = crossings.thresholds()[..., 0], direct(one, plan.tolerances, fine)
+        assert np.array_equal(np.isinf(ours), np.isinf(theirs))
+        finite = np.isfinite(ours)
+        worst = max(worst, np.max(np.exp(np.abs(np.log(ours[finite] / theirs[finite])))))
+    return worst
+
+
+def test_thresholds_are_those_of_a_direct_search(small):
+    plan = small()
+    assert compare_with_direct_search(plan, 3, 3, 121) < 1 + plan.resolution
+
+
+@pytest.mark.long
+def test_a_thousand_thresholds_are_those_of_a_direct_search(small):
+    plan = small(n=[1, 2, 3, 4, 5], frequency_ratio={"min": 3.0, "max": 1e5, "samples": 161})
+    assert compare_with_direct_search(plan, 1000, 4, 801) < 1 + plan.resolution

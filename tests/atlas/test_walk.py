@@ -1,0 +1,81 @@
+"""The walks against the root finding of :mod:`bouncing_ball.orbits.limits`."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.atlas.limits_walk import limit_errors
+from bouncing_ball.atlas.walk import REACHED, stiff_start, walk
+from bouncing_ball.orbits import limits
+from bouncing_ball.orbits.closed_form import branch_point
+from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.restitution_model import RestitutionModel
+
+COMPARED = [3.0, 10.0, 100.0, 1e4]
+
+
+def compared(plan):
+    return plan.__class__({**plan.parameters, "examined": COMPARED})
+
+
+def rows(plan, count):
+    random = np.random.default_rng(5)
+    return [plan.rows[k] for k in random.choice(len(plan.rows), count, replace=False)]
+
+
+def test_the_walk_gives_the_orbits_that_root_finding_gives(small):
+    plan = compared(small())
+    for row in rows(plan, 4):
+        nodes = plan.nodes(row)
+        for step in walk(nodes, plan.ratios):
+            off = np.abs(step.orbit.amplitude / nodes.amplitude - 1)
+            assert np.all((off <= REACHED) | np.isnan(off))
+            if step.frequency_ratio not in COMPARED:
+                continue
+            contact = nodes.contact(step.frequency_ratio)
+            # At the Λ where the walk is, so that both have the same orbit.
+            lam = np.where(np.isnan(off), nodes.amplitude, step.orbit.amplitude)
+            found = limits.orbit_at(contact, nodes.n, lam)
+            assert np.array_equal(found.exists, step.orbit.exists)
+            # The phase turns by a root of Λ next to the saddle-node.
+            assert np.nanmax(step.orbit.distance(found)) < 1e-8
+            assert np.array_equal(found.is_stable(), step.stable)
+
+
+def test_what_the_walk_loses_is_looked_for(small, monkeypatch):
+    plan = compared(small())
+    nodes = plan.nodes(plan.rows[0])
+    expected = [step.orbit for step in walk(nodes, plan.ratios)]
+    # As if the walk reached nothing.
+    monkeypatch.setattr("bouncing_ball.atlas.walk.REACHED", -1.0)
+    few = plan.ratios[-3:]
+    for step, orbit in zip(walk(nodes, few), expected, strict=False):
+        assert np.all(step.sought)
+        assert np.max(step.orbit.distance(orbit)) < 1e-8
+
+
+@pytest.mark.parametrize("ratio", [1e5, 1e7])
+def test_the_start_is_the_limit_of_stiff_contacts(small, ratio):
+    plan = small()
+    for row in rows(plan, 4):
+        nodes = plan.nodes(row)
+        point = branch_point(stiff_start(nodes) / ratio, nodes.contact(ratio), nodes.n)
+        expected = RestitutionModel(nodes.restitution).orbit(nodes.n, nodes.amplitude)
+        lift = expected.amplitude * np.sin(expected.phase)
+        # Of the order of 1/ϖ, with the load over the speed of the ball that leaves.
+        assert np.max(np.abs(point.y - lift)) < 200 / ratio
+
+
+def test_the_limits_are_those_that_root_finding_gives(small):
+    plan = compared(small())
+    for row in rows(plan, 3):
+        nodes, n = plan.bounds(row), plan.families[row.n]
+        for ratio, error in limit_errors(nodes, plan.ratios):
+            if ratio not in COMPARED:
+                continue
+            exact, simple = ContactModel(nodes.contact(ratio)), RestitutionModel(nodes.restitution)
+            expected = [
+                getattr(exact, name)(n).amplitude / getattr(simple, name)(n).amplitude - 1
+                for name in ("saddle_node", "period_doubling")
+            ]
+            assert np.allclose(error[0, :2], expected, rtol=0, atol=1e-9, equal_nan=True)
+            assert np.allclose(error[0, 2], exact.permanent_contact_threshold() - 1, rtol=1e-14)

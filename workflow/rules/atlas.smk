@@ -1,0 +1,114 @@
+# The atlas: how stiff is stiff enough, everywhere. Not part of a run. Its summary is
+# accepted by hand, see docs/atlas.md, and the article takes its numbers from there.
+
+from bouncing_ball.pipeline.atlas import discard_damaged, shard_minutes, shard_names
+
+ATLAS = {key: part for key, part in RUN["atlas"].items() if key != "summary"}
+SHARDS = shard_names(ATLAS)
+CHARTS = ["max_height", "bounce_velocity", "phase", "apparent_restitution", "limits", "page"]
+
+
+def shard_files(wildcards):
+    """The shards; one that is not what its job wrote is removed, and so made again."""
+    paths = [f"results/atlas/shards/{name}.nc" for name in [*SHARDS, "limits"]]
+    if workflow.is_main_process:
+        for path in discard_damaged(paths):
+            logger.warning(f"{path} is not what its job wrote: it is made again")
+    return paths
+
+
+rule atlas_shard:
+    message:
+        "Atlas: shard {wildcards.shard}"
+    input:
+        source=modules("atlas.shards", "pipeline.atlas"),
+    output:
+        data="results/atlas/shards/{shard}.nc",
+    wildcard_constraints:
+        shard=r"\d+-of-\d+",
+    params:
+        title="The atlas: the answers of some rows of tiles",
+        parameters=ATLAS,
+    resources:
+        runtime=shard_minutes(ATLAS),
+        mem_mb=1000,
+    log:
+        "results/logs/atlas/shards/{shard}.log",
+    benchmark:
+        "results/benchmarks/atlas/shards/{shard}.tsv"
+    script:
+        "../scripts/atlas_shard.py"
+
+
+rule atlas_limits:
+    message:
+        "Atlas: saddle-node, period doubling and permanent contact"
+    input:
+        source=modules("atlas.shards", "pipeline.atlas"),
+    output:
+        data="results/atlas/shards/limits.nc",
+    params:
+        title="The atlas: the answers about the limits of the families",
+        parameters=ATLAS,
+    resources:
+        runtime=30,
+        mem_mb=1000,
+    log:
+        "results/logs/atlas/shards/limits.log",
+    benchmark:
+        "results/benchmarks/atlas/shards/limits.tsv"
+    script:
+        "../scripts/atlas_limits.py"
+
+
+rule atlas_merge:
+    message:
+        "Atlas: one file from {params.parts} shards"
+    input:
+        parts=shard_files,
+        source=modules("atlas.merge", "pipeline.atlas"),
+    output:
+        data="results/atlas/atlas.nc",
+    params:
+        title="The atlas: how stiff a contact must be",
+        parameters=ATLAS,
+        parts=len(SHARDS) + 1,
+    resources:
+        runtime=60,
+        mem_mb=4000,
+    log:
+        "results/logs/atlas/atlas.log",
+    benchmark:
+        "results/benchmarks/atlas/atlas.tsv"
+    script:
+        "../scripts/atlas_merge.py"
+
+
+rule atlas_summary:
+    message:
+        "Atlas: its summary"
+    input:
+        parts=[rules.atlas_merge.output.data],
+        source=modules("atlas.summary", "pipeline.atlas"),
+    output:
+        data="results/atlas/summary.nc",
+    params:
+        title="The atlas in short",
+        parameters=RUN["atlas"],
+    resources:
+        runtime=10,
+        mem_mb=2000,
+    log:
+        "results/logs/atlas/summary.log",
+    benchmark:
+        "results/benchmarks/atlas/summary.tsv"
+    script:
+        "../scripts/atlas_summary.py"
+
+
+rule atlas:
+    localrule: True
+    message:
+        "The atlas is up to date"
+    input:
+        rules.atlas_summary.output.data,

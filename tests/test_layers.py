@@ -26,7 +26,7 @@ ALLOWED = {
         {"numpy", "scipy", "xarray"},
     ),
     # Units are parsed at the edge, and pint is imported there when it is asked for.
-    "calculator": ({"impacts", "orbits", "studies"}, {"numpy", "pint"}),
+    "calculator": ({"impacts", "orbits", "studies"}, {"numpy", "xarray", "pint"}),
     "atlas": (
         {"datasets", "impacts", "orbits", "studies"},
         {"numpy", "xarray"},

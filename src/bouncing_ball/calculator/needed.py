@@ -14,7 +14,7 @@ from bouncing_ball.studies.model_errors import SIMPLE, errors
 
 # From contacts that last a good part of the table's period to stiffer ones than
 # any simulation has; so fine that no two crossings are seen as none.
-RATIOS = np.geomspace(1.0, 1e6, 241)
+RATIOS = np.geomspace(1.0, 1e6, 97)
 
 
 NO_ORBIT = "the restitution model has no such orbit"
@@ -80,13 +80,13 @@ def needed(
     simple = RestitutionModel(Contact(1.0, damping_ratio, release).restitution)
     if quantity in OBSERVABLES and not simple.orbit(n, lam).exists:
         return Needed(quantity, tolerance, None, None, None, NO_ORBIT, NO_ORBIT)
-    found = []
+    scanned, found = along(quantity, damping_ratio, release, n, lam, RATIOS), []
     for k in range(len(SIMPLE)):
 
         def error(ratios: np.ndarray, k: int = k) -> np.ndarray:
             return along(quantity, damping_ratio, release, n, lam, ratios)[k]
 
-        found.append(thresholds(error, np.array([tolerance]), RATIOS))
+        found.append(thresholds(error, np.array([tolerance]), RATIOS, scanned[k]))
     ratios = [_number(float(roots[0])) for roots, _ in found]
     coefficient = law(Contact(1.0, damping_ratio, release), n, lam)[0][quantity]
     by_law = None if coefficient is None else coefficient / tolerance

@@ -13,6 +13,7 @@ _LARGEST = 1e8
 _SMALLEST = 1e-8
 # One impact takes a third of a millisecond of a processor: half a minute.
 _MOST_IMPACTS = 100_000
+_DRAWINGS = (".pdf", ".png", ".svg")
 
 
 class Parser(argparse.ArgumentParser):
@@ -214,6 +215,14 @@ def _add_diff(sub: Parser) -> None:
         sub.add_argument(f"--{name}", metavar="FILE", help=what)
 
 
+def _drawing(text: str) -> Path:
+    """A parser of the name of a drawing, for ``type=``."""
+    path = Path(text)
+    if path.suffix not in _DRAWINGS:
+        raise argparse.ArgumentTypeError(f"{text!r} does not end in {' or '.join(_DRAWINGS)}")
+    return path
+
+
 # The calculator's parameters, with an example of each: what is read with its unit.
 _DESIGN = {
     "the table": {
@@ -267,6 +276,9 @@ def _add_design(sub: Parser) -> None:
         "--tolerance", default="0.01", metavar="X", help="how far it may be off (default: 1 %%)"
     )
     sub.add_argument("--json", action="store_true", help="one JSON object, full precision")
+    sub.add_argument(
+        "--plot", type=_drawing, metavar="FILE", help="a page to print: .pdf, .png or .svg"
+    )
 
 
 # The questions to a model: what each is for, and its own arguments.

@@ -3,12 +3,14 @@
 import argparse
 import math
 from dataclasses import fields, is_dataclass
+from pathlib import Path
 from typing import Any
 
 from bouncing_ball.calculator.calls import design
 from bouncing_ball.calculator.design import Design
 from bouncing_ball.calculator.units import KINDS
 from bouncing_ball.calculator.verdict import QUANTITIES, percent
+from bouncing_ball.errors import ModelError
 
 Answer = dict[str, Any]
 
@@ -30,6 +32,28 @@ def asked(args: argparse.Namespace) -> Design:
 def answer(found: Design) -> Answer:
     """All of it as plain values, what is not finite as null."""
     return _plain(found)
+
+
+def plot(found: Design, path: Path) -> None:
+    """Draw the page to print.
+
+    Raises
+    ------
+    ModelError
+        If the file cannot be written.
+    """
+    from bouncing_ball.calculator.page import page
+    from bouncing_ball.render.design_page import draw
+    from bouncing_ball.render.figures.style import save, style
+
+    said = answer(found)
+    judged = next(one for one in said["orbits"] if one["n"] == said["n"])
+    with style():
+        figure = draw(said, page(found), _contact_values(said) + _orbit_values(judged))
+        try:
+            save(figure, path, {"Title": "bouncing-ball design"})
+        except OSError as error:
+            raise ModelError(f"{path} cannot be written: {error.strerror}") from None
 
 
 def _plain(value: Any) -> Any:
@@ -72,30 +96,40 @@ def _share(value: float | None) -> str:
     return "none" if value is None else percent(value)
 
 
-def _contact_lines(found: Answer) -> list[str]:
+def _contact_values(found: Answer) -> list[tuple[str, str]]:
+    """What is known of the contact, by name."""
     both, three = found["restitution"], found["corrected"]
     down = found["permanent_contact"]
     return [
-        _row("frequency ratio ϖ", _number(found["frequency_ratio"])),
-        _row("damping ratio ζ", _number(found["damping_ratio"])),
-        _row("excitation amplitude Λ", _number(found["amplitude"])),
-        "",
-        _row("stiffness", quantity(found["stiffness"], "N/m")),
-        _row("damping", quantity(found["damping"], "N s/m")),
-        _row("contact time", quantity(found["contact_time"], "s")),
-        _row("largest time step", quantity(found["time_step"]["largest"], "s")),
-        f"  {found['time_step']['rule']}",
-        _row("static deflection", quantity(found["static_deflection"], "m")),
-        _row("restitution, released at δ = 0", _number(both["displacement"])),
-        _row("restitution, released without force", _number(both["force"])),
-        _row(
-            "permanent contact up to Λ",
-            _number(down["threshold"]),
-            f"(restitution model: {_number(down['restitution_threshold'])})",
-        ),
-        _row("corrected model, delay t_c", quantity(three["delay"], "s")),
-        _row("corrected model, restitution r", _number(three["restitution"])),
-        _row("corrected model, load σ", quantity(three["load"], "s")),
+        ("frequency ratio ϖ", _number(found["frequency_ratio"])),
+        ("damping ratio ζ", _number(found["damping_ratio"])),
+        ("excitation amplitude Λ", _number(found["amplitude"])),
+        ("stiffness", quantity(found["stiffness"], "N/m")),
+        ("damping", quantity(found["damping"], "N s/m")),
+        ("contact time", quantity(found["contact_time"], "s")),
+        ("largest time step", quantity(found["time_step"]["largest"], "s")),
+        ("static deflection", quantity(found["static_deflection"], "m")),
+        ("restitution, released at δ = 0", _number(both["displacement"])),
+        ("restitution, released without force", _number(both["force"])),
+        ("permanent contact up to Λ", _number(down["threshold"])),
+        ("  in the restitution model", _number(down["restitution_threshold"])),
+        ("corrected model, delay t_c", quantity(three["delay"], "s")),
+        ("corrected model, restitution r", _number(three["restitution"])),
+        ("corrected model, load σ", quantity(three["load"], "s")),
+    ]
+
+
+def _orbit_values(one: Answer) -> list[tuple[str, str]]:
+    """Lengths, times and forces of the orbit of the contact, by name."""
+    if not one["exists"]:
+        return []
+    return [
+        ("greatest height", quantity(one["max_height"], "m")),
+        ("impact speed", quantity(one["impact_speed"], "m/s")),
+        ("duration of contact", quantity(one["contact_duration"], "s")),
+        ("greatest compression", quantity(one["greatest_compression"], "m")),
+        ("peak force", quantity(one["peak_force"], "N")),
+        ("peak force over weight", _number(one["peak_force_over_weight"])),
     ]
 
 
@@ -113,18 +147,7 @@ def _family_lines(one: Answer) -> list[str]:
         across("period doubling at Λ", lambda s: _number(s["period_doubling"])),
         across("  Λ may rise by", lambda s: _share(s["period_doubling_margin"])),
     ]
-    if one["exists"]:
-        lines += [
-            _row("  greatest height", quantity(one["max_height"], "m")),
-            _row("  impact speed", quantity(one["impact_speed"], "m/s")),
-            _row("  duration of contact", quantity(one["contact_duration"], "s")),
-            _row("  greatest compression", quantity(one["greatest_compression"], "m")),
-            _row(
-                "  peak force",
-                quantity(one["peak_force"], "N"),
-                f"{_number(one['peak_force_over_weight'])} times the weight",
-            ),
-        ]
+    lines += [_row(f"  {name}", value) for name, value in _orbit_values(one)]
     holds = "error law" if one["law_holds"] else "law, not stated"
     lines.append(_row("  relative error", "restitution", holds, "corrected"))
     lines += [
@@ -144,7 +167,8 @@ def lines(found: Answer) -> list[str]:
     need = found["needed"]
     shown = [found["verdict"], f"Reason: {found['reason']}."]
     shown += [f"Note: {note}." for note in found["notes"]]
-    shown += ["", *_contact_lines(found)]
+    shown += ["", *(_row(name, value) for name, value in _contact_values(found))]
+    shown += [f"Time step: {found['time_step']['rule']}.", ""]
     name = QUANTITIES[need["quantity"]]
     shown += [
         _row(

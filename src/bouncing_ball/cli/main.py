@@ -101,6 +101,8 @@ def _designed(args: argparse.Namespace) -> Answered:
 
     with np.errstate(all="ignore"):
         found = design.asked(args)
+        if args.plot is not None:
+            design.plot(found, args.plot)
     return design.answer(found), design.lines
 
 

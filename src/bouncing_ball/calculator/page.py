@@ -1,0 +1,89 @@
+"""What the page of a design shows, computed: the validity chart and the motion."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.calculator.design import Design
+from bouncing_ball.calculator.needed import RATIOS, needed
+from bouncing_ball.impacts.damping import damping_ratio
+from bouncing_ball.impacts.release import Release
+from bouncing_ball.orbits.interface import Orbit
+from bouncing_ball.studies.error_thresholds import Status
+from bouncing_ball.studies.model_errors import SIMPLE, models
+
+# Restitution coefficients of the chart: as many as make the lines smooth, and from
+# which on. A linear contact that only pushes has r > e⁻².
+_CHART = 15
+_LEAST = {Release.DISPLACEMENT: 0.05, Release.FORCE: 0.15}
+_SAMPLES = 1201
+# Of the enlarged contact: how many contact times are shown before it and in all.
+_BEFORE, _SHOWN = 0.75, 3.0
+
+
+def page(design: Design) -> xr.Dataset:
+    """The validity chart over r, one cycle, and one contact, in SI units.
+
+    Variables are NaN where there is no orbit or no threshold.
+    """
+    table, rule = design.case.table, design.case.release
+    # Below the first r the family does not exist at Λ; the contact's own r is shown.
+    half, lam = design.n * np.pi, table.amplitude
+    least = (half - lam) / (half + lam)
+    least = min(max(least, _LEAST[rule]), design.corrected.restitution)
+    chart = np.linspace(least, 1.0, _CHART)
+    found = np.array([_needed(design, float(damping_ratio(r, rule))) for r in chart]).T
+    orbits = {m.name: m.orbit(design.n, table.amplitude) for m in models(design.case.contact)}
+    return xr.Dataset(
+        {
+            "needed": (("simple", "restitution"), found),
+            **_motion(orbits, design),
+            **_contact(orbits, design),
+        },
+        coords={"simple": list(SIMPLE), "restitution": chart, "model": list(orbits)},
+    )
+
+
+def _needed(design: Design, zeta: float) -> list[float]:
+    """ϖ from which on each simple model is right; NaN if nowhere."""
+    asked, case = design.needed, design.case
+    need = needed(
+        asked.quantity, asked.tolerance, zeta, case.release, design.n, case.table.amplitude
+    )
+    always = RATIOS[0], Status.ALWAYS_WITHIN
+    return [
+        always[0] if status == always[1] else np.nan if ratio is None else ratio
+        for ratio, status in (
+            (need.frequency_ratio, need.status),
+            (need.corrected, need.corrected_status),
+        )
+    ]
+
+
+def _motion(orbits: Mapping[str, Orbit], design: Design) -> dict:
+    """Heights of table and ball over one cycle from the table's phase 0, and a bit of the next."""
+    table = design.case.table
+    angle = np.linspace(0.0, 2 * np.pi * (design.n + 0.25), _SAMPLES)
+    heights = [orbit.path(angle - orbit.phase)[0] for orbit in orbits.values()]
+    return {
+        "time": ("time", angle * table.time),
+        "table": ("time", table.height * np.sin(angle)),
+        "ball": (("model", "time"), np.array(heights) * table.length),
+    }
+
+
+def _contact(orbits: Mapping[str, Orbit], design: Design) -> dict:
+    """Distance from the table about the contact of the exact model, or of the first there is."""
+    table = design.case.table
+    start = next(float(orbit.phase) for orbit in orbits.values() if orbit.exists)
+    duration = float(design.case.contact.free_duration)
+    since = np.linspace(-_BEFORE * duration, (_SHOWN - _BEFORE) * duration, _SAMPLES)
+    gaps = [
+        orbit.path(start + since - orbit.phase)[0] - table.amplitude * np.sin(start + since)
+        for orbit in orbits.values()
+    ]
+    return {
+        "since": ("since", since * table.time),
+        "gap": (("model", "since"), np.array(gaps) * table.length),
+    }

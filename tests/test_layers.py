@@ -50,6 +50,7 @@ ALLOWED = {
             "impacts",
             "motion",
             "orbits",
+            "studies",
             "calculator",
             "configuration",
             "render",

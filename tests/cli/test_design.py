@@ -57,7 +57,7 @@ def test_the_text_begins_with_the_verdict_of_the_readme(capsys):
     for word in (
         "contact time",
         "peak force",
-        "times the weight",
+        "force over weight",
         "largest time step",
         "3-T orbit",
     ):

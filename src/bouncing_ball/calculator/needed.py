@@ -9,8 +9,7 @@ from bouncing_ball.impacts.release import Release
 from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits.interface import OBSERVABLES
 from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.studies.error_thresholds import thresholds
-from bouncing_ball.studies.model_errors import SIMPLE, errors
+from bouncing_ball.studies.model_errors import search
 
 # From contacts that last a good part of the table's period to stiffer ones than
 # any simulation has; so fine that no two crossings are seen as none.
@@ -40,26 +39,6 @@ class Needed:
     corrected_status: str
 
 
-def along(
-    quantity: str, damping_ratio: float, release: Release, n: int, amplitude: float, ratios
-) -> np.ndarray:
-    """Moduli of the relative errors of both simple models along ϖ, shape (2, ...).
-
-    Infinite where the exact model has no such quantity, or the simple one none to
-    be relative to.
-
-    Examples
-    --------
-    >>> found = along("permanent_contact", 0.0, Release.DISPLACEMENT, 1, 1.0, np.array([2.0]))
-    >>> found.tolist()
-    [[0.25], [0.25]]
-    """
-    contact = Contact(ratios, damping_ratio, release)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        found = np.abs(errors(contact, n, amplitude, (quantity,))[:, 0])
-    return np.where(np.isnan(found), np.inf, found)
-
-
 def _number(value: float) -> float | None:
     return value if np.isfinite(value) else None
 
@@ -80,17 +59,11 @@ def needed(
     simple = RestitutionModel(Contact(1.0, damping_ratio, release).restitution)
     if quantity in OBSERVABLES and not simple.orbit(n, lam).exists:
         return Needed(quantity, tolerance, None, None, None, NO_ORBIT, NO_ORBIT)
-    scanned, found = along(quantity, damping_ratio, release, n, lam, RATIOS), []
-    for k in range(len(SIMPLE)):
-
-        def error(ratios: np.ndarray, k: int = k) -> np.ndarray:
-            return along(quantity, damping_ratio, release, n, lam, ratios)[k]
-
-        found.append(thresholds(error, np.array([tolerance]), RATIOS, scanned[k]))
-    ratios = [_number(float(roots[0])) for roots, _ in found]
+    found = search([damping_ratio], release, n, [lam], RATIOS, tolerance, (quantity,))
+    ratios = [_number(float(ratio)) for ratio in found.threshold[:, 0, 0]]
     coefficient = law(Contact(1.0, damping_ratio, release), n, lam)[0][quantity]
     by_law = None if coefficient is None else coefficient / tolerance
     if by_law is not None and quantity == "permanent_contact":
         by_law = by_law**0.5
-    why = [str(statuses[0]) for _, statuses in found]
+    why = (str(status) for status in found.status[:, 0, 0])
     return Needed(quantity, tolerance, ratios[0], by_law, ratios[1], *why)

@@ -6,16 +6,16 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.calculator.design import Design
-from bouncing_ball.calculator.needed import RATIOS, needed
+from bouncing_ball.calculator.needed import RATIOS
 from bouncing_ball.impacts.damping import damping_ratio
 from bouncing_ball.impacts.release import Release
 from bouncing_ball.orbits.interface import Orbit
 from bouncing_ball.studies.error_thresholds import Status
-from bouncing_ball.studies.model_errors import SIMPLE, models
+from bouncing_ball.studies.model_errors import SIMPLE, models, search
 
 # Restitution coefficients of the chart: as many as make the lines smooth, and from
 # which on. A linear contact that only pushes has r > e⁻².
-_CHART = 15
+_CHART = 33
 _LEAST = {Release.DISPLACEMENT: 0.05, Release.FORCE: 0.15}
 _SAMPLES = 1201
 # Of the enlarged contact: how many contact times are shown before it and in all.
@@ -33,32 +33,20 @@ def page(design: Design) -> xr.Dataset:
     least = (half - lam) / (half + lam)
     least = min(max(least, _LEAST[rule]), design.corrected.restitution)
     chart = np.linspace(least, 1.0, _CHART)
-    found = np.array([_needed(design, float(damping_ratio(r, rule))) for r in chart]).T
+    asked = design.needed
+    zeta = damping_ratio(chart, rule)
+    found = search(zeta, rule, design.n, lam, RATIOS, asked.tolerance, (asked.quantity,))
+    always = found.status == Status.ALWAYS_WITHIN
+    from_there_on = np.where(always, RATIOS[0], found.threshold)[:, 0]
     orbits = {m.name: m.orbit(design.n, table.amplitude) for m in models(design.case.contact)}
     return xr.Dataset(
         {
-            "needed": (("simple", "restitution"), found),
+            "needed": (("simple", "restitution"), from_there_on),
             **_motion(orbits, design),
             **_contact(orbits, design),
         },
         coords={"simple": list(SIMPLE), "restitution": chart, "model": list(orbits)},
     )
-
-
-def _needed(design: Design, zeta: float) -> list[float]:
-    """ϖ from which on each simple model is right; NaN if nowhere."""
-    asked, case = design.needed, design.case
-    need = needed(
-        asked.quantity, asked.tolerance, zeta, case.release, design.n, case.table.amplitude
-    )
-    always = RATIOS[0], Status.ALWAYS_WITHIN
-    return [
-        always[0] if status == always[1] else np.nan if ratio is None else ratio
-        for ratio, status in (
-            (need.frequency_ratio, need.status),
-            (need.corrected, need.corrected_status),
-        )
-    ]
 
 
 def _motion(orbits: Mapping[str, Orbit], design: Design) -> dict:

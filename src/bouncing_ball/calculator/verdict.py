@@ -26,13 +26,15 @@ class Verdict(NamedTuple):
 
 
 def percent(share: float) -> str:
-    """A share in percent, two digits.
+    """A share in percent, two digits; what is very little as such.
 
     Examples
     --------
-    >>> percent(0.0123), percent(2.5e-5)
-    ('1.2 %', '0.0025 %')
+    >>> percent(0.0123), percent(2.5e-5), percent(1e-9)
+    ('1.2 %', '0.0025 %', 'less than 0.001 %')
     """
+    if 0 < share < 1e-5:
+        return "less than 0.001 %"
     return f"{100 * share:.2g} %" if share < 1 else f"{100 * share:.0f} %"
 
 

@@ -11,6 +11,7 @@ from bouncing_ball.calculator.design import Design
 from bouncing_ball.calculator.units import KINDS
 from bouncing_ball.calculator.verdict import QUANTITIES, percent
 from bouncing_ball.errors import ModelError
+from bouncing_ball.studies.error_thresholds import Status
 
 Answer = dict[str, Any]
 
@@ -96,6 +97,10 @@ def _share(value: float | None) -> str:
     return "none" if value is None else percent(value)
 
 
+def _threshold(value: float | None, status: str) -> str:
+    return "any" if status == Status.ALWAYS_WITHIN else _number(value)
+
+
 def _contact_values(found: Answer) -> list[tuple[str, str]]:
     """What is known of the contact, by name."""
     both, three = found["restitution"], found["corrected"]
@@ -174,7 +179,12 @@ def lines(found: Answer) -> list[str]:
         _row(
             f"ϖ for {percent(need['tolerance'])} in the {name}", "exact", "error law", "corrected"
         ),
-        _row("", *(_number(need[key]) for key in ("frequency_ratio", "by_law", "corrected"))),
+        _row(
+            "",
+            _threshold(need["frequency_ratio"], need["status"]),
+            _number(need["by_law"]),
+            _threshold(need["corrected"], need["corrected_status"]),
+        ),
     ]
     for one in found["orbits"]:
         shown += _family_lines(one)

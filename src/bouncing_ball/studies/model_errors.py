@@ -69,13 +69,21 @@ class Search(NamedTuple):
     (quantity, orbit), NaN if it does not."""
 
 
-def search(zeta, rule: Release, n, amplitude, ratios: np.ndarray, tolerance: float) -> Search:
+def search(
+    zeta,
+    rule: Release,
+    n,
+    amplitude,
+    ratios: np.ndarray,
+    tolerance: float,
+    quantities: Sequence[str] = QUANTITIES,
+) -> Search:
     """Thresholds and zeros of the errors, on a grid and then to the last digit.
 
     ``zeta``, ``n`` and ``amplitude`` are those of the orbits, one-dimensional.
     """
     zeta, n, lam = np.broadcast_arrays(zeta, n, amplitude)
-    shape = len(SIMPLE), len(QUANTITIES), lam.size
+    shape = len(SIMPLE), len(quantities), lam.size
 
     def error(ratio: np.ndarray, number: np.ndarray) -> np.ndarray:
         """Signed errors of numbered (model, quantity, orbit), each at its own ϖ."""
@@ -84,11 +92,11 @@ def search(zeta, rule: Release, n, amplitude, ratios: np.ndarray, tolerance: flo
         for k in np.unique(quantity):
             at = np.flatnonzero(quantity == k)
             contact = Contact(ratio[at], zeta[orbit[at]], rule)
-            both = errors(contact, n[orbit[at]], lam[orbit[at]], [QUANTITIES[k]])[:, 0]
+            both = errors(contact, n[orbit[at]], lam[orbit[at]], [quantities[k]])[:, 0]
             found[at] = both[model[at], np.arange(at.size)]
         return found
 
-    signed = errors(Contact(ratios[:, np.newaxis], zeta, rule), n, lam)
+    signed = errors(Contact(ratios[:, np.newaxis], zeta, rule), n, lam, quantities)
     scanned = np.moveaxis(signed, 2, -1).reshape(-1, ratios.size)
     outside = _finite(scanned) > tolerance
     threshold = last_crossing(
@@ -97,7 +105,7 @@ def search(zeta, rule: Release, n, amplitude, ratios: np.ndarray, tolerance: flo
         excess(_finite(scanned), tolerance),
     )
     # The restitution model's errors come first.
-    zero = last_crossing(error, ratios, scanned[: lam.size * len(QUANTITIES)])
+    zero = last_crossing(error, ratios, scanned[: lam.size * len(quantities)])
     return Search(
         np.where(outside[:, -1], np.nan, threshold).reshape(shape),
         np.array([str(status(row)) for row in outside]).reshape(shape),

@@ -15,6 +15,7 @@ import pytest
 from bouncing_ball.continuation.corrector import NewtonSettings, newton
 from bouncing_ball.continuation.events import vanishing
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.impacts.law_signature import LawSignature
 from bouncing_ball.impacts.laws.hunt_crossley import HuntCrossley
 from bouncing_ball.impacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.impacts.laws.tsuji import Tsuji
@@ -49,6 +50,7 @@ MODELS = {
     "undamped contact": ContactModel(Contact(10.0, 0.0)),
     "corrected": CorrectedModel.of_contact(STIFF),
     "corrected, force release": CorrectedModel.of_contact(PUSHING),
+    "corrected, kuwabara-kono": CorrectedModel(LawSignature(HERTZ["kuwabara-kono"])),
     **{name: LawModel(law) for name, law in HERTZ.items()},
     "one's own": OWN["PlasticModel"](OWN["PlasticImpact"](0.7)),
 }

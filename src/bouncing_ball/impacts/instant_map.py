@@ -27,6 +27,7 @@ from bouncing_ball.impacts.signature import Instant, Signature
 # Iterations of ψ = φ + t_c(v), for laws whose delay depends on the speed. Each
 # gains a factor a dt_c/dv, of the order of a D/v.
 _ITERATIONS = 30
+_SETTLED = 1e-15
 
 
 class Impact(NamedTuple):
@@ -83,12 +84,30 @@ def instant_of(
     (0.75, -2.0)
     """
     lam, phi, u = (np.asarray(x, dtype=float) for x in (amplitude, phase, relative_velocity))
-    velocity = u + lam * np.cos(phi)
-    delay = signature(-u).delay
+    return meeting(signature, lam, phi, u + lam * np.cos(phi))
+
+
+def meeting(
+    signature: Signature, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike
+) -> tuple[np.ndarray, np.ndarray]:
+    """:func:`instant_of` for the absolute velocity z′ of the ball.
+
+    Examples
+    --------
+    >>> from bouncing_ball.impacts.signature import LinearSignature
+    >>> from bouncing_ball.impacts.spring_damper import Contact
+    >>> psi, p = meeting(LinearSignature(Contact(np.pi, 0.0)), 0.0, 0.25, -1.5)
+    >>> float(psi), float(p)
+    (0.75, -2.0)
+    """
+    lam, phi, z = (np.asarray(x, dtype=float) for x in (amplitude, phase, velocity))
+    delay = signature(lam * np.cos(phi) - z).delay
     for _ in range(0 if signature.is_constant else _ITERATIONS):
-        speed = lam * np.cos(phi + delay) - (velocity - delay)
-        delay = signature(speed).delay
-    return phi + delay, velocity - delay
+        before = delay
+        delay = signature(lam * np.cos(phi + delay) - (z - delay)).delay
+        if np.all((np.abs(delay - before) <= _SETTLED * delay) | np.isnan(delay)):
+            break
+    return phi + delay, z - delay
 
 
 def start_of(amplitude: ArrayLike, hit: Impact) -> tuple[np.ndarray, np.ndarray]:

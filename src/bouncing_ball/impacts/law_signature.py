@@ -102,6 +102,11 @@ class LawSignature(Signature):
         if self.law.shape:
             raise ModelError("the signature of a contact law is tabulated for one law, not many")
 
+    @property
+    def label(self) -> str:
+        """The law and its parameters."""
+        return self.law.label
+
     def __call__(self, speed: ArrayLike) -> Instant:
         """The signature of impacts with speeds v > 0 at the instant."""
         v = np.clip(np.asarray(speed, dtype=float), _SLOWEST, _FASTEST)

@@ -64,6 +64,24 @@ class Instant(NamedTuple):
     d_restitution: np.ndarray | float = 0.0
     d_load: np.ndarray | float = 0.0
 
+    def tangent(self, speed: ArrayLike, load: ArrayLike) -> "tuple[Instant, np.ndarray]":
+        """The constant signature that changes alike next to a speed v and load a.
+
+        Its restitution is ``b = ∂(r v + σ a)/∂v = r + r′ v + σ′ a`` and its delay
+        ``e = ∂(v t_c)/∂v = t_c + t_c′ v``; and what is left, ``(b - r) v``, so that
+        ``r_c v = b v + σ a - (b - r) v₀`` to first order. Itself and 0 for a constant one.
+
+        Examples
+        --------
+        >>> instant, rest = Instant(1.0, 0.5, 0.0, 2.0, d_restitution=-0.125).tangent(2.0, 0.0)
+        >>> float(instant.restitution), float(rest)
+        (0.25, -0.5)
+        """
+        v = np.asarray(speed, dtype=float)
+        slope = self.restitution + (self.d_restitution * v + self.d_load * np.asarray(load))
+        depth = self.delay + self.d_delay * v
+        return Instant(depth, slope, self.load, self.duration), (slope - self.restitution) * v
+
 
 class Signature(Record, ABC):
     """A contact law, seen from outside: a frozen dataclass of its parameters."""
@@ -72,6 +90,15 @@ class Signature(Record, ABC):
     def is_constant(self) -> bool:
         """Whether the impact speed changes nothing, as for a linear contact."""
         return False
+
+    @property
+    def label(self) -> str:
+        """What the law is, in words; of a single one."""
+        instant = self(np.ones(self.shape))
+        return (
+            f"r = {float(instant.restitution):.4g}, t_c = {float(instant.delay):.4g}, "
+            f"σ = {float(instant.load):.4g}"
+        )
 
     @abstractmethod
     def __call__(self, speed: ArrayLike) -> Instant:

@@ -26,7 +26,13 @@ period doubling::
 
     (nπ - t_c) [(1 + r) Y + σX] - (1 - r)(X + t_c Y) = nπ (1 + r) - 2t_c
 
-So this holds for laws with the same signature at every impact speed.
+A law whose signature depends on the speed has the curve ``nπ - X = r(v) v + σ(v) a`` in
+place of the line, and at each of its points a tangent of the same form
+(:meth:`~bouncing_ball.impacts.signature.Instant.tangent`): with b in place of r and e
+in place of t_c, and (b - r) v added to the line's right side. The linearised cycle
+is that of the tangent, so that trace and determinant are as above, and so are the
+conditions at the saddle-node and at the period doubling. The points themselves come
+from a few rounds of the closed form on the tangent at the last one.
 
 All quantities are dimensionless; all functions broadcast.
 """
@@ -37,24 +43,27 @@ from numpy.typing import ArrayLike
 from bouncing_ball.impacts.signature import Instant
 
 
-def _level(n: ArrayLike, instant: Instant) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _level(
+    n: ArrayLike, instant: Instant, rest: ArrayLike
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The right side nπ(1 - r) - σ, R and χ."""
     r, load = np.asarray(instant.restitution), np.asarray(instant.load)
-    side = np.asarray(n) * np.pi * (1 - r) - load
+    side = np.asarray(n) * np.pi * (1 - r) - load + rest
     return side, np.hypot(1 + r, load), np.arctan2(load, 1 + r)
 
 
-def saddle_node(n: ArrayLike, instant: Instant) -> np.ndarray:
+def saddle_node(n: ArrayLike, instant: Instant, rest: ArrayLike = 0.0) -> np.ndarray:
     """Λ at which the n-T orbits appear, (nπ(1 - r) - σ)/R.
 
-    NaN where σ is so large that the line lies on the other side of Λ = 0.
+    ``rest`` is what a tangent adds to the right side. NaN where σ is so large that the
+    line lies on the other side of Λ = 0.
 
     Examples
     --------
     >>> float(saddle_node(1, Instant(0.0, 1.0, 0.0, 0.0)))
     0.0
     """
-    side, radius, _ = _level(n, instant)
+    side, radius, _ = _level(n, instant, rest)
     return np.where(side >= 0, side, np.nan) / radius
 
 
@@ -70,7 +79,11 @@ def saddle_node_phase(instant: Instant) -> np.ndarray:
 
 
 def instant_phase(
-    n: ArrayLike, instant: Instant, amplitude: ArrayLike, stable_side: bool = True
+    n: ArrayLike,
+    instant: Instant,
+    amplitude: ArrayLike,
+    stable_side: bool = True,
+    rest: ArrayLike = 0.0,
 ) -> np.ndarray:
     """Phase ψ of the instants on a side of the saddle-node; NaN below it.
 
@@ -79,7 +92,7 @@ def instant_phase(
     >>> float(instant_phase(1, Instant(0.0, 1.0, 0.0, 0.0), 1.0)) == np.pi / 2
     True
     """
-    side, radius, turned = _level(n, instant)
+    side, radius, turned = _level(n, instant, rest)
     across = radius * np.asarray(amplitude, dtype=float)
     there = across >= np.abs(side)
     lift = np.sqrt(np.where(there, (across - side) * (across + side), np.nan))
@@ -100,18 +113,21 @@ def trace_and_determinant(
     >>> round(float(trace), 14), round(float(det), 14)
     (1.25, 0.25)
     """
-    r, delay = np.asarray(instant.restitution), np.asarray(instant.delay)
     lam = np.asarray(amplitude, dtype=float)
     x, y = lam * np.cos(phase), lam * np.sin(phase)
-    by_phase = -(1 + r) * y - instant.load * x
     half = np.asarray(n) * np.pi
+    here, _ = instant.tangent(half + x, 1 - y)
+    r, delay = np.asarray(here.restitution), np.asarray(here.delay)
+    by_phase = -(1 + r) * y - instant.load * x
     speed = half + x - delay * (1 - y)
     rest = 2 * half - delay
     trace = 1 - r + (rest * (by_phase + r) - delay) / speed
     return trace, (rest * r - delay - delay * by_phase) / speed - r
 
 
-def period_doubling(n: ArrayLike, instant: Instant) -> tuple[np.ndarray, np.ndarray]:
+def period_doubling(
+    n: ArrayLike, instant: Instant, rest: ArrayLike = 0.0
+) -> tuple[np.ndarray, np.ndarray]:
     """Λ and ψ of the period doubling; NaN where there is none on the stable side.
 
     Examples
@@ -122,20 +138,24 @@ def period_doubling(n: ArrayLike, instant: Instant) -> tuple[np.ndarray, np.ndar
     """
     delay, r, load = (np.asarray(x, dtype=float) for x in instant[:3])
     half = np.asarray(n) * np.pi
-    rest = half - delay
-    a, b, s = 1 + r, -load, half * (1 - r) - load
-    c = rest * load - (1 - r)
-    d = rest * (1 + r) - (1 - r) * delay
+    lever = half - delay
+    a, b, s = 1 + r, -load, half * (1 - r) - load + rest
+    c = lever * load - (1 - r)
+    d = lever * (1 + r) - (1 - r) * delay
     t = half * (1 + r) - 2 * delay
     determinant = a * d - b * c
     x, y = (s * d - b * t) / determinant, (a * t - s * c) / determinant
-    stable_side = ((1 + r) * y + load * x > 0) & (rest > 0)
+    stable_side = ((1 + r) * y + load * x > 0) & (lever > 0)
     amplitude = np.where(stable_side, np.hypot(x, y), np.nan)
     return amplitude, np.where(stable_side, np.arctan2(y, x), np.nan)
 
 
 def nearest(
-    n: ArrayLike, instant: Instant, amplitude: ArrayLike, phase: ArrayLike
+    n: ArrayLike,
+    instant: Instant,
+    amplitude: ArrayLike,
+    phase: ArrayLike,
+    rest: ArrayLike = 0.0,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Λ and ψ of the point of the line that is nearest to (Λ cos ψ, Λ sin ψ).
 
@@ -145,7 +165,7 @@ def nearest(
     >>> round(float(amplitude), 12), float(phase) == np.pi / 2
     (1.0, True)
     """
-    side, radius, _ = _level(n, instant)
+    side, radius, _ = _level(n, instant, rest)
     x, y = np.asarray(amplitude) * np.cos(phase), np.asarray(amplitude) * np.sin(phase)
     a, b = (1 + np.asarray(instant.restitution)) / radius, -np.asarray(instant.load) / radius
     off = a * x + b * y - side / radius

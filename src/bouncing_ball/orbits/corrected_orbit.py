@@ -9,7 +9,13 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.impacts.instant_map import Impact, impact, instant_jacobian, start_jacobian
+from bouncing_ball.impacts.instant_map import (
+    Impact,
+    impact,
+    instant_jacobian,
+    meeting,
+    start_jacobian,
+)
 from bouncing_ball.impacts.signature import Instant, Signature
 from bouncing_ball.motion.corrected_impacts import corrected_cycle
 from bouncing_ball.motion.sequence import Cycle
@@ -38,16 +44,15 @@ class CorrectedOrbit(Orbit):
         return cls.of(n, law, amplitude, hit.phase - delay, duration, delay - launch)
 
     @cached_property
-    def instant(self) -> Instant:
-        """The signature of the impacts."""
-        # A constant law needs no speed; another gives the orbit its own.
-        return self.law(-self.relative_impact_velocity)
-
-    @cached_property
     def hit(self) -> Impact:
         """The instant: phase ψ, depth, speeds."""
-        delay = self.instant.delay
-        return impact(self.law, self.amplitude, self.phase + delay, self.impact_velocity - delay)
+        start = meeting(self.law, self.amplitude, self.phase, self.impact_velocity)
+        return impact(self.law, self.amplitude, *start)
+
+    @property
+    def instant(self) -> Instant:
+        """The signature of the impacts, at the speed of the instant."""
+        return self.hit.instant
 
     @property
     def after(self) -> np.ndarray:

@@ -1,7 +1,7 @@
 """The equations of the corrected model's n-T orbits for a continuation.
 
 Unknowns (ψ, w), the phase of the instant and the velocity after it; parameter Λ.
-They have the closed form of :mod:`bouncing_ball.orbits.corrected_branch`;
+They have the form of :mod:`bouncing_ball.orbits.corrected_branch`;
 continued, they check both the continuation and the formula.
 """
 
@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bouncing_ball.continuation.events import Event
+from bouncing_ball.impacts.instant_map import impact
 from bouncing_ball.impacts.signature import Signature
 from bouncing_ball.orbits.corrected_orbit import CorrectedOrbit
 from bouncing_ball.orbits.stability import period_doubling_function, saddle_node_function
@@ -24,7 +25,6 @@ class CorrectedSystem:
     n : int
         Index of the family.
     law : Signature
-        The same at every impact speed.
 
     Examples
     --------
@@ -41,10 +41,10 @@ class CorrectedSystem:
     def orbit(self, y: np.ndarray) -> CorrectedOrbit:
         """The orbits at points y of shape (..., 3)."""
         psi, after, amplitude = (y[..., k] for k in range(3))
-        instant = self.law(np.ones_like(psi))
-        impact = after - 2 * np.pi * self.n + instant.delay
-        phase = psi - instant.delay
-        return CorrectedOrbit(self.n, self.law, amplitude, phase, instant.duration, impact)
+        arrival = after - 2 * np.pi * self.n
+        instant = impact(self.law, amplitude, psi, arrival).instant
+        start, phase = arrival + instant.delay, psi - instant.delay
+        return CorrectedOrbit(self.n, self.law, amplitude, phase, instant.duration, start)
 
     def point(self, orbit: CorrectedOrbit) -> np.ndarray:
         """y of given orbits."""
@@ -59,8 +59,9 @@ class CorrectedSystem:
         """Exact Jacobian of the residual, shape (..., 2, 3)."""
         psi, amplitude = y[..., 0], y[..., 2]
         sine, cosine = np.sin(psi), np.cos(psi)
-        instant = self.law(np.ones_like(psi))
-        r, load = instant.restitution, instant.load
+        hit = impact(self.law, amplitude, psi, y[..., 1] - 2 * np.pi * self.n)
+        here, _ = hit.instant.tangent(hit.speed, 1 - amplitude * sine)
+        r, load = here.restitution, here.load
         out = np.zeros((*y.shape[:-1], 2, 3))
         out[..., 0, 0] = -amplitude * ((1 + r) * sine + load * cosine)
         out[..., 0, 1] = -r - 1

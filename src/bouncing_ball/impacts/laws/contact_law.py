@@ -19,7 +19,7 @@ from typing import Any, ClassVar, NamedTuple, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import require
+from bouncing_ball.errors import ModelError, require
 from bouncing_ball.impacts.records import Record
 from bouncing_ball.impacts.release import Release
 
@@ -86,8 +86,18 @@ class ContactLaw(Record, ABC):
 
         In units of P and P/v the impact at v is that of stiffness 1, damping
         ``group`` and speed 1.
+
+        Raises
+        ------
+        ModelError
+            If the law does not say how.
         """
-        raise NotImplementedError(f"{cls.name} is not given by restitution and duration")
+        raise ModelError(f"{cls.name} is given by its parameters, not by restitution and duration")
+
+    @classmethod
+    def group_of(cls, restitution: float) -> float | None:
+        """The dissipation that has a restitution coefficient, if that has a closed form."""
+        return None
 
     def fields(self) -> list[Any]:
         """What the law is made of, numbers and names, in order."""

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import require
+from bouncing_ball.impacts.damping import damping_ratio
 from bouncing_ball.impacts.laws.contact_law import ContactLaw, check_damping, check_positive
 from bouncing_ball.impacts.release import Release
 
@@ -62,3 +63,8 @@ class Linear(ContactLaw):
         """ϖ = v/P and ζ = group."""
         omega = np.asarray(speed, dtype=float) / np.asarray(length, dtype=float)
         return cls(omega, np.asarray(group, dtype=float) + 0 * omega)
+
+    @classmethod
+    def group_of(cls, restitution: float) -> float:
+        """ζ of a restitution coefficient, with the displacement release."""
+        return float(damping_ratio(restitution))

@@ -88,3 +88,8 @@ class Tsuji(ContactLaw):
         v = np.asarray(speed, dtype=float)
         stiffness = v * v / np.asarray(length) ** 2.5
         return cls(stiffness, np.asarray(group, dtype=float) + 0 * stiffness)
+
+    @classmethod
+    def group_of(cls, restitution: float) -> float:
+        """C of a restitution coefficient."""
+        return float(tsuji_damping(restitution))

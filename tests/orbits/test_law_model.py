@@ -1,0 +1,103 @@
+"""Orbits on any contact: the closed form where there is one, and what the laws share."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.impacts.law_choice import law_named, law_of_impact
+from bouncing_ball.impacts.law_signature import LawSignature, free_impact
+from bouncing_ball.impacts.laws.hunt_crossley import HuntCrossley
+from bouncing_ball.impacts.laws.kuwabara_kono import KuwabaraKono
+from bouncing_ball.impacts.laws.linear import Linear
+from bouncing_ball.impacts.laws.tsuji import Tsuji
+from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.corrected_model import CorrectedModel
+from bouncing_ball.orbits.interface import OBSERVABLES, Side
+from bouncing_ball.orbits.law_model import LawModel
+from bouncing_ball.orbits.restitution_model import RestitutionModel
+
+KINDS = [Linear, HuntCrossley, Tsuji, KuwabaraKono]
+every_kind = pytest.mark.parametrize("kind", KINDS, ids=[kind.name for kind in KINDS])
+
+
+@pytest.mark.parametrize("release", ["displacement", "force"])
+@pytest.mark.parametrize("omega", [2.0, 10.0, 200.0])
+def test_the_linear_law_has_the_orbits_of_the_closed_form(omega, release):
+    contact = Contact.from_restitution(0.85, omega, release)
+    exact, law = ContactModel(contact), Linear(omega, float(contact.damping_ratio), release)
+    model, n = LawModel(law), np.array([1, 2])
+    for kind in ("saddle_node", "period_doubling"):
+        computed, expected = getattr(model, kind)(n), getattr(exact, kind)(n)
+        np.testing.assert_allclose(computed.amplitude, expected.amplitude, rtol=1e-12)
+    lam = exact.saddle_node(n).amplitude + 0.3
+    for side in Side:
+        computed, expected = model.orbit(n, lam, side), exact.orbit(n, lam, side)
+        for name in OBSERVABLES:
+            np.testing.assert_allclose(getattr(computed, name), getattr(expected, name), rtol=1e-12)
+        np.testing.assert_allclose(computed.multipliers(), expected.multipliers(), atol=1e-11)
+
+
+@pytest.mark.long
+def test_a_soft_contact_has_its_long_orbit_too():
+    contact = Contact.from_restitution(0.85, 2.0)
+    found = LawModel(Linear(2.0, float(contact.damping_ratio))).orbits(1, 0.9)
+    expected = ContactModel(contact).orbits(1, 0.9)
+    np.testing.assert_allclose(found.contact_duration, expected.contact_duration, rtol=1e-11)
+
+
+def orbit_with(kind, r, duration, n=1, amplitude=1.0):
+    """The orbit on the law that has r and D at the orbit's own impact speed."""
+    speed = 2 * np.pi * n / (1 + r)
+    for _ in range(12):
+        law = law_of_impact(kind, r, duration, speed)
+        orbit = LawModel(law).require_orbit(n, amplitude)
+        speed = -float(orbit.relative_impact_velocity)
+    return law, orbit
+
+
+@every_kind
+def test_the_corrected_model_is_of_second_order(kind):
+    rigid = RestitutionModel(0.65).require_orbit(1, 1.0)
+    first, second = [], []
+    for duration in (0.1, 0.05):
+        law, orbit = orbit_with(kind, 0.65, duration)
+        corrected = CorrectedModel(LawSignature(law)).require_orbit(1, 1.0)
+        first.append(float(rigid.max_height / orbit.max_height - 1))
+        second.append(float(corrected.max_height / orbit.max_height - 1))
+    # Halving D halves the one and quarters the other, but for the next order in D.
+    assert first[0] / first[1] == pytest.approx(2, abs=0.1)
+    assert second[0] / second[1] == pytest.approx(4, abs=0.2)
+    # The restitution model's error is nearly the same for all laws at equal r and D.
+    assert 0.025 < first[0] < 0.031
+    assert abs(second[0]) < 1e-4
+
+
+@every_kind
+def test_a_law_by_its_restitution_and_duration(kind):
+    for r, duration, speed in ((0.3, 0.2, 1.0), (0.95, 1e-3, 7.0), (1.0, 0.1, 3.0)):
+        impact = free_impact(law_of_impact(kind, r, duration, speed), speed)
+        assert float(impact.restitution) == pytest.approx(r, rel=1e-13)
+        assert float(impact.duration) == pytest.approx(duration, rel=1e-13)
+
+
+def test_an_orbit_is_not_invented():
+    model = LawModel(HuntCrossley(2e3, 0.08))
+    with pytest.raises(NoOrbitError, match="below the saddle-node at Λ = "):
+        model.require_orbit(1, 0.1)
+    assert np.isnan(model.orbit(1, 0.1).phase)
+    orbits = model.orbit([1, 2], [[0.1], [2.0]])
+    assert orbits.shape == (2, 2)
+    assert orbits.exists.tolist() == [[False, False], [True, True]]
+
+
+def test_what_is_refused():
+    with pytest.raises(ModelError, match=r"unknown contact law 'rubber': one of hunt-crossley"):
+        law_named("rubber")
+    for r, duration, speed in ((0.0, 1.0, 1.0), (1.1, 1.0, 1.0), (0.5, 0.0, 1.0), (0.5, 1.0, -1)):
+        with pytest.raises(ModelError, match="is not"):
+            law_of_impact(HuntCrossley, r, duration, speed)
+    with pytest.raises(ModelError, match="hardly leaves"):
+        law_of_impact(HuntCrossley, 1e-6, 0.1, 1.0)
+    with pytest.raises(ModelError, match="no closed form"):
+        LawModel(Tsuji(1e3, 0.3)).nearest(None)

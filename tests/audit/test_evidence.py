@@ -244,7 +244,6 @@ EXPECTED = {
     "inadmissible_orbits": 0,
     "contact_duration_stiffest": [0.2, 0.4],
     "contact_duration_fold": [2.5, np.nan],
-    "branch_end_gap": 0.125,
     # Height, velocity, r_a, phase and phase in cycles from ϖ = 100 on; the velocity of fig10 is
     # given, against π.
     "stiff_orbit_error": [

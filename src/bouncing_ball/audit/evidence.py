@@ -222,7 +222,6 @@ def _domains(data: Datasets) -> Found:
         at_fold.append(next(iter(folds.special_contact_duration.values[order]), np.nan))
     found["contact_duration_stiffest"] = xr.DataArray(longest, {"figure": names})
     found["contact_duration_fold"] = xr.DataArray(at_fold, {"figure": names})
-    found["branch_end_gap"] = _end_of_softest(data["fig08"])
     found["durations_at_one_amplitude"] = xr.DataArray(
         min(_durations_at_once(row) for name in names for row in _branches(data[name]) or [_EMPTY])
     )
@@ -258,14 +257,6 @@ def _durations_at_once(amplitude: np.ndarray) -> int:
     between = (levels[:-1] + levels[1:]) / 2
     crossings = np.searchsorted(below, between) - np.searchsorted(above, between)
     return int(crossings.max(initial=0))
-
-
-def _end_of_softest(branches: xr.Dataset) -> xr.DataArray:
-    """How far the softest branch of Fig. 8 ends from the threshold of permanent contact."""
-    soft = branches.sortby("frequency_ratio").isel(frequency_ratio=0)
-    zeta = printed.damping_ratio(branches.attrs["restitution"])
-    threshold = printed.permanent_contact_threshold(soft.frequency_ratio, zeta)
-    return np.abs(soft.amplitude.isel(point=0) - threshold)
 
 
 def _first_range(kinds: np.ndarray, amplitudes: np.ndarray) -> np.ndarray:

@@ -304,6 +304,25 @@ _MODELS: tuple[Stage, ...] = (
         cross_checked=True,
         evidence=True,
     ),
+    Stage(
+        "ext_rattling",
+        Kind.EXTENSION,
+        "Stable windows of the orbits into which permanent contact continues",
+        "studies.long_contacts.stable_windows",
+        "extensions.ext_rattling",
+        "restitution:lossy_restitutions frequency_ratio:span",
+        ("release",),
+    ),
+    Stage(
+        "ext_basins",
+        Kind.EXTENSION,
+        "Basins of permanent contact and of the stable orbits",
+        "studies.long_contacts.basins",
+        "extensions.ext_basins",
+        "n:families restitution:lossy_restitution frequency_ratio:ratio amplitude:impact_amplitudes"
+        " velocity_max starts impacts",
+        ("release",),
+    ),
     _corrected(
         "instant",
         "Flights before and after a contact meet at the centroid of its force",

@@ -58,9 +58,10 @@ def write_dataset(dataset: xr.Dataset, path: str | Path, *, compressed: bool = F
     Nothing is missing in a coordinate, so that it has no fill value.
     """
     encoding: dict[str, dict[str, Any]] = {str(x): {"_FillValue": None} for x in dataset.coords}
-    if compressed:
-        arrays = (name for name, values in dataset.data_vars.items() if values.ndim)
-        encoding |= {str(name): {"zlib": True, "complevel": 4} for name in arrays}
+    for name, values in dataset.data_vars.items():
+        # A map of a few small integers shrinks many times.
+        if values.ndim and (compressed or values.dtype == "int8"):
+            encoding[str(name)] = {"zlib": True, "complevel": 4}
     with replacing(path) as temporary:
         dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
 

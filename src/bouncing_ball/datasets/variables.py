@@ -127,6 +127,20 @@ VARIABLES: dict[str, Variable] = {
         equation="Eqs. 37-38",
     ),
     "threshold_status": Variable("whether the threshold lies within the range scanned", ""),
+    # orbits with a long contact
+    "window_amplitude": Variable("upper end of the window of stable orbits above Λ_SD", "Λ"),
+    "window_flight": Variable("time of flight at the upper end of the window", "T"),
+    "window_end": Variable("what ends the window of stable orbits", ""),
+    "stiff_window": Variable("width of the window times ϖ², limit for ϖ → ∞", "ϖ²(Λ - Λ_SD)"),
+    "joining_ratio": Variable("frequency ratio below which both families are one", "ϖ"),
+    "motion": Variable("motion on which a ball ends", ""),
+    "start_phase": Variable("phase of the table at the first impact", "φ", "rad"),
+    "start_speed": Variable("relative speed at the first impact", "-δ′"),
+    "destination": Variable("motion on which a start ends, index of the motion", ""),
+    "basin_share": Variable("share of the starts that end on a motion", ""),
+    "orbit_phase": Variable("phase of impact of the stable orbit", "φ", "rad"),
+    "orbit_speed": Variable("relative speed of impact of the stable orbit", "-δ′"),
+    "other_period": Variable("impacts after which the other motion repeats, 0 if unknown", ""),
     # kinds of motion
     "motion_period": Variable("impacts after which the motion repeats, 0 if it does not", ""),
     "lyapunov_exponent": Variable("largest Lyapunov exponent, per impact", "λ"),
@@ -299,9 +313,6 @@ VARIABLES: dict[str, Variable] = {
         "largest relative move of a printed end from the stiffest row to the next",
         "",
         equation="Table 1",
-    ),
-    "branch_end_gap": Variable(
-        "distance of the end of the softest branch from the threshold of permanent contact", "Λ"
     ),
     "contact_duration_fold": Variable("contact at the saddle-node of the softest branch", "τ_b"),
     "period_doubling_lowest": Variable("ϖ at which the period doubling is lowest", "ϖ"),

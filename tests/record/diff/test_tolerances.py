@@ -54,8 +54,8 @@ def test_every_budget_is_the_one_the_study_gives(rules, study):
 
 
 @pytest.mark.parametrize("name", RECORD)
-def test_every_variable_of_the_record_has_an_entry_and_is_in_the_study(name, rules, study):
-    data = read_dataset(RECORD[name])
+def test_every_variable_has_an_entry_and_is_in_the_study(name, rules, study, record_and_new):
+    data = record_and_new[name]
     for variable in map(str, data.variables):
         rule = rules.of(name, variable)
         assert rule is not None, f"{name}: {variable} needs an entry in {FILE.name}"
@@ -73,9 +73,8 @@ def test_no_entry_is_idle(rules, record_and_new):
     assert set(rules.variables) <= set(VARIABLES)
 
 
-def test_numbers_that_are_counted_or_read_are_exact(rules):
-    for name, path in RECORD.items():
-        data = read_dataset(path)
+def test_numbers_that_are_counted_or_read_are_exact(rules, record_and_new):
+    for name, data in record_and_new.items():
         for variable in map(str, data.variables):
             mode = rules.of(name, variable).mode
             if data[variable].dtype.kind in "iUO":

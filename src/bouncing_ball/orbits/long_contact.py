@@ -1,0 +1,258 @@
+r"""The stable 1-T orbits with a long contact, into which permanent contact continues.
+
+At Λ_SD permanent contact ends, and a 1-T orbit with a short flight T and a
+contact that lasts D = 2π - T begins (``docs/closed-form.md``, section 6); next
+to Λ_SD it is stable. Followed along T the orbit is stable and admissible up to
+the first of a saddle-node, a period doubling, and a grazing: a second touch of
+the table's level, in contact or in flight. These two ends are the window.
+
+For a stiff contact the window is short and near Λ = 1. There the ball leaves
+about the top of the table, within a time of order 1/ϖ. In the contact's own
+time s = ϖτ, counted from the top, with δ = x/ϖ⁴ and Λ = 1 + C/ϖ², the motion is ::
+
+    x″ + 2ζx′ + x = C - s²/2   in contact,      x″ = C - s²/2   in flight
+
+with ϖ nowhere in it. The contact that follows is longer by ϖ than its own
+oscillation, so that the orbit is stable; the window ends where the
+oscillation after the landing reaches x = 0 again (:func:`stiff_limit`).
+"""
+
+import math
+from enum import StrEnum
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq, minimize_scalar
+
+from bouncing_ball.errors import ModelError
+from bouncing_ball.impacts.spring_damper import Contact, Release
+from bouncing_ball.motion.contacts import simulate
+from bouncing_ball.orbits import limits
+from bouncing_ball.orbits.closed_form import branch_point
+from bouncing_ball.orbits.contact_orbit import ContactOrbit
+
+# Flights from which the branch is followed, over the contact's own time unit or a
+# tenth, short enough for weak damping and long enough for rounding at ϖ = 200; and to
+# which: the contact is an instant.
+_SHORT, _LONG = 0.2, 2 * np.pi - 0.05
+_SOFT = 10.0
+# Orbits along the branch among which the first end is bracketed (ten times as many find
+# the same ends), and bisections
+# from there: down to neighbouring floating-point numbers.
+_SAMPLES = 150
+_BISECTIONS = 52
+# Orbits from the saddle-node to Λ_SD that must all be admissible; the inadmissible part
+# opens with the root of the distance in ϖ, so that six hundred of them resolve 10⁻⁶.
+_JOINT_SAMPLES = 600
+# Next to the saddle-node, on its unstable side.
+_TO_SIDE = 1e-3
+_CLOSE = 1e-8
+# So far beyond an end, past all rounding, it is looked at what has happened.
+_BEYOND = 1e-8
+# A contact that opens on the way is shorter by a good part of an oscillation.
+_SHORTER = 1e-6
+
+
+class End(StrEnum):
+    """How a window of stable orbits ends."""
+
+    SADDLE_NODE = "saddle-node"
+    PERIOD_DOUBLING = "period doubling"
+    CONTACT = "grazing in contact"
+    """The contact would open on the way."""
+    FLIGHT = "grazing in flight"
+    """The ball would land before."""
+    NONE = "none"
+    """No window was found, or no end of it."""
+
+
+class Window(NamedTuple):
+    """Upper ends of the windows: Λ, the flight T, and the kind of end; NaN where there is none."""
+
+    amplitude: np.ndarray
+    flight_time: np.ndarray
+    end: np.ndarray
+
+
+def orbit_with_flight(contact: Contact, flight_time: ArrayLike) -> ContactOrbit:
+    """The 1-T orbits with a given time of flight, of contacts of the same shape.
+
+    Examples
+    --------
+    >>> orbit = orbit_with_flight(Contact.from_restitution(0.85, 2.0), 1.0)
+    >>> float(orbit.flight_time.round(12)), bool(orbit.is_stable())
+    (1.0, True)
+    """
+    angle = (2 * np.pi - np.asarray(flight_time)) * contact.frequency_ratio
+    zeta, sine = contact.damping_ratio, contact.release_sine
+    excess = angle * np.sqrt((1 - zeta) * (1 + zeta)) - 2 * np.arccos(sine)
+    return ContactOrbit.from_branch(branch_point(excess, contact, 1), contact, 1)
+
+
+def _usual(contact: Contact, flight_time: np.ndarray) -> np.ndarray:
+    """Whether the orbits are stable and admissible; the second is asked where the first holds."""
+    orbit = orbit_with_flight(contact, flight_time)
+    good = orbit.is_stable()
+    if good.any():
+        good[good] = orbit[good].is_admissible()
+    return good
+
+
+def _kind(contact: Contact, flight_time: np.ndarray) -> np.ndarray:
+    """What is wrong with the orbits just beyond an end."""
+    orbit = orbit_with_flight(contact, flight_time * (1 + _BEYOND))
+    trace, determinant = orbit.trace_and_determinant()
+    motion = simulate(contact, orbit.amplitude, orbit.phase, orbit.impact_velocity, 1)
+    opens = motion.contact_duration[0] < orbit.contact_duration * (1 - _SHORTER)
+    grazing = np.where(opens, End.CONTACT, End.FLIGHT)
+    kind = np.where(1 + trace + determinant <= 0, End.PERIOD_DOUBLING, grazing)
+    return np.where(1 - trace + determinant <= 0, End.SADDLE_NODE, kind)
+
+
+def stable_window(contact: Contact) -> Window:
+    """Where the stable orbits that begin at Λ_SD end.
+
+    Parameters
+    ----------
+    contact : Contact
+        ϖ and ζ of shape (m,), and the release rule.
+
+    Examples
+    --------
+    >>> window = stable_window(Contact.from_restitution(0.85, np.array([1.2, 2.0, 10.0])))
+    >>> window.amplitude.round(4).tolist()
+    [0.3342, 1.0955, 1.0433]
+    >>> window.end.tolist()
+    ['saddle-node', 'period doubling', 'grazing in contact']
+    """
+    ratio = np.asarray(contact.frequency_ratio, dtype=float)
+    zeta = np.broadcast_to(contact.damping_ratio, ratio.shape)
+    each = Contact(ratio, zeta, contact.release)
+    start = _SHORT / np.maximum(ratio, _SOFT)
+    grid = start * (_LONG / start) ** np.linspace(0.0, 1.0, _SAMPLES)[:, np.newaxis]
+    last = np.zeros(ratio.shape, dtype=int)
+    going = np.arange(ratio.size)
+    # Contact by contact until its first end; most windows end early.
+    for row in range(_SAMPLES):
+        good = _usual(each[going], grid[row, going])
+        going = going[good]
+        if not going.size:
+            break
+        last[going] = row + 1
+    found = np.flatnonzero((last > 0) & (last < _SAMPLES))
+    part = each[found]
+    inside, outside = grid[last[found] - 1, found], grid[last[found], found]
+    for _ in range(_BISECTIONS):
+        middle = (inside + outside) / 2
+        good = _usual(part, middle)
+        inside, outside = np.where(good, middle, inside), np.where(good, outside, middle)
+    amplitude, flight = np.full((2, *ratio.shape), np.nan)
+    end = np.full(ratio.shape, str(End.NONE), dtype="<U18")
+    if found.size:
+        amplitude[found] = orbit_with_flight(part, inside).amplitude
+        flight[found] = inside
+        end[found] = _kind(part, outside)
+    return Window(amplitude, flight, end)
+
+
+def joined(contact: Contact) -> bool:
+    """Whether all orbits from the saddle-node to Λ_SD are admissible, of one contact.
+
+    Then the unstable side of the branch with a short contact leads to the orbits
+    with a long one. False where the branch has no saddle-node.
+    """
+    node = branch_point(limits.saddle_node(contact, 1), contact, 1).contact_duration
+    if not np.isfinite(node):
+        return False
+    times = np.linspace(2 * np.pi - float(node) - _TO_SIDE, _SHORT / _SOFT, _JOINT_SAMPLES)
+    return bool(orbit_with_flight(contact, times).is_admissible().all())
+
+
+def joining_ratio(damping_ratio: float, release: Release, low: float, high: float) -> float:
+    """The ϖ above which the families with a short and a long contact are apart.
+
+    Parameters
+    ----------
+    damping_ratio : float
+        ζ.
+    release : Release
+    low, high : float
+        ϖ between which the parting is looked for.
+
+    Returns
+    -------
+    float
+        NaN unless they are joined at ``low`` and apart at ``high``.
+    """
+
+    def together(ratio):
+        return joined(Contact(ratio, damping_ratio, release))
+
+    if not together(low) or together(high):
+        return math.nan
+    while low < (middle := (low + high) / 2) < high and high - low > _CLOSE:
+        low, high = (middle, high) if together(middle) else (low, middle)
+    return low
+
+
+def _highest_after_landing(excess: float, zeta: float) -> float:
+    """Highest x that the oscillation after the landing reaches, for C = 2ζ² - 1 + ``excess``.
+
+    Before the flight the ball follows ``p(s) = excess - (s - 2ζ)²/2``, without
+    any oscillation left.
+    """
+    level = 2 * zeta * zeta - 1 + excess
+    rate = math.sqrt(2 * excess)
+    leaving = 2 * zeta - rate
+    # x = t (rate + a t/2 - leaving t²/6 - t³/24), a the acceleration at release.
+    acceleration = level - leaving * leaving / 2
+    roots = np.roots([-1 / 24, -leaving / 6, acceleration / 2, rate])
+    flight = min(root.real for root in roots if abs(root.imag) < 1e-9 and root.real > 0)
+    landing = rate + flight * (acceleration - flight * (leaving / 2 + flight / 6))
+    after = leaving + flight - 2 * zeta
+    omega = math.sqrt((1 - zeta) * (1 + zeta))
+    a = after * after / 2 - excess
+    b = (landing + after + zeta * a) / omega
+
+    def displacement(time):
+        free = np.exp(-zeta * time) * (a * np.cos(omega * time) + b * np.sin(omega * time))
+        return excess - (after + time) ** 2 / 2 + free
+
+    # The only maximum that can matter is the first; later p is far below.
+    time = np.linspace(0.0, 3 * np.pi / omega, 301)
+    sampled = displacement(time)
+    rising = np.flatnonzero((sampled[1:-1] > sampled[:-2]) & (sampled[1:-1] >= sampled[2:]))
+    if not rising.size:
+        return -math.inf
+    peak = rising[np.argmax(sampled[1:-1][rising])] + 1
+    bounds = (time[peak - 1], time[peak + 1])
+    best = minimize_scalar(lambda t: -displacement(t), bounds=bounds, method="bounded")
+    return max(float(-best.fun), float(sampled[peak]))
+
+
+def stiff_limit(damping_ratio: float) -> float:
+    """Width of the window for a stiff contact: ϖ²(Λ_end - Λ_SD) as ϖ → ∞.
+
+    Raises
+    ------
+    ModelError
+        If ζ is not in (0, 0.9], where the oscillation after a landing can be seen.
+
+    Examples
+    --------
+    >>> from bouncing_ball.impacts.damping import damping_ratio
+    >>> round(stiff_limit(float(damping_ratio(0.85))), 2)
+    8.61
+    """
+    zeta = float(damping_ratio)
+    if not 0 < zeta <= 0.9:
+        raise ModelError(f"damping ratio ζ = {zeta:g} is not in (0, 0.9]")
+    low, high = 1e-3, 1.0
+    while _highest_after_landing(high, zeta) < 0:
+        low, high = high, 1.25 * high
+
+    def touch(excess):
+        return max(_highest_after_landing(excess, zeta), -1e3)
+
+    return float(brentq(touch, low, high, xtol=1e-12))

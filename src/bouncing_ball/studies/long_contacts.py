@@ -1,0 +1,150 @@
+"""The 1-T orbits into which permanent contact continues: their windows and their basins."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.datasets.variables import describe
+from bouncing_ball.impacts.damping import damping_ratio
+from bouncing_ball.impacts.spring_damper import Contact, Release
+from bouncing_ball.motion.regularity import period
+from bouncing_ball.orbits.basins import ELSEWHERE, PERMANENT, Destinations, destinations
+from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.long_contact import joining_ratio, stable_window, stiff_limit
+from bouncing_ball.studies.parameters import contact, grid
+
+# Contacts between which the families part, for all r from 0.3 on.
+_PARTING = (1.9, 4.0)
+
+MOTIONS = (
+    "permanent contact",
+    "1-T, short contact",
+    "1-T, long contact",
+    "n-T, n > 1",
+    "none of these",
+)
+"""Where a ball may end; a long contact lasts more than half a period of the table."""
+
+# Of the balls on none of these so many are asked for their period, up to so many impacts.
+_ASKED, _LONGEST, _CLOSE = 100, 16, 1e-6
+
+
+def stable_windows(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
+    """Where the stable window of each contact begins and ends, over r and ϖ.
+
+    From ``restitution`` (a list) and ``frequency_ratio`` (a span). With it the
+    limit of stiff contacts, and the ϖ below which the orbits with a short and
+    a long contact are one family; both are NaN for another release than the
+    displacement's.
+    """
+    restitution = np.array(parameters["restitution"])
+    ratio = grid(parameters["frequency_ratio"])
+    shape = len(restitution), len(ratio)
+    zeta = damping_ratio(restitution)
+    # All contacts at once: many small steps cost more than large ones.
+    law = Contact(np.tile(ratio, shape[0]), np.repeat(zeta, shape[1]), Release(release))
+    window = stable_window(law)
+    paper = Release(release) is Release.DISPLACEMENT
+    limits = [
+        (stiff_limit(z), joining_ratio(z, Release(release), *_PARTING))
+        if paper
+        else (np.nan, np.nan)
+        for z in map(float, zeta)
+    ]
+    stiff, joining = np.array(limits).T
+    along = ("restitution", "frequency_ratio")
+    return describe(
+        xr.Dataset(
+            {
+                "threshold_amplitude": (
+                    along,
+                    ContactModel(law).permanent_contact_threshold().reshape(shape),
+                ),
+                "window_amplitude": (along, window.amplitude.reshape(shape)),
+                "window_flight": (along, window.flight_time.reshape(shape)),
+                "window_end": (along, window.end.reshape(shape)),
+                "stiff_window": ("restitution", stiff),
+                "joining_ratio": ("restitution", joining),
+            },
+            coords={"restitution": restitution, "frequency_ratio": ratio},
+        )
+    )
+
+
+def _stable_orbits(model: ContactModel, families: list[int], amplitude: float):
+    """The stable orbits at one Λ, each alone."""
+    for n in families:
+        found = model.orbits(n, amplitude)
+        kept = found[found.is_stable() & found.is_admissible()]
+        yield from (kept[k] for k in range(kept.shape[0]))
+
+
+def _motion(orbit: ContactOrbit) -> int:
+    """Index of its kind among :data:`MOTIONS`."""
+    if int(orbit.n) > 1:
+        return 3
+    return 2 if float(orbit.contact_duration) > np.pi else 1
+
+
+def _shared_period(model: ContactModel, amplitude: float, ends: Destinations) -> int:
+    """Impacts after which most motions that are on no n-T orbit repeat; 0 if there is none."""
+    left = np.flatnonzero(ends.orbit == ELSEWHERE)
+    asked = left[:: max(1, left.size // _ASKED)]
+    if not asked.size:
+        return 0
+    phase, velocity = ends.phase[asked], ends.velocity[asked]
+    thrown = velocity + amplitude * np.cos(phase)
+    periods = period(model.simulate(amplitude, phase, thrown, 20 * _LONGEST), _LONGEST, _CLOSE)
+    # Some were only late for an n-T orbit, which repeats after every impact.
+    values, counts = np.unique(periods, return_counts=True)
+    most = int(values[counts.argmax()])
+    return most if most > 1 and counts.max() > asked.size / 2 else 0
+
+
+def basins(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
+    """Where balls end that start with an impact at (φ, δ′), for one contact and several Λ.
+
+    From ``restitution``, ``frequency_ratio``, ``amplitude`` (a list), ``n``, the
+    families looked for, ``velocity_max``, the largest -δ′, ``starts`` along
+    each axis, at the middles of equal cells, and ``impacts``, after which a ball is
+    given up: by then rounding does not yet decide where a wandering ball goes.
+    """
+    model = ContactModel(contact(parameters["frequency_ratio"], parameters["restitution"], release))
+    count, amplitudes = parameters["starts"], parameters["amplitude"]
+    middle = (np.arange(count) + 0.5) / count
+    phase, speed = 2 * np.pi * middle - np.pi, parameters["velocity_max"] * middle
+    shape = (len(amplitudes), count, count)
+    ends = np.empty(shape, dtype=np.int8)
+    periods = np.zeros(len(amplitudes), dtype=int)
+    places = np.full((2, len(amplitudes), len(MOTIONS)), np.nan)
+    start, velocity = (np.ravel(x) for x in np.meshgrid(phase, -speed))
+    for k, lam in enumerate(amplitudes):
+        orbits = list(_stable_orbits(model, parameters["n"], lam))
+        found = destinations(model, lam, orbits, start, velocity, parameters["impacts"])
+        kinds = np.array([*map(_motion, orbits), *(0, 0)], dtype=np.int8)
+        kinds[ELSEWHERE], kinds[PERMANENT] = len(MOTIONS) - 1, 0
+        ends[k] = kinds[found.orbit].reshape(count, count)
+        periods[k] = _shared_period(model, lam, found)
+        for orbit in orbits:
+            if orbit.n == 1:
+                places[:, k, _motion(orbit)] = (
+                    orbit.phase,
+                    -orbit.relative_impact_velocity,
+                )
+    shares = [[(part == kind).mean() for kind in range(len(MOTIONS))] for part in ends]
+    return describe(
+        xr.Dataset(
+            {
+                "amplitude": ("case", np.array(amplitudes, dtype=float)),
+                "destination": (("case", "start_speed", "start_phase"), ends),
+                "basin_share": (("case", "motion"), np.array(shares)),
+                "orbit_phase": (("case", "motion"), places[0]),
+                "orbit_speed": (("case", "motion"), places[1]),
+                "other_period": ("case", periods),
+            },
+            coords={"motion": list(MOTIONS), "start_phase": phase, "start_speed": speed},
+        )
+    )

@@ -1,0 +1,64 @@
+"""Windows and basins as datasets."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.studies.long_contacts import MOTIONS, basins, stable_windows
+
+WINDOWS = {
+    "restitution": [0.85, 0.65],
+    "frequency_ratio": {"min": 1.2, "max": 10.0, "samples": 11},
+}
+BASINS = {
+    "n": [1, 2],
+    "restitution": 0.85,
+    "frequency_ratio": 2.0,
+    "amplitude": [0.72, 0.9, 1.05],
+    "velocity_max": 8.0,
+    "starts": 40,
+    "impacts": 40,
+}
+
+
+def test_windows_over_both_parameters(described):
+    found = described(stable_windows(WINDOWS, "displacement"))
+    assert found.window_amplitude.dims == ("restitution", "frequency_ratio")
+    assert (found.window_amplitude > found.threshold_amplitude).all()
+    # Each row is that of its own r: the ends by another program, at ϖ = 1.2 and 10.
+    row = found.sel(restitution=0.85)
+    assert row.window_amplitude.values[[0, -1]] == pytest.approx([0.3342, 1.042], abs=2e-3)
+    assert row.window_end.values[[0, -1]].tolist() == ["saddle-node", "grazing in contact"]
+    assert row.threshold_amplitude.values[[0, -1]] == pytest.approx([0.3175, 0.9901], abs=1e-4)
+    assert found.joining_ratio.values == pytest.approx([2.003, 2.107], abs=1e-3)
+
+
+def test_limits_are_those_of_the_papers_release():
+    found = stable_windows(WINDOWS | {"restitution": [0.85]}, "force")
+    assert np.isnan(found.stiff_window).all() and np.isnan(found.joining_ratio).all()
+
+
+def test_basins_of_one_contact(described):
+    found = described(basins(BASINS, "displacement"))
+    shares = found.basin_share.values
+    assert shares.sum(axis=1) == pytest.approx([1, 1, 1], abs=1e-15)
+    permanent, short, long, longer, other = shares.T
+    # Permanent contact below Λ_SD = 0.7518 only, the long contact above it.
+    assert (permanent > 0).tolist() == [True, False, False]
+    assert (long > 0).tolist() == [False, True, True]
+    assert (short > 0.4).all() and (longer > 0.1).all()
+    assert (other > 0.1).tolist() == [False, False, True]
+    assert found.other_period.values.tolist() == [0, 0, 3]
+    # The orbits lie in their own basins.
+    for case in range(3):
+        for kind, name in enumerate(MOTIONS[1:3], start=1):
+            place = found.sel(case=case, motion=name)
+            if np.isfinite(place.orbit_phase):
+                near = found.destination.sel(case=case).sel(
+                    start_phase=place.orbit_phase, start_speed=place.orbit_speed, method="nearest"
+                )
+                assert near.item() == kind
+
+
+def test_basins_with_the_other_release(described):
+    small = BASINS | {"starts": 10, "amplitude": [0.9]}
+    assert described(basins(small, "force")).basin_share.sum().item() == pytest.approx(1)

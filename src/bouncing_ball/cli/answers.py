@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from bouncing_ball.cli.contact_law import described, model_of, rigid_speed_of
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.impacts.permanent_contact import permanent_contact_minimum
 from bouncing_ball.impacts.spring_damper import Contact, Release
@@ -29,6 +30,8 @@ def _contact(args: argparse.Namespace) -> Contact:
 
 
 def _model(args: argparse.Namespace) -> ImpactModel:
+    if args.law is not None:
+        return model_of(args)
     if args.model == "restitution":
         r = args.restitution if args.measured_restitution is None else args.measured_restitution
         return RestitutionModel(r)
@@ -40,8 +43,13 @@ def _model(args: argparse.Namespace) -> ImpactModel:
     )
 
 
-def _measured(args: argparse.Namespace) -> Answer:
-    """What a free impact on the contact has, whatever was asked for: r and ζ."""
+def _measured(args: argparse.Namespace, model: ImpactModel, speed: float) -> Answer:
+    """What a free impact on the contact has, whatever was asked for: r and ζ.
+
+    Of a contact law, its parameters, and r and D at an impact speed.
+    """
+    if args.law is not None:
+        return described(model, speed)
     if args.model == "restitution":
         return {}
     contact = _contact(args)
@@ -67,7 +75,7 @@ def _described(orbit: Orbit) -> Answer:
     }
 
 
-def _all_orbits(model: ImpactModel, n: int, amplitude: float) -> list[Answer]:
+def _all_orbits(model: ImpactModel, n: int, amplitude: float) -> Orbit:
     """Every orbit at Λ, in order of contact duration.
 
     Raises
@@ -78,7 +86,7 @@ def _all_orbits(model: ImpactModel, n: int, amplitude: float) -> list[Answer]:
     found = model.orbits(n, amplitude)
     if not found.size:
         raise NoOrbitError(f"no {n}-T orbit at Λ = {amplitude:g} for {model.label}")
-    return [_described(found[k]) for k in range(found.size)]
+    return found
 
 
 def orbit(args: argparse.Namespace) -> Answer:
@@ -91,17 +99,24 @@ def orbit(args: argparse.Namespace) -> Answer:
     """
     model = _model(args)
     if args.side != "all" and args.index is None:
-        side = Side(args.side)
-        return _described(model.require_orbit(args.n, args.amplitude, side)) | _measured(args)
+        orbit = model.require_orbit(args.n, args.amplitude, Side(args.side))
+        return _described(orbit) | _measured(args, model, _speed(orbit))
     found = _all_orbits(model, args.n, args.amplitude)
     if args.index is None:
-        return {"orbits": found} | _measured(args)
-    if args.index > len(found):
+        orbits = [_described(found[k]) for k in range(found.size)]
+        return {"orbits": orbits} | _measured(args, model, _speed(found[0]))
+    if args.index > found.size:
         raise NoOrbitError(
-            f"no orbit {args.index}: {model.label} has {len(found)} {args.n}-T orbits "
+            f"no orbit {args.index}: {model.label} has {found.size} {args.n}-T orbits "
             f"at Λ = {args.amplitude:g}"
         )
-    return found[args.index - 1] | _measured(args)
+    orbit = found[args.index - 1]
+    return _described(orbit) | _measured(args, model, _speed(orbit))
+
+
+def _speed(orbit: Orbit) -> float:
+    """Speed of the impact, against the table."""
+    return -float(orbit.relative_impact_velocity)
 
 
 def limits(args: argparse.Namespace) -> Answer:
@@ -126,7 +141,8 @@ def limits(args: argparse.Namespace) -> Answer:
             "contact_duration": float(orbit.contact_duration),
             "is_admissible": bool(orbit.is_admissible()),
         }
-    return found | _measured(args)
+    rigid = 0.0 if args.law is None else rigid_speed_of(model, args.n)
+    return found | _measured(args, model, rigid)
 
 
 def error_law(args: argparse.Namespace) -> Answer:
@@ -202,6 +218,8 @@ def simulate(args: argparse.Namespace) -> Answer:
         If the ball does not approach the table at the first impact.
     """
     velocity = -math.pi if args.velocity is None else args.velocity
-    sequence = _model(args).simulate(args.amplitude, args.phase, velocity, args.impacts)
+    model = _model(args)
+    sequence = model.simulate(args.amplitude, args.phase, velocity, args.impacts)
     status = Status(int(sequence.status)).name.lower().replace("_", " ")
-    return {"status": status} | _measured(args) | {"sequence": _columns(sequence)}
+    speed = -float(sequence.relative_velocity[0])
+    return {"status": status} | _measured(args, model, speed) | {"sequence": _columns(sequence)}

@@ -75,8 +75,95 @@ def _count(largest: int):
     return parse
 
 
-def _add_damping(parser: argparse.ArgumentParser) -> None:
-    group = parser.add_mutually_exclusive_group(required=True)
+# The contact laws and what each is made of, as the package of the laws has them: the
+# help needs no numpy.
+LAWS = {
+    "hunt-crossley": "stiffness damping",
+    "tsuji": "stiffness damping",
+    "kuwabara-kono": "stiffness damping",
+    "linear": "frequency-ratio damping-ratio",
+}
+_FORCES = {
+    "hunt-crossley": "K p^1.5 (1 + C p′)",
+    "tsuji": "K p^1.5 + C √K p^0.25 p′",
+    "kuwabara-kono": "K (p^1.5 + C √p p′)",
+    "linear": "W² p + 2 Z W p′",
+}
+
+
+def _assignment(text: str) -> tuple[str, float]:
+    """A parser of NAME=NUMBER, for ``type=``."""
+    name, equals, value = text.partition("=")
+    try:
+        number = float(value)
+    except ValueError:
+        number = math.nan
+    if not (name and equals and math.isfinite(number)):
+        raise argparse.ArgumentTypeError(f"{text!r} is not NAME=NUMBER, as stiffness=1000")
+    return name, number
+
+
+def _add_law(parser: argparse.ArgumentParser) -> None:
+    group = parser.add_argument_group(
+        "a contact of another law",
+        "with the penetration p and a force over the weight of the ball: "
+        + "; ".join(f"{name} {_FORCES[name]} ({LAWS[name].replace(' ', ', ')})" for name in LAWS),
+    )
+    group.add_argument("--law", choices=list(LAWS), help="in place of the spring-damper")
+    group.add_argument(
+        "--set",
+        type=_assignment,
+        action="append",
+        metavar="NAME=NUMBER",
+        help="one of the law's parameters, as stiffness=1000; once for each",
+    )
+    group.add_argument(
+        "--duration",
+        type=_number(0, math.inf),
+        metavar="D",
+        help="in place of --set, with --restitution: duration of the free impact",
+    )
+    group.add_argument(
+        "--speed",
+        type=_number(0, math.inf),
+        metavar="V",
+        help="impact speed of that free impact (default: the orbit's own; for limits that of the "
+        "restitution model, 2πn/(1 + r); for simulate the first impact's)",
+    )
+
+
+def _settle_law(top: "Parser", args: argparse.Namespace) -> None:
+    """Refuse what does not go with a contact law, or without one."""
+    if args.law is None:
+        for name in ("set", "duration", "speed"):
+            if getattr(args, name) is not None:
+                top.error(f"--{name} needs --law, one of {', '.join(LAWS)}")
+        if args.restitution is args.damping_ratio is args.measured_restitution is None:
+            top.error(
+                "one of the arguments --restitution --damping-ratio --measured-restitution "
+                "is required"
+            )
+        return
+    if args.model in ("restitution", "spring-damper"):
+        top.error(f"--model {args.model} has no --law: corrected, or none, for the law itself")
+    for name in ("frequency_ratio", "damping_ratio", "measured_restitution"):
+        if getattr(args, name) is not None:
+            option = f"--{name.replace('_', '-')}"
+            top.error(f"{option} does not go with --law {args.law}: --set, or --restitution "
+                      "and --duration")  # fmt: skip
+    needs = ", ".join(f"--set {name}=NUMBER" for name in LAWS[args.law].split())
+    if args.set:
+        for name in ("restitution", "duration", "speed"):
+            if getattr(args, name) is not None:
+                top.error(f"--{name} does not go with --set: {needs} are all of {args.law}")
+    elif args.restitution is None or args.duration is None:
+        top.error(f"--law {args.law} needs {needs}, or --restitution and --duration")
+    elif args.release is not None:
+        top.error("--release goes with --law linear and --set only")
+
+
+def _add_damping(parser: argparse.ArgumentParser, *, required: bool) -> None:
+    group = parser.add_mutually_exclusive_group(required=required)
     group.add_argument(
         "--restitution",
         type=_number(0, 1, high_open=False),
@@ -291,6 +378,10 @@ _QUESTIONS = {
 }
 
 
+# Those that take a contact law as well.
+_LAWFUL = ("orbit", "limits", "simulate")
+
+
 def parser() -> Parser:
     """The parser of all subcommands."""
     top = Parser(
@@ -303,8 +394,11 @@ def parser() -> Parser:
     for name, (text, add_arguments) in _QUESTIONS.items():
         sub = commands.add_parser(name, help=text, description=text)
         sub.add_argument("--json", action="store_true", help="one JSON object, full precision")
-        _add_damping(sub)
+        lawful = name in _LAWFUL
+        _add_damping(sub, required=not lawful)
         add_arguments(sub)
+        if lawful:
+            _add_law(sub)
 
     design = commands.add_parser(
         "design",
@@ -354,6 +448,9 @@ def parse(arguments: list[str] | None = None) -> argparse.Namespace:
         return args
     if args.command == "permanent-contact":
         _refuse_still_models(top, args.model)
+        return args
+    _settle_law(top, args)
+    if args.law is not None:
         return args
     if args.model is None:
         args.model = "restitution" if args.frequency_ratio is None else "spring-damper"

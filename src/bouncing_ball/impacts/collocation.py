@@ -254,7 +254,7 @@ def contacts(
     -------
     Contacts
         With the broadcast shape of the arguments. NaN where v ≤ 0, where the ball is
-        not released within some forty oscillations, and where nothing has converged.
+        not released within a dozen oscillations, and where nothing has converged.
 
     Examples
     --------

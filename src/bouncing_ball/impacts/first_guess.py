@@ -14,9 +14,9 @@ import numpy as np
 from bouncing_ball.impacts.contact_scales import scales
 from bouncing_ball.impacts.laws.contact_law import ContactLaw
 
-# Step in parts of P/V, and how many are taken at most: some forty oscillations.
+# Step in parts of P/V, and how many are taken at most: a dozen oscillations.
 _STEP = 0.2
-_MOST = 1200
+_MOST = 400
 
 
 class Start(NamedTuple):

@@ -8,8 +8,8 @@ zeros of the stability's test functions, on the system extended by them.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, ClassVar
 
 import numpy as np
@@ -222,13 +222,13 @@ class LawModel(ImpactModel):
 
     def saddle_node(self, n: ArrayLike) -> LawOrbit:
         """The orbits at the saddle-node; NaN where none was found."""
-        return self._bifurcation(n, _FOLD, saddle_node_function)
+        return self._bifurcation(n, _FOLD)
 
     def period_doubling(self, n: ArrayLike) -> LawOrbit:
         """The orbits at the period doubling; NaN where none was found."""
-        return self._bifurcation(n, _FLIP, period_doubling_function)
+        return self._bifurcation(n, _FLIP)
 
-    def _bifurcation(self, n: ArrayLike, name: str, test: Callable) -> LawOrbit:
+    def _bifurcation(self, n: ArrayLike, name: str) -> LawOrbit:
         (index,), law, shape = self._row(n)
         instant = self._instants(index, law)
         if name == _FOLD:
@@ -237,27 +237,14 @@ class LawModel(ImpactModel):
         else:
             lam, psi = corrected.period_doubling(index, instant)
         guess = np.stack([psi - instant.delay, instant.delay - index * np.pi, lam], axis=1)
-        y = np.array(
-            [self._located(index[k], law.take(k), name, test, guess[k]) for k in range(len(index))]
+        kind: Any = type(law)
+        rows = (
+            _located(kind, tuple(law.take(k).fields()), index[k], name, tuple(guess[k]))
+            for k in range(len(index))
         )
+        y = np.array(list(rows)).reshape(-1, 3)
         lam, phase, impact = (y[:, k].reshape(shape) for k in (2, 0, 1))
         return LawOrbit.at(n, self.law, lam, phase, impact)
-
-    def _located(self, n, law: ContactLaw, name: str, test: Callable, guess) -> np.ndarray:
-        """The bifurcation next to a guess; or else the first on the branch."""
-        system = LawSystem(n, law)
-
-        def function(y):
-            return test(*system.orbit(y).trace_and_determinant())
-
-        if np.all(np.isfinite(guess)):
-            settings = NewtonSettings(max_iterations=_ITERATIONS)
-            found = newton(system, guess, vanishing(function), settings)
-            if found.converged and found.point[-1] > 0:
-                return found.point
-        branch = self._branch(int(n), law, float(np.nan_to_num(guess[-1], nan=1.0)))
-        points = branch.named(name) if branch else []
-        return points[-1 if name == _FLIP else 0] if points else np.full(3, np.nan)
 
     def nearest(self, orbit: Any) -> Orbit:
         """There is no closed form.
@@ -286,3 +273,23 @@ class LawModel(ImpactModel):
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ up to which a steady contact is held all the time."""
         return np.ones(self.law.shape)
+
+
+@lru_cache(maxsize=4096)
+def _located(kind: type[ContactLaw], values: tuple, n: float, name: str, guess: tuple):
+    """The bifurcation of a single law next to a guess; or else the first on the branch."""
+    law = kind(*values)
+    system = LawSystem(int(n), law)
+    test = saddle_node_function if name == _FOLD else period_doubling_function
+
+    def function(y):
+        return test(*system.orbit(y).trace_and_determinant())
+
+    if np.all(np.isfinite(guess)):
+        settings = NewtonSettings(max_iterations=_ITERATIONS)
+        found = newton(system, np.array(guess), vanishing(function), settings)
+        if found.converged and found.point[-1] > 0:
+            return found.point
+    branch = LawModel(law)._branch(int(n), law, float(np.nan_to_num(guess[-1], nan=1.0)))
+    points = branch.named(name) if branch else []
+    return points[-1 if name == _FLIP else 0] if points else np.full(3, np.nan)

@@ -104,10 +104,19 @@ class ContactLaw(Record, ABC):
         values = (getattr(self, field.name) for field in fields(self))
         return [x if isinstance(x, str) else float(x) for x in values]
 
+    @classmethod
+    def parameter_names(cls) -> list[str]:
+        """Names of the numbers of the law."""
+        return [field.name for field in fields(cls) if field.name != "release"]
+
+    @classmethod
+    def chooses_release(cls) -> bool:
+        """Whether the release is a parameter, and not part of the law."""
+        return "release" in (field.name for field in fields(cls))
+
     def parameters(self) -> dict[str, Any]:
         """Names and values of the numbers of the law."""
-        values = {field.name: getattr(self, field.name) for field in fields(self)}
-        return {k: v for k, v in values.items() if not isinstance(v, str)}
+        return {name: getattr(self, name) for name in self.parameter_names()}
 
     @property
     def label(self) -> str:

@@ -1,0 +1,88 @@
+"""A contact law on the command line: which it is, its model, and what is said of it."""
+
+import argparse
+import math
+from typing import Any
+
+import numpy as np
+
+from bouncing_ball.errors import ModelError
+from bouncing_ball.impacts.law_choice import law_named, law_of_impact
+from bouncing_ball.impacts.law_signature import LawSignature, free_impact
+from bouncing_ball.impacts.laws.contact_law import ContactLaw
+from bouncing_ball.impacts.release import Release
+from bouncing_ball.orbits.corrected_model import CorrectedModel
+from bouncing_ball.orbits.interface import ImpactModel, Side
+from bouncing_ball.orbits.law_calls import law_at_orbit, rigid_speed
+from bouncing_ball.orbits.law_model import LawModel, restitution_speed
+
+
+def law_of(args: argparse.Namespace) -> ContactLaw:
+    """The law that was asked for, by its parameters or by its free impact.
+
+    Raises
+    ------
+    ModelError
+        If a parameter is missing, unknown or out of its range.
+    NoOrbitError
+        If r and D are to be those at an orbit that there is not.
+    """
+    kind = law_named(args.law)
+    if args.set:
+        return _by_parameters(kind, args)
+    r, duration = args.restitution, args.duration
+    if args.speed is not None:
+        return law_of_impact(kind, r, duration, args.speed)
+    if args.command == "orbit":
+        side = Side.UNSTABLE if args.side == "unstable" else Side.STABLE
+        return law_at_orbit(kind, r, duration, args.n, args.amplitude, side)
+    if args.command == "limits":
+        return law_of_impact(kind, r, duration, rigid_speed(args.n, r))
+    velocity = -math.pi if args.velocity is None else args.velocity
+    return law_of_impact(kind, r, duration, args.amplitude * math.cos(args.phase) - velocity)
+
+
+def _by_parameters(kind: type[ContactLaw], args: argparse.Namespace) -> ContactLaw:
+    named = {name.replace("-", "_"): value for name, value in args.set}
+    known = list(kind.parameter_names())
+    for name in named:
+        if name not in known:
+            raise ModelError(
+                f"unknown parameter {name!r} of {kind.name}: its parameters are {', '.join(known)}"
+            )
+    missing = [name for name in known if name not in named]
+    if missing:
+        raise ModelError(f"{kind.name} needs --set {missing[0]}=NUMBER as well")
+    release = {} if args.release is None else {"release": Release.of(args.release)}
+    if release and not kind.chooses_release():
+        raise ModelError(f"the release is part of {kind.name}: --release is for the linear law")
+    return kind(**named, **release)
+
+
+def model_of(args: argparse.Namespace) -> ImpactModel:
+    """The model of the law that was asked for, or its corrected restitution model."""
+    law = law_of(args)
+    return CorrectedModel(LawSignature(law)) if args.model == "corrected" else LawModel(law)
+
+
+def _law_behind(model: Any) -> ContactLaw:
+    return model.law.law if isinstance(model.law, LawSignature) else model.law
+
+
+def rigid_speed_of(model: Any, n: int) -> float:
+    """2πn/(1 + r(v)) of the model's law: where limits are described."""
+    return float(restitution_speed(n, _law_behind(model))[0])
+
+
+def described(model: Any, speed: float) -> dict[str, Any]:
+    """The law, and its free impact at a speed: r, D, and π/D, which stands for ϖ."""
+    law = _law_behind(model)
+    impact = free_impact(law, np.float64(speed))
+    return {
+        "law": law.name,
+        "parameters": {name: float(x) for name, x in law.parameters().items()},
+        "measured_restitution": float(impact.restitution),
+        "free_duration": float(impact.duration),
+        "frequency_ratio": math.pi / float(impact.duration),
+        "at_impact_speed": float(speed),
+    }

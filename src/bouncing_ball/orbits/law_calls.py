@@ -1,0 +1,68 @@
+"""A contact law that is known by its free impact at an orbit's own speed.
+
+A law whose restitution falls with the speed has *one* r and *one* D only at a speed. To
+compare models, it is given by both at the impact speed of the orbit in question.
+"""
+
+import math
+
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.impacts.law_choice import law_of_impact
+from bouncing_ball.impacts.laws.contact_law import ContactLaw
+from bouncing_ball.orbits.interface import Side
+from bouncing_ball.orbits.law_model import LawModel
+
+# Law and orbit in turn: the speed hardly depends on a law with the same r and D, and
+# each round gains two digits or more.
+_ROUNDS = 20
+_SETTLED = 1e-14
+
+
+def rigid_speed(n: int, restitution: float) -> float:
+    """Impact speed 2πn/(1 + r) of the restitution model's n-T orbits, at every Λ.
+
+    Examples
+    --------
+    >>> rigid_speed(2, 1.0) == 2 * math.pi
+    True
+    """
+    return 2 * math.pi * n / (1 + restitution)
+
+
+def law_at_orbit(
+    kind: type[ContactLaw],
+    restitution: float,
+    duration: float,
+    n: int,
+    amplitude: float,
+    side: Side = Side.STABLE,
+) -> ContactLaw:
+    """The law with r and D at the impact speed of its own n-T orbit at Λ.
+
+    Raises
+    ------
+    NoOrbitError
+        If there is no such orbit.
+    ModelError
+        If no law of this kind has these r and D.
+
+    Examples
+    --------
+    >>> from bouncing_ball.impacts.law_signature import free_impact
+    >>> from bouncing_ball.impacts.laws.tsuji import Tsuji
+    >>> law = law_at_orbit(Tsuji, 0.65, 0.1, 1, 1.0)
+    >>> speed = -LawModel(law).orbit(1, 1.0).relative_impact_velocity
+    >>> round(float(free_impact(law, speed).duration), 12)
+    0.1
+    """
+    speed = rigid_speed(n, restitution)
+    for _ in range(_ROUNDS):
+        law = law_of_impact(kind, restitution, duration, speed)
+        orbit = LawModel(law).require_orbit(n, amplitude, side)
+        before, speed = speed, -float(orbit.relative_impact_velocity)
+        if abs(speed - before) <= _SETTLED * speed:
+            return law
+    raise NoOrbitError(
+        f"no {n}-T orbit at Λ = {amplitude:g} whose own impact has r = {restitution:g} and "
+        f"D = {duration:g} was found for {kind.name}"
+    )

@@ -17,6 +17,9 @@ SETUP ?= setup
 QUIETLY := --quiet host rules reason progress
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
+# Sixty jobs import the same modules: what has been compiled is kept, whatever the shell says.
+unexport PYTHONDONTWRITEBYTECODE
+
 # One thing after another: clean, run and compare share results/.
 .NOTPARALLEL:
 .PHONY: all setup lint test quick test-long attack diff accept report clean ci setup-newest newest config-docs codecheck lock

@@ -8,6 +8,7 @@ medians. Not part of the test suite, as a noisy machine would fail it:
 """
 
 import ast
+import os
 import shutil
 import statistics
 import subprocess
@@ -38,8 +39,8 @@ def reduce_to_imports(script: Path) -> None:
     if script.stem == "stage":
         text += "from bouncing_ball.configuration.study import load\nload(snakemake.params.study)\n"
     if script.stem in ("figure", "table"):
-        name = f"bouncing_ball.render.{script.stem}s.{{snakemake.params.{script.stem}}}"
-        text += f'import_module(f"{name}")\n'
+        text += f"name = 'bouncing_ball.render.{script.stem}s.' + Path(snakemake.output[0]).stem\n"
+        text += "import_module(name)\n"
     if script.stem == "figure":
         text += LATE_FIGURE
     script.write_text(text + FINISH, encoding="utf-8")
@@ -50,8 +51,9 @@ def cold_run(tree: Path) -> float:
     for folder in ("results", ".snakemake"):
         shutil.rmtree(tree / folder, ignore_errors=True)
     command = [Path(sys.executable).with_name("snakemake"), "--cores", "2", "--quiet", "all"]
+    environment = os.environ | {"PYTHONPATH": str(tree / "src")}
     start = time.perf_counter()
-    subprocess.run(command, cwd=tree, check=True, capture_output=True)
+    subprocess.run(command, cwd=tree, check=True, capture_output=True, env=environment)
     return time.perf_counter() - start
 
 

@@ -208,7 +208,8 @@ def cloned(shared) -> Tree:
 def pristine(shared, cloned) -> Tree:
     """A complete run. Tests must not change it, nor run in it: other workers copy it.
 
-    It was killed on its way and resumed; what there was then is in ``killed.json``.
+    It was killed on its way and resumed; ``resumed.json`` holds what there was then and
+    what was said.
     """
 
     def make(folder: Path) -> None:
@@ -216,11 +217,11 @@ def pristine(shared, cloned) -> Tree:
         tree.interrupt(signal.SIGKILL, "--cores", "2", after=4)
         early = tree.checksums("results")
         # Snakemake could not remove its lock; it says so and names this command.
-        said = tree.run("--cores", "2", check=False).stderr
+        locked = tree.run("--cores", "2", check=False).stderr
         tree.run("--unlock")
-        tree.run("--cores", "2")
-        found = json.dumps({"early": early, "said": said})
-        (shared / "killed.json").write_text(found, encoding="utf-8")
+        last = tree.run("--cores", "2").stdout
+        found = json.dumps({"early": early, "locked": locked, "last": last})
+        (shared / "resumed.json").write_text(found, encoding="utf-8")
 
     return made_once(shared / "pristine", make)
 

@@ -2,6 +2,7 @@
 
 import json
 
+from bouncing_ball.configuration.stages import Kind, names, studied, tables
 from bouncing_ball.record.crate import NAME
 
 
@@ -17,4 +18,8 @@ def test_the_crate_holds_all_results(complete):
 
 
 def test_the_snakefile_of_the_catalog_is_the_other_one(fresh):
-    assert fresh.planned("--snakefile", "workflow/Snakefile") == fresh.planned()
+    planned = fresh.planned("--snakefile", "workflow/Snakefile")
+    stages = {f"{stage.name}: {stage.title}" for stage in studied()}
+    figures = {f"Drawing {name}" for name in names(Kind.FIGURE, Kind.EXTENSION)}
+    settings = {f"Setting {name}" for name in tables()}
+    assert planned == stages | figures | settings | {"Writing results/paper.md"}

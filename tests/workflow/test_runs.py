@@ -42,12 +42,12 @@ def test_a_run_touches_no_tracked_file(pristine, cloned):
 
 
 def test_a_killed_run_was_resumed(pristine):
-    killed = json.loads(pristine.path.with_name("killed.json").read_text(encoding="utf-8"))
-    early, after = killed["early"], pristine.checksums("results")
+    resumed = json.loads(pristine.path.with_name("resumed.json").read_text(encoding="utf-8"))
+    early, after = resumed["early"], pristine.checksums("results")
     assert 0 < len(early) < len(after)
     # What is there under its own name is whole, even after a kill, and stays.
     assert [name for name in early if early[name] != after[name]] == []
-    assert "--unlock" in killed["said"]
+    assert "--unlock" in resumed["locked"]
 
 
 @pytest.mark.long

@@ -13,6 +13,7 @@ import stat
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from functools import lru_cache
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
@@ -166,6 +167,8 @@ def no_file_opened() -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
 
 
+# One dataset is asked for what it holds and, several times, for where it comes from.
+@lru_cache(maxsize=8)
 def _check_end(content: bytes) -> None:
     """Read all of a dataset in a process of its own, which may come to no good end.
 

@@ -66,7 +66,8 @@ def _needs(value: Any, path: tuple = ()) -> Iterator[tuple[tuple, float, list[in
         listed = isinstance(found, list)
         for index, one in enumerate(found if listed else [found]):
             key = (*path, label, index) if listed else (*path, label)
-            yield key, one, families, value["restitution"]
+            # What is shown at several Λ shows the orbits that there are.
+            yield key, one, [min(families)] if listed else families, value["restitution"]
     for key, part in value.items():
         yield from _needs(part, (*path, key))
 

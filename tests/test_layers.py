@@ -37,7 +37,11 @@ ALLOWED = {
         {"datasets", "impacts", "continuation", "motion", "orbits", "studies", "configuration"},
         {"numpy", "scipy", "xarray"},
     ),
-    "render": ({"datasets"}, {"numpy", "xarray", "matplotlib", "jinja2"}),
+    # Pandoc and Typst only where the PDF is made.
+    "render": (
+        {"datasets"},
+        {"numpy", "xarray", "matplotlib", "jinja2", "pypandoc", "typst"},
+    ),
     # Pillow reads pictures for matplotlib.
     "record": (
         {"datasets", "configuration"},

@@ -31,3 +31,23 @@ rule paper:
         "results/benchmarks/paper.tsv"
     script:
         "../scripts/paper.py"
+
+
+# Not part of a run: pandoc and Typst are needed for nothing else.
+rule paper_pdf:
+    name:
+        "paper.pdf"
+    message:
+        "Setting results/paper.pdf"
+    input:
+        paper=rules.paper.output.paper,
+        figures=expand("results/figures/{figure}.svg", figure=FIGURES),
+        source=modules("render.article.pdf", "datasets.atomic"),
+    output:
+        pdf="results/paper.pdf",
+    log:
+        "results/logs/paper_pdf.log",
+    benchmark:
+        "results/benchmarks/paper_pdf.tsv"
+    script:
+        "../scripts/paper_pdf.py"

@@ -106,9 +106,37 @@ rule atlas_summary:
         "../scripts/atlas_summary.py"
 
 
+rule atlas_charts:
+    message:
+        "Atlas: charts and tables"
+    input:
+        parts=[rules.atlas_summary.output.data],
+        source=modules(
+            "render.atlas.maps",
+            "render.atlas.limits",
+            "render.atlas.page",
+            "render.atlas.tables",
+            "render.tables.formats",
+            "pipeline.atlas",
+        ),
+    output:
+        charts=expand("results/atlas/{chart}.{kind}", chart=CHARTS, kind=["png", "svg"]),
+        shares="results/atlas/shares.md",
+        worst="results/atlas/worst.md",
+    resources:
+        runtime=10,
+        mem_mb=2000,
+    log:
+        "results/logs/atlas/charts.log",
+    benchmark:
+        "results/benchmarks/atlas/charts.tsv"
+    script:
+        "../scripts/atlas_charts.py"
+
+
 rule atlas:
     localrule: True
     message:
         "The atlas is up to date"
     input:
-        rules.atlas_summary.output.data,
+        rules.atlas_charts.output,

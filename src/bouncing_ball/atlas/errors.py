@@ -55,6 +55,11 @@ class _Known(Signature):
     load: np.ndarray
     duration: np.ndarray
 
+    @property
+    def is_constant(self) -> bool:
+        """At every speed the same."""
+        return True
+
     def __call__(self, speed: ArrayLike) -> Instant:
         return Instant(self.delay, self.restitution, self.load, self.duration)
 
@@ -73,6 +78,7 @@ def orbit_errors(orbit: ContactOrbit, one: Instant, frequency_ratio: float) -> n
 
     Examples
     --------
+    >>> from bouncing_ball.impacts.signature import LinearSignature
     >>> from bouncing_ball.impacts.spring_damper import Contact
     >>> from bouncing_ball.orbits.limits import orbit_at
     >>> one = LinearSignature(Contact(np.ones(1), 0.1))()

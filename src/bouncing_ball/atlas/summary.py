@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.atlas.errors import orbit_law
+from bouncing_ball.atlas.errors import OF_LIMITS, OF_ORBITS, limit_law, orbit_law
 from bouncing_ball.atlas.plan import Plan
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.orbits import restitution_orbit
@@ -39,7 +39,7 @@ def summary(plan: Plan, atlas: xr.Dataset, tolerance: float, rule_of_thumb: floa
         "unstable_share": _of_nodes(atlas, atlas.unstable),
         **_law(atlas),
         **_worst(atlas, rule_of_thumb),
-        **_drawn(plan),
+        **_drawn(plan, tolerance),
     }
     numbers = {
         "orbits": plan.orbits,
@@ -76,14 +76,14 @@ def _shares(atlas: xr.Dataset, name: str) -> xr.DataArray:
 
 
 def _quantiles(atlas: xr.Dataset) -> xr.DataArray:
-    """Upper end of the bin of thresholds below which a share of the nodes is."""
+    """ϖ from which a share of the nodes is right: the upper end of a bin, or the largest of all."""
     counts = atlas.threshold_counts.sum(_TILES)
     share = (counts.cumsum("threshold_bin") / counts.sum("threshold_bin")).values
     bins = np.append(atlas.threshold_bin.values[1:], np.inf)
-    found = [bins[np.argmax(share >= q, axis=-1)] for q in QUANTILES[:-1]]
-    largest = atlas.largest_threshold.max(_TILES)
     dims = tuple(d for d in counts.dims if d != "threshold_bin")
-    found.append(largest.transpose(*dims).values)
+    largest = atlas.largest_threshold.max(_TILES).transpose(*dims).values
+    ends = [bins[np.argmax(share >= q, axis=-1)] for q in QUANTILES[:-1]]
+    found = [*(np.minimum(end, largest) for end in ends), largest]
     return xr.DataArray(
         np.stack(found, -1),
         {d: counts[d] for d in dims} | {"share": list(QUANTILES)},
@@ -123,8 +123,8 @@ def _worst(atlas: xr.Dataset, ratio: float) -> dict[str, xr.DataArray]:
     }
 
 
-def _drawn(plan: Plan) -> dict[str, xr.DataArray]:
-    """For the charts: Λ at the corners of the tiles, and |K| in their middles."""
+def _drawn(plan: Plan, tolerance: float) -> dict[str, xr.DataArray]:
+    """For the charts: Λ at the corners of the tiles, and the error law in their middles."""
     r, p = plan.edges, plan.positions
     n = np.array(plan.families)[:, np.newaxis]
     # The corners lie at r = 1 too, where there is no saddle-node above Λ = 0.
@@ -132,13 +132,15 @@ def _drawn(plan: Plan) -> dict[str, xr.DataArray]:
     corners = low[..., np.newaxis] + p * (high - low)[..., np.newaxis]
     middle_r, middle_p = np.meshgrid((r[1:] + r[:-1]) / 2, (p[1:] + p[:-1]) / 2, indexing="ij")
     shape = len(plan.releases), len(plan.families), len(r) - 1
-    law: np.ndarray | None = None
+    law = np.full((*shape, len(p) - 1, len(OF_ORBITS)), np.nan, "f4")
+    limit = np.full((*shape, len(OF_LIMITS)), np.nan)
     for row in plan.rows:
         nodes = plan.placed(row, middle_r[row.restitution], middle_p[row.restitution])
-        values = np.abs(orbit_law(nodes).coefficient).T
-        if law is None:
-            law = np.full((*shape, *values.shape), np.nan, "f4")
-        law[row] = values
+        law[row] = np.abs(orbit_law(nodes).coefficient).T
+        flip = restitution_orbit.period_doubling(nodes.n, nodes.restitution[:1])
+        of_limits = limit_law(nodes[:1], flip)
+        needed = (np.abs(of_limits.coefficient) / tolerance) ** (1 / of_limits.order)
+        limit[row] = needed[:, 0]
     dims = ("release", "n", "restitution", "position", "quantity")
     return {
         "corner_amplitude": xr.DataArray(
@@ -146,5 +148,6 @@ def _drawn(plan: Plan) -> dict[str, xr.DataArray]:
         ),
         "restitution_edge": xr.DataArray(r, dims="restitution_edge"),
         "position_edge": xr.DataArray(p, dims="position_edge"),
+        "limit_law_needed": xr.DataArray(limit, dims=(*dims[:3], "limit_quantity")),
         "law_coefficient": xr.DataArray(law, dims=dims),
     }

@@ -222,6 +222,7 @@ VARIABLES: dict[str, Variable] = {
     "restitution_edge": Variable("ends of the ranges of r", "r"),
     "position_edge": Variable("ends of the ranges of positions", ""),
     "law_coefficient": Variable("modulus of the error law's K in the middle of the tile", "|K|"),
+    "limit_law_needed": Variable("ϖ for the tolerance by the error law", "(|K|/ε)^(1/order)"),
     "sought_orbits": Variable("orbits that the walk did not reach, looked for directly", ""),
     "resolution": Variable("largest relative step of ϖ: a threshold lies within one", ""),
     "summary_tolerance": Variable("relative error tolerated in the summary", ""),

@@ -1,0 +1,1 @@
+"""The charts of the atlas and its tables, from its summary."""

@@ -1,0 +1,26 @@
+"""The charts and tables of the atlas, from its summary."""
+
+from pathlib import Path
+
+from bouncing_ball.datasets.files import write_text
+from bouncing_ball.pipeline.atlas import read_part
+from bouncing_ball.pipeline.job import logged, provenance
+from bouncing_ball.render.atlas import limits, maps, page
+from bouncing_ball.render.atlas.tables import shares, worst
+from bouncing_ball.render.figures.style import save, style
+from bouncing_ball.render.tables.formats import to_markdown
+
+with logged(snakemake) as lines, style():
+    data = read_part(snakemake.input.parts[0])
+    metadata = provenance(snakemake).attributes()
+    for path in snakemake.output.charts:
+        match Path(path).stem:
+            case "page":
+                figure = page.draw(data)
+            case "limits":
+                figure = limits.draw(data)
+            case quantity:
+                figure = maps.draw(data, quantity)
+        save(figure, path, metadata)
+    write_text(snakemake.output.shares, to_markdown(*shares(data)))
+    write_text(snakemake.output.worst, to_markdown(*worst(data)))

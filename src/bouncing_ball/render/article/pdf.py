@@ -36,7 +36,7 @@ _STYLE = """\
 #set figure(supplement: none, numbering: none)
 #show figure.caption: it => align(left, text(size: 9pt, it.body))
 #let horizontalrule = line(length: 100%, stroke: 0.5pt)
-#align(center, text(size: 16pt, weight: "bold")[{title}])
+#align(center, par(justify: false, text(size: 16pt, weight: "bold")[{title}]))
 #v(1em)
 """
 

@@ -16,6 +16,7 @@ include: "workflow/rules/stages.smk"
 # Datasets in, figures, tables and text out.
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/tables.smk"
+include: "workflow/rules/explorer.smk"
 include: "workflow/rules/paper.smk"
 # Each artifact by its name, with its dataset.
 include: "workflow/rules/artifacts.smk"

@@ -6,6 +6,8 @@ own solution of the contact, Brent's method, and free flight.
 
 import math
 import os
+import shutil
+import subprocess
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -176,3 +178,46 @@ def continuation_settings():
         "max_angle": 0.2,
         "stiff_frequency_ratio": 1e4,
     }
+
+
+CHROMIUM = next(
+    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome", "chrome"))),
+    None,
+)
+
+
+def _browse(folder, url, *options):
+    """Run the browser once, in a folder of its own for what it keeps."""
+    done = subprocess.run(
+        [
+            CHROMIUM,
+            "--headless",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--disable-quic",
+            "--no-first-run",
+            "--disable-background-networking",
+            "--disable-component-update",
+            "--disable-sync",
+            "--hide-scrollbars",
+            "--host-resolver-rules=MAP * ~NOTFOUND",
+            # The frame is a file as well, and is to be looked into.
+            "--allow-file-access-from-files",
+            f"--user-data-dir={folder / 'profile'}",
+            *options,
+            url.as_uri(),
+        ],
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.fixture(scope="session")
+def browse():
+    """A browser without a window and without a network: ``browse(folder, url, *options)``."""
+    if CHROMIUM is None:
+        pytest.skip("no Chromium on this machine")
+    return _browse

@@ -74,6 +74,7 @@ def files(artifacts):
             *(["nc"] if STAGES[name].study else []),
             *(["png", "svg"] if name in FIGURES else []),
             *(["csv", "md", "tex"] if name in TABLES else []),
+            *(["html"] if STAGES[name].kind is Kind.PAGE else []),
         ]
     ]
 

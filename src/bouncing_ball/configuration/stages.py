@@ -21,6 +21,8 @@ class Kind(Enum):
     EXTENSION = "extension"
     """A figure beyond the paper."""
     TABLE = "table"
+    PAGE = "page"
+    """A page for the browser, which computes by itself."""
     DATASET = "dataset"
     """Nothing: other datasets and the article are made from it."""
 
@@ -364,6 +366,15 @@ _MODELS: tuple[Stage, ...] = (
     ),
 )
 
+_EXPLORER = Stage(
+    "explorer",
+    Kind.PAGE,
+    "A page to explore the models, and the orbits that it checks itself against",
+    "studies.reference_orbits.reference_orbits",
+    "extensions.explorer",
+    "frequency_ratio:span seed",
+)
+
 _AUDIT = (
     Stage(
         "formulas",
@@ -406,7 +417,7 @@ _AUDIT = (
     ),
 )
 
-STAGES: Mapping[str, Stage] = {stage.name: stage for stage in (*_MODELS, *_AUDIT)}
+STAGES: Mapping[str, Stage] = {stage.name: stage for stage in (*_MODELS, _EXPLORER, *_AUDIT)}
 """The entries by name, in the order in which they are listed everywhere."""
 
 

@@ -65,6 +65,8 @@ VARIABLES: dict[str, Variable] = {
     "grazing_phase": Variable("phase at which the unstable orbit grazes the table", "φ", "rad"),
     "multiplier_real": Variable("real part of the Floquet multiplier", "Re μ"),
     "multiplier_imag": Variable("imaginary part of the Floquet multiplier", "Im μ"),
+    "trace": Variable("trace of the monodromy", "tr"),
+    "determinant": Variable("determinant of the monodromy", "det"),
     "residual": Variable("largest defect of the orbit equations", "", equation="Eqs. 21-26"),
     # special points
     "special_kind": Variable("kind of special point", ""),
@@ -170,6 +172,16 @@ VARIABLES: dict[str, Variable] = {
     "small_parameter": Variable("what must be small for the error law", "δ"),
     "stated_below": Variable("small parameter below which the error law is stated", "δ"),
     "amplitude_ratio": Variable("amplitude over that of the saddle-node", "Λ/Λ_SN"),
+    "restitution_trace": Variable("trace of the monodromy, restitution model", "tr"),
+    "restitution_period_doubling": Variable(
+        "amplitude of the period doubling, restitution model", "Λ_PD"
+    ),
+    "corrected_phase": Variable("phase of impact, corrected model", "φ", "rad"),
+    "corrected_trace": Variable("trace of the monodromy, corrected model", "tr"),
+    "corrected_saddle_node": Variable("amplitude of the saddle-node, corrected model", "Λ_SN"),
+    "corrected_period_doubling": Variable(
+        "amplitude of the period doubling, corrected model", "Λ_PD"
+    ),
     "corrected_max_height": Variable("greatest height, corrected model", "max z"),
     "flight_before": Variable("flight before the contact, continued", "z"),
     "flight_after": Variable("flight after the contact, continued backwards", "z"),

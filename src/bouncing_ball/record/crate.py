@@ -23,6 +23,7 @@ FORMATS = {
     ".md": "text/markdown",
     ".tex": "application/x-tex",
     ".txt": "text/plain",
+    ".html": "text/html",
 }
 
 Entity = dict[str, Any]

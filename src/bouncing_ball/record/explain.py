@@ -24,7 +24,14 @@ from bouncing_ball.record.provenance import (
 from bouncing_ball.record.reading import UnreadableError, printable, read_file, reason
 from bouncing_ball.record.revision import UNKNOWN, checkout, revision
 
-_KINDS = {".nc": "dataset", ".png": "picture", ".svg": "picture", ".csv": "table", ".tex": "table"}
+_KINDS = {
+    ".nc": "dataset",
+    ".png": "picture",
+    ".svg": "picture",
+    ".csv": "table",
+    ".tex": "table",
+    ".html": "page",
+}
 _SEVERAL = "several"
 # Ignored by git, so that it does not mark the next run as dirty.
 _CHANGED = "results/configuration.json"

@@ -7,7 +7,6 @@ writes down what the browser made of it.
 import json
 import re
 import shutil
-import subprocess
 
 import numpy as np
 import pytest
@@ -15,14 +14,7 @@ from PIL import Image
 
 from bouncing_ball.record.diff.report_html import to_html
 
-CHROMIUM = next(
-    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome", "chrome"))),
-    None,
-)
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine"),
-]
+pytestmark = pytest.mark.slow
 
 OBSERVER = """<!doctype html>
 <meta charset="utf-8">
@@ -103,36 +95,7 @@ addEventListener("load", () => {
 """
 
 
-def browse(folder, url, *options):
-    """Run the browser once, in a folder of its own for what it keeps."""
-    done = subprocess.run(
-        [
-            CHROMIUM,
-            "--headless",
-            "--no-sandbox",
-            "--disable-gpu",
-            "--disable-quic",
-            "--no-first-run",
-            "--disable-background-networking",
-            "--disable-component-update",
-            "--disable-sync",
-            "--hide-scrollbars",
-            "--host-resolver-rules=MAP * ~NOTFOUND",
-            # The frame is a file as well, and is to be looked into.
-            "--allow-file-access-from-files",
-            f"--user-data-dir={folder / 'profile'}",
-            *options,
-            url.as_uri(),
-        ],
-        capture_output=True,
-        text=True,
-        timeout=120,
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout
-
-
-def observe(folder, width):
+def observe(browse, folder, width):
     """What the browser made of page.html in a window so wide."""
     observer = folder / "observer.html"
     observer.write_text(OBSERVER.replace("WIDTH", str(width)), encoding="utf-8")
@@ -158,8 +121,8 @@ def page(kept_pair, tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def seen(page):
-    return observe(page, 1200)
+def seen(page, browse):
+    return observe(browse, page, 1200)
 
 
 def test_the_browser_shows_every_picture_and_the_worst_first(seen, kept_pair):
@@ -234,20 +197,20 @@ def test_a_list_to_jump_by_and_only_what_moved(seen):
     assert len(seen["drifts"]) == 1
 
 
-def test_the_browser_would_see_a_picture_that_is_broken(page, tmp_path):
+def test_the_browser_would_see_a_picture_that_is_broken(page, browse, tmp_path):
     path = tmp_path / "page.html"
     text = (page / path.name).read_text(encoding="utf-8")
     start = text.index("data:image/png;base64,") + len("data:image/png;base64,")
     path.write_text(text[:start] + "AAAA" + text[start + 4 :], encoding="utf-8")
-    seen = observe(tmp_path, 1200)
+    seen = observe(browse, tmp_path, 1200)
     assert [image["drawn"] for image in seen["images"]].count(False) == 1
 
 
-def test_the_page_fits_a_telephone(page):
-    assert observe(page, 360)["overflow"] == 0
+def test_the_page_fits_a_telephone(page, browse):
+    assert observe(browse, page, 360)["overflow"] == 0
 
 
-def test_the_page_is_painted(page):
+def test_the_page_is_painted(page, browse):
     target = page / "page.png"
     browse(page, page / "page.html", f"--screenshot={target}", "--window-size=1000,1400")
     with Image.open(target) as picture:

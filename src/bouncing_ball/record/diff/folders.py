@@ -17,7 +17,7 @@ from bouncing_ball.record.reading import UnreadableError, names_in, printable
 
 _FIGURES, _PAPER = "figures", "paper.md"
 # In the order in which they are compared: the data first, as the others lean on them.
-_SUFFIXES = (".nc", ".csv", ".png", ".svg", ".md", ".tex")
+_SUFFIXES = (".nc", ".csv", ".png", ".svg", ".md", ".tex", ".html")
 # Of processor time, a hundred times what the record takes; what then is left is not compared.
 _SECONDS = 300.0
 

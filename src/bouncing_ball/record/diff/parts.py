@@ -23,6 +23,7 @@ import xarray as xr
 from bouncing_ball.record.diff.data import VariableResult, compare_datasets
 from bouncing_ball.record.diff.drawings import compare_drawings, read_drawing
 from bouncing_ball.record.diff.outcome import Outcome, worst
+from bouncing_ball.record.diff.pages import Page, read_page
 from bouncing_ball.record.diff.pictures import PictureResult, compare_pictures, read_picture
 from bouncing_ball.record.diff.texts import Line, compare_texts, summary
 from bouncing_ball.record.diff.tolerances import Tolerances
@@ -92,7 +93,11 @@ def _text(content: bytes) -> str:
         raise UnreadableError("not UTF-8 text") from None
 
 
-_READERS = {".nc": read_data, ".png": read_picture, ".svg": read_drawing}
+def _page(content: bytes) -> Page:
+    return read_page(_text(content))
+
+
+_READERS = {".nc": read_data, ".png": read_picture, ".svg": read_drawing, ".html": _page}
 # Bytes of what is compared line by line or element by element; twenty times our largest.
 _MAX_TEXT = 2**21
 
@@ -197,6 +202,15 @@ def _compared(
             return _picture(file, (contents[0], contents[1]), sides, rules)
         case ".svg":
             return _drawing(file, sides)
+        case ".html":
+            data_part = _dataset(file, artifact, tuple(side.data for side in sides), rules)
+            text_part = _lines(file, tuple(side.text for side in sides), None)
+            return replace(
+                data_part,
+                outcome=worst([data_part.outcome, text_part.outcome]),
+                note=_joined(data_part.note, text_part.note),
+                lines=text_part.lines,
+            )
         case _:
             return _lines(file, sides, data)
 

@@ -1,0 +1,1 @@
+"""The explorer: one page that computes by itself, and checks itself against the package."""

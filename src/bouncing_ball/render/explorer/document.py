@@ -1,0 +1,84 @@
+"""The explorer's page: model, drawings and reference orbits in one file.
+
+The scripts and the style are files of their own beside this one. A
+content-security policy lets these very texts run, known by their checksums, and
+nothing else: the page can ask for nothing, from nowhere.
+"""
+
+import base64
+import hashlib
+import json
+from collections.abc import Mapping
+from importlib.resources import files
+
+import numpy as np
+import xarray as xr
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+BOUND = 1e-11
+"""Difference from Python above which the badge is red: a hundred times the largest seen."""
+STATE = ("release", "restitution", "frequency_ratio", "n", "amplitude")
+"""What an orbit of the references is asked with, in the order of its ``state``."""
+SOURCES = ("model.js", "page.js", "page.css")
+
+
+def sources() -> dict[str, str]:
+    """The scripts and the style by name."""
+    folder = files(__package__)
+    return {name: folder.joinpath(name).read_text(encoding="utf-8") for name in SOURCES}
+
+
+def references(data: xr.Dataset) -> str:
+    """The reference orbits as JSON, one in a line; what does not exist is null."""
+    names = [str(name) for name in data.data_vars if name not in STATE]
+    rows = []
+    for rule in data["release"].values:
+        part = data.sel(release=rule)
+        for k in range(data.sizes["sample"]):
+            one = part.isel(sample=k)
+            n = int(one["n"])
+            numbers = [float(one[name]) for name in ("restitution", "frequency_ratio")]
+            values = [float(one[name]) for name in names]
+            row = {
+                "state": [str(rule), *numbers, n, float(one["amplitude"])],
+                "values": [value if np.isfinite(value) else None for value in values],
+            }
+            rows.append(json.dumps(row, allow_nan=False))
+    commit = str(data.attrs.get("provenance_commit", "unknown"))
+    head = f'{{"commit": {json.dumps(commit)}, "names": {json.dumps(names)}, "orbits": ['
+    return "\n".join([head, ",\n".join(rows), "]}"])
+
+
+def _allowed(text: str) -> str:
+    """The source expression that lets one inline text through."""
+    digest = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
+    return f"'sha256-{digest}'"
+
+
+def to_html(data: xr.Dataset, texts: Mapping[str, str] | None = None) -> str:
+    """The page.
+
+    Parameters
+    ----------
+    data : Dataset
+        The reference orbits (:mod:`bouncing_ball.studies.reference_orbits`).
+    texts : mapping, optional
+        The scripts and the style, if not those beside this module.
+    """
+    texts = sources() if texts is None else texts
+    script = f"\n{texts['model.js']}\n{texts['page.js']}"
+    style = f"\n{texts['page.css']}"
+    environment = Environment(
+        loader=PackageLoader(str(__package__), "."), undefined=StrictUndefined, autoescape=False
+    )
+    policy = (
+        f"default-src 'none'; script-src {_allowed(script)}; style-src {_allowed(style)}; "
+        "base-uri 'none'; form-action 'none'"
+    )
+    return environment.get_template("page.html.j2").render(
+        policy=policy,
+        script=script,
+        style=style,
+        references=references(data),
+        bound=repr(BOUND),
+    )

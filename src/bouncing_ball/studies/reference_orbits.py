@@ -1,0 +1,77 @@
+"""Random orbits in full, for others to compare their own computation with.
+
+The page of the explorer computes them again in the reader's browser.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.datasets.variables import describe
+from bouncing_ball.impacts.damping import restitution_coefficient
+from bouncing_ball.impacts.release import Release
+from bouncing_ball.impacts.spring_damper import Contact, contact_force
+from bouncing_ball.studies.model_errors import models, random_orbits
+from bouncing_ball.studies.parameters import grid
+
+# Of the restitution model's stable range: from next to its saddle-node to beyond
+# its period doubling.
+_PLACES = (0.02, 1.2)
+
+
+def reference_orbits(parameters: Mapping[str, Any]) -> xr.Dataset:
+    """One orbit for each ϖ of a grid under each release rule; n, r and Λ are drawn.
+
+    r is that of Eq. 16; ``ball`` and ``contact_force`` are in the middle of the contact.
+    NaN where there is no orbit or no bifurcation.
+    """
+    omega = grid(parameters["frequency_ratio"])
+    parts = [_under(rule, omega, parameters["seed"] + k) for k, rule in enumerate(Release)]
+    return describe(
+        xr.concat(parts, dim="release").assign_coords(release=[str(rule) for rule in Release])
+    )
+
+
+def _under(rule: Release, omega: np.ndarray, seed: int) -> xr.Dataset:
+    n, zeta, lam, _ = random_orbits(omega.size, seed, rule, _PLACES)
+    r = restitution_coefficient(zeta)
+    exact, simple, corrected = models(Contact.from_restitution(r, omega, rule))
+    orbit = exact.orbit(n, lam)
+    trace, determinant = orbit.trace_and_determinant()
+    by_r, repaired = simple.orbit(n, lam), corrected.orbit(n, lam)
+    middle = orbit.contact_duration / 2
+    start = (0.0, orbit.relative_impact_velocity, orbit.phase, lam)
+    flow = orbit.contact.flow(middle, *start)
+    force = contact_force(flow.displacement, flow.velocity, omega, orbit.contact.damping_ratio)
+    values = {
+        "n": n,
+        "restitution": r,
+        "frequency_ratio": omega,
+        "amplitude": lam,
+        "phase": orbit.phase,
+        "contact_duration": orbit.contact_duration,
+        "impact_velocity": orbit.impact_velocity,
+        "bounce_velocity": orbit.bounce_velocity,
+        "apparent_restitution": orbit.apparent_restitution,
+        "max_height": orbit.max_height,
+        "trace": trace,
+        "determinant": determinant,
+        "saddle_node_amplitude": exact.saddle_node(n).amplitude,
+        "period_doubling_amplitude": exact.period_doubling(n).amplitude,
+        "ball": orbit.contact_path(middle)[0],
+        "contact_force": force,
+        "restitution_phase": by_r.phase,
+        "restitution_trace": by_r.trace_and_determinant()[0],
+        "restitution_period_doubling": simple.period_doubling(n).amplitude,
+        "corrected_phase": repaired.phase,
+        "corrected_max_height": repaired.max_height,
+        "corrected_trace": repaired.trace_and_determinant()[0],
+        "corrected_saddle_node": corrected.saddle_node(n).amplitude,
+        "corrected_period_doubling": corrected.period_doubling(n).amplitude,
+    }
+    return xr.Dataset(
+        {name: ("sample", np.asarray(value)) for name, value in values.items()},
+        coords={"sample": np.arange(omega.size)},
+    )

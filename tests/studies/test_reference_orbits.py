@@ -1,0 +1,34 @@
+"""The references are orbits: of the stable range and beyond, under both rules."""
+
+import numpy as np
+
+from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.studies.reference_orbits import reference_orbits
+
+GIVEN = {"frequency_ratio": {"min": 1.0, "max": 1e4, "samples": 40}, "seed": 31}
+
+
+def test_they_satisfy_the_equations_of_the_contact():
+    data = reference_orbits(GIVEN)
+    for rule in ("displacement", "force"):
+        part = data.sel(release=rule)
+        contact = Contact.from_restitution(
+            part.restitution.values, part.frequency_ratio.values, rule
+        )
+        names = ("amplitude", "phase", "contact_duration", "impact_velocity")
+        orbit = ContactModel(contact).orbit_of(
+            part.n.values.astype(int), *(part[name].values for name in names)
+        )
+        there = np.isfinite(part.phase.values)
+        assert there.mean() > 0.8
+        # Rounding of a velocity of order 10.
+        assert np.nanmax(orbit.defect()) < 1e-12
+        stable = orbit.is_stable()[there]
+        assert 0.5 < stable.mean() < 1
+        # The force in the middle of the contact pushes.
+        assert np.nanmin(part.contact_force) > 0
+
+
+def test_the_same_seed_gives_the_same_orbits():
+    assert reference_orbits(GIVEN).identical(reference_orbits(GIVEN))

@@ -1,5 +1,6 @@
 """Pictures against the record: pixels, elements and coordinates decide."""
 
+import base64
 import io
 import json
 import re
@@ -147,7 +148,11 @@ def drawing(content):
         ("<g ONLOAD='f()'/>", "event handler"),
         ("<use xlink:href='http://a.b/c.svg#d'/>", "reference to elsewhere"),
         ("<use href='javascript:f()'/>", "reference to elsewhere"),
-        ("<image href='a.png'/>", "<image>"),
+        ("<image href='a.png'/>", "elsewhere"),
+        ("<image href='data:image/svg+xml;base64,PHN2Zy8+'/>", "elsewhere"),
+        ("<image href='data:image/png;base64,PHN2Zy8+'/>", "not a PNG file"),
+        ("<image href='data:image/png;base64,*'/>", "not base64"),
+        ("<use href='data:image/png;base64,PHN2Zy8+'/>", "elsewhere"),
         ("<a href='#b'/>", "<a>"),
         ("<foreignObject/>", "<foreignObject>"),
         ("<animate/>", "<animate>"),
@@ -185,7 +190,25 @@ def test_a_drawing_that_is_none(text):
 
 
 def share(record, new):
-    return compare_drawings(drawing(record), drawing(new))[0]
+    return compare_drawings(drawing(record), drawing(new), 2.0)[0]
+
+
+def raster(levels):
+    """An element with a grey picture in it."""
+    file = io.BytesIO()
+    Image.fromarray(np.array(levels, dtype=np.uint8)).save(file, "PNG")
+    content = base64.b64encode(file.getvalue()).decode()
+    return f"<image id='image0123456789' xlink:href='data:image/png;base64,\n{content}'/>"
+
+
+def test_a_picture_in_a_drawing_is_compared_as_a_picture():
+    whole = raster([[0, 9], [99, 200]])
+    assert share(whole, whole.replace("0123456789", "abcdef0123")) == 0
+    # One of four pixels by two levels: rms 1, of the 2 allowed.
+    assert share(whole, raster([[0, 9], [99, 202]])) == pytest.approx(0.5)
+    assert share(whole, raster([[0, 9], [99, 240]])) == pytest.approx(10)
+    assert share(whole, raster([[0, 9, 99], [99, 200, 9]])) == np.inf
+    assert share(whole, "<image/>") == np.inf
 
 
 @pytest.mark.parametrize(

@@ -1,10 +1,14 @@
 """Two vector graphics: elements and words as they are, coordinates within a budget.
 
+A picture in them, one colour for each sample, is compared as any picture is.
+
 matplotlib leaves out a vertex that is nearer than a ninth of a pixel, here of a
 point, to the line through its neighbours (``path.simplify_threshold``): what is
 drawn of a curve is known to that, and two drawings of one curve to twice that.
 """
 
+import base64
+import binascii
 import json
 import re
 from collections.abc import Sequence
@@ -15,6 +19,7 @@ from xml.parsers import expat
 import numpy as np
 
 from bouncing_ball.record.diff.outcome import Outcome
+from bouncing_ball.record.diff.pictures import compare_pictures, read_picture
 from bouncing_ball.record.diff.texts import Line
 from bouncing_ball.record.reading import UnreadableError, printable
 
@@ -24,9 +29,10 @@ _SVG = "http://www.w3.org/2000/svg"
 # What matplotlib draws with. Nothing else is let in: neither a script nor an animation
 # nor a picture from elsewhere.
 _TAGS = {"svg", "metadata", "defs", "style", "g", "path", "use", "clipPath", "rect", "text"}
-_TAGS |= {"pattern", "tspan", "circle", "line", "polyline", "polygon", "ellipse"}
+_TAGS |= {"pattern", "tspan", "circle", "line", "polyline", "polygon", "ellipse", "image"}
+_PICTURE = "data:image/png;base64,"
 # Named by matplotlib after a checksum of the coordinates.
-_CHECKSUM = re.compile(r"\b[a-zA-Z]?[0-9a-f]{10}\b")
+_CHECKSUM = re.compile(r"\b(?:image|[a-zA-Z])?[0-9a-f]{10}\b")
 _NUMBER = re.compile(r"-?[0-9]+(?:\.[0-9]+)?(?:e-?[0-9]{1,3})?")
 _PLACES = {"d", "x", "y", "cx", "cy", "x1", "x2", "y1", "y2", "points", "width", "height"}
 _TRANSLATE = re.compile(r"translate\([^()]*\)")
@@ -36,11 +42,15 @@ _MAX_PAIRS = 2**20
 
 @dataclass(frozen=True)
 class Element:
-    """A tag with its attributes, or a text; numbers that are places are taken out."""
+    """A tag with its attributes, or a text; numbers that are places are taken out.
+
+    ``picture`` is the content of a PNG file.
+    """
 
     words: str
     numbers: tuple[float, ...] = ()
     path: str = ""
+    picture: bytes = b""
 
 
 @dataclass(frozen=True)
@@ -51,12 +61,13 @@ class Drawing:
     metadata: dict[str, str]
 
 
-def _check_attribute(name: str, value: str) -> None:
+def _check_attribute(tag: str, name: str, value: str) -> None:
     """Refuse what may run something or fetch something."""
     local = name.rpartition(" ")[2].lower()
     if local.startswith("on"):
         raise UnreadableError(f"an event handler in it: {printable(local, 40)}")
-    if local in ("href", "src", "base") and not value.startswith("#"):
+    held = "#" if tag != "image" else _PICTURE
+    if local in ("href", "src", "base") and not value.startswith(held):
         raise UnreadableError(f"a reference to elsewhere in it: {printable(value, 60)}")
     _check_style(value)
 
@@ -65,6 +76,16 @@ def _check_style(text: str) -> None:
     fetched = re.sub(r"url\(#", "", text)
     if re.search(r"url\s*\(|@|\\|expression|javascript:", fetched, re.IGNORECASE):
         raise UnreadableError(f"a style in it that may fetch: {printable(text, 60)}")
+
+
+def _decoded(value: str) -> bytes:
+    """The PNG file in a reference; refused unless it is one of a size that is looked at."""
+    try:
+        content = base64.b64decode("".join(value.removeprefix(_PICTURE).split()), validate=True)
+    except (ValueError, binascii.Error):
+        raise UnreadableError("a picture in it that is not base64") from None
+    read_picture(content)
+    return content
 
 
 class _Reader:
@@ -95,7 +116,7 @@ class _Reader:
             raise UnreadableError(f"a <{printable(name, 40)}> in it")
         for key, value in attributes.items():
             if not self.inside:
-                _check_attribute(key, value)
+                _check_attribute(name, key, value)
         self.open.append(tag)
         if self.inside or name == "metadata":
             self.inside += 1
@@ -123,9 +144,11 @@ class _Reader:
             self.refuse()
 
     def _element(self, name: str, attributes: dict[str, str]) -> Element:
-        words, numbers, path = [name], [], ""
+        words, numbers, path, picture = [name], [], "", b""
         for key, value in sorted(attributes.items()):
             local = key.rpartition(" ")[2]
+            if name == "image" and value.startswith(_PICTURE):
+                picture, value = _decoded(value), "a picture"
             value = _CHECKSUM.sub(self._renamed, value)
             if local == "d":
                 path = " ".join(value.split())
@@ -138,7 +161,7 @@ class _Reader:
                     numbers += _NUMBER.findall(part)
                 value = _TRANSLATE.sub("translate", value)
             words.append(f"{local}={' '.join(value.split())!r}")
-        return Element(" ".join(words), tuple(map(float, numbers)), path)
+        return Element(" ".join(words), tuple(map(float, numbers)), path, picture)
 
     def _renamed(self, found: re.Match[str]) -> str:
         return self.names.setdefault(found[0], f"({len(self.names) + 1})")
@@ -161,7 +184,7 @@ def read_drawing(content: bytes) -> Drawing:
     ...
     bouncing_ball.record.reading.UnreadableError: an event handler in it: onload
     >>> read_drawing(svg.replace(b'onload="f()"', b"")).elements[1]
-    Element(words="use x='#'", numbers=(1.5,), path='')
+    Element(words="use x='#'", numbers=(1.5,), path='', picture=b'')
     """
     reader = _Reader()
     parser = expat.ParserCreate("utf-8", " ")
@@ -222,6 +245,16 @@ def _largest(record: Sequence[float], new: Sequence[float]) -> float:
     return float(np.max(np.nan_to_num(distance, nan=np.inf), initial=0.0))
 
 
+def _recoloured(record: Element, new: Element, budget: float) -> float:
+    """The share of their budget by which the pictures in two elements differ; ∞ in size."""
+    if record.picture == new.picture:
+        return 0.0
+    if not record.picture or not new.picture:
+        return np.inf
+    found = compare_pictures(read_picture(record.picture), read_picture(new.picture), budget)
+    return np.inf if found.share is None else found.share
+
+
 def _moved(record: Element, new: Element) -> float:
     """How far the places in an element have moved, in points; ∞ for another element."""
     if record == new:
@@ -246,14 +279,22 @@ def _shown(element: Element | None) -> str | None:
     return " ".join(filter(None, (element.words, numbers, element.path)))
 
 
-def compare_drawings(record: Drawing, new: Drawing) -> tuple[float, tuple[Line, ...]]:
-    """The largest share of :data:`BUDGET`, and all elements that are not the same."""
+def compare_drawings(
+    record: Drawing, new: Drawing, picture_budget: float
+) -> tuple[float, tuple[Line, ...]]:
+    """The largest share of :data:`BUDGET`, and all elements that are not the same.
+
+    ``picture_budget`` is that of the pictures in them, in grey levels of 255.
+    """
     share, lines = 0.0, []
     with np.errstate(all="ignore"):
         for number, (old, each) in enumerate(zip_longest(record.elements, new.elements), start=1):
             if old == each:
                 continue
-            moved = np.inf if old is None or each is None else _moved(old, each) / BUDGET
+            moved = np.inf
+            if old is not None and each is not None:
+                recoloured = _recoloured(old, each, picture_budget)
+                moved = max(_moved(old, each) / BUDGET, recoloured)
             outcome = Outcome.WITHIN if moved <= 1 else Outcome.DRIFTED
             share = max(share, moved)
             lines.append(Line(f"element {number}", outcome, _shown(old), _shown(each)))

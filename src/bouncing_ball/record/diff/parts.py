@@ -178,8 +178,8 @@ def _picture(file: str, images: tuple[bytes, bytes], sides: Any, rules: Toleranc
     )
 
 
-def _drawing(file: str, sides: Any) -> Part:
-    share, lines = compare_drawings(*sides)
+def _drawing(file: str, sides: Any, rules: Tolerances) -> Part:
+    share, lines = compare_drawings(*sides, rules.pictures.allowed)
     outcome = worst(line.outcome for line in lines)
     other = redrawn(sides[0].metadata, sides[1].metadata) if lines else ""
     note = f"{len(lines)} of {len(sides[0].elements)} elements moved" if lines else ""
@@ -201,7 +201,7 @@ def _compared(
         case ".png":
             return _picture(file, (contents[0], contents[1]), sides, rules)
         case ".svg":
-            return _drawing(file, sides)
+            return _drawing(file, sides, rules)
         case ".html":
             data_part = _dataset(file, artifact, tuple(side.data for side in sides), rules)
             text_part = _lines(file, tuple(side.text for side in sides), None)

@@ -179,7 +179,7 @@ def _picture(file: str, images: tuple[bytes, bytes], sides: Any, rules: Toleranc
 
 
 def _drawing(file: str, sides: Any, rules: Tolerances) -> Part:
-    share, lines = compare_drawings(*sides, rules.pictures.allowed)
+    share, lines = compare_drawings(sides[0], sides[1], rules.pictures.allowed)
     outcome = worst(line.outcome for line in lines)
     other = redrawn(sides[0].metadata, sides[1].metadata) if lines else ""
     note = f"{len(lines)} of {len(sides[0].elements)} elements moved" if lines else ""

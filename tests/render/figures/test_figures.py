@@ -7,6 +7,7 @@ import pytest
 
 from bouncing_ball.configuration.stages import STAGES, Kind, names
 from bouncing_ball.record.carriers import read_attributes
+from bouncing_ball.record.diff.drawings import read_drawing
 from bouncing_ball.render.figures.domains import up_to_second_saddle_node
 from bouncing_ball.render.figures.style import (
     COLOURS,
@@ -33,7 +34,8 @@ def lines(figure):
     return [line for axes in figure.axes for line in axes.lines]
 
 
-@pytest.mark.parametrize("name", WITH_DATA)
+# The map of the basins has a test of its own, below.
+@pytest.mark.parametrize("name", [name for name in WITH_DATA if name != "ext_basins"])
 def test_a_figure_follows_its_data(record, name):
     data = record[name]
     moved = data.map(lambda values: values * 1.5 + 0.1 if values.dtype.kind == "f" else values)
@@ -182,3 +184,44 @@ def test_numbers_in_labels():
         "10^{4}",
         r"2.5\times 10^{5}",
     ]
+
+
+def test_basins_are_drawn_where_they_are(record, tmp_path):
+    data = record["ext_basins"]
+    figure = drawn("ext_basins", data)
+    # As shapes, which can be compared, and not as a picture in the picture.
+    save(figure, tmp_path / "basins.svg", {})
+    assert len(read_drawing((tmp_path / "basins.svg").read_bytes()).elements) > 100
+    cell = 8 / data.sizes["start_speed"]
+    for case, axes in enumerate(figure.axes):
+        shapes = [patch.get_path() for patch in axes.patches]
+        fills = [patch.get_facecolor() for patch in axes.patches]
+        destination = data.destination.values[case, ::2, ::2]
+        # Some starts, and the colour of the shape that they are in, or of the background.
+        colours: dict[int, set] = {}
+        for row, column in np.random.default_rng(1).integers(0, destination.shape[0], (60, 2)):
+            place = 2 * (column + 0.5) / destination.shape[1] - 1, cell * (2 * row + 1)
+            inside = [f for f, s in zip(fills, shapes, strict=True) if s.contains_point(place)]
+            assert len(inside) <= 1
+            colour = inside[0] if inside else axes.get_facecolor()
+            colours.setdefault(int(destination[row, column]), set()).add(colour)
+        assert all(len(found) == 1 for found in colours.values())
+        assert len(set.union(*colours.values())) == len(colours) > 2
+
+
+def test_windows_are_drawn_from_the_threshold_to_their_ends(record):
+    data = record["ext_rattling"]
+    left, right = drawn("ext_rattling", data).axes
+    first = data.isel(restitution=0)
+    marked = {
+        line.get_label(): line.get_xydata()
+        for line in left.lines
+        if not line.get_label().startswith("_")
+    }
+    for kind in ("saddle-node", "period doubling", "grazing in contact"):
+        for ratio, amplitude in marked[kind]:
+            place = first.sel(frequency_ratio=ratio)
+            assert (place.window_end, place.window_amplitude) == (kind, amplitude)
+    assert marked[r"$\Lambda_{SD}$"][:, 1].tolist() == first.threshold_amplitude.values.tolist()
+    limits = {float(line.get_ydata()[0]) for line in right.lines if line.get_marker() == 5}
+    assert limits == set(data.stiff_window.values.tolist())

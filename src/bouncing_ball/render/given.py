@@ -25,6 +25,9 @@ _MAY_BE_EMPTY = {
     "special_phase",
     "special_residual",
     "step_needed",
+    # Of the windows: there is no stiff limit under the force rule.
+    "joining_ratio",
+    "stiff_window",
     # Of claims: a statement has no printed number, a formula no deviation.
     "deviation",
     "deviation_units",

@@ -62,7 +62,9 @@ def draw(data: xr.Dataset) -> Figure:
         for k, mark in enumerate(_MARKS):
             if mark and np.isfinite(one.orbit_phase[k]):
                 axes.plot(one.orbit_phase[k] / np.pi, one.orbit_speed[k], marker=mark, **_ORBIT)
-        axes.set_title(rf"$\Lambda={number(float(one.amplitude))}$", fontsize=9)
+        # Not the attribute of this name, which is a list.
+        amplitude = number(float(one["amplitude"]))
+        axes.set_title(rf"$\Lambda={amplitude}$", fontsize=9)
         axes.set_xlabel(r"phase of impact $\varphi/\pi$")
         for side in ("top", "right"):
             axes.spines[side].set_visible(True)

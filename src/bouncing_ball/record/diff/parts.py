@@ -98,7 +98,7 @@ def _page(content: bytes) -> Page:
 
 
 _READERS = {".nc": read_data, ".png": read_picture, ".svg": read_drawing, ".html": _page}
-# Bytes of what is compared line by line or element by element; twice our largest.
+# Bytes of what is compared line by line or element by element; twenty times our largest.
 _MAX_TEXT = 2**21
 
 

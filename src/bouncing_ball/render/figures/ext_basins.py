@@ -2,10 +2,9 @@
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch, PathPatch
-from matplotlib.path import Path
+from matplotlib.patches import Patch
 
 from bouncing_ball.render.figures.style import WIDE, Look, canvas, number
 
@@ -19,36 +18,6 @@ _ORBIT: Look = {
     "zorder": 3,
 }
 _MARKS = ("", "o", "^", "", "")
-# Of the starts so many are one cell of the picture along each axis: all of them as
-# vectors would be three megabytes.
-_EVERY = 2
-
-
-def _cells(where: np.ndarray, top: float) -> Path:
-    """Rectangles over the runs of true cells in each row, in units of the axes."""
-    rows, columns = where.shape
-    edges = np.diff(where.astype(np.int8), axis=1, prepend=0, append=0)
-    row, begin = np.nonzero(edges > 0)
-    _, end = np.nonzero(edges < 0)
-    left, right = 2 * begin / columns - 1, 2 * end / columns - 1
-    low, high = top * row / rows, top * (row + 1) / rows
-    corners = np.array([[left, low], [right, low], [right, high], [left, high], [left, low]])
-    codes = [Path.MOVETO, Path.LINETO, Path.LINETO, Path.LINETO, Path.CLOSEPOLY]
-    return Path(corners.transpose(2, 0, 1).reshape(-1, 2), np.tile(codes, row.size))
-
-
-def _draw_map(axes: Axes, destination: np.ndarray, top: float) -> None:
-    """One shape for each motion, on the colour of the most frequent one."""
-    axes.set(xlim=(-1.0, 1.0), ylim=(0.0, top))
-    frequent = int(np.bincount(destination.ravel(), minlength=len(_FILLS)).argmax())
-    axes.set_facecolor(_FILLS[frequent])
-    for kind, fill in enumerate(_FILLS):
-        where = destination == kind
-        if kind == frequent or not where.any():
-            continue
-        axes.add_patch(
-            PathPatch(_cells(where, top), facecolor=fill, linewidth=0, antialiased=False)
-        )
 
 
 def draw(data: xr.Dataset) -> Figure:
@@ -58,7 +27,16 @@ def draw(data: xr.Dataset) -> Figure:
     top = data.attrs["velocity_max"]
     for case, axes in zip(data.case.values, panels[0], strict=True):
         one = data.sel(case=case)
-        _draw_map(axes, one.destination.values[::_EVERY, ::_EVERY], top)
+        axes.imshow(
+            one.destination,
+            origin="lower",
+            extent=(-1.0, 1.0, 0.0, top),
+            aspect="auto",
+            interpolation="none",
+            cmap=ListedColormap(_FILLS),
+            vmin=-0.5,
+            vmax=len(_FILLS) - 0.5,
+        )
         for k, mark in enumerate(_MARKS):
             if mark and np.isfinite(one.orbit_phase[k]):
                 axes.plot(one.orbit_phase[k] / np.pi, one.orbit_speed[k], marker=mark, **_ORBIT)

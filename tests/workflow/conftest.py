@@ -140,7 +140,9 @@ class Tree:
         files = self.contents(folder)
         return {name: hashlib.sha256(content).hexdigest() for name, content in files.items()}
 
-    def interrupt(self, sign: signal.Signals, *arguments: str, after: int) -> None:
+    def interrupt(
+        self, sign: signal.Signals, *arguments: str, after: int, of: str = "figures/*"
+    ) -> None:
         """Start a run and stop it once so many results are there."""
         running = subprocess.Popen(
             [SNAKEMAKE, *arguments],
@@ -151,7 +153,7 @@ class Tree:
             start_new_session=True,
         )
         deadline = time.monotonic() + 60
-        while len(list(self.path.glob("results/figures/*"))) < after:
+        while len(list(self.path.glob(f"results/{of}"))) < after:
             assert running.poll() is None, "the run ended before it could be interrupted"
             assert time.monotonic() < deadline, "no results within a minute"
             time.sleep(0.02)

@@ -1,0 +1,150 @@
+"""The atlas as its users run it: killed and resumed, with a damaged shard, on a Slurm."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+import yaml
+
+from bouncing_ball.atlas.plan import Plan
+from bouncing_ball.atlas.shards import shard
+from bouncing_ball.configuration.yaml_file import read_yaml
+from bouncing_ball.datasets.netcdf import read_dataset
+
+SMALL = {
+    "n": [1, 2],
+    "restitution": {"min": 0.05, "max": 1.0, "tiles": 2, "samples": 8},
+    "position": {"tiles": 2, "samples": 500},
+    "frequency_ratio": {"min": 3.0, "max": 1.0e5, "samples": 61},
+    "shards": 3,
+}
+ATLAS = ("--configfile", "small.yaml", "--", "results/atlas/atlas.nc")
+SHARDS = [f"results/atlas/shards/000{k}-of-0003.nc" for k in range(3)]
+
+
+def prepared(tree):
+    text = yaml.safe_dump({"atlas": SMALL})
+    (tree.path / "small.yaml").write_text(text, encoding="utf-8")
+    return tree
+
+
+@pytest.fixture(scope="module")
+def resumed(cloned, tmp_path_factory):
+    """A run killed as the second of its files was there, of which one was then damaged.
+
+    The tree, the checksums of what was there then, and what the second run said.
+    """
+    folder = tmp_path_factory.mktemp("atlas") / "tree"
+    shutil.copytree(cloned.path, folder, copy_function=shutil.copy2)
+    tree = prepared(type(cloned)(folder))
+    tree.interrupt(signal.SIGKILL, "--cores", "1", *ATLAS, after=2, of="atlas/shards/[0-9l]*.nc")
+    early = tree.checksums("results/atlas/shards")
+    damaged = folder / "results/atlas/shards" / sorted(early)[0]
+    content = bytearray(damaged.read_bytes())
+    content[len(content) // 2] ^= 1
+    # A damage that leaves the time as it was.
+    when = damaged.stat()
+    damaged.write_bytes(content)
+    os.utime(damaged, ns=(when.st_atime_ns, when.st_mtime_ns))
+    tree.run("--unlock", *ATLAS[:2])
+    said = tree.run("--cores", "1", *ATLAS)
+    return tree, early, damaged.name, said.stdout + said.stderr
+
+
+def test_a_killed_atlas_is_resumed_without_loss(resumed):
+    tree, early, _, _ = resumed
+    after = tree.checksums("results/atlas/shards")
+    assert 2 <= len(early) < len(after) == 4
+    # Those of the first run are as they were, the damaged one too, made again.
+    assert {name: after[name] for name in early} == early
+
+
+def test_a_damaged_shard_is_named_and_made_again(resumed):
+    _, early, damaged, said = resumed
+    assert f"results/atlas/shards/{damaged} is not what its job wrote" in said
+    assert f"made results/atlas/shards/{damaged}" in said
+    assert not any(f"made results/atlas/shards/{name}" in said for name in set(early) - {damaged})
+
+
+def test_the_files_hold_what_the_package_computes(resumed):
+    tree, *_ = resumed
+    section = read_yaml(tree.path / "config" / "config.yaml")["atlas"] | SMALL
+    assert Plan(section).shards == 3
+    expected, found = shard(Plan(section), 1), read_dataset(tree.path / SHARDS[1])
+    for name in expected.variables:
+        assert found[name].values.tobytes() == expected[name].values.tobytes(), name
+
+
+MISSING = [name for name in ("slurmctld", "slurmd", "sbatch") if not shutil.which(name)]
+MISSING = [name for name in MISSING if not Path("/usr/sbin", name).exists()]
+if not find_spec("snakemake_executor_plugin_slurm"):
+    MISSING.append("snakemake-executor-plugin-slurm")
+LOOPBACK = Path(__file__).with_name("slurm_on_loopback.sh")
+# Without accounting the state of a job is asked of squeue; the rest makes the test short.
+OPTIONS = (
+    *("--profile", "profiles/slurm", "--slurm-no-account"),
+    *("--slurm-status-command", "squeue", "--slurm-init-seconds-before-status-checks", "1"),
+    *("--seconds-between-status-checks", "1", "--latency-wait", "5"),
+)
+
+
+@pytest.fixture
+def slurm(tmp_path):
+    """The environment in which srun and its like speak to a Slurm of this test."""
+    folder = tmp_path / "slurm"
+    subprocess.run([LOOPBACK, "start", folder], check=True, timeout=60)
+    try:
+        yield {"PATH": f"{folder / 'bin'}{os.pathsep}{os.environ['PATH']}"}
+    finally:
+        subprocess.run([LOOPBACK, "stop", folder], check=True, timeout=60)
+
+
+def killed_in_the_middle(tree, environment) -> str:
+    """The shard whose job on the cluster was killed after it had begun."""
+    deadline = time.monotonic() + 120
+    while time.monotonic() < deadline:
+        for path in SHARDS:
+            name = Path(path).stem
+            begun = tree.path / "results/atlas/progress" / name
+            if begun.exists() and not (tree.path / path).exists():
+                form = ["squeue", "--noheader", "--states", "RUNNING", "--format", "%i %k"]
+                listed = subprocess.run(form, env=environment, capture_output=True, text=True)
+                jobs = [line.split() for line in listed.stdout.splitlines()]
+                (job,) = [number for number, comment in jobs if name in comment]
+                kill = ["scancel", "--signal=KILL", "--full", job]
+                subprocess.run(kill, env=environment, check=True)
+                return name
+        time.sleep(0.02)
+    raise AssertionError("no shard began within two minutes")
+
+
+@pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)}")
+def test_on_a_cluster_a_killed_shard_is_named_and_the_bytes_are_the_same(resumed, fresh, slurm):
+    tree = prepared(fresh)
+    environment = tree.environment() | slurm
+    log = tree.path / "slurm.txt"
+    with open(log, "w", encoding="utf-8") as said:
+        running = subprocess.Popen(
+            [Path(sys.executable).with_name("snakemake"), *OPTIONS, *ATLAS],
+            cwd=tree.path,
+            env=environment,
+            stdout=said,
+            stderr=said,
+        )
+        name = killed_in_the_middle(tree, environment)
+        assert running.wait(timeout=300) == 0, log.read_text(encoding="utf-8")
+    text = log.read_text(encoding="utf-8")
+    assert "Error in rule atlas_shard" in text
+    assert f"results/logs/atlas/shards/{name}.log" in text
+    assert "slurm_logs/rule_atlas_shard" in text
+    folder = "results/atlas"
+    local, cluster = (x.checksums(folder) for x in (resumed[0], tree))
+    assert {k: v for k, v in cluster.items() if "progress" not in k} == {
+        k: v for k, v in local.items() if "progress" not in k
+    }

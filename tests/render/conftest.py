@@ -10,7 +10,9 @@ from bouncing_ball.audit.claims.ledger_file import read_ledger
 from bouncing_ball.audit.evidence import evidence
 from bouncing_ball.configuration.stages import tables
 from bouncing_ball.configuration.yaml_file import read_yaml
+from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.render.article.render import render_article
+from bouncing_ball.render.atlas.tables import shares
 from bouncing_ball.render.tables.error_law import law_table
 from bouncing_ball.render.tables.formats import to_csv, to_latex, to_markdown
 
@@ -41,6 +43,8 @@ def all_texts(data):
     texts = {name: made[name, "to_markdown"] for name in TABLES}
     summary = (ROOT / "config" / "error_law.csv").read_text(encoding="utf-8")
     texts["error_law"] = law_table(summary)
+    data["atlas"] = read_dataset(ROOT / "config" / "atlas.nc")
+    texts["atlas"] = to_markdown(*shares(data["atlas"]))
     made["article"] = render_article(TEMPLATES, data, texts, references)
     return made
 

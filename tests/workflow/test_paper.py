@@ -11,7 +11,9 @@ import yaml
 from bouncing_ball.audit.claims.verdict import Verdict
 from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.render.article.render import render_article
+from bouncing_ball.render.atlas.tables import shares
 from bouncing_ball.render.tables.error_law import law_table
+from bouncing_ball.render.tables.formats import to_markdown
 
 
 @pytest.fixture(scope="module")
@@ -23,6 +25,8 @@ def run(pristine):
     tables = {path.stem: path.read_text(encoding="utf-8") for path in results.glob("*.md")}
     summary = pristine.path / "config" / "error_law.csv"
     tables["error_law"] = law_table(summary.read_text(encoding="utf-8"))
+    data["atlas"] = read_dataset(pristine.path / "config" / "atlas.nc")
+    tables["atlas"] = to_markdown(*shares(data["atlas"]))
     references = yaml.safe_load((folder / "references.yaml").read_text(encoding="utf-8"))
     return folder, data, tables, references
 

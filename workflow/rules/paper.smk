@@ -9,11 +9,13 @@ rule paper:
     input:
         templates=sorted(os.path.relpath(path) for path in ARTICLE.glob("*.md.j2")),
         error_law="config/error_law.csv",
+        atlas="config/atlas.nc",
         references=os.path.relpath(ARTICLE / "references.yaml"),
         data=datasets(DATASETS),
         tables=expand("results/figures/{table}.md", table=TABLES),
         source=modules(
             "render.article.render",
+            "render.atlas.tables",
             "render.tables.error_law",
             "audit.claims.tally",
             "datasets.files",

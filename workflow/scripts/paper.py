@@ -5,9 +5,12 @@ from pathlib import Path
 from bouncing_ball.audit.claims.tally import tally
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.files import write_text
+from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.pipeline.job import logged, read_input
 from bouncing_ball.render.article.render import render_article
+from bouncing_ball.render.atlas.tables import shares
 from bouncing_ball.render.tables.error_law import law_table
+from bouncing_ball.render.tables.formats import to_markdown
 
 
 def text_of(path):
@@ -18,6 +21,8 @@ with logged(snakemake) as lines:
     data = {Path(path).stem: read_input(path) for path in snakemake.input.data}
     tables = {Path(path).stem: text_of(path) for path in snakemake.input.tables}
     tables["error_law"] = law_table(text_of(snakemake.input.error_law))
+    data["atlas"] = read_dataset(snakemake.input.atlas)
+    tables["atlas"] = to_markdown(*shares(data["atlas"]))
     references = read_yaml(snakemake.input.references)
     folder = Path(snakemake.input.templates[0]).parent
     write_text(snakemake.output.paper, render_article(folder, data, tables, references))

@@ -52,7 +52,7 @@ def shard(plan: Plan, index: int, told: Callable[[int], None] = _ignore) -> xr.D
         Is given the number of orbits evaluated, from time to time.
     """
     rows = plan.shard(index)
-    parts = [_row(plan, row, told) for row in rows]
+    parts = [row_answers(plan, row, told) for row in rows]
     dims = {name: ("row", "position", *kept.DIMENSIONS[name]) for name in kept.DIMENSIONS}
     dims |= {name: ("row", "position", "frequency_ratio") for name in WALKED[:1]}
     dims |= {name: ("row", "position") for name in WALKED[1:]}
@@ -86,7 +86,7 @@ def _dataset(plan: Plan, rows, data, quantities) -> xr.Dataset:
     return describe(xr.Dataset(data, coords))
 
 
-def _row(plan: Plan, row: Row, told: Callable[[int], None]) -> Answers:
+def row_answers(plan: Plan, row: Row, told: Callable[[int], None] = _ignore) -> Answers:
     """The answers of the tiles of a row, some tiles at a time, or a tile in pieces."""
     nodes, each = plan.nodes(row), plan.nodes_per_tile
     together = each * max(1, BLOCK // each)

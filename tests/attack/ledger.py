@@ -148,7 +148,9 @@ def attack(seed: int, seconds: float) -> tuple[int, int, list[str]]:
     ledger = read_ledger(ROOT / "config")
     data = {path.stem: read_dataset(path) for path in (ROOT / "figures").glob("*.nc")}
     drawn = [
-        name for name in names(*Kind) if STAGES[name].kind is not Kind.DATASET and name in data
+        name
+        for name in names(Kind.FIGURE, Kind.EXTENSION, Kind.TABLE)
+        if STAGES[name].study and name in data
     ]
     tried, fallen = 0, []
     while time.monotonic() < end or not tried:

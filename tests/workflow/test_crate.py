@@ -22,4 +22,5 @@ def test_the_snakefile_of_the_catalog_is_the_other_one(fresh):
     stages = {f"{stage.name}: {stage.title}" for stage in studied()}
     figures = {f"Drawing {name}" for name in names(Kind.FIGURE, Kind.EXTENSION)}
     settings = {f"Setting {name}" for name in tables()}
-    assert planned == stages | figures | settings | {"Writing results/paper.md"}
+    pages = {f"Writing results/figures/{name}.html" for name in names(Kind.PAGE)}
+    assert planned == stages | figures | settings | pages | {"Writing results/paper.md"}

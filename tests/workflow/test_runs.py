@@ -32,7 +32,8 @@ def test_a_run_makes_every_figure_and_table(pristine):
     pictures = {f"figures/{name}.{kind}" for name in FIGURES for kind in ("png", "svg")}
     data = {f"figures/{stage.name}.nc" for stage in studied()}
     texts = {f"figures/{name}.{kind}" for name in tables() for kind in ("csv", "md", "tex")}
-    assert made == pictures | data | texts | {"paper.md", "tally.txt"}
+    pages = {f"figures/{name}.html" for name in names(Kind.PAGE)}
+    assert made == pictures | data | texts | pages | {"paper.md", "tally.txt"}
 
 
 def test_a_run_touches_no_tracked_file(pristine, cloned):

@@ -155,16 +155,51 @@ def test_ways_to_say_the_same():
     assert bouncing_ball.design is design
 
 
-def test_a_hertz_contact_says_what_replaces_it():
-    found = design(
-        mass="4 g", frequency="50 Hz", acceleration="0.8 g", restitution=0.9,
-        reduced_modulus="115 GPa", radius="5 mm",
-    )  # fmt: skip
-    assert "Hertz contact is replaced" in found.notes[0]
+HERTZ = {
+    "mass": "4 g",
+    "frequency": "50 Hz",
+    "acceleration": "0.8 g",
+    "reduced_modulus": "115 GPa",
+    "radius": "5 mm",
+}
+
+
+def test_a_hertz_contact_without_loss_keeps_its_energy():
+    found = design(**HERTZ, restitution=1.0, n=1)
+    one = found.orbits[0]
+    assert "Hertz contact with Tsuji's damping" in found.notes[0]
     # It lasts 2.868 (m²/(R E*² v))^{1/5} at the speed of the restitution model's orbit.
-    speed = 2 * math.pi / 1.9 * 9.80665 / (100 * math.pi)
+    speed = 2 * math.pi / 2 * 9.80665 / (100 * math.pi)
     expected = 2.868 * (0.004**2 / (5e-3 * 115e9**2 * speed)) ** 0.2
     assert found.contact_time == pytest.approx(expected, rel=2e-4)
+    # ½ m v² = (8/15) E* √R p^{5/2} and F = (4/3) E* √R p^{3/2}, but for the weight.
+    rigid, depth = 4 / 3 * 115e9 * math.sqrt(5e-3), one.greatest_compression
+    weight = 2 * 0.004 * 9.80665 / one.peak_force
+    assert 0.4 * rigid * depth**2.5 == pytest.approx(0.002 * one.impact_speed**2, rel=2 * weight)
+    assert one.peak_force == pytest.approx(rigid * depth**1.5, rel=1e-9)
+    assert rigid * found.static_deflection**1.5 == pytest.approx(0.004 * 9.80665, rel=1e-12)
+
+
+def test_a_hertz_contact_is_judged_by_its_own_orbits():
+    found = design(**HERTZ, restitution=0.65, n=1)
+    errors, law, corrected = (
+        getattr(found.orbits[0], name) for name in ("errors", "law_errors", "corrected_errors")
+    )
+    for name in ("max_height", "bounce_velocity", "phase", "saddle_node"):
+        # To first order the law knows any contact by its signature.
+        assert law[name] == pytest.approx(errors[name], rel=0.1)
+        assert corrected[name] < 0.02 * errors[name]
+    linear = design(
+        **{k: v for k, v in HERTZ.items() if k not in ("reduced_modulus", "radius")},
+        restitution=0.65, contact_time=found.contact_time, n=1,
+    )  # fmt: skip
+    assert linear.frequency_ratio == pytest.approx(found.frequency_ratio, rel=1e-12)
+    assert linear.orbits[0].errors["max_height"] != errors["max_height"]
+
+
+def test_a_hertz_contact_has_its_own_release():
+    with pytest.raises(ModelError, match="released at δ = 0"):
+        design(**HERTZ, restitution=0.9, release="force")
 
 
 def test_a_verdict_on_an_orbit_that_only_one_model_has():

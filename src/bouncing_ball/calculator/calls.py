@@ -8,7 +8,9 @@ import numpy as np
 from bouncing_ball.calculator.case import Case, Table
 from bouncing_ball.calculator.contact_data import (
     STIFF,
+    hertz,
     loss,
+    of_contact_time,
     stiffness_and_damping,
     which,
 )
@@ -17,9 +19,11 @@ from bouncing_ball.calculator.needed import RATIOS, Needed, needed
 from bouncing_ball.calculator.units import KINDS, number
 from bouncing_ball.calculator.verdict import QUANTITIES, Verdict, assess, percent
 from bouncing_ball.errors import ModelError, NoOrbitError, require
+from bouncing_ball.impacts.law_signature import free_impact
 from bouncing_ball.impacts.release import Release
 from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits.interface import OBSERVABLES
+from bouncing_ball.orbits.law_calls import rigid_speed
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.studies.error_thresholds import Status
 
@@ -76,21 +80,32 @@ def _lowest_stable(restitution: float, amplitude: float) -> int:
     return int(families[np.argmax(stable)])
 
 
-def _impact_speed(table: Table, given: dict[str, float], release: Release, n: int | None) -> float:
-    """v of the restitution model's orbit, for which a Hertz contact becomes a linear one.
+def _hertz(
+    mass: float, table: Table, given: dict[str, float], release: Release, n: int | None
+) -> tuple[Case, str]:
+    """The case of a Hertz contact, with the linear contact that is like it at the impact.
 
     Raises
     ------
-    NoOrbitError
-        If it has no such orbit.
+    ModelError
+        If the release is not that of the law, or the loss is no restitution.
     """
+    if release is not Release.DISPLACEMENT:
+        raise ModelError("a Hertz contact with Tsuji's damping is released at δ = 0: no force")
     zeta = loss(given, release)
     if zeta is None:
         raise ModelError("damping needs stiffness: a Hertz contact takes a restitution coefficient")
     r = float(Contact(1.0, zeta, release).restitution)
-    family = n or _lowest_stable(r, table.amplitude)
-    orbit = RestitutionModel(r).require_orbit(family, table.amplitude)
-    return -float(orbit.relative_impact_velocity) * table.speed
+    law = hertz(mass, given["reduced_modulus"], given["radius"], r, table)
+    speed = rigid_speed(n or _lowest_stable(r, table.amplitude), r)
+    time = float(free_impact(law, speed).duration) * table.time
+    k = of_contact_time(mass, time, zeta, release)
+    note = (
+        "the orbits are those of the Hertz contact with Tsuji's damping; stiffness, damping, ϖ, ζ "
+        "and the ϖ that is needed are those of the linear contact with its r, and its duration at "
+        f"the impact speed {speed * table.speed:.3g} m/s of the restitution model's orbit"
+    )
+    return Case(mass, table, k, 2 * zeta * math.sqrt(k * mass), release, law), note
 
 
 def _chosen(need: Needed, zeta: float, release: Release, mass: float, table: Table) -> Case:
@@ -142,7 +157,8 @@ def design(
     gravity
         9.80665 m/s² if it is not given; in a gear pair the drag torque takes its part.
     stiffness, contact_time, reduced_modulus, radius
-        k; or the duration of a free impact; or E* and R of a Hertz contact.
+        k; or the duration of a free impact; or E* and R of a Hertz contact with the damping
+        of Tsuji.
     damping, damping_ratio, restitution, measured_restitution, drop_height, rebound_height
         c; or ζ; or r by Eq. 16; or r that a free impact really has; or a drop test.
     n : int, optional
@@ -180,14 +196,11 @@ def design(
     stiff = which(given, STIFF, "how stiff the contact is")
     if stiff is None:
         return _choose(mass, table, given, rule, n, quantity, epsilon)
-    speed = None
     if stiff == "reduced_modulus":
-        speed = _impact_speed(table, given, rule, n)
-        notes.append(
-            f"the Hertz contact is replaced by the linear one of the same duration at the impact "
-            f"speed {speed:.3g} m/s of the restitution model's orbit"
-        )
-    case = Case(mass, table, *stiffness_and_damping(mass, given, rule, speed), rule)
+        case, note = _hertz(mass, table, given, rule, n)
+        notes.append(note)
+    else:
+        case = Case(mass, table, *stiffness_and_damping(mass, given, rule), rule)
     ratio = float(case.contact.frequency_ratio)
     require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
     found = families(case, n)

@@ -3,8 +3,17 @@
 import math
 from dataclasses import dataclass
 
+from bouncing_ball.impacts.law_signature import LawSignature
+from bouncing_ball.impacts.laws.tsuji import Tsuji
 from bouncing_ball.impacts.release import Release
+from bouncing_ball.impacts.signature import Instant, LinearSignature
 from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.orbits.corrected_model import CorrectedModel
+from bouncing_ball.orbits.interface import ImpactModel
+from bouncing_ball.orbits.law_calls import rigid_speed
+from bouncing_ball.orbits.law_model import LawModel
+from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.studies.model_errors import models
 
 
 @dataclass(frozen=True)
@@ -75,6 +84,25 @@ class Case:
     stiffness: float
     damping: float
     release: Release
+    law: Tsuji | None = None
+    """A Hertz contact; stiffness and damping are then those of the linear contact
+    with its restitution coefficient and its duration at the orbit's impact speed."""
+
+    def models(self) -> dict[str, ImpactModel]:
+        """By name: the exact model first, then the simple ones with the contact's own r."""
+        if self.law is None:
+            return {model.name: model for model in models(self.contact)}
+        return {
+            "hertz": LawModel(self.law),
+            "restitution": RestitutionModel(self.contact.restitution),
+            "corrected": CorrectedModel(LawSignature(self.law)),
+        }
+
+    def instant(self, n: int) -> Instant:
+        """The signature of the contact at the speed of the restitution model's orbit."""
+        if self.law is None:
+            return LinearSignature(self.contact)()
+        return LawSignature(self.law)(rigid_speed(n, float(self.contact.restitution)))
 
     @property
     def zeta(self) -> float:
@@ -94,7 +122,9 @@ class Case:
 
     @property
     def static_deflection(self) -> float:
-        """mg/k, in m."""
+        """mg/k, in m; of a Hertz contact where K p^{3/2} = 1."""
+        if self.law is not None:
+            return float(self.law.stiffness) ** (-2 / 3) * self.table.length
         return self.mass * self.table.gravity / self.stiffness
 
     @property

@@ -5,21 +5,19 @@ impact that ends at the angle π - 2α (:mod:`bouncing_ball.impacts.release`) ::
 
     ω_d t = π - 2α,   ω_d = ω√(1 - ζ²),   k = mω²,   c = 2ζmω
 
-A drop test measures r = √(h′/h), whatever releases the contact. A Hertz contact
-F = (4/3) E* √R p^{3/2} of the same duration at the impact speed v stands for one
-whose stiffness depends on the speed: its greatest compression and its duration
-without damping are ::
-
-    p = (15 m v²/(16 E* √R))^{2/5},    t = (4/5) B(2/5, 1/2) p/v = 2.943 p/v
-
-(Hertz 1881; Johnson, Contact Mechanics, 1985, §11.4). Everything in SI units.
+A drop test measures r = √(h′/h), whatever releases the contact. A Hertz contact has the
+force ``k x^{3/2} + C √(mk) x^{1/4} x′``, k = (4/3) E* √R, with the damping of Tsuji: its r
+is the same at every speed (:mod:`bouncing_ball.impacts.laws.tsuji`), and so E*, R and r are
+all of it. Everything in SI units.
 """
 
 import math
 from collections.abc import Mapping
 
+from bouncing_ball.calculator.case import Table
 from bouncing_ball.errors import ModelError, require
 from bouncing_ball.impacts.damping import damping_ratio
+from bouncing_ball.impacts.laws.tsuji import Tsuji, tsuji_damping
 from bouncing_ball.impacts.release import Release
 from bouncing_ball.impacts.spring_damper import Contact
 
@@ -116,32 +114,24 @@ def of_contact_time(mass: float, contact_time: float, zeta: float, release: Rele
     return mass * omega * omega
 
 
-def hertz_contact_time(mass: float, reduced_modulus: float, radius: float, speed: float) -> float:
-    """Duration of an elastic Hertz impact, in s.
-
-    Parameters
-    ----------
-    mass, reduced_modulus, radius : float
-        m in kg, E* in Pa (1/E* = Σ (1 - ν²)/E) and R in m.
-    speed : float
-        v in m/s.
+def hertz(
+    mass: float, reduced_modulus: float, radius: float, restitution: float, table: Table
+) -> Tsuji:
+    """The law of a Hertz contact, dimensionless: K = k √g/(mΩ³), C of the restitution.
 
     Examples
     --------
-    The constant that simulators print, 2.87 (m²/(R E*² v))^{1/5}:
-
-    >>> round(hertz_contact_time(1.0, 1.0, 1.0, 1.0), 3)
-    2.868
+    >>> law = hertz(1.0, 0.75, 4.0, 1.0, Table(1.0, 1.0, 1.0))
+    >>> float(law.stiffness), float(law.damping)
+    (2.0, 0.0)
     """
-    depth = (15 * mass * speed * speed / (16 * reduced_modulus * math.sqrt(radius))) ** 0.4
-    beta = math.gamma(0.4) * math.gamma(0.5) / math.gamma(0.9)
-    return 0.8 * beta * depth / speed
+    stiffness = 4 / 3 * reduced_modulus * math.sqrt(radius)
+    unit = mass * table.angular_frequency**3 / math.sqrt(table.gravity)
+    return Tsuji(stiffness / unit, float(tsuji_damping(restitution)))
 
 
-def stiffness_and_damping(
-    mass: float, given: Given, release: Release, speed: float | None
-) -> tuple[float, float]:
-    """k and c of a contact of which enough is known.
+def stiffness_and_damping(mass: float, given: Given, release: Release) -> tuple[float, float]:
+    """k and c of a linear contact of which enough is known.
 
     Parameters
     ----------
@@ -149,8 +139,6 @@ def stiffness_and_damping(
     given : mapping
         Parameters of :data:`STIFF` and :data:`LOSSY`, with what goes with them.
     release : Release
-    speed : float or None
-        Impact speed, for which the Hertz contact is replaced by a linear one.
 
     Raises
     ------
@@ -159,7 +147,7 @@ def stiffness_and_damping(
 
     Examples
     --------
-    >>> stiffness_and_damping(1.0, {"stiffness": 4.0, "damping": 0.4}, Release.DISPLACEMENT, None)
+    >>> stiffness_and_damping(1.0, {"stiffness": 4.0, "damping": 0.4}, Release.DISPLACEMENT)
     (4.0, 0.4)
     """
     stiff, zeta = which(given, STIFF, "how stiff the contact is"), loss(given, release)
@@ -176,10 +164,5 @@ def stiffness_and_damping(
     if stiff == "stiffness":
         k = given["stiffness"]
     else:
-        time = (
-            given["contact_time"]
-            if stiff == "contact_time"
-            else hertz_contact_time(mass, given["reduced_modulus"], given["radius"], speed or 0.0)
-        )
-        k = of_contact_time(mass, time, zeta, release)
+        k = of_contact_time(mass, given["contact_time"], zeta, release)
     return k, 2 * zeta * math.sqrt(k * mass)

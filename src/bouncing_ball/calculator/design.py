@@ -10,8 +10,6 @@ from bouncing_ball.calculator.verdict import Verdict
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.impacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.impacts.release import Release
-from bouncing_ball.impacts.signature import LinearSignature
-from bouncing_ball.orbits.contact_model import ContactModel
 
 STEPS = 50
 """Steps in one contact."""
@@ -100,7 +98,8 @@ def families(case: Case, n: int | None) -> tuple[Family, ...]:
         if any(standing.exists for standing in one.standing.values())
     )
     if not found:
-        lowest = float(ContactModel(case.contact).saddle_node(asked[0]).amplitude)
+        model = next(iter(case.models().values()))
+        lowest = float(model.saddle_node(asked[0]).amplitude)
         which = f"{n}-T orbit" if n else "n-T orbit"
         raise NoOrbitError(
             f"no {which} in any model: the table's acceleration is Λ = "
@@ -123,7 +122,8 @@ def _notes(case: Case, one: Family) -> tuple[str, ...]:
     contact = case.contact
     if float(contact.frequency_ratio) < 1:
         notes.append("the contact is slower than the table: no impact, but a ball on a spring")
-    if case.release is Release.DISPLACEMENT and float(contact.damping_ratio) > 0:
+    linear = case.law is None
+    if linear and case.release is Release.DISPLACEMENT and float(contact.damping_ratio) > 0:
         notes.append(
             "the contact pulls before it is released at δ = 0; one that cannot pull has the other r"
         )
@@ -135,8 +135,8 @@ def describe(
 ) -> Design:
     """Everything about a contact that is known."""
     contact, table = case.contact, case.table
-    instant = LinearSignature(contact)()
-    threshold = float(ContactModel(contact).permanent_contact_threshold())
+    instant = case.instant(judged(found).n)
+    threshold = float(next(iter(case.models().values())).permanent_contact_threshold())
     others = {str(rule): type(contact)(1.0, contact.damping_ratio, rule) for rule in Release}
     return Design(
         frequency_ratio=float(contact.frequency_ratio),

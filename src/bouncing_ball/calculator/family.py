@@ -7,13 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from bouncing_ball.calculator.case import Case
-from bouncing_ball.impacts.signature import LinearSignature
+from bouncing_ball.impacts.signature import Instant
 from bouncing_ball.impacts.spring_damper import Contact, contact_force
 from bouncing_ball.orbits import error_law
 from bouncing_ball.orbits.interface import ImpactModel, Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.studies.error_thresholds import Quantity
-from bouncing_ball.studies.model_errors import SIMPLE, errors, models
+from bouncing_ball.studies.error_thresholds import Quantity, values
 
 Errors = dict[str, float | None]
 """Relative errors by quantity; None where there is nothing to compare, or to divide by."""
@@ -46,10 +45,10 @@ class Standing:
 class Family:
     """The n-T orbit of a case, in SI units, and how wrong the simple models are.
 
-    ``exists``, ``is_stable`` and ``is_admissible`` are those of the spring-damper
-    model. The errors are the moduli of relative errors, by the quantities of the
-    ``thresholds`` table: ``errors`` and ``corrected_errors`` exact,
-    ``law_errors`` K/ϖ by the error law, which is stated where ``law_holds``.
+    ``exists``, ``is_stable`` and ``is_admissible`` are those of the exact model. The
+    errors are the moduli of relative errors, by the quantities of the ``thresholds``
+    table: ``errors`` and ``corrected_errors`` exact, ``law_errors`` by the error law,
+    which is stated where ``law_holds``.
     """
 
     n: int
@@ -107,34 +106,49 @@ def greatest(function: Callable[[np.ndarray], np.ndarray], duration: float) -> f
 
 def _loads(case: Case, orbit: Orbit) -> tuple[float, float]:
     """Greatest compression in m and greatest force over weight, in one contact."""
-    contact, duration = case.contact, float(orbit.contact_duration)
-    start = (0.0, orbit.relative_impact_velocity, orbit.phase, orbit.amplitude)
 
-    def force(time):
-        flow = contact.flow(time, *start)
-        return contact_force(
-            flow.displacement, flow.velocity, contact.frequency_ratio, contact.damping_ratio
-        )
+    def state(time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        height, velocity = orbit.contact_path(time)
+        angle = orbit.phase + time
+        depth = orbit.amplitude * np.sin(angle) - height
+        rate = orbit.amplitude * np.cos(angle) - velocity
+        if case.law is None:
+            ratio, zeta = case.contact.frequency_ratio, case.contact.damping_ratio
+            return depth, contact_force(-depth, -rate, ratio, zeta)
+        return depth, case.law.force(np.maximum(depth, 0.0), rate)
 
-    depth = greatest(lambda time: -contact.flow(time, *start).displacement, duration)
-    return depth * case.table.length, greatest(force, duration)
+    duration = float(orbit.contact_duration)
+    depth = greatest(lambda time: state(time)[0], duration)
+    return depth * case.table.length, greatest(lambda time: state(time)[1], duration)
 
 
-def _by_quantity(values: np.ndarray) -> Errors:
-    return {str(q): _number(float(v)) for q, v in zip(Quantity, values, strict=True)}
+def _by_quantity(found: np.ndarray) -> Errors:
+    return {str(q): _number(float(v)) for q, v in zip(Quantity, np.ravel(found), strict=True)}
 
 
-def law(contact: Contact, n: int, amplitude: float) -> tuple[Errors, bool]:
-    """|K|/ϖ of each quantity, and whether the law is stated there."""
-    absent: Errors = dict.fromkeys(Quantity)
-    if not RestitutionModel(contact.restitution).orbit(n, amplitude).exists:
+def first_order(instant: Instant, n: int, amplitude: float) -> tuple[Errors, bool]:
+    """Moduli of the first-order errors, and whether the law is stated there.
+
+    Those of the permanent contact are none: they are of the second order.
+    """
+    absent: Errors = dict.fromkeys(map(str, Quantity))
+    if not RestitutionModel(instant.restitution).orbit(n, amplitude).exists:
         return absent, False
-    instant = LinearSignature(contact)()
     first = error_law.first_order(n, instant, amplitude)._asdict()
-    second = error_law.permanent_contact_coefficient(contact.damping_ratio, contact.release)
-    first[Quantity.PERMANENT_CONTACT] = second / np.square(contact.frequency_ratio)
     errors = absent | {name: _number(abs(float(value))) for name, value in first.items()}
     return errors, bool(error_law.small_parameter(n, instant, amplitude) < error_law.STATED)
+
+
+def permanent_law(contact: Contact) -> float:
+    """|K₂|/ϖ², the error of the restitution model's permanent contact.
+
+    Examples
+    --------
+    >>> permanent_law(Contact(10.0, 0.0))
+    0.01
+    """
+    second = error_law.permanent_contact_coefficient(contact.damping_ratio, contact.release)
+    return abs(float(second)) / float(contact.frequency_ratio) ** 2
 
 
 def family(case: Case, n: int) -> Family:
@@ -148,15 +162,17 @@ def family(case: Case, n: int) -> Family:
     >>> family(case, 1).exists
     False
     """
-    contact, lam = case.contact, case.table.amplitude
-    of = {model.name: model for model in models(contact)}
+    of, lam = case.models(), case.table.amplitude
     orbits = {name: model.orbit(n, lam) for name, model in of.items()}
     standing = {name: _standing(of[name], orbits[name], n, lam) for name in of}
+    exact, *simple = (np.array(values(tuple(Quantity), model, n, lam)) for model in of.values())
     with np.errstate(divide="ignore", invalid="ignore"):
-        found = np.abs(errors(contact, n, lam, tuple(Quantity)))
-    there, orbit = standing["spring-damper"], orbits["spring-damper"]
+        by_restitution, by_corrected = (np.abs(exact / each - 1) for each in simple)
+    there, orbit = next(iter(standing.values())), next(iter(orbits.values()))
     depth, force = _loads(case, orbit) if there.exists else (math.nan, math.nan)
-    law_errors, holds = law(contact, n, lam)
+    law_errors, holds = first_order(case.instant(n), n, lam)
+    if case.law is None:
+        law_errors[Quantity.PERMANENT_CONTACT] = permanent_law(case.contact)
     unit = case.table
     return Family(
         n=n,
@@ -170,8 +186,8 @@ def family(case: Case, n: int) -> Family:
         greatest_compression=_number(depth),
         peak_force=_number(force * case.weight),
         peak_force_over_weight=_number(force),
-        errors=_by_quantity(found[SIMPLE.index("restitution")]),
-        corrected_errors=_by_quantity(found[SIMPLE.index("corrected")]),
-        law_errors={str(name): value for name, value in law_errors.items()},
+        errors=_by_quantity(by_restitution),
+        corrected_errors=_by_quantity(by_corrected),
+        law_errors=law_errors,
         law_holds=holds,
     )

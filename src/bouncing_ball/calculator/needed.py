@@ -4,11 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bouncing_ball.calculator.family import law
+from bouncing_ball.calculator.family import first_order, permanent_law
 from bouncing_ball.impacts.release import Release
+from bouncing_ball.impacts.signature import LinearSignature
 from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits.interface import OBSERVABLES
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.studies.error_thresholds import Quantity
 from bouncing_ball.studies.model_errors import search
 
 # From contacts that last a good part of the table's period to stiffer ones than
@@ -61,9 +63,11 @@ def needed(
         return Needed(quantity, tolerance, None, None, None, NO_ORBIT, NO_ORBIT)
     found = search([damping_ratio], release, n, [lam], RATIOS, tolerance, (quantity,))
     ratios = [_number(float(ratio)) for ratio in found.threshold[:, 0, 0]]
-    coefficient = law(Contact(1.0, damping_ratio, release), n, lam)[0][quantity]
-    by_law = None if coefficient is None else coefficient / tolerance
-    if by_law is not None and quantity == "permanent_contact":
-        by_law = by_law**0.5
+    unit = Contact(1.0, damping_ratio, release)
+    if quantity == Quantity.PERMANENT_CONTACT:
+        by_law: float | None = (permanent_law(unit) / tolerance) ** 0.5
+    else:
+        coefficient = first_order(LinearSignature(unit)(), n, lam)[0][quantity]
+        by_law = None if coefficient is None else coefficient / tolerance
     why = (str(status) for status in found.status[:, 0, 0])
     return Needed(quantity, tolerance, ratios[0], by_law, ratios[1], *why)

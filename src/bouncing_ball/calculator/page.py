@@ -11,7 +11,7 @@ from bouncing_ball.impacts.damping import damping_ratio
 from bouncing_ball.impacts.release import Release
 from bouncing_ball.orbits.interface import Orbit
 from bouncing_ball.studies.error_thresholds import Status
-from bouncing_ball.studies.model_errors import SIMPLE, models, search
+from bouncing_ball.studies.model_errors import SIMPLE, search
 
 # Restitution coefficients of the chart: as many as make the lines smooth, and from
 # which on. A linear contact that only pushes has r > e⁻².
@@ -38,7 +38,8 @@ def page(design: Design) -> xr.Dataset:
     found = search(zeta, rule, design.n, lam, RATIOS, asked.tolerance, (asked.quantity,))
     always = found.status == Status.ALWAYS_WITHIN
     from_there_on = np.where(always, RATIOS[0], found.threshold)[:, 0]
-    orbits = {m.name: m.orbit(design.n, table.amplitude) for m in models(design.case.contact)}
+    of = design.case.models()
+    orbits = {name: model.orbit(design.n, table.amplitude) for name, model in of.items()}
     return xr.Dataset(
         {
             "needed": (("simple", "restitution"), from_there_on),

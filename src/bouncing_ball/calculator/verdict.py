@@ -40,7 +40,7 @@ def percent(share: float) -> str:
 
 def _disagreement(family: Family) -> str | None:
     """What the restitution model says of the orbit that is not so, before any number."""
-    exact, simple = family.standing["spring-damper"], family.standing["restitution"]
+    exact, simple = next(iter(family.standing.values())), family.standing["restitution"]
     for name, there, absent in (
         ("exists", "an orbit that the contact has", "an orbit that the contact has not"),
         ("is_admissible", "a motion of the ball", "an orbit of equations only"),
@@ -80,7 +80,7 @@ def assess(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
 def _instead(family: Family, needed: Needed) -> str:
     """Whether the corrected model will do."""
     found = family.corrected_errors[needed.quantity]
-    exact, corrected = family.standing["spring-damper"], family.standing["corrected"]
+    exact, corrected = next(iter(family.standing.values())), family.standing["corrected"]
     same = (exact.exists, exact.is_stable) == (corrected.exists, corrected.is_stable)
     if same and found is not None and found <= needed.tolerance:
         return f"; the corrected restitution model is, with {percent(found)}"

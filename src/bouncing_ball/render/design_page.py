@@ -16,6 +16,7 @@ from bouncing_ball.render.figures.style import COLOURS, CONTACT, RESTITUTION, TA
 _PAGE = 8.27, 11.69
 _LOOKS: dict[str, tuple[str, Look]] = {
     "spring-damper": (CONTACT, {"linewidth": 2.2, "alpha": 0.75}),
+    "hertz": (CONTACT, {"linewidth": 2.2, "alpha": 0.75}),
     "restitution": (RESTITUTION, {"linewidth": 1.0}),
     "corrected": (COLOURS[3], {"linewidth": 1.2, "linestyle": (0, (4, 2))}),
 }

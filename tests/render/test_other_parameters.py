@@ -32,3 +32,16 @@ def test_its_claims_are_not_asked(other):
     rows = [line for line in other["claims", "to_csv"].splitlines() if line.startswith('"Table 1:')]
     assert len(rows) == 18 and all(row.endswith(",–,,not asked") for row in rows)
     assert "Claims: Table 1" not in other["article"]
+
+
+def test_rattling_under_the_other_release(record, texts):
+    """The limit at Λ_SD is stated for the paper's release only."""
+    windows = record["ext_rattling"].assign_attrs(release="force")
+    nothing = {name: windows[name] * np.nan for name in ("stiff_window", "joining_ratio")}
+    paper, other = (
+        texts(record | {"ext_rattling": data})["article"]
+        for data in (record["ext_rattling"], windows.assign(nothing))
+    )
+    for words in ("rattling begins gently", "limit of the width"):
+        assert words in paper and words not in other
+    assert "this rendering was made with the other release" in other

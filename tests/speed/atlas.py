@@ -24,10 +24,10 @@ from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
 BASE = {
     "n": [1],
     "release": ["displacement"],
-    # One tile and few ϖ, so that the smallest size fills a block of nodes too.
+    # One tile, so that also small sizes have many nodes in a block.
     "restitution": {"min": 0.05, "max": 1.0, "tiles": 1, "samples": 8},
     "position": {"tiles": 1, "samples": 50},
-    "frequency_ratio": {"min": 3.0, "max": 1.0e5, "samples": 41},
+    "frequency_ratio": {"min": 3.0, "max": 1.0e5, "samples": 161},
     "tolerances": [0.1, 0.05, 0.02, 0.01, 0.005, 0.001],
     "examined": [10.0, 30.0, 100.0, 300.0, 1000.0],
     "shards": 1,

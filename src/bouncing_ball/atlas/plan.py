@@ -142,8 +142,7 @@ class Plan:
     @property
     def orbits_per_row(self) -> int:
         """Those of a row."""
-        tiles = self.parameters["position"]["tiles"]
-        return tiles * self.nodes_per_tile * len(self.ratios)
+        return self.nodes_per_row * len(self.ratios)
 
     @property
     def shards(self) -> int:
@@ -163,13 +162,20 @@ class Plan:
         ends = len(self.rows) * np.arange(self.shards + 1) // self.shards
         return self.rows[ends[index] : ends[index + 1]]
 
-    def nodes(self, row: Row) -> Nodes:
-        """The nodes of a row, tile by tile, in each r by r; shape (tiles × nodes,)."""
-        r = self._restitutions(row)
-        tiles = self.parameters["position"]["tiles"]
-        p = _midpoints(0.0, 1.0, tiles * self._count("position")).reshape(tiles, 1, -1)
-        r, p = (x.ravel() for x in np.broadcast_arrays(r[:, np.newaxis], p))
-        return self.placed(row, r, p)
+    @property
+    def nodes_per_row(self) -> int:
+        """Number of nodes in a row."""
+        return self.parameters["position"]["tiles"] * self.nodes_per_tile
+
+    def nodes(self, row: Row, start: int = 0, end: int | None = None) -> Nodes:
+        """The nodes of a row from one to another, tile by tile, in each r by r."""
+        tiles, count = self.parameters["position"]["tiles"], self._count("position")
+        index = np.arange(start, self.nodes_per_row if end is None else end)
+        tile, within = np.divmod(index, self.nodes_per_tile)
+        along_r, along_p = np.divmod(within, count)
+        low, high = self.edges[row.restitution : row.restitution + 2]
+        r = _midpoint(along_r, float(low), float(high), self._count("restitution"))
+        return self.placed(row, r, _midpoint(tile * count + along_p, 0.0, 1.0, tiles * count))
 
     def placed(self, row: Row, r: np.ndarray, p: np.ndarray) -> Nodes:
         """Nodes at any r and p, for a row's rule and n."""
@@ -179,23 +185,21 @@ class Plan:
 
     def bounds(self, row: Row) -> Nodes:
         """The r of a row, for what does not depend on p; Λ is then the saddle-node's."""
-        r = self._restitutions(row)
-        return self.placed(row, r, np.zeros_like(r))
-
-    def _restitutions(self, row: Row) -> np.ndarray:
         low, high = self.edges[row.restitution : row.restitution + 2]
-        return _midpoints(float(low), float(high), self._count("restitution"))
+        count = self._count("restitution")
+        r = _midpoint(np.arange(count), float(low), float(high), count)
+        return self.placed(row, r, np.zeros_like(r))
 
     def _count(self, name: str) -> int:
         return self.parameters[name]["samples"]
 
 
-def _midpoints(low: float, high: float, count: int) -> np.ndarray:
-    """Midpoints of equal parts of an interval.
+def _midpoint(index: np.ndarray, low: float, high: float, count: int) -> np.ndarray:
+    """Midpoints of some of equal parts of an interval.
 
     Examples
     --------
-    >>> _midpoints(0.0, 1.0, 2).tolist()
+    >>> _midpoint(np.arange(2), 0.0, 1.0, 2).tolist()
     [0.25, 0.75]
     """
-    return low + (np.arange(count) + 0.5) / count * (high - low)
+    return low + (index + 0.5) / count * (high - low)

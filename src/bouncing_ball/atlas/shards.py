@@ -7,6 +7,7 @@ depend neither on how many shards there are nor on who computes them.
 
 from collections.abc import Callable, Iterator
 from functools import reduce
+from itertools import pairwise
 
 import numpy as np
 import xarray as xr
@@ -88,17 +89,27 @@ def _dataset(plan: Plan, rows, data, quantities) -> xr.Dataset:
 
 def row_answers(plan: Plan, row: Row, told: Callable[[int], None] = _ignore) -> Answers:
     """The answers of the tiles of a row, some tiles at a time, or a tile in pieces."""
-    nodes, each = plan.nodes(row), plan.nodes_per_tile
-    together = each * max(1, BLOCK // each)
-    parts = []
-    for start in range(0, len(nodes.amplitude), together):
-        some = nodes[start : start + together]
-        blocks = []
-        for piece in np.array_split(np.arange(len(some.amplitude)), -(-each // BLOCK)):
-            blocks.append(_block(plan, some[piece], piece // each))
-            told(len(piece) * len(plan.ratios))
-        parts.append(reduce(_both, blocks))
+    together = plan.nodes_per_tile * max(1, BLOCK // plan.nodes_per_tile)
+    starts = range(0, plan.nodes_per_row, together)
+    ends = (min(start + together, plan.nodes_per_row) for start in starts)
+    # Combined as they come: no two blocks are in memory.
+    parts = [
+        reduce(_both, _blocks(plan, row, start, end, told))
+        for start, end in zip(starts, ends, strict=True)
+    ]
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+def _blocks(
+    plan: Plan, row: Row, start: int, end: int, told: Callable[[int], None]
+) -> Iterator[Answers]:
+    """The answers of some whole tiles at once, or of one tile piece by piece."""
+    each = plan.nodes_per_tile
+    pieces = -(-each // BLOCK)
+    ends = [start + (end - start) * k // pieces for k in range(pieces + 1)]
+    for low, high in pairwise(ends):
+        yield _block(plan, plan.nodes(row, low, high), np.arange(low - start, high - start) // each)
+        told((high - low) * len(plan.ratios))
 
 
 def _both(one: Answers, other: Answers) -> Answers:

@@ -193,6 +193,8 @@ def test_a_hertz_contact_is_judged_by_its_own_orbits():
         **{k: v for k, v in HERTZ.items() if k not in ("reduced_modulus", "radius")},
         restitution=0.65, contact_time=found.contact_time, n=1,
     )  # fmt: skip
+    # What is not known of it is not claimed.
+    assert found.permanent_contact.threshold is errors["permanent_contact"] is None
     assert linear.frequency_ratio == pytest.approx(found.frequency_ratio, rel=1e-12)
     assert linear.orbits[0].errors["max_height"] != errors["max_height"]
 

@@ -52,8 +52,8 @@ class Computation(NamedTuple):
 # that a finer cycle has none of the old times. Each sample is the orbit's
 # formula at its own time, and other samples change nothing about it. Other
 # samples of the formulas are other parameters, and steps from sample to sample,
-# of which some evidence consists, are other steps.
-_NOT_NESTED = ("fig07", "fig12", "formulas", "evidence", "ext_orders")
+# of which some evidence consists, are other steps. More random orbits are others.
+_NOT_NESTED = ("fig07", "fig12", "formulas", "evidence", "ext_orders", "explorer")
 
 # Sizes that become 2N - 1.
 _SIZES = ("samples", "points")

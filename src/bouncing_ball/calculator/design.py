@@ -10,6 +10,7 @@ from bouncing_ball.calculator.verdict import Verdict
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.impacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.impacts.release import Release
+from bouncing_ball.orbits.contact_model import ContactModel
 
 STEPS = 50
 """Steps in one contact."""
@@ -45,11 +46,14 @@ class TimeStep:
 
 @dataclass(frozen=True)
 class PermanentContact:
-    """Λ up to which the ball stays down, in the contact and in the restitution model."""
+    """Λ up to which the ball stays down, in the contact and in the restitution model.
 
-    threshold: float
+    None of a Hertz contact, whose stiffness at rest is that of its static deflection.
+    """
+
+    threshold: float | None
     restitution_threshold: float
-    margin: float
+    margin: float | None
     """Share by which Λ may fall to the threshold; below zero the ball may stay down."""
 
 
@@ -130,13 +134,19 @@ def _notes(case: Case, one: Family) -> tuple[str, ...]:
     return tuple(notes)
 
 
+def _permanent_contact(case: Case) -> PermanentContact:
+    if case.law is not None:
+        return PermanentContact(None, RESTITUTION_THRESHOLD, None)
+    threshold = float(ContactModel(case.contact).permanent_contact_threshold())
+    return PermanentContact(threshold, RESTITUTION_THRESHOLD, 1 - threshold / case.table.amplitude)
+
+
 def describe(
     case: Case, found: tuple[Family, ...], need: Needed, verdict: Verdict, notes: Sequence[str]
 ) -> Design:
     """Everything about a contact that is known."""
     contact, table = case.contact, case.table
     instant = case.instant(judged(found).n)
-    threshold = float(next(iter(case.models().values())).permanent_contact_threshold())
     others = {str(rule): type(contact)(1.0, contact.damping_ratio, rule) for rule in Release}
     return Design(
         frequency_ratio=float(contact.frequency_ratio),
@@ -153,9 +163,7 @@ def describe(
             load=float(instant.load) * table.time,
         ),
         time_step=TimeStep(case.contact_time / STEPS, STEP_RULE),
-        permanent_contact=PermanentContact(
-            threshold, RESTITUTION_THRESHOLD, 1 - threshold / table.amplitude
-        ),
+        permanent_contact=_permanent_contact(case),
         orbits=found,
         needed=need,
         is_good_enough=verdict.is_good_enough,

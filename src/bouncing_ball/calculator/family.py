@@ -21,6 +21,7 @@ Errors = dict[str, float | None]
 # between its neighbours: after six times it is known to 10⁻⁸ of the contact, and
 # its value, next to a maximum, to rounding.
 _SAMPLES, _ZOOMS = 33, 6
+_PERMANENT = list(Quantity).index(Quantity.PERMANENT_CONTACT)
 
 
 @dataclass(frozen=True)
@@ -168,6 +169,9 @@ def family(case: Case, n: int) -> Family:
     exact, *simple = (np.array(values(tuple(Quantity), model, n, lam)) for model in of.values())
     with np.errstate(divide="ignore", invalid="ignore"):
         by_restitution, by_corrected = (np.abs(exact / each - 1) for each in simple)
+    if case.law is not None:
+        # About its static deflection the contact is one of another stiffness, not known here.
+        by_restitution[_PERMANENT] = by_corrected[_PERMANENT] = np.nan
     there, orbit = next(iter(standing.values())), next(iter(orbits.values()))
     depth, force = _loads(case, orbit) if there.exists else (math.nan, math.nan)
     law_errors, holds = first_order(case.instant(n), n, lam)

@@ -32,6 +32,8 @@ _COMMANDS = ["orbit", "limits", "permanent-contact", "simulate"]
 
 def _arguments(rng: np.random.Generator) -> list[str]:
     """Mostly what could be meant: a command, its options with numbers, some nonsense."""
+    if rng.random() < 0.2:
+        return _case(rng)
     command = str(rng.choice([*_COMMANDS, *_COMMANDS, *_COMMANDS, "explain", "diff", "orbits", ""]))
     damping = str(rng.choice(["--restitution", "--measured-restitution", "--damping-ratio"]))
     out = [command, damping, _value(rng, damping), "--amplitude", _value(rng, "--amplitude")]
@@ -46,6 +48,43 @@ def _arguments(rng: np.random.Generator) -> list[str]:
     if rng.random() < 0.5:
         out.append("--json")
     return out
+
+
+_QUANTITIES = {
+    "--frequency": "50 Hz|20 ms|3000 rpm|314 1/s|1e-9 Hz|0|9**9**9**9",
+    "--period": "20 ms|50 Hz",
+    "--amplitude": "0.1 mm|2 g|1e-300|1e300 m",
+    "--acceleration": "0.8 g|3 g|100 g|0.05 g|1e-20 g|1 m/s²|-1 g",
+    "--gravity": "1 g|1e-12|0.16 g",
+    "--mass": "20 g|1|1e-30|1e30|0 kg|20 grams of steel",
+    "--stiffness": "1e7 N/m|2e5|50|1e-20|1e30|-5 N/m|3 Pa",
+    "--contact-time": "1 ms|1e-12|1e6 s",
+    "--reduced-modulus": "115 GPa|1 Pa",
+    "--radius": "5 mm|1 km",
+    "--damping": "1|0|1e9",
+    "--restitution": "0.85|1|0.1|1e-9|1.5",
+    "--measured-restitution": "0.5|0.14",
+    "--drop-height": "1 m",
+    "--rebound-height": "50 cm|2 m",
+    "--tolerance": "1 %|1e-12|5|0",
+    "--quantity": "phase|saddle_node|permanent_contact|colour",
+    "--n": "1|2|9|0",
+    "--release": "force|displacement",
+}
+_CASE = ("--frequency", "--acceleration", "--mass", "--stiffness", "--restitution")
+
+
+def _case(rng: np.random.Generator) -> list[str]:
+    """A case for the calculator, mostly whole, with some of its values other ones."""
+    chosen = [name for name in _CASE if rng.random() < 0.95]
+    chosen += map(str, rng.choice(list(_QUANTITIES), size=rng.integers(0, 3), replace=False))
+    out = ["design"]
+    for name in dict.fromkeys(chosen):
+        values = _QUANTITIES[name].split("|")
+        out.append(f"{name}={values[0] if rng.random() < 0.7 else rng.choice(values)}")
+    if rng.random() < 0.1:
+        out.append(str(rng.choice(_WORDS)))
+    return [*out, "--json"] if rng.random() < 0.5 else out
 
 
 def _value(rng: np.random.Generator, option: str) -> str:

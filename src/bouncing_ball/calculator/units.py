@@ -11,6 +11,7 @@ are angles over time, ``Hz`` counts cycles, and a bare ``1/s`` is refused.
 
 import math
 import re
+import textwrap
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -110,7 +111,7 @@ such as 50 Hz; a period has its own parameter, period
         magnitude, unit = value.magnitude, str(value.units).replace("dimensionless", "")
     else:
         magnitude, unit = _split(name, value)
-    given = f"{name} = {value}"
+    given = f"{name} = {textwrap.shorten(str(value), 60, placeholder='…')}"
     if not unit:
         return _finite(given, magnitude)
     factor = _factor(name, given, unit)
@@ -134,8 +135,9 @@ def _split(name: str, value: Any) -> tuple[float, str]:
     found = _TEXT.fullmatch(value)
     example = KINDS[name].example
     if found is None:
+        shown = textwrap.shorten(value, 60, placeholder="…")
         raise ModelError(
-            f"{name} = {value!r} does not begin with a number: write it as {example!r}"
+            f"{name} = {shown!r} does not begin with a number: write it as {example!r}"
         )
     return float(found[1]), found[2]
 

@@ -12,7 +12,7 @@ ENTRY = """    Stage(
     ),
 )
 
-_AUDIT"""
+_EXPLORER"""
 PARAMETERS = """  ext_heights:
     n: 1
     restitution: 0.85
@@ -50,7 +50,7 @@ def said(tree, *arguments):
 
 def test_a_figure_with_its_own_parameters(fresh):
     # Three files, and until the last is there the missing piece is named.
-    fresh.rewrite(STAGES, ")\n\n_AUDIT", ENTRY)
+    fresh.rewrite(STAGES, ")\n\n_EXPLORER", ENTRY)
     assert said(fresh) == "configuration: missing key extensions.ext_heights"
     fresh.rewrite(CONFIG, "studies:\n  formulas:", PARAMETERS)
     assert said(fresh).startswith(f"stages: ext_heights: no module {FIGURE}")

@@ -4,13 +4,12 @@
 from bouncing_ball.pipeline.atlas import discard_damaged, shard_minutes, shard_names
 
 ATLAS = {key: part for key, part in RUN["atlas"].items() if key != "summary"}
-SHARDS = shard_names(ATLAS)
 CHARTS = ["max_height", "bounce_velocity", "phase", "apparent_restitution", "limits", "page"]
 
 
 def shard_files(wildcards):
     """The shards; one that is not what its job wrote is removed, and so made again."""
-    paths = [f"results/atlas/shards/{name}.nc" for name in [*SHARDS, "limits"]]
+    paths = [f"results/atlas/shards/{name}.nc" for name in [*shard_names(ATLAS), "limits"]]
     if workflow.is_main_process:
         for path in discard_damaged(paths):
             logger.warning(f"{path} is not what its job wrote: it is made again")
@@ -30,7 +29,7 @@ rule atlas_shard:
         title="The atlas: the answers of some rows of tiles",
         parameters=ATLAS,
     resources:
-        runtime=shard_minutes(ATLAS),
+        runtime=lambda wildcards: shard_minutes(ATLAS),
         mem_mb=1000,
     log:
         "results/logs/atlas/shards/{shard}.log",
@@ -63,7 +62,7 @@ rule atlas_limits:
 
 rule atlas_merge:
     message:
-        "Atlas: one file from {params.parts} shards"
+        "Atlas: one file from its shards"
     input:
         parts=shard_files,
         source=modules("atlas.merge", "pipeline.atlas"),
@@ -72,7 +71,6 @@ rule atlas_merge:
     params:
         title="The atlas: how stiff a contact must be",
         parameters=ATLAS,
-        parts=len(SHARDS) + 1,
     resources:
         runtime=60,
         mem_mb=4000,

@@ -3,15 +3,16 @@
 from pathlib import Path
 
 from bouncing_ball.datasets.files import write_text
-from bouncing_ball.pipeline.atlas import read_part
-from bouncing_ball.pipeline.job import logged, provenance
+from bouncing_ball.pipeline.atlas import log_of
+from bouncing_ball.pipeline.job import logged, provenance, read_input
 from bouncing_ball.render.atlas import limits, maps, page
 from bouncing_ball.render.atlas.tables import shares, worst
 from bouncing_ball.render.figures.style import save, style
 from bouncing_ball.render.tables.formats import to_markdown
 
-with logged(snakemake) as lines, style():
-    data = read_part(snakemake.input.parts[0])
+with logged(snakemake), style():
+    (summary,) = snakemake.input.parts
+    data = read_input(summary, log_of(summary))
     metadata = provenance(snakemake).attributes()
     for path in snakemake.output.charts:
         match Path(path).stem:

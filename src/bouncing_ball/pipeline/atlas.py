@@ -1,15 +1,14 @@
-"""What the rules and scripts of the atlas need: names, times and whole files of shards."""
+"""What the rules and scripts of the atlas need: names, times and whole files of shards.
+
+Every job of every rule reads the rules; so the plan is imported when it is asked for.
+"""
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-import xarray as xr
-
-from bouncing_ball.atlas.plan import Plan
-from bouncing_ball.datasets.netcdf import DatasetError
-from bouncing_ball.pipeline.job import is_as_written, read_input
+from bouncing_ball.record.job_log import is_as_written
 
 FOLDER = "results/atlas"
 LOGS = "results/logs/atlas"
@@ -28,12 +27,16 @@ def shard_names(parameters: Mapping[str, Any]) -> list[str]:
     >>> shard_names(read_yaml("config/config.yaml")["atlas"])[:2]
     ['0000-of-0020', '0001-of-0020']
     """
+    from bouncing_ball.atlas.plan import Plan
+
     count = Plan(parameters).shards
     return [f"{k:04d}-of-{count:04d}" for k in range(count)]
 
 
 def shard_minutes(parameters: Mapping[str, Any]) -> int:
     """Minutes that a cluster should give to a shard."""
+    from bouncing_ball.atlas.plan import Plan
+
     plan = Plan(parameters)
     seconds = plan.orbits / plan.shards * _SECONDS_PER_ORBIT
     return _LEAST_MINUTES + math.ceil(seconds / 60)
@@ -52,36 +55,9 @@ def log_of(path: str) -> str:
 
 def discard_damaged(paths: Iterable[str]) -> list[str]:
     """Remove files that are not what their jobs wrote; which they were."""
-    damaged = [path for path in paths if Path(path).is_file() and not _whole(path)]
+    damaged = [
+        path for path in paths if Path(path).is_file() and not is_as_written(path, log_of(path))
+    ]
     for path in damaged:
         Path(path).unlink()
     return damaged
-
-
-def _whole(path: str) -> bool:
-    return is_as_written(path, log_of(path))
-
-
-def read_shards(paths: Iterable[str]) -> Iterator[xr.Dataset]:
-    """The shards, one after another.
-
-    Raises
-    ------
-    DatasetError
-        If one is not what its job wrote.
-    """
-    for path in paths:
-        yield read_part(path)
-
-
-def read_part(path: str) -> xr.Dataset:
-    """A file of the atlas that another job has made.
-
-    Raises
-    ------
-    DatasetError
-        If it is not what its job wrote.
-    """
-    if not Path(path).is_file():
-        raise DatasetError(f"no dataset {path}")
-    return read_input(path, log_of(path))

@@ -24,8 +24,8 @@ from bouncing_ball.datasets.netcdf import (
     write_dataset,
 )
 from bouncing_ball.record.carriers import CARRIERS
-from bouncing_ball.record.job_log import log_lines, read_log
-from bouncing_ball.record.provenance import PREFIX, Provenance, file_digest
+from bouncing_ball.record.job_log import is_as_written, log_lines
+from bouncing_ball.record.provenance import PREFIX, Provenance
 from bouncing_ball.record.recipe import Recipe, Run, gather
 
 REFERENCE = (
@@ -104,11 +104,6 @@ def read_input(path: str, log: str | Path = "") -> xr.Dataset:
     if target != path:
         raise DatasetError(f"{path} is the dataset of {target}: {again}")
     return dataset
-
-
-def is_as_written(path: str, log: str | Path) -> bool:
-    """Whether a file that is there has the checksum that the log of its job says."""
-    return read_log(Path(log)).sums.get(path) == file_digest(path)
 
 
 def provenance(snakemake: Any) -> Provenance:

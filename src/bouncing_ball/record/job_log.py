@@ -62,3 +62,8 @@ def read_log(path: Path) -> JobLog:
         elif start == _MADE:
             made = rest
     return JobLog(path, sums, made)
+
+
+def is_as_written(path: str, log: str | Path) -> bool:
+    """Whether a file that is there has the checksum that the log of its job says."""
+    return read_log(Path(log)).sums.get(path) == file_digest(path)

@@ -41,7 +41,7 @@ function parse(hash) {
 }
 
 function hashOf(state) {
-  const own = state.tab === "design" ? ["tab", "m", "f", "acc", "k", "r", "n", "release", "side"]
+  const own = state.tab === "design" ? ["tab", "m", "f", "acc", "k", "r", "n", "release"]
     : ["r", "w", "a", "n", "release", "side"];
   return "#" + own.map(name => `${name}=${encodeURIComponent(state[name])}`).join("&");
 }
@@ -51,7 +51,8 @@ function asked(state) {
   const {r, n, release, side} = state;
   if (state.tab === "orbit") return {r, n, release, side, omega: state.w, amplitude: state.a};
   const omega = Math.sqrt(state.k / (state.m / 1000)) / (2 * Math.PI * state.f);
-  return {r, n, release, side, omega, amplitude: state.acc};
+  // The calculator asks for the orbit that is stable next to the saddle-node.
+  return {r, n, release, side: "stable", omega, amplitude: state.acc};
 }
 
 function commandOf(state) {
@@ -327,6 +328,7 @@ function show(hash) {
     $(`tab-${tab}`).tabIndex = on ? 0 : -1;
     $(`panel-${tab}`).hidden = !on;
   }
+  $("sides").hidden = state.tab === "design";
   const [good, sentence] = verdictOf(found, question), [exact] = found.orbits;
   $("verdict").textContent = sentence + (exact.exists && !exact.is_stable
     ? ` The ${state.n}-T orbit is unstable, and no ball will keep to it.` : "");

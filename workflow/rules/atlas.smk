@@ -1,19 +1,9 @@
 # The atlas: how stiff is stiff enough, everywhere. Not part of a run. Its summary is
 # accepted by hand, see docs/atlas.md, and the article takes its numbers from there.
 
-from bouncing_ball.pipeline.atlas import discard_damaged, shard_minutes, shard_names
+from bouncing_ball.pipeline.atlas import shard_minutes
 
-ATLAS = {key: part for key, part in RUN["atlas"].items() if key != "summary"}
 CHARTS = ["max_height", "bounce_velocity", "phase", "apparent_restitution", "limits", "page"]
-
-
-def shard_files(wildcards):
-    """The shards; one that is not what its job wrote is removed, and so made again."""
-    paths = [f"results/atlas/shards/{name}.nc" for name in [*shard_names(ATLAS), "limits"]]
-    if workflow.is_main_process:
-        for path in discard_damaged(paths):
-            logger.warning(f"{path} is not what its job wrote: it is made again")
-    return paths
 
 
 rule atlas_shard:

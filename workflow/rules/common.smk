@@ -28,6 +28,7 @@ from bouncing_ball.configuration.check import check_configuration, check_orbits
 from bouncing_ball.configuration.stages import STAGES, Kind, names, studied, tables
 from bouncing_ball.errors import ModelError
 from bouncing_ball.configuration.yaml_file import read_yaml
+from bouncing_ball.pipeline.atlas import discard_damaged, shard_names
 from bouncing_ball.pipeline.pieces import check_pieces
 from bouncing_ball.pipeline.sources import sources
 
@@ -95,3 +96,16 @@ def modules(*names):
     """
     files = sources("bouncing_ball.pipeline.job", *(f"bouncing_ball.{name}" for name in names))
     return [os.path.relpath(file) for file in files]
+
+
+# What the shards of the atlas are made from.
+ATLAS = {key: part for key, part in RUN["atlas"].items() if key != "summary"}
+
+
+def shard_files(wildcards):
+    """The shards of the atlas; one that is not what its job wrote is removed, and so made again."""
+    paths = [f"results/atlas/shards/{name}.nc" for name in [*shard_names(ATLAS), "limits"]]
+    if workflow.is_main_process:
+        for path in discard_damaged(paths):
+            logger.warning(f"{path} is not what its job wrote: it is made again")
+    return paths

@@ -6,16 +6,14 @@ from pathlib import Path
 import pytest
 
 from bouncing_ball.audit.claims.ledger_file import read_ledger
-from bouncing_ball.configuration.stages import STAGES, Kind, Stage
+from bouncing_ball.configuration.stages import STAGES
 from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
 from bouncing_ball.pipeline.pieces import check_pieces
 
 CONFIG = Path(__file__).resolve().parents[2] / "config"
 LEDGER = read_ledger(CONFIG)
 RUN = read_yaml(CONFIG / "config.yaml") | {"ledger": {}, "printed": LEDGER.table("Table 1")}
-NEW = Stage(
-    "fig17", Kind.FIGURE, "Figure 17: new", STAGES["fig08"].study, "figures.fig08", ("release",)
-)
+NEW = replace(STAGES["fig08"], name="fig17", title="Figure 17: new")
 
 
 def test_nothing_is_missing():
@@ -44,6 +42,14 @@ def test_nothing_is_missing():
         (replace(NEW, name="fig16", arguments=("tolerance",)), "a run has no setting tolerance"),
         (replace(NEW, name="fig16", reads=("fig19",)), "fig16: there is no dataset fig19 to read"),
         (replace(NEW, name="fig16", reads=("fig01",)), "fig16: there is no dataset fig01 to read"),
+        (
+            replace(NEW, name="fig16", arguments=("release",)),
+            "orbit_branches takes (parameters, release, settings), its entry gives (parameters, re",
+        ),
+        (
+            replace(NEW, name="fig16", reads=("fig08",)),
+            "orbit_branches takes (parameters, release, settings), its entry gives (data, paramet",
+        ),
     ],
 )
 def test_an_entry_without_a_piece(one_line, entry, said):

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from bouncing_ball.configuration.stages import STAGES
+from bouncing_ball.configuration.yaml_file import ConfigurationError
 
 
 def expanded(schema: Any) -> Any:
@@ -41,9 +42,20 @@ def configuration_schema(kinds: Mapping[str, Any]) -> dict[str, Any]:
     ----------
     kinds : mapping
         The content of ``config/schema.yaml``.
+
+    Raises
+    ------
+    ConfigurationError
+        If an entry gives a parameter a kind that the file does not describe.
     """
     properties = dict(kinds["properties"])
     for stage in STAGES.values():
+        for key, kind in stage.takes.items():
+            if kind not in kinds["$defs"]:
+                raise ConfigurationError(
+                    f"{stage.name}: its parameter {key} is of a kind {kind}, "
+                    "which config/schema.yaml does not describe"
+                )
         if stage.takes:
             section, name = stage.section.split(".")
             known = properties.get(section, {"properties": {}})["properties"]

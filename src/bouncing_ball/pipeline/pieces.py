@@ -19,7 +19,8 @@ _RENDERERS = {
 }
 
 
-def _require_function(stage: Stage, name: str) -> None:
+def _require_function(stage: Stage, name: str) -> ast.FunctionDef | None:
+    """The definition of a function, if it is not imported from elsewhere."""
     module, _, function = name.rpartition(".")
     file = module_file(f"bouncing_ball.{module}")
     if file is None:
@@ -28,16 +29,29 @@ def _require_function(stage: Stage, name: str) -> None:
             f"define {function}"
         )
     tree = ast.parse(file.read_text(encoding="utf-8"))
-    found = [node.name for node in tree.body if isinstance(node, ast.FunctionDef)]
+    found = {node.name: node for node in tree.body if isinstance(node, ast.FunctionDef)}
     imported = [
         alias.asname or alias.name
         for node in tree.body
         if isinstance(node, ast.ImportFrom)
         for alias in node.names
     ]
-    if function not in found + imported:
+    if function not in [*found, *imported]:
         raise ConfigurationError(
             f"{stage.name}: no function {function} in src/bouncing_ball/{module.replace('.', '/')}"
+        )
+    return found.get(function)
+
+
+def _require_arguments(stage: Stage, study: ast.FunctionDef) -> None:
+    """Raise unless the study takes as many arguments as a job gives it."""
+    reads = bool(stage.reads) or stage.section == "ledger"
+    given = [*(["data"] if reads else []), "parameters", *stage.arguments]
+    taken = [argument.arg for argument in study.args.args]
+    if not len(taken) - len(study.args.defaults) <= len(given) <= len(taken):
+        raise ConfigurationError(
+            f"{stage.name}: {stage.study} takes ({', '.join(taken)}), "
+            f"its entry gives ({', '.join(given)})"
         )
 
 
@@ -55,8 +69,9 @@ def check_pieces(stages: Mapping[str, Stage], run: Mapping[str, Any]) -> None:
     ------
     ConfigurationError
         One line: a parameter section, a study, a module that draws or sets the
-        artifact, a dataset read, or a setting of the run that is not there; or
-        a section of the configuration that no entry uses.
+        artifact, a dataset read, or a setting of the run that is not there; a
+        study that takes other arguments; or a section of the configuration that
+        no entry uses.
     """
     for stage in stages.values():
         if stage.kind in _RENDERERS:
@@ -65,11 +80,11 @@ def check_pieces(stages: Mapping[str, Stage], run: Mapping[str, Any]) -> None:
         if stage.tabulated:
             _require_function(stage, f"render.tables.{stage.name}.rows")
         if stage.study:
-            _require_function(stage, stage.study)
+            study = _require_function(stage, stage.study)
             _require_keys(stage, run)
-        for name in stage.reads:
-            if name not in stages or not stages[name].study:
-                raise ConfigurationError(f"{stage.name}: there is no dataset {name} to read")
+            _require_datasets(stage, stages)
+            if study:
+                _require_arguments(stage, study)
     used = {stage.section for stage in stages.values()}
     for section in _sections(run):
         if section not in used:
@@ -89,6 +104,12 @@ def _require_keys(stage: Stage, run: Mapping[str, Any]) -> None:
         stage.settings(run)
     except KeyError as error:
         raise ConfigurationError(f"{stage.name}: a run has no setting {error.args[0]}") from None
+
+
+def _require_datasets(stage: Stage, stages: Mapping[str, Stage]) -> None:
+    for name in stage.reads:
+        if name not in stages or not stages[name].study:
+            raise ConfigurationError(f"{stage.name}: there is no dataset {name} to read")
 
 
 def _sections(run: Mapping[str, Any]) -> Iterable[str]:

@@ -78,5 +78,7 @@ def from_dataset(render: Callable[[xr.Dataset], T], data: xr.Dataset, path: str)
     except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
         # The datasets of a run have all that is drawn, so that it is the file's fault.
         words = " ".join(str(error).split())
-        reason = f"no {words}" if isinstance(error, KeyError) else words
+        if isinstance(error, KeyError) and str(error.args[0]).isidentifier():
+            words = f"no {words}"
+        reason = words.strip('"')
         raise ModelError(f"{path}: {reason}: {again}") from error

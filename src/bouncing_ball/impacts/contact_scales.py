@@ -25,7 +25,7 @@ class Scales(NamedTuple):
     speed: np.ndarray
 
 
-def _depth(law: ContactLaw, rate: np.ndarray, power: float, wanted: np.ndarray) -> np.ndarray:
+def depth(law: ContactLaw, rate: np.ndarray, power: float, wanted: np.ndarray) -> np.ndarray:
     """p at which f(p, p′) p^power reaches a value."""
 
     def logarithm(log):
@@ -63,6 +63,6 @@ def scales(law: ContactLaw, speed: np.ndarray, load: np.ndarray) -> Scales:
     v2 = speed * speed
     if np.any(load > 0):
         loaded = np.maximum(load, np.finfo(float).tiny)
-        v2 = v2 + load * _depth(law, np.zeros_like(v2), 0.0, loaded)
+        v2 = v2 + load * depth(law, np.zeros_like(v2), 0.0, loaded)
     v = np.sqrt(np.maximum(v2, np.finfo(float).tiny))
-    return Scales(_depth(law, v, 1.0, v * v), v)
+    return Scales(depth(law, v, 1.0, v * v), v)

@@ -20,6 +20,7 @@ from bouncing_ball.continuation.corrector import NewtonSettings, newton
 from bouncing_ball.continuation.events import Event, LocationError, parameter_bound, vanishing
 from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.errors import ModelError
+from bouncing_ball.impacts.law_permanent_contact import permanent_contact
 from bouncing_ball.impacts.law_signature import free_impact
 from bouncing_ball.impacts.laws.contact_law import ContactLaw
 from bouncing_ball.impacts.signature import Instant
@@ -272,7 +273,10 @@ class LawModel(ImpactModel):
 
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ up to which a steady contact is held all the time."""
-        return np.ones(self.law.shape)
+        size = int(np.prod(self.law.shape))
+        laws = (self.law.flat(self.law.shape).take(k) for k in range(size))
+        found = [permanent_contact(law).amplitude for law in laws]
+        return np.array(found).reshape(self.law.shape)
 
 
 @lru_cache(maxsize=4096)

@@ -9,6 +9,7 @@ from functools import lru_cache
 from typing import TypeVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError, require
 from bouncing_ball.impacts.law_signature import free_impact
@@ -99,14 +100,18 @@ def _search(kind: type[ContactLaw], restitution: float) -> float:
     return float(right)
 
 
-def law_of_impact(kind: type[Law], restitution: float, duration: float, speed: float) -> Law:
+def law_of_impact(
+    kind: type[Law], restitution: float, duration: ArrayLike, speed: ArrayLike
+) -> Law:
     """The law whose free impact of speed v has the restitution r and the duration D.
 
     Parameters
     ----------
     kind : type of ContactLaw
-    restitution, duration, speed : float
-        r in (0, 1], D > 0 and v > 0.
+    restitution : float
+        r in (0, 1].
+    duration, speed : array_like
+        D > 0 and v > 0.
 
     Raises
     ------
@@ -121,7 +126,8 @@ def law_of_impact(kind: type[Law], restitution: float, duration: float, speed: f
     >>> round(float(impact.restitution), 12), round(float(impact.duration), 12)
     (0.65, 0.1)
     """
-    for value, name in ((duration, "contact duration D"), (speed, "impact speed v")):
+    given, v = np.asarray(duration, dtype=float), np.asarray(speed, dtype=float)
+    for value, name in ((given, "contact duration D"), (v, "impact speed v")):
         require((value > 0) & np.isfinite(value), value, name, "a finite number > 0")
     group, taken = reference(kind, float(restitution))
-    return kind.of_scales(group, duration * speed / taken, speed)
+    return kind.of_scales(group, given * v / taken, v)

@@ -131,7 +131,7 @@ def permanent_contact(law: ContactLaw) -> Threshold:
     Λ_SD = √13/4 for ϖ = 2 and ζ = 1/2:
 
     >>> from bouncing_ball.impacts.laws.linear import Linear
-    >>> round(permanent_contact(Linear(2.0, 0.5)).amplitude / np.sqrt(13), 12)
+    >>> float(round(permanent_contact(Linear(2.0, 0.5)).amplitude / np.sqrt(13), 12))
     0.25
     """
     with np.errstate(all="ignore"):

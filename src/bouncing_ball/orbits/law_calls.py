@@ -6,6 +6,9 @@ compare models, it is given by both at the impact speed of the orbit in question
 
 import math
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.impacts.law_choice import law_of_impact
 from bouncing_ball.impacts.laws.contact_law import ContactLaw
@@ -15,7 +18,7 @@ from bouncing_ball.orbits.law_model import LawModel
 # Law and orbit in turn: the speed hardly depends on a law with the same r and D, and
 # each round gains two digits or more.
 _ROUNDS = 20
-_SETTLED = 1e-14
+_SETTLED = 1e-13
 
 
 def rigid_speed(n: int, restitution: float) -> float:
@@ -32,12 +35,12 @@ def rigid_speed(n: int, restitution: float) -> float:
 def law_at_orbit(
     kind: type[ContactLaw],
     restitution: float,
-    duration: float,
+    duration: ArrayLike,
     n: int,
     amplitude: float,
     side: Side = Side.STABLE,
 ) -> ContactLaw:
-    """The law with r and D at the impact speed of its own n-T orbit at Λ.
+    """The laws with r and D at the impact speeds of their own n-T orbits at Λ.
 
     Raises
     ------
@@ -55,14 +58,19 @@ def law_at_orbit(
     >>> round(float(free_impact(law, speed).duration), 12)
     0.1
     """
-    speed = rigid_speed(n, restitution)
+    taken = np.asarray(duration, dtype=float)
+    speed = np.full_like(taken, rigid_speed(n, restitution))
     for _ in range(_ROUNDS):
-        law = law_of_impact(kind, restitution, duration, speed)
-        orbit = LawModel(law).require_orbit(n, amplitude, side)
-        before, speed = speed, -float(orbit.relative_impact_velocity)
-        if abs(speed - before) <= _SETTLED * speed:
+        law = law_of_impact(kind, restitution, taken, speed)
+        model = LawModel(law)
+        orbit = model.orbit(n, amplitude, side)
+        lost = np.flatnonzero(~np.atleast_1d(orbit.exists))
+        if lost.size:
+            LawModel(law.take(lost[0])).require_orbit(n, amplitude, side)
+        before, speed = speed, -orbit.relative_impact_velocity
+        if np.all(np.abs(speed - before) <= _SETTLED * speed):
             return law
     raise NoOrbitError(
         f"no {n}-T orbit at Λ = {amplitude:g} whose own impact has r = {restitution:g} and "
-        f"D = {duration:g} was found for {kind.name}"
+        f"D = {float(taken.flat[0]):g} was found for {kind.name}"
     )

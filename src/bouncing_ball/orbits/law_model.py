@@ -42,7 +42,7 @@ _TOLERANCE = 1e-12
 _LONGEST = 0.5
 # A branch, for all orbits at one Λ: from so far above it, in not too many steps.
 _ABOVE = 1.3
-_STEPS = StepControl(initial=0.05, largest=0.4, max_angle=0.25)
+_STEPS = StepControl(initial=0.05, smallest=1e-3, largest=0.4, max_angle=0.25)
 _POINTS = 300
 _FARTHER = 4.0
 _FOLD, _FLIP, _HERE = "saddle-node", "period doubling", "this amplitude"
@@ -150,8 +150,8 @@ class LawModel(ImpactModel):
         if lost.size:
             fold = self._folds(index[lost], law.take(lost))
             y[lost] = np.nan
-            for k in lost[lam[lost] >= fold]:
-                y[k] = self._on_branch(int(index[k]), law.take(k), lam[k], Side(side))
+            lost = lost[lam[lost] >= fold]
+            y[lost] = self._on_branches(index[lost], law.take(lost), lam[lost], Side(side))
         phase, impact = (y[:, k].reshape(shape) for k in range(2))
         return LawOrbit.at(n, self.law, lam.reshape(shape), phase, impact)
 
@@ -168,19 +168,36 @@ class LawModel(ImpactModel):
         test = saddle_node_function(*orbit.trace_and_determinant())
         return test > 0 if side == Side.STABLE else test < 0
 
-    def _on_branch(self, n: int, law: ContactLaw, amplitude: float, side: Side) -> np.ndarray:
-        """The point at Λ on a side of the fold, next to it along the branch; or NaN."""
-        branch = self._branch(n, law, amplitude)
-        names = [point.name for point in branch.special] if branch else []
-        if branch is None or _FOLD not in names:
-            return np.full(3, np.nan)
-        fold = names.index(_FOLD)
-        before = [k for k, name in enumerate(names[:fold]) if name == _HERE]
-        after = [k for k, name in enumerate(names) if name == _HERE and k > fold]
-        at = before[-1:] if side == Side.STABLE else after[:1]
-        return branch.special[at[0]].point if at else np.full(3, np.nan)
+    def _on_branches(self, n, law: ContactLaw, lam, side: Side) -> np.ndarray:
+        """The points at Λ on a side of the fold, next to it along the branches; or NaN."""
+        y = np.full((len(lam), 3), np.nan)
+        for family in np.unique(n):
+            rows = np.flatnonzero(n == family)
+            # One branch for all orbits of a single law; else each has its own.
+            for part in [rows] if not law.shape else rows[:, np.newaxis]:
+                if part.size:
+                    own = law.take(part[0])
+                    y[part] = self._on_branch(int(family), own, lam[part], side)
+        return y
 
-    def _branch(self, n: int, law: ContactLaw, amplitude: float) -> Branch | None:
+    def _on_branch(self, n: int, law: ContactLaw, lam: np.ndarray, side: Side) -> np.ndarray:
+        branch = self._branch(n, law, float(np.max(lam)), farther=1.0)
+        guess = np.full((len(lam), 3), np.nan)
+        folds = branch.named(_FOLD) if branch else []
+        if branch is None or not folds:
+            return guess
+        at = int(np.argmin(np.linalg.norm(branch.points - folds[0], axis=1)))
+        points = branch.points[at::-1] if side == Side.STABLE else branch.points[at:]
+        for k, level in enumerate(lam):
+            over = np.flatnonzero((points[:-1, 2] < level) & (points[1:, 2] >= level))
+            if over.size:
+                left, right = points[over[0]], points[over[0] + 1]
+                guess[k] = left + (level - left[2]) / (right[2] - left[2]) * (right - left)
+        return _closed(np.full(len(lam), float(n)), law, guess)
+
+    def _branch(
+        self, n: int, law: ContactLaw, amplitude: float, farther: float = _FARTHER
+    ) -> Branch | None:
         """The branch through Λ, from its stable side down to the fold and beyond."""
         system, index = LawSystem(n, law), np.array([n])
         instant = self._instants(index, law)
@@ -189,7 +206,7 @@ class LawModel(ImpactModel):
         guess = np.stack([psi - instant.delay, instant.delay - n * np.pi, [start]], axis=1)
         y = _closed(index, law.flat((1,)), guess)[0]
         here = Event(_HERE, lambda y: y[..., -1] - amplitude)
-        most = max(_FARTHER * amplitude, _FARTHER)
+        most = max(farther * amplitude, farther, _ABOVE * start)
         top = parameter_bound(most, upper=True, reason=f"Λ = {most:g}")
         if np.any(np.isnan(y)) or y[-1] >= most:
             return None

@@ -1,0 +1,208 @@
+r"""The paper's comparison on the contacts that engineers use (beyond the paper).
+
+All laws have the same restitution coefficient r and the same duration D of the
+free impact, at the impact speed of the orbit in question. What stands for ϖ, which a
+Hertz contact does not have, is π/D: that of the elastic linear contact of the
+same duration. Errors are relative to the exact orbit on the contact, as in Eqs. 37-38.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq
+
+from bouncing_ball.datasets.variables import describe
+from bouncing_ball.errors import ModelError
+from bouncing_ball.impacts.damping import damping_ratio
+from bouncing_ball.impacts.law_choice import law_of_impact
+from bouncing_ball.impacts.law_permanent_contact import permanent_contact
+from bouncing_ball.impacts.law_signature import LawSignature
+from bouncing_ball.impacts.laws import LAWS
+from bouncing_ball.impacts.laws.linear import Linear
+from bouncing_ball.impacts.release import Release
+from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.corrected_model import CorrectedModel
+from bouncing_ball.orbits.interface import ImpactModel, Side
+from bouncing_ball.orbits.law_calls import law_at_orbit, rigid_speed
+from bouncing_ball.orbits.law_model import LawModel
+from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.studies.parameters import grid
+
+HERTZ = ("hunt-crossley", "tsuji", "kuwabara-kono")
+LINEAR = {"linear": Release.DISPLACEMENT, "linear, force release": Release.FORCE}
+NAMES = (*LINEAR, *HERTZ)
+QUANTITIES = ("max_height", "bounce_velocity", "phase", "saddle_node", "period_doubling")
+BOUNDS = ("saddle_node", "period_doubling")
+SIMPLE = ("restitution", "corrected")
+
+
+def linear_contact(restitution: float, duration: ArrayLike, release: Release) -> Contact:
+    """The spring-damper with r and D under a release rule, at every speed.
+
+    Examples
+    --------
+    >>> float(linear_contact(1.0, np.pi, Release.DISPLACEMENT).frequency_ratio)
+    1.0
+    """
+    unit = Contact(1.0, damping_ratio(restitution, release), release)
+    omega = float(unit.free_duration) / np.asarray(duration, dtype=float)
+    return Contact(omega, unit.damping_ratio, release)
+
+
+def exact_model(name: str, restitution: float, duration: float, speed: float) -> ImpactModel:
+    """The exact model of the contact with r and D at a speed."""
+    if name in LINEAR:
+        return ContactModel(linear_contact(restitution, duration, LINEAR[name]))
+    return LawModel(law_of_impact(LAWS[name], restitution, duration, speed))
+
+
+def exact_models(name: str, parameters: Mapping[str, Any], duration: np.ndarray) -> ImpactModel:
+    """The exact models of contacts with r and D at their own orbits' speeds."""
+    r, n, lam = (parameters[key] for key in ("restitution", "n", "amplitude"))
+    if name in LINEAR:
+        return ContactModel(linear_contact(r, duration, LINEAR[name]))
+    return LawModel(law_at_orbit(LAWS[name], r, duration, n, lam))
+
+
+def corrected_model(exact: Any) -> CorrectedModel:
+    """The corrected restitution model of one contact."""
+    if isinstance(exact, ContactModel):
+        return CorrectedModel.of_contact(exact.contact)
+    return CorrectedModel(LawSignature(exact.law))
+
+
+def _values(model: ImpactModel, n: int, amplitude: float) -> np.ndarray:
+    """The quantities compared, (quantity, ...)."""
+    orbit = model.orbit(n, amplitude)
+    bounds = (getattr(model, name)(n).amplitude for name in BOUNDS)
+    columns = (orbit.max_height, orbit.bounce_velocity, orbit.phase, *bounds)
+    return np.array(np.broadcast_arrays(*columns), dtype=float)
+
+
+def _errors(name: str, parameters: Mapping[str, Any], ratios: np.ndarray) -> np.ndarray:
+    """Relative errors of both simple models, (model, quantity, ratio)."""
+    r, n, lam = (parameters[key] for key in ("restitution", "n", "amplitude"))
+    exact: Any = exact_models(name, parameters, np.pi / ratios)
+    wanted = _values(exact, n, lam)
+    rigid = _values(RestitutionModel(r), n, lam)[:, np.newaxis]
+    each = [_values(corrected_model(exact[k]), n, lam) for k in range(len(ratios))]
+    return np.abs(np.array([rigid / wanted, np.stack(each, axis=-1) / wanted]) - 1)
+
+
+def _height_threshold(name: str, parameters: Mapping[str, Any], ratios, errors) -> float:
+    """ϖ from which the restitution model's greatest height is right; NaN outside the range."""
+    tolerance = parameters["tolerance"]
+    r, n, lam = (parameters[key] for key in ("restitution", "n", "amplitude"))
+    rigid = float(RestitutionModel(r).require_orbit(n, lam).max_height)
+    above = np.flatnonzero(errors > tolerance)
+    if not above.size or above[-1] == len(ratios) - 1:
+        return np.nan
+
+    def surplus(log):
+        exact = exact_models(name, parameters, np.pi / np.exp(log))
+        return np.log(abs(rigid / float(exact.orbit(n, lam).max_height) - 1) / tolerance)
+
+    ends = np.log(ratios[above[-1] : above[-1] + 2])
+    return float(np.exp(brentq(surplus, *ends, xtol=1e-12, rtol=1e-12)))
+
+
+def law_errors(parameters: Mapping[str, Any]) -> xr.Dataset:
+    """Errors of the restitution model and of the corrected one on all laws, along π/D."""
+    ratios = grid(parameters["frequency_ratio"])
+    errors = np.array([_errors(name, parameters, ratios) for name in NAMES])
+    threshold = [
+        _height_threshold(name, parameters, ratios, errors[k, 0, 0]) for k, name in enumerate(NAMES)
+    ]
+    return describe(
+        xr.Dataset(
+            {
+                "relative_error": (("law", "model", "quantity", "duration_ratio"), errors),
+                "error_threshold": ("law", np.array(threshold)),
+            },
+            coords={
+                "law": list(NAMES),
+                "model": list(SIMPLE),
+                "quantity": list(QUANTITIES),
+                "duration_ratio": ratios,
+            },
+        )
+    )
+
+
+def _domain(model: ImpactModel, n: int, top: float, points: int):
+    """Λ and φ along a branch, from the unstable side over the fold to the stable one."""
+    fold = model.saddle_node(n)
+    share = np.linspace(0.0, 1.0, points)[1:] ** 2
+    lam = float(fold.amplitude) + share * (top - float(fold.amplitude))
+    left, right = (model.orbit(n, lam, side) for side in (Side.UNSTABLE, Side.STABLE))
+    amplitude = np.concatenate([lam[::-1], [float(fold.amplitude)], lam])
+    return amplitude, np.concatenate([left.phase[::-1], [float(fold.phase)], right.phase])
+
+
+def _held(name: str, restitution: float, ratio: float) -> float:
+    """Threshold of permanent contact; NaN where no contact that just touches was found."""
+    speed = rigid_speed(1, restitution)
+    if name in LINEAR:
+        contact = linear_contact(restitution, np.pi / ratio, LINEAR[name])
+        law: Any = Linear(contact.frequency_ratio, contact.damping_ratio, contact.release)
+    else:
+        law = law_of_impact(LAWS[name], restitution, np.pi / ratio, speed)
+    try:
+        return permanent_contact(law).amplitude
+    except ModelError:
+        return np.nan
+
+
+def figures_of_laws(parameters: Mapping[str, Any]) -> xr.Dataset:
+    """Table 1 and Figs. 8, 14 and 16 on contacts of the same r and duration."""
+    heights = parameters["heights"]
+    r, n, lam = (heights[key] for key in ("restitution", "n", "amplitude"))
+    lossy, families = parameters["restitution"], parameters["n"]
+    shown, top, points = (parameters[key] for key in ("frequency_ratio", "amplitude_max", "points"))
+    ratios = grid(heights["frequency_ratio"])
+    names = ("linear", *HERTZ)
+
+    def model(name, index, ratio):
+        return exact_model(name, lossy, np.pi / ratio, rigid_speed(index, lossy))
+
+    bounds = [
+        [
+            [[float(getattr(model(name, k, x), b)(k).amplitude) for k in families] for x in shown]
+            for b in BOUNDS
+        ]
+        for name in names
+    ]
+    branches = np.array(
+        [
+            [_domain(model(name, families[0], x), families[0], top, points) for x in shown]
+            for name in names
+        ]
+    )
+    height = [
+        exact_models(name, heights, np.pi / ratios).orbit(n, lam).max_height for name in names
+    ]
+    held = [[_held(name, r, x) for x in ratios] for name in names]
+    return describe(
+        xr.Dataset(
+            {
+                "bifurcation_amplitude": (("law", "bound", "shown_ratio", "n"), np.array(bounds)),
+                "amplitude": (("law", "shown_ratio", "point"), branches[:, :, 0]),
+                "phase": (("law", "shown_ratio", "point"), branches[:, :, 1]),
+                "max_height": (("law", "duration_ratio"), np.array(height)),
+                "restitution_max_height": ((), float(RestitutionModel(r).orbit(n, lam).max_height)),
+                "threshold_amplitude": (("law", "duration_ratio"), np.array(held)),
+            },
+            coords={
+                "law": list(names),
+                "bound": list(BOUNDS),
+                "shown_ratio": np.array(shown, dtype=float),
+                "n": list(families),
+                "duration_ratio": ratios,
+                "point": np.arange(branches.shape[-1]),
+            },
+        )
+    )

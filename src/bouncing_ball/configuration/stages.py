@@ -364,6 +364,25 @@ _MODELS: tuple[Stage, ...] = (
         "domains",
         "n restitution:lossy_restitution frequency_ratio:ratio amplitude_max points",
     ),
+    Stage(
+        "ext_laws",
+        Kind.EXTENSION,
+        "Errors of the restitution model and of the corrected one on the contacts of engineers",
+        "studies.contact_laws.law_errors",
+        "extensions.ext_laws",
+        "n restitution:law_restitution amplitude tolerance frequency_ratio:span",
+        tabulated=True,
+    ),
+    Stage(
+        "ext_hertz",
+        Kind.EXTENSION,
+        "Table 1 and Figures 8, 14 and 16 on contacts of other laws",
+        "studies.contact_laws.figures_of_laws",
+        "extensions.ext_hertz",
+        "n:families restitution:law_restitution frequency_ratio:four_ratios amplitude_max"
+        " points heights",
+        tabulated=True,
+    ),
 )
 
 _EXPLORER = Stage(

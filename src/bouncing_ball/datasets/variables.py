@@ -153,6 +153,12 @@ VARIABLES: dict[str, Variable] = {
     "bifurcation_amplitude": Variable("excitation amplitude of the bifurcation", "Λ"),
     "force_restitution": Variable("restitution coefficient of the force release", "r_F"),
     "bifurcation_phase": Variable("phase at the bifurcation", "φ", "rad"),
+    # other contact laws
+    "law": Variable("law of the contact", ""),
+    "duration_ratio": Variable(
+        "π over the duration of the free impact, which stands for the frequency ratio", "π/D"
+    ),
+    "shown_ratio": Variable("π over the duration of the free impact, of a branch or row", "π/D"),
     # the corrected restitution model
     "model": Variable("model of the impact", ""),
     "coefficient": Variable("relative error times the frequency ratio, to first order", "K"),

@@ -1,0 +1,11 @@
+"""The documentation's worked example of a law of one's own, run as it stands."""
+
+import doctest
+from pathlib import Path
+
+PAGE = Path(__file__).parents[2] / "docs" / "contact-laws.md"
+
+
+def test_the_worked_example():
+    result = doctest.testfile(str(PAGE), module_relative=False)
+    assert result.attempted > 10 and result.failed == 0

@@ -232,8 +232,17 @@ def test_a_verdict_on_an_orbit_that_only_one_model_has():
         ({"quantity": "colour"}, ModelError, "one of max_height"),
         ({"release": "glue"}, ModelError, "unknown release"),
         ({"restitution": 0.0}, ModelError, "restitution = 0.0 is not in (0, 1]"),
+        (
+            {"restitution": None, "damping_ratio": 0.9999999},
+            ModelError,
+            "damping_ratio = 0.9999999",
+        ),
         ({"restitution": None, "damping": "5 N s/m", "stiffness": None}, ModelError, "missing"),
         ({"stiffness": 1e40}, ModelError, "ϖ = "),
+        # Its square is beyond all numbers, or below them.
+        ({"frequency": 1e300}, ModelError, "frequency = 1e+300 Hz is not between 1e-40 and 1e+40"),
+        ({"frequency": 1e-300}, ModelError, "frequency = 1e-300 Hz is not between"),
+        ({"mass": 1e-300}, ModelError, "mass = 1e-300 kg is not between"),
         ({"stiffness": None, "restitution": 1.0, "quantity": "saddle_node"}, NoOrbitError, "1e+06"),
     ],
 )

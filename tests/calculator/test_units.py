@@ -69,12 +69,16 @@ def test_what_is_read(name, value, expected):
         ("frequency", "9 m^9^9", "no unit that is known"),
         ("frequency", "9 __import__('os')", "no unit that is known"),
         ("frequency", "1 " + "m" * 10_000, "no unit that is known"),
+        # Half a minute, where blanks at the end are looked for from each of them.
+        ("frequency", "1 m" + " " * 100_000 + "m", "no unit that is known"),
     ],
 )
 def test_what_is_refused_in_one_line(name, value, says):
     with pytest.raises(ModelError) as error:
         number(name, value)
     text = str(error.value)
+    # A text of megabytes is not given back.
+    assert len(text) < 200
     assert says in text and text.startswith(f"{name} = ") and "\n" not in text
 
 

@@ -36,6 +36,8 @@ _MAY_VANISH = ("damping", "damping_ratio")
 _AT_MOST_ONE = ("restitution", "measured_restitution")
 # Beyond, the squares of ϖ and Λ leave no digits; as on the rest of the command line.
 _LARGEST = 1e8
+# Of any quantity in SI units: products and powers of a few stay floating-point numbers.
+_SPAN = (1e-40, 1e40)
 
 
 def _read(parameters: dict[str, Any]) -> dict[str, float]:
@@ -48,6 +50,8 @@ def _read(parameters: dict[str, Any]) -> dict[str, float]:
             require(0 < value <= 1, value, name, "in (0, 1]")
         elif value < 0 or (value == 0 and name not in _MAY_VANISH):
             raise ModelError(f"{shown} is not {'≥ 0' if name in _MAY_VANISH else 'positive'}")
+        if value and not _SPAN[0] <= value <= _SPAN[1]:
+            raise ModelError(f"{shown} is not between {_SPAN[0]:g} and {_SPAN[1]:g}")
     return given
 
 

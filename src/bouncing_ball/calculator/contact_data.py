@@ -93,6 +93,8 @@ def loss(given: Given, release: Release) -> float | None:
     if name == "damping_ratio":
         zeta = given[name]
         require(zeta < 1, zeta, "damping_ratio", "below 1: the contact would not oscillate")
+        bounces = Contact(1.0, zeta, release).restitution > 0
+        require(bounces, zeta, "damping_ratio", "so far below 1 that the ball bounces at all")
         return zeta
     if name == "rebound_height":
         measured = rebound(given["drop_height"], given[name])

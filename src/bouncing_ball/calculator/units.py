@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 from bouncing_ball.errors import ModelError
 
 # A number, and what is left.
-_TEXT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.DOTALL)
+_TEXT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
 # Letters, products, quotients and powers of one digit. A power of a power would
 # be evaluated, however large.
 _UNIT = re.compile(r"(?:[^\W\d]|[ ·*/%°²³¹⁻]|\^-?\d(?![\d^])|_0|1(?= */)){1,40}")
@@ -132,7 +132,7 @@ def _split(name: str, value: Any) -> tuple[float, str]:
             return float(value), ""
         except (TypeError, ValueError):
             raise ModelError(f"{name} = {value!r} is neither a number nor a text") from None
-    found = _TEXT.fullmatch(value)
+    found = _TEXT.fullmatch(value.strip())
     example = KINDS[name].example
     if found is None:
         shown = textwrap.shorten(value, 60, placeholder="…")

@@ -211,6 +211,18 @@ def test_a_picture_in_a_drawing_is_compared_as_a_picture():
     assert share(whole, "<image/>") == np.inf
 
 
+def test_a_reference_in_another_namespace_refers_to_nothing():
+    whole = raster([[0, 9], [99, 200]])
+    assert share(whole, whole.replace("xlink:href", "xmlns:a='urn:a' a:href", 1)) == np.inf
+
+
+def test_many_pictures_that_take_long_together():
+    # White is 3 kB of megapixels: two megabytes of text hold thousands of them.
+    many = 5 * raster(np.full((1400, 1400), 255))
+    with pytest.raises(UnreadableError, match="too many pixels"):
+        drawing(many)
+
+
 @pytest.mark.parametrize(
     ("record", "new", "moved"),
     [

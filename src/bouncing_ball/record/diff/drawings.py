@@ -21,7 +21,7 @@ import numpy as np
 from bouncing_ball.record.diff.outcome import Outcome
 from bouncing_ball.record.diff.pictures import compare_pictures, read_picture
 from bouncing_ball.record.diff.texts import Line
-from bouncing_ball.record.reading import UnreadableError, printable
+from bouncing_ball.record.reading import MAX_PIXELS, UnreadableError, printable
 
 BUDGET = 2 / 9
 """In points, of a coordinate and of the distance of a vertex from the other line."""
@@ -79,13 +79,11 @@ def _check_style(text: str) -> None:
 
 
 def _decoded(value: str) -> bytes:
-    """The PNG file in a reference; refused unless it is one of a size that is looked at."""
+    """The PNG file in a reference."""
     try:
-        content = base64.b64decode("".join(value.removeprefix(_PICTURE).split()), validate=True)
+        return base64.b64decode("".join(value.removeprefix(_PICTURE).split()), validate=True)
     except (ValueError, binascii.Error):
         raise UnreadableError("a picture in it that is not base64") from None
-    read_picture(content)
-    return content
 
 
 class _Reader:
@@ -99,6 +97,7 @@ class _Reader:
         # How deep in a block that tells how the drawing was made.
         self.inside = 0
         self.text: list[str] = []
+        self.pixels = 0
 
     def _flush(self) -> None:
         text = "".join(self.text).strip()
@@ -149,6 +148,7 @@ class _Reader:
             local = key.rpartition(" ")[2]
             if name == "image" and value.startswith(_PICTURE):
                 picture, value = _decoded(value), "a picture"
+                self._count(picture)
             value = _CHECKSUM.sub(self._renamed, value)
             if local == "d":
                 path = " ".join(value.split())
@@ -160,8 +160,16 @@ class _Reader:
                 for part in _TRANSLATE.findall(value):
                     numbers += _NUMBER.findall(part)
                 value = _TRANSLATE.sub("translate", value)
-            words.append(f"{local}={' '.join(value.split())!r}")
+            # With its namespace: an href in another one refers to nothing.
+            words.append(f"{key}={' '.join(value.split())!r}")
         return Element(" ".join(words), tuple(map(float, numbers)), path, picture)
+
+    def _count(self, content: bytes) -> None:
+        """Refuse what is no picture, and pictures that take long together: each may be small."""
+        picture = read_picture(content)
+        self.pixels += picture.width * picture.height
+        if self.pixels > MAX_PIXELS:
+            raise UnreadableError("too many pixels in its pictures")
 
     def _renamed(self, found: re.Match[str]) -> str:
         return self.names.setdefault(found[0], f"({len(self.names) + 1})")

@@ -4,7 +4,6 @@ The commit that the page names is another one in every run, and no difference.
 """
 
 import json
-import re
 from typing import NamedTuple
 
 import numpy as np
@@ -12,9 +11,7 @@ import xarray as xr
 
 from bouncing_ball.record.reading import UnreadableError
 
-_BLOCK = re.compile(
-    r'(?<=<script type="application/json" id="references">\n)(.*?)(?=\n</script>)', re.DOTALL
-)
+_OPENED, _CLOSED = '<script type="application/json" id="references">\n', "\n</script>"
 _STATE = ("release", "restitution", "frequency_ratio", "n", "amplitude")
 
 
@@ -31,18 +28,31 @@ def read_page(text: str) -> Page:
     Raises
     ------
     UnreadableError
-        If it has not exactly one block of reference orbits, or that is none.
+        If it has not exactly one block of reference orbits, or there is anything
+        else in that block: it is the one part of a page that is not compared by its letters.
     """
-    blocks = _BLOCK.findall(text)
+    before, *blocks = text.split(_OPENED)
     if len(blocks) != 1:
         raise UnreadableError(f"{len(blocks)} blocks of reference orbits in place of one")
+    block, closed, after = blocks[0].partition(_CLOSED)
+    # A browser ends the block at any "</script", also within a text.
+    if not closed or "<" in block:
+        raise UnreadableError("its reference orbits do not end where their block does")
     try:
-        held = json.loads(blocks[0])
-        columns = list(zip(*(one["state"] for one in held["orbits"]), strict=True))
-        data = dict(zip(_STATE, columns, strict=True))
-        values = np.array([one["values"] for one in held["orbits"]], dtype=float)
-        data |= dict(zip(held["names"], values.T, strict=True))
-        found = {name: ("sample", np.array(column)) for name, column in data.items()}
-        return Page(_BLOCK.sub("", text), xr.Dataset(found))
-    except (ValueError, TypeError, KeyError, RecursionError):
+        held = json.loads(block)
+        return Page(before + _OPENED + _CLOSED + after, _orbits(**held))
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
         raise UnreadableError("its reference orbits are no such data") from None
+
+
+def _orbits(commit: str, names: list[str], orbits: list[dict[str, list]]) -> xr.Dataset:
+    """The block's content as data; what is named otherwise is refused."""
+    if len({*names, *_STATE}) != len(names) + len(_STATE):
+        raise ValueError("a name twice")
+    if any(one.keys() != {"state", "values"} for one in orbits) or not isinstance(commit, str):
+        raise ValueError("other keys")
+    columns = list(zip(*(one["state"] for one in orbits), strict=True))
+    data = dict(zip(_STATE, columns, strict=True))
+    values = np.array([one["values"] for one in orbits], dtype=float)
+    data |= dict(zip(names, values.T, strict=True))
+    return xr.Dataset({name: ("sample", np.array(column)) for name, column in data.items()})

@@ -22,8 +22,8 @@ def draw(data: xr.Dataset) -> Figure:
                 axes.plot(
                     share, part.sel(model=model), linewidth=1.1, label=label, **LAWS[str(law)]
                 )
-        axes.plot(share, share, **GUIDE)
-        axes.plot(share, share**2, **GUIDE)
+        for slope in (1, 2):
+            axes.plot(share[[0, -1]], share[[0, -1]] ** slope, **GUIDE)
         axes.set(xscale="log", yscale="log")
         axes.set_title(NAMES[quantity], fontsize=9)
     for axes in panels[-1]:

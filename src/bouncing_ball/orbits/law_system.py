@@ -8,6 +8,8 @@ the contact is.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -19,6 +21,12 @@ from bouncing_ball.orbits.stability import period_doubling_function, saddle_node
 # Impact velocity and flight time down to which a branch is followed: the equations are
 # singular where they vanish.
 _MARGIN = 1e-4
+
+
+@lru_cache(maxsize=64)
+def _orbit(kind: Any, values: tuple, n: int, phase: float, impact: float, amplitude: float):
+    """One orbit: a step along a branch asks for its residual, Jacobian and events in turn."""
+    return LawOrbit.at(n, kind(*values), amplitude, phase, impact)
 
 
 @dataclass(frozen=True)
@@ -38,6 +46,9 @@ class LawSystem:
 
     def orbit(self, y: np.ndarray) -> LawOrbit:
         """The orbits at points y = (φ, z′_i, Λ) of shape (..., 3)."""
+        if y.ndim == 1 and not self.law.shape and not np.ndim(self.n):
+            kind: Any = type(self.law)
+            return _orbit(kind, tuple(self.law.fields()), int(self.n), *y.tolist())
         phase, impact, amplitude = (y[..., k] for k in range(3))
         return LawOrbit.at(self.n, self.law, amplitude, phase, impact)
 

@@ -16,7 +16,6 @@ from bouncing_ball.continuation.corrector import NewtonSettings, newton
 from bouncing_ball.continuation.events import vanishing
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.impacts.law_signature import LawSignature
-from bouncing_ball.impacts.laws.hunt_crossley import HuntCrossley
 from bouncing_ball.impacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.impacts.laws.tsuji import Tsuji
 from bouncing_ball.impacts.spring_damper import Contact
@@ -31,7 +30,6 @@ SOFT = Contact.from_restitution(0.85, 4.0)
 STIFF = Contact.from_restitution(0.65, 50.0)
 PUSHING = Contact.from_restitution(0.65, 20.0, "force")
 HERTZ = {
-    "hunt-crossley": HuntCrossley(2e3, 0.08),
     "tsuji": Tsuji(500.0, 0.3),
     "kuwabara-kono": KuwabaraKono(2e3, 0.008),
 }

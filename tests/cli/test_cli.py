@@ -256,7 +256,7 @@ def test_a_missing_orbit_exits_1_with_the_reason(capsys):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        ((), "required: command"),
+        ((), "a command is missing, one of orbit, limits"),
         (
             ("orbit", "--amplitude", "1"),
             "--restitution --damping-ratio --measured-restitution is required",

@@ -287,7 +287,11 @@ def _add_diff(sub: Parser) -> None:
     sub.add_argument("record", metavar="RECORD", help="folder with the accepted artifacts")
     sub.add_argument("results", metavar="RESULTS", help="folder with the new artifacts")
     sub.add_argument(
-        "artifacts", metavar="ARTIFACT", nargs="*", help="as fig08 or table1; default: all"
+        "artifacts",
+        metavar="ARTIFACT",
+        nargs="*",
+        default=[],  # or argparse calls it required
+        help="as fig08 or table1; default: all",
     )
     sub.add_argument(
         "--tolerances",
@@ -390,7 +394,7 @@ def parser() -> Parser:
         "dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g.",
     )
     top.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
-    commands = top.add_subparsers(dest="command", required=True, parser_class=Parser)
+    commands = top.add_subparsers(dest="command", parser_class=Parser)
     for name, (text, add_arguments) in _QUESTIONS.items():
         sub = commands.add_parser(name, help=text, description=text)
         sub.add_argument("--json", action="store_true", help="one JSON object, full precision")
@@ -444,6 +448,9 @@ def parse(arguments: list[str] | None = None) -> argparse.Namespace:
     """
     top = parser()
     args = top.parse_args(arguments)
+    if args.command is None:
+        names = ", ".join([*_QUESTIONS, "design", "explain", "diff"])
+        top.error(f"a command is missing, one of {names}")
     if not hasattr(args, "model"):
         return args
     if args.command == "permanent-contact":

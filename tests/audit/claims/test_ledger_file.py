@@ -183,3 +183,20 @@ def test_datasets_that_the_pipeline_does_not_make(one_line, tmp_path):
     with pytest.raises(ConfigurationError) as error:
         read_ledger(tmp_path, made)
     one_line(error, "unknown dataset fig99; known: ")
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("variable: computed_softening", "variable: softness"),
+        ("bound: saddle-node", "softness: saddle-node"),
+    ],
+)
+def test_variables_that_no_dataset_has(one_line, tmp_path, right, wrong):
+    shutil.copy(ROOT / "config" / "claims.schema.yaml", tmp_path)
+    text = (ROOT / "config" / "claims.yaml").read_text(encoding="utf-8")
+    assert right in text
+    (tmp_path / "claims.yaml").write_text(text.replace(right, wrong, 1), encoding="utf-8")
+    with pytest.raises(ConfigurationError) as error:
+        read_ledger(tmp_path)
+    one_line(error, ": unknown variable softness; src/bouncing_ball/datasets/variables.py")

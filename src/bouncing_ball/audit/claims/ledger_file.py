@@ -18,6 +18,7 @@ from bouncing_ball.audit.claims.ledger import (
 )
 from bouncing_ball.configuration.conformity import check_schema
 from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
+from bouncing_ball.datasets.variables import VARIABLES
 from bouncing_ball.errors import ModelError
 
 
@@ -221,6 +222,22 @@ def parse_ledger(mapping: Mapping[str, Any]) -> Ledger:
     )
 
 
+def _check_names(ledger: Ledger) -> None:
+    """Raise unless what decides a claim has the name of a variable of some dataset."""
+    parts: list[Claim | Explanation] = [*ledger.claims, *ledger.explanations]
+    for part in parts:
+        for criterion in part.criteria:
+            bound = criterion.condition
+            names = [criterion.measure.variable, *(axis for axis, _ in criterion.measure.at)]
+            names += [bound.bound] if bound and bound.bound_is_variable else []
+            for name in names:
+                if name not in VARIABLES:
+                    raise ConfigurationError(
+                        f"{part.id!r}: unknown variable {name}; "
+                        "src/bouncing_ball/datasets/variables.py has all names"
+                    )
+
+
 def read_ledger(folder: str | Path, made: Iterable[str] | None = None) -> Ledger:
     """The ledger of ``claims.yaml`` in a folder, checked against its schema.
 
@@ -239,6 +256,7 @@ def read_ledger(folder: str | Path, made: Iterable[str] | None = None) -> Ledger
     mapping, schema = (read_yaml(Path(folder, name)) for name in names)
     check_schema(mapping, schema)
     ledger = parse_ledger(mapping)
+    _check_names(ledger)
     if made is None:
         return ledger
     with_parameters = {name.partition(".")[0] for name in ledger.parameters} - {"every"}

@@ -75,6 +75,13 @@ def test_a_law_by_its_free_impact_at_the_orbits_own_speed(capsys):
     assert run["status"] == "bouncing" and len(run["sequence"]["time"]) == 3
 
 
+def test_what_was_not_found_is_not_said_not_to_exist(capsys):
+    # At damping zero the saddle-node is at Λ = 0, out of the branch's reach.
+    free = ("--law", "tsuji", "--set", "stiffness=1e4", "--set", "damping=0")
+    status, line = refused(capsys, "limits", *free)
+    assert status == 1 and "no saddle node was found on the branch of 1-T orbits" in line
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [

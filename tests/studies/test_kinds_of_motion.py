@@ -38,6 +38,13 @@ def test_balls_that_go_different_ways_share_no_period():
     assert kinds_of_motion(far | {"amplitude": [1.0]}).motion_period.values.tolist() == [0]
 
 
+def test_balls_beside_an_orbit_from_which_the_table_falls():
+    # At the start the table is 400 times as fast as the ball, and not toward it.
+    far = {"balls": 8, "displacement": 1.0, "transient": 10, "impacts": 100, "longest_period": 2}
+    motions = kinds_of_motion(SMALL | {"amplitude": [1000.0], "ensemble": far})
+    assert np.all(np.isfinite(motions.lyapunov_exponent))
+
+
 def test_an_amplitude_without_orbit():
     with pytest.raises(NoOrbitError, match=r"no 1-T orbit at Λ = 0\.2"):
         kinds_of_motion(SMALL | {"amplitude": [0.2]})

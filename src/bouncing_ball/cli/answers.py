@@ -132,8 +132,14 @@ def limits(args: argparse.Namespace) -> Answer:
     for name in ("saddle_node", "period_doubling"):
         orbit = getattr(model, name)(args.n)
         if not orbit.exists:
+            branch, what = (
+                f"the branch of {args.n}-T orbits for {model.label}",
+                name.replace("_", " "),
+            )
+            # Without a closed form only what is found is known.
+            closed = args.law is None
             raise NoOrbitError(
-                f"the branch of {args.n}-T orbits for {model.label} has no {name.replace('_', ' ')}"
+                f"{branch} has no {what}" if closed else f"no {what} was found on {branch}"
             )
         found[name] = {
             "amplitude": float(orbit.amplitude),

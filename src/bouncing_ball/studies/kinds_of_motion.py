@@ -37,7 +37,12 @@ def kinds_of_motion(parameters: Mapping[str, Any]) -> xr.Dataset:
     orbits = [model.require_orbit(n, lam) for lam in amplitude]
     phase = np.array([orbit.phase for orbit in orbits])[:, np.newaxis]
     velocity = np.array([orbit.impact_velocity for orbit in orbits])[:, np.newaxis]
+    relative = np.array([orbit.relative_impact_velocity for orbit in orbits])[:, np.newaxis]
     beside = phase + ensemble["displacement"] * np.arange(1, balls + 1) / balls
+    table = amplitude[:, np.newaxis] * np.cos(beside)
+    # So far from the orbit the table may fall faster than its ball: there is no impact at that
+    # velocity, and the ball starts with the orbit's relative one.
+    velocity = np.where(velocity < table, velocity, table + relative)
     impacts = ensemble["transient"] + ensemble["impacts"]
     sequence = model.simulate(amplitude[:, np.newaxis], beside, velocity, impacts + 1)
 

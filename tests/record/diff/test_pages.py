@@ -61,6 +61,8 @@ def test_no_letter_of_the_page_may_change(tmp_path, data):
         lambda page: page.replace('"names": [', '"names": ["one more", '),
         lambda page: page.replace('"orbits": [', "[" * 100_000),
         lambda page: page.replace('{"state": [', '{"state": [{}, ', 1),
+        # As an array of texts, 300 MB.
+        lambda page: page.replace('["displacement"', f'["{5_000_000 * "d"}"', 1),
         # What is in the block is not compared by its letters.
         lambda page: page.replace('"commit": "', '"commit": "</script><h1>Anything</h1>', 1),
         lambda page: page.replace('{"commit": ', '{"more": 1, "commit": ', 1),

@@ -13,6 +13,8 @@ from bouncing_ball.record.reading import UnreadableError
 
 _OPENED, _CLOSED = '<script type="application/json" id="references">\n', "\n</script>"
 _STATE = ("release", "restitution", "frequency_ratio", "n", "amplitude")
+# Letters of the name of a release rule.
+_LONGEST = 20
 
 
 class Page(NamedTuple):
@@ -51,7 +53,11 @@ def _orbits(commit: str, names: list[str], orbits: list[dict[str, list]]) -> xr.
         raise ValueError("a name twice")
     if any(one.keys() != {"state", "values"} for one in orbits) or not isinstance(commit, str):
         raise ValueError("other keys")
-    columns = list(zip(*(one["state"] for one in orbits), strict=True))
+    rules = [one["state"][0] for one in orbits]
+    if any(len(rule) > _LONGEST for rule in rules):
+        raise ValueError("no release rule")
+    # As numbers, however they are written: an array of texts takes the longest one's room for each.
+    columns = [rules, *np.array([one["state"][1:] for one in orbits], dtype=float).T]
     data = dict(zip(_STATE, columns, strict=True))
     values = np.array([one["values"] for one in orbits], dtype=float)
     data |= dict(zip(names, values.T, strict=True))

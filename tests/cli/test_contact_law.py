@@ -96,6 +96,8 @@ def test_what_was_not_found_is_not_said_not_to_exist(capsys):
         ((*HERTZ, "--model", "spring-damper"), "--model spring-damper has no --law"),
         ((*HERTZ, "--release", "force"), "the release is part of hunt-crossley"),
         ((*FREE, "--release", "force"), "--release goes with --law linear and --set only"),
+        ((*FREE, "--duration", "1e-300"), "a tsuji contact of duration D = 1e-300"),
+        ((*FREE, "--speed", "1e300"), "v = 1e+300 has no stiffness within the range"),
         (("--restitution", "0.5", "--duration", "1"), "--duration needs --law, one of"),
         ((*FREE[:2], "--set", "stiffness=9", "--set", "damping=2.3"), "C = 2.3 is not below √5"),
         ((*FREE[:2], "--set", "stiffness=0", "--set", "damping=1"), "stiffness K = 0.0 is not"),

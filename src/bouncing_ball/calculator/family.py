@@ -21,7 +21,6 @@ Errors = dict[str, float | None]
 # between its neighbours: after six times it is known to 10⁻⁸ of the contact, and
 # its value, next to a maximum, to rounding.
 _SAMPLES, _ZOOMS = 33, 6
-_PERMANENT = list(Quantity).index(Quantity.PERMANENT_CONTACT)
 
 
 @dataclass(frozen=True)
@@ -152,6 +151,16 @@ def permanent_law(contact: Contact) -> float:
     return abs(float(second)) / float(contact.frequency_ratio) ** 2
 
 
+def _values(case: Case, model: ImpactModel, n: int) -> np.ndarray:
+    """All quantities in a model; NaN for the permanent contact of a Hertz contact.
+
+    About its static deflection that is one of another stiffness, not known here.
+    """
+    known = [q for q in Quantity if case.law is None or q is not Quantity.PERMANENT_CONTACT]
+    found = dict(zip(known, values(known, model, n, case.table.amplitude), strict=True))
+    return np.array([found.get(q, np.nan) for q in Quantity])
+
+
 def family(case: Case, n: int) -> Family:
     """All that is asked of the n-T orbit.
 
@@ -166,12 +175,9 @@ def family(case: Case, n: int) -> Family:
     of, lam = case.models(), case.table.amplitude
     orbits = {name: model.orbit(n, lam) for name, model in of.items()}
     standing = {name: _standing(of[name], orbits[name], n, lam) for name in of}
-    exact, *simple = (np.array(values(tuple(Quantity), model, n, lam)) for model in of.values())
+    exact, *simple = (_values(case, model, n) for model in of.values())
     with np.errstate(divide="ignore", invalid="ignore"):
         by_restitution, by_corrected = (np.abs(exact / each - 1) for each in simple)
-    if case.law is not None:
-        # About its static deflection the contact is one of another stiffness, not known here.
-        by_restitution[_PERMANENT] = by_corrected[_PERMANENT] = np.nan
     there, orbit = next(iter(standing.values())), next(iter(orbits.values()))
     depth, force = _loads(case, orbit) if there.exists else (math.nan, math.nan)
     law_errors, holds = first_order(case.instant(n), n, lam)

@@ -130,4 +130,11 @@ def law_of_impact(
     for value, name in ((given, "contact duration D"), (v, "impact speed v")):
         require((value > 0) & np.isfinite(value), value, name, "a finite number > 0")
     group, taken = reference(kind, float(restitution))
-    return kind.of_scales(group, given * v / taken, v)
+    try:
+        with np.errstate(all="ignore"):
+            return kind.of_scales(group, given * v / taken, v)
+    except ModelError:
+        raise ModelError(
+            f"a {kind.name} contact of duration D = {given} at the impact speed v = {v} "
+            "has no stiffness within the range of floating-point numbers"
+        ) from None

@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 import bouncing_ball
 
 README = Path(__file__).parents[1] / "README.md"
@@ -27,6 +29,13 @@ def test_help_shows_the_way_in():
     text = pydoc.render_doc(bouncing_ball, renderer=pydoc.plaintext)
     for call in ("bouncing_ball.orbit(", "bouncing_ball.limits(", "bouncing_ball.simulate("):
         assert call in text
+
+
+@pytest.mark.parametrize("impacts", [0, -1, 2.5])
+def test_what_the_command_line_refuses_is_refused(impacts, one_line):
+    with pytest.raises(bouncing_ball.ModelError) as error:
+        bouncing_ball.simulate(1.0, restitution=0.85, impacts=impacts)
+    one_line(error, f"number of impacts {impacts} is not a positive integer")
 
 
 def test_the_package_itself_needs_no_numpy():

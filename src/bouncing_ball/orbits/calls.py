@@ -26,6 +26,9 @@ class Limits(NamedTuple):
     saddle_node: Orbit
     period_doubling: Orbit
 
+    def __repr__(self) -> str:
+        return f"saddle-node: {self.saddle_node!r}\nperiod doubling: {self.period_doubling!r}"
+
 
 def model(
     restitution: float | np.ndarray,
@@ -112,6 +115,8 @@ def limits(
     >>> found = limits(1, restitution=0.85)
     >>> float(found.saddle_node.amplitude) < float(found.period_doubling.amplitude)
     True
+    >>> str(found).splitlines()[0]
+    'saddle-node: RestitutionOrbit'
     """
     of = model(restitution, frequency_ratio, release)
     return Limits(of.saddle_node(n), of.period_doubling(n))
@@ -132,10 +137,17 @@ def simulate(
     ``velocity`` is that of the ball before the first impact. Arrays follow
     many balls at once.
 
+    Raises
+    ------
+    ModelError
+        If a parameter is out of range.
+
     Examples
     --------
     >>> simulate(0.0, restitution=0.5, velocity=-4.0, impacts=3).time.tolist()
     [0.0, 4.0, 6.0]
     """
+    if not isinstance(impacts, int) or impacts < 1:
+        raise ModelError(f"number of impacts {impacts} is not a positive integer")
     of = model(restitution, frequency_ratio, release)
     return of.simulate(amplitude, phase, velocity, impacts)

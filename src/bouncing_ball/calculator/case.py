@@ -3,6 +3,8 @@
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from bouncing_ball.impacts.law_signature import LawSignature
 from bouncing_ball.impacts.laws.tsuji import Tsuji
 from bouncing_ball.impacts.release import Release
@@ -102,7 +104,9 @@ class Case:
         """The signature of the contact at the speed of the restitution model's orbit."""
         if self.law is None:
             return LinearSignature(self.contact)()
-        return LawSignature(self.law)(rigid_speed(n, float(self.contact.restitution)))
+        found = LawSignature(self.law)(rigid_speed(n, float(self.contact.restitution)))
+        # Interpolated, that of an elastic contact is 1 but for rounding.
+        return found._replace(restitution=np.minimum(found.restitution, 1.0))
 
     @property
     def zeta(self) -> float:

@@ -260,7 +260,7 @@ def test_one_artifact_or_several(pair, capsys, tmp_path):
         assert {found["name"] for found in content["artifacts"]} == set(names)
     code, out, err = command(capsys, *call, "fig08", "fig80", *options)
     assert (code, out) == (2, "") and err.count("\n") == 1
-    assert "unknown artifact fig80; there are fig01, fig05, " in err
+    assert "unknown artifact fig80; known: fig01, fig05, " in err
 
 
 def test_what_cannot_be_compared_at_all_is_one_line(pair, capsys, tmp_path):

@@ -104,7 +104,7 @@ def compare_folders(
     for name in only:
         if name not in names:
             known = printable(", ".join(names))
-            raise ComparisonError(f"unknown artifact {printable(name)}; there are {known}")
+            raise ComparisonError(f"unknown artifact {printable(name)}; known: {known}")
     deadline = time.process_time() + _SECONDS
 
     def judged(name: str, file: str, data: Outcome | None) -> Part:

@@ -1,5 +1,7 @@
 """Extension: Figures 8, 14 and 16 on contacts of other laws."""
 
+from itertools import cycle
+
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
@@ -7,12 +9,15 @@ from matplotlib.figure import Figure
 from bouncing_ball.render.figures.laws import LAWS
 from bouncing_ball.render.figures.style import RESTITUTION, WIDE, canvas, logarithmic, number
 
+# The linear contact, whose threshold is smooth, comes first.
+_SHAPES = ("", "o", "s", "^")
+
 
 def draw(data: xr.Dataset) -> Figure:
     """Phase against Λ, greatest height and permanent contact against π/D."""
     figure, panels = canvas(WIDE, 2.9, columns=3)
     branches, heights, held = np.ravel(panels)
-    for law in data["law"].values:
+    for law, shape in zip(data["law"].values, cycle(_SHAPES), strict=False):
         look, part = LAWS[str(law)], data.sel(law=law)
         for ratio in data.shown_ratio.values:
             one = part.sel(shown_ratio=ratio)
@@ -20,8 +25,17 @@ def draw(data: xr.Dataset) -> Figure:
             label = str(law) if ratio == data.shown_ratio.values[0] else None
             branches.plot(one.amplitude, one.phase / np.pi, linewidth=1.0, label=label, **look)
         heights.plot(data.duration_ratio, part.max_height, linewidth=1.0, **look)
-        threshold = part.threshold_amplitude
-        held.plot(data.duration_ratio, threshold, linewidth=0.7, marker="o", markersize=2, **look)
+        # Between two samples that of a nonlinear contact goes up and down: no line.
+        drawn = look if not shape else {"color": look["color"], "linestyle": "none"}
+        held.plot(
+            data.duration_ratio,
+            part.threshold_amplitude,
+            linewidth=0.8,
+            marker=shape,
+            markersize=3.5,
+            markerfacecolor="none",
+            **drawn,
+        )
     rigid = {"color": RESTITUTION, "linewidth": 0.6}
     heights.axhline(float(data.restitution_max_height), **rigid)
     held.axhline(1.0, **rigid)
@@ -33,7 +47,10 @@ def draw(data: xr.Dataset) -> Figure:
     held.set(xlabel=r"$\pi/D$", ylabel=r"threshold of permanent contact")
     for axes in (heights, held):
         logarithmic(axes)
-        axes.set_xlim(float(data.duration_ratio[0]), float(data.duration_ratio[-1]))
+        margin = 1.06 if axes is held else 1.0
+        axes.set_xlim(
+            float(data.duration_ratio[0]) / margin, float(data.duration_ratio[-1]) * margin
+        )
         axes.set_title(rf"$r={number(data.attrs['heights__restitution'])}$", fontsize=8)
     handles, labels = branches.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=len(handles))

@@ -12,6 +12,7 @@ from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
 from bouncing_ball.record.diff.folders import compare_folders
 from bouncing_ball.record.diff.tolerance_file import read_tolerances
 
+MAKEFILE = Path(__file__).resolve().parents[2] / "Makefile"
 REASON = """costs $5: "new" form of Eq. 8; it's `date` \\ 100 % #1"""
 
 
@@ -97,7 +98,7 @@ def test_stale_results_are_refused_whatever_their_times(tree, monkeypatch):
 @pytest.mark.skipif(shutil.which("make") is None, reason="no make on this machine")
 @pytest.mark.parametrize("origin", ["command line", "environment"])
 @pytest.mark.parametrize(
-    "reason", [REASON, "$(shell touch made) ${HOME} $$ $(date)", "`touch made`; touch made", ""]
+    "reason", [REASON, "$(shell touch made) ${HOME} $$ $(date)", "`touch made`; touch made"]
 )
 def test_make_hands_the_reason_over_as_it_is_typed(tmp_path, reason, origin):
     # In place of Snakemake, what says with which arguments and reason it was called.
@@ -105,10 +106,9 @@ def test_make_hands_the_reason_over_as_it_is_typed(tmp_path, reason, origin):
     program.parent.mkdir()
     program.write_text('#!/bin/sh\nprintf "%s\\n" "$@" "$REASON"\n', encoding="utf-8")
     program.chmod(0o755)
-    makefile = Path(__file__).resolve().parents[2] / "Makefile"
     typed = [f"REASON={reason}"] if origin == "command line" else []
     done = subprocess.run(
-        ["make", "--silent", "-f", makefile, "accept", "SETUP=", "VENV=.", *typed],
+        ["make", "--silent", "-f", MAKEFILE, "accept", "SETUP=", "VENV=.", *typed],
         cwd=tmp_path,
         env=os.environ | ({} if typed else {"REASON": reason}),
         capture_output=True,
@@ -117,3 +117,17 @@ def test_make_hands_the_reason_over_as_it_is_typed(tmp_path, reason, origin):
     )
     assert done.stdout.splitlines() == ["--cores", "1", "accept", reason]
     assert not (tmp_path / "made").exists()
+
+
+@pytest.mark.skipif(shutil.which("make") is None, reason="no make on this machine")
+def test_make_asks_for_a_reason_before_anything_runs(tmp_path):
+    done = subprocess.run(
+        ["make", "--silent", "-f", MAKEFILE, "accept", "SETUP=", "VENV=."],
+        cwd=tmp_path,
+        env=os.environ | {"REASON": ""},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 2
+    assert done.stderr.splitlines()[0] == "say why the record changes: make accept REASON='…'"

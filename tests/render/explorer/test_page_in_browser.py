@@ -13,6 +13,7 @@ import shlex
 import numpy as np
 import pytest
 from PIL import Image
+from pypdf import PdfReader
 
 from bouncing_ball.cli.main import main
 from bouncing_ball.render.explorer.document import BOUND, sources, to_html
@@ -340,3 +341,18 @@ def test_it_is_painted_dark_for_who_wants_it(seen, browse):
         # Contrast: paper and ink far apart, both there.
         assert np.percentile(grey, 99.5) - np.percentile(grey, 0.5) > 180
     assert means[0] > 200 and means[1] < 60
+
+
+def test_it_prints_what_is_read_and_not_what_is_pressed(seen, browse):
+    path = seen["folder"] / "print.pdf"
+    page = seen["folder"] / "right.html"
+    options = "--no-pdf-header-footer", "--virtual-time-budget=5000"
+    browse(seen["folder"], page, f"--print-to-pdf={path}", *options)
+    sheets = PdfReader(path).pages
+    assert 1 <= len(sheets) <= 4
+    text = " ".join(" ".join(sheet.extract_text() for sheet in sheets).split())
+    for printed in ("Checked: ", "bouncing-ball orbit --restitution", "Relative errors"):
+        assert printed in text
+    assert "The restitution model is" in text
+    for pressed in ("Play the motion", "what ends a contact", "Physical units"):
+        assert pressed not in text

@@ -259,3 +259,20 @@ def test_mistakes(change, kind, says):
     with pytest.raises(kind) as error:
         design(**{**STEEL, "restitution": 0.85, **change})
     assert says in str(error.value) and "\n" not in str(error.value)
+
+
+def test_a_tolerance_that_every_contact_meets_needs_no_frequency_ratio():
+    found = bouncing_ball.design(**STEEL, restitution=0.85, tolerance=2.0)
+    assert found.reason == "the error is within the tolerance at every frequency ratio scanned"
+
+
+def test_what_is_not_known_of_a_hertz_contact_is_not_judged():
+    found = bouncing_ball.design(
+        mass="20 g", frequency="50 Hz", acceleration="0.8 g", restitution=0.85,
+        reduced_modulus="115 GPa", radius="5 mm", quantity="permanent_contact", n=1,
+    )  # fmt: skip
+    assert found.verdict == (
+        "Whether the restitution model is good enough in the threshold of permanent contact "
+        "is not known."
+    )
+    assert "no value to compare" in found.reason

@@ -272,7 +272,7 @@ def test_a_missing_orbit_exits_1_with_the_reason(capsys):
             "'1e-300' is not a number in [1e-08, 1e+08]",
         ),
         (("orbit", "--damping-ratio", "1", "--amplitude", "1"), "'1' is not a number in [0, 1)"),
-        (("orbit", "--damping-ratio", "0.1", "--amplitude", "1"), "needs --restitution"),
+        (("orbit", "--damping-ratio", "0.1", "--amplitude", "1"), "needs --frequency-ratio"),
         ((*ORBIT, "--n", "0"), "'0' is not a whole number"),
         ((*ORBIT, "--n", "1.5"), "'1.5' is not a whole number"),
         ((*ORBIT, "--model", "spring-damper"), "needs --frequency-ratio"),

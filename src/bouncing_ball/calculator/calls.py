@@ -16,7 +16,7 @@ from bouncing_ball.calculator.contact_data import (
 )
 from bouncing_ball.calculator.design import Design, describe, families, judged
 from bouncing_ball.calculator.needed import RATIOS, Needed, needed
-from bouncing_ball.calculator.units import KINDS, number
+from bouncing_ball.calculator.units import KINDS, number, shown
 from bouncing_ball.calculator.verdict import QUANTITIES, Verdict, assess, percent
 from bouncing_ball.errors import ModelError, NoOrbitError, require
 from bouncing_ball.impacts.law_signature import free_impact
@@ -247,11 +247,13 @@ def _choose(
     case = _chosen(need, zeta, release, mass, table)
     verdict = Verdict(
         True,
-        f"A simulation needs a contact of at least {case.stiffness:.4g} N/m, with a contact time "
-        f"of {case.contact_time:.4g} s or less and a damping of {case.damping:.4g} N s/m at that "
-        f"stiffness: the {QUANTITIES[quantity]} is then within {percent(tolerance)} of the "
-        "restitution model's.",
-        f"the error crosses {percent(tolerance)} for the last time at the frequency ratio "
+        f"A simulation needs a contact of at least {shown(case.stiffness, 'N/m')}, with a contact "
+        f"time of {shown(case.contact_time, 's')} or less and a damping of "
+        f"{shown(case.damping, 'N s/m')} at that stiffness: the {QUANTITIES[quantity]} is then "
+        f"within {percent(tolerance)} of the restitution model's.",
+        f"the error is {need.status}"
+        if need.status == Status.ALWAYS_WITHIN
+        else f"the error crosses {percent(tolerance)} for the last time at the frequency ratio "
         f"ϖ = {float(case.contact.frequency_ratio):.4g}",
     )
     return describe(case, families(case, n), need, verdict, ())

@@ -192,3 +192,22 @@ def _other_kind(name: str, given: str, one: Any) -> str:
     if name in table and what in own:
         text += f"; {'a period' if what == 'a time' else what} has its own parameter, {own[what]}"
     return text
+
+
+_PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n"}
+
+
+def shown(value: float | None, unit: str) -> str:
+    """A value with a prefix of its unit, four digits.
+
+    Examples
+    --------
+    >>> shown(1.25e-5, "s"), shown(2e7, "N/m"), shown(None, "m")
+    ('12.5 µs', '20 MN/m', 'none')
+    """
+    if value is None:
+        return "none"
+    if value == 0:
+        return f"0 {unit}"
+    power = min(9, max(-9, 3 * math.floor(math.log10(abs(float(f"{value:.4g}"))) / 3)))
+    return f"{value / 10**power:.4g} {_PREFIXES[power]}{unit}"

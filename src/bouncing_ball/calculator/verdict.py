@@ -61,18 +61,18 @@ def assess(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
     found = family.errors[needed.quantity]
     wrong = _disagreement(family)
     good = wrong is None and found is not None and found <= needed.tolerance
-    subject = f"the {name} of the {family.n}-T orbit"
+    own = "" if needed.quantity == "permanent_contact" else f" of the {family.n}-T orbit"
+    subject = f"the {name}{own}"
     if good:
         sentence = (
             f"The restitution model is good enough: {subject} is {percent(found or 0.0)} off, "
             f"within {tolerance}."
         )
     else:
-        what = wrong or (
-            f"{subject} cannot be compared"
-            if found is None
-            else f"{subject} is {percent(found)} off, beyond {tolerance}"
-        )
+        if wrong is None and found is None:
+            sentence = f"Whether the restitution model is good enough in {subject} is not known."
+            return Verdict(False, sentence, "this contact, or the model, has no value to compare")
+        what = wrong or f"{subject} is {percent(found or 0.0)} off, beyond {tolerance}"
         sentence = f"The restitution model is not good enough: {what}{_instead(family, needed)}."
     return Verdict(good, sentence, _reason(needed, frequency_ratio, good, tolerance))
 
@@ -90,7 +90,7 @@ def _instead(family: Family, needed: Needed) -> str:
 def _reason(needed: Needed, frequency_ratio: float, good: bool, tolerance: str) -> str:
     """The contact's ϖ against the one that the tolerance needs."""
     if needed.frequency_ratio is None:
-        return f"no frequency ratio to compare with: {needed.status}"
+        return f"the error is {needed.status}"
     place = "above" if frequency_ratio >= needed.frequency_ratio else "below"
     text = (
         f"the contact's frequency ratio ϖ = {frequency_ratio:.4g} is {place} the "

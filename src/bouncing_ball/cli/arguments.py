@@ -463,7 +463,10 @@ def parse(arguments: list[str] | None = None) -> argparse.Namespace:
         args.model = "restitution" if args.frequency_ratio is None else "spring-damper"
     if args.model == "restitution":
         if args.damping_ratio is not None:
-            top.error("--model restitution needs --restitution, not --damping-ratio")
+            top.error(
+                "--damping-ratio is that of a contact and needs --frequency-ratio; "
+                "--model restitution takes --restitution"
+            )
         for name in ("frequency_ratio", "release"):
             if getattr(args, name) is not None:
                 option = f"--{name.replace('_', '-')}"

@@ -8,14 +8,12 @@ from typing import Any
 
 from bouncing_ball.calculator.calls import design
 from bouncing_ball.calculator.design import Design
-from bouncing_ball.calculator.units import KINDS
+from bouncing_ball.calculator.units import KINDS, shown
 from bouncing_ball.calculator.verdict import QUANTITIES, percent
 from bouncing_ball.errors import ModelError
 from bouncing_ball.studies.error_thresholds import Status
 
 Answer = dict[str, Any]
-
-_PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n"}
 
 
 def asked(args: argparse.Namespace) -> Design:
@@ -69,22 +67,6 @@ def _plain(value: Any) -> Any:
     return str(value) if isinstance(value, str) else value
 
 
-def quantity(value: float | None, unit: str) -> str:
-    """A value with a prefix of its unit, four digits.
-
-    Examples
-    --------
-    >>> quantity(1.25e-5, "s"), quantity(2e7, "N/m"), quantity(None, "m")
-    ('12.5 µs', '20 MN/m', 'none')
-    """
-    if value is None:
-        return "none"
-    if value == 0:
-        return f"0 {unit}"
-    power = min(9, max(-9, 3 * math.floor(math.log10(abs(float(f"{value:.4g}"))) / 3)))
-    return f"{value / 10**power:.4g} {_PREFIXES[power]}{unit}"
-
-
 def _row(name: str, *columns: str) -> str:
     return f"{name:<38}" + "".join(f"{column:<18}" for column in columns).rstrip()
 
@@ -109,18 +91,18 @@ def _contact_values(found: Answer) -> list[tuple[str, str]]:
         ("frequency ratio ϖ", _number(found["frequency_ratio"])),
         ("damping ratio ζ", _number(found["damping_ratio"])),
         ("excitation amplitude Λ", _number(found["amplitude"])),
-        ("stiffness", quantity(found["stiffness"], "N/m")),
-        ("damping", quantity(found["damping"], "N s/m")),
-        ("contact time", quantity(found["contact_time"], "s")),
-        ("largest time step", quantity(found["time_step"]["largest"], "s")),
-        ("static deflection", quantity(found["static_deflection"], "m")),
+        ("stiffness", shown(found["stiffness"], "N/m")),
+        ("damping", shown(found["damping"], "N s/m")),
+        ("contact time", shown(found["contact_time"], "s")),
+        ("largest time step", shown(found["time_step"]["largest"], "s")),
+        ("static deflection", shown(found["static_deflection"], "m")),
         ("restitution, released at δ = 0", _number(both["displacement"])),
         ("restitution, released without force", _number(both["force"])),
         ("permanent contact up to Λ", _number(down["threshold"])),
         ("  in the restitution model", _number(down["restitution_threshold"])),
-        ("corrected model, delay t_c", quantity(three["delay"], "s")),
+        ("corrected model, delay t_c", shown(three["delay"], "s")),
         ("corrected model, restitution r", _number(three["restitution"])),
-        ("corrected model, load σ", quantity(three["load"], "s")),
+        ("corrected model, load σ", shown(three["load"], "s")),
     ]
 
 
@@ -129,11 +111,11 @@ def _orbit_values(one: Answer) -> list[tuple[str, str]]:
     if not one["exists"]:
         return []
     return [
-        ("greatest height", quantity(one["max_height"], "m")),
-        ("impact speed", quantity(one["impact_speed"], "m/s")),
-        ("duration of contact", quantity(one["contact_duration"], "s")),
-        ("greatest compression", quantity(one["greatest_compression"], "m")),
-        ("peak force", quantity(one["peak_force"], "N")),
+        ("greatest height", shown(one["max_height"], "m")),
+        ("impact speed", shown(one["impact_speed"], "m/s")),
+        ("duration of contact", shown(one["contact_duration"], "s")),
+        ("greatest compression", shown(one["greatest_compression"], "m")),
+        ("peak force", shown(one["peak_force"], "N")),
         ("peak force over weight", _number(one["peak_force_over_weight"])),
     ]
 

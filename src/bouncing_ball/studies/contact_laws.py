@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.errors import ModelError
+from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.impacts.damping import damping_ratio
 from bouncing_ball.impacts.law_choice import law_of_impact
 from bouncing_ball.impacts.law_permanent_contact import permanent_contact
@@ -68,6 +68,23 @@ def exact_models(name: str, parameters: Mapping[str, Any], duration: np.ndarray)
     return LawModel(law_at_orbit(LAWS[name], r, duration, n, lam))
 
 
+def stiff_enough(name: str, parameters: Mapping[str, Any], ratios: np.ndarray) -> slice:
+    """The contacts, from some π/D on, that all have their orbit: softer ones may have none.
+
+    A contact longer than the cycle, for one, has no orbit whose impact it is.
+    """
+    first, last = 0, len(ratios)
+    while first < last:
+        middle = (first + last) // 2
+        try:
+            exact_models(name, parameters, np.pi / ratios[middle:])
+        except (ModelError, NoOrbitError):
+            first = middle + 1
+        else:
+            last = middle
+    return slice(first, None)
+
+
 def corrected_model(exact: Any) -> CorrectedModel:
     """The corrected restitution model of one contact."""
     if isinstance(exact, ContactModel):
@@ -86,11 +103,16 @@ def _values(model: ImpactModel, n: int, amplitude: float) -> np.ndarray:
 def _errors(name: str, parameters: Mapping[str, Any], ratios: np.ndarray) -> np.ndarray:
     """Relative errors of both simple models, (model, quantity, ratio)."""
     r, n, lam = (parameters[key] for key in ("restitution", "n", "amplitude"))
-    exact: Any = exact_models(name, parameters, np.pi / ratios)
+    errors = np.full((len(SIMPLE), len(QUANTITIES), len(ratios)), np.nan)
+    part = stiff_enough(name, parameters, ratios)
+    if not ratios[part].size:
+        return errors
+    exact: Any = exact_models(name, parameters, np.pi / ratios[part])
     wanted = _values(exact, n, lam)
     rigid = _values(RestitutionModel(r), n, lam)[:, np.newaxis]
-    each = [_values(corrected_model(exact[k]), n, lam) for k in range(len(ratios))]
-    return np.abs(np.array([rigid / wanted, np.stack(each, axis=-1) / wanted]) - 1)
+    each = [_values(corrected_model(exact[k]), n, lam) for k in range(len(exact))]
+    errors[..., part] = np.abs(np.array([rigid / wanted, np.stack(each, axis=-1) / wanted]) - 1)
+    return errors
 
 
 def _height_threshold(name: str, parameters: Mapping[str, Any], ratios, errors) -> float:
@@ -182,9 +204,12 @@ def figures_of_laws(parameters: Mapping[str, Any]) -> xr.Dataset:
             for name in names
         ]
     )
-    height = [
-        exact_models(name, heights, np.pi / ratios).orbit(n, lam).max_height for name in names
-    ]
+    height = np.full((len(names), len(ratios)), np.nan)
+    for k, name in enumerate(names):
+        part = stiff_enough(name, heights, ratios)
+        if ratios[part].size:
+            orbit = exact_models(name, heights, np.pi / ratios[part]).orbit(n, lam)
+            height[k, part] = orbit.max_height
     held = [[_held(name, r, x) for x in ratios] for name in names]
     return describe(
         xr.Dataset(
@@ -192,7 +217,7 @@ def figures_of_laws(parameters: Mapping[str, Any]) -> xr.Dataset:
                 "bifurcation_amplitude": (("law", "bound", "shown_ratio", "n"), np.array(bounds)),
                 "amplitude": (("law", "shown_ratio", "point"), branches[:, :, 0]),
                 "phase": (("law", "shown_ratio", "point"), branches[:, :, 1]),
-                "max_height": (("law", "duration_ratio"), np.array(height)),
+                "max_height": (("law", "duration_ratio"), height),
                 "restitution_max_height": ((), float(RestitutionModel(r).orbit(n, lam).max_height)),
                 "threshold_amplitude": (("law", "duration_ratio"), np.array(held)),
             },

@@ -93,6 +93,8 @@ def _sparse(path, rng):
 
 
 def _named(path, rng):
+    if path.parent.name != "figures":
+        return False  # beside the article a folder may hold anything
     name = [BAD, "x" * 200, os.fsdecode(b"\xff\xfe"), "<script>", "a|b"][int(rng.integers(5))]
     name = name.replace("/", "")
     shutil.copyfile(path, path.with_name(f"{name}{path.suffix}"))

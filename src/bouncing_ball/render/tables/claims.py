@@ -7,6 +7,8 @@ import xarray as xr
 
 from bouncing_ball.datasets.rounding import compared_text
 
+_TEXTS = ("claim", "item", "statement", "required", "verdict")
+
 
 def found_text(claim: xr.Dataset) -> str:
     """The number found: two digits more than printed, or four in all, or its bound
@@ -26,6 +28,13 @@ def deviation_text(claim: xr.Dataset) -> str:
     return "" if np.isnan(units) else f"{units:+.2f} ({100 * share:+.3g} %)"
 
 
+def _text(claim: xr.Dataset, key: str) -> str:
+    text = claim[key].item()
+    if not isinstance(text, str):
+        raise TypeError(f"{key} is not a text but {text!r}")
+    return text
+
+
 def rows(data: xr.Dataset) -> tuple[Sequence[str], list[list[str]]]:
     """One row for each claim: place, statement, number, deviation, verdict.
 
@@ -37,6 +46,6 @@ def rows(data: xr.Dataset) -> tuple[Sequence[str], list[list[str]]]:
     body = []
     for index in range(data.sizes["claim"]):
         claim = data.isel(claim=index)
-        texts = (claim[key].item() for key in ("claim", "item", "statement", "required"))
-        body.append([*texts, found_text(claim), deviation_text(claim), claim.verdict.item()])
+        *texts, verdict = (_text(claim, key) for key in _TEXTS)
+        body.append([*texts, found_text(claim), deviation_text(claim), verdict])
     return header, body

@@ -183,6 +183,10 @@ def foreign(book, data):
         (np.array([0.1, 0.02]), {"includes": [0.01]}, False),
         (json.dumps(["phase", "max"]), {"includes": ["max", "phase"]}, True),
         (json.dumps(["phase"]), {"includes": ["max", "phase"]}, False),
+        # Of another kind, or torn.
+        ("zzz", {"at_most": 6.0}, False),
+        (json.dumps([{"r": 1.0}]), {"includes": [1.0]}, False),
+        ("[1, 2", {"includes": [1]}, False),
     ],
 )
 def test_parameters_as_attributes_hold_them(ledger, number, data, given, paper, same):

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any
@@ -150,17 +151,21 @@ def _plain(value: Any) -> Any:
     """An attribute as numbers, texts and lists: arrays and JSON undone."""
     if isinstance(value, str) and value[:1] in ("[", "{"):
         # Nested parameters are JSON among a dataset's attributes.
-        return json.loads(value)
+        with suppress(ValueError, RecursionError):
+            return json.loads(value)
     return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
 
 
 def _agrees(given: Any, paper: Any) -> bool:
     if isinstance(paper, Mapping):
-        limits = (
-            given >= paper.get("at_least", given),
-            given <= paper.get("at_most", given),
-        )
-        return all(limits) and set(paper.get("includes", [])) <= set(_listed(given))
+        # What is of another kind, a text for a number, is not the paper's.
+        with suppress(TypeError):
+            limits = (
+                given >= paper.get("at_least", given),
+                given <= paper.get("at_most", given),
+            )
+            return all(limits) and set(paper.get("includes", [])) <= set(_listed(given))
+        return False
     # A list of one number is that number among the attributes.
     return _listed(given) == _listed(paper)
 

@@ -81,7 +81,6 @@ def test_verdicts_come_from_the_claims(render):
         ('{{ at("t", "x", 2, n=7) }}', "t: x: n = 7 is not among 1, 2"),
         ('{{ at("t", "x", 2) }}', "t: x at {} is 2 numbers, not one"),
         ('{{ claims("height") }}', "no claim 'height' in the ledger"),
-        ('{{ claims.because("rain") }}', "no explanation 'rain' in the ledger"),
         ('{{ cite("nobody") }}', "no reference 'nobody'"),
     ],
 )
@@ -94,13 +93,6 @@ def test_what_is_not_there_is_an_error(render, template, message):
 def test_a_reference_must_be_cited(render):
     with pytest.raises(ModelError, match="references never cited: a"):
         render("nothing", references={"a": {"text": "A."}})
-
-
-def test_an_explanation_whose_checks_fail_is_not_given(render):
-    failed = claims()
-    failed["explanation_holds"] = ("explanation", [False])
-    assert render('{{ claims.because("by Eq. 34") }}') == "Eq. 34 gives the same."
-    assert render('{{ claims.because("by Eq. 34") }}', claims=failed) == ""
 
 
 def test_explanations_are_those_of_claims_not_reproduced():

@@ -2,7 +2,6 @@
 
 from types import SimpleNamespace
 
-import numpy as np
 import xarray as xr
 
 from bouncing_ball.errors import ModelError
@@ -99,12 +98,3 @@ class Claims:
                     }
                 )
         return found
-
-    def because(self, name: str) -> str:
-        """The text of an explanation if its checks hold, else nothing."""
-        there = np.flatnonzero(self._data.explanation.values == name)
-        if there.size != 1:
-            raise ModelError(f"no explanation {name!r} in the ledger")
-        if not self._data.explanation_holds.values[there[0]]:
-            return ""
-        return str(self._data.explanation_text.values[there[0]]).strip()

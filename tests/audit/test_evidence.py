@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from bouncing_ball.audit.evidence import evidence, last_crossing
+from bouncing_ball.audit.evidence import evidence, sampled_threshold
 
 RATIO = [1.0, 10.0, 100.0, 1000.0]
 SETTINGS = {"stiff_frequency_ratio": 100.0, "permanent_contact_frequency_ratio": 10.0}
@@ -451,6 +451,6 @@ def test_a_missing_dataset(data):
         ([np.nan, 1.0, 0.1, 0.01], 0.5, 10**1.30102999566398),
     ],
 )
-def test_the_last_crossing(error, tolerance, crossing):
-    found = last_crossing(np.array(error), np.array(RATIO), tolerance)
+def test_the_threshold_between_samples(error, tolerance, crossing):
+    found = sampled_threshold(np.array(error), np.array(RATIO), tolerance)
     assert found == pytest.approx(crossing, rel=1e-12, nan_ok=True)

@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from bouncing_ball.audit.claims.ledger_file import read_ledger
-from bouncing_ball.configuration.stages import STAGES
+from bouncing_ball.configuration.stages import ENTRIES, STAGES
 from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
-from bouncing_ball.pipeline.pieces import check_pieces
+from bouncing_ball.pipeline.pieces import check_entries, check_pieces
 
 CONFIG = Path(__file__).resolve().parents[2] / "config"
 LEDGER = read_ledger(CONFIG)
@@ -17,7 +17,25 @@ NEW = replace(STAGES["fig08"], name="fig17", title="Figure 17: new")
 
 
 def test_nothing_is_missing():
+    check_entries(ENTRIES)
     check_pieces(STAGES, RUN)
+
+
+@pytest.mark.parametrize(
+    ("entry", "said"),
+    [
+        (replace(NEW, name="fig08"), "fig08: two entries have this name"),
+        (
+            replace(NEW, arguments="release"),
+            "fig17: arguments='release' must be a tuple: arguments=('release',)",
+        ),
+        (replace(NEW, reads="fig08"), "fig17: reads='fig08' must be a tuple: reads=('fig08',)"),
+    ],
+)
+def test_an_entry_that_would_be_misread(one_line, entry, said):
+    with pytest.raises(ConfigurationError) as error:
+        check_entries([*ENTRIES, entry])
+    one_line(error, said)
 
 
 @pytest.mark.parametrize(

@@ -25,11 +25,11 @@ if package is None or Path(package.origin).resolve().parent != HERE:
 
 from bouncing_ball.audit.claims.ledger_file import read_ledger
 from bouncing_ball.configuration.check import check_configuration, check_orbits
-from bouncing_ball.configuration.stages import STAGES, Kind, names, studied, tables
+from bouncing_ball.configuration.stages import ENTRIES, STAGES, Kind, names, studied, tables
 from bouncing_ball.errors import ModelError
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.pipeline.atlas import discard_damaged, shard_names
-from bouncing_ball.pipeline.pieces import check_pieces
+from bouncing_ball.pipeline.pieces import check_entries, check_pieces
 from bouncing_ball.pipeline.sources import sources
 
 # Two lines before every job, which say nothing of it.
@@ -39,8 +39,9 @@ FIGURES = names(Kind.FIGURE, Kind.EXTENSION)
 TABLES = tables()
 DATASETS = [stage.name for stage in studied()]
 
-where = "configuration"
+where = "stages"
 try:
+    check_entries(ENTRIES)
     # Snakemake has read these files already, and taken the last of equal keys.
     for where in map(os.path.relpath, workflow.configfiles):
         read_yaml(where)

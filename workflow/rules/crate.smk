@@ -6,7 +6,7 @@ rule crate:
     message:
         "Writing results/ro-crate-metadata.json"
     input:
-        rules.accept.input,
+        rules.all.input,
     params:
         record=ROOT,
         recipes=lambda wildcards: planned(workflow.dag),

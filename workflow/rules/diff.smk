@@ -8,7 +8,7 @@ rule diff:
     message:
         "Comparing the results with the record; reports in results/diff/"
     input:
-        rules.accept.input,
+        rules.all.input,
         tolerances="config/tolerances.yaml",
     params:
         record=ROOT,

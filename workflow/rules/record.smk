@@ -3,7 +3,17 @@
 #     ONLY="fig08 | table1" REASON="… | …" snakemake --cores 1 accept
 # It has no output and no benchmark, so that it looks at the record each time.
 
+from bouncing_ball.record.accept import groups
 from bouncing_ball.record.recipe import planned
+
+
+def request(wildcards):
+    """No file: what is asked for is checked before anything is made."""
+    try:
+        groups(os.environ.get("ONLY", ""), os.environ.get("REASON", ""))
+    except ModelError as error:
+        sys.exit(f"accept: {error}")
+    return []
 
 
 rule accept:
@@ -12,6 +22,7 @@ rule accept:
     input:
         artifacts=rules.all.input.artifacts,
         paper=rules.paper.output.paper,
+        request=request,
     params:
         record=ROOT,
         recipes=lambda wildcards: planned(workflow.dag),

@@ -28,7 +28,7 @@ _EMPTY = np.empty(0)
 _SIGNIFICANT = 5
 
 
-def last_crossing(error: np.ndarray, ratio: np.ndarray, tolerance: float) -> float:
+def sampled_threshold(error: np.ndarray, ratio: np.ndarray, tolerance: float) -> float:
     """The ϖ above which a sampled error stays within a tolerance.
 
     Between the last sample outside and the next one the error is taken for a
@@ -38,7 +38,7 @@ def last_crossing(error: np.ndarray, ratio: np.ndarray, tolerance: float) -> flo
     Examples
     --------
     >>> ratio = np.array([1.0, 10.0, 100.0])
-    >>> round(last_crossing(1 / ratio, ratio, 0.05), 10)
+    >>> round(sampled_threshold(1 / ratio, ratio, 0.05), 10)
     20.0
     """
     outside = np.flatnonzero(~(error <= tolerance))
@@ -171,7 +171,7 @@ def _bounce(data: Datasets) -> Found:
     spread = (velocity.max("case") - velocity.min("case")) / limit
 
     def crossings(values: xr.DataArray) -> xr.DataArray:
-        found = [last_crossing(values.values, ratio, x) for x in tolerances.values]
+        found = [sampled_threshold(values.values, ratio, x) for x in tolerances.values]
         return xr.DataArray(found, {"tolerance": tolerances.values})
 
     return {

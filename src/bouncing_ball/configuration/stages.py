@@ -436,8 +436,11 @@ _AUDIT = (
     ),
 )
 
-STAGES: Mapping[str, Stage] = {stage.name: stage for stage in (*_MODELS, _EXPLORER, *_AUDIT)}
-"""The entries by name, in the order in which they are listed everywhere."""
+ENTRIES = (*_MODELS, _EXPLORER, *_AUDIT)
+"""All entries, in the order in which they are listed everywhere."""
+
+STAGES: Mapping[str, Stage] = {stage.name: stage for stage in ENTRIES}
+"""The entries by name."""
 
 
 def names(*kinds: Kind) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -18,6 +18,10 @@ from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
 from bouncing_ball.orbits.interface import ImpactModel, Orbit, Side
 from bouncing_ball.orbits.projection import nearest_excess
+
+# Units in the last place of z′_i that rounding leaves of a Λ = 0; at most 3.9 were
+# seen for ϖ = 0.6…10⁶ and n = 1…100, under both rules.
+_UNITS = 8
 
 
 @dataclass(frozen=True, repr=False)
@@ -61,8 +65,19 @@ class ContactModel(ImpactModel):
         return limits.absence(self.contact, n, amplitude, Side(side))
 
     def saddle_node(self, n: ArrayLike) -> ContactOrbit:
-        """The orbits at the saddle-node; NaN where the branch has none."""
-        return self._on_branch(limits.saddle_node(self.contact, n), n)
+        """The orbits at the saddle-node; NaN where the branch has none.
+
+        Without dissipation it is at Λ = 0, which is a difference of terms as large as z′_i.
+
+        Examples
+        --------
+        >>> ContactModel(Contact(10.0, 0.0)).saddle_node([1, 2]).amplitude.tolist()
+        [0.0, 0.0]
+        """
+        found = self._on_branch(limits.saddle_node(self.contact, n), n)
+        rounding = _UNITS * np.spacing(np.abs(found.impact_velocity))
+        lam = np.where(found.amplitude <= rounding, 0.0, found.amplitude)
+        return replace(found, amplitude=lam)
 
     def period_doubling(self, n: ArrayLike) -> ContactOrbit:
         """The orbits at the period doubling nearest to it; NaN where there is none."""

@@ -55,6 +55,27 @@ def _require_arguments(stage: Stage, study: ast.FunctionDef) -> None:
         )
 
 
+def check_entries(entries: Iterable[Stage]) -> None:
+    """Raise on a name that two entries have, or a list that is given as a text.
+
+    Raises
+    ------
+    ConfigurationError
+        One line that names the entry.
+    """
+    seen = set()
+    for stage in entries:
+        if stage.name in seen:
+            raise ConfigurationError(f"{stage.name}: two entries have this name")
+        seen.add(stage.name)
+        for part in ("arguments", "reads"):
+            value = getattr(stage, part)
+            if isinstance(value, str):
+                raise ConfigurationError(
+                    f"{stage.name}: {part}={value!r} must be a tuple: {part}=({value!r},)"
+                )
+
+
 def check_pieces(stages: Mapping[str, Stage], run: Mapping[str, Any]) -> None:
     """Raise on the first piece that an entry names and that is missing.
 

@@ -1,6 +1,8 @@
 """Whether a dataset holds what is to be drawn or set from it."""
 
 from collections.abc import Callable
+from pathlib import Path
+from traceback import extract_tb
 from typing import TypeVar
 
 import numpy as np
@@ -63,7 +65,7 @@ def from_dataset(render: Callable[[xr.Dataset], T], data: xr.Dataset, path: str)
     ------
     ModelError
         In one line: what is missing in the file, and the command that makes it
-        again.
+        again; or where ``render`` fails on it.
     """
     again = f"make it again, snakemake --cores 2 --force {path}"
     # Every dimension of a dataset that is written has a coordinate.
@@ -76,9 +78,10 @@ def from_dataset(render: Callable[[xr.Dataset], T], data: xr.Dataset, path: str)
     try:
         return render(data)
     except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
-        # The datasets of a run have all that is drawn, so that it is the file's fault.
-        words = " ".join(str(error).split())
-        if isinstance(error, KeyError) and str(error.args[0]).isidentifier():
-            words = f"no {words}"
-        reason = words.strip('"')
-        raise ModelError(f"{path}: {reason}: {again}") from error
+        # The file is what its job wrote: made again it would be the same.
+        words = " ".join(str(error).split()).strip('"')
+        last = extract_tb(error.__traceback__)[1]
+        raise ModelError(
+            f"{path}: {type(error).__name__}, {words}: the file is whole, the fault is in line "
+            f"{last.lineno} of {Path(last.filename).name} or in the study"
+        ) from error

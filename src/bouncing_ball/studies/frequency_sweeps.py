@@ -11,8 +11,8 @@ from bouncing_ball.impacts.damping import damping_ratio
 from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
-from bouncing_ball.orbits.interface import Orbit
 from bouncing_ball.orbits.limits import orbit_at
+from bouncing_ball.studies.columns import OBSERVED, columns
 from bouncing_ball.studies.parameters import grid
 
 # Relative distance of two frequency ratios that are one but for the rounding of a grid.
@@ -25,26 +25,6 @@ def sweep(
     """Orbits on the stable side, shape (cases, ϖ); NaN where there is none."""
     zeta = damping_ratio(restitution)[:, np.newaxis]
     return orbit_at(Contact(ratios, zeta, Release(release)), n, amplitude[:, np.newaxis])
-
-
-_OBSERVABLES = (
-    "phase",
-    "contact_duration",
-    "release_phase",
-    "impact_velocity",
-    "bounce_velocity",
-    "apparent_restitution",
-    "max_height",
-)
-
-
-def _columns(orbit: Orbit) -> dict[str, np.ndarray]:
-    """What is published of the orbits."""
-    return {
-        **{name: getattr(orbit, name) for name in _OBSERVABLES},
-        "stable": orbit.is_stable(),
-        "admissible": orbit.is_admissible(),
-    }
 
 
 def with_round_values(ratios: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -73,13 +53,14 @@ def with_round_values(ratios: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def _sweep_dataset(parameters, restitution, amplitude, release, ratios=None) -> xr.Dataset:
     n = parameters["n"]
     ratios = grid(parameters["frequency_ratio"]) if ratios is None else ratios
-    columns = _columns(sweep(n, restitution, amplitude, ratios, release))
+    orbits = sweep(n, restitution, amplitude, ratios, release)
+    found = columns(orbits, *OBSERVED, "max_height")
     dims = ("case", "frequency_ratio")
     return xr.Dataset(
         {
             "restitution": ("case", restitution),
             "amplitude": ("case", amplitude),
-            **{name: (dims, values) for name, values in columns.items()},
+            **{name: (dims, values) for name, values in found.items()},
         },
         coords={"frequency_ratio": ratios, "case": np.arange(len(restitution))},
     )

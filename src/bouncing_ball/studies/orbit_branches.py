@@ -30,6 +30,7 @@ from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
 from bouncing_ball.orbits.grazing import grazing_points
 from bouncing_ball.orbits.interface import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.studies.columns import OBSERVED, columns
 
 SADDLE_NODE, PERIOD_DOUBLING = "saddle-node", "period doubling"
 GRAZING = "grazing"
@@ -205,16 +206,7 @@ def first_limits(branch: Branch) -> dict[str, np.ndarray]:
     }
 
 
-# What is published of every orbit of a branch, and of the special ones.
-_OBSERVABLES = (
-    "amplitude",
-    "phase",
-    "contact_duration",
-    "release_phase",
-    "impact_velocity",
-    "bounce_velocity",
-    "apparent_restitution",
-)
+# What is published of special orbits.
 _PLACE = ("amplitude", "phase", "contact_duration")
 
 
@@ -227,13 +219,11 @@ class _Row(NamedTuple):
     reasons: list[str]
 
 
-def _columns(orbit: Orbit) -> dict[str, np.ndarray]:
-    """Observables, stability and admissibility of orbits."""
+def _along(orbit: Orbit) -> dict[str, np.ndarray]:
+    """What is published of the orbits of a branch."""
     floquet = orbit.multipliers()
     return {
-        **{name: getattr(orbit, name) for name in _OBSERVABLES},
-        "stable": orbit.is_stable(),
-        "admissible": orbit.is_admissible(),
+        **columns(orbit, "amplitude", *OBSERVED),
         "multiplier_real": floquet.real,
         "multiplier_imag": floquet.imag,
         "residual": orbit.defect(),
@@ -258,12 +248,12 @@ def _row(
         y = resample(system, branch, count, newton)
     except (NoOrbitError, ContinuationError) as error:
         none = _missing(n, count)
-        return _Row(_columns(none), [], _places(none[:0]), [str(error)] * 2)
+        return _Row(_along(none), [], _places(none[:0]), [str(error)] * 2)
     chosen = [s for s in branch.special if s.name in (SADDLE_NODE, PERIOD_DOUBLING)]
     grazing = grazing_points(system, lambda z: system.orbit(z).is_admissible(), y, newton)
     points = np.array([*(s.point for s in chosen), *grazing]).reshape(-1, y.shape[-1])
     return _Row(
-        _columns(system.orbit(y)),
+        _along(system.orbit(y)),
         [*(s.name for s in chosen), *[GRAZING] * len(grazing)],
         _places(system.orbit(points)),
         [branch.start_reason, branch.end_reason],

@@ -1,0 +1,31 @@
+"""What is published of every orbit that a study follows."""
+
+import numpy as np
+
+from bouncing_ball.orbits.interface import Orbit
+
+OBSERVED = (
+    "phase",
+    "contact_duration",
+    "release_phase",
+    "impact_velocity",
+    "bounce_velocity",
+    "apparent_restitution",
+)
+
+
+def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
+    """The named quantities of orbits, their stability and their admissibility.
+
+    Examples
+    --------
+    >>> from bouncing_ball.orbits.restitution_model import RestitutionModel
+    >>> found = columns(RestitutionModel(1.0).orbit(1, 0.5), "phase")
+    >>> {name: x.item() for name, x in found.items()}
+    {'phase': 0.0, 'stable': True, 'admissible': True}
+    """
+    return {
+        **{name: getattr(orbit, name) for name in names},
+        "stable": orbit.is_stable(),
+        "admissible": orbit.is_admissible(),
+    }

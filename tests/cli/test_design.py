@@ -82,6 +82,8 @@ def test_choosing(capsys):
         (("--n", "0"), 2, "whole number"),
         (("--release", "glue"), 2, "invalid choice"),
         (("--quantity", "colour"), 2, "one of max_height"),
+        (("--plot", "page.jpg"), 2, "'page.jpg' does not end in .pdf or .png or .svg"),
+        (("--plot", "page.png/"), 2, "'page.png/' does not end in .pdf or .png or .svg"),
     ],
 )
 def test_mistakes_are_one_line(capsys, arguments, status, says):

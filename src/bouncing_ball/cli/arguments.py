@@ -309,7 +309,8 @@ def _add_diff(sub: Parser) -> None:
 def _drawing(text: str) -> Path:
     """A parser of the name of a drawing, for ``type=``."""
     path = Path(text)
-    if path.suffix not in _DRAWINGS:
+    # Of the text too: a path forgets the slash that makes it a folder's.
+    if path.suffix not in _DRAWINGS or not text.endswith(path.suffix):
         raise argparse.ArgumentTypeError(f"{text!r} does not end in {' or '.join(_DRAWINGS)}")
     return path
 

@@ -133,7 +133,7 @@ class LawModel(ImpactModel):
         if law.shape:
             return restitution_speed(n, law)[1]
         index, where = np.unique(n, return_inverse=True)
-        _, instant = restitution_speed(index, law)
+        instant = _rigid_instant(type(law), tuple(law.fields()), tuple(index))
         return Instant(*(np.broadcast_to(x, index.shape)[where] for x in instant))
 
     def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> LawOrbit:
@@ -294,6 +294,12 @@ class LawModel(ImpactModel):
         laws = (self.law.flat(self.law.shape).take(k) for k in range(size))
         found = [permanent_contact(law).amplitude for law in laws]
         return np.array(found).reshape(self.law.shape)
+
+
+@lru_cache(maxsize=4096)
+def _rigid_instant(kind: type[ContactLaw], values: tuple, index: tuple) -> Instant:
+    """The signature of a single law at the speeds of the restitution model's orbits."""
+    return restitution_speed(np.array(index), kind(*values))[1]
 
 
 @lru_cache(maxsize=4096)

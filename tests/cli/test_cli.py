@@ -23,23 +23,6 @@ ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = Path(sys.executable).with_name("bouncing-ball")
 
 
-def ask(capsys, *arguments):
-    """The JSON answer of a call that succeeds."""
-    main([*arguments, "--json"])
-    out, err = capsys.readouterr()
-    assert err == "" and out.count("\n") == 1
-    return json.loads(out)
-
-
-def refused(capsys, *arguments):
-    """Exit status and the one line on standard error of a call that fails."""
-    with pytest.raises(SystemExit) as exit_:
-        main(list(arguments))
-    lines = capsys.readouterr().err.splitlines()
-    assert len(lines) == 1
-    return exit_.value.code, lines[0]
-
-
 ORBIT = ("orbit", "--n", "1", "--restitution", "0.85", "--amplitude", "1.0")
 STIFF_FORCE = ("--frequency-ratio", "10", "--release", "force")
 FIELDS = [
@@ -56,8 +39,8 @@ FIELDS = [
 ]
 
 
-def test_restitution_orbit_is_the_closed_form(capsys):
-    answer = ask(capsys, *ORBIT)
+def test_restitution_orbit_is_the_closed_form(ask):
+    answer = ask(*ORBIT)
     assert list(answer) == FIELDS
     assert answer["phase"] == float(restitution.phase(1, 0.85, 1.0))
     assert answer["bounce_velocity"] == math.pi == -answer["impact_velocity"]
@@ -68,8 +51,8 @@ def test_restitution_orbit_is_the_closed_form(capsys):
 
 @pytest.mark.parametrize("release", ["displacement", "force"])
 @pytest.mark.parametrize("side", ["stable", "unstable"])
-def test_spring_damper_orbit_in_full_precision(capsys, release, side):
-    answer = ask(capsys, *ORBIT, "--frequency-ratio", "10", "--release", release, "--side", side)
+def test_spring_damper_orbit_in_full_precision(ask, release, side):
+    answer = ask(*ORBIT, "--frequency-ratio", "10", "--release", release, "--side", side)
     assert list(answer) == [*FIELDS, "measured_restitution", "damping_ratio"]
     contact = Contact(10.0, float(damping_ratio(0.85)), Release(release))
     orbit = limits.orbit_at(contact, 1, 1.0, limits.Side(side))
@@ -80,17 +63,17 @@ def test_spring_damper_orbit_in_full_precision(capsys, release, side):
     assert answer["residual"] < 1e-13
 
 
-def test_damping_ratio_in_place_of_restitution(capsys):
+def test_damping_ratio_in_place_of_restitution(ask):
     zeta = repr(float(damping_ratio(0.85)))
     call = ("orbit", "--damping-ratio", zeta, "--amplitude", "1", "--frequency-ratio", "10")
-    assert ask(capsys, *call) == ask(capsys, *ORBIT, "--frequency-ratio", "10")
+    assert ask(*call) == ask(*ORBIT, "--frequency-ratio", "10")
 
 
-def test_limits_of_both_models(capsys):
-    answer = ask(capsys, "limits", "--restitution", "0.85")
+def test_limits_of_both_models(ask):
+    answer = ask("limits", "--restitution", "0.85")
     assert answer["saddle_node"]["amplitude"] == float(restitution.saddle_node(1, 0.85))
     assert answer["period_doubling"]["amplitude"] == float(restitution.period_doubling(1, 0.85))
-    answer = ask(capsys, "limits", "--restitution", "0.85", "--frequency-ratio", "10")
+    answer = ask("limits", "--restitution", "0.85", "--frequency-ratio", "10")
     fields = {"amplitude", "phase", "contact_duration", "is_admissible"}
     assert set(answer["saddle_node"]) == fields
     # Table 1 as computed by continuation, see the accepted record.
@@ -98,106 +81,103 @@ def test_limits_of_both_models(capsys):
     assert answer["period_doubling"]["amplitude"] == pytest.approx(1.0374563012, abs=1e-9)
 
 
-def test_permanent_contact(capsys):
+def test_permanent_contact(ask):
     call = ("permanent-contact", "--restitution", "0.65", "--frequency-ratio", "6")
-    answer = ask(capsys, *call)
+    answer = ask(*call)
     zeta, x = float(damping_ratio(0.65)), 1 / 36
     square = (1 - x) ** 2 + 4 * zeta**2 * x
     assert answer["threshold"] == pytest.approx(math.sqrt(square), rel=1e-15)
     assert answer["minimum"] == pytest.approx(2 * zeta * math.sqrt(1 - zeta**2), rel=1e-15)
-    force = ask(capsys, *call, "--release", "force")
+    force = ask(*call, "--release", "force")
     expected = math.sqrt(square / (1 + 4 * zeta**2 * x))
     assert force["threshold"] == pytest.approx(expected, rel=1e-15)
-    strong = ask(capsys, "permanent-contact", "--damping-ratio", "0.9", "--frequency-ratio", "6")
+    strong = ask("permanent-contact", "--damping-ratio", "0.9", "--frequency-ratio", "6")
     assert strong["minimum"] is None
 
 
-def test_simulation_holds_the_orbit(capsys):
-    orbit = ask(capsys, *ORBIT, "--frequency-ratio", "10")
+def test_simulation_holds_the_orbit(ask):
+    orbit = ask(*ORBIT, "--frequency-ratio", "10")
     start = ("--phase", repr(orbit["phase"]), "--velocity", repr(orbit["impact_velocity"]))
     call = ("--restitution", "0.85", "--amplitude", "1", "--frequency-ratio", "10")
-    answer = ask(capsys, "simulate", *call, *start, "--impacts", "30")
+    answer = ask("simulate", *call, *start, "--impacts", "30")
     assert answer["status"] == "bouncing"
     assert len(answer["sequence"]["time"]) == 30
     # Rounding stays rounding on a stable orbit.
     assert np.ptp(answer["sequence"]["impact_velocity"]) < 1e-12
 
 
-def test_simulation_into_permanent_contact(capsys):
+def test_simulation_into_permanent_contact(ask):
     call = ("--restitution", "0.5", "--amplitude", "0.5", "--frequency-ratio", "10")
-    answer = ask(capsys, "simulate", *call, "--velocity", "-1")
+    answer = ask("simulate", *call, "--velocity", "-1")
     assert answer["status"] == "permanent contact"
     assert answer["sequence"]["contact_duration"][-1] is None
 
 
-def test_the_restitution_that_a_contact_really_has(capsys):
+def test_the_restitution_that_a_contact_really_has(ask):
     call = ("orbit", "--amplitude", "1", *STIFF_FORCE)
-    asked = ask(capsys, *call, "--restitution", "0.7")
+    asked = ask(*call, "--restitution", "0.7")
     assert asked["measured_restitution"] == pytest.approx(0.718, abs=5e-4)
-    own = ask(capsys, *call, "--measured-restitution", "0.7")
+    own = ask(*call, "--measured-restitution", "0.7")
     assert own["measured_restitution"] == pytest.approx(0.7, rel=1e-14)
     assert own["damping_ratio"] > asked["damping_ratio"]
     # Without a contact there is one r only.
     bare = ("orbit", "--amplitude", "1")
-    assert ask(capsys, *bare, "--measured-restitution", "0.7") == ask(
-        capsys, *bare, "--restitution", "0.7"
-    )
+    assert ask(*bare, "--measured-restitution", "0.7") == ask(*bare, "--restitution", "0.7")
 
 
-def test_every_orbit_can_be_reached(capsys):
+def test_every_orbit_can_be_reached(ask, refused, said):
     call = ("orbit", "--restitution", "0.85", "--amplitude", "0.9", "--frequency-ratio", "2")
-    found = ask(capsys, *call, "--side", "all")["orbits"]
+    found = ask(*call, "--side", "all")["orbits"]
     assert [orbit["is_stable"] for orbit in found] == [True, False, True]
     durations = [orbit["contact_duration"] for orbit in found]
     assert durations == sorted(durations)
-    third = ask(capsys, *call, "--index", "3")
+    third = ask(*call, "--index", "3")
     assert {name: third[name] for name in FIELDS} == found[2]
-    status, line = refused(capsys, *call, "--index", "4")
+    status, line = refused(*call, "--index", "4")
     assert status == 1 and "has 3 1-T orbits at Λ = 0.9" in line
-    main([*call, "--side", "all"])
-    assert "orbit 3" in capsys.readouterr().out
+    assert "orbit 3" in said(*call, "--side", "all")
 
 
-def test_limits_say_whether_their_orbits_are_the_balls(capsys):
-    soft = ask(capsys, "limits", "--restitution", "0.85", "--frequency-ratio", "10")
+def test_limits_say_whether_their_orbits_are_the_balls(ask):
+    soft = ask("limits", "--restitution", "0.85", "--frequency-ratio", "10")
     assert soft["period_doubling"]["is_admissible"] is True
     # The ball would rise at impact.
-    for answer in (soft, ask(capsys, "limits", "--restitution", "0.85")):
+    for answer in (soft, ask("limits", "--restitution", "0.85")):
         assert all(isinstance(answer[x]["is_admissible"], bool) for x in BOUNDS)
 
 
-def test_the_corrected_model_answers_too(capsys):
+def test_the_corrected_model_answers_too(ask):
     call = ("--restitution", "0.65", "--frequency-ratio", "100", "--model", "corrected")
-    corrected = ask(capsys, "orbit", "--amplitude", "1", *call)
-    spring = ask(capsys, "orbit", "--amplitude", "1", *call[:-1], "spring-damper")
+    corrected = ask("orbit", "--amplitude", "1", *call)
+    spring = ask("orbit", "--amplitude", "1", *call[:-1], "spring-damper")
     assert corrected["max_height"] == pytest.approx(spring["max_height"], rel=1e-3)
 
 
-def test_the_error_law(capsys):
+def test_the_error_law(ask):
     call = ("error-law", "--n", "1", "--restitution", "0.65", "--amplitude", "1")
-    found = ask(capsys, *call)
+    found = ask(*call)
     assert found["coefficients"]["max_height"] == pytest.approx(0.8213674, abs=1e-7)
     assert found["signed"]["max_height"] == -found["coefficients"]["max_height"]
     # Nothing to be relative to at r = 1.
-    found = ask(capsys, "error-law", "--restitution", "1", "--amplitude", "0.8")
+    found = ask("error-law", "--restitution", "1", "--amplitude", "0.8")
     assert found["coefficients"]["saddle_node"] is None
 
 
-def test_the_error_law_is_about_the_contacts_own_r(capsys):
+def test_the_error_law_is_about_the_contacts_own_r(ask):
     contact = ("--damping-ratio", "0.2", "--release", "force", "--amplitude", "1.5")
-    found = ask(capsys, "error-law", *contact)
-    exact = ask(capsys, "orbit", "--frequency-ratio", "1e4", *contact)
+    found = ask("error-law", *contact)
+    exact = ask("orbit", "--frequency-ratio", "1e4", *contact)
     r = repr(found["measured_restitution"])
-    plain = ask(capsys, "orbit", "--restitution", r, "--amplitude", "1.5")
+    plain = ask("orbit", "--restitution", r, "--amplitude", "1.5")
     for name in ("max_height", "bounce_velocity", "phase", "apparent_restitution"):
         error = 1e4 * (exact[name] / plain[name] - 1)
         # The next order is about 1/ϖ of it, more for the apparent restitution.
         assert error == pytest.approx(found["signed"][name], rel=2e-2)
 
 
-def test_permanent_contact_has_no_corrected_form(capsys):
+def test_permanent_contact_has_no_corrected_form(refused):
     call = ("--restitution", "0.65", "--frequency-ratio", "9", "--model", "corrected")
-    status, line = refused(capsys, "permanent-contact", *call)
+    status, line = refused("permanent-contact", *call)
     assert status == 2 and "no corrected form" in line and "second order" in line
 
 
@@ -238,14 +218,14 @@ def test_a_full_device(arguments):
     assert done.stderr == "bouncing-ball: the output cannot be written: No space left on device\n"
 
 
-def test_a_missing_orbit_exits_1_with_the_reason(capsys):
+def test_a_missing_orbit_exits_1_with_the_reason(refused, capsys):
     call = ("orbit", "--restitution", "0.85", "--amplitude", "0.1")
-    assert refused(capsys, *call) == (
+    assert refused(*call) == (
         1,
         "bouncing-ball: no 1-T orbit at Λ = 0.1 for r = 0.85: below the saddle-node "
         "at Λ = 0.254724",
     )
-    status, line = refused(capsys, *call, "--frequency-ratio", "10")
+    status, line = refused(*call, "--frequency-ratio", "10")
     assert status == 1 and "below the saddle-node at Λ = 0.239988" in line
     with pytest.raises(SystemExit) as exit_:
         main([*call, "--json"])
@@ -295,8 +275,8 @@ def test_a_missing_orbit_exits_1_with_the_reason(capsys):
         ),
     ],
 )
-def test_a_bad_argument_exits_2_with_one_line(capsys, arguments, said):
-    status, line = refused(capsys, *arguments)
+def test_a_bad_argument_exits_2_with_one_line(refused, arguments, said):
+    status, line = refused(*arguments)
     assert status == 2
     assert said in line
 
@@ -327,14 +307,14 @@ def test_no_traceback_and_no_warning_ever(capsys, arguments, r, amplitude):
 
 
 @pytest.mark.parametrize("ratio", ["1e-8", "1e8"])
-def test_permanent_contact_at_the_limits_of_the_frequency_ratio(capsys, ratio):
+def test_permanent_contact_at_the_limits_of_the_frequency_ratio(ask, ratio):
     call = ("permanent-contact", "--restitution", "0.65", "--frequency-ratio", ratio)
     for release in ("displacement", "force"):
-        assert math.isfinite(ask(capsys, *call, "--release", release)["threshold"])
+        assert math.isfinite(ask(*call, "--release", release)["threshold"])
 
 
 @pytest.mark.parametrize(
-    "arguments", [["--help"], ["orbit", "--help"], ["orbit", "--side", "left"]]
+    "arguments", [["--help"], ["limits", "--n", "0"], ["orbit", "--side", "left"]]
 )
 def test_help_and_a_mistake_need_no_numpy(arguments):
     program = (
@@ -349,12 +329,11 @@ def test_help_and_a_mistake_need_no_numpy(arguments):
         [sys.executable, "-c", program, *arguments], capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
-    assert "usage" in done.stdout or "invalid choice" in done.stderr
+    assert "usage" in done.stdout or done.stderr.startswith("bouncing-ball ")
 
 
-def test_readable_tables(capsys):
-    main([*ORBIT])
-    out = capsys.readouterr().out
+def test_readable_tables(said):
+    out = said(*ORBIT)
     assert "phase                                   1.31323433" in out
     assert "is stable                               yes" in out
 

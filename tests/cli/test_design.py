@@ -1,37 +1,18 @@
 """``bouncing-ball design``: keys, texts, exit statuses."""
 
-import json
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from bouncing_ball.cli.main import main
-
-CASE = (
-    "design",
-    "--mass",
-    "20 g",
-    "--frequency",
-    "50 Hz",
-    "--acceleration",
-    "0.8 g",
-    "--restitution",
-    "0.85",
-)
+TABLE = ("--frequency", "50 Hz", "--acceleration", "0.8 g")
+CASE = ("design", "--mass", "20 g", *TABLE, "--restitution", "0.85")
 STIFF = ("--stiffness", "1e7 N/m")
 
 
-def asked(capsys, *arguments):
-    main([*CASE, *arguments])
-    out, err = capsys.readouterr()
-    assert err == ""
-    return out
-
-
-def test_json_has_the_keys(capsys):
-    found = json.loads(asked(capsys, *STIFF, "--json"))
+def test_json_has_the_keys(ask):
+    found = ask(*CASE, *STIFF)
     assert list(found)[:4] == ["frequency_ratio", "damping_ratio", "amplitude", "contact_time"]
     assert {"orbits", "verdict", "reason", "corrected", "time_step", "needed"} <= set(found)
     for one in found["orbits"]:
@@ -41,33 +22,26 @@ def test_json_has_the_keys(capsys):
     assert isinstance(found["verdict"], str)
 
 
-def test_what_is_infinite_is_null(capsys):
+def test_what_is_infinite_is_null(ask):
     # The saddle-node of an elastic ball is at Λ = 0: nothing to be relative to.
-    main(["design", "--mass", "1", "--frequency", "1", "--acceleration", "0.5 g",
-          "--restitution", "1", "--stiffness", "1e5", "--n", "1", "--json"])  # fmt: skip
-    found = json.loads(capsys.readouterr().out)
+    case = "design --mass 1 --frequency 1 --acceleration 5 --restitution 1 --stiffness 1e5 --n 1"
+    found = ask(*case.split())
     assert found["orbits"][0]["errors"]["saddle_node"] is None
 
 
-def test_the_text_begins_with_the_verdict_of_the_readme(capsys):
-    lines = asked(capsys, *STIFF).splitlines()
+def test_the_text_begins_with_the_verdict_of_the_readme(said):
+    lines = said(*CASE, *STIFF).splitlines()
     assert lines[0].startswith("The restitution model is not good enough: the greatest height")
     assert lines[1].startswith("Reason: the contact's frequency ratio ϖ = 71.18 is below")
     text = "\n".join(lines)
-    for word in (
-        "contact time",
-        "peak force",
-        "force over weight",
-        "largest time step",
-        "3-T orbit",
-    ):
-        assert word in text
+    words = ("contact time", "peak force", "force over weight", "largest time step", "3-T orbit")
+    assert all(word in text for word in words)
     readme = (Path(__file__).parents[2] / "README.md").read_text("utf-8")
     assert lines[0] in readme and lines[1] in readme
 
 
-def test_choosing(capsys):
-    out = asked(capsys, "--quantity", "phase", "--tolerance", "0.1 %")
+def test_choosing(said):
+    out = said(*CASE, "--quantity", "phase", "--tolerance", "0.1 %")
     assert out.startswith("A simulation needs a contact of at least ")
     assert "within 0.1 % of the restitution model's" in out
 
@@ -86,12 +60,9 @@ def test_choosing(capsys):
         (("--plot", "page.png/"), 2, "'page.png/' does not end in .pdf or .png or .svg"),
     ],
 )
-def test_mistakes_are_one_line(capsys, arguments, status, says):
-    with pytest.raises(SystemExit) as exit_:
-        main([*CASE, *STIFF, *arguments])
-    out, err = capsys.readouterr()
-    assert exit_.value.code == status and out == ""
-    assert says in err and err.count("\n") == 1
+def test_mistakes_are_one_line(refused, arguments, status, says):
+    code, line = refused(*CASE, *STIFF, *arguments)
+    assert code == status and says in line
 
 
 def test_only_units_need_pint():

@@ -3,7 +3,7 @@
 import argparse
 import math
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from bouncing_ball.cli.output import one_line, print_lines
 
@@ -19,8 +19,16 @@ _DRAWINGS = (".pdf", ".png", ".svg")
 class Parser(argparse.ArgumentParser):
     """A parser whose errors are one line and exit status 2."""
 
+    laws: Any = None
+    """Group of the options about a contact law, which are described when help is asked for."""
+
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"{self.prog}: {one_line(message)}\n")
+
+    def format_help(self) -> str:
+        if self.laws is not None:
+            self.laws.description = _laws()
+        return super().format_help()
 
     def print_help(self, file=None) -> None:
         print_lines(self.format_help().splitlines())
@@ -75,22 +83,6 @@ def _count(largest: int):
     return parse
 
 
-# The contact laws and what each is made of, as the package of the laws has them: the
-# help needs no numpy.
-LAWS = {
-    "hunt-crossley": "stiffness damping",
-    "tsuji": "stiffness damping",
-    "kuwabara-kono": "stiffness damping",
-    "linear": "frequency-ratio damping-ratio",
-}
-_FORCES = {
-    "hunt-crossley": "K p^1.5 (1 + C p′)",
-    "tsuji": "K p^1.5 + C √K p^0.25 p′",
-    "kuwabara-kono": "K (p^1.5 + C √p p′)",
-    "linear": "W² p + 2 Z W p′",
-}
-
-
 def _assignment(text: str) -> tuple[str, float]:
     """A parser of NAME=NUMBER, for ``type=``."""
     name, equals, value = text.partition("=")
@@ -103,13 +95,19 @@ def _assignment(text: str) -> tuple[str, float]:
     return name, number
 
 
-def _add_law(parser: argparse.ArgumentParser) -> None:
-    group = parser.add_argument_group(
-        "a contact of another law",
-        "with the penetration p and a force over the weight of the ball: "
-        + "; ".join(f"{name} {_FORCES[name]} ({LAWS[name].replace(' ', ', ')})" for name in LAWS),
-    )
-    group.add_argument("--law", choices=list(LAWS), help="in place of the spring-damper")
+def _laws() -> str:
+    """The contact laws, with the force and the parameters of each."""
+    # Imported here: the laws need numpy.
+    from bouncing_ball.cli.contact_law import options
+    from bouncing_ball.impacts.laws import LAWS
+
+    listed = (f"{law.name} {law.formula} ({', '.join(options(law))})" for law in LAWS.values())
+    return "with the penetration p and a force over the weight of the ball: " + "; ".join(listed)
+
+
+def _add_law(parser: Parser) -> None:
+    group = parser.laws = parser.add_argument_group("a contact of another law")
+    group.add_argument("--law", metavar="NAME", help="in place of the spring-damper")
     group.add_argument(
         "--set",
         type=_assignment,
@@ -137,7 +135,7 @@ def _settle_law(top: "Parser", args: argparse.Namespace) -> None:
     if args.law is None:
         for name in ("set", "duration", "speed"):
             if getattr(args, name) is not None:
-                top.error(f"--{name} needs --law, one of {', '.join(LAWS)}")
+                top.error(f"--{name} needs --law")
         if args.restitution is args.damping_ratio is args.measured_restitution is None:
             top.error(
                 "one of the arguments --restitution --damping-ratio --measured-restitution "
@@ -151,15 +149,6 @@ def _settle_law(top: "Parser", args: argparse.Namespace) -> None:
             option = f"--{name.replace('_', '-')}"
             top.error(f"{option} does not go with --law {args.law}: --set, or --restitution "
                       "and --duration")  # fmt: skip
-    needs = ", ".join(f"--set {name}=NUMBER" for name in LAWS[args.law].split())
-    if args.set:
-        for name in ("restitution", "duration", "speed"):
-            if getattr(args, name) is not None:
-                top.error(f"--{name} does not go with --set: {needs} are all of {args.law}")
-    elif args.restitution is None or args.duration is None:
-        top.error(f"--law {args.law} needs {needs}, or --restitution and --duration")
-    elif args.release is not None:
-        top.error("--release goes with --law linear and --set only")
 
 
 def _add_damping(parser: argparse.ArgumentParser, *, required: bool) -> None:

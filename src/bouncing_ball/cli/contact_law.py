@@ -17,20 +17,34 @@ from bouncing_ball.orbits.law_calls import law_at_orbit, rigid_speed
 from bouncing_ball.orbits.law_model import LawModel, restitution_speed
 
 
+def options(kind: type[ContactLaw]) -> list[str]:
+    """The law's parameters as they are typed after ``--set``."""
+    return [name.replace("_", "-") for name in kind.parameter_names()]
+
+
 def law_of(args: argparse.Namespace) -> ContactLaw:
     """The law that was asked for, by its parameters or by its free impact.
 
     Raises
     ------
     ModelError
-        If a parameter is missing, unknown or out of its range.
+        If the law or a parameter is unknown, a parameter is missing or out of its
+        range, or options contradict each other.
     NoOrbitError
-        If r and D are to be those at an orbit that there is not.
+        If r and D are to be those at an orbit that does not exist.
     """
     kind = law_named(args.law)
-    if args.set:
-        return _by_parameters(kind, args)
+    needs = ", ".join(f"--set {name}=NUMBER" for name in options(kind))
     r, duration = args.restitution, args.duration
+    if args.set:
+        for name in ("restitution", "duration", "speed"):
+            if getattr(args, name) is not None:
+                raise ModelError(f"--{name} does not go with --set: {needs} are all of {kind.name}")
+        return _by_parameters(kind, args)
+    if r is None or duration is None:
+        raise ModelError(f"--law {kind.name} needs {needs}, or --restitution and --duration")
+    if args.release is not None:
+        raise ModelError("--release goes with --law linear and --set only")
     if args.speed is not None:
         return law_of_impact(kind, r, duration, args.speed)
     if args.command == "orbit":

@@ -59,6 +59,8 @@ class ContactLaw(Record, ABC):
     """
 
     name: ClassVar[str]
+    formula: ClassVar[str]
+    """The force as the command line's help shows it."""
     root: ClassVar[int] = 2
     release = Release.DISPLACEMENT
 

@@ -45,6 +45,7 @@ class HuntCrossley(ContactLaw):
     damping: float | np.ndarray
 
     name: ClassVar[str] = "hunt-crossley"
+    formula: ClassVar[str] = "K p^1.5 (1 + C p′)"
 
     def __post_init__(self):
         check_positive(self.stiffness, "stiffness K")

@@ -49,6 +49,7 @@ class KuwabaraKono(ContactLaw):
     damping: float | np.ndarray
 
     name: ClassVar[str] = "kuwabara-kono"
+    formula: ClassVar[str] = "K (p^1.5 + C √p p′)"
     release = Release.FORCE
 
     def __post_init__(self):

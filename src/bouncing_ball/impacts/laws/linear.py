@@ -39,6 +39,7 @@ class Linear(ContactLaw):
     release: Release = Release.DISPLACEMENT
 
     name: ClassVar[str] = "linear"
+    formula: ClassVar[str] = "W² p + 2 Z W p′"
     root: ClassVar[int] = 1
 
     def __post_init__(self):

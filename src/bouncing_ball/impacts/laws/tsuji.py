@@ -62,6 +62,7 @@ class Tsuji(ContactLaw):
     damping: float | np.ndarray
 
     name: ClassVar[str] = "tsuji"
+    formula: ClassVar[str] = "K p^1.5 + C √K p^0.25 p′"
     root: ClassVar[int] = 4
 
     def __post_init__(self):

@@ -1,16 +1,16 @@
-"""Configurations that the schema allows: each runs to its end, or is refused before it runs.
+"""Configurations, plausible and extreme by turns: each runs to its end, or is refused before.
 
 Drawn from the schema itself, so that a key added there is attacked too. A
 *plausible* configuration is the paper's with each number moved by some factor,
 an *extreme* one has every number anywhere in its range, its ends included. One
 stage is run at a time, on its own section; after it all that reads its dataset:
-cross-check, evidence, claims, figure and table.
+cross-check, evidence, claims, figure, tables, article and tally.
 """
 
 import math
 import time
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -21,16 +21,23 @@ import xarray as xr
 
 from bouncing_ball.audit.claims.assessment import assess
 from bouncing_ball.audit.claims.ledger_file import read_ledger
+from bouncing_ball.audit.claims.tally import tally
 from bouncing_ball.audit.cross_check import cross_check
 from bouncing_ball.audit.evidence import evidence
 from bouncing_ball.configuration.check import check_configuration, check_orbits
 from bouncing_ball.configuration.conformity import resolved
 from bouncing_ball.configuration.schema import configuration_schema
-from bouncing_ball.configuration.stages import STAGES, Kind, names, studied
+from bouncing_ball.configuration.stages import STAGES, Kind, studied, tables
 from bouncing_ball.configuration.study import load
 from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
+from bouncing_ball.datasets.emptiness import statement
 from bouncing_ball.datasets.netcdf import parameter_attributes, read_dataset
 from bouncing_ball.orbits import restitution_orbit
+from bouncing_ball.render.article.render import render_article
+from bouncing_ball.render.atlas.tables import shares
+from bouncing_ball.render.given import from_dataset
+from bouncing_ball.render.tables.error_law import law_table
+from bouncing_ball.render.tables.formats import to_csv, to_latex, to_markdown
 
 ROOT = Path(__file__).resolve().parents[2]
 SECTIONS = ("figures", "tables", "extensions", "studies")
@@ -147,11 +154,11 @@ def _made_to_exist(part: dict[str, Any], stage: str, rng: np.random.Generator) -
                 case[key] = enough(case[key], case["restitution"])
 
 
-def drawn(rng: np.random.Generator, kind: str, stage: str = "") -> Case:
+def drawn(rng: np.random.Generator, kind: str) -> Case:
     """The project's configuration with the section of one stage drawn anew."""
     config, schema = _project()[0], _schema()
     pairs = [(section, name) for section in SECTIONS for name in config[section]]
-    pairs = [pair for pair in pairs if pair[1] != "evidence" and stage in ("", pair[1])]
+    pairs = [pair for pair in pairs if pair[1] != "evidence"]
     section, name = pairs[rng.integers(len(pairs))]
     rules = schema["properties"][section]["properties"][name]
     part = _drawn(rules, config[section][name], schema, rng, kind)
@@ -176,7 +183,8 @@ def _dataset(name: str, config: Mapping[str, Any]) -> xr.Dataset:
     stage, run = STAGES[name], {**config, "printed": ledger.table("Table 1")}
     settings = stage.settings(run)
     data = load(stage.study)(stage.parameters(run), *settings.values())
-    return data.assign_attrs(parameter_attributes({**stage.parameters(run), **settings}))
+    parameters = parameter_attributes({**stage.parameters(run), **settings})
+    return data.assign_attrs({**(data.attrs or parameters), **statement(data)})
 
 
 def _evidence(data: Mapping[str, xr.Dataset], config: Mapping[str, Any]) -> xr.Dataset:
@@ -213,12 +221,10 @@ def run(case: Case) -> None:
             rest = others["witness"].drop_sel(artifact=case.stage, errors="ignore")
             others["witness"] = xr.concat([rest, row], "artifact", data_vars="minimal")
         others["evidence"] = _evidence(others, config)
-        assess(ledger, others)
+        others["claims"] = assess(ledger, others)
         if STAGES[case.stage].kind in (Kind.FIGURE, Kind.EXTENSION):
             _draw(case.stage, data)
-        tables = {case.stage, "witness"} & set(names(Kind.TABLE))
-        for table in tables:
-            import_module(f"bouncing_ball.render.tables.{table}").rows(others[table])
+        _write(others, {case.stage, "witness", "claims"})
     except ConfigurationError as error:
         raise RuntimeError(f"refused late: {error}") from error
 
@@ -227,17 +233,33 @@ def _draw(name: str, data: xr.Dataset) -> None:
     from bouncing_ball.render.figures.style import style
 
     with style():
-        figure = import_module(f"bouncing_ball.render.figures.{name}").draw(data)
+        draw = import_module(f"bouncing_ball.render.figures.{name}").draw
+        figure = from_dataset(draw, data, name)
         figure.set_dpi(20)
         figure.canvas.draw()
 
 
-def cases(seed: int) -> Iterator[Case]:
-    """Plausible and extreme configurations by turns, without end."""
-    rng = np.random.default_rng(seed)
-    while True:
-        yield drawn(rng, "plausible")
-        yield drawn(rng, "extreme")
+def _write(data: Mapping[str, xr.Dataset], changed: set[str]) -> None:
+    """The tables that have changed, the article and the tally."""
+    written = {name: (ROOT / "figures" / f"{name}.md").read_text("utf-8") for name in tables()}
+    for name in changed & written.keys():
+        rows = import_module(f"bouncing_ball.render.tables.{name}").rows
+        header, body = from_dataset(rows, data[name], name)
+        to_csv(header, body), to_latex(header, body)
+        written[name] = to_markdown(header, body)
+    written["error_law"] = law_table((ROOT / "config" / "error_law.csv").read_text("utf-8"))
+    atlas = read_dataset(ROOT / "config" / "atlas.nc")
+    written["atlas"] = to_markdown(*shares(atlas))
+    folder = ROOT / "workflow" / "report" / "paper"
+    references = read_yaml(folder / "references.yaml")
+    render_article(folder, {**data, "atlas": atlas}, written, references)
+    tally(data["claims"], len(STAGES))
+
+
+def case(seed: int, number: int) -> Case:
+    """A case by its own seed: plausible and extreme configurations by turns."""
+    kind = ("plausible", "extreme")[number % 2]
+    return drawn(np.random.default_rng([seed, number]), kind)
 
 
 def _outcome(case: Case) -> str:
@@ -260,13 +282,10 @@ def attack(seed: int, seconds: float) -> tuple[int, int, list[str]]:
     """Configurations tried, those that held, and what fell, within some seconds."""
     _others()
     end, tried, fallen = time.monotonic() + seconds, 0, []
-    for case in cases(seed):
-        if time.monotonic() > end:
-            break
-        tried += 1
-        wrong = _outcome(case)
+    while not tried or time.monotonic() < end:
+        one = case(seed, tried)
+        wrong = _outcome(one)
         if wrong:
-            section = next(s for s in SECTIONS if case.stage in case.config[s])
-            own = case.config[section][case.stage]
-            fallen.append(f"{case.kind} {case.stage} {own} {case.config['release']}: {wrong}")
+            fallen.append(f"case [{seed}, {tried}], {one.kind} {one.stage}: {wrong}")
+        tried += 1
     return tried, tried - len(fallen), fallen

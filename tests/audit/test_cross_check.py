@@ -50,6 +50,21 @@ def test_branches_agree(branches, continuation_settings):
     assert int(result.orbits.sel(artifact="fig08", comparison=FORMULA)) == 82 + 7
 
 
+def test_what_shows_no_orbit_has_no_row(continuation_settings):
+    history = {"n": 1, "restitution": 0.85, "amplitude": 1.0, "periods": 1, "samples": 11}
+    # Between the saddle-nodes: 10.6643 of the restitution model, 10.6693 of the contact.
+    soft = {"n": 20, "restitution": 0.7098, "frequency_ratio": [7.09]}
+    soft |= {"amplitude_max": 10.666, "points": 11}
+    branch = orbit_branches(soft, "displacement", continuation_settings)
+    assert np.isnan(branch.amplitude).all()
+    datasets = {
+        "fig02": with_attributes(restitution_history(history), history),
+        "fig09": with_attributes(branch, soft, "displacement"),
+    }
+    result = cross_check(datasets, continuation_settings)
+    assert result.artifact.values.tolist() == ["fig02"]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("variable", "shift"),

@@ -124,3 +124,26 @@ def test_a_stage_that_fails_leaves_no_article(made, one_line):
     assert not Path("results/paper.md").exists() and not Path("results/tally.txt").exists()
     # Nothing to remove is no mistake.
     withdraw()
+
+
+def test_a_stage_that_finds_nothing_says_so(made, monkeypatch):
+    found = xr.Dataset({"phase": ("point", [float("nan")]), "n": 1.0})
+    monkeypatch.setattr("bouncing_ball.pipeline.job.load", lambda study: lambda parameters: found)
+    published = {}
+    monkeypatch.setattr(
+        "bouncing_ball.pipeline.job.publish",
+        lambda job, data, attributes: published.update(attributes),
+    )
+    monkeypatch.setattr("bouncing_ball.pipeline.job.log_lines", lambda *_: [])
+    monkeypatch.setattr("bouncing_ball.pipeline.job.provenance", lambda _: None)
+    make_dataset(
+        SimpleNamespace(
+            rule="stage",
+            wildcards=["fig08"],
+            log=["results/logs/stages/fig08.log"],
+            output=SimpleNamespace(data=FIG08, __iter__=None),
+            input=SimpleNamespace(data=[]),
+            params=SimpleNamespace(study="", parameters={"n": 1}, settings={}),
+        )
+    )
+    assert published == {"n": 1, "without_values": "phase"}

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.configuration.stages import STAGES, Kind, names
+from bouncing_ball.datasets.emptiness import statement
 from bouncing_ball.errors import ModelError
 from bouncing_ball.render.figures.style import style
 from bouncing_ball.render.given import from_dataset
@@ -53,3 +54,12 @@ def test_no_empty_picture_and_no_empty_table(record, name):
         made(name, data)
     assert "no finite number in " in str(error.value)
     assert str(error.value).endswith(AGAIN.format(name))
+
+
+@pytest.mark.parametrize("name", ["fig05", "ext_rattling", "ext_validity", "table1"])
+def test_what_a_study_says_that_it_did_not_find_is_left_out(record, name):
+    data = record[name].copy(deep=True)
+    for values in data.data_vars.values():
+        if values.dtype.kind == "f":
+            values.values[...] = np.nan
+    assert made(name, data.assign_attrs(statement(data)))

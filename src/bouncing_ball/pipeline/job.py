@@ -15,6 +15,7 @@ from typing import Any
 import xarray as xr
 
 from bouncing_ball.configuration.study import load
+from bouncing_ball.datasets.emptiness import statement
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.datasets.netcdf import (
     CONVENTIONS,
@@ -124,7 +125,8 @@ def make_dataset(snakemake: Any) -> None:
     """Run the study of the job and write its dataset.
 
     The parameters and the settings of the run become global attributes, unless
-    the study says itself what is worth recording, and so does the provenance.
+    the study says itself what is worth recording, and so do the provenance and
+    what the study found nothing for.
     """
     with logged(snakemake) as lines:
         withdraw()
@@ -133,7 +135,7 @@ def make_dataset(snakemake: Any) -> None:
         inputs = [data] if data else []
         dataset = load(job.study)(*inputs, job.parameters, *job.settings.values())
         parameters = dataset.attrs or parameter_attributes(job.parameters | job.settings)
-        publish(snakemake, dataset, parameters)
+        publish(snakemake, dataset, {**parameters, **statement(dataset)})
         sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())
         lines.append(f"{snakemake.output.data}: {sizes}")
         if "end_reason" in dataset:

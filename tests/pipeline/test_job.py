@@ -1,6 +1,7 @@
 """The adapter around a job: what it takes, and what is said when it fails."""
 
 import shutil
+from collections import namedtuple
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -134,14 +135,12 @@ def test_a_stage_that_finds_nothing_says_so(made, monkeypatch):
         "bouncing_ball.pipeline.job.publish",
         lambda job, data, attributes: published.update(attributes),
     )
-    monkeypatch.setattr("bouncing_ball.pipeline.job.log_lines", lambda *_: [])
-    monkeypatch.setattr("bouncing_ball.pipeline.job.provenance", lambda _: None)
     make_dataset(
         SimpleNamespace(
             rule="stage",
             wildcards=["fig08"],
             log=["results/logs/stages/fig08.log"],
-            output=SimpleNamespace(data=FIG08, __iter__=None),
+            output=namedtuple("Output", "data")(FIG08),
             input=SimpleNamespace(data=[]),
             params=SimpleNamespace(study="", parameters={"n": 1}, settings={}),
         )

@@ -9,7 +9,9 @@ Physical parameters: a ball of mass m on a plane with the force
 has ``K = k √g/(m Ω³)`` and ``C = λ g/Ω``.
 
 Source: K. H. Hunt and F. R. E. Crossley, *Coefficient of restitution
-interpreted as damping in vibroimpact*, Journal of Applied Mechanics 42 (1975) 440-445.
+interpreted as damping in vibroimpact*, Journal of Applied Mechanics 42 (1975) 440-445,
+as quoted by Simbody (``HuntCrossleyContact.h``: k xⁿ (1 + (3/2) c v), n = 3/2 for a
+sphere, and e = 1 - c v at low speed; its c is (2/3) λ).
 """
 
 from dataclasses import dataclass

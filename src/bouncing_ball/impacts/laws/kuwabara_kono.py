@@ -9,9 +9,11 @@ Physical parameters: a ball of mass m with the force ``k (x^{3/2} + (3/2) A √x
 of a dissipative time A has ``K = k √g/(m Ω³)`` and ``C = (3/2) A Ω``.
 
 Sources: G. Kuwabara and K. Kono, Japanese Journal of Applied Physics 26 (1987)
-1230-1233; N. V. Brilliantov, F. Spahn, J.-M. Hertzsch and T. Pöschel, Physical
-Review E 53 (1996) 5382-5392; for the release T. Schwager and T. Pöschel, Physical
-Review E 78 (2008) 051304.
+1230-1233, as quoted by the CGNS standard (``HertzKuwabaraKono``; the last page from
+memory); N. V. Brilliantov, F. Spahn, J.-M. Hertzsch and T. Pöschel, Physical Review E
+53 (1996) 5382-5392, as quoted by LAMMPS (``pair_style gran/hooke``); for the release
+T. Schwager and T. Pöschel, Physical Review E 78 (2008) 051304, as quoted by the toolbox
+ChattAbhi/Approx-ViscoElastic-CoR.
 """
 
 from dataclasses import dataclass

@@ -11,9 +11,12 @@ so that the restitution coefficient does not depend on the speed, and
 Physical parameters: a ball of mass m with the force ``k x^{3/2} + α √(m k) x^{1/4} ẋ``
 has ``K = k √g/(m Ω³)`` and C = α.
 
-Sources: Y. Tsuji, T. Tanaka and T. Ishida, Powder Technology 71 (1992) 239-250;
-T. Antypov and J. A. Elliott, *On an analytical solution for the damped Hertzian
-spring*, Europhysics Letters 94 (2011) 50004.
+Sources: Y. Tsuji, T. Tanaka and T. Ishida, Powder Technology 71 (1992) 239-250, as
+quoted by LAMMPS (``pair_style granular``); D. Antypov and J. A. Elliott, *On an
+analytical solution for the damped Hertzian spring*, Europhysics Letters 94 (2011)
+50004, as quoted by Yade (``doc/references.bib``, and the formula with its Eq. 17 in
+the sources). Y. T. Feng, arXiv:2603.27764 (2026), has the same change of variable
+and the formula for any power (abstract read).
 """
 
 from dataclasses import dataclass

@@ -13,7 +13,7 @@ $(error the path of this checkout has a space: move it, or make VENV=/a/path/wit
 endif
 # What comes before anything runs; nothing, where another venv is there already.
 SETUP ?= setup
-# A line for each file, and errors; what Snakemake says besides is in .snakemake/log.
+# A line for each file, and errors; the rest of Snakemake's output is in .snakemake/log.
 QUIETLY := --quiet host rules reason progress
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 

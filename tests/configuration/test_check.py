@@ -39,7 +39,7 @@ def test_a_kind_that_is_not_described(one_line):
     kinds = {key: value for key, value in SCHEMA["$defs"].items() if key != "periods"}
     with pytest.raises(ConfigurationError) as error:
         check_configuration(CONFIG, {**SCHEMA, "$defs": kinds})
-    one_line(error, "fig02: its parameter periods is of a kind periods, which config/schema.yaml")
+    one_line(error, "fig02: its parameter periods has the kind periods, which config/schema.yaml")
 
 
 FIG08, FIG05 = ("figures", "fig08"), ("figures", "fig05")

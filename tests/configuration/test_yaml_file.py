@@ -89,8 +89,8 @@ def test_what_all_versions_read_alike():
         ("a: {n: 1, n: 1}", "duplicate key 'n' in line 1"),
         # Two keys of the mapping in Python, which are the same text.
         ("- {1: a, '1': b}", "duplicate key '1' in line 1"),
-        ("a: &a {n: 1}\nb: {<<: *a, m: 1}", "a key in line 2 is no plain text"),
-        ("? [1, 2]\n: 3", "a key in line 1 is no plain text"),
+        ("a: &a {n: 1}\nb: {<<: *a, m: 1}", "a key in line 2 is not a plain text"),
+        ("? [1, 2]\n: 3", "a key in line 1 is not a plain text"),
         ("a: &a [1]\nb: *c", "not YAML in line 2: found undefined alias"),
         ("a: 1\n---\nb: 1", "not YAML in line 2: "),
     ],

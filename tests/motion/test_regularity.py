@@ -73,5 +73,5 @@ def test_the_cascade(amplitude, length):
 
 
 def test_a_short_sequence_shows_no_long_period():
-    with pytest.raises(ValueError, match="30 impacts do not show a period of 16"):
+    with pytest.raises(ValueError, match="30 impacts are too few to find a period of 16"):
         period(beside(1.0, 30), 16, 1e-6)

@@ -43,7 +43,7 @@ def test_an_entry_that_would_be_misread(one_line, entry, said):
     [
         (
             NEW,
-            "fig17: no module src/bouncing_ball/render/figures/fig17.py, which is to",
+            "fig17: no module src/bouncing_ball/render/figures/fig17.py, which must",
         ),
         (
             replace(NEW, name="fig16", study="studies.sweeps.f"),
@@ -57,9 +57,9 @@ def test_an_entry_that_would_be_misread(one_line, entry, said):
             replace(NEW, name="fig16", section="figures.fig17"),
             "fig16: no section figures.fig17 in config/config.yaml",
         ),
-        (replace(NEW, name="fig16", arguments=("tolerance",)), "a run has no setting tolerance"),
-        (replace(NEW, name="fig16", reads=("fig19",)), "fig16: there is no dataset fig19 to read"),
-        (replace(NEW, name="fig16", reads=("fig01",)), "fig16: there is no dataset fig01 to read"),
+        (replace(NEW, name="fig16", arguments=("tolerance",)), "fig16: unknown setting tolerance"),
+        (replace(NEW, name="fig16", reads=("fig19",)), "fig16: it reads an unknown dataset fig19"),
+        (replace(NEW, name="fig16", reads=("fig01",)), "fig16: it reads an unknown dataset fig01"),
         (
             replace(NEW, name="fig16", arguments=("release",)),
             "orbit_branches takes (parameters, release, settings), its entry gives (parameters, re",

@@ -147,7 +147,7 @@ def test_what_is_within_its_budget_stays(world):
 @pytest.mark.parametrize("only", ["fig11", "all"])
 def test_what_is_within_its_budget_moves_if_asked_for(world, only):
     within(world)
-    refused(world, "no artifact fig99 to be accepted", only="fig11 fig99")
+    refused(world, "unknown artifact fig99", only="fig11 fig99")
     assert accepted(world, only="moved") == ["nothing to accept"]
     accepted(world, reason="Asked for", only=only)
     assert entries()[-1]["changes"] == "fig11 within budget"
@@ -209,10 +209,10 @@ def test_each_with_its_own_reason(world, capsys):
 @pytest.mark.parametrize(
     ("only", "reason", "said"),
     [
-        ("fig11 | old", "one", "ONLY has 2 groups and REASON 1: a reason for each"),
+        ("fig11 | old", "one", "ONLY has 2 groups and REASON has 1: give one reason for each"),
         ("fig11 | old", "one | ", "say why"),
-        ("fig11 | old", "one | two | three", "ONLY has 2 groups and REASON 3"),
-        ("fig11 | ", "one | two", "a group of ONLY names no artifact"),
+        ("fig11 | old", "one | two | three", "ONLY has 2 groups and REASON has 3"),
+        ("fig11 | ", "one | two", "a group in ONLY is empty"),
         ("fig11 | old fig11", "one | two", "fig11 is named twice"),
         ("fig11 | all", "one | two", "fig11 is named twice"),
     ],

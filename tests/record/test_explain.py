@@ -180,8 +180,8 @@ def test_another_commit_dirt_and_other_versions(results, capsys):
         ("nothing.png", "cannot be read: no such file"),
         ("results", "cannot be read: a folder"),
         ("foreign.png", "carries no provenance: no attribute provenance_commit"),
-        ("notes.md", "is no artifact of this workflow: no notes.nc next to it"),
-        ("paper.md", "is no artifact of this workflow: no figures/*.nc next to it"),
+        ("notes.md", "is not an artifact of this workflow: there is no notes.nc next to it"),
+        ("paper.md", "is not an artifact of this workflow: there is no figures/*.nc next to it"),
         ("cut.nc", "cannot be read: damaged, or not ours"),
     ],
 )
@@ -267,7 +267,7 @@ def test_what_stands_in_a_file_is_of_its_form(results, capsys, name, value):
     made = provenance("results/figures/fig09.nc") | {f"provenance_{name}": value}
     write_dataset(xr.Dataset(attrs=made), path)
     said = failed(capsys, path)
-    assert f"carries no provenance: attribute provenance_{name} is none of ours" in said
+    assert f"carries no provenance: attribute provenance_{name} is malformed" in said
 
 
 def test_parameters_are_printed_harmlessly(results, capsys):
@@ -293,7 +293,7 @@ def test_links_and_pipes_and_large_files_are_not_read(results, capsys):
     os.mkfifo(figures / "pipe.nc")
     with open(figures / "large.svg", "wb") as file:
         file.truncate(2**40)
-    assert "a link, which is not followed" in failed(capsys, figures / "link.png")
+    assert "a link; links are not followed" in failed(capsys, figures / "link.png")
     assert "not a regular file" in failed(capsys, figures / "pipe.nc")
     assert "larger than" in failed(capsys, figures / "large.svg")
 

@@ -135,7 +135,7 @@ def test_a_dataset_at_which_its_library_hangs_or_dies(monkeypatch, end):
     monkeypatch.setattr(reading, "MAX_SECONDS", 1)
     with pytest.raises(UnreadableError) as error, opened_dataset(b"\x89HDF"):
         pass
-    assert str(error.value) == "damaged: its reading does not end, or ends the program"
+    assert str(error.value) == "damaged: reading it does not end, or ends the program"
 
 
 def test_one_text_that_stands_for_many(folder, one_line):

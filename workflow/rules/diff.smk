@@ -1,7 +1,7 @@
 # Whether the results still say what the accepted record says. Without outputs
-# that Snakemake knows of: so it compares each time it is asked to, and the
+# that Snakemake knows of: so it compares at each call, and the
 # reports stay where they are when a difference ends the job with status 1. The
-# record is read where it lies and is no input, as nothing here is made from it.
+# record is read in place and is not an input, as nothing here is made from it.
 
 
 rule diff:

@@ -39,7 +39,7 @@ LIMIT = "limit_"
 
 
 def _ignore(count: int) -> None:
-    """Nobody is told."""
+    """Report no progress."""
 
 
 def shard(plan: Plan, index: int, told: Callable[[int], None] = _ignore) -> xr.Dataset:

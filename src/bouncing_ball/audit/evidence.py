@@ -24,7 +24,7 @@ BOUNDS = ("saddle-node", "period doubling")
 # A logarithmic grid meets its round numbers, and a sample a bifurcation, but for rounding.
 _GRID = 1e-9
 _EMPTY = np.empty(0)
-# Standard errors beyond which a sign is no accident: once in three million by chance.
+# Standard errors beyond which a sign is not an accident: once in three million by chance.
 _SIGNIFICANT = 5
 
 

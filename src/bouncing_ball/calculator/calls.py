@@ -92,7 +92,7 @@ def _hertz(
     Raises
     ------
     ModelError
-        If the release is not that of the law, or the loss is no restitution.
+        If the release is not that of the law, or the loss is not given as a restitution.
     """
     if release is not Release.DISPLACEMENT:
         raise ModelError("a Hertz contact with Tsuji's damping is released at δ = 0: no force")
@@ -232,7 +232,7 @@ def _choose(
     zeta = loss(given, release)
     if zeta is None:
         raise ModelError(
-            "stiffness is missing beside damping; to choose a contact give its restitution instead"
+            "damping needs stiffness; to choose a contact give its restitution instead"
         )
     r = float(Contact(1.0, zeta, release).restitution)
     index = n or _lowest_stable(r, table.amplitude)

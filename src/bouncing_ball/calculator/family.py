@@ -162,7 +162,7 @@ def _values(case: Case, model: ImpactModel, n: int) -> np.ndarray:
 
 
 def family(case: Case, n: int) -> Family:
-    """All that is asked of the n-T orbit.
+    """All answers about the n-T orbit.
 
     Examples
     --------

@@ -93,7 +93,7 @@ def number(name: str, value: Any) -> float:
     Raises
     ------
     ModelError
-        In one line, if it is no finite number with a unit of the right kind.
+        In one line, if it is not a finite number with a unit of the right kind.
 
     Examples
     --------
@@ -157,7 +157,7 @@ def _factor(name: str, given: str, unit: str) -> float:
     except Exception:  # pint raises whatever its tokenizer does
         linear = False
     if not linear:
-        raise ModelError(f"{given} has no unit that is known: write it as {kind.example!r}")
+        raise ModelError(f"{given} has an unknown unit: write it as {kind.example!r}")
     if not one.is_compatible_with(kind.unit or "dimensionless"):
         raise ModelError(_other_kind(name, given, one))
     if kind.unit in ("Hz", "rad/s"):

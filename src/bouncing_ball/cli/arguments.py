@@ -454,13 +454,12 @@ def parse(arguments: list[str] | None = None) -> argparse.Namespace:
     if args.model == "restitution":
         if args.damping_ratio is not None:
             top.error(
-                "--damping-ratio is that of a contact and needs --frequency-ratio; "
-                "--model restitution takes --restitution"
+                "--damping-ratio needs --frequency-ratio; --model restitution takes --restitution"
             )
         for name in ("frequency_ratio", "release"):
             if getattr(args, name) is not None:
                 option = f"--{name.replace('_', '-')}"
-                top.error(f"{option} has no meaning for --model restitution, without a contact")
+                top.error(f"{option} has no meaning for --model restitution, which has no contact")
     elif args.frequency_ratio is None:
         top.error(f"--model {args.model} needs --frequency-ratio")
     return args

@@ -1,4 +1,4 @@
-"""A contact law on the command line: which it is, its model, and what is said of it."""
+"""A contact law on the command line: which it is, its model, and its description."""
 
 import argparse
 import math

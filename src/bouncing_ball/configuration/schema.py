@@ -53,7 +53,7 @@ def configuration_schema(kinds: Mapping[str, Any]) -> dict[str, Any]:
         for key, kind in stage.takes.items():
             if kind not in kinds["$defs"]:
                 raise ConfigurationError(
-                    f"{stage.name}: its parameter {key} is of a kind {kind}, "
+                    f"{stage.name}: its parameter {key} has the kind {kind}, "
                     "which config/schema.yaml does not describe"
                 )
         if stage.takes:

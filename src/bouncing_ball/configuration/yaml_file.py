@@ -48,7 +48,7 @@ class _Loader(_BASE):  # type: ignore[misc, valid-type]
         seen = set()
         for key, _ in node.value:
             if not isinstance(key, yaml.ScalarNode) or key.tag.endswith(":merge"):
-                raise ConfigurationError(f"a key {_line(key)} is no plain text")
+                raise ConfigurationError(f"a key {_line(key)} is not a plain text")
             if key.value in seen:
                 raise ConfigurationError(f"duplicate key {_shown(key.value)} {_line(key)}")
             seen.add(key.value)

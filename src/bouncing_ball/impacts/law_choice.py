@@ -83,8 +83,8 @@ def _search(kind: type[ContactLaw], restitution: float) -> float:
             raise ModelError("out of range")
     except ModelError:
         raise ModelError(
-            f"restitution coefficient r = {restitution:g} is not one that a {kind.name} contact "
-            "was found for: damped so strongly, the ball hardly leaves"
+            f"restitution coefficient r = {restitution:g} is too small: no {kind.name} contact "
+            "with it was found; damped so strongly, the ball hardly leaves"
         ) from None
     for _ in range(_STEPS):
         # Illinois' rule: the end that stays counts half.

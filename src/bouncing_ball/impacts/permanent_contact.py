@@ -126,7 +126,7 @@ def permanent_contact_frequency_ratios(
     def frequency(x):
         positive = x > 0
         found = 1 / np.sqrt(np.where(positive, x, 1.0))
-        # x = 0 is ϖ = ∞; a negative or NaN x is no frequency at all.
+        # x = 0 is ϖ = ∞; a negative or NaN x is not a frequency.
         return np.where(positive, found, np.where(x == 0, np.inf, np.nan))
 
     return frequency(outer), frequency(inner)

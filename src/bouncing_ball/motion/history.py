@@ -47,7 +47,7 @@ def history(sequence: ImpactSequence, time: ArrayLike, ball: int | tuple[int, ..
     t = np.asarray(time, dtype=float)
     starts = sequence.time[(slice(None), *index)]
     if starts.ndim != 1:
-        raise ValueError("name one ball of the sequence")
+        raise ValueError("the sequence has several balls: name one")
     starts = starts[np.isfinite(starts)]
     row = np.clip(np.searchsorted(starts, t, side="right") - 1, 0, None)
 

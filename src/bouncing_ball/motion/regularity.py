@@ -41,7 +41,10 @@ def period(sequence: ImpactSequence, longest: int, closeness: float) -> np.ndarr
     """
     rows = len(sequence.time)
     if rows < 2 * longest:
-        raise ValueError(f"{rows} impacts do not show a period of {longest}: twice as many do")
+        raise ValueError(
+            f"{rows} impacts are too few to find a period of {longest}: "
+            f"at least {2 * longest} are needed"
+        )
     found = np.zeros(sequence.status.shape, dtype=int)
     last = slice(rows - longest, rows)
     for k in range(longest, 0, -1):

@@ -313,7 +313,7 @@ class Orbit(Record, ABC):
         return stability.is_stable(*self.trace_and_determinant())
 
     def is_admissible(self) -> np.ndarray:
-        """Whether nothing happens that the equations do not know of.
+        """Whether the simulated cycle is the orbit's own.
 
         No earlier release and no earlier landing: the simulation's next impact,
         whose events are certified, is the orbit's own. False where there is none.

@@ -277,7 +277,7 @@ def orbits_at(contact: Contact, n: int, amplitude: float) -> ContactOrbit:
     excess = roots(surplus, lam)
     point = branch_point(excess, local, n)
     found = ContactOrbit.from_branch(point, local, n)
-    # A sign change at a pole of the branch is no root.
+    # A sign change at a pole of the branch is not a root.
     real = np.abs(found.amplitude - lam) <= 1e-6 * lam
     return found[real & (found.relative_impact_velocity < 0) & (found.relative_bounce_velocity > 0)]
 

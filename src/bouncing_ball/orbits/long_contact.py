@@ -252,7 +252,7 @@ def stiff_limit(damping_ratio: float) -> float:
     while _highest_after_landing(high, zeta) < 0:
         low, high = high, 1.25 * high
 
-    def touch(excess):
+    def lowest(excess):
         return max(_highest_after_landing(excess, zeta), -1e3)
 
-    return float(brentq(touch, low, high, xtol=1e-12))
+    return float(brentq(lowest, low, high, xtol=1e-12))

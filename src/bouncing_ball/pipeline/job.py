@@ -37,7 +37,7 @@ REFERENCE = (
 HISTORY = "computed from the equations; the attributes provenance_* say by what and from what"
 
 LOGS = "results/logs/stages"
-"""Where the jobs that make datasets say what they wrote."""
+"""Logs of the jobs that make datasets."""
 ARTICLE = ("results/paper.md", "results/tally.txt")
 """What is made from all datasets and tables."""
 

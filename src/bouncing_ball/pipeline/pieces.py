@@ -25,7 +25,7 @@ def _require_function(stage: Stage, name: str) -> ast.FunctionDef | None:
     file = module_file(f"bouncing_ball.{module}")
     if file is None:
         raise ConfigurationError(
-            f"{stage.name}: no module src/bouncing_ball/{module.replace('.', '/')}.py, which is to "
+            f"{stage.name}: no module src/bouncing_ball/{module.replace('.', '/')}.py, which must "
             f"define {function}"
         )
     tree = ast.parse(file.read_text(encoding="utf-8"))
@@ -124,13 +124,13 @@ def _require_keys(stage: Stage, run: Mapping[str, Any]) -> None:
     try:
         stage.settings(run)
     except KeyError as error:
-        raise ConfigurationError(f"{stage.name}: a run has no setting {error.args[0]}") from None
+        raise ConfigurationError(f"{stage.name}: unknown setting {error.args[0]}") from None
 
 
 def _require_datasets(stage: Stage, stages: Mapping[str, Stage]) -> None:
     for name in stage.reads:
         if name not in stages or not stages[name].study:
-            raise ConfigurationError(f"{stage.name}: there is no dataset {name} to read")
+            raise ConfigurationError(f"{stage.name}: it reads an unknown dataset {name}")
 
 
 def _sections(run: Mapping[str, Any]) -> Iterable[str]:

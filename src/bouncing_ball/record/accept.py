@@ -71,18 +71,18 @@ def groups(only: str, reason: str) -> list[tuple[list[str], str]]:
         check_reason(each)
     if len(named) != len(reasons):
         raise RefusedError(
-            f"ONLY has {len(named)} groups and REASON {len(reasons)}: a reason for each, "
-            f"with {_BETWEEN} between them"
+            f"ONLY has {len(named)} groups and REASON has {len(reasons)}: "
+            f"give one reason for each, with {_BETWEEN} between them"
         )
     if len(named) > 1 and not all(named):
-        raise RefusedError("a group of ONLY names no artifact")
+        raise RefusedError("a group in ONLY is empty")
     return list(zip(named, (each.strip() for each in reasons), strict=True))
 
 
 def check_tree(now: Revision) -> None:
     """Raise :class:`RefusedError` unless a commit, and nothing else, is checked out."""
     if now.commit == "unknown":
-        raise RefusedError("no git repository with a commit here, and the record is what git holds")
+        raise RefusedError("no git repository with a commit here: the record must be in git")
     if now.dirty != "no":
         raise RefusedError("the tree is dirty: commit first, and accept what that commit makes")
 
@@ -162,7 +162,7 @@ def _named(
     if list(asked) == [MOVED]:
         return differ
     if unknown := set(asked) - outcomes.keys():
-        raise RefusedError(f"no artifact {', '.join(sorted(unknown))} to be accepted")
+        raise RefusedError(f"unknown artifact {', '.join(sorted(unknown))}")
     if asked:
         return set(asked)
     own = sorted(differ - followers(differ, outcomes, reads))
@@ -371,7 +371,7 @@ def accept(
         If there is no reason, the tree is dirty or unknown, a result is not what
         the commit makes (:func:`~bouncing_ball.record.proof.check_made`), or what is
         asked for does not go together (:func:`chosen`).
-        Nothing is touched then.
+        Nothing is changed then.
     """
     wanted = groups(only, reason)
     check(run, results, recipes, files)
@@ -379,7 +379,7 @@ def accept(
     outcomes = compare(record, results)
     log = (record / LOG).read_text(encoding="utf-8") if (record / LOG).is_file() else ""
     started = begun(record, log, commit, [why for _, why in wanted])
-    # What was removed before the end is no more, on either side.
+    # What was removed before the end is gone on both sides.
     outcomes |= dict.fromkeys(started - outcomes.keys(), Outcome.IDENTICAL)
     parts = chosen(outcomes, made_from(recipes), [asked for asked, _ in wanted])
     names = started.union(*parts)
@@ -388,7 +388,7 @@ def accept(
         for file in files
         if Path(file).stem in names and not _same(results / file, record / file)
     ]
-    # What is no artifact any longer has no name to be asked for by.
+    # What is not an artifact any longer cannot be named.
     removed = [
         path
         for path in stale(record / "figures", [record / file for file in files])

@@ -59,7 +59,8 @@ def _carriers(path: Path) -> list[Path]:
         wanted = f"{path.stem}.nc"
     if not found:
         raise ProvenanceError(
-            f"{printable(path)} is no artifact of this workflow: no {printable(wanted)} next to it"
+            f"{printable(path)} is not an artifact of this workflow: "
+            f"there is no {printable(wanted)} next to it"
         )
     return found
 

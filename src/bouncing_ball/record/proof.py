@@ -87,7 +87,7 @@ def differences(made: Provenance, now: Provenance) -> list[str]:
 
 
 def _objections(recipe: Recipe, run: Run) -> tuple[Provenance | None, list[str]]:
-    """What the files of a job say of where they come from, and what speaks against it."""
+    """What the files of a job say of where they come from, and the objections."""
     sums = read_log(Path(recipe.log)).sums
     changed = [file for file in recipe.outputs if sums.get(file) != file_digest(file)]
     if changed:

@@ -94,7 +94,7 @@ class Provenance:
                 raise ProvenanceError(f"no attribute {name}")
             value = attributes[name]
             if not isinstance(value, str) or not _is_of_its_form(field.name, value):
-                raise ProvenanceError(f"attribute {name} is none of ours")
+                raise ProvenanceError(f"attribute {name} is malformed")
             values[field.name] = value
         return cls(**values)
 

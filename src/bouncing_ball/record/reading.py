@@ -124,7 +124,7 @@ def read_file(folder: Path, file: str, limit: int = MAX_BYTES) -> bytes:
             content = b"" if state.st_size > limit else opened.read(limit + 1)
     except OSError as error:
         if is_link(folder, file):
-            raise UnreadableError("a link, which is not followed") from None
+            raise UnreadableError("a link; links are not followed") from None
         raise UnreadableError(reason(error)) from None
     if state.st_size > limit or len(content) > limit:
         raise UnreadableError(f"larger than {limit} bytes")
@@ -140,7 +140,7 @@ def names_in(folder: Path) -> list[str]:
         If it is a link, cannot be read, or holds more than :data:`MAX_FILES`.
     """
     if folder.is_symlink():
-        raise UnreadableError("a link, which is not followed")
+        raise UnreadableError("a link; links are not followed")
     names = []
     try:
         with os.scandir(folder) as entries:
@@ -170,7 +170,7 @@ def no_file_opened() -> Iterator[None]:
 # One dataset is asked for what it holds and, several times, for where it comes from.
 @lru_cache(maxsize=8)
 def _check_end(content: bytes) -> None:
-    """Read all of a dataset in a process of its own, which may come to no good end.
+    """Read all of a dataset in a process of its own, which may crash or hang.
 
     One flipped bit can keep HDF5 busy for ever, or make it end the program, and
     many texts of a dataset may be one in its file. What is not read there is not
@@ -198,7 +198,7 @@ def _check_end(content: bytes) -> None:
         os._exit(status)
     ended = os.waitpid(child, 0)[1]
     if os.WIFSIGNALED(ended):
-        raise UnreadableError("damaged: its reading does not end, or ends the program")
+        raise UnreadableError("damaged: reading it does not end, or ends the program")
     if ended:
         raise UnreadableError("damaged, or larger than memory")
 

@@ -1,6 +1,6 @@
 """What a job is made from, and its provenance.
 
-A recipe can be had of a job at work and of Snakemake's plan of the same job.
+A recipe comes from a running job, or from Snakemake's plan of the same job.
 So the provenance that a file carries can be compared with the one that it would
 have now: that is the proof that it is up to date, whatever the times of the
 files say.

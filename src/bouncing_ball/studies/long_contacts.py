@@ -28,7 +28,7 @@ MOTIONS = (
 )
 """Where a ball may end; a long contact lasts more than half a period of the table."""
 
-# Of the balls on none of these so many are asked for their period, up to so many impacts.
+# How many of the balls on none of these are examined for a period, and up to how many impacts.
 _ASKED, _LONGEST, _CLOSE = 100, 16, 1e-6
 
 

@@ -133,8 +133,8 @@ def _start(
     found = model.orbit(n, np.array([*ways, (node + top) / 2, top]))
     if not np.any(found.exists):
         raise NoOrbitError(
-            f"no {n}-T orbit of {model.label} up to Λ = {top:g} that is followed from the "
-            "restitution orbit, or that the closed form knows"
+            f"neither the continuation from the restitution orbit nor the closed form finds a "
+            f"{n}-T orbit of {model.label} up to Λ = {top:g}"
         )
     return model.system(n).point(found[np.argmax(found.exists)])
 

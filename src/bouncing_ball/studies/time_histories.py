@@ -37,8 +37,8 @@ def contact_history(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         If the orbit does not exist or is inadmissible.
     """
     n, lam = parameters["n"], parameters["amplitude"]
-    touch = contact(parameters["frequency_ratio"], parameters["restitution"], release)
-    orbit = ContactModel(touch).require_admissible(n, lam)
+    model = ContactModel(contact(parameters["frequency_ratio"], parameters["restitution"], release))
+    orbit = model.require_admissible(n, lam)
     time, ball, velocity, touching = _cycle(orbit, parameters["samples"])
     return describe(
         xr.Dataset(

@@ -91,7 +91,7 @@ def test_only_a_claim_that_stands_alone_can_be_restated(ledger, number, other, o
         return
     with pytest.raises(ModelError) as error:
         parsed(ledger, number, again, third)
-    one_line(error, f"claim 'third' restates {other!r}, which is no claim that stands alone")
+    one_line(error, f"claim 'third' restates {other!r}, which is not an independent claim")
 
 
 @pytest.mark.parametrize(

@@ -82,7 +82,7 @@ def test_a_link_to_a_private_file(pair, file):
     secret.write_bytes((pair.record / "figures" / "fig01.png").read_bytes())
     (pair.new / file).unlink()
     (pair.new / file).symlink_to(secret)
-    part = unreadable(pair, file, "new: a link, which is not followed")
+    part = unreadable(pair, file, "new: a link; links are not followed")
     assert part.images == (None, None)
 
 

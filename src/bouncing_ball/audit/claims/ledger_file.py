@@ -176,8 +176,7 @@ def _check_restatements(claims: Sequence[Claim]) -> None:
     for claim in claims:
         if claim.restates and claim.restates not in alone:
             raise ModelError(
-                f"claim {claim.id!r} restates {claim.restates!r}, which is no claim that stands "
-                "alone"
+                f"claim {claim.id!r} restates {claim.restates!r}, which is not an independent claim"
             )
 
 

@@ -161,7 +161,7 @@ def forensics(parameters: Mapping[str, Any], printed: Mapping[str, Any]) -> xr.D
     computed = np.where(truncated, np.floor(best / unit) * unit, best)
     difference = (computed - entries) / unit
     # No orbit has a smaller Λ than the fold: what is printed below it, by more
-    # than its digits can hide, is no point of the branch, whatever is called stable.
+    # than its digits can hide, is not a point of the branch, whatever is called stable.
     hidden = np.where(truncated[..., 0], 1.0, 0.5)
     unreachable = np.sum((exact - entries)[..., 0] / unit > hidden, axis=(1, 2))
     groups = _groups(ratios)

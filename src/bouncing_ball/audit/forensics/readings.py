@@ -168,7 +168,7 @@ def _other_criteria() -> Iterator[Reading]:
 
 
 def _other_numbers(parameters: Mapping[str, Any], rows: np.ndarray) -> Iterator[Reading]:
-    """Other values of what cannot be read or is not said: ζ, the stiffest ϖ, the step."""
+    """Other values of what cannot be read or is not given: ζ, the stiffest ϖ, the step."""
     for other in parameters["other_damping_ratios"]:
         yield Reading(
             f"damping {other!r}",

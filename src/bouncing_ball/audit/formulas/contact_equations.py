@@ -91,13 +91,13 @@ def orbit_checks(rng, samples) -> dict[str, Check]:
     """Checks of Eqs. 21 to 27 on orbits that repeat in the simulation."""
     omega, zeta = np.exp(rng.uniform(1, 5, samples)), rng.uniform(0.01, 0.3, samples)
     n = rng.integers(1, 4, samples)
-    touch = Contact(omega, zeta)
-    fold = branch_point(saddle_node(touch, n), touch, n).amplitude
+    contact = Contact(omega, zeta)
+    fold = branch_point(saddle_node(contact, n), contact, n).amplitude
     lam = fold + rng.uniform(0.05, 0.5, samples)
-    orbit = orbit_at(touch, n, lam)
+    orbit = orbit_at(contact, n, lam)
     phase, impact, end = orbit.phase, orbit.impact_velocity, orbit.contact_duration
     period = 2 * np.pi * n
-    again = contact_cycle(touch, lam, phase, orbit.relative_impact_velocity)
+    again = contact_cycle(contact, lam, phase, orbit.relative_impact_velocity)
     repeated = (
         reduce_angle(again.phase - phase),
         again.relative_velocity - orbit.relative_impact_velocity,
@@ -142,12 +142,12 @@ def points_with_one_impact(rng, points: int) -> int:
     """
     omega, zeta = np.exp(rng.uniform(0, 5, points)), rng.uniform(0.01, 0.3, points)
     n = rng.integers(1, 6, points)
-    touch = Contact(omega, zeta)
+    contact = Contact(omega, zeta)
     # From half a free contact to two, or to the whole cycle.
-    longest = np.minimum(2.0, 2 * np.pi * n * touch.damped_frequency / np.pi)
-    duration = np.pi / touch.damped_frequency * rng.uniform(0.5, longest)
-    excess = duration * touch.damped_frequency - touch.free_angle
-    orbit = ContactOrbit.from_branch(branch_point(excess, touch, n), touch, n)
+    longest = np.minimum(2.0, 2 * np.pi * n * contact.damped_frequency / np.pi)
+    duration = np.pi / contact.damped_frequency * rng.uniform(0.5, longest)
+    excess = duration * contact.damped_frequency - contact.free_angle
+    orbit = ContactOrbit.from_branch(branch_point(excess, contact, n), contact, n)
     return int(np.sum(orbit.is_admissible()))
 
 

@@ -65,17 +65,17 @@ def _check_attribute(tag: str, name: str, value: str) -> None:
     """Refuse what may run something or fetch something."""
     local = name.rpartition(" ")[2].lower()
     if local.startswith("on"):
-        raise UnreadableError(f"an event handler in it: {printable(local, 40)}")
+        raise UnreadableError(f"it has an event handler: {printable(local, 40)}")
     held = "#" if tag != "image" else _PICTURE
     if local in ("href", "src", "base") and not value.startswith(held):
-        raise UnreadableError(f"a reference to elsewhere in it: {printable(value, 60)}")
+        raise UnreadableError(f"it refers to another file: {printable(value, 60)}")
     _check_style(value)
 
 
 def _check_style(text: str) -> None:
     fetched = re.sub(r"url\(#", "", text)
     if re.search(r"url\s*\(|@|\\|expression|javascript:", fetched, re.IGNORECASE):
-        raise UnreadableError(f"a style in it that may fetch: {printable(text, 60)}")
+        raise UnreadableError(f"it has a style that may fetch: {printable(text, 60)}")
 
 
 def _decoded(value: str) -> bytes:
@@ -83,7 +83,7 @@ def _decoded(value: str) -> bytes:
     try:
         return base64.b64decode("".join(value.removeprefix(_PICTURE).split()), validate=True)
     except (ValueError, binascii.Error):
-        raise UnreadableError("a picture in it that is not base64") from None
+        raise UnreadableError("it has a picture that is not base64") from None
 
 
 class _Reader:
@@ -136,7 +136,7 @@ class _Reader:
             self.elements.append(Element(f"comment {text.strip()}"))
 
     def refuse(self, *_: object) -> None:
-        raise UnreadableError("a definition or an instruction in it, beside the elements")
+        raise UnreadableError("it has a definition or an instruction")
 
     def doctype(self, _: str, __: str | None, ___: str | None, internal: bool) -> None:
         if internal:
@@ -165,11 +165,11 @@ class _Reader:
         return Element(" ".join(words), tuple(map(float, numbers)), path, picture)
 
     def _count(self, content: bytes) -> None:
-        """Refuse what is no picture, and pictures that take long together: each may be small."""
+        """Refuse what is not a picture, and many small pictures that take long together."""
         picture = read_picture(content)
         self.pixels += picture.width * picture.height
         if self.pixels > MAX_PIXELS:
-            raise UnreadableError("too many pixels in its pictures")
+            raise UnreadableError("its pictures have too many pixels")
 
     def _renamed(self, found: re.Match[str]) -> str:
         return self.names.setdefault(found[0], f"({len(self.names) + 1})")
@@ -181,7 +181,7 @@ def read_drawing(content: bytes) -> Drawing:
     Raises
     ------
     UnreadableError
-        If it is no whole SVG file, or holds what no picture of ours does: a
+        If it is not a whole SVG file, or holds what no figure of this workflow does: a
         script, an event handler, a reference to elsewhere.
 
     Examples
@@ -190,7 +190,7 @@ def read_drawing(content: bytes) -> Drawing:
     >>> read_drawing(svg)
     Traceback (most recent call last):
     ...
-    bouncing_ball.record.reading.UnreadableError: an event handler in it: onload
+    bouncing_ball.record.reading.UnreadableError: it has an event handler: onload
     >>> read_drawing(svg.replace(b'onload="f()"', b"")).elements[1]
     Element(words="use x='#'", numbers=(1.5,), path='', picture=b'')
     """

@@ -59,7 +59,7 @@ def pointwise(record: ArrayLike, new: ArrayLike, scale: ArrayLike) -> np.ndarray
     record, new = np.asarray(record, dtype=float), np.asarray(new, dtype=float)
     with np.errstate(invalid="ignore", divide="ignore"):
         distance = np.abs(new - record) / scale
-    # 0/0, or a scale that is not a number, is no measure: alike or not.
+    # 0/0, or a scale that is not a number, is not a measure: alike or not.
     distance = np.where(np.isnan(distance), np.where(record == new, 0.0, np.inf), distance)
     return _measured(distance, (record, new))
 
@@ -76,7 +76,7 @@ def _to_polyline(x, y, line_x, line_y) -> np.ndarray:
         square = dx * dx + dy * dy
         along = ((x - ax) * dx + (y - ay) * dy) / np.where(square > 0, square, 1.0)
         along = np.clip(along, 0.0, 1.0)
-        # fmin, as a segment with an end that is not finite is no segment.
+        # fmin, as a segment with an end that is not finite is not a segment.
         best = np.fmin(best, np.hypot(x - ax - along * dx, y - ay - along * dy))
     return best
 

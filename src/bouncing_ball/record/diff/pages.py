@@ -35,16 +35,16 @@ def read_page(text: str) -> Page:
     """
     before, *blocks = text.split(_OPENED)
     if len(blocks) != 1:
-        raise UnreadableError(f"{len(blocks)} blocks of reference orbits in place of one")
+        raise UnreadableError(f"{len(blocks)} blocks of reference orbits instead of one")
     block, closed, after = blocks[0].partition(_CLOSED)
     # A browser ends the block at any "</script", also within a text.
     if not closed or "<" in block:
-        raise UnreadableError("its reference orbits do not end where their block does")
+        raise UnreadableError("its block of reference orbits holds something else")
     try:
         held = json.loads(block)
         return Page(before + _OPENED + _CLOSED + after, _orbits(**held))
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
-        raise UnreadableError("its reference orbits are no such data") from None
+        raise UnreadableError("its reference orbits are not in the form of this workflow") from None
 
 
 def _orbits(commit: str, names: list[str], orbits: list[dict[str, list]]) -> xr.Dataset:

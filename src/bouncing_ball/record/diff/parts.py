@@ -239,7 +239,7 @@ def judge(
     contents: list[bytes | None] = [None, None]
     sides: list[Any] = [None, None]
     reading = ""
-    # What a library has to say of a damaged file is said below, and in one line.
+    # Warnings of the libraries about a damaged file become one line below.
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         try:

@@ -43,7 +43,7 @@ def read_picture(content: bytes) -> Image.Image:
     Raises
     ------
     UnreadableError
-        If it is no whole PNG file, or has more than ``MAX_PIXELS``.
+        If it is not a whole PNG file, or has more than ``MAX_PIXELS``.
     """
     try:
         picture = Image.open(io.BytesIO(content), formats=["PNG"])

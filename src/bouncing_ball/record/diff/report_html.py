@@ -49,7 +49,7 @@ def _small(value: float | None) -> str:
 
 
 def _plain(value: Any) -> Any:
-    """The value of an expression of the page; text that is no markup yet, on one line."""
+    """The value of an expression of the page; text that is not markup yet, on one line."""
     return (
         value
         if hasattr(value, "__html__") or not isinstance(value, str)
@@ -89,7 +89,7 @@ def marked(record: str | None, new: str | None) -> tuple[_Words, _Words]:
 
 
 def _same_digits(old: str, new: str) -> str:
-    """With what two numbers begin alike; nothing of what are no numbers."""
+    """The common beginning of two numbers; empty for other texts."""
     if _NUMBER.fullmatch(old) and _NUMBER.fullmatch(new):
         pairs = enumerate(zip(old, new, strict=False))
         return old[: next((k for k, (a, b) in pairs if a != b), len(min(old, new, key=len)))]

@@ -50,7 +50,7 @@ def share_text(share: float | None) -> str:
 
 
 def remarks(artifact: Artifact) -> list[str]:
-    """What there is to say of an artifact: one sentence for each part that is not the same.
+    """One sentence for each part that is not the same.
 
     What decides comes first.
     """
@@ -69,7 +69,7 @@ def remarks(artifact: Artifact) -> list[str]:
 def changed_lines(artifact: Artifact) -> list[str]:
     """The lines of an artifact's texts that are not the same, from where they begin to differ.
 
-    Of elements of a vector graphic there is no more than their number.
+    Of a vector graphic only the number of changed elements is given.
     """
     shown = []
     for part in artifact.parts:

@@ -73,7 +73,7 @@ def _limit_row(data: xr.Dataset, release: str, quantity: str) -> list[str]:
 
 
 def _ratio(value: float) -> str:
-    """A frequency ratio, rounded up: what is said to be enough is."""
+    """A frequency ratio, rounded up, so that it is enough."""
     if not np.isfinite(value):
         return "beyond the atlas"
     unit = 10.0 ** (np.floor(np.log10(value)) - 1)

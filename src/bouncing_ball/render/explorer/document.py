@@ -18,7 +18,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 BOUND = 1e-11
 """Difference from Python above which the badge is red: a hundred times the largest seen."""
 STATE = ("release", "restitution", "frequency_ratio", "n", "amplitude")
-"""What an orbit of the references is asked with, in the order of its ``state``."""
+"""Parameters of a reference orbit, in the order of its ``state``."""
 SOURCES = ("model.js", "page.js", "page.css")
 
 

@@ -185,14 +185,17 @@ function drawBranch(found, {n, amplitude}) {
       plot.line(turned[false], `curve unstable ${kind}`);
     }
   const grid = scan(found.contact, n), stable = [], unstable = [];
-  for (let k = 0; k + 1 < grid.length; k++)
-    for (let j = 0; j < FINE; j++) {
-      const at = branchPoint(grid[k] + (grid[k + 1] - grid[k]) * j / FINE, found.contact, n);
-      const point = at.u < 0 ? [at.amplitude, at.phase / Math.PI] : [NaN, NaN];
-      const holds = isStable(at.trace, at.determinant);
-      stable.push(holds ? point : [NaN, NaN]);
-      unstable.push(holds ? [NaN, NaN] : point);
-    }
+  const fine = grid.slice(1).flatMap((right, k) =>
+    Array.from({length: FINE}, (_, j) => grid[k] + (right - grid[k]) * j / FINE));
+  for (const eps of fine) {
+    const at = branchPoint(eps, found.contact, n);
+    // Beyond, the ball would cross the table in contact: solutions, but of no ball.
+    if (eps > 0 && !(at.u < 0)) break;
+    const point = at.u < 0 ? [at.amplitude, at.phase / Math.PI] : [NaN, NaN];
+    const holds = isStable(at.trace, at.determinant);
+    stable.push(holds ? point : [NaN, NaN]);
+    unstable.push(holds ? [NaN, NaN] : point);
+  }
   plot.line(stable, "curve spring-damper");
   plot.line(unstable, "curve unstable spring-damper");
   for (const [name, shape] of [["fold", "circle"], ["flip", "square"]]) {

@@ -22,8 +22,4 @@ def draw_amplitudes(axes: Axes, data: xr.Dataset, variable: str) -> None:
             linestyle=_LOOKS[k % len(_LOOKS)],
             label=rf"$\Lambda={number(float(curve.amplitude))}$",
         )
-    logarithmic(axes)
-    axes.set(
-        xlabel=r"frequency ratio $\varpi$",
-        xlim=(float(data.frequency_ratio[0]), float(data.frequency_ratio[-1])),
-    )
+    logarithmic(axes, data.frequency_ratio)

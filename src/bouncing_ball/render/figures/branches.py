@@ -14,6 +14,7 @@ from bouncing_ball.render.figures.style import (
     SADDLE_NODE,
     STABLE,
     UNSTABLE,
+    Look,
 )
 
 
@@ -42,19 +43,10 @@ def draw_curve(axes: Axes, x, y, admissible, **look) -> None:
         axes.plot(x, np.where(shown, np.nan, y), color=look["color"], **INADMISSIBLE)
 
 
-def draw_saddle_nodes(axes: Axes, x, y, colour: str) -> None:
-    """Saddle-node markers."""
-    axes.plot(x, y, color=colour, zorder=4, **SADDLE_NODE)
-
-
-def draw_period_doublings(axes: Axes, x, y, colour: str) -> None:
-    """Period-doubling markers."""
-    axes.plot(x, y, color=colour, zorder=4, **PERIOD_DOUBLING)
-
-
-def draw_grazings(axes: Axes, x, y, colour: str) -> None:
-    """Markers of the limits of admissibility."""
-    axes.plot(x, y, color=colour, zorder=4, **GRAZING)
+def draw_marks(axes: Axes, amplitude, phase, mark: Look, colour: str) -> None:
+    """Marks at bifurcations or grazings, over the branches; the phase over π."""
+    x, y = np.asarray(amplitude), np.asarray(phase) / np.pi
+    axes.plot(x, y, color=colour, zorder=4, **mark)
 
 
 def _apart(values: np.ndarray, gap: float) -> np.ndarray:

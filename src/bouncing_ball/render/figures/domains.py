@@ -7,25 +7,32 @@ from matplotlib.lines import Line2D
 
 from bouncing_ball.render.figures.branches import (
     draw_branch,
-    draw_grazings,
-    draw_period_doublings,
-    draw_saddle_nodes,
+    draw_marks,
     label_ends,
     legend_handles,
 )
-from bouncing_ball.render.figures.style import COLOURS, END, WIDE, canvas, number
+from bouncing_ball.render.figures.style import (
+    COLOURS,
+    END,
+    GRAZING,
+    PERIOD_DOUBLING,
+    SADDLE_NODE,
+    WIDE,
+    canvas,
+    number,
+    parameters,
+)
 
 
 def draw_special(axes, curve: xr.Dataset, phase: xr.DataArray, colour: str) -> None:
     """Markers at the special points of one branch, at the given phases."""
-    kinds = curve.special_kind.values
     for kind, mark in (
-        ("saddle-node", draw_saddle_nodes),
-        ("period doubling", draw_period_doublings),
-        ("grazing", draw_grazings),
+        ("saddle-node", SADDLE_NODE),
+        ("period doubling", PERIOD_DOUBLING),
+        ("grazing", GRAZING),
     ):
-        at = kinds == kind
-        mark(axes, curve.special_amplitude.values[at], phase.values[at] / np.pi, colour)
+        at = curve.special_kind.values == kind
+        draw_marks(axes, curve.special_amplitude[at], phase[at], mark, colour)
 
 
 def draw_ends(axes, curve: xr.Dataset, phase: xr.DataArray, colour: str) -> bool:
@@ -60,10 +67,8 @@ def draw_domains(data: xr.Dataset) -> Figure:
     figure, axes = canvas(WIDE, 4.2)
     names, inside, admissible = [], [], []
     for k, ratio in enumerate(data.frequency_ratio.values):
-        curve, colour = (
-            up_to_second_saddle_node(data.sel(frequency_ratio=ratio)),
-            COLOURS[k % len(COLOURS)],
-        )
+        curve = up_to_second_saddle_node(data.sel(frequency_ratio=ratio))
+        colour = COLOURS[k % len(COLOURS)]
         special_release = curve.special_phase + curve.special_contact_duration
         for symbol, phase, special in (
             (r"\varphi", curve.phase, curve.special_phase),
@@ -92,5 +97,5 @@ def draw_domains(data: xr.Dataset) -> Figure:
         columnspacing=1.2,
         handletextpad=0.5,
     )
-    axes.set_title(rf"$n={data.attrs['n']}$, $r={number(data.attrs['restitution'])}$", fontsize=9)
+    axes.set_title(parameters(data, "n", "restitution"), fontsize=9)
     return figure

@@ -10,7 +10,7 @@ from bouncing_ball.render.figures.style import (
     RESTITUTION,
     canvas,
     logarithmic,
-    number,
+    parameters,
 )
 
 
@@ -24,17 +24,9 @@ def draw(data: xr.Dataset) -> Figure:
     draw_curve(axes, ratio, data.max_height, data.admissible, **look)
     axes.axhline(limit, color=RESTITUTION, linewidth=1.0, linestyle="--", label="restitution")
     axes.plot(ratio, data.corrected_max_height, color=COLOURS[3], linewidth=1.0, label="corrected")
-    logarithmic(axes)
-    axes.set(
-        xlabel=r"frequency ratio $\varpi$",
-        ylabel=r"greatest height $\max\,z$",
-        xlim=(float(ratio[0]), float(ratio[-1])),
-    )
+    logarithmic(axes, ratio)
+    axes.set_ylabel(r"greatest height $\max\,z$")
     axes.set_ylim(top=1.09 * limit)
-    axes.set_title(
-        rf"$n={data.attrs['n']}$, $r={number(data.attrs['restitution'])}$, "
-        rf"$\Lambda={number(data.attrs['amplitude'])}$",
-        fontsize=9,
-    )
+    axes.set_title(parameters(data, "n", "restitution", "amplitude"), fontsize=9)
     axes.legend(loc="lower right")
     return figure

@@ -14,7 +14,7 @@ from bouncing_ball.render.figures.style import (
     UNSTABLE,
     Look,
     canvas,
-    number,
+    parameters,
 )
 
 _COLOURS = {"spring-damper": COLOURS[1], "restitution": RESTITUTION, "corrected": COLOURS[3]}
@@ -47,11 +47,7 @@ def draw(data: xr.Dataset) -> Figure:
         ylabel="phase of impact over $\\pi$",
         xlim=(0.9 * float(data.amplitude.min()), data.attrs["amplitude_max"]),
     )
-    axes.set_title(
-        rf"$n={data.attrs['n']}$, $r={number(data.attrs['restitution'])}$, "
-        rf"$\varpi={number(data.attrs['frequency_ratio'])}$",
-        fontsize=9,
-    )
+    axes.set_title(parameters(data, "n", "restitution", "frequency_ratio"), fontsize=9)
     lines = [
         Line2D([], [], color=_COLOURS["spring-damper"], label="spring-damper", **_BROAD),
         Line2D([], [], color=_COLOURS["restitution"], label="restitution"),

@@ -7,7 +7,14 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from bouncing_ball.render.figures.laws import LAWS
-from bouncing_ball.render.figures.style import RESTITUTION, WIDE, canvas, logarithmic, number
+from bouncing_ball.render.figures.style import (
+    RESTITUTION,
+    WIDE,
+    canvas,
+    logarithmic,
+    number,
+    parameters,
+)
 
 # The linear contact, whose threshold is smooth, comes first.
 _SHAPES = ("", "o", "s", "^")
@@ -41,7 +48,7 @@ def draw(data: xr.Dataset) -> Figure:
     held.axhline(1.0, **rigid)
     branches.set(xlabel=r"$\Lambda$", ylabel=r"phase $\varphi/\pi$")
     listed = ", ".join(f"{x:g}" for x in data.shown_ratio.values)
-    title = rf"$r={number(data.attrs['restitution'])}$, $\pi/D$ = {listed}"
+    title = rf"{parameters(data, 'restitution')}, $\pi/D$ = {listed}"
     branches.set_title(title, fontsize=8)
     heights.set(xlabel=r"$\pi/D$", ylabel=r"greatest height $\max\,z$")
     held.set(xlabel=r"$\pi/D$", ylabel=r"threshold of permanent contact")

@@ -3,7 +3,15 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
-from bouncing_ball.render.figures.style import COLOURS, CONTACT, GUIDE, TABLE, canvas, number
+from bouncing_ball.render.figures.style import (
+    COLOURS,
+    CONTACT,
+    GUIDE,
+    TABLE,
+    canvas,
+    note,
+    parameters,
+)
 
 
 def draw(data: xr.Dataset) -> Figure:
@@ -29,7 +37,7 @@ def draw(data: xr.Dataset) -> Figure:
     below.axhline(0.0, color="black", linewidth=0.5)
     for axes in (top, below):
         axes.axvline(meeting, **GUIDE)
-    below.annotate("$t_c$", (meeting, 0), xytext=(3, 3), textcoords="offset points", fontsize=9)
+    note(below, "$t_c$", (meeting, 0), (3, 3), fontsize=9)
     low = float(data.meeting_height)
     high = float(data.table.values[touching].max())
     margin = high - low
@@ -39,11 +47,6 @@ def draw(data: xr.Dataset) -> Figure:
         ylabel="contact force",
         xlim=(float(time[0]), float(time[-1])),
     )
-    top.set_title(
-        rf"$n={data.attrs['n']}$, $r={number(data.attrs['restitution'])}$, "
-        rf"$\Lambda={number(data.attrs['amplitude'])}$, "
-        rf"$\varpi={number(data.attrs['frequency_ratio'])}$",
-        fontsize=9,
-    )
+    top.set_title(parameters(data, "n", "restitution", "amplitude", "frequency_ratio"), fontsize=9)
     figure.legend(*top.get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return figure

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from bouncing_ball.render.figures.laws import LAWS
 from bouncing_ball.render.figures.quantities import NAMES
-from bouncing_ball.render.figures.style import GUIDE, WIDE, canvas, number
+from bouncing_ball.render.figures.style import GUIDE, WIDE, canvas, parameters
 
 
 def draw(data: xr.Dataset) -> Figure:
@@ -35,8 +35,7 @@ def draw(data: xr.Dataset) -> Figure:
     handles, labels = np.ravel(panels)[0].get_legend_handles_labels()
     note = (
         "upper five: restitution model\nlower five: corrected model\ndotted: slopes 1 and 2\n"
-        rf"$n={data.attrs['n']}$, $r={number(data.attrs['restitution'])}$, "
-        rf"$\Lambda={number(data.attrs['amplitude'])}$"
+        + parameters(data, "n", "restitution", "amplitude")
     )
     spare.legend(handles, labels, loc="upper left", title=note, title_fontsize=8, fontsize=8)
     return figure

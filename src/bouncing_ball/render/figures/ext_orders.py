@@ -12,7 +12,7 @@ from bouncing_ball.render.figures.style import (
     WIDE,
     canvas,
     logarithmic,
-    number,
+    parameters,
 )
 
 _CORRECTED = COLOURS[3]
@@ -49,8 +49,7 @@ def draw(data: xr.Dataset) -> Figure:
     for axes in panels[:, 0]:
         axes.set_ylabel("relative error")
     figure.suptitle(
-        rf"$n={data.attrs['n']}$, $r={number(data.attrs['restitution'])}$, "
-        rf"$\Lambda={number(data.attrs['amplitude'])}$; orders of "
+        f"{parameters(data, 'n', 'restitution', 'amplitude')}; orders of "
         f"{data.sizes['sample']} random orbits, median",
         fontsize=9,
     )

@@ -14,6 +14,7 @@ from bouncing_ball.render.figures.style import (
     canvas,
     logarithmic,
     number,
+    parameters,
 )
 
 _LOOKS = {"saddle-node": "-", "period doubling": (0, (4, 1.5))}
@@ -30,13 +31,9 @@ def _draw_shifts(axes: Axes, data: xr.Dataset) -> None:
             label = f"$n={n}$, {bound}"
             axes.plot(data.frequency_ratio, shift, color=colour, linestyle=look, label=label)
     axes.axhline(0.0, **GUIDE)
-    logarithmic(axes)
-    axes.set(
-        xlabel=r"frequency ratio $\varpi$",
-        ylabel=r"shift of $\Lambda$, force minus displacement",
-        xlim=(float(data.frequency_ratio[0]), float(data.frequency_ratio[-1])),
-    )
-    axes.set_title(rf"$r={number(data.attrs['restitution'])}$", fontsize=9)
+    logarithmic(axes, data.frequency_ratio)
+    axes.set_ylabel(r"shift of $\Lambda$, force minus displacement")
+    axes.set_title(parameters(data, "restitution"), fontsize=9)
     axes.legend(
         fontsize=6,
         loc="lower right",

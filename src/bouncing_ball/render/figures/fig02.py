@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from bouncing_ball.render.figures.style import RESTITUTION, TABLE, canvas, number
+from bouncing_ball.render.figures.style import RESTITUTION, TABLE, canvas, parameters
 
 
 def draw(data: xr.Dataset) -> Figure:
@@ -14,11 +14,7 @@ def draw(data: xr.Dataset) -> Figure:
     axes.plot(periods, data.ball, color=RESTITUTION, label="ball $z$")
     axes.plot(periods, data.table, color=TABLE, label="table $w$")
     axes.set(xlabel=r"time $\tau/2\pi$", ylabel="$z$, $w$", xlim=(0, float(periods[-1])))
-    axes.set_title(
-        rf"$n={data.attrs['n']}$, $r={number(data.attrs['restitution'])}$, "
-        rf"$\Lambda={number(data.attrs['amplitude'])}$",
-        fontsize=9,
-    )
+    axes.set_title(parameters(data, "n", "restitution", "amplitude"), fontsize=9)
     axes.set_ylim(top=1.25 * float(data.ball.max()))
     axes.legend(loc="upper center", ncols=2)
     return figure

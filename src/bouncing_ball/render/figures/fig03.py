@@ -6,13 +6,18 @@ from matplotlib.figure import Figure
 
 from bouncing_ball.render.figures.branches import (
     draw_branch,
-    draw_grazings,
-    draw_period_doublings,
-    draw_saddle_nodes,
+    draw_marks,
     label_ends,
     legend_handles,
 )
-from bouncing_ball.render.figures.style import RESTITUTION, canvas, number
+from bouncing_ball.render.figures.style import (
+    GRAZING,
+    PERIOD_DOUBLING,
+    RESTITUTION,
+    SADDLE_NODE,
+    canvas,
+    parameters,
+)
 
 
 def draw(data: xr.Dataset) -> Figure:
@@ -23,17 +28,14 @@ def draw(data: xr.Dataset) -> Figure:
         family = data.sel(n=n)
         phase = family.phase / np.pi
         draw_branch(axes, family.amplitude, phase, family.stable, family.admissible, RESTITUTION)
-        grazing = float(family.grazing_amplitude), float(family.grazing_phase) / np.pi
-        draw_grazings(axes, *grazing, RESTITUTION)
-        node = float(family.saddle_node_amplitude), float(family.saddle_node_phase) / np.pi
-        draw_saddle_nodes(axes, *node, RESTITUTION)
         exact = family.sel(impact_map="exact")
-        draw_period_doublings(
-            axes,
-            float(exact.period_doubling_amplitude),
-            float(exact.period_doubling_phase) / np.pi,
-            RESTITUTION,
-        )
+        for name, mark in (
+            ("grazing", GRAZING),
+            ("saddle_node", SADDLE_NODE),
+            ("period_doubling", PERIOD_DOUBLING),
+        ):
+            place = exact[f"{name}_amplitude"], exact[f"{name}_phase"]
+            draw_marks(axes, *place, mark, RESTITUTION)
         last = int(np.nanargmax(phase.values))
         ends.append((float(family.amplitude[last]), float(phase[last]), f"$n={n}$"))
     axes.set(
@@ -43,7 +45,7 @@ def draw(data: xr.Dataset) -> Figure:
         ylim=(-0.52, 0.52),
     )
     label_ends(axes, ends, 0.055)
-    axes.set_title(rf"$r={number(data.attrs['restitution'])}$", fontsize=9)
+    axes.set_title(parameters(data, "restitution"), fontsize=9)
     figure.legend(
         handles=legend_handles(inadmissible=not bool(data.admissible.all())),
         loc="outside lower center",

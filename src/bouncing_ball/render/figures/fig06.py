@@ -4,7 +4,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from bouncing_ball.render.figures.amplitudes import draw_amplitudes
-from bouncing_ball.render.figures.style import GUIDE, canvas, number
+from bouncing_ball.render.figures.style import GUIDE, canvas, number, parameters
 
 
 def draw(data: xr.Dataset) -> Figure:
@@ -15,5 +15,5 @@ def draw(data: xr.Dataset) -> Figure:
     draw_amplitudes(axes, data, "apparent_restitution")
     axes.set_ylabel("apparent restitution $r_a$")
     shown = ", ".join(sorted({number(r) for r in data.restitution.values}))
-    axes.legend(title=rf"$n={data.attrs['n']}$, $r={shown}$", title_fontsize=8)
+    axes.legend(title=f"{parameters(data, 'n')}, $r={shown}$", title_fontsize=8)
     return figure

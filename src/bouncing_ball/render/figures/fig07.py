@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bouncing_ball.render.figures.style import CONTACT, GUIDE, TABLE, canvas, number
+from bouncing_ball.render.figures.style import CONTACT, GUIDE, TABLE, canvas, note, parameters
 
 _ARROW = {
     "arrowstyle": "-|>",
@@ -42,11 +42,6 @@ def _instants(data: xr.Dataset) -> list[Instant]:
     ]
 
 
-def _label(axes: Axes, text: str, point, offset, ha: str, va: str = "baseline", **look) -> None:
-    """A text at an offset in points from a point of the data."""
-    axes.annotate(text, point, xytext=offset, textcoords="offset points", ha=ha, va=va, **look)
-
-
 def _draw_velocity(axes: Axes, instant: Instant, reach: float) -> None:
     """An arrow along the ball's velocity: a tangent of fixed length in τ."""
     here = (instant.time, instant.height)
@@ -57,9 +52,9 @@ def _draw_velocity(axes: Axes, instant: Instant, reach: float) -> None:
     head = here if arrives else (instant.time + reach, instant.height + rise)
     axes.annotate("", xy=head, xytext=tail, arrowprops=_ARROW)
     if arrives:
-        _label(axes, instant.velocity_name, tail, (4, 1), "left", "center")
+        note(axes, instant.velocity_name, tail, (4, 1), ha="left", va="center")
     else:
-        _label(axes, instant.velocity_name, head, (-4, 1), "right", "center")
+        note(axes, instant.velocity_name, head, (-4, 1), ha="right", va="center")
 
 
 def _draw_instant(axes: Axes, instant: Instant, low: float, reach: float) -> None:
@@ -67,7 +62,7 @@ def _draw_instant(axes: Axes, instant: Instant, low: float, reach: float) -> Non
     axes.plot([instant.time, instant.time], [low, instant.height], **GUIDE)
     axes.plot(instant.time, instant.height, "o", color="black", markersize=3.5, zorder=5)
     _draw_velocity(axes, instant, reach)
-    _label(axes, instant.name, (instant.time, low), (0, -2), "center", "top")
+    note(axes, instant.name, (instant.time, low), (0, -2), ha="center", va="top")
 
 
 def _name_curves(axes: Axes, data: xr.Dataset) -> None:
@@ -75,11 +70,11 @@ def _name_curves(axes: Axes, data: xr.Dataset) -> None:
     time, ball, table = data.time.values, data.ball.values, data.table.values
     touching = data.contact.values.astype(bool)
     top, dip = int(np.argmax(ball)), int(np.argmin(table))
-    _label(axes, "ball $z$", (time[top], ball[top]), (0, 5), "center", color=CONTACT)
+    note(axes, "ball $z$", (time[top], ball[top]), (0, 5), ha="center", color=CONTACT)
     below = (time[dip], table[dip])
-    _label(axes, "table $w$", below, (0, 4), "center", "bottom", color="#5f5f5f")
+    note(axes, "table $w$", below, (0, 4), ha="center", va="bottom", color="#5f5f5f")
     middle = (float(data.contact_duration) / 2, float(ball[touching].min()))
-    _label(axes, "contact", middle, (0, -9), "center", "top", fontsize=8)
+    note(axes, "contact", middle, (0, -9), ha="center", va="top", fontsize=8)
     axes.annotate("flight", (time[top], 0.62 * ball[top]), ha="center", fontsize=8)
 
 
@@ -103,11 +98,6 @@ def draw(data: xr.Dataset) -> Figure:
         ylim=(low, 1.15 * float(ball.max())),
     )
     axes.set_xlabel(r"time $\tau$", labelpad=16)
-    attributes = data.attrs
-    axes.set_title(
-        rf"$n={attributes['n']}$, $r={number(attributes['restitution'])}$, "
-        rf"$\Lambda={number(attributes['amplitude'])}$, "
-        rf"$\varpi={number(attributes['frequency_ratio'])}$",
-        fontsize=9,
-    )
+    shown = parameters(data, "n", "restitution", "amplitude", "frequency_ratio")
+    axes.set_title(shown, fontsize=9)
     return figure

@@ -7,7 +7,15 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bouncing_ball.render.figures.style import COLOURS, RESTITUTION, TABLE, WIDE, canvas, number
+from bouncing_ball.render.figures.style import (
+    COLOURS,
+    RESTITUTION,
+    TABLE,
+    WIDE,
+    canvas,
+    number,
+    parameters,
+)
 
 # From the softest contact to the stiffest.
 _LOOKS = ((0, (1, 1)), (0, (3, 1, 1, 1)), (0, (5, 1.5)), (0, (8, 1.5)), "-", "-")
@@ -69,11 +77,7 @@ def draw(data: xr.Dataset) -> Figure:
     width, height = _enlarged(data)
     summit.set(xlabel=r"time $\tau$", xlim=width, ylim=height)
     summit.set_title("the summit, enlarged", fontsize=9)
-    axes.set_title(
-        rf"$n={data.attrs['n']}$, $r={number(data.attrs['restitution'])}$, "
-        rf"$\Lambda={number(data.attrs['amplitude'])}$",
-        fontsize=9,
-    )
+    axes.set_title(parameters(data, "n", "restitution", "amplitude"), fontsize=9)
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), columnspacing=1.2)
     return figure

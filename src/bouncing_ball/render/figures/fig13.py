@@ -6,7 +6,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bouncing_ball.render.figures.branches import draw_curve
-from bouncing_ball.render.figures.style import COLOURS, RESTITUTION, Look, canvas, number
+from bouncing_ball.render.figures.style import (
+    COLOURS,
+    RESTITUTION,
+    Look,
+    canvas,
+    note,
+    number,
+    parameters,
+)
 
 # Above this frequency ratio the points crowd at that of the restitution model.
 _NAMED_UP_TO = 10.0
@@ -26,16 +34,10 @@ def _draw_trace(axes: Axes, curve: xr.Dataset, phase, velocity, label, **look) -
         axes.plot(x[at], y[at], marker="o", markersize=4, **look)
         ratio = float(curve.frequency_ratio[at])
         if label and ratio <= _NAMED_UP_TO:
-            axes.annotate(
-                rf"$\varpi={number(ratio)}$",
-                (x[at], y[at]),
-                # Neighbours on both sides of the curve.
-                xytext=(5, 4) if k % 2 == 0 else (-5, -4),
-                textcoords="offset points",
-                fontsize=8,
-                ha="left" if k % 2 == 0 else "right",
-                va="center",
-            )
+            # Neighbours on both sides of the curve.
+            offset, side = ((5, 4), "left") if k % 2 == 0 else ((-5, -4), "right")
+            name, point = rf"$\varpi={number(ratio)}$", (x[at], y[at])
+            note(axes, name, point, offset, ha=side, va="center", fontsize=8)
 
 
 def draw(data: xr.Dataset) -> Figure:
@@ -64,8 +66,8 @@ def draw(data: xr.Dataset) -> Figure:
     axes.axhline(0.0, color="#8c8c8c", linewidth=0.5)
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=2)
     axes.set_title(
-        rf"$n={data.attrs['n']}$, $r={number(data.attrs['restitution'])}$, "
-        + ", ".join(rf"$\Lambda={number(x)}$" for x in data["amplitude"].values),
+        parameters(data, "n", "restitution")
+        + "".join(rf", $\Lambda={number(x)}$" for x in data["amplitude"].values),
         fontsize=9,
     )
     return figure

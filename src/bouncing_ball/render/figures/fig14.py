@@ -4,35 +4,22 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from bouncing_ball.render.figures.branches import draw_curve
-from bouncing_ball.render.figures.style import CONTACT, RESTITUTION, canvas, logarithmic, number
+from bouncing_ball.render.figures.style import CONTACT, RESTITUTION, canvas, logarithmic, parameters
 from bouncing_ball.render.figures.thresholds import draw_error
 
 
 def draw(data: xr.Dataset) -> Figure:
     """The height in both models; below, the relative error and its threshold."""
     figure, (axes, below) = canvas(height=4.2, rows=2, sharex=True)
-    draw_curve(
-        axes,
-        data.frequency_ratio,
-        data.max_height,
-        data.admissible,
-        color=CONTACT,
-        label="spring-damper",
-    )
+    look = {"color": CONTACT, "label": "spring-damper"}
+    draw_curve(axes, data.frequency_ratio, data.max_height, data.admissible, **look)
     limit = float(data.restitution_max_height)
     axes.axhline(limit, color=RESTITUTION, linewidth=1.0, linestyle="--", label="restitution")
     axes.set(ylabel=r"greatest height $\max\,z$")
     axes.set_ylim(top=1.09 * limit)
-    axes.set_title(
-        rf"$n={data.attrs['n']}$, $r={number(data.attrs['restitution'])}$, "
-        rf"$\Lambda={number(data.attrs['amplitude'])}$",
-        fontsize=9,
-    )
+    axes.set_title(parameters(data, "n", "restitution", "amplitude"), fontsize=9)
     axes.legend(loc="lower right")
     draw_error(below, data, "h", digits=1)
     logarithmic(axes)
-    below.set(
-        xlabel=r"frequency ratio $\varpi$",
-        xlim=(float(data.frequency_ratio[0]), float(data.frequency_ratio[-1])),
-    )
+    logarithmic(below, data.frequency_ratio)
     return figure

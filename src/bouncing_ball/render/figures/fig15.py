@@ -6,13 +6,20 @@ from matplotlib.figure import Figure
 
 from bouncing_ball.render.figures.branches import (
     draw_branch,
-    draw_period_doublings,
-    draw_saddle_nodes,
+    draw_marks,
     label_ends,
     legend_handles,
 )
 from bouncing_ball.render.figures.domains import draw_special
-from bouncing_ball.render.figures.style import COLOURS, RESTITUTION, canvas, number
+from bouncing_ball.render.figures.style import (
+    COLOURS,
+    PERIOD_DOUBLING,
+    RESTITUTION,
+    SADDLE_NODE,
+    canvas,
+    number,
+    parameters,
+)
 
 
 def draw(data: xr.Dataset) -> Figure:
@@ -26,15 +33,8 @@ def draw(data: xr.Dataset) -> Figure:
         data.restitution_admissible,
         RESTITUTION,
     )
-    draw_saddle_nodes(
-        axes, float(data.saddle_node_amplitude), float(data.saddle_node_phase) / np.pi, RESTITUTION
-    )
-    draw_period_doublings(
-        axes,
-        float(data.period_doubling_amplitude),
-        float(data.period_doubling_phase) / np.pi,
-        RESTITUTION,
-    )
+    for name, mark in (("saddle_node", SADDLE_NODE), ("period_doubling", PERIOD_DOUBLING)):
+        draw_marks(axes, data[f"{name}_amplitude"], data[f"{name}_phase"], mark, RESTITUTION)
     curve = data.squeeze("frequency_ratio")
     start, end = COLOURS[1], COLOURS[2]
     release = curve.special_phase + curve.special_contact_duration
@@ -57,8 +57,7 @@ def draw(data: xr.Dataset) -> Figure:
         xlim=(0.9 * float(lowest), data.attrs["amplitude_max"]),
     )
     axes.set_title(
-        rf"$n={data.attrs['n']}$, $r={number(data.attrs['restitution'])}$, "
-        rf"$\varpi={number(float(curve.frequency_ratio))}$",
+        rf"{parameters(data, 'n', 'restitution')}, $\varpi={number(float(curve.frequency_ratio))}$",
         fontsize=9,
     )
     # The restitution branch runs the same way or the other: its upper end is meant.

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib
+import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -30,20 +31,9 @@ Look = dict[str, Any]
 GUIDE: Look = {"color": "#8c8c8c", "linewidth": 0.7, "linestyle": (0, (1, 1.5))}
 
 # Hollow, so that markers which coincide can all be seen.
-SADDLE_NODE: Look = {
-    "marker": "o",
-    "markersize": 5,
-    "linestyle": "none",
-    "markerfacecolor": "none",
-    "markeredgewidth": 1.0,
-}
-PERIOD_DOUBLING: Look = {
-    "marker": "s",
-    "markersize": 5,
-    "linestyle": "none",
-    "markerfacecolor": "none",
-    "markeredgewidth": 1.0,
-}
+_HOLLOW: Look = {"linestyle": "none", "markerfacecolor": "none", "markeredgewidth": 1.0}
+SADDLE_NODE: Look = {"marker": "o", "markersize": 5, **_HOLLOW}
+PERIOD_DOUBLING: Look = {**SADDLE_NODE, "marker": "s"}
 STABLE: Look = {"linestyle": "-", "linewidth": 1.3}
 GRAZING: Look = {"marker": "^", "markersize": 4.5, "linestyle": "none"}
 END: Look = {"marker": "x", "markersize": 5, "linestyle": "none", "markeredgewidth": 1.2}
@@ -89,8 +79,13 @@ def canvas(width: float = WIDTH, height: float = 2.6, rows: int = 1, columns: in
     return figure, figure.subplots(rows, columns, **options)
 
 
-def logarithmic(axes: Axes) -> None:
-    """Logarithmic frequency-ratio axis with plain numbers at the decades."""
+def logarithmic(axes: Axes, ratio: xr.DataArray | None = None) -> None:
+    """Logarithmic frequency-ratio axis with plain numbers at the decades.
+
+    It is named, and as long as the ϖ that are given.
+    """
+    if ratio is not None:
+        axes.set(xlabel=r"frequency ratio $\varpi$", xlim=(float(ratio[0]), float(ratio[-1])))
     axes.set_xscale("log")
     axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
     axes.xaxis.set_minor_formatter(lambda value, _: "")
@@ -109,6 +104,25 @@ def number(value: float) -> str:
         factor = "" if float(mantissa) == 1 else rf"{float(mantissa):g}\times "
         return f"{factor}10^{{{int(exponent)}}}"
     return f"{value:g}"
+
+
+_SYMBOLS = {"n": "n", "restitution": "r", "amplitude": r"\Lambda", "frequency_ratio": r"\varpi"}
+
+
+def parameters(data: xr.Dataset, *names: str) -> str:
+    """Parameters of a dataset, as a title shows them.
+
+    Examples
+    --------
+    >>> parameters(xr.Dataset(attrs={"n": 1, "restitution": 0.85}), "n", "restitution")
+    '$n=1$, $r=0.85$'
+    """
+    return ", ".join(f"${_SYMBOLS[name]}={number(data.attrs[name])}$" for name in names)
+
+
+def note(axes: Axes, text: str, point, offset, **look) -> None:
+    """A text at an offset in points from a point of the data."""
+    axes.annotate(text, point, xytext=offset, textcoords="offset points", **look)
 
 
 def save(figure: Figure, path: str | Path, metadata: Mapping[str, str]) -> None:

@@ -3,6 +3,7 @@
 That Snakemake follows them is tested in tests/workflow/test_reruns.py.
 """
 
+import ast
 import copy
 import subprocess
 import sys
@@ -13,9 +14,10 @@ import pytest
 from bouncing_ball.audit.claims.ledger_file import read_ledger
 from bouncing_ball.configuration.stages import studied
 from bouncing_ball.configuration.yaml_file import read_yaml
-from bouncing_ball.pipeline.sources import sources
+from bouncing_ball.pipeline.sources import imports, sources
 
-CONFIG = Path(__file__).resolve().parents[2] / "config"
+ROOT = Path(__file__).resolve().parents[2]
+CONFIG = ROOT / "config"
 LEDGER = read_ledger(CONFIG)
 RUN = read_yaml(CONFIG / "config.yaml") | {
     "printed": LEDGER.table("Table 1"),
@@ -109,3 +111,22 @@ def test_the_modules_of_a_stage_are_those_it_imports():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert sources("bouncing_ball.studies.orbit_branches") == done.stdout.splitlines()
+
+
+def test_no_import_statement_is_missed():
+    """Those that are found by their form are those that Python's parser finds."""
+    for path in sorted((ROOT / "src" / "bouncing_ball").rglob("*.py")):
+        named = set()
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                named |= {alias.name for alias in node.names}
+            elif isinstance(node, ast.ImportFrom) and node.module:
+                named |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
+        own = {name for name in named if name.split(".")[0] == "bouncing_ball"}
+        assert imports(path) == own, path
+
+
+def test_a_line_of_a_text_is_no_import_statement(tmp_path):
+    path = tmp_path / "module.py"
+    path.write_text('"""Values\nfrom bouncing_ball as it is.\n"""\n', encoding="utf-8")
+    assert imports(path) == set()

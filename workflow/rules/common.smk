@@ -54,7 +54,8 @@ try:
     # All that parameters and settings of the stages are taken from.
     RUN = config | {"printed": LEDGER.table("Table 1"), "ledger": LEDGER.source}
     where = "stages"
-    check_pieces(STAGES, RUN)
+    if workflow.is_main_process:
+        check_pieces(STAGES, RUN)
 except ModelError as error:
     sys.exit(f"{where}: {error}")
 

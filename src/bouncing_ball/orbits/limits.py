@@ -12,7 +12,6 @@ fold. Entries for which the quantity does not exist are NaN.
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize.elementwise import find_root
 
 from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.motion.ensembles import blocks
@@ -79,6 +78,9 @@ def _at(grid, index):
 
 def _close(function, left, right, found, args):
     """Roots in brackets, NaN where there is none."""
+    # Imported here: it takes a third of a second, and not every run asks for limits.
+    from scipy.optimize.elementwise import find_root
+
     result = np.full(np.shape(found), np.nan)
     if np.any(found):
         chosen = tuple(x[found] for x in args)

@@ -27,13 +27,14 @@ _OPTIONS = {
     "--release": ["displacement", "force", "tension"],
     "--model": ["restitution", "spring-damper", "corrected", "ball"],
 }
-_COMMANDS = ["orbit", "limits", "permanent-contact", "simulate"]
+_COMMANDS = ["orbit", "limits", "permanent-contact", "simulate", "error-law"]
 
 
 def _arguments(rng: np.random.Generator) -> list[str]:
     """Mostly what could be meant: a command, its options with numbers, some nonsense."""
-    if rng.random() < 0.2:
-        return _case(rng)
+    chance = rng.random()
+    if chance < 0.4:
+        return _case(rng) if chance < 0.2 else _law(rng)
     command = str(rng.choice([*_COMMANDS, *_COMMANDS, *_COMMANDS, "explain", "diff", "orbits", ""]))
     damping = str(rng.choice(["--restitution", "--measured-restitution", "--damping-ratio"]))
     out = [command, damping, _value(rng, damping), "--amplitude", _value(rng, "--amplitude")]
@@ -87,6 +88,32 @@ def _case(rng: np.random.Generator) -> list[str]:
     return [*out, "--json"] if rng.random() < 0.5 else out
 
 
+_LAWS = ("hunt-crossley", "tsuji", "kuwabara-kono", "linear", "hertz")
+_SETTINGS = ("stiffness", "damping", "frequency-ratio", "damping-ratio", "n", "")
+
+
+def _law(rng: np.random.Generator) -> list[str]:
+    """A contact of another law, by its parameters or by restitution and duration."""
+    out = [str(rng.choice(["orbit", "limits", "simulate"])), "--law", str(rng.choice(_LAWS))]
+    if rng.random() < 0.5:
+        named = _SETTINGS[2:4] if out[2] == "linear" else _SETTINGS[:2]
+        values = (f"{10.0 ** rng.uniform(0, 7):g}", f"{rng.random():.3g}")
+        pairs = [f"{name}={value}" for name, value in zip(named, values, strict=True)]
+        if rng.random() < 0.2:
+            pairs[0] = f"{rng.choice(_SETTINGS)}={rng.choice(_NUMBERS)}"
+        out += [part for pair in pairs for part in ("--set", pair)]
+    else:
+        out += ["--restitution", _value(rng, "--restitution")]
+        out += ["--duration", f"{10.0 ** rng.uniform(-4, 1):g}"]
+        if rng.random() < 0.3:
+            out += ["--speed", str(rng.choice(_NUMBERS))]
+    if out[0] != "limits":
+        out += ["--amplitude", _value(rng, "--amplitude")]
+    for option in rng.choice(list(_OPTIONS), size=rng.integers(0, 2), replace=False):
+        out += [str(option), _value(rng, str(option))]
+    return [*out, "--json"] if rng.random() < 0.5 else out
+
+
 def _value(rng: np.random.Generator, option: str) -> str:
     choices = _OPTIONS[option]
     if choices is not None:
@@ -129,9 +156,9 @@ def attack(seed: int, seconds: float) -> tuple[int, int, list[str]]:
     end, tried, fallen = time.monotonic() + seconds, 0, []
     while time.monotonic() < end:
         arguments = _arguments(rng)
-        start = time.monotonic()
+        start = time.process_time()
         wrong = _wrong(arguments)
-        took = time.monotonic() - start
+        took = time.process_time() - start
         tried += 1
         if wrong or took > 20:
             fallen.append(f"{arguments}: {wrong or f'took {took:.0f} s'}")

@@ -32,7 +32,7 @@ from bouncing_ball.record.diff.report_terminal import to_terminal
 from bouncing_ball.record.diff.tolerance_file import read_tolerances
 
 ROOT = Path(__file__).resolve().parents[2]
-NAMES = ("fig02", "fig11", "table1")
+NAMES = ("fig02", "fig11", "table1", "ext_basins", "explorer")
 SECRET = "a-line-of-a-private-file"
 # A whole comparison takes a second here; the slowest single file that is read, a few.
 SECONDS, MEGABYTES = 60.0, 2000
@@ -230,11 +230,32 @@ def _bytes(path, rng):
     return True
 
 
+def _page(path, rng):
+    text = path.read_text(encoding="utf-8", errors="replace")
+    start, end, new = [
+        ("<script", "</script>", "alert(1)"),
+        ("<head>", "", "<meta http-equiv=refresh content='0;//a.b'><script src=//a.b></script>"),
+        ('type="application/json"', "</script>", "[" * 10_000),
+        ('type="application/json"', "</script>", '{"a": 1e999, "a": NaN}'),
+        ("default-src", ";", "* 'unsafe-inline' 'unsafe-eval'"),
+        ("sha256-", "'", "A" * 43 + "="),
+        ("</body>", "", "<p onload=f()>" + "<div>" * 10_000),
+    ][int(rng.integers(7))]
+    at = text.find(start)
+    if at < 0:
+        return False
+    begin = text.find(">", at) + 1 if start.startswith(("<script", "type")) else at + len(start)
+    stop = text.find(end, begin) if end else begin
+    path.write_text(text[:begin] + new + text[stop:], encoding="utf-8", errors="replace")
+    return True
+
+
 TEXT: list[Change] = [_line, _line, _many_lines, _bytes]
 KINDS: dict[str, list[Change]] = {
     ".nc": [_attribute] * 6 + [_huge_dataset, _long_texts, _labels, _value],
     ".png": [_bomb],
     ".svg": [_drawing] * 5 + [_entities],
+    ".html": [_page] * 4 + [_line],
     **dict.fromkeys((".csv", ".md", ".tex"), TEXT),
 }
 

@@ -1,7 +1,7 @@
-"""YAML files with keys twice, numbers to the base 60, aliases that expand, and torn ones.
+"""YAML files with keys twice, numbers to the base 60, aliases that expand, and hostile values.
 
 The loader that reads configuration, tolerances and claims takes a mutated file
-as a reader of it would, or refuses it in one line.
+as a reader of it would, or refuses it in one line. So does what checks its values.
 """
 
 import time
@@ -9,8 +9,12 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
+import yaml
+from ledger import mutated
 
+from bouncing_ball.configuration.check import check_configuration, check_orbits
 from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
+from bouncing_ball.record.diff.tolerance_file import read_tolerances
 
 ROOT = Path(__file__).resolve().parents[2]
 FILES = ("config.yaml", "tolerances.yaml", "claims.yaml")
@@ -60,6 +64,24 @@ def is_pair(line: str) -> bool:
     return key.isidentifier() and bool(value) and value[0] not in "{[|>&*\"'#"
 
 
+def checked(path: Path, name: str) -> None:
+    """What a run or a comparison does with the file before anything else."""
+    if name == "config.yaml":
+        config = read_yaml(path)
+        check_configuration(config, read_yaml(ROOT / "config" / "schema.yaml"))
+        check_orbits(config)
+    elif name == "tolerances.yaml":
+        read_tolerances(path)
+    else:
+        read_yaml(path)
+
+
+def hostile(rng, lines: list[str]) -> list[str]:
+    """Values of another kind, somewhere else, or none."""
+    other, _ = mutated(yaml.safe_load("\n".join(lines)), rng)
+    return yaml.safe_dump(other, allow_unicode=True).split("\n")
+
+
 MUST_FALL = (twice, sexagesimal, bomb, cycle, tag)
 
 
@@ -71,14 +93,17 @@ def torn(rng, lines: list[str]) -> list[str]:
     return "".join(text).split("\n")
 
 
-def wrong(path: Path, must_fall: bool) -> str:
+KINDS = (*MUST_FALL, torn, hostile, hostile)
+
+
+def wrong(path: Path, name: str, must_fall: bool) -> str:
     """What is wrong with the loader's answer; nothing if it is right."""
     start = time.monotonic()
     try:
-        read_yaml(path)
+        checked(path, name)
         said = "accepted" if must_fall else ""
     except ConfigurationError as error:
-        said = "more than one line" if "\n" in str(error) else ""
+        said = "" if str(error).isprintable() else "more than one line"
     except Exception as error:
         said = f"{type(error).__name__}: {error}"
     took = time.monotonic() - start
@@ -96,12 +121,13 @@ def attack(seed: int, seconds: float) -> tuple[int, int, list[str]]:
     with TemporaryDirectory() as folder:
         path = Path(folder, "file.yaml")
         while not tried or time.monotonic() < end:
-            name = str(rng.choice(FILES))
-            kind = (*MUST_FALL, torn)[int(rng.integers(len(MUST_FALL) + 1))]
+            kind = KINDS[int(rng.integers(len(KINDS)))]
+            # The attack on ledgers has the values of the claims.
+            name = str(rng.choice(FILES[:2] if kind is hostile else FILES))
             lines = kind(rng, texts[name])
             path.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
             tried += 1
-            said = wrong(path, kind in MUST_FALL)
+            said = wrong(path, name, kind in MUST_FALL)
             if said:
                 new = [line for line in lines if line not in texts[name]] or ["a line twice"]
                 fallen.append(f"{kind.__name__} in {name}, {said}: {' / '.join(new)[:200]!r}")

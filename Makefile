@@ -93,7 +93,7 @@ ci:
 # whatever the others say.
 setup-newest:
 	$(PYTHON) -m venv --clear $(NEWEST)
-	$(NEWEST)/bin/python -m pip install --quiet --disable-pip-version-check --editable '.[test,pdf]'
+	$(NEWEST)/bin/python -m pip install --quiet --disable-pip-version-check --editable '.[test,pdf,zarr]'
 
 newest: setup-newest clean
 	$(MAKE) --keep-going all diff test VENV=$(NEWEST) SETUP=
@@ -106,5 +106,5 @@ codecheck: setup
 
 # For maintainers; needs uv.
 lock:
-	uv pip compile pyproject.toml --extra test --extra pdf --extra lint --extra slurm --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate --upgrade --output-file requirements.lock
+	uv pip compile pyproject.toml --extra test --extra pdf --extra lint --extra slurm --extra zarr --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate --upgrade --output-file requirements.lock
 	printf 'flit_core\nsetuptools\nwheel\n' | uv pip compile - --constraint requirements.lock --universal --python-version 3.11 --generate-hashes --no-header --no-annotate --upgrade --output-file requirements-build.lock

@@ -5,6 +5,7 @@ whoever has the terminal draws one bar for all of them from these files. In the 
 job on a cluster there are lines about the job alone.
 """
 
+import shutil
 import sys
 import time
 from collections.abc import Callable
@@ -84,9 +85,12 @@ class Progress:
         self._write(rate)
         if self._bar:
             done, rate = self._all(now)
-            full = "#" * round(_WIDTH * done / self._total)
+            said = line(done, self._total, rate)
+            # A line that wraps cannot be drawn over.
+            width = max(0, min(_WIDTH, shutil.get_terminal_size().columns - len(said) - 3))
+            full = "#" * round(width * done / self._total)
             end = "\r\033[K" if self._done >= self._own else ""
-            self._stream.write(f"\r\033[K[{full:.<{_WIDTH}}]{line(done, self._total, rate)}{end}")
+            self._stream.write(f"\r\033[K[{full:.<{width}}]{said}{end}")
         else:
             self._stream.write(f"{self._file.name}: {line(self._done, self._own, rate).strip()}\n")
         self._stream.flush()

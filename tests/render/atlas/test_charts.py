@@ -78,8 +78,12 @@ def test_the_charts_are_drawn(data):
         mesh = chart.axes[1].collections[0]
         assert mesh.get_array().shape == (data.sizes["restitution"], data.sizes["position"])
         needed = data.needed.sel(release="displacement", model="restitution", n=1)
-        failing = int((needed.sel(quantity="max_height") > 100).sum())
-        assert failing > 0 and len(chart.axes[1].collections[1].get_paths()) == failing
+        fails = needed.sel(quantity="max_height") > 100
+        share = data.failing_share.sel(release="displacement", model="restitution", n=1)
+        most = share.sel(quantity="max_height") > 0.5
+        assert 0 < int(most.sum()) < int(fails.sum())
+        hatched, crossed = (len(x.get_paths()) for x in chart.axes[1].collections[1:3])
+        assert (hatched, crossed) == (int((fails & ~most).sum()), int(most.sum()))
         assert len(limits.draw(data).axes) == 6
         titles = [axes.get_title() for axes in page.draw(data).axes]
         assert len([title for title in titles if title]) == 7

@@ -12,8 +12,11 @@ _LOOK: dict[str, Look] = {
     "restitution": {"linestyle": "-", "linewidth": 1.2},
     "corrected": {"linestyle": (0, (4, 1.5)), "linewidth": 1.2},
 }
+_LAW: Look = {"linestyle": ":", "linewidth": 1.0}
 _SHOWN = 3
 """Families, spread over those of the atlas."""
+# Three levels of grey.
+_BY_FAMILY = (COLOURS[0], COLOURS[3], COLOURS[4])
 
 
 def draw(data: xr.Dataset) -> Figure:
@@ -31,20 +34,21 @@ def draw(data: xr.Dataset) -> Figure:
         percent = 100 * float(data.summary_tolerance)
         axes.set_ylabel(rf"$\varpi$ for {percent:g} %")
     handles, labels = panels[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=4)
+    figure.legend(handles, labels, loc="outside lower center", ncols=_SHOWN)
     figure.suptitle("limits of the families: how stiff a contact must be", fontsize=10)
     return figure
 
 
 def _panel(axes: Axes, part: xr.Dataset, families: np.ndarray) -> None:
     tolerance, smallest = float(part.summary_tolerance), float(part.limit_needed.min())
-    for n, colour in zip(families, (COLOURS[0], COLOURS[1], COLOURS[3]), strict=False):
+    for n, colour in zip(families, _BY_FAMILY, strict=False):
         own = part.sel(n=n)
         for model, look in _LOOK.items():
             found = own.limit_needed.sel({"model": model, "tolerance": tolerance})
             axes.plot(part.restitution, found, color=colour, label=f"{model}, $n={n}$", **look)
         law = np.maximum(own.limit_law_needed, smallest)
-        label = r"law $|K|/\varepsilon$" if n == families[0] else None
-        axes.plot(part.restitution, law, color=colour, linestyle=":", linewidth=1.0, label=label)
+        axes.plot(
+            part.restitution, law, color=colour, label=rf"law $|K|/\varepsilon$, $n={n}$", **_LAW
+        )
     axes.axhline(float(part.rule_of_thumb), **GUIDE)
     axes.set_yscale("log")

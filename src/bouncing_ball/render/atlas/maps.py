@@ -10,6 +10,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.patheffects import withStroke
 
 from bouncing_ball.render.figures.quantities import NAMES
 from bouncing_ball.render.figures.style import WIDE, canvas
@@ -30,15 +31,21 @@ _COLOURS = (
 )
 _LAW_LEVELS = (20, 50, 100, 200, 500)
 _LAW: dict[str, Any] = {"colors": "#AA3A00", "linewidths": 0.8, "linestyles": "--"}
-_HATCH: dict[str, Any] = {"facecolor": "none", "edgecolor": "#404040", "hatch": "////"}
+# Least distance of two labels; both axes are from 0 to 1.
+_APART = 0.12
+# What fails needs a large ϖ, and so is dark.
+_SOME: dict[str, Any] = {"facecolor": "none", "edgecolor": "white", "hatch": "///"}
+_MOST: dict[str, Any] = _SOME | {"hatch": "xxx"}
+_HALO = withStroke(linewidth=2.0, foreground="white")
 _COLUMNS = (("restitution", "amplitude"), ("restitution", "position"), ("corrected", "position"))
 
 
 def draw(data: xr.Dataset, quantity: str, n: int = 1) -> Figure:
     """For each rule the restitution model over Λ and over the position, and the corrected one.
 
-    Colour is the ϖ needed, hatched where the rule of thumb fails for some orbit; the
-    error law's |K|/ε is drawn over the restitution model as lines.
+    Colour is the ϖ needed, hatched where the rule of thumb fails for some orbit, and crossed
+    where it fails for more than half of them; the error law's |K|/ε is drawn over the
+    restitution model as lines.
     """
     figure, panels = canvas(WIDE, 5.4, rows=2, columns=3, sharex=True)
     chosen = data.sel(n=n, quantity=quantity)
@@ -59,7 +66,7 @@ def draw(data: xr.Dataset, quantity: str, n: int = 1) -> Figure:
     percent = 100 * float(data.summary_tolerance)
     bar.set_label(rf"$\varpi$ from which the error is below {percent:g} %")
     figure.suptitle(rf"{NAMES[quantity]}: how stiff a contact must be, $n={n}$", fontsize=10)
-    figure.legend(handles=_handles(data), loc="outside lower center", ncols=2)
+    figure.legend(handles=_handles(data), loc="outside lower center", ncols=3)
     return figure
 
 
@@ -79,9 +86,10 @@ def _panel(axes: Axes, part: xr.Dataset, y: np.ndarray) -> Any:
     mesh = axes.pcolormesh(x, y, shown, cmap=ListedColormap(_COLOURS), norm=norm)
     corners = np.stack([x, y], axis=-1)
     around = (corners[:-1, :-1], corners[1:, :-1], corners[1:, 1:], corners[:-1, 1:])
-    fails = needed > float(part.rule_of_thumb)
-    tiles = [np.array(tile) for tile in np.stack(around, axis=2)[fails]]
-    axes.add_collection(PolyCollection(tiles, linewidth=0, **_HATCH))
+    fails, most = needed > float(part.rule_of_thumb), part.failing_share.values > 0.5
+    for where, hatch in ((fails & ~most, _SOME), (most, _MOST)):
+        tiles = [np.array(tile) for tile in np.stack(around, axis=2)[where]]
+        axes.add_collection(PolyCollection(tiles, linewidth=0, **hatch))
     # The saddle-node and the period doubling, between which the orbits are stable.
     for edge in (0, -1):
         axes.plot(r, y[:, edge], color="black", linewidth=1.0)
@@ -95,13 +103,32 @@ def _law(axes: Axes, part: xr.Dataset, y: np.ndarray) -> None:
     r = np.broadcast_to(part.restitution.values[:, np.newaxis], middle.shape)
     law = np.ma.masked_invalid(part.law_coefficient.values / float(part.summary_tolerance))
     lines = axes.contour(r, middle, law, levels=_LAW_LEVELS, **_LAW)
-    axes.clabel(lines, fontsize=6, fmt="%g")
+    lines.set_path_effects([_HALO])
+    labels = axes.clabel(lines, fontsize=6, fmt="%g", manual=_label_places(lines.allsegs))
+    for text in labels:
+        text.set_path_effects([_HALO])
+
+
+def _label_places(levels: list[list[np.ndarray]]) -> list[np.ndarray]:
+    """The middle of the longest line of each level, where no other label is near.
+
+    Where the law passes through zero its lines are too close to each other for labels.
+    """
+    places: list[np.ndarray] = []
+    for level in levels:
+        for line in sorted(filter(len, level), key=len)[-1:]:
+            place = line[len(line) // 2]
+            if all(np.hypot(*(place - other)) > _APART for other in places):
+                places.append(place)
+    return places
 
 
 def _handles(data: xr.Dataset) -> list[Patch | Line2D]:
-    fails = rf"$\varpi>{float(data.rule_of_thumb):g}$ is not enough for some orbit"
+    rule = rf"$\varpi>{float(data.rule_of_thumb):g}$ is not enough for"
+    dark = {"linewidth": 0, "facecolor": _COLOURS[-3]}
     law = r"error law, $|K|/\varepsilon$"
     return [
-        Patch(linewidth=0, label=fails, **_HATCH),
+        Patch(**_SOME | dark, label=f"{rule} some orbit"),
+        Patch(**_MOST | dark, label=f"{rule} more than half of the orbits"),
         Line2D([], [], color=_LAW["colors"], linestyle="--", linewidth=0.8, label=law),
     ]

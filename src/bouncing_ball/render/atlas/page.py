@@ -1,7 +1,5 @@
 """One page to print: which model for which contact."""
 
-from typing import Literal
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -10,12 +8,17 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from bouncing_ball.render.figures.quantities import NAMES
-from bouncing_ball.render.figures.style import GUIDE, WIDE, canvas
+from bouncing_ball.render.figures.style import GUIDE, WIDE, Look, canvas
 
 NEAR = 1
 """Ranges of positions next to the saddle-node that the colours leave out."""
 _RIGHT, _CORRECTED, _NEITHER = "#ffffff", "#b9d7ea", "#7f7f7f"
 _HIGHEST = 1e3
+# Not dotted, as the rule of thumb is.
+_BESIDE: dict[str, Look] = {
+    "restitution": {"color": "black", "linestyle": "--", "linewidth": 0.8},
+    "corrected": {"color": "black", "linestyle": "-.", "linewidth": 0.8},
+}
 
 
 def draw(data: xr.Dataset, release: str = "displacement") -> Figure:
@@ -64,9 +67,8 @@ def _panel(axes: Axes, needed: xr.DataArray, near: xr.DataArray | None) -> None:
     axes.fill_between(r, low, np.minimum(simple, corrected), color=_NEITHER, linewidth=0)
     axes.plot(r, simple, color="black", linewidth=0.8)
     if near is not None:
-        for model, dashes in (("restitution", "--"), ("corrected", ":")):
-            beside = np.clip(near.sel(model=model).values, low, high)
-            axes.plot(r, beside, color="black", linestyle=dashes, linewidth=0.8)
+        for model, look in _BESIDE.items():
+            axes.plot(r, np.clip(near.sel(model=model).values, low, high), **look)
     axes.set_yscale("log")
     axes.set_ylim(low, high)
     axes.set_xlim(float(r.min()), float(r.max()))
@@ -79,14 +81,11 @@ def _legend(axes: Axes, data: xr.Dataset) -> None:
         Patch(facecolor=_RIGHT, edgecolor="black", linewidth=0.5, label="restitution model"),
         Patch(facecolor=_CORRECTED, label="corrected model"),
         Patch(facecolor=_NEITHER, label="compute the contact"),
-        _beside("--", "restitution model"),
-        _beside(":", "corrected model"),
+        *(
+            Line2D([], [], label=f"{model} model, next to the saddle-node", **look)
+            for model, look in _BESIDE.items()
+        ),
         Line2D([], [], linestyle="none", label=f"(first {share:g} % of the stable range)"),
         Line2D([], [], **GUIDE, label=rf"rule of thumb, $\varpi={float(data.rule_of_thumb):g}$"),
     ]
     axes.legend(handles=handles, loc="center", title="the simplest that is right")
-
-
-def _beside(dashes: Literal["--", ":"], model: str) -> Line2D:
-    label = f"{model}, next to the saddle-node"
-    return Line2D([], [], color="black", linestyle=dashes, linewidth=0.8, label=label)

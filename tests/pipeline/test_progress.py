@@ -47,3 +47,13 @@ def test_lines_about_the_job_itself_elsewhere(tmp_path):
         "0003-of-0020: 50 %, 0.2 million orbits/s, 12 s left",
         "0003-of-0020: 100 %, 0.3 million orbits/s, 0 s left",
     ]
+
+
+def test_a_bar_fits_into_a_narrow_terminal(tmp_path, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "60")
+    now, stream = [0.0], Terminal()
+    told = Progress(tmp_path, "one", 100, 100, stream, lambda: now[0])
+    now[0] = 10.0
+    told(50)
+    (bar,) = stream.getvalue().split("\r\033[K")[1:]
+    assert bar.startswith("[###") and len(bar) < 60

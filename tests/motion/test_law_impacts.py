@@ -12,6 +12,8 @@ from bouncing_ball.impacts.laws.tsuji import Tsuji
 from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.motion import contacts as closed_form
 from bouncing_ball.motion.law_impacts import law_cycle, simulate
+from bouncing_ball.motion.law_motion import Touch, release
+from bouncing_ball.motion.law_table import Table
 from bouncing_ball.motion.sequence import Status
 
 LAWS = [HuntCrossley(4e3, 0.08), Tsuji(4e3, 0.3), KuwabaraKono(4e3, 0.005)]
@@ -46,6 +48,40 @@ def test_a_contact_is_that_of_the_collocation(law):
         (-sequence.relative_release_velocity[0], end.rate),
     ):
         np.testing.assert_allclose(computed, expected, rtol=0, atol=2e-11)
+
+
+@every_law
+def test_an_interpolated_contact_is_that_of_the_collocation(law):
+    rng = np.random.default_rng(2)
+    size = 6000
+    speed, phase = rng.uniform(3, 4, size), rng.uniform(0, 1, size)
+    table = Table(law, 1.0)
+    touch = Touch(np.zeros(size), speed, phase, 1.0)
+    found = table.release(touch)
+    known = [cell for cell, coefficients in table.cells.items() if coefficients is not None]
+    assert len(known) == len(table.cells) > 0
+    some = slice(0, 200)
+    end = contacts(law, speed[some], phase[some], 1.0)
+    # What the last coefficients may leave, and the integration of the nodes.
+    np.testing.assert_allclose(found.duration[some], end.duration, rtol=3e-12)
+    np.testing.assert_allclose(found.rate[some], end.rate, rtol=3e-12)
+    np.testing.assert_allclose(found.depth[some], end.penetration, rtol=0, atol=1e-13)
+
+
+def test_a_cell_with_two_kinds_of_contact_is_quartered():
+    # Λ = 1 at φ = π/2 presses the ball only later: some stay for a good part of the cycle.
+    law = LAWS[1]
+    rng = np.random.default_rng(3)
+    speed, phase = rng.uniform(0.05, 0.1, 3000), rng.uniform(1.6, 2.3, 3000)
+    table = Table(law, 1.0)
+    touch = Touch(np.zeros(3000), speed, phase, 1.0)
+    found = table.release(touch)
+    assert any(coefficients is None for coefficients in table.cells.values())
+    assert max(cell.level for cell in table.cells) > 0
+    alone = release(law, touch)
+    assert not found.undecided.any()
+    # Long contacts multiply the integration's own error.
+    np.testing.assert_allclose(found.duration, alone.duration, rtol=1e-9)
 
 
 @every_law

@@ -25,6 +25,7 @@ from bouncing_ball.motion.corrected_impacts import Rise
 from bouncing_ball.motion.ensembles import flatten, pick
 from bouncing_ball.motion.first_zero import first_zero
 from bouncing_ball.motion.landing import Flight, land
+from bouncing_ball.motion.law_table import Table
 from bouncing_ball.motion.resumption import Resumption, leaves_fast
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence, Status
 
@@ -38,20 +39,20 @@ class _Contact(NamedTuple):
 
     law: ContactLaw
     amplitude: np.ndarray
+    table: Table | None = None
 
     @property
     def below(self) -> bool:
         return self.law.release is not Release.DISPLACEMENT
 
     def take(self, which: Any) -> "_Contact":
-        return _Contact(self.law.take(which), pick(self.amplitude, which))
+        return _Contact(self.law.take(which), pick(self.amplitude, which), self.table)
 
     def depart(self, impact: Impact) -> Departure:
         # -0 is no depth.
         depth = np.maximum(-impact.displacement, 0.0)
         touch = law_motion.Touch(depth, -impact.velocity, impact.phase, self.amplitude)
-        with np.errstate(all="ignore"):
-            end = law_motion.release(self.law, touch)
+        end = self.table.release(touch) if self.table else law_motion.release(self.law, touch)
         status = np.where(end.undecided, Status.UNDECIDED, Status.BOUNCING)
         duration = np.where(end.undecided, np.inf, end.duration)
         return Departure(duration, -end.depth, np.maximum(-end.rate, 0.0), status)
@@ -114,7 +115,8 @@ def _prepare(law: ContactLaw, amplitude, *states):
     if not np.all((lam >= 0) & np.isfinite(lam)):
         raise ModelError(f"amplitude Λ = {lam} is not finite and ≥ 0")
     (lam, _), states, shape = flatten([lam, np.zeros(law.shape)], states)
-    return _Contact(law.flat(shape), lam), states, shape
+    table = None if law.shape or np.ndim(lam) else Table(law, float(lam))
+    return _Contact(law.flat(shape), lam, table), states, shape
 
 
 def simulate(

@@ -1,5 +1,5 @@
 # make        set up and make every figure, table and the paper in results/
-# make test   set up and run the tests
+# make test   set up and run the tests; make test-cluster the one on a Slurm
 # make quick  the tests that matter while one works
 # The environment is .venv/, from the hashed lock files.
 
@@ -22,7 +22,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 # One thing after another: clean, run and compare share results/.
 .NOTPARALLEL:
-.PHONY: all setup lint test quick test-long attack diff accept report clean ci setup-newest newest config-docs codecheck lock
+.PHONY: all setup lint test quick test-cluster test-long attack diff accept report clean ci setup-newest newest config-docs codecheck lock
 
 all: $(SETUP)
 	$(BIN)/snakemake --cores 2 $(QUIETLY)
@@ -56,7 +56,11 @@ test: $(SETUP)
 
 # No run of the pipeline, and nothing that takes a second.
 quick: $(SETUP)
-	$(PYTEST) --ignore tests/workflow -m "not long and not slow"
+	$(PYTEST) --ignore tests/workflow -m "not long and not slow and not cluster"
+
+# The atlas on a Slurm of its own: mostly waiting, and skipped without one.
+test-cluster: $(SETUP)
+	$(BIN)/python -m pytest -m cluster tests/workflow
 
 # Whole runs on a processor without its fast paths, large samples; on schedule in CI.
 test-long: $(SETUP)

@@ -111,10 +111,12 @@ if not find_spec("snakemake_executor_plugin_slurm"):
     MISSING.append("snakemake-executor-plugin-slurm")
 LOOPBACK = Path(__file__).with_name("slurm_on_loopback.sh")
 # Without accounting the state of a job is asked of squeue; the rest makes the test short.
+# When nothing has ended, the executor asks again after ten seconds more: so it first asks
+# when something has.
 OPTIONS = (
     *("--profile", "profiles/slurm", "--slurm-no-account"),
-    *("--slurm-status-command", "squeue", "--slurm-init-seconds-before-status-checks", "1"),
-    *("--seconds-between-status-checks", "1", "--latency-wait", "5"),
+    *("--slurm-status-command", "squeue", "--slurm-init-seconds-before-status-checks", "6"),
+    *("--latency-wait", "5"),
 )
 
 
@@ -148,6 +150,7 @@ def killed_in_the_middle(tree, environment) -> str:
     raise AssertionError("no shard began within two minutes")
 
 
+@pytest.mark.cluster
 @pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)}")
 def test_on_a_cluster_a_killed_shard_is_named_and_the_bytes_are_the_same(resumed, fresh, slurm):
     tree = prepared(fresh)

@@ -49,10 +49,13 @@ def run_script(tmp_path, failing: str) -> tuple[int, list[str], str]:
     return done.returncode, called, done.stdout.splitlines()[-1] if done.stdout else ""
 
 
-@pytest.mark.parametrize("failing", ["", "lint", "all", "diff", "test", "lint test"])
+STEPS = ["lint", "clean", "all", "diff", "test", "test-cluster"]
+
+
+@pytest.mark.parametrize("failing", ["", *STEPS, "lint test"])
 def test_every_step_runs_and_the_diff_before_the_tests(tmp_path, failing):
     status, called, last = run_script(tmp_path, failing)
-    assert sorted(called) == sorted(["setup", "lint", "clean", "all", "diff", "test"])
+    assert called[0] == "setup" and sorted(called[1:]) == sorted(STEPS)
     assert called.index("clean") < called.index("all") < called.index("diff") < called.index("test")
     assert (status, last.startswith("Failed: ")) == ((1, True) if failing else (0, False))
     assert set(failing.split()) <= set(last.split())

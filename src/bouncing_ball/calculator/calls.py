@@ -245,11 +245,13 @@ def _choose(
             f"{percent(tolerance)} of the restitution model with r = {r:.4g}"
         )
     case = _chosen(need, zeta, release, mass, table)
+    name = QUANTITIES[quantity]
+    own = name if quantity == "permanent_contact" else f"{name} of the {index}-T orbit"
     verdict = Verdict(
         True,
         f"A simulation needs a contact of at least {shown(case.stiffness, 'N/m')}, with a contact "
         f"time of {shown(case.contact_time, 's')} or less and a damping of "
-        f"{shown(case.damping, 'N s/m')} at that stiffness: the {QUANTITIES[quantity]} is then "
+        f"{shown(case.damping, 'N s/m')} at that stiffness: the {own} is then "
         f"within {percent(tolerance)} of the restitution model's.",
         f"the error is {need.status}"
         if need.status == Status.ALWAYS_WITHIN

@@ -30,28 +30,26 @@ def percent(share: float) -> str:
 
     Examples
     --------
-    >>> percent(0.0123), percent(2.5e-5), percent(1e-9)
-    ('1.2 %', '0.0025 %', 'less than 0.001 %')
+    >>> percent(0.0123), percent(2.5e-5), percent(1e-9), percent(0.996)
+    ('1.2 %', '0.0025 %', 'less than 0.001 %', '100 %')
     """
     if 0 < share < 1e-5:
         return "less than 0.001 %"
-    return f"{100 * share:.2g} %" if share < 1 else f"{100 * share:.0f} %"
+    return f"{100 * share:.2g} %" if share < 0.995 else f"{100 * share:.0f} %"
 
 
 def _disagreement(family: Family) -> str | None:
     """What the restitution model says of the orbit that is not so, before any number."""
     exact, simple = next(iter(family.standing.values())), family.standing["restitution"]
-    for name, there, absent in (
-        ("exists", "an orbit that the contact has", "an orbit that the contact has not"),
-        ("is_admissible", "a motion of the ball", "an orbit of equations only"),
-        ("is_stable", "stable", "unstable"),
-    ):
+    orbit = f"{family.n}-T orbit"
+    if exact.exists != simple.exists:
+        missed = f"it misses the {orbit}, which the contact has"
+        return missed if exact.exists else f"it has the {orbit}, which the contact has not"
+    for name, word in (("is_admissible", "free of other impacts"), ("is_stable", "stable")):
         real, claimed = getattr(exact, name), getattr(simple, name)
-        if real == claimed:
-            continue
-        if name == "exists":
-            return f"it misses {there}" if real else f"it has {absent}"
-        return f"it has {there if claimed else absent} what is {there if real else absent}"
+        if real != claimed:
+            own, other = ("is", "is not") if claimed else ("is not", "is")
+            return f"its {orbit} {own} {word}, and the contact's {other}"
     return None
 
 

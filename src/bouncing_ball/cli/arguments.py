@@ -2,6 +2,7 @@
 
 import argparse
 import math
+import re
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -21,6 +22,11 @@ class Parser(argparse.ArgumentParser):
 
     laws: Any = None
     """Group of the options about a contact law, which are described when help is asked for."""
+
+    def __init__(self, *args: Any, **options: Any) -> None:
+        super().__init__(*args, **options)
+        # A value such as -1e6 or -5N/m is no option; Python 3.14 reads them so itself.
+        self._negative_number_matcher = re.compile(r"-\.?\d")
 
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"{self.prog}: {one_line(message)}\n")
@@ -339,7 +345,11 @@ def _add_design(sub: Parser) -> None:
         for name, example in options.items():
             group.add_argument(f"--{name}", metavar="X", help=f"such as {example}")
     group = sub.add_argument_group("the question")
-    group.add_argument("--n", type=_count(1000), help="index of the family (default: the first)")
+    group.add_argument(
+        "--n",
+        type=_count(1000),
+        help="index of the family (default: the first 8, and a verdict on the first stable one)",
+    )
     group.add_argument(
         "--release",
         choices=["displacement", "force"],

@@ -68,7 +68,7 @@ function commandOf(state) {
 // ---- Words.
 const shown = (x, digits = 6) => Number.isFinite(x) ? String(Number(x.toPrecision(digits))) : "none";
 const percent = x => !Number.isFinite(x) ? "none"
-  : x > 0 && x < 1e-5 ? "less than 0.001 %" : `${Number((100 * x).toPrecision(2))} %`;
+  : x > 0 && x < 1e-5 ? "less than 0.001 %" : `${x < 0.995 ? Number((100 * x).toPrecision(2)) : (100 * x).toFixed(0)} %`;
 
 function prefixed(x, unit) {
   if (!Number.isFinite(x)) return "none";
@@ -79,12 +79,14 @@ function prefixed(x, unit) {
 }
 
 function verdictOf(found, {n}) {
-  const [exact, simple] = found.orbits, error = found.errors.max_height;
+  const [exact, simple, corrected] = found.orbits, error = found.errors.max_height;
   const wrong = exact.exists !== simple.exists
-    ? (exact.exists ? "it misses an orbit that the contact has"
-      : "it has an orbit that the contact has not")
+    ? (exact.exists ? `it misses the ${n}-T orbit, which the contact has`
+      : `it has the ${n}-T orbit, which the contact has not`)
     : exact.is_stable !== simple.is_stable
-      ? (simple.is_stable ? "it has stable what is unstable" : "it has unstable what is stable") : "";
+      ? `its ${n}-T orbit ` + (simple.is_stable ? "is stable, and the contact's is not"
+        : "is not stable, and the contact's is") : "";
+  const same = exact.exists === corrected.exists && exact.is_stable === corrected.is_stable;
   const subject = `the greatest height of the ${n}-T orbit`;
   if (!exact.exists && !simple.exists)
     return [false, `There is no ${n}-T orbit here: the saddle-node is at Λ = `
@@ -94,7 +96,7 @@ function verdictOf(found, {n}) {
       + `within ${percent(TOLERANCE)}.`];
   return [false, `The restitution model is not good enough: `
     + `${wrong || `${subject} is ${percent(error)} off, beyond ${percent(TOLERANCE)}`}`
-    + (found.corrected.max_height <= TOLERANCE
+    + (same && found.corrected.max_height <= TOLERANCE
       ? `; the corrected restitution model is, with ${percent(found.corrected.max_height)}.`
       : "; nor is the corrected one: simulate the contact.")];
 }

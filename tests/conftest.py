@@ -169,15 +169,7 @@ def described():
 @pytest.fixture(scope="session")
 def continuation_settings():
     """The ``continuation`` section of the configuration."""
-    return {
-        "newton_tolerance": 1e-12,
-        "max_newton_iterations": 8,
-        "initial_step": 0.02,
-        "smallest_step": 1e-8,
-        "largest_step": 0.2,
-        "max_angle": 0.2,
-        "stiff_frequency_ratio": 1e4,
-    }
+    return read_yaml(ROOT / "config" / "config.yaml")["continuation"]
 
 
 CHROMIUM = next(

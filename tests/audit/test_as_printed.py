@@ -107,9 +107,9 @@ def test_permanent_contact():
     lowest = permanent_contact.permanent_contact_minimum(zeta)
     close(printed.permanent_contact_minimum(zeta), lowest.threshold)
     level = lowest.threshold + (1 - lowest.threshold) * RNG.uniform(0.1, 0.9, 30)
-    low, high = permanent_contact.permanent_contact_frequency_ratios(level, zeta)
-    close(printed.permanent_contact_frequency_ratio(level, zeta, -1), low, rel=1e-12)
-    close(printed.permanent_contact_frequency_ratio(level, zeta, 1), high, rel=1e-12)
+    for sign in (-1, 1):
+        ratio = printed.permanent_contact_frequency_ratio(level, zeta, sign)
+        close(permanent_contact.permanent_contact_threshold(ratio, zeta), level, rel=1e-12)
     assert printed.restitution_threshold() == permanent_contact.RESTITUTION_THRESHOLD
 
 

@@ -72,7 +72,7 @@ def test_what_is_varied_for_which_stage(made):
         ("fig15", [Variation.TOLERANCES, Variation.GRID, *[Variation.ROUNDING] * 4]),
     ):
         base = made[name].run()
-        found = list(variations(name, made[name], base))
+        found = list(variations(made[name], base))
         assert [kind for kind, _ in found] == kinds
         for _, data in found:
             assert {k: v.shape for k, v in data.items()} == {k: v.shape for k, v in base.items()}
@@ -100,7 +100,7 @@ def test_a_known_sensitivity():
 
     stage = Computation(study, {"restitution": 0.75, "samples": 11}, {})
     found = sensitivity(
-        "any", stage, lambda base, data: {k: float(np.abs(data[k] - base[k]).max()) for k in base}
+        stage, lambda base, data: {k: float(np.abs(data[k] - base[k]).max()) for k in base}
     )
     assert found == {
         "x": {Variation.GRID: 0.0, Variation.ROUNDING: 2 * 2.0**-53},

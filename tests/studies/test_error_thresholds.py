@@ -9,7 +9,7 @@ from scipy.optimize import brentq, fsolve
 
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.impacts.damping import damping_ratio
-from bouncing_ball.impacts.permanent_contact import permanent_contact_frequency_ratios
+from bouncing_ball.impacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.contact_model import ContactModel
@@ -134,8 +134,8 @@ def test_one_percent_permanent_contact(described):
     )
     ratio = float(data.error_threshold.squeeze())
     assert ratio == pytest.approx(9.81177, abs=5e-6)
-    root = float(permanent_contact_frequency_ratios(0.99, damping_ratio(0.65))[1])
-    assert ratio == pytest.approx(root, rel=1e-12)
+    threshold = permanent_contact_threshold(ratio, damping_ratio(0.65))
+    assert threshold == pytest.approx(0.99, rel=1e-12)
     assert data.threshold_amplitude.dims == ("frequency_ratio",)
 
 

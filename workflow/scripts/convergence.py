@@ -42,7 +42,7 @@ with logged(snakemake) as lines:
                 found["picture"] = compare_pictures(drawn["base"], again, budget).rms
             return found
 
-        for variable, row in sensitivity(name, computation, measure).items():
+        for variable, row in sensitivity(computation, measure).items():
             cells = [f"{row[kind]:.1e}" if kind in row else "" for kind in Variation]
             rows.append([name, variable, *cells])
         lines.append(name)

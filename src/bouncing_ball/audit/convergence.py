@@ -37,23 +37,18 @@ class Variation(StrEnum):
 
 
 class Computation(NamedTuple):
-    """How a dataset is made: ``study(parameters, *settings)``."""
+    """How a dataset is made: ``study(parameters, *settings)``, and as its stage says
+    whether a finer grid holds the old one."""
 
     study: Callable[..., xr.Dataset]
     parameters: Parameters
     settings: Parameters
+    nested: bool = True
 
     def run(self) -> xr.Dataset:
         """The dataset."""
         return self.study(self.parameters, *self.settings.values())
 
-
-# A cycle is split at the release, with half of the samples on either side, so
-# that a finer cycle has none of the old times. Each sample is the orbit's
-# formula at its own time, and other samples change nothing about it. Other
-# samples of the formulas are other parameters, and steps from sample to sample,
-# of which some evidence consists, are other steps. More random orbits are others.
-_NOT_NESTED = ("fig07", "fig12", "formulas", "evidence", "ext_orders", "explorer")
 
 # Sizes that become 2N - 1.
 _SIZES = ("samples", "points")
@@ -76,8 +71,9 @@ def _computation(stage: Stage, run: Parameters) -> Computation:
     if stage.reads:
         given = {"printed": run["printed"]}
         config = {key: value for key, value in run.items() if key not in ("printed", "ledger")}
-        return Computation(partial(_from_scratch, stage, **given), config, {})
-    return Computation(load(stage.study), stage.parameters(run), stage.settings(run))
+        return Computation(partial(_from_scratch, stage, **given), config, {}, stage.nested)
+    settings = stage.settings(run)
+    return Computation(load(stage.study), stage.parameters(run), settings, stage.nested)
 
 
 def computations(run: Parameters) -> dict[str, Computation]:
@@ -175,9 +171,7 @@ def on_the_old_grid(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
     return thinned.assign_coords({name: coarse[name] for name in counted})
 
 
-def variations(
-    name: str, made: Computation, base: xr.Dataset
-) -> Iterator[tuple[Variation, xr.Dataset]]:
+def variations(made: Computation, base: xr.Dataset) -> Iterator[tuple[Variation, xr.Dataset]]:
     """The datasets of a stage under each variation, on the grid of its own ``base``."""
     # Among the settings of a stage, or in the whole configuration.
     if "continuation" in made.settings:
@@ -187,7 +181,7 @@ def variations(
         tight = {**made.parameters, "continuation": tighter(made.parameters["continuation"])}
         yield Variation.TOLERANCES, made._replace(parameters=tight).run()
     fine = finer_grid(made.parameters)
-    if name not in _NOT_NESTED and fine != made.parameters:
+    if made.nested and fine != made.parameters:
         yield Variation.GRID, on_the_old_grid(made._replace(parameters=fine).run(), base)
     for ulps in ULPS:
         other = other_rounding(made.parameters, ulps)
@@ -195,21 +189,19 @@ def variations(
 
 
 def sensitivity(
-    name: str, made: Computation, measure: Callable[[xr.Dataset, xr.Dataset], Mapping[str, float]]
+    made: Computation, measure: Callable[[xr.Dataset, xr.Dataset], Mapping[str, float]]
 ) -> dict[str, dict[Variation, float]]:
     """Largest change of each variable of a stage, by variation.
 
     Parameters
     ----------
-    name : str
-        Of the figure or table.
     made : Computation
     measure : callable
         The change of each variable between two datasets.
     """
     base = made.run()
     largest: dict[str, dict[Variation, float]] = {}
-    for variation, data in variations(name, made, base):
+    for variation, data in variations(made, base):
         for variable, change in measure(base, data).items():
             row = largest.setdefault(variable, {})
             row[variation] = max(change, row.get(variation, 0.0))

@@ -232,7 +232,8 @@ def _choose(
     zeta = loss(given, release)
     if zeta is None:
         raise ModelError(
-            "damping needs stiffness; to choose a contact give its restitution instead"
+            "stiffness is missing, which damping needs; to choose a contact, give its restitution "
+            "instead"
         )
     r = float(Contact(1.0, zeta, release).restitution)
     index = n or _lowest_stable(r, table.amplitude)

@@ -28,11 +28,6 @@ def asked(args: argparse.Namespace) -> Design:
     return design(**{name: getattr(args, name) for name in names})
 
 
-def answer(found: Design) -> Answer:
-    """All of it as plain values, what is not finite as null."""
-    return _plain(found)
-
-
 def plot(found: Design, path: Path) -> None:
     """Draw the page to print.
 
@@ -55,13 +50,14 @@ def plot(found: Design, path: Path) -> None:
             raise ModelError(f"{path} cannot be written: {error.strerror}") from None
 
 
-def _plain(value: Any) -> Any:
+def answer(value: Any) -> Any:
+    """A dataclass, and all in it, as plain values; what is not finite is null."""
     if is_dataclass(value) and not isinstance(value, type):
-        return {f.name: _plain(getattr(value, f.name)) for f in fields(value)}
+        return {f.name: answer(getattr(value, f.name)) for f in fields(value)}
     if isinstance(value, dict):
-        return {str(key): _plain(each) for key, each in value.items()}
+        return {str(key): answer(each) for key, each in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(each) for each in value]
+        return [answer(each) for each in value]
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     return str(value) if isinstance(value, str) else value

@@ -37,21 +37,16 @@ def tolerance_file(given: str | None, record: Path) -> Path:
 def _compare(args: argparse.Namespace) -> tuple[list[str], int]:
     """Lines to print and the exit status, with the reports written."""
     # Imported here, so that --help and a mistyped argument need none of it.
-    from bouncing_ball.record.diff.folders import compare_folders
-    from bouncing_ball.record.diff.outcome import status
-    from bouncing_ball.record.diff.report_terminal import to_terminal
-    from bouncing_ball.record.diff.reports import write_reports
-    from bouncing_ball.record.diff.tolerance_file import read_tolerances
+    from bouncing_ball.record.diff.reports import compare_and_report
     from bouncing_ball.record.reading import printable
 
     record, results = Path(args.record), Path(args.results)
     budgets = tolerance_file(args.tolerances, record)
-    comparison = compare_folders(record, results, read_tolerances(budgets), args.artifacts)
-    write_reports(comparison, json=args.json, markdown=args.markdown, html=args.html)
+    reports = {name: getattr(args, name) for name in ("json", "markdown", "html")}
+    table, status = compare_and_report(record, results, budgets, args.artifacts, **reports)
     if budgets.is_relative_to(Path.cwd()):
         budgets = budgets.relative_to(Path.cwd())
-    lines = [f"Budgets: {printable(budgets)}", *to_terminal(comparison).splitlines()]
-    return lines, status(comparison.outcome)
+    return [f"Budgets: {printable(budgets)}", *table.splitlines()], status
 
 
 def run(args: argparse.Namespace) -> NoReturn:

@@ -10,6 +10,7 @@ from typing import Any
 
 from bouncing_ball.configuration.conformity import check_schema, dotted
 from bouncing_ball.configuration.schema import configuration_schema
+from bouncing_ball.configuration.stages import STAGES
 from bouncing_ball.configuration.yaml_file import ConfigurationError
 
 
@@ -106,12 +107,10 @@ def check_orbits(config: Mapping[str, Any]) -> None:
     from bouncing_ball.impacts.spring_damper import Contact
     from bouncing_ball.orbits.contact_model import ContactModel
 
-    for section, name in (
-        ("figures", "fig07"),
-        ("figures", "fig12"),
-        ("extensions", "ext_instant"),
-    ):
-        part = config[section][name]
+    for stage in STAGES.values():
+        if not stage.one_motion:
+            continue
+        part = stage.parameters(config)
         ratios = part["frequency_ratio"]
         for ratio in ratios if isinstance(ratios, list) else [ratios]:
             contact = Contact.from_restitution(part["restitution"], ratio, config["release"])
@@ -119,7 +118,7 @@ def check_orbits(config: Mapping[str, Any]) -> None:
                 ContactModel(contact).require_admissible(part["n"], part["amplitude"])
             except ValueError as error:
                 raise ConfigurationError(
-                    f"{section}.{name}.frequency_ratio = {ratio}: {error}"
+                    f"{stage.section}.frequency_ratio = {ratio}: {error}"
                 ) from None
 
 

@@ -50,6 +50,10 @@ class Stage:
     """Whether it shows orbits or bifurcations, which other routes must confirm."""
     evidence: bool = False
     """Whether statements of the paper in words are decided by it."""
+    one_motion: bool = False
+    """Whether the motion on one orbit is drawn for each ϖ, which so must be the ball's own."""
+    nested: bool = True
+    """Whether twice as many samples hold the old ones, so that the convergence study tries them."""
 
     @property
     def module(self) -> str:
@@ -107,6 +111,7 @@ def _figure(
     *,
     cross_checked: bool = False,
     evidence: bool = False,
+    one_motion: bool = False,
 ) -> Stage:
     name = f"fig{number:02d}"
     return Stage(
@@ -119,6 +124,10 @@ def _figure(
         arguments,
         cross_checked=cross_checked,
         evidence=evidence,
+        one_motion=one_motion,
+        # A cycle is split at the release, with half of the samples on either side, so
+        # that a finer cycle has none of the old times.
+        nested=not one_motion,
     )
 
 
@@ -130,6 +139,8 @@ def _corrected(
     *,
     kind: Kind = Kind.EXTENSION,
     tabulated: bool = False,
+    one_motion: bool = False,
+    nested: bool = True,
 ) -> Stage:
     """An extension about the corrected restitution model."""
     return Stage(
@@ -141,6 +152,8 @@ def _corrected(
         keys,
         ("release",),
         tabulated=tabulated,
+        one_motion=one_motion,
+        nested=nested,
     )
 
 
@@ -187,6 +200,7 @@ _MODELS: tuple[Stage, ...] = (
         "n restitution amplitude frequency_ratio:ratio samples",
         ("release",),
         cross_checked=True,
+        one_motion=True,
     ),
     _figure(
         8,
@@ -229,6 +243,7 @@ _MODELS: tuple[Stage, ...] = (
         "n restitution amplitude frequency_ratio:six_ratios samples",
         ("release",),
         cross_checked=True,
+        one_motion=True,
     ),
     _figure(
         13,
@@ -330,6 +345,7 @@ _MODELS: tuple[Stage, ...] = (
         "Flights before and after a contact meet at the centroid of its force",
         "meeting_flights",
         "n restitution amplitude frequency_ratio:ratio samples",
+        one_motion=True,
     ),
     _corrected(
         "error_law",
@@ -343,6 +359,7 @@ _MODELS: tuple[Stage, ...] = (
         "Order of convergence of the restitution model and of the corrected one",
         "orders",
         "n restitution:lossy_restitution amplitude frequency_ratio:span random:random_orbits",
+        nested=False,  # more random orbits are others
     ),
     _corrected(
         "validity",
@@ -392,6 +409,7 @@ _EXPLORER = Stage(
     "studies.reference_orbits.reference_orbits",
     "extensions.explorer",
     "frequency_ratio:span seed",
+    nested=False,
 )
 
 _AUDIT = (
@@ -401,6 +419,7 @@ _AUDIT = (
         "The printed formulas against a second computation",
         "audit.formulas.formulas",
         "studies.formulas",
+        nested=False,  # other random parameters
     ),
     Stage(
         "forensics",
@@ -425,6 +444,7 @@ _AUDIT = (
         "audit.evidence.evidence",
         "studies.evidence",
         reads=tuple(stage.name for stage in _MODELS if stage.evidence),
+        nested=False,  # some of it are steps from sample to sample
     ),
     # Reads what the ledger names.
     Stage(

@@ -78,13 +78,8 @@ class BranchPoint(NamedTuple):
         return np.arctan2(self.y, self.x)
 
     @property
-    def d_amplitude(self) -> np.ndarray:
-        """dΛ/dε; dΛ/dD is ϖ√(1 - ζ²) times as much."""
-        return self.fold / self.amplitude
-
-    @property
     def fold(self) -> np.ndarray:
-        """½ d(Λ²)/dε = X dX/dε + Y dY/dε, zero at the saddle-node."""
+        """½ d(Λ²)/dε = X dX/dε + Y dY/dε = Λ dΛ/dε, zero at the saddle-node."""
         return self.x * self.d_x + self.y * self.d_y
 
 

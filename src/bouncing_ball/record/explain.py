@@ -16,7 +16,7 @@ from bouncing_ball.record.provenance import (
     PREFIX,
     Provenance,
     ProvenanceError,
-    dotted,
+    flattened,
     lock_digest,
     read_mapping,
     versions,
@@ -182,7 +182,7 @@ def explain(path: Path) -> dict[str, Any]:
         "commit": made.commit,
         "checked_out": checked_out,
         "dirty": made.dirty,
-        "configuration": dotted(_mapping(made.configuration)),
+        "configuration": flattened(_mapping(made.configuration)),
         "parameters": {"sha256": made.parameters, "values": _parameters(path, made, repository)},
         "sources": made.sources,
         "lock": {

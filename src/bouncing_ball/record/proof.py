@@ -25,8 +25,8 @@ from bouncing_ball.record.provenance import (
     LOCK,
     Provenance,
     ProvenanceError,
-    dotted,
     file_digest,
+    flattened,
     made_otherwise,
     read_mapping,
 )
@@ -81,7 +81,7 @@ def differences(made: Provenance, now: Provenance) -> list[str]:
     found = []
     if made.dirty != "no":
         found.append("the tree was dirty" if made.dirty == "yes" else "the commit is unknown")
-    if changed := dotted(read_mapping(made.configuration)):
+    if changed := flattened(read_mapping(made.configuration)):
         found.append(f"configuration with another {', '.join(sorted(changed))}")
     return found + made_otherwise(made, now)
 

@@ -107,7 +107,7 @@ def _is_of_its_form(name: str, value: str) -> bool:
     except ValueError:
         return False
     if name == "configuration":
-        return all(re.fullmatch(r"[\w.-]{1,200}", key, re.ASCII) for key in dotted(mapping))
+        return all(re.fullmatch(r"[\w.-]{1,200}", key, re.ASCII) for key in flattened(mapping))
     return all(
         isinstance(part, str) and re.fullmatch(form, part, re.ASCII)
         for item in mapping.items()
@@ -161,18 +161,18 @@ def made_otherwise(record: Provenance, new: Provenance) -> list[str]:
     return found
 
 
-def dotted(mapping: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+def flattened(mapping: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
     """Nested values by their keys in full.
 
     Examples
     --------
-    >>> dotted({"release": "force", "figures": {"fig11": {"restitution": 0.7}}})
+    >>> flattened({"release": "force", "figures": {"fig11": {"restitution": 0.7}}})
     {'release': 'force', 'figures.fig11.restitution': 0.7}
     """
     found: dict[str, Any] = {}
     for key, value in mapping.items():
         found |= (
-            dotted(value, f"{prefix}{key}.")
+            flattened(value, f"{prefix}{key}.")
             if isinstance(value, Mapping)
             else {f"{prefix}{key}": value}
         )

@@ -102,7 +102,7 @@ def test_every_variation_is_within_budget(name, rules):
     stage = computations(config | {"printed": {}})[name]
     base = stage.run()
     seen = 0
-    for kind, data in variations(name, stage, base):
+    for kind, data in variations(stage, base):
         for result in compare_datasets(name, base, data, rules):
             # The study moves r itself, a parameter, which is exact.
             if result.name != "restitution":

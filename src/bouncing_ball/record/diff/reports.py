@@ -1,9 +1,34 @@
-"""The reports of a comparison, as files."""
+"""A comparison and its reports."""
 
+from collections.abc import Collection
 from pathlib import Path
 
 from bouncing_ball.datasets.files import write_text
-from bouncing_ball.record.diff.folders import Comparison
+from bouncing_ball.record.diff.folders import Comparison, compare_folders
+from bouncing_ball.record.diff.outcome import status
+from bouncing_ball.record.diff.report_terminal import to_terminal
+from bouncing_ball.record.diff.tolerance_file import read_tolerances
+
+
+def compare_and_report(
+    record: Path,
+    results: Path,
+    tolerances: str | Path,
+    only: Collection[str] = (),
+    **reports: str | Path | None,
+) -> tuple[str, int]:
+    """The short table of a comparison and its exit status, with the reports written.
+
+    ``reports`` are those of :func:`write_reports`, ``only`` the artifacts compared.
+
+    Raises
+    ------
+    ComparisonError, ConfigurationError
+        If the folders cannot be compared, or the tolerances are wrong.
+    """
+    comparison = compare_folders(record, results, read_tolerances(tolerances), only)
+    write_reports(comparison, **reports)
+    return to_terminal(comparison), status(comparison.outcome)
 
 
 def write_reports(

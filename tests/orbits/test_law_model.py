@@ -101,3 +101,13 @@ def test_what_is_refused():
         law_of_impact(HuntCrossley, 1e-6, 0.1, 1.0)
     with pytest.raises(ModelError, match="no closed form"):
         LawModel(Tsuji(1e3, 0.3)).nearest(None)
+
+
+def test_far_above_the_fold_orbits_are_walked_to_or_said_not_to_be_found():
+    model = LawModel(Tsuji(1e3, 0.3))
+    orbit = model.require_orbit(20, 300.0, Side.UNSTABLE)
+    # The contact is one of the collocation's; the equations hold to rounding of z ≈ Λ.
+    assert np.abs(orbit.residual()).max() < 1e-12 * 300
+    assert orbit.trace_and_determinant()[0] > 2
+    with pytest.raises(NoOrbitError, match="none was found, and there may be one"):
+        model.require_orbit(20, 1000.0, Side.UNSTABLE)

@@ -81,10 +81,10 @@ def scheme(count: int, root: int) -> Scheme:
     rate, path = np.empty((count, count)), np.empty((count, count))
     for i in range(half):
         at = x[i] * points
-        basis = np.polynomial.legendre.legvander(2 * at - 1, count - 1) @ spectrum
+        basis = np.polynomial.legendre.legvander(2 * at - 1, count - 1)
         push = x[i] * weights * share_rate(at, root)
-        rate[i] = push @ basis
-        path[i] = (push * (s[i] - share(at, root))) @ basis
+        rate[i] = (push @ basis) @ spectrum
+        path[i] = ((push * (s[i] - share(at, root))) @ basis) @ spectrum
     # Counted back from the end, the same with the sign of p′ turned.
     rate[half:] = -rate[:half][::-1, ::-1]
     path[half:] = path[:half][::-1, ::-1]

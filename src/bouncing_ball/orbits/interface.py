@@ -88,6 +88,7 @@ class Absence(StrEnum):
     BELOW_SADDLE_NODE = "below the saddle-node"
     NO_OTHER_SIDE = "the branch has no saddle-node, and so no other side"
     NOT_REACHED = "this side of the branch does not reach this Λ"
+    NOT_FOUND = "none was found, and there may be one"
 
 
 def check_index(n: ArrayLike) -> None:

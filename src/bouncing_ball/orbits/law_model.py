@@ -45,6 +45,8 @@ _ABOVE = 1.3
 _STEPS = StepControl(initial=0.05, smallest=1e-3, largest=0.4, max_angle=0.25)
 _POINTS = 300
 _FARTHER = 4.0
+# Farther above the fold than this there are steps in Λ, of at most so much in ln Λ.
+_WALK, _STRIDE = 2.0, 0.2
 _FOLD, _FLIP, _HERE = "saddle-node", "period doubling", "this amplitude"
 
 
@@ -89,6 +91,21 @@ def _closed(n: np.ndarray, law: ContactLaw, guess: np.ndarray) -> np.ndarray:
         result[active[done]] = y[active[done]]
         active = active[~done & np.isfinite(size)]
     return result
+
+
+def _walked(n: int, law: ContactLaw, first, level: float, lam: float, count: int) -> np.ndarray:
+    """From a point at one Λ to that at another: far from the fold φ goes as 1/Λ; or NaN."""
+    index, own = np.array([float(n)]), law.flat((1,))
+    before = now = np.array(first)
+    for high in level * (lam / level) ** (np.arange(1, count + 1) / count):
+        gained = 1 / high - 1 / now[2]
+        past = 1 / now[2] - 1 / before[2]
+        slope = (now - before) / past if past else np.zeros(3)
+        guess = np.append((now + slope * gained)[:2], high)
+        before, now = now, _closed(index, own, guess[np.newaxis])[0]
+        if np.any(np.isnan(now)):
+            break
+    return now
 
 
 @dataclass(frozen=True, repr=False)
@@ -177,7 +194,24 @@ class LawModel(ImpactModel):
             for part in [rows] if not law.shape else rows[:, np.newaxis]:
                 if part.size:
                     own = law.take(part[0])
-                    y[part] = self._on_branch(int(family), own, lam[part], side)
+                    y[part] = self._beyond(int(family), own, lam[part], side)
+        return y
+
+    def _beyond(self, n: int, law: ContactLaw, lam: np.ndarray, side: Side) -> np.ndarray:
+        """The points at Λ: next to the fold along the branch, farther in steps from there."""
+        y, level = (
+            np.full((len(lam), 3), np.nan),
+            _WALK * float(LawModel(law).saddle_node(n).amplitude),
+        )
+        near = lam <= level
+        if near.any():
+            y[near] = self._on_branch(n, law, lam[near], side)
+        if near.all():
+            return y
+        start = LawModel(law).orbit(n, level, side)
+        for k in np.flatnonzero(~near):
+            count = int(np.ceil(np.log(lam[k] / level) / _STRIDE))
+            y[k] = _walked(n, law, LawSystem(n, law).point(start), level, lam[k], count)
         return y
 
     def _on_branch(self, n: int, law: ContactLaw, lam: np.ndarray, side: Side) -> np.ndarray:
@@ -235,7 +269,7 @@ class LawModel(ImpactModel):
         """Why :meth:`orbit` finds none."""
         missing = ~self.orbit(n, amplitude, side).exists
         below = np.asarray(amplitude) < self.saddle_node(n).amplitude
-        why = np.where(below, Absence.BELOW_SADDLE_NODE, Absence.NOT_REACHED)
+        why = np.where(below, Absence.BELOW_SADDLE_NODE, Absence.NOT_FOUND)
         return np.where(missing, why, Absence.NONE)
 
     def saddle_node(self, n: ArrayLike) -> LawOrbit:

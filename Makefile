@@ -54,9 +54,10 @@ PYTEST := OMP_NUM_THREADS=1 $(BIN)/python -m pytest --numprocesses logical --max
 test: $(SETUP)
 	$(PYTEST)
 
-# No run of the pipeline, and nothing that takes a second.
+# What computes: no run of the pipeline, no comparison with the record, no picture, and
+# nothing that takes seconds.
 quick: $(SETUP)
-	$(PYTEST) --ignore tests/workflow -m "not long and not slow and not cluster"
+	$(PYTEST) $(addprefix --ignore=tests/,workflow record render) -m "not long and not slow and not cluster"
 
 # The atlas on a Slurm of its own: mostly waiting, and skipped without one.
 test-cluster: $(SETUP)

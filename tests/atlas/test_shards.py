@@ -52,6 +52,7 @@ def test_the_shards_do_not_change_a_byte(small, atlas, limits):
 
 
 # A tile has 8 nodes: a tile in pieces, and two tiles at a time.
+@pytest.mark.slow
 @pytest.mark.parametrize("block", [5, 17])
 def test_the_blocks_do_not_change_an_answer(small, atlas, limits, block, monkeypatch):
     monkeypatch.setattr(shards, "BLOCK", block)

@@ -81,6 +81,7 @@ def test_loads_of_an_elastic_contact_follow_from_energy():
     assert one.peak_force_over_weight == pytest.approx(one.peak_force / (0.02 * 9.80665), rel=1e-14)
 
 
+@pytest.mark.slow
 def test_loads_of_a_damped_contact_by_a_fine_sample():
     found = design(**STEEL, restitution=0.3, n=1, release="force", tolerance=0.5, gravity="0.3 g")
     contact = found.case.contact
@@ -164,6 +165,7 @@ HERTZ = {
 }
 
 
+@pytest.mark.slow
 def test_an_elastic_hertz_contact_has_restitution_one_in_spite_of_rounding():
     # The interpolated signature of this one is 1 + 3·10⁻¹⁵.
     found = design(

@@ -52,6 +52,9 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
     # file is locked, whose closing then waits for ever; files are written whole
     # or not at all, so nothing is lost.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+    # With every dataset xarray asks whether its values are quantities of pint, and to import
+    # pint takes longer than to read. Those of a job are plain numbers.
+    without_pint = sys.modules.setdefault("pint", None) is None  # type: ignore[arg-type]
     name = "/".join([snakemake.rule, *snakemake.wildcards])
     lines: list[str] = []
     log = Path(snakemake.log[0])
@@ -68,6 +71,9 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
     except Exception as error:
         kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
         sys.exit(f"{name}: {kind}{' '.join(str(error).split())} ({_details(log)})")
+    finally:
+        if without_pint:
+            del sys.modules["pint"]
 
 
 def _details(log: Path) -> str:

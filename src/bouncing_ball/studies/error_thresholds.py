@@ -17,11 +17,12 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.impacts.permanent_contact import RESTITUTION_THRESHOLD
+from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits.contact_model import ContactModel
 from bouncing_ball.orbits.interface import OBSERVABLES, ImpactModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.studies.crossings import last_crossing
-from bouncing_ball.studies.parameters import contact, grid
+from bouncing_ball.studies.parameters import grid
 from bouncing_ball.studies.permanent_contact_curve import permanent_contact
 
 
@@ -87,7 +88,7 @@ def relative_error(
     --------
     Without damping, Λ_SD = 1 - 1/ϖ² above the resonance:
 
-    >>> stiff = ContactModel(contact(np.array([2.0]), 1.0, "displacement"))
+    >>> stiff = ContactModel(Contact.from_restitution(1.0, np.array([2.0])))
     >>> relative_error(Quantity.PERMANENT_CONTACT, stiff, RestitutionModel(1.0), 1, 1.0).tolist()
     [0.25]
     """
@@ -177,7 +178,7 @@ def error_thresholds(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     for quantity in quantities:
 
         def error(ratio, quantity=quantity):
-            exact = ContactModel(contact(ratio, r, release))
+            exact = ContactModel(Contact.from_restitution(r, ratio, release))
             return relative_error(quantity, exact, simple, n, lam)
 
         errors.append(error(ratios))
@@ -212,7 +213,8 @@ def height_error(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         },
         release,
     )
-    orbit = ContactModel(contact(dataset.frequency_ratio.values, r, release)).orbit(n, lam)
+    contact = Contact.from_restitution(r, dataset.frequency_ratio.values, release)
+    orbit = ContactModel(contact).orbit(n, lam)
     for name, values in (
         ("max_height", orbit.max_height),
         ("phase", orbit.phase),

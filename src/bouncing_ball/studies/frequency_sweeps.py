@@ -7,8 +7,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.impacts.damping import damping_ratio
-from bouncing_ball.impacts.spring_damper import Contact, Release
+from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.limits import orbit_at
@@ -23,8 +22,8 @@ def sweep(
     n: int, restitution: np.ndarray, amplitude: np.ndarray, ratios: np.ndarray, release: str
 ) -> ContactOrbit:
     """Orbits on the stable side, shape (cases, ϖ); NaN where there is none."""
-    zeta = damping_ratio(restitution)[:, np.newaxis]
-    return orbit_at(Contact(ratios, zeta, Release(release)), n, amplitude[:, np.newaxis])
+    contact = Contact.from_restitution(restitution[:, np.newaxis], ratios, release)
+    return orbit_at(contact, n, amplitude[:, np.newaxis])
 
 
 def with_round_values(ratios: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -14,7 +14,7 @@ from bouncing_ball.orbits.basins import ELSEWHERE, PERMANENT, Destinations, dest
 from bouncing_ball.orbits.contact_model import ContactModel
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.long_contact import joining_ratio, stable_window, stiff_limit
-from bouncing_ball.studies.parameters import contact, grid
+from bouncing_ball.studies.parameters import grid
 
 # Contacts between which the families part, for all r from 0.3 on.
 _PARTING = (1.9, 4.0)
@@ -112,7 +112,8 @@ def basins(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     each axis, at the middles of equal cells, and ``impacts``, after which a ball is
     given up: by then rounding does not yet decide where a wandering ball goes.
     """
-    model = ContactModel(contact(parameters["frequency_ratio"], parameters["restitution"], release))
+    r, ratio = parameters["restitution"], parameters["frequency_ratio"]
+    model = ContactModel(Contact.from_restitution(r, ratio, release))
     count, amplitudes = parameters["starts"], parameters["amplitude"]
     middle = (np.arange(count) + 0.5) / count
     phase, speed = 2 * np.pi * middle - np.pi, parameters["velocity_max"] * middle

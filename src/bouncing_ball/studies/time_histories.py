@@ -7,10 +7,10 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.datasets.variables import describe
+from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.contact_model import ContactModel
 from bouncing_ball.orbits.interface import Orbit
-from bouncing_ball.studies.parameters import contact
 
 
 def _cycle(orbit: Orbit, samples: int) -> tuple[np.ndarray, ...]:
@@ -37,7 +37,8 @@ def contact_history(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         If the orbit does not exist or is inadmissible.
     """
     n, lam = parameters["n"], parameters["amplitude"]
-    model = ContactModel(contact(parameters["frequency_ratio"], parameters["restitution"], release))
+    r, ratio = parameters["restitution"], parameters["frequency_ratio"]
+    model = ContactModel(Contact.from_restitution(r, ratio, release))
     orbit = model.require_admissible(n, lam)
     time, ball, velocity, touching = _cycle(orbit, parameters["samples"])
     return describe(
@@ -76,7 +77,7 @@ def both_histories(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         "bounce_velocity": [],
     }
     for ratio in ratios:
-        orbit = ContactModel(contact(ratio, r, release)).require_admissible(n, lam)
+        orbit = ContactModel(Contact.from_restitution(r, ratio, release)).require_admissible(n, lam)
         time, ball, _, touching = _cycle(orbit, parameters["samples"])
         for name, values in zip(columns, (time + orbit.phase, ball, touching), strict=True):
             columns[name].append(values)

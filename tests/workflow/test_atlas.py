@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 import xarray as xr
 import yaml
-from zarr.storage import ZipStore
 
 from bouncing_ball.atlas.plan import Plan
 from bouncing_ball.atlas.shards import shard
@@ -89,6 +88,9 @@ def test_the_files_hold_what_the_package_computes(resumed):
 
 
 def test_the_atlas_as_zarr(resumed):
+    # An extra, that the other tests here do without.
+    from zarr.storage import ZipStore
+
     tree, *_ = resumed
     tree.run("--cores", "1", *ATLAS[:3], "atlas_zarr")
     folder = tree.path / "results/atlas"

@@ -6,7 +6,8 @@ import re
 from pathlib import Path
 from typing import Any, NoReturn
 
-from bouncing_ball.cli.output import one_line, print_lines
+from bouncing_ball.cli.output import print_lines
+from bouncing_ball.record.reading import printable
 
 # Of frequency ratio and amplitude: beyond, their squares leave no digits.
 _LARGEST = 1e8
@@ -29,7 +30,7 @@ class Parser(argparse.ArgumentParser):
         self._negative_number_matcher = re.compile(r"-\.?\d")
 
     def error(self, message: str) -> NoReturn:
-        self.exit(2, f"{self.prog}: {one_line(message)}\n")
+        self.exit(2, f"{self.prog}: {printable(message, None)}\n")
 
     def format_help(self) -> str:
         if self.laws is not None:

@@ -10,6 +10,8 @@ import sys
 from contextlib import suppress
 from typing import Any, NoReturn
 
+from bouncing_ball.record.reading import printable
+
 
 def prepare() -> None:
     """Escape what the encoding of standard output has no character for."""
@@ -17,21 +19,10 @@ def prepare() -> None:
         sys.stdout.reconfigure(errors="backslashreplace")
 
 
-def one_line(message: str) -> str:
-    r"""A message with what is not printable escaped: it may quote anything.
-
-    Examples
-    --------
-    >>> one_line("unrecognized: Λ\n\x1b[31m")
-    'unrecognized: Λ\\n\\x1b[31m'
-    """
-    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in message)
-
-
 def fail(message: str, status: int) -> NoReturn:
     """One line on standard error and the exit status."""
     with suppress(OSError):
-        print(f"bouncing-ball: {one_line(message)}", file=sys.stderr, flush=True)
+        print(f"bouncing-ball: {printable(message, None)}", file=sys.stderr, flush=True)
     sys.exit(status)
 
 

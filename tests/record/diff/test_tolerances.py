@@ -125,8 +125,6 @@ def test_the_rule():
         ({"mode": Mode.CURVE, "budget": 1.0, "along": "t"}, "mode curve needs abscissa"),
         ({"mode": Mode.IGNORED, "scale": 1.0}, "mode ignored has no scale"),
         ({"mode": Mode.POINTWISE, "budget": 1.0, "along": "t"}, "mode pointwise has no along"),
-        ({"mode": Mode.POINTWISE, "budget": float("inf")}, "budget = inf must be a finite"),
-        ({"mode": Mode.POINTWISE, "budget": 1.0, "scale": 0.0}, "scale = 0.0 must be"),
     ],
 )
 def test_tolerances_that_make_no_sense(options, said, one_line):
@@ -146,7 +144,12 @@ MINIMAL = {
     [
         ({"variables": {"phase": {"mode": "close", "source": "x"}}}, "variables.phase.mode"),
         ({"variables": {"phase": {"mode": "exact"}}}, "missing key variables.phase.source"),
-        ({"variables": {"phase": {"mode": "exact", "source": " "}}}, "source must say"),
+        ({"variables": {"phase": {"mode": "exact", "source": " "}}}, "source = ' ' must be where"),
+        ({"pictures": {"budget": float("inf"), "source": "x"}}, "budget = inf must be a finite"),
+        (
+            {"variables": {"phase": MINIMAL["variables"]["phase"] | {"scale": 0.0}}},
+            "variables.phase.scale = 0.0 must be greater than 0",
+        ),
         ({"variables": {"phase": {"mode": "pointwise", "source": "x"}}}, "variables.phase: mode"),
         (
             {"variables": {"phase": {"mode": "exact", "source": "x", "budgte": 1}}},

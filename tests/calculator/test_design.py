@@ -248,7 +248,7 @@ def test_a_verdict_on_an_orbit_that_only_one_model_has():
             ModelError,
             "damping_ratio = 0.9999999",
         ),
-        ({"restitution": None, "damping": "5 N s/m", "stiffness": None}, ModelError, "needs stiff"),
+        ({"restitution": None, "damping": "5 N s/m", "stiffness": None}, ModelError, "missing"),
         ({"stiffness": 1e40}, ModelError, "ϖ = "),
         # Its square is beyond all numbers, or below them.
         ({"frequency": 1e300}, ModelError, "frequency = 1e+300 Hz is not between 1e-40 and 1e+40"),
@@ -261,6 +261,17 @@ def test_mistakes(change, kind, says):
     with pytest.raises(kind) as error:
         design(**{**STEEL, "restitution": 0.85, **change})
     assert says in str(error.value) and "\n" not in str(error.value)
+
+
+def test_the_orbit_of_a_choice_is_that_of_the_restitution_model():
+    # The softest contact with its saddle-node within 20 % has it only at a larger Λ.
+    found = design(
+        mass=1.0, gravity=1.0, angular_frequency=1.0, acceleration=3.118, restitution=0.614,
+        quantity="saddle_node", tolerance=0.2,
+    )  # fmt: skip
+    assert found.n == 4 and "of the 4-T orbit" in found.verdict
+    assert [one.exists for one in found.orbits if one.n == 4] == [False]
+    assert found.notes[0] == "at this Λ the contact that is chosen has no 4-T orbit"
 
 
 def test_a_tolerance_that_every_contact_meets_needs_no_frequency_ratio():

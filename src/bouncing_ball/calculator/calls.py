@@ -210,7 +210,7 @@ def design(
     found = families(case, n)
     one = judged(found)
     need = needed(quantity, epsilon, case.zeta, rule, one.n, table.amplitude)
-    return describe(case, found, need, assess(one, need, ratio), notes)
+    return describe(case, found, one, need, assess(one, need, ratio), notes)
 
 
 def _choose(
@@ -259,4 +259,7 @@ def _choose(
         else f"the error crosses {percent(tolerance)} for the last time at the frequency ratio "
         f"ϖ = {float(case.contact.frequency_ratio):.4g}",
     )
-    return describe(case, families(case, n), need, verdict, ())
+    found = families(case, n)
+    one = next((one for one in found if one.n == index), judged(found))
+    missed = f"at this Λ the contact that is chosen has no {index}-T orbit"
+    return describe(case, found, one, need, verdict, () if one.exists else (missed,))

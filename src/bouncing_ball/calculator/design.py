@@ -145,11 +145,16 @@ def _permanent_contact(case: Case) -> PermanentContact:
 
 
 def describe(
-    case: Case, found: tuple[Family, ...], need: Needed, verdict: Verdict, notes: Sequence[str]
+    case: Case,
+    found: tuple[Family, ...],
+    one: Family,
+    need: Needed,
+    verdict: Verdict,
+    notes: Sequence[str],
 ) -> Design:
-    """Everything about a contact that is known."""
+    """Everything about a contact that is known; `one` is the family of the verdict."""
     contact, table = case.contact, case.table
-    instant = case.instant(judged(found).n)
+    instant = case.instant(one.n)
     others = {str(rule): type(contact)(1.0, contact.damping_ratio, rule) for rule in Release}
     return Design(
         frequency_ratio=float(contact.frequency_ratio),
@@ -172,7 +177,7 @@ def describe(
         is_good_enough=verdict.is_good_enough,
         verdict=verdict.sentence,
         reason=verdict.reason,
-        notes=(*notes, *_notes(case, judged(found))),
+        notes=(*notes, *_notes(case, one)),
         case=case,
-        n=judged(found).n,
+        n=one.n,
     )

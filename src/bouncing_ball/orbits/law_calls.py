@@ -15,8 +15,8 @@ from bouncing_ball.impacts.laws.contact_law import ContactLaw
 from bouncing_ball.orbits.interface import Side
 from bouncing_ball.orbits.law_model import LawModel
 
-# Law and orbit in turn: the speed hardly depends on a law with the same r and D, and
-# each round gains two digits or more.
+# Law and orbit in turn: the speed hardly depends on a law with the same r and D, and the
+# secant through two rounds leaves little of that.
 _ROUNDS = 20
 _SETTLED = 1e-13
 
@@ -60,6 +60,7 @@ def law_at_orbit(
     """
     taken = np.asarray(duration, dtype=float)
     speed = np.full_like(taken, rigid_speed(n, restitution))
+    before = missed_before = np.full_like(taken, np.nan)
     for _ in range(_ROUNDS):
         law = law_of_impact(kind, restitution, taken, speed)
         model = LawModel(law)
@@ -67,9 +68,13 @@ def law_at_orbit(
         lost = np.flatnonzero(~np.atleast_1d(orbit.exists))
         if lost.size:
             LawModel(law.take(lost[0])).require_orbit(n, amplitude, side)
-        before, speed = speed, -orbit.relative_impact_velocity
-        if np.all(np.abs(speed - before) <= _SETTLED * speed):
+        missed = -orbit.relative_impact_velocity - speed
+        if np.all(np.abs(missed) <= _SETTLED * speed):
             return law
+        slope = np.full_like(taken, -1.0)
+        np.divide(missed - missed_before, speed - before, out=slope, where=speed != before)
+        before, missed_before = speed, missed
+        speed = speed - missed / np.where(np.abs(slope + 1) < 0.5, slope, -1.0)
     raise NoOrbitError(
         f"no {n}-T orbit at Λ = {amplitude:g} whose own impact has r = {restitution:g} and "
         f"D = {float(taken.flat[0]):g} was found for {kind.name}"

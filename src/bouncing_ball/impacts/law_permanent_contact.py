@@ -30,6 +30,8 @@ _ITERATIONS = 25
 # Last step of φ and Λ, their longest step, and the last coefficients over the largest:
 # the threshold's error falls twice as fast.
 _SETTLED, _LONGEST, _SPECTRUM = 1e-11, 0.3, 1e-5
+# Last coefficients of a solution from which a finer one may start.
+_SHOWN = 1e-2
 _TAIL = 3
 _TINY = 1e-300
 
@@ -99,9 +101,9 @@ def _equations(s: Scheme, law: ContactLaw, z: np.ndarray):
     return residual, jacobian, depths, u
 
 
-def _solved(s: Scheme, law: ContactLaw) -> np.ndarray | None:
-    """The unknowns, if Newton's method converges to a contact that is held."""
-    z, n = _start(s, law), len(s.node)
+def _solved(s: Scheme, law: ContactLaw, z: np.ndarray) -> np.ndarray | None:
+    """The unknowns, if Newton's method converges from z to a contact that is held."""
+    n = len(s.node)
     for _ in range(_ITERATIONS):
         residual, jacobian, depths, u = _equations(s, law, z)
         if not (np.all(np.isfinite(residual)) and np.all(np.isfinite(jacobian))):
@@ -116,6 +118,12 @@ def _solved(s: Scheme, law: ContactLaw) -> np.ndarray | None:
             held = np.all(depths > 0) and np.all(law.grip(depths, u) > 0)
             return z if held and z[-1] > 0 else None
     return None
+
+
+def _refined(s: Scheme, coarse: np.ndarray) -> np.ndarray:
+    """Unknowns on a finer level, from the Legendre coefficients and ends of a coarser one."""
+    push = np.polynomial.legendre.legval(2 * s.node - 1, coarse[:-4])
+    return np.concatenate([push, coarse[-4:]])
 
 
 def permanent_contact(law: ContactLaw) -> Threshold:
@@ -134,15 +142,23 @@ def permanent_contact(law: ContactLaw) -> Threshold:
     >>> float(round(permanent_contact(Linear(2.0, 0.5)).amplitude / np.sqrt(13), 12))
     0.25
     """
+    coarse: np.ndarray | None = None
     with np.errstate(all="ignore"):
         for count in _LEVELS:
             s = scheme(count, max(1, law.root // 2))
-            z = _solved(s, law)
+            # From the coarser solution, if it shows the contact already.
+            starts = [] if coarse is None else [_refined(s, coarse)]
+            for start in (*starts, _start(s, law)):
+                z = _solved(s, law, start)
+                if z is not None:
+                    break
             if z is None:
                 continue
-            heights = np.abs(s.spectrum @ z[:count])
-            if np.max(heights[-_TAIL:]) <= _SPECTRUM * np.max(heights):
+            legendre = s.spectrum @ z[:count]
+            tail = np.max(np.abs(legendre[-_TAIL:])) / np.max(np.abs(legendre))
+            if tail <= _SPECTRUM:
                 return Threshold(float(z[-1]), float(z[-2]))
+            coarse = np.append(legendre, z[count:]) if tail <= _SHOWN else None
     raise ModelError(
         f"no steady contact that just touches its release was found for {law.label}: "
         "weakly damped, it rings"

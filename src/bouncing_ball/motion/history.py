@@ -5,7 +5,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.impacts.laws.contact_law import ContactLaw
 from bouncing_ball.impacts.spring_damper import contact_flow
+from bouncing_ball.motion.contact_path import Starts, contact_path
 from bouncing_ball.motion.landing import Flight
 from bouncing_ball.motion.sequence import ImpactSequence, Status
 
@@ -31,7 +33,7 @@ def history(sequence: ImpactSequence, time: ArrayLike, ball: int | tuple[int, ..
     Parameters
     ----------
     sequence : ImpactSequence
-        From either model.
+        From any model.
     time : array_like
         In any order.
     ball : int or tuple of int
@@ -58,17 +60,7 @@ def history(sequence: ImpactSequence, time: ArrayLike, ball: int | tuple[int, ..
     since = t - starts[row]
     phase, duration = of(sequence.phase), of(sequence.contact_duration)
     touching = (since >= 0) & (since <= duration)
-    stay = np.where(touching, since, 0.0)
-    if sequence.contact is None:
-        gap = speed = np.zeros_like(t)
-    else:
-        omega, zeta = (
-            np.asarray(x)[index] if np.ndim(x) else x
-            for x in (sequence.contact.frequency_ratio, sequence.contact.damping_ratio)
-        )
-        start, rate = of(sequence.displacement), of(sequence.relative_velocity)
-        flow = contact_flow(stay, start, rate, phase, lam, omega, zeta)
-        gap, speed = flow.displacement, flow.velocity
+    gap, speed = _in_contact(sequence, index, touching, row, since)
     # Flights: after a permanent contact there is none.
     flying = ~touching & (since > 0)
     hang = np.where(flying, since - np.where(flying, duration, 0.0), 0.0)
@@ -85,3 +77,30 @@ def history(sequence: ImpactSequence, time: ArrayLike, ball: int | tuple[int, ..
         gap, speed = np.where(unknown, np.nan, gap), np.where(unknown, np.nan, speed)
     w, w_rate = lam * np.sin(phase + since), lam * np.cos(phase + since)
     return History(t, gap + w, speed + w_rate, w, gap, touching)
+
+
+def _in_contact(sequence: ImpactSequence, index, touching, row, since):
+    """δ and δ′ at the times of contact, and 0 else."""
+    out = np.zeros((2, *since.shape))
+    law: Any = sequence.contact
+    lam, impact, stay = float(sequence.amplitude[index]), row[touching], since[touching]
+
+    def of(table):
+        return table[(slice(None), *index)]
+
+    phase, start, rate = map(
+        of, (sequence.phase, sequence.displacement, sequence.relative_velocity)
+    )
+    if isinstance(law, ContactLaw):
+        starts = Starts(-start, -rate, phase, of(sequence.contact_duration))
+        depth, entry = contact_path(law[index] if law.shape else law, starts, lam, impact, stay)
+        out[:, touching] = -depth, -entry
+    elif law is not None:
+        omega, zeta = (
+            np.asarray(x)[index] if np.ndim(x) else x
+            for x in (law.frequency_ratio, law.damping_ratio)
+        )
+        at = start[impact], rate[impact], phase[impact]
+        flow = contact_flow(stay, *at, lam, omega, zeta)
+        out[:, touching] = flow.displacement, flow.velocity
+    return out

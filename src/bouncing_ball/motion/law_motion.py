@@ -364,3 +364,32 @@ def _joined(some: _Balls, more: _Balls, law: ContactLaw) -> _Balls:
     parts: Any = (np.concatenate(x) if np.ndim(x[0]) else x[0] for x in pairs)
     both = _Balls(*parts)
     return both._replace(law=law.take(both.place))
+
+
+def state_at(law: ContactLaw, touch: Touch, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """p and p′ of each ball at its own time after the start, in contact; NaN if not reached.
+
+    Examples
+    --------
+    >>> from bouncing_ball.impacts.laws.linear import Linear
+    >>> zero, one = np.zeros(1), np.ones(1)
+    >>> touch = Touch(zero, 1e3 * one, zero, zero)
+    >>> depth, rate = state_at(Linear(1e3, 0.0), touch, 5e-4 * np.pi * one)
+    >>> depth.round(5).tolist()
+    [1.0]
+    """
+    with np.errstate(all="ignore"):
+        balls = _begin(law, touch)
+        longest = _LONG * balls.length / balls.speed
+        balls = balls._replace(first=np.zeros_like(balls.first), step=longest)
+        out = np.stack([balls.depth, balls.rate])
+        for _ in range(_MOST):
+            left = time[balls.place] - balls.time
+            balls = balls.take(left > 0)._replace(last=np.zeros(np.count_nonzero(left > 0), bool))
+            if not balls.place.size:
+                return out[0], out[1]
+            short = balls._replace(step=np.minimum(balls.step, left[left > 0]))
+            balls, _ = _advanced(short, _along_time(short))
+            out[:, balls.place] = balls.depth, balls.rate
+    out[:, balls.place] = np.nan
+    return out[0], out[1]

@@ -1,7 +1,5 @@
 """Extension: Figures 8, 14 and 16 on contacts of other laws."""
 
-from itertools import cycle
-
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
@@ -16,15 +14,12 @@ from bouncing_ball.render.figures.style import (
     parameters,
 )
 
-# The linear contact, whose threshold is smooth, comes first.
-_SHAPES = ("", "o", "s", "^")
-
 
 def draw(data: xr.Dataset) -> Figure:
     """Phase against Λ, greatest height and permanent contact against π/D."""
     figure, panels = canvas(WIDE, 2.9, columns=3)
     branches, heights, held = np.ravel(panels)
-    for law, shape in zip(data["law"].values, cycle(_SHAPES), strict=False):
+    for law in data["law"].values:
         look, part = LAWS[str(law)], data.sel(law=law)
         for ratio in data.shown_ratio.values:
             one = part.sel(shown_ratio=ratio)
@@ -32,17 +27,8 @@ def draw(data: xr.Dataset) -> Figure:
             label = str(law) if ratio == data.shown_ratio.values[0] else None
             branches.plot(one.amplitude, one.phase / np.pi, linewidth=1.0, label=label, **look)
         heights.plot(data.duration_ratio, part.max_height, linewidth=1.0, **look)
-        # Between two samples that of a nonlinear contact goes up and down: no line.
-        drawn = look if not shape else {"color": look["color"], "linestyle": "none"}
-        held.plot(
-            data.duration_ratio,
-            part.threshold_amplitude,
-            linewidth=0.8,
-            marker=shape,
-            markersize=3.5,
-            markerfacecolor="none",
-            **drawn,
-        )
+        # Not drawn where no threshold was found: a hard Hunt-Crossley contact rings for long.
+        held.plot(data.duration_ratio, part.threshold_amplitude, linewidth=0.8, **look)
     rigid = {"color": RESTITUTION, "linewidth": 0.6}
     heights.axhline(float(data.restitution_max_height), **rigid)
     held.axhline(1.0, **rigid)

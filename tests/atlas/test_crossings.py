@@ -5,7 +5,7 @@ from bouncing_ball.atlas.crossings import LastCrossings
 from bouncing_ball.atlas.errors import MODELS, OF_ORBITS, orbit_errors
 from bouncing_ball.atlas.walk import walk
 from bouncing_ball.impacts.spring_damper import Contact
-from bouncing_ball.studies.error_thresholds import Status, thresholds
+from bouncing_ball.studies.error_thresholds import ThresholdStatus, thresholds
 from bouncing_ball.studies.model_errors import errors
 
 RATIOS = np.geomspace(1.0, 1e3, 61)
@@ -74,7 +74,7 @@ def direct(nodes, tolerances, ratios):
 
         known = np.nan_to_num(scanned[i, j], nan=np.inf)
         values, statuses = thresholds(error, tolerances, ratios, known)
-        always = [status is Status.ALWAYS_WITHIN for status in statuses]
+        always = [status is ThresholdStatus.ALWAYS_WITHIN for status in statuses]
         result[:, i, j] = np.where(always, ratios[0], np.where(np.isnan(values), np.inf, values))
     return result
 

@@ -17,7 +17,7 @@ from bouncing_ball.orbits.limits import orbit_at
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.studies.error_thresholds import (
     Quantity,
-    Status,
+    ThresholdStatus,
     error_thresholds,
     height_error,
     permanent_contact_error,
@@ -107,7 +107,7 @@ def test_one_percent_height_of_the_paper(described):
     )
     ratio = float(data.error_threshold.squeeze())
     assert ratio == pytest.approx(82.177, abs=5e-4)
-    assert data.threshold_status.values.tolist() == [[str(Status.FOUND)]]
+    assert data.threshold_status.values.tolist() == [[str(ThresholdStatus.FOUND)]]
     # The same by integration: the error at that ϖ is one percent. It changes by
     # 1e-4 per unit of ϖ, and the heights are good to 1e-10.
     reference = np.pi**2 / 2 + np.sqrt(1 - (np.pi * 0.35 / 1.65) ** 2)
@@ -148,7 +148,7 @@ def test_all_quantities(described):
             ratio = float(data.error_threshold.sel(quantity=name)[k])
             status = str(data.threshold_status.sel(quantity=name)[k].values)
             row = data.relative_error.sel(quantity=name)
-            if status == Status.FOUND:
+            if status == ThresholdStatus.FOUND:
                 # On the threshold the error is the tolerance; beyond it less.
                 at = error_of(Quantity(name), 1, 0.65, 1.0, np.array([ratio]))
                 assert float(at[0]) == pytest.approx(tolerance, rel=1e-9)
@@ -157,7 +157,7 @@ def test_all_quantities(described):
                 before = row.values[data.frequency_ratio.values < ratio]
                 assert before[-1] > tolerance
             else:
-                assert status == Status.ALWAYS_WITHIN and np.isnan(ratio)
+                assert status == ThresholdStatus.ALWAYS_WITHIN and np.isnan(ratio)
                 assert np.all(row.values <= tolerance)
 
 
@@ -225,14 +225,14 @@ def test_thresholds_of_known_functions():
     ratios = np.geomspace(1, 1e4, 41)
     found, statuses = thresholds(lambda x: 1 / x, np.array([0.3, 0.01]), ratios)
     assert found == pytest.approx([1 / 0.3, 100.0], rel=1e-14)
-    assert statuses == [Status.FOUND, Status.FOUND]
+    assert statuses == [ThresholdStatus.FOUND, ThresholdStatus.FOUND]
 
     # The last crossing of several, and no earlier one.
     def wave(x):
         return (1.5 + np.sin(4 * np.log(x))) / x
 
     found, statuses = thresholds(wave, np.array([0.01]), ratios)
-    assert statuses == [Status.FOUND]
+    assert statuses == [ThresholdStatus.FOUND]
     fine = np.geomspace(1, 1e4, 200001)
     crossings = np.nonzero(np.diff(wave(fine) > 0.01))[0]
     assert len(crossings) == 3
@@ -240,7 +240,7 @@ def test_thresholds_of_known_functions():
     assert float(wave(found[0])) == pytest.approx(0.01, rel=1e-13)
     # An orbit that does not exist below x = 7: the error jumps from infinity.
     found, statuses = thresholds(lambda x: np.where(x < 7, np.inf, 0.001), np.array([0.01]), ratios)
-    assert statuses == [Status.FOUND]
+    assert statuses == [ThresholdStatus.FOUND]
     assert found == pytest.approx([7.0], rel=1e-12)
 
 
@@ -248,7 +248,7 @@ def test_thresholds_that_are_not_there():
     ratios = np.geomspace(1, 100, 11)
     found, statuses = thresholds(lambda x: 1 / x, np.array([2.0, 0.001]), ratios)
     assert np.isnan(found).all()
-    assert statuses == [Status.ALWAYS_WITHIN, Status.NEVER_WITHIN]
+    assert statuses == [ThresholdStatus.ALWAYS_WITHIN, ThresholdStatus.NEVER_WITHIN]
 
 
 @pytest.mark.parametrize("quantity", [Quantity.SADDLE_NODE, Quantity.PERIOD_DOUBLING])
@@ -265,8 +265,8 @@ def test_force_release():
     # A contact released at zero force keeps more velocity than Eq. 16 says: r_a
     # never comes within 1 % of r.
     at = {"quantity": "apparent_restitution"}
-    assert str(dry.threshold_status.sel(at)[1].values) == Status.NEVER_WITHIN
-    assert str(paper.threshold_status.sel(at)[1].values) == Status.FOUND
+    assert str(dry.threshold_status.sel(at)[1].values) == ThresholdStatus.NEVER_WITHIN
+    assert str(paper.threshold_status.sel(at)[1].values) == ThresholdStatus.FOUND
     contact = Contact(1e4, float(damping_ratio(0.65)), Release.FORCE)
     expected = float(orbit_at(contact, 1, 1.0).apparent_restitution) / 0.65 - 1
     assert float(dry.relative_error.sel(at)[-1]) == pytest.approx(expected, rel=1e-9)

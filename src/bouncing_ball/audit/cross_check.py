@@ -66,7 +66,7 @@ class CrossCheckError(ValueError):
     """Two routes to one orbit disagree beyond their budget."""
 
 
-class Comparison(NamedTuple):
+class Disagreements(NamedTuple):
     """Disagreements of one kind, one for each orbit, and what the orbits are called."""
 
     kind: str
@@ -210,7 +210,7 @@ def _guesses(shown: Shown, y: np.ndarray, settings) -> Iterator[np.ndarray]:
         yield y * (1 + share)
 
 
-def formula_against_continuation(shown: Shown, settings: Mapping[str, Any]) -> Comparison:
+def formula_against_continuation(shown: Shown, settings: Mapping[str, Any]) -> Disagreements:
     """Orbits of the formula against solutions of the equations.
 
     Each in the plane through the orbit that is normal to its branch: well
@@ -236,13 +236,13 @@ def formula_against_continuation(shown: Shown, settings: Mapping[str, Any]) -> C
         )
         off = part.orbit.distance(part.model.system(n).orbit(found)) / size[todo]
         best[todo] = np.fmin(best[todo], off)
-    return Comparison(FORMULA, best, shown.name)
+    return Disagreements(FORMULA, best, shown.name)
 
 
-def continuation_against_formula(shown: Shown) -> Comparison:
+def continuation_against_formula(shown: Shown) -> Disagreements:
     """Orbits of a continuation against the nearest points of the formula."""
     off = shown.orbit.distance(shown.model.nearest(shown.orbit))
-    return Comparison(FORMULA, off / _size(shown.orbit.n, shown.orbit.amplitude), shown.name)
+    return Disagreements(FORMULA, off / _size(shown.orbit.n, shown.orbit.amplitude), shown.name)
 
 
 # Bifurcations.
@@ -263,7 +263,7 @@ def _limits_off(limits: ShownLimits, orbit: Orbit) -> np.ndarray:
     return off / _size(limits.n, limits.amplitude)
 
 
-def located_against_formula(limits: ShownLimits) -> Comparison:
+def located_against_formula(limits: ShownLimits) -> Disagreements:
     """Located bifurcations against those of the formula.
 
     The formula gives the first one next to the saddle-node. Others of the same
@@ -291,10 +291,10 @@ def located_against_formula(limits: ShownLimits) -> Comparison:
             left, low, right = right, high, right - step
             high = _test_function(limits.kind, orbit_at(right))
         values = np.fmin(values, _limits_off(limits, orbit_at(right)))
-    return Comparison(FORMULA, values, limits.name)
+    return Disagreements(FORMULA, values, limits.name)
 
 
-def formula_against_equations(limits: ShownLimits, settings: Mapping[str, Any]) -> Comparison:
+def formula_against_equations(limits: ShownLimits, settings: Mapping[str, Any]) -> Disagreements:
     """Bifurcations of the formula against the extended systems.
 
     The model's equations with the test function, solved from a start that is a
@@ -318,7 +318,7 @@ def formula_against_equations(limits: ShownLimits, settings: Mapping[str, Any]) 
         )
         off = _limits_off(part, part.model.system(part.n).orbit(found))
         best[todo] = np.fmin(best[todo], off)
-    return Comparison(FORMULA, best, limits.name)
+    return Disagreements(FORMULA, best, limits.name)
 
 
 # Simulation.
@@ -364,23 +364,23 @@ def _differences(orbit: Orbit, cycle, *, late: bool) -> np.ndarray:
     return np.where(np.isnan(values), np.inf, values)
 
 
-def simulation_closes(shown: Shown) -> Comparison:
+def simulation_closes(shown: Shown) -> Disagreements:
     """The simulation returns to every orbit after one cycle."""
     orbit = shown.orbit
     cycle = orbit.cycle(orbit.phase, orbit.relative_impact_velocity)
-    return Comparison(CLOSES, _differences(orbit, cycle, late=True), shown.name)
+    return Disagreements(CLOSES, _differences(orbit, cycle, late=True), shown.name)
 
 
-def simulation_holds(shown: Shown) -> Comparison:
+def simulation_holds(shown: Shown) -> Disagreements:
     """The simulation stays on every stable orbit."""
     orbit = shown.orbit
     cycle = orbit.cycle(orbit.phase, orbit.relative_impact_velocity)
     for _ in range(HELD_PERIODS - 1):
         cycle = orbit.cycle(cycle.phase, cycle.relative_velocity)
-    return Comparison(HOLDS, _differences(orbit, cycle, late=False), shown.name)
+    return Disagreements(HOLDS, _differences(orbit, cycle, late=False), shown.name)
 
 
-def simulation_leaves(shown: Shown) -> Comparison:
+def simulation_leaves(shown: Shown) -> Disagreements:
     """The simulation leaves every unstable orbit at the rate of its multiplier.
 
     Started a little off along the unstable direction, on both sides; the
@@ -397,7 +397,7 @@ def simulation_leaves(shown: Shown) -> Comparison:
         turn = reduce_angle(cycle.phase - orbit.phase)
         ends.append(np.stack([turn, cycle.relative_velocity], axis=-1))
     growth = np.sum((ends[0] - ends[1]) * nudge, axis=-1) / (2 * np.sum(nudge * nudge, axis=-1))
-    return Comparison(LEAVES, np.abs(growth / multiplier - 1), shown.name)
+    return Disagreements(LEAVES, np.abs(growth / multiplier - 1), shown.name)
 
 
 def _leading(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -408,7 +408,7 @@ def _leading(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return value, np.take_along_axis(vectors, which[..., np.newaxis, :], axis=-1)[..., 0].real
 
 
-def _simulated(shown: Shown) -> Iterator[Comparison]:
+def _simulated(shown: Shown) -> Iterator[Disagreements]:
     """The simulation of every orbit that is one of the ball."""
     shown = shown.chosen(shown.orbit.can_be_simulated())
     compared = shown.admissible.copy()
@@ -424,7 +424,7 @@ def _simulated(shown: Shown) -> Iterator[Comparison]:
 # The table.
 
 
-def compare(data: xr.Dataset, settings: Mapping[str, Any]) -> Iterator[Comparison]:
+def compare(data: xr.Dataset, settings: Mapping[str, Any]) -> Iterator[Disagreements]:
     """All comparisons for the orbits and bifurcations of one dataset.
 
     By the routes that a model has besides the one its orbits were made by.
@@ -447,7 +447,7 @@ def compare(data: xr.Dataset, settings: Mapping[str, Any]) -> Iterator[Compariso
             yield formula_against_equations(limits, settings)
 
 
-def _worst(comparisons: list[Comparison], kind: str) -> tuple[float, int, str]:
+def _worst(comparisons: list[Disagreements], kind: str) -> tuple[float, int, str]:
     """Largest disagreement of a kind, how many were compared, and which it is."""
     largest, count, where = -np.inf, 0, ""
     for one in comparisons:

@@ -15,9 +15,9 @@ from bouncing_ball.calculator.contact_data import (
     which,
 )
 from bouncing_ball.calculator.design import Design, describe, families, judged
+from bouncing_ball.calculator.judgement import QUANTITIES, Judgement, assess, percent
 from bouncing_ball.calculator.needed import RATIOS, Needed, needed
 from bouncing_ball.calculator.units import KINDS, number, shown
-from bouncing_ball.calculator.verdict import QUANTITIES, Verdict, assess, percent
 from bouncing_ball.errors import ModelError, NoOrbitError, require
 from bouncing_ball.impacts.law_signature import free_impact
 from bouncing_ball.impacts.release import Release
@@ -25,7 +25,7 @@ from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits.interface import OBSERVABLES
 from bouncing_ball.orbits.law_calls import rigid_speed
 from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.studies.error_thresholds import Status
+from bouncing_ball.studies.error_thresholds import ThresholdStatus
 
 STANDARD_GRAVITY = 9.80665
 """Standard acceleration of gravity, in m/s²."""
@@ -232,7 +232,7 @@ def _choose(
     zeta = loss(given, release)
     if zeta is None:
         raise ModelError(
-            "stiffness is missing, which damping needs; to choose a contact, give its restitution "
+            "damping needs stiffness, which is missing; to choose a contact, give its restitution "
             "instead"
         )
     r = float(Contact(1.0, zeta, release).restitution)
@@ -240,7 +240,7 @@ def _choose(
     if quantity in OBSERVABLES:
         RestitutionModel(r).require_orbit(index, table.amplitude)
     need = needed(quantity, tolerance, zeta, release, index, table.amplitude)
-    if need.status == Status.NEVER_WITHIN:
+    if need.status == ThresholdStatus.NEVER_WITHIN:
         raise NoOrbitError(
             f"no contact up to ϖ = {RATIOS[-1]:g} has its {QUANTITIES[quantity]} within "
             f"{percent(tolerance)} of the restitution model with r = {r:.4g}"
@@ -248,14 +248,14 @@ def _choose(
     case = _chosen(need, zeta, release, mass, table)
     name = QUANTITIES[quantity]
     own = name if quantity == "permanent_contact" else f"{name} of the {index}-T orbit"
-    verdict = Verdict(
+    verdict = Judgement(
         True,
         f"A simulation needs a contact of at least {shown(case.stiffness, 'N/m')}, with a contact "
         f"time of {shown(case.contact_time, 's')} or less and a damping of "
         f"{shown(case.damping, 'N s/m')} at that stiffness: the {own} is then "
         f"within {percent(tolerance)} of the restitution model's.",
         f"the error is {need.status}"
-        if need.status == Status.ALWAYS_WITHIN
+        if need.status == ThresholdStatus.ALWAYS_WITHIN
         else f"the error crosses {percent(tolerance)} for the last time at the frequency ratio "
         f"ϖ = {float(case.contact.frequency_ratio):.4g}",
     )

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 from bouncing_ball.calculator.case import Case
 from bouncing_ball.calculator.family import Family, family
+from bouncing_ball.calculator.judgement import Judgement
 from bouncing_ball.calculator.needed import Needed
-from bouncing_ball.calculator.verdict import Verdict
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.impacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.impacts.release import Release
@@ -149,7 +149,7 @@ def describe(
     found: tuple[Family, ...],
     one: Family,
     need: Needed,
-    verdict: Verdict,
+    verdict: Judgement,
     notes: Sequence[str],
 ) -> Design:
     """Everything about a contact that is known; `one` is the family of the verdict."""

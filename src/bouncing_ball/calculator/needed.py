@@ -19,7 +19,7 @@ RATIOS = np.geomspace(1.0, 1e6, 97)
 
 
 NO_ORBIT = "the restitution model has no such orbit"
-"""Status beside those of :class:`~bouncing_ball.studies.error_thresholds.Status`."""
+"""One more :class:`~bouncing_ball.studies.error_thresholds.ThresholdStatus`."""
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from bouncing_ball.calculator.needed import RATIOS
 from bouncing_ball.impacts.damping import damping_ratio
 from bouncing_ball.impacts.release import Release
 from bouncing_ball.orbits.interface import Orbit
-from bouncing_ball.studies.error_thresholds import Status
+from bouncing_ball.studies.error_thresholds import ThresholdStatus
 from bouncing_ball.studies.model_errors import SIMPLE, search
 
 # Restitution coefficients of the chart: as many as make the lines smooth, and from
@@ -36,7 +36,7 @@ def page(design: Design) -> xr.Dataset:
     asked = design.needed
     zeta = damping_ratio(chart, rule)
     found = search(zeta, rule, design.n, lam, RATIOS, asked.tolerance, (asked.quantity,))
-    always = found.status == Status.ALWAYS_WITHIN
+    always = found.status == ThresholdStatus.ALWAYS_WITHIN
     from_there_on = np.where(always, RATIOS[0], found.threshold)[:, 0]
     of = design.case.models()
     orbits = {name: model.orbit(design.n, table.amplitude) for name, model in of.items()}

@@ -8,10 +8,10 @@ from typing import Any
 
 from bouncing_ball.calculator.calls import design
 from bouncing_ball.calculator.design import Design
+from bouncing_ball.calculator.judgement import QUANTITIES, percent
 from bouncing_ball.calculator.units import KINDS, shown
-from bouncing_ball.calculator.verdict import QUANTITIES, percent
 from bouncing_ball.errors import ModelError
-from bouncing_ball.studies.error_thresholds import Status
+from bouncing_ball.studies.error_thresholds import ThresholdStatus
 
 Answer = dict[str, Any]
 
@@ -76,7 +76,7 @@ def _share(value: float | None) -> str:
 
 
 def _threshold(value: float | None, status: str) -> str:
-    return "any" if status == Status.ALWAYS_WITHIN else _number(value)
+    return "any" if status == ThresholdStatus.ALWAYS_WITHIN else _number(value)
 
 
 def _contact_values(found: Answer) -> list[tuple[str, str]]:

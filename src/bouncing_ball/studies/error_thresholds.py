@@ -38,7 +38,7 @@ class Quantity(StrEnum):
     PERMANENT_CONTACT = "permanent_contact"
 
 
-class Status(StrEnum):
+class ThresholdStatus(StrEnum):
     """Outcome of the search for a threshold."""
 
     FOUND = "found"
@@ -115,7 +115,7 @@ def excess(error: np.ndarray, tolerance: ArrayLike) -> np.ndarray:
     return np.log(np.clip(error, 1e-300, 1e3) / tolerance)
 
 
-def status(outside: np.ndarray) -> Status:
+def status(outside: np.ndarray) -> ThresholdStatus:
     """Outcome of the search for a threshold, from where a scanned error exceeds the tolerance.
 
     Examples
@@ -124,8 +124,8 @@ def status(outside: np.ndarray) -> Status:
     'FOUND'
     """
     if outside[-1]:
-        return Status.NEVER_WITHIN
-    return Status.FOUND if outside.any() else Status.ALWAYS_WITHIN
+        return ThresholdStatus.NEVER_WITHIN
+    return ThresholdStatus.FOUND if outside.any() else ThresholdStatus.ALWAYS_WITHIN
 
 
 def thresholds(
@@ -133,7 +133,7 @@ def thresholds(
     tolerances: ArrayLike,
     ratios: np.ndarray,
     scanned: np.ndarray | None = None,
-) -> tuple[np.ndarray, list[Status]]:
+) -> tuple[np.ndarray, list[ThresholdStatus]]:
     """The ϖ above which an error stays within each tolerance.
 
     Parameters
@@ -149,7 +149,7 @@ def thresholds(
 
     Returns
     -------
-    ndarray, list of Status
+    ndarray, list of ThresholdStatus
         NaN where the status is not ``FOUND``.
 
     Examples

@@ -23,7 +23,7 @@ from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.studies.crossings import last_crossing
 from bouncing_ball.studies.error_thresholds import (
     Quantity,
-    Status,
+    ThresholdStatus,
     excess,
     relative_error,
     status,
@@ -270,7 +270,7 @@ def validity(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     found = search(zeta[there], rule, n[there], lam[there], ratios, parameters["tolerance"])
     threshold = np.full((len(SIMPLE), len(QUANTITIES), *r.shape), np.nan)
     zero = np.full(threshold.shape[1:], np.nan)
-    always = found.status == Status.ALWAYS_WITHIN
+    always = found.status == ThresholdStatus.ALWAYS_WITHIN
     threshold[..., there] = np.where(always, ratios[0], found.threshold)
     zero[..., there] = found.zero
     return describe(

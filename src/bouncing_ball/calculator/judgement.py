@@ -17,7 +17,7 @@ QUANTITIES = {
 """The quantities as a sentence calls them."""
 
 
-class Verdict(NamedTuple):
+class Judgement(NamedTuple):
     """Whether the restitution model is good enough, in one sentence, and the reason."""
 
     is_good_enough: bool
@@ -53,7 +53,7 @@ def _disagreement(family: Family) -> str | None:
     return None
 
 
-def assess(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
+def assess(family: Family, needed: Needed, frequency_ratio: float) -> Judgement:
     """The verdict on a given contact."""
     name, tolerance = QUANTITIES[needed.quantity], percent(needed.tolerance)
     found = family.errors[needed.quantity]
@@ -69,10 +69,10 @@ def assess(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
     else:
         if wrong is None and found is None:
             sentence = f"Whether the restitution model is good enough in {subject} is not known."
-            return Verdict(False, sentence, "this contact, or the model, has no value to compare")
+            return Judgement(False, sentence, "this contact, or the model, has no value to compare")
         what = wrong or f"{subject} is {percent(found or 0.0)} off, beyond {tolerance}"
         sentence = f"The restitution model is not good enough: {what}{_instead(family, needed)}."
-    return Verdict(good, sentence, _reason(needed, frequency_ratio, good, tolerance))
+    return Judgement(good, sentence, _reason(needed, frequency_ratio, good, tolerance))
 
 
 def _instead(family: Family, needed: Needed) -> str:

@@ -14,7 +14,7 @@ from bouncing_ball.errors import ModelError
 from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.motion.angles import reduce_angle, table
 from bouncing_ball.motion.contact_motion import ContactMotion, Oscillator, oscillator, release
-from bouncing_ball.motion.ensembles import blocks, flatten, pick
+from bouncing_ball.motion.ensembles import BLOCK, blocks, flatten, pick
 from bouncing_ball.motion.landing import Flight, land
 from bouncing_ball.motion.resumption import leaves_fast, resumption
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence, Status
@@ -41,7 +41,12 @@ class Dynamics(Protocol):
     """The contacts and flights of balls in a row, whatever the contact's law.
 
     ``below`` says whether a contact may start or end below the table's level.
+    ``block`` is how many are worked on at once, at most.
     """
+
+    @property
+    def block(self) -> int:
+        """Balls in a block."""
 
     @property
     def amplitude(self) -> np.ndarray:
@@ -65,6 +70,7 @@ class _SpringDamper(NamedTuple):
     """Of the spring-damper."""
 
     constants: Oscillator
+    block: int = BLOCK
 
     @property
     def amplitude(self) -> np.ndarray:
@@ -182,7 +188,7 @@ def follow(dynamics: Dynamics, law, amplitude, phase, velocity, shape, impacts) 
     gaps = np.empty((2, impacts, size)) if dynamics.below else None
     status = np.zeros(size, dtype=np.int8)
     relative = np.minimum(velocity - x, 0.0)
-    for part in blocks(size):
+    for part in blocks(size, dynamics.block):
         _run(
             Impact(reduce_angle(phase[part]), np.zeros_like(phase[part]), relative[part]),
             dynamics.take(part),
@@ -262,7 +268,7 @@ def next_impact(dynamics: Dynamics, phase, relative_velocity, shape) -> Cycle:
     u = relative_velocity
     out = np.full((4, phase.size), np.nan)
     out[3] = np.inf
-    for part in blocks(phase.size):
+    for part in blocks(phase.size, dynamics.block):
         here = dynamics.take(part)
         impact = Impact(reduce_angle(phase[part]), np.zeros_like(u[part]), u[part])
         departure = here.depart(impact)

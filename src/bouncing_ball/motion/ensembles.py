@@ -8,10 +8,10 @@ from numpy.typing import ArrayLike
 
 # Balls computed at once, at most: as many as keep the arrays in the cache. Fewer
 # cost more, as a few late balls decide on the number of steps of each block.
-_BLOCK = 8192
+BLOCK = 8192
 
 
-def blocks(size: int, largest: int = _BLOCK) -> list[slice]:
+def blocks(size: int, largest: int = BLOCK) -> list[slice]:
     """Slices of about equal length that cover all balls, ``largest`` at most.
 
     Examples

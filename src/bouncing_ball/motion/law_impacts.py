@@ -40,13 +40,15 @@ class _Contact(NamedTuple):
     law: ContactLaw
     amplitude: np.ndarray
     table: Table | None = None
+    # The release has blocks of its own; fewer here share the few contacts that last long.
+    block: int = 1 << 16
 
     @property
     def below(self) -> bool:
         return self.law.release is not Release.DISPLACEMENT
 
     def take(self, which: Any) -> "_Contact":
-        return _Contact(self.law.take(which), pick(self.amplitude, which), self.table)
+        return self._replace(law=self.law.take(which), amplitude=pick(self.amplitude, which))
 
     def depart(self, impact: Impact) -> Departure:
         # -0 is no depth.

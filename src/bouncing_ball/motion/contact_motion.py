@@ -25,6 +25,7 @@ from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.motion.angles import sine_and_versine
 from bouncing_ball.motion.ensembles import pick
 from bouncing_ball.motion.first_zero import State, Zero, first_zero
+from bouncing_ball.motion.starts import check_amplitude
 
 # √γ below which the steady part has lost too many digits: ε/√γ remain.
 _RESONANCE = 1e-4
@@ -79,8 +80,7 @@ def oscillator(contact: Contact, amplitude: ArrayLike) -> Oscillator:
             f"damping ratio ζ = {contact.damping_ratio} is not below 1: "
             "the simulation needs an underdamped contact"
         )
-    if not np.all((lam >= 0) & np.isfinite(lam)):
-        raise ModelError(f"amplitude Λ = {np.asarray(amplitude)} is not finite and ≥ 0")
+    check_amplitude(np.asarray(amplitude, dtype=float))
     detuning, loss = (omega - 1) * (omega + 1), 2 * zeta * omega
     gamma = detuning * detuning + loss * loss
     if not np.all(np.sqrt(gamma) >= _RESONANCE):

@@ -10,7 +10,6 @@ from typing import Any, NamedTuple, Protocol, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ModelError
 from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.motion.angles import reduce_angle, table
 from bouncing_ball.motion.contact_motion import ContactMotion, Oscillator, oscillator, release
@@ -18,6 +17,7 @@ from bouncing_ball.motion.ensembles import BLOCK, blocks, flatten, pick
 from bouncing_ball.motion.landing import Flight, land
 from bouncing_ball.motion.resumption import leaves_fast, resumption
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence, Status
+from bouncing_ball.motion.starts import approach
 
 
 class Impact(NamedTuple):
@@ -128,14 +128,6 @@ def _prepare(contact: Contact, amplitude, *states):
     return _SpringDamper(constants), states, shape
 
 
-def _check_impact(phase, velocity, x, amplitude) -> None:
-    if not np.all(np.isfinite(phase) & np.isfinite(velocity)):
-        raise ModelError("the phase and the velocity of the impact must be finite")
-    # A ball at rest on the table may come out of rounding as rising by a little.
-    if not np.all(velocity - x <= 8 * np.finfo(float).eps * (np.abs(velocity) + amplitude)):
-        raise ModelError("a ball that rises from the table has no impact: z′ > w′")
-
-
 def simulate(
     contact: Contact,
     amplitude: ArrayLike,
@@ -181,13 +173,11 @@ def follow(dynamics: Dynamics, law, amplitude, phase, velocity, shape, impacts) 
     ModelError
         If a state is not finite, or a ball rises from the table.
     """
-    x, _ = table(phase, dynamics.amplitude)
-    _check_impact(phase, velocity, x, dynamics.amplitude)
+    relative = approach(phase, velocity, dynamics.amplitude)
     size = phase.size
     tables = np.empty((5, impacts, size))
     gaps = np.empty((2, impacts, size)) if dynamics.below else None
     status = np.zeros(size, dtype=np.int8)
-    relative = np.minimum(velocity - x, 0.0)
     for part in blocks(size, dynamics.block):
         _run(
             Impact(reduce_angle(phase[part]), np.zeros_like(phase[part]), relative[part]),

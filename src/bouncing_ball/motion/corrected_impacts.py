@@ -21,7 +21,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ModelError
 from bouncing_ball.impacts.instant_map import Impact, impact, instant_of, start_of
 from bouncing_ball.impacts.signature import Signature
 from bouncing_ball.motion.angles import reduce_angle, table
@@ -29,6 +28,7 @@ from bouncing_ball.motion.ensembles import blocks, flatten, pick
 from bouncing_ball.motion.first_zero import State, first_zero
 from bouncing_ball.motion.landing import Flight, land
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence, Status
+from bouncing_ball.motion.starts import approach, check_amplitude, check_impact
 
 # Newton steps from the landing to the instant: the start is right to the third
 # order in t_c, and each step doubles that.
@@ -162,10 +162,8 @@ def _land(departure: _Departure, law: Signature, amplitude) -> tuple[Impact, np.
 def _prepare(signature: Signature, amplitude, phase, relative):
     like_law = np.zeros(signature.shape)
     (lam, _), (phase, relative), shape = flatten([amplitude, like_law], [phase, relative])
-    if not np.all((lam >= 0) & np.isfinite(lam)):
-        raise ModelError(f"amplitude Λ = {np.asarray(amplitude)} is not finite and ≥ 0")
-    if not np.all(np.isfinite(phase) & np.isfinite(relative)):
-        raise ModelError("the phase and the velocity of the impact must be finite")
+    check_amplitude(lam)
+    check_impact(phase, relative)
     return signature.flat(shape), lam, reduce_angle(phase), relative, shape
 
 
@@ -206,11 +204,7 @@ def simulate(
     [-2.0, -2.0, -2.0]
     """
     law, lam, phase, velocity, shape = _prepare(signature, amplitude, phase, velocity)
-    relative = velocity - table(phase, lam)[0]
-    # A ball at rest on the table may come out of rounding as rising by a little.
-    if not np.all(relative <= 8 * np.finfo(float).eps * (np.abs(velocity) + lam)):
-        raise ModelError("a ball that rises from the table has no impact: z′ > w′")
-    relative = np.minimum(relative, 0.0)
+    relative = approach(phase, velocity, lam)
     tables = np.full((6, impacts, phase.size), np.nan)
     status = np.zeros(phase.size, dtype=np.int8)
     for part in blocks(phase.size):

@@ -21,6 +21,7 @@ from bouncing_ball.motion.angles import reduce_angle, table
 from bouncing_ball.motion.ensembles import blocks, flatten, pick
 from bouncing_ball.motion.landing import Flight, land
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence, Status
+from bouncing_ball.motion.starts import check_amplitude
 
 # Λ T₀/g and T₀/g below which chattering is summed up.
 _CHATTER = 1e-5
@@ -115,8 +116,7 @@ def _prepare(restitution, amplitude, phase, velocity):
     (r, lam), (phase, velocity), shape = flatten([restitution, amplitude], [phase, velocity])
     if not np.all((r > 0) & (r <= 1)):
         raise ModelError(f"restitution coefficient r = {restitution} is not in (0, 1]")
-    if not np.all((lam >= 0) & np.isfinite(lam)):
-        raise ModelError(f"amplitude Λ = {amplitude} is not finite and ≥ 0")
+    check_amplitude(lam)
     if not np.all(np.isfinite(phase) & np.isfinite(velocity)):
         raise ModelError("the phase and the velocity of the ball must be finite")
     x, _ = table(phase, lam)

@@ -15,7 +15,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ModelError
 from bouncing_ball.impacts.laws.contact_law import ContactLaw
 from bouncing_ball.impacts.release import Release
 from bouncing_ball.motion import law_motion
@@ -28,6 +27,7 @@ from bouncing_ball.motion.landing import Flight, land
 from bouncing_ball.motion.law_table import Table
 from bouncing_ball.motion.resumption import Resumption, leaves_fast
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence, Status
+from bouncing_ball.motion.starts import check_amplitude
 
 # Samples of the grip of a slow ball, and bisections of its return.
 _SAMPLES = 65
@@ -114,8 +114,7 @@ def _return(law: ContactLaw, flight: Flight) -> Resumption:
 
 def _prepare(law: ContactLaw, amplitude, *states):
     lam = np.asarray(amplitude, dtype=float)
-    if not np.all((lam >= 0) & np.isfinite(lam)):
-        raise ModelError(f"amplitude Λ = {lam} is not finite and ≥ 0")
+    check_amplitude(lam)
     (lam, _), states, shape = flatten([lam, np.zeros(law.shape)], states)
     table = None if law.shape or np.ndim(lam) else Table(law, float(lam))
     return _Contact(law.flat(shape), lam, table), states, shape

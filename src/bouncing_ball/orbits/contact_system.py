@@ -9,7 +9,6 @@ the contact's own time, which keeps it of order one.
 The continuation parameter is Λ, or ln ϖ at a fixed Λ.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -19,17 +18,9 @@ from bouncing_ball.continuation.events import Event
 from bouncing_ball.impacts.release import Release
 from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
+from bouncing_ball.orbits.branch_events import branch_events
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
-from bouncing_ball.orbits.stability import (
-    period_doubling_function,
-    saddle_node_function,
-    trace_and_determinant,
-)
-
-# Impact velocity and flight time vanish together where an orbit merges with
-# permanent contact. The equations are singular there, and rounding enters
-# divided by both: stop where 1e-12 is left.
-_MARGIN = 1e-4
+from bouncing_ball.orbits.stability import trace_and_determinant
 
 
 class Parameter(StrEnum):
@@ -156,30 +147,15 @@ class OrbitSystem:
         p = amplitude if self.parameter is Parameter.AMPLITUDE else np.log(frequency_ratio)
         return np.array([phase, -self.n * np.pi, angle, p])
 
-    def _stability(self, test: Callable) -> Callable[[np.ndarray], np.ndarray]:
-        return lambda y: test(*trace_and_determinant(self.orbit(y).monodromy()))
-
     def events(self) -> tuple[Event, ...]:
-        """Bifurcations, and the ends of the domain in which an orbit makes sense."""
-        return (
-            Event("saddle-node", self._stability(saddle_node_function)),
-            Event("period doubling", self._stability(period_doubling_function)),
-            Event(
-                "contact lost",
-                lambda y: -self.orbit(y).relative_impact_velocity - _MARGIN,
-                terminal=True,
-                reason="contact lost: the ball no longer closes in on the table at impact",
-            ),
-            Event(
-                "release lost",
-                lambda y: self.orbit(y).relative_bounce_velocity,
-                terminal=True,
-                reason="release lost: the ball no longer leaves the table as the contact ends",
-            ),
-            Event(
-                "flight lost",
-                lambda y: self.orbit(y).flight_time - _MARGIN,
-                terminal=True,
-                reason="flight lost: the contact fills the whole cycle",
-            ),
+        """Those of every contact, and the loss of a release that leaves the table."""
+        saddle_node, period_doubling, contact, flight = branch_events(
+            self.orbit, lambda orbit: trace_and_determinant(orbit.monodromy())
         )
+        release = Event(
+            "release lost",
+            lambda y: self.orbit(y).relative_bounce_velocity,
+            terminal=True,
+            reason="release lost: the ball no longer leaves the table as the contact ends",
+        )
+        return saddle_node, period_doubling, contact, release, flight

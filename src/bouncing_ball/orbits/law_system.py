@@ -6,7 +6,6 @@ height of the flight that follows (Eqs. 24-25). All are of order one however sho
 the contact is.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -15,12 +14,8 @@ import numpy as np
 
 from bouncing_ball.continuation.events import Event
 from bouncing_ball.impacts.laws.contact_law import ContactLaw
+from bouncing_ball.orbits.branch_events import branch_events
 from bouncing_ball.orbits.law_orbit import LawOrbit
-from bouncing_ball.orbits.stability import period_doubling_function, saddle_node_function
-
-# Impact velocity and flight time down to which a branch is followed: the equations are
-# singular where they vanish.
-_MARGIN = 1e-4
 
 
 @lru_cache(maxsize=64)
@@ -92,24 +87,6 @@ class LawSystem:
         )
         return o.residual()[..., 1:], np.stack([velocity, landing], axis=-2)
 
-    def _stability(self, test: Callable) -> Callable[[np.ndarray], np.ndarray]:
-        return lambda y: test(*self.orbit(y).trace_and_determinant())
-
     def events(self) -> tuple[Event, ...]:
         """Bifurcations, and the ends of the domain in which an orbit makes sense."""
-        return (
-            Event("saddle-node", self._stability(saddle_node_function)),
-            Event("period doubling", self._stability(period_doubling_function)),
-            Event(
-                "contact lost",
-                lambda y: -self.orbit(y).relative_impact_velocity - _MARGIN,
-                terminal=True,
-                reason="contact lost: the ball no longer closes in on the table at impact",
-            ),
-            Event(
-                "flight lost",
-                lambda y: self.orbit(y).flight_time - _MARGIN,
-                terminal=True,
-                reason="flight lost: the contact fills the whole cycle",
-            ),
-        )
+        return branch_events(self.orbit, LawOrbit.trace_and_determinant)

@@ -48,7 +48,7 @@ ALLOWED = {
         {"datasets", "configuration"},
         {"numpy", "xarray", "netCDF4", "matplotlib", "PIL", "jinja2"},
     ),
-    "pipeline": ({"datasets", "atlas", "configuration", "record"}, {"xarray", "yaml"}),
+    "pipeline": ({"datasets", "atlas", "configuration", "render", "record"}, {"xarray", "yaml"}),
     "cli": (
         {
             "datasets",

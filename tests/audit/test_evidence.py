@@ -354,7 +354,10 @@ def test_a_table_of_one_row(data, tmp_path):
 
 def test_families_that_the_extension_has_not(data):
     data["ext_release"] = data["ext_release"].sel(n=[2])
-    assert np.isnan(evidence(data, SETTINGS).period_doubling_drop).all()
+    found = evidence(data, SETTINGS)
+    assert np.isnan(found.period_doubling_drop).all()
+    # What both rules make of its own families is no matter of the table's.
+    assert np.isfinite(found.release_rule_move)
 
 
 def test_a_missing_orbit_at_the_soft_end(data):

@@ -29,7 +29,7 @@ from bouncing_ball.record.accept import (
 )
 from bouncing_ball.record.diff.outcome import Outcome
 from bouncing_ball.record.proof import RefusedError, check_made, check_versions
-from bouncing_ball.record.provenance import LIBRARIES, Provenance, versions
+from bouncing_ball.record.provenance import LIBRARIES, Provenance, file_digest, versions
 from bouncing_ball.record.recipe import Run
 from bouncing_ball.record.revision import UNKNOWN, Revision
 
@@ -77,10 +77,14 @@ def world(recorded, tmp_path, monkeypatch):
     return copied(recorded, tmp_path / "world", monkeypatch)
 
 
-def accepted(world, reason=REASON, only="", now=None):
+def nothing_again(name, results, folder):
+    """Of a small run nothing can be made once more."""
+
+
+def accepted(world, reason=REASON, only="", now=None, make_again=nothing_again):
     run = world.run()
     run = Run(run.repository, now or run.now, run.configuration)
-    return accept(run, Path("results"), world.recipes(), world.files(), reason, only)
+    return accept(run, Path("results"), world.recipes(), world.files(), reason, only, make_again)
 
 
 def contents(*folders):
@@ -519,3 +523,27 @@ def test_what_is_halfway_written_is_no_change(tmp_path):
         cwd=tmp_path, capture_output=True, text=True, check=True,
     )  # fmt: skip
     assert done.stdout == "?? .gitignore\n"
+
+
+def test_a_table_changed_together_with_its_log(world):
+    """Each checksum is right, but the dataset gives another table."""
+    table = Path("results/figures/thresholds.csv")
+    honest = table.read_bytes()
+
+    def make_again(name, results, folder):
+        if name == "thresholds":
+            (folder / table.name).write_bytes(honest)
+
+    log = Path(world.recipes()[3].log)
+    before, forged = file_digest(table), honest + b"one more row\n"
+    table.write_bytes(forged)
+    log.write_text(log.read_text("utf-8").replace(before, file_digest(table)), encoding="utf-8")
+    world.make("paper.md")
+    record = contents("figures")
+    with pytest.raises(RefusedError) as error:
+        accepted(world, only="moved", make_again=make_again)
+    assert str(error.value) == (
+        "figures/thresholds.csv is not what its dataset gives; make again: "
+        "snakemake --cores 2 --force results/figures/thresholds.csv"
+    )
+    assert contents("figures") == record

@@ -182,7 +182,7 @@ def test_another_commit_dirt_and_other_versions(results, capsys):
         ("foreign.png", "carries no provenance: no attribute provenance_commit"),
         ("notes.md", "is not an artifact of this workflow: there is no notes.nc next to it"),
         ("paper.md", "is not an artifact of this workflow: there is no figures/*.nc next to it"),
-        ("cut.nc", "cannot be read: damaged, or not ours"),
+        ("cut.nc", "cannot be read: damaged, not ours, or larger than memory"),
     ],
 )
 def test_a_file_that_is_not_ours_exits_2_with_one_line(results, capsys, file, said):

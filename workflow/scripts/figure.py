@@ -4,7 +4,7 @@ from importlib import import_module
 from pathlib import Path
 
 from bouncing_ball.pipeline.job import logged, provenance, read_input
-from bouncing_ball.render.figures.style import save, style
+from bouncing_ball.render.figures.style import save_all, style
 from bouncing_ball.render.given import from_dataset
 
 with logged(snakemake) as lines, style():
@@ -12,11 +12,5 @@ with logged(snakemake) as lines, style():
     draw = import_module(f"bouncing_ball.render.figures.{name}").draw
     paths = snakemake.input.get("data", [])
     figure = from_dataset(draw, read_input(paths[0]), paths[0]) if paths else draw()
-    # Laid out once, for both files.
-    if layout := figure.get_layout_engine():
-        layout.execute(figure)
-    figure.set_layout_engine("none")
-    metadata = provenance(snakemake).attributes()
-    for path in snakemake.output:
-        save(figure, path, metadata)
-        lines.append(path)
+    save_all(figure, snakemake.output, provenance(snakemake).attributes())
+    lines += snakemake.output

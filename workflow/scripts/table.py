@@ -6,15 +6,14 @@ from pathlib import Path
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.pipeline.job import logged, read_input, withdraw
 from bouncing_ball.render.given import from_dataset
-from bouncing_ball.render.tables.formats import to_csv, to_latex, to_markdown
+from bouncing_ball.render.tables.formats import texts
 
 with logged(snakemake) as lines:
     withdraw()
     name = Path(snakemake.output[0]).stem
     rows = import_module(f"bouncing_ball.render.tables.{name}").rows
     path = snakemake.input.data
-    header, body = from_dataset(rows, read_input(path), path)
-    write_text(snakemake.output.csv, to_csv(header, body))
-    write_text(snakemake.output.md, to_markdown(header, body))
-    write_text(snakemake.output.tex, to_latex(header, body))
+    table = texts(*from_dataset(rows, read_input(path), path))
+    for path in snakemake.output:
+        write_text(path, table[Path(path).suffix])
     lines += snakemake.output

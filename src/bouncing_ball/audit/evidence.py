@@ -298,15 +298,15 @@ def _table(data: Datasets) -> Found:
     softest = table.computed.isel(frequency_ratio=-1, drop=True)
     found["soft_range_shift"] = np.abs(softest - exact) / exact
 
+    curves = data["ext_release"].bifurcation_amplitude
+    by_rule = [curves.sel(release=rule, drop=True) for rule in ("displacement", "force")]
+    found["release_rule_move"] = np.abs(by_rule[1] - by_rule[0]).max()
     # The families of the table only, so that its rows stay complete.
-    curves = data["ext_release"].bifurcation_amplitude.reindex(n=table.n)
-    curve = curves.sel(release="displacement", bound=doubling)
+    curve = by_rule[0].sel(bound=doubling).reindex(n=table.n)
     lowest = curve.min("frequency_ratio")
     turns = data["ext_release"].period_doubling_turn.reindex(n=table.n)
     found["period_doubling_lowest"] = turns.sel(release="displacement")
     found["period_doubling_drop"] = curve.isel(frequency_ratio=-1, drop=True) - lowest
-    by_rule = [curves.sel(release=rule, drop=True) for rule in ("displacement", "force")]
-    found["release_rule_move"] = np.abs(by_rule[1] - by_rule[0]).max()
     return found
 
 

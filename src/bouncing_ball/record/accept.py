@@ -17,11 +17,12 @@ import csv
 import io
 import shutil
 from collections import Counter
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from itertools import takewhile
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from bouncing_ball.datasets.atomic import replacing
 from bouncing_ball.record.diff.folders import ComparisonError, artifacts_in, compare_folders
@@ -327,6 +328,22 @@ def _same(one: Path, other: Path) -> bool:
     return other.is_file() and file_digest(one) == file_digest(other)
 
 
+def check_again(
+    results: Path, copied: Iterable[str], make_again: Callable[[str, Path, Path], None]
+) -> None:
+    """Raise :class:`RefusedError` if a file is not what its dataset gives once more."""
+    with TemporaryDirectory() as folder:
+        for name in sorted({Path(file).stem for file in copied}):
+            make_again(name, results, Path(folder))
+        for file in copied:
+            again = Path(folder, Path(file).name)
+            if again.exists() and not _same(again, results / file):
+                raise RefusedError(
+                    f"{file} is not what its dataset gives; make again: "
+                    f"snakemake --cores 2 --force {(results / file).as_posix()}"
+                )
+
+
 def check(run: Run, results: Path, recipes: Sequence[Recipe], files: Sequence[str]) -> None:
     """Raise :class:`RefusedError` unless results are what the commit checked out makes."""
     check_tree(run.now)
@@ -345,7 +362,13 @@ def _said(changes: Mapping[str, str]) -> str:
 
 
 def accept(
-    run: Run, results: Path, recipes: Sequence[Recipe], files: Sequence[str], reason: str, only: str
+    run: Run,
+    results: Path,
+    recipes: Sequence[Recipe],
+    files: Sequence[str],
+    reason: str,
+    only: str,
+    make_again: Callable[[str, Path, Path], None],
 ) -> list[str]:
     """Make the results the record; the lines of the job's log.
 
@@ -364,13 +387,17 @@ def accept(
     only : str
         Names of artifacts, ``moved`` or ``all``; nothing for the one that has moved.
         Groups with ``|`` between them have as many reasons, and entries of the log.
+    make_again : callable
+        Makes what it can of an artifact once more: from its name and the results, in
+        a folder (:func:`bouncing_ball.pipeline.again.make_again`).
 
     Raises
     ------
     RefusedError
         If there is no reason, the tree is dirty or unknown, a result is not what
-        the commit makes (:func:`~bouncing_ball.record.proof.check_made`), or what is
-        asked for does not go together (:func:`chosen`).
+        the commit makes (:func:`~bouncing_ball.record.proof.check_made`), what is
+        asked for does not go together (:func:`chosen`), or a file is not what its
+        dataset gives (:func:`check_again`).
         Nothing is changed then.
     """
     wanted = groups(only, reason)
@@ -388,6 +415,7 @@ def accept(
         for file in files
         if Path(file).stem in names and not _same(results / file, record / file)
     ]
+    check_again(results, copied, make_again)
     # What is not an artifact any longer cannot be named.
     removed = [
         path

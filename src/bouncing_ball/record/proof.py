@@ -7,8 +7,9 @@ of a text. Inputs are known by their content: so a dataset changed together with
 the checksum in its log is found by what was made from it. No time of a file
 counts.
 
-What is changed together with its log and all that is made from it passes: a table
-and its log, or a dataset and its log, after which all else was made again. Only
+What is changed together with its log and all that is made from it passes here. A
+picture, a table or a page is found by making it once more
+(:mod:`bouncing_ball.pipeline.again`); of a dataset, or the article, with its log only
 making everything again tells, ``make clean all diff``, as continuous integration
 does with each commit.
 """

@@ -7,6 +7,7 @@ lead elsewhere on the way. Names and texts from such a folder are printed with
 :func:`printable` only.
 """
 
+import gc
 import os
 import resource
 import stat
@@ -167,40 +168,56 @@ def no_file_opened() -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
 
 
+def _read_all(content: bytes) -> None:
+    """Read all values and attributes of a dataset, and close it."""
+    from netCDF4 import Dataset
+
+    with no_file_opened(), Dataset("memory", memory=content) as dataset:
+        _check_size(dataset)
+        for part in (dataset, *dataset.variables.values()):
+            for name in part.ncattrs():
+                part.getncattr(name)
+        for variable in dataset.variables.values():
+            variable[...]
+
+
 # One dataset is asked for what it holds and, several times, for where it comes from.
 @lru_cache(maxsize=8)
 def _check_end(content: bytes) -> None:
     """Read all of a dataset in a process of its own, which may crash or hang.
 
-    One flipped bit can keep HDF5 busy for ever, or make it end the program, and
-    many texts of a dataset may be one in its file. What is not read there is not
-    read here.
+    One flipped bit can keep HDF5 busy for ever, or make it end the program, also
+    later, as it closes what it could not open; and many texts of a dataset may be
+    one in its file. What is not read there is not opened here.
     """
-    from netCDF4 import Dataset
-
+    reader, writer = os.pipe()
     with warnings.catch_warnings():
         # Newer Pythons warn of threads, of which the child uses none.
         warnings.simplefilter("ignore", DeprecationWarning)
         child = os.fork()
     if child == 0:
-        # What fails before the values are read fails again, and the caller says how.
-        status = 0
+        said = ""
         with suppress(BaseException):
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
             resource.setrlimit(resource.RLIMIT_CPU, (MAX_SECONDS, MAX_SECONDS))
             _limit_memory()
-            with no_file_opened(), Dataset("memory", memory=content) as dataset:
-                _check_size(dataset)
-                status = 1
-                for variable in dataset.variables.values():
-                    variable[...]
-            status = 0
-        os._exit(status)
-    ended = os.waitpid(child, 0)[1]
-    if os.WIFSIGNALED(ended):
+            try:
+                _read_all(content)
+            except UnreadableError as error:
+                said = str(error)
+            except BaseException:
+                said = "damaged, not ours, or larger than memory"
+            # Closes what an error has left open.
+            gc.collect()
+        os.write(writer, said.encode())
+        os._exit(0)
+    os.close(writer)
+    with open(reader, encoding="utf-8") as pipe:
+        said = pipe.read()
+    if os.WIFSIGNALED(os.waitpid(child, 0)[1]):
         raise UnreadableError("damaged: reading it does not end, or ends the program")
-    if ended:
-        raise UnreadableError("damaged, or larger than memory")
+    if said:
+        raise UnreadableError(said)
 
 
 def _limit_memory() -> None:

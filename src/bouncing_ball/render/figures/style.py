@@ -1,7 +1,7 @@
 """One look for all figures, and files that are the same from run to run."""
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -123,6 +123,15 @@ def parameters(data: xr.Dataset, *names: str) -> str:
 def note(axes: Axes, text: str, point, offset, **look) -> None:
     """A text at an offset in points from a point of the data."""
     axes.annotate(text, point, xytext=offset, textcoords="offset points", **look)
+
+
+def save_all(figure: Figure, paths: Iterable[str | Path], metadata: Mapping[str, str]) -> None:
+    """Write a figure in several formats, laid out once for all of them."""
+    if layout := figure.get_layout_engine():
+        layout.execute(figure)
+    figure.set_layout_engine("none")
+    for path in paths:
+        save(figure, path, metadata)
 
 
 def save(figure: Figure, path: str | Path, metadata: Mapping[str, str]) -> None:

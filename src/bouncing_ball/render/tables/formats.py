@@ -38,6 +38,18 @@ def to_markdown(header: Sequence[str], rows: Rows) -> str:
     return "".join("| " + " | ".join(line) + " |\n" for line in lines)
 
 
+def texts(header: Sequence[str], rows: Rows) -> dict[str, str]:
+    """A table in all formats, by the suffix of its file.
+
+    Examples
+    --------
+    >>> list(texts(["n"], [["1"]]))
+    ['.csv', '.md', '.tex']
+    """
+    forms = {".csv": to_csv, ".md": to_markdown, ".tex": to_latex}
+    return {suffix: form(header, rows) for suffix, form in forms.items()}
+
+
 _LATEX = {
     **{"%": r"\%", "&": r"\&", "_": r"\_", "#": r"\#", "<": "$<$", ">": "$>$"},
     **{"≤": r"$\le$", "≥": r"$\ge$", "→": r"$\to$", "–": "--", "×": r"$\times$"},

@@ -35,3 +35,16 @@ def require(valid: "ArrayLike", value: "ArrayLike", name: str, allowed: str) -> 
     if not np.all(valid):
         first = value[~valid][0]
         raise ModelError(f"{name} = {first} is not {allowed}")
+
+
+def escaped(text: str) -> str:
+    """Text in which nothing moves a cursor, hides or turns the reading.
+
+    Examples
+    --------
+    >>> escaped("ϖ\\t= 2\\x1b[2J")
+    'ϖ\\\\t= 2\\\\x1b[2J'
+    """
+    return "".join(
+        c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text
+    )

@@ -10,6 +10,7 @@ import yaml
 
 import bouncing_ball
 from bouncing_ball.audit.claims.ledger_file import read_ledger
+from bouncing_ball.configuration.conformity import check_schema
 from bouncing_ball.configuration.yaml_file import ConfigurationError, parse_yaml, read_yaml
 from bouncing_ball.record.diff.tolerance_file import read_tolerances
 
@@ -136,3 +137,10 @@ def test_every_file_of_the_project_is_read():
     assert len(files) > 5
     for path in files:
         assert read_yaml(path) == yaml.safe_load(path.read_text(encoding="utf-8")), path
+
+
+def test_nothing_raw_in_a_refusal(one_line):
+    with pytest.raises(ConfigurationError) as error:
+        check_schema({"n\x1b[31m\n\u202e": 1}, {"properties": {}, "additionalProperties": False})
+    assert str(error.value).isprintable()
+    one_line(error, r"n\x1b[31m\n\u202e")

@@ -126,7 +126,19 @@ def die():
     os.kill(os.getpid(), signal.SIGKILL)
 
 
-@pytest.mark.parametrize("end", [hang, die])
+def die_later():
+    """As HDF5 does when it closes what it could not open."""
+
+    class Left:
+        def __del__(self):
+            die()
+
+    left = Left()
+    left.cycle = left
+    raise OSError
+
+
+@pytest.mark.parametrize("end", [hang, die, die_later])
 def test_a_dataset_at_which_its_library_hangs_or_dies(monkeypatch, end):
     def damaged(*arguments, **keywords):
         end()

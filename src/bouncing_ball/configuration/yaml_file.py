@@ -10,7 +10,7 @@ from typing import Any
 
 import yaml
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball.errors import ModelError, escaped
 
 # Ten times as fast, where PyYAML was built with it; it reads the same language.
 _BASE = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -30,7 +30,10 @@ _SAME_EVERYWHERE = {
 
 
 class ConfigurationError(ModelError):
-    """A wrong key, type or value in the configuration, in one line."""
+    """A wrong key, type or value in the configuration, in one line that is safe to print."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(escaped(text))
 
 
 def _line(node: yaml.Node) -> str:

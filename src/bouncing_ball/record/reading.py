@@ -18,7 +18,7 @@ from functools import lru_cache
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball.errors import ModelError, escaped
 
 if TYPE_CHECKING:
     from netCDF4 import Dataset
@@ -56,11 +56,7 @@ def printable(text: object, width: int | None = 300) -> str:
     """
     text = str(text)
     shown = text if width is None or len(text) <= width else text[: width - 1] + "…"
-    if shown.isprintable():
-        return shown
-    return "".join(
-        c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in shown
-    )
+    return escaped(shown)
 
 
 def reason(error: BaseException) -> str:
@@ -174,10 +170,11 @@ def _read_all(content: bytes) -> None:
 
     with no_file_opened(), Dataset("memory", memory=content) as dataset:
         _check_size(dataset)
-        for part in (dataset, *dataset.variables.values()):
-            for name in part.ncattrs():
-                part.getncattr(name)
+        for name in dataset.ncattrs():
+            dataset.getncattr(name)
         for variable in dataset.variables.values():
+            for name in variable.ncattrs():
+                variable.getncattr(name)
             variable[...]
 
 

@@ -111,3 +111,15 @@ def shard_files(wildcards):
         for path in discard_damaged(paths):
             logger.warning(f"{path} is not what its job wrote: it is made again")
     return paths
+
+
+def request(wildcards):
+    """No file: reason and groups of an acceptance are checked before anything is made."""
+    # Imported here: no other target needs the record.
+    from bouncing_ball.record.accept import groups
+
+    try:
+        groups(os.environ.get("ONLY", ""), os.environ.get("REASON", ""))
+    except ModelError as error:
+        sys.exit(f"accept: {error}")
+    return []

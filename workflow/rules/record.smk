@@ -3,17 +3,7 @@
 #     ONLY="fig08 | table1" REASON="… | …" snakemake --cores 1 accept
 # It has no output and no benchmark, so that it looks at the record each time.
 
-from bouncing_ball.record.accept import groups
 from bouncing_ball.record.recipe import planned
-
-
-def request(wildcards):
-    """No file: what is asked for is checked before anything is made."""
-    try:
-        groups(os.environ.get("ONLY", ""), os.environ.get("REASON", ""))
-    except ModelError as error:
-        sys.exit(f"accept: {error}")
-    return []
 
 
 rule accept:

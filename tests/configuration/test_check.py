@@ -64,6 +64,11 @@ FIG08, FIG05 = ("figures", "fig08"), ("figures", "fig05")
         ),
         ((*FIG08, "frequency_ratio", 1), 0, "fig08.frequency_ratio[1] = 0 must be at least 0.1"),
         ((*FIG08, "frequency_ratio"), [2, 2], "fig08.frequency_ratio = [2, 2] must not repeat"),
+        (
+            (*FIG05, "cases"),
+            [{"restitution": 0.65, "amplitude": 1.0}] * 2,
+            "'restitution':... must not repeat an item (list of (restitution, amplitude)",
+        ),
         ((*FIG08, "frequency_ratio", 0), "1e4", "'1e4' must be a number (powers of ten are"),
         ((*FIG05, "cases", 0, "restitution"), 1.2, "restitution = 1.2 must be at most 1"),
         ((*FIG08, "points"), 3, "figures.fig08.points = 3 must be at least 11"),

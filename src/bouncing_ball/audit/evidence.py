@@ -9,6 +9,7 @@ A *rise* is the change from one sampled contact to the next stiffer one, a
 """
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -122,9 +123,18 @@ def _curves_of_fig06(sweep: xr.Dataset) -> Found:
 
 
 def _curves(name: str, sweep: xr.Dataset) -> list[str]:
-    """Names of the curves of a figure."""
+    """Names of the curves of a figure.
+
+    Examples
+    --------
+    >>> case = ("case", [0.65]), ("case", [1 + 1e-9])
+    >>> _curves("fig06", xr.Dataset({"restitution": case[0], "amplitude": case[1]}))
+    ['fig06 r=0.65 Λ=1.000000001']
+    """
     pairs = zip(sweep.restitution.values, sweep.amplitude.values, strict=True)
-    return [f"{name} r={r:g} Λ={lam:g}" for r, lam in pairs]
+    # All digits, so that no two are called alike.
+    digits = partial(np.format_float_positional, trim="-")
+    return [f"{name} r={digits(r)} Λ={digits(lam)}" for r, lam in pairs]
 
 
 @np.errstate(divide="ignore", invalid="ignore")  # the phase is 0 at the saddle-node

@@ -25,6 +25,9 @@ from bouncing_ball.datasets.netcdf import parameter_attributes, read_dataset
 from bouncing_ball.datasets.variables import VARIABLES
 
 ROOT = Path(__file__).resolve().parents[1]
+# Programs that the tests start keep what they have compiled, whatever the shell says: else
+# each start takes twice as long.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 settings.register_profile(
     "deterministic",

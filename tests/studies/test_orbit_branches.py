@@ -223,7 +223,7 @@ def test_a_branch_that_no_way_leads_to_starts_at_the_closed_form(continuation_se
     one_line(error, "1-T orbit at Λ = 0.6465", "ϖ = 10000", "before 0.6", "lost: the")
     with pytest.raises(NoOrbitError) as missing:
         branch_along_amplitude(1, 0.85, 0.6, 1.5, "displacement", continuation_settings)
-    one_line(missing, "no 1-T orbit", "ϖ = 0.6", "up to Λ = 1.5")
+    one_line(missing, "finds a 1-T orbit", "ϖ = 0.6", "up to Λ = 1.5")
 
 
 def test_a_branch_that_does_not_exist_is_missing_and_says_why(continuation_settings):
@@ -237,7 +237,7 @@ def test_a_branch_that_does_not_exist_is_missing_and_says_why(continuation_setti
     data = orbit_branches(parameters, "displacement", continuation_settings)
     assert np.isfinite(data.amplitude[0]).all() and np.isnan(data.amplitude[1]).all()
     assert not data.stable[1].any() and not data.admissible[1].any()
-    assert all("no 1-T orbit" in str(reason) for reason in data.end_reason[1].values)
+    assert all("finds a 1-T orbit" in str(reason) for reason in data.end_reason[1].values)
 
 
 @pytest.mark.slow

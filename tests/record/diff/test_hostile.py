@@ -134,7 +134,7 @@ def test_what_nobody_thought_of_is_one_line_and_status_two(pair, monkeypatch, ca
     def fail(*_):
         raise MemoryError
 
-    monkeypatch.setattr("bouncing_ball.record.diff.folders.compare_folders", fail)
+    monkeypatch.setattr("bouncing_ball.record.diff.reports.compare_folders", fail)
     with pytest.raises(SystemExit) as exit_:
         main(["diff", str(pair.record), str(pair.new)])
     out, err = capsys.readouterr()

@@ -1,6 +1,6 @@
 # make        set up and make every figure, table and the paper in results/
 # make test   set up and run the tests; make test-cluster the one on a Slurm
-# make quick  the tests that matter while one works
+# make quick  the tests of what computes, while one works
 # The environment is .venv/, from the hashed lock files.
 
 PYTHON ?= python3

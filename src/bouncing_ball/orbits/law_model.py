@@ -45,6 +45,8 @@ _ABOVE = 1.3
 _STEPS = StepControl(initial=0.05, smallest=1e-3, largest=0.4, max_angle=0.25)
 _POINTS = 300
 _FARTHER = 4.0
+# A fold so low is one of nearly elastic contacts: no step of a branch resolves it.
+_LOWEST = 1e-4
 # Farther above the fold than this there are steps in Λ, of at most so much in ln Λ.
 _WALK, _STRIDE = 2.0, 0.2
 _FOLD, _FLIP, _HERE = "saddle-node", "period doubling", "this amplitude"
@@ -351,6 +353,8 @@ def _located(kind: type[ContactLaw], values: tuple, n: float, name: str, guess: 
         found = newton(system, np.array(guess), vanishing(function), settings)
         if found.converged and found.point[-1] > 0:
             return found.point
+    if name == _FOLD and guess[-1] < _LOWEST:
+        return np.full(3, np.nan)
     branch = LawModel(law)._branch(int(n), law, float(np.nan_to_num(guess[-1], nan=1.0)))
     points = branch.named(name) if branch else []
     return points[-1 if name == _FLIP else 0] if points else np.full(3, np.nan)

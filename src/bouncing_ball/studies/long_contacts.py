@@ -91,7 +91,8 @@ def _motion(orbit: ContactOrbit) -> int:
 
 def _shared_period(model: ContactModel, amplitude: float, ends: Destinations) -> int:
     """Impacts after which most motions that are on no n-T orbit repeat; 0 if there is none."""
-    left = np.flatnonzero(ends.orbit == ELSEWHERE)
+    # One that is given up as it rises, after a release below the table's level, has no impact.
+    left = np.flatnonzero((ends.orbit == ELSEWHERE) & (ends.velocity < 0))
     asked = left[:: max(1, left.size // _ASKED)]
     if not asked.size:
         return 0

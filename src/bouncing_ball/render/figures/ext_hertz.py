@@ -1,5 +1,7 @@
 """Extension: Figures 8, 14 and 16 on contacts of other laws."""
 
+from itertools import cycle
+
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
@@ -14,12 +16,14 @@ from bouncing_ball.render.figures.style import (
     parameters,
 )
 
+_SHAPES = ("", "o", "s", "^")
+
 
 def draw(data: xr.Dataset) -> Figure:
     """Phase against Λ, greatest height and permanent contact against π/D."""
     figure, panels = canvas(WIDE, 2.9, columns=3)
     branches, heights, held = np.ravel(panels)
-    for law in data["law"].values:
+    for law, shape in zip(data["law"].values, cycle(_SHAPES), strict=False):
         look, part = LAWS[str(law)], data.sel(law=law)
         for ratio in data.shown_ratio.values:
             one = part.sel(shown_ratio=ratio)
@@ -27,8 +31,16 @@ def draw(data: xr.Dataset) -> Figure:
             label = str(law) if ratio == data.shown_ratio.values[0] else None
             branches.plot(one.amplitude, one.phase / np.pi, linewidth=1.0, label=label, **look)
         heights.plot(data.duration_ratio, part.max_height, linewidth=1.0, **look)
-        # Not drawn where no threshold was found: a hard Hunt-Crossley contact rings for long.
-        held.plot(data.duration_ratio, part.threshold_amplitude, linewidth=0.8, **look)
+        # That of a nonlinear contact goes up and down between samples too: the line only
+        # leads from one to the next, and breaks off where no threshold was found.
+        drawn = {"linewidth": 0.8} if not shape else {"linewidth": 0.3, "linestyle": "-"}
+        held.plot(
+            data.duration_ratio,
+            part.threshold_amplitude,
+            marker=shape,
+            markersize=1.8,
+            **(look | drawn),
+        )
     rigid = {"color": RESTITUTION, "linewidth": 0.6}
     heights.axhline(float(data.restitution_max_height), **rigid)
     held.axhline(1.0, **rigid)
@@ -45,6 +57,7 @@ def draw(data: xr.Dataset) -> Figure:
             float(data.duration_ratio[0]) / margin, float(data.duration_ratio[-1]) * margin
         )
         axes.set_title(rf"$r={number(data.attrs['heights__restitution'])}$", fontsize=8)
-    handles, labels = branches.get_legend_handles_labels()
+    lines, labels = branches.get_legend_handles_labels()
+    handles = list(zip(lines, held.lines, strict=False))
     figure.legend(handles, labels, loc="outside lower center", ncols=len(handles))
     return figure

@@ -56,7 +56,8 @@ def resumed(cloned, tmp_path_factory):
     when = damaged.stat()
     damaged.write_bytes(content)
     os.utime(damaged, ns=(when.st_atime_ns, when.st_mtime_ns))
-    said = tree.run("--cores", "1", "--nolock", *ATLAS)
+    tree.run("--unlock", *ATLAS[:2])
+    said = tree.run("--cores", "1", *ATLAS)
     return tree, early, said.stdout + said.stderr
 
 

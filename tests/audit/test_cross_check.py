@@ -198,6 +198,22 @@ def test_a_sweep_beyond_the_end_of_the_continuation(continuation_settings):
     assert int(result.orbits.sel(comparison=FORMULA).squeeze()) == there
 
 
+def test_an_orbit_that_rounding_moves_far(continuation_settings):
+    # Elastic, and the table hardly moves: the smallest singular value is 5e-6.
+    parameters = {
+        "n": 13,
+        "restitution": 1.0,
+        "amplitude": [0.001],
+        "frequency_ratio": {"min": 0.1, "max": 1e6, "samples": 2},
+    }
+    data = with_attributes(frequency_sweep(parameters, "force"), parameters, "force")
+    settings = continuation_settings | {"newton_tolerance": 1e-6}
+    cross_check({"fig10": data}, settings)
+    data["phase"][0, 0] += 1e-4
+    with pytest.raises(CrossCheckError, match=r"ϖ = 0\.1"):
+        cross_check({"fig10": data}, settings)
+
+
 def test_contacts_without_a_saddle_node_are_not_compared(continuation_settings):
     parameters = {
         "n": [1],

@@ -210,11 +210,28 @@ def _guesses(shown: Shown, y: np.ndarray, settings) -> Iterator[np.ndarray]:
         yield y * (1 + share)
 
 
+def _rounding(system: System, n: int, y: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """How far rounding of the equations can move their solutions in the planes of y.
+
+    Skeel's condition, ε |B⁻¹| (|J| |y| + 2π²n²), B being the Jacobian J with the normal
+    as its last row, and 2π²n² the fall in n periods, whose terms cancel in a flight;
+    the largest over the unknowns.
+    """
+    jacobian = system.jacobian(y)
+    bordered = np.concatenate([jacobian, normals[..., np.newaxis, :]], axis=-2)
+    terms = np.einsum("...ij,...j->...i", np.abs(jacobian), np.abs(y)) + 2 * (np.pi * n) ** 2
+    inverse = np.abs(np.linalg.pinv(bordered))[..., :-1]
+    moved = np.einsum("...ij,...j->...i", inverse, terms)
+    return np.finfo(float).eps * np.max(moved, axis=-1)
+
+
 def formula_against_continuation(shown: Shown, settings: Mapping[str, Any]) -> Disagreements:
     """Orbits of the formula against solutions of the equations.
 
     Each in the plane through the orbit that is normal to its branch: well
-    conditioned at a fold too, where Λ alone has half of the digits.
+    conditioned at a fold too, where Λ alone has half of the digits. An elastic ball
+    on a table that hardly moves has its phase to fewer digits than the budget asks:
+    where rounding alone can move an orbit further, that is its budget.
     """
     orbit, n = shown.orbit, int(shown.orbit.n)
     _, tolerance = controls(settings)
@@ -222,6 +239,7 @@ def formula_against_continuation(shown: Shown, settings: Mapping[str, Any]) -> D
     whole = shown.model.system(n)
     y = whole.point(orbit)
     normal, size = _normals(whole, y), _size(n, orbit.amplitude)
+    known = np.fmax(_rounding(whole, n, y, normal) / size / BUDGETS[FORMULA], 1.0)
     best = np.full(orbit.shape, np.inf)
     for guess in _guesses(shown, y, settings):
         todo = np.flatnonzero(~(best <= BUDGETS[FORMULA]) & np.isfinite(guess).all(axis=-1))
@@ -235,7 +253,7 @@ def formula_against_continuation(shown: Shown, settings: Mapping[str, Any]) -> D
             patient,
         )
         off = part.orbit.distance(part.model.system(n).orbit(found)) / size[todo]
-        best[todo] = np.fmin(best[todo], off)
+        best[todo] = np.fmin(best[todo], off / known[todo])
     return Disagreements(FORMULA, best, shown.name)
 
 

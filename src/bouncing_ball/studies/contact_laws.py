@@ -68,21 +68,24 @@ def exact_models(name: str, parameters: Mapping[str, Any], duration: np.ndarray)
     return LawModel(law_at_orbit(LAWS[name], r, duration, n, lam))
 
 
-def stiff_enough(name: str, parameters: Mapping[str, Any], ratios: np.ndarray) -> slice:
-    """The contacts, from some π/D on, that all have their orbit: softer ones may have none.
+def stiff_enough(
+    name: str, parameters: Mapping[str, Any], ratios: np.ndarray
+) -> tuple[slice, ImpactModel | None]:
+    """The contacts, from some π/D on, that all have their orbit, and their models.
 
-    A contact longer than the cycle, for one, has no orbit whose impact it is.
+    Softer ones may have none: a contact longer than the cycle, for one, has no orbit
+    whose impact it is. No model where there is no such contact.
     """
-    first, last = 0, len(ratios)
+    first, last, middle, models = 0, len(ratios), 0, None
     while first < last:
-        middle = (first + last) // 2
         try:
-            exact_models(name, parameters, np.pi / ratios[middle:])
+            models = exact_models(name, parameters, np.pi / ratios[middle:])
         except (ModelError, NoOrbitError):
             first = middle + 1
         else:
             last = middle
-    return slice(first, None)
+        middle = (first + last) // 2
+    return slice(first, None), models
 
 
 def corrected_model(exact: Any) -> CorrectedModel:
@@ -104,10 +107,10 @@ def _errors(name: str, parameters: Mapping[str, Any], ratios: np.ndarray) -> np.
     """Relative errors of both simple models, (model, quantity, ratio)."""
     r, n, lam = (parameters[key] for key in ("restitution", "n", "amplitude"))
     errors = np.full((len(SIMPLE), len(QUANTITIES), len(ratios)), np.nan)
-    part = stiff_enough(name, parameters, ratios)
-    if not ratios[part].size:
+    part, models = stiff_enough(name, parameters, ratios)
+    if models is None:
         return errors
-    exact: Any = exact_models(name, parameters, np.pi / ratios[part])
+    exact: Any = models
     wanted = _values(exact, n, lam)
     rigid = _values(RestitutionModel(r), n, lam)[:, np.newaxis]
     each = [_values(corrected_model(exact[k]), n, lam) for k in range(len(exact))]
@@ -206,10 +209,9 @@ def figures_of_laws(parameters: Mapping[str, Any]) -> xr.Dataset:
     )
     height = np.full((len(names), len(ratios)), np.nan)
     for k, name in enumerate(names):
-        part = stiff_enough(name, heights, ratios)
-        if ratios[part].size:
-            orbit = exact_models(name, heights, np.pi / ratios[part]).orbit(n, lam)
-            height[k, part] = orbit.max_height
+        part, models = stiff_enough(name, heights, ratios)
+        if models is not None:
+            height[k, part] = models.orbit(n, lam).max_height
     held = [[_held(name, r, x) for x in ratios] for name in names]
     return describe(
         xr.Dataset(

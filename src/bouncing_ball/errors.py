@@ -45,6 +45,8 @@ def escaped(text: str) -> str:
     >>> escaped("ϖ\\t= 2\\x1b[2J")
     'ϖ\\\\t= 2\\\\x1b[2J'
     """
+    if text.isprintable():
+        return text
     return "".join(
         c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text
     )

@@ -9,7 +9,6 @@ A *rise* is the change from one sampled contact to the next stiffer one, a
 """
 
 from collections.abc import Callable, Mapping
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -132,9 +131,8 @@ def _curves(name: str, sweep: xr.Dataset) -> list[str]:
     ['fig06 r=0.65 Λ=1.000000001']
     """
     pairs = zip(sweep.restitution.values, sweep.amplitude.values, strict=True)
-    # All digits, so that no two are called alike.
-    digits = partial(np.format_float_positional, trim="-")
-    return [f"{name} r={digits(r)} Λ={digits(lam)}" for r, lam in pairs]
+    # The digits that rounding leaves, so that no two are called alike.
+    return [f"{name} r={r:.12g} Λ={lam:.12g}" for r, lam in pairs]
 
 
 @np.errstate(divide="ignore", invalid="ignore")  # the phase is 0 at the saddle-node

@@ -244,11 +244,12 @@ class LawModel(ImpactModel):
         here = Event(_HERE, lambda y: y[..., -1] - amplitude)
         most = max(farther * amplitude, farther, _ABOVE * start)
         top = parameter_bound(most, upper=True, reason=f"Λ = {most:g}")
+        bottom = parameter_bound(_LOWEST, upper=False, reason=f"Λ = {_LOWEST:g}")
         if np.any(np.isnan(y)) or y[-1] >= most:
             return None
         try:
             return continue_branch(
-                system, y, increasing=False, events=(*system.events(), here, top),
+                system, y, increasing=False, events=(*system.events(), here, top, bottom),
                 control=_STEPS, max_points=_POINTS,
             )  # fmt: skip
         except (ContinuationError, LocationError):

@@ -198,6 +198,8 @@ def _check_end(content: bytes) -> None:
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
             resource.setrlimit(resource.RLIMIT_CPU, (MAX_SECONDS, MAX_SECONDS))
             _limit_memory()
+            # Only what this process makes is collected: the rest is shared with its parent.
+            gc.freeze()
             try:
                 _read_all(content)
             except UnreadableError as error:

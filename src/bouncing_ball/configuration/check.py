@@ -104,31 +104,22 @@ def check_orbits(config: Mapping[str, Any]) -> None:
         One line that names the figure and says what is missing.
     """
     # Imported here: to refuse a mistyped key needs no scipy.
-    import numpy as np
-
     from bouncing_ball.impacts.spring_damper import Contact
     from bouncing_ball.orbits.contact_model import ContactModel
 
-    asked = []
     for stage in STAGES.values():
-        if stage.one_motion:
-            part = stage.parameters(config)
-            ratios = np.atleast_1d(part["frequency_ratio"])
-            asked += [
-                (part["n"], part["amplitude"], part["restitution"], x, stage.section)
-                for x in ratios.tolist()
-            ]
-    *numbers, sections = zip(*asked, strict=True)
-    n, amplitude, restitution, ratio = map(np.array, numbers)
-    # All at once, as each search has its price.
-    model = ContactModel(Contact.from_restitution(restitution, ratio, config["release"]))
-    orbits = model.orbit(n, amplitude)
-    for k in np.flatnonzero(~(orbits.exists & orbits.is_admissible())):
-        try:
-            model[k].require_admissible(numbers[0][k], numbers[1][k])
-        except ValueError as error:
-            key = f"{sections[k]}.frequency_ratio = {numbers[3][k]}"
-            raise ConfigurationError(f"{key}: {error}") from None
+        if not stage.one_motion:
+            continue
+        part = stage.parameters(config)
+        ratios = part["frequency_ratio"]
+        for ratio in ratios if isinstance(ratios, list) else [ratios]:
+            contact = Contact.from_restitution(part["restitution"], ratio, config["release"])
+            try:
+                ContactModel(contact).require_admissible(part["n"], part["amplitude"])
+            except ValueError as error:
+                raise ConfigurationError(
+                    f"{stage.section}.frequency_ratio = {ratio}: {error}"
+                ) from None
 
 
 def check_configuration(config: Mapping[str, Any], kinds: Mapping[str, Any]) -> None:

@@ -71,6 +71,10 @@ class KuwabaraKono(ContactLaw):
         """p + C p′, of the sign of the force."""
         return penetration + self.damping * rate
 
+    def grip_slopes(self, penetration: np.ndarray, rate: np.ndarray) -> Slopes:
+        """1 and C."""
+        return Slopes(np.ones_like(penetration + rate), self.damping + 0 * rate)
+
     @classmethod
     def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
         """K = v²/P^{5/2} and C = group P/v."""

@@ -201,10 +201,8 @@ class LawModel(ImpactModel):
 
     def _beyond(self, n: int, law: ContactLaw, lam: np.ndarray, side: Side) -> np.ndarray:
         """The points at Λ: next to the fold along the branch, farther in steps from there."""
-        y, level = (
-            np.full((len(lam), 3), np.nan),
-            _WALK * float(LawModel(law).saddle_node(n).amplitude),
-        )
+        y = np.full((len(lam), 3), np.nan)
+        level = _WALK * float(LawModel(law).saddle_node(n).amplitude)
         near = lam <= level
         if near.any():
             y[near] = self._on_branch(n, law, lam[near], side)

@@ -16,6 +16,7 @@ from bouncing_ball.render.figures.style import (
     parameters,
 )
 
+# The linear contact, whose threshold is smooth, comes first.
 _SHAPES = ("", "o", "s", "^")
 
 

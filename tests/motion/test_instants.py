@@ -7,7 +7,6 @@ from hypothesis import strategies as st
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.impacts.restitution_map import exact_map_jacobian
-from bouncing_ball.motion.arrival import first_impact
 from bouncing_ball.motion.history import history
 from bouncing_ball.motion.instants import impact_cycle, lift_off_phase, simulate
 from bouncing_ball.motion.sequence import Status
@@ -129,14 +128,6 @@ def test_the_ball_stays_above_the_table(r, lam, phase, speed):
     assert np.all(sequence.relative_velocity[1:][flown] <= 0)
 
 
-def test_first_impact_of_a_ball_held_high():
-    arrival = first_impact(0.3, 0.0, [50.0, 2.0], [0.0, -3.0])
-    s = arrival.time
-    landed = np.array([50.0, 2.0]) + np.array([0.0, -3.0]) * s - s * s / 2
-    np.testing.assert_allclose(landed, 0.3 * np.sin(s), atol=1e-13)
-    np.testing.assert_allclose(arrival.velocity, np.array([0.0, -3.0]) - s, rtol=1e-14)
-
-
 def test_errors_are_one_line(one_line):
     for arguments, part in (
         ((0.0, 1.0, 0.0, 3.0, 2), "(0, 1]"),
@@ -147,6 +138,3 @@ def test_errors_are_one_line(one_line):
         with pytest.raises(ModelError) as error:
             simulate(*arguments)
         one_line(error, part)
-    with pytest.raises(ModelError) as error:
-        first_impact(1.0, 0.0, -0.1, 0.0)
-    one_line(error, "below the table")

@@ -30,7 +30,7 @@ _ITERATIONS = 30
 _SETTLED = 1e-15
 
 
-class Impact(NamedTuple):
+class Hit(NamedTuple):
     """An instant: phase ψ, velocity p before, and what follows from them.
 
     ``speed`` is v, ``depth`` h, ``height`` and ``velocity`` the absolute z and w
@@ -46,9 +46,7 @@ class Impact(NamedTuple):
     instant: Instant
 
 
-def impact(
-    signature: Signature, amplitude: ArrayLike, phase: ArrayLike, arrival: ArrayLike
-) -> Impact:
+def impact(signature: Signature, amplitude: ArrayLike, phase: ArrayLike, arrival: ArrayLike) -> Hit:
     """The instant at a phase ψ of the table, with absolute velocity p before it.
 
     Examples
@@ -67,7 +65,7 @@ def impact(
     law = signature(speed)
     depth = speed * law.delay
     after = x + law.restitution * speed + law.load * (1 - y)
-    return Impact(psi, p, speed, depth, y - depth, after, law)
+    return Hit(psi, p, speed, depth, y - depth, after, law)
 
 
 def instant_of(
@@ -110,21 +108,21 @@ def meeting(
     return phi + delay, z - delay
 
 
-def start_of(amplitude: ArrayLike, hit: Impact) -> tuple[np.ndarray, np.ndarray]:
+def start_of(amplitude: ArrayLike, hit: Hit) -> tuple[np.ndarray, np.ndarray]:
     """(φ, δ′) of the start of contact, t_c before the instant."""
     delay = hit.instant.delay
     phase = hit.phase - delay
     return phase, hit.arrival + delay - np.asarray(amplitude) * np.cos(phase)
 
 
-def instant_jacobian(amplitude: ArrayLike, hit: Impact, flight_time: ArrayLike, following: Impact):
+def instant_jacobian(amplitude: ArrayLike, hit: Hit, flight_time: ArrayLike, following: Hit):
     """Jacobian of the map (ψ, p) → (ψ₁, p₁) between instants, shape (..., 2, 2).
 
     Parameters
     ----------
     amplitude : array_like
         Λ.
-    hit, following : Impact
+    hit, following : Hit
         An instant and the next.
     flight_time : array_like
         Time between them.
@@ -148,13 +146,13 @@ def instant_jacobian(amplitude: ArrayLike, hit: Impact, flight_time: ArrayLike, 
     return np.stack(columns, axis=-1)
 
 
-def _at(lam, hit: Impact):
+def _at(lam, hit: Hit):
     """Λ cos ψ, Λ sin ψ and dh/dv."""
     law = hit.instant
     return lam * np.cos(hit.phase), lam * np.sin(hit.phase), law.delay + law.d_delay * hit.speed
 
 
-def start_jacobian(amplitude: ArrayLike, hit: Impact) -> np.ndarray:
+def start_jacobian(amplitude: ArrayLike, hit: Hit) -> np.ndarray:
     """Jacobian of (φ, δ′) in (ψ, p), shape (..., 2, 2)."""
     lam = np.asarray(amplitude, dtype=float)
     y, d_delay = lam * np.sin(hit.phase), np.asarray(hit.instant.d_delay)

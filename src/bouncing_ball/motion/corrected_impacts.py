@@ -16,16 +16,17 @@ A state on the Poincaré section is (φ, δ′) at the start of contact, t_c bef
 the instant. There the continued flight meets the table's level but for a t_c²/2.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.impacts.instant_map import Impact, impact, instant_of, start_of
+from bouncing_ball.impacts.instant_map import Hit, impact, instant_of, start_of
 from bouncing_ball.impacts.signature import Signature
 from bouncing_ball.motion.angles import reduce_angle, table
-from bouncing_ball.motion.ensembles import blocks, flatten, pick
+from bouncing_ball.motion.ensembles import BLOCK, flatten, pick
 from bouncing_ball.motion.first_zero import State, first_zero
+from bouncing_ball.motion.follow import BELOW, Columns, follow, next_impact
 from bouncing_ball.motion.landing import Flight, land
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence, Status
 from bouncing_ball.motion.starts import approach, check_amplitude, check_impact
@@ -35,15 +36,30 @@ from bouncing_ball.motion.starts import approach, check_amplitude, check_impact
 _DESCENT = 4
 
 
-class _Departure(NamedTuple):
-    """Ends of contact: duration, table phase, the flight from then on, and a time of
-    flight by which the ball has not landed. ``forever`` marks balls that stay."""
+class _Impact(NamedTuple):
+    """Starts of contact, at the table's level, and the instants that follow."""
 
-    duration: np.ndarray
     phase: np.ndarray
-    flight: Flight
+    displacement: np.ndarray
+    velocity: np.ndarray
+    hit: Hit
+
+
+class _Departure(NamedTuple):
+    """Ends of contact, with the flight from then on, and a time of flight by which
+    the ball has not landed."""
+
+    phase: np.ndarray
+    displacement: np.ndarray
+    velocity: np.ndarray
+    duration: np.ndarray
+    status: np.ndarray
     start: np.ndarray
-    forever: np.ndarray
+    flight: Flight
+
+    def take(self, which: Any) -> "_Departure":
+        fields: Any = self
+        return _Departure(*(x.take(which) for x in fields))
 
 
 class Rise:
@@ -100,34 +116,6 @@ def _from_rest(phase, amplitude):
     return wait, x, y, np.maximum(steep, 4 * x / top)
 
 
-def _depart(hit: Impact, amplitude) -> _Departure:
-    """The ends of the contacts of instants, counted from their starts."""
-    x, y = table(hit.phase, amplitude)
-    law = hit.instant
-    rest = law.duration - law.delay
-    whole = Flight(hit.height - y, hit.velocity - x, x, y, amplitude)
-    displacement, velocity, _, _ = whole.gap(rest)
-    end = hit.phase + rest
-    x, y = table(end, amplitude)
-    flight = Flight(displacement, velocity, x, y, amplitude)
-    duration = law.duration + np.zeros_like(end)
-    leaves, start = _leaves(flight)
-    if leaves.all():
-        return _Departure(duration, end, flight, start, ~leaves)
-    wait, x_rest, y_rest, start_rest = _from_rest(end, amplitude)
-    flight = Flight(
-        np.where(leaves, displacement, 0.0),
-        np.where(leaves, velocity, 0.0),
-        np.where(leaves, x, x_rest),
-        np.where(leaves, y, y_rest),
-        amplitude,
-    )
-    forever = ~leaves & (amplitude <= 1)
-    wait = np.where(leaves, 0.0, np.where(forever, np.inf, wait))
-    start = np.where(leaves, start, start_rest)
-    return _Departure(duration + wait, end + np.where(forever, 0.0, wait), flight, start, forever)
-
-
 def _descend(phase, relative, law: Signature, amplitude):
     """Time from landings (phase, δ′) on the table's level to the instants.
 
@@ -150,13 +138,65 @@ def _descend(phase, relative, law: Signature, amplitude):
     return time
 
 
-def _land(departure: _Departure, law: Signature, amplitude) -> tuple[Impact, np.ndarray]:
-    """The next instants, and the time until them from the end of contact."""
-    landing = land(departure.flight, departure.start)
-    thrown = departure.flight.thrown
-    below = _descend(departure.phase + landing.time, -landing.rate, law, amplitude)
-    flown = landing.time + below
-    return impact(law, amplitude, reduce_angle(departure.phase + flown), thrown - flown), flown
+class _Corrected(NamedTuple):
+    """The :class:`~bouncing_ball.motion.follow.Dynamics` of the corrected model."""
+
+    law: Signature
+    amplitude: np.ndarray
+    block: int = BLOCK
+
+    @property
+    def columns(self) -> Columns:
+        # Contacts start at the level of the table and may end elsewhere.
+        return {"release_displacement": BELOW["release_displacement"]}
+
+    def take(self, which: Any) -> "_Corrected":
+        return _Corrected(self.law.take(which), pick(self.amplitude, which))
+
+    def start(self, phase: np.ndarray, velocity: np.ndarray) -> _Impact:
+        instant = instant_of(self.law, self.amplitude, phase, velocity)
+        hit = impact(self.law, self.amplitude, *instant)
+        return _Impact(phase, np.zeros_like(phase), velocity, hit)
+
+    def depart(self, impact: _Impact) -> _Departure:
+        hit, amplitude = impact.hit, self.amplitude
+        x, y = table(hit.phase, amplitude)
+        law = hit.instant
+        rest = law.duration - law.delay
+        whole = Flight(hit.height - y, hit.velocity - x, x, y, amplitude)
+        displacement, velocity, _, _ = whole.gap(rest)
+        end = hit.phase + rest
+        x, y = table(end, amplitude)
+        flight = Flight(displacement, velocity, x, y, amplitude)
+        duration = law.duration + np.zeros_like(end)
+        leaves, start = _leaves(flight)
+        status = np.zeros(end.shape, dtype=np.int8)
+        if leaves.all():
+            return _Departure(end, displacement, velocity, duration, status, start, flight)
+        wait, x_rest, y_rest, start_rest = _from_rest(end, amplitude)
+        displacement, velocity = (
+            np.where(leaves, displacement, 0.0),
+            np.where(leaves, velocity, 0.0),
+        )
+        x, y = np.where(leaves, x, x_rest), np.where(leaves, y, y_rest)
+        flight = Flight(displacement, velocity, x, y, amplitude)
+        forever = ~leaves & (amplitude <= 1)
+        status[forever] = Status.PERMANENT_CONTACT
+        displacement, velocity = (np.where(forever, np.nan, x) for x in (displacement, velocity))
+        duration = duration + np.where(leaves, 0.0, np.where(forever, np.inf, wait))
+        end = end + np.where(leaves | forever, 0.0, wait)
+        start = np.where(leaves, start, start_rest)
+        return _Departure(end, displacement, velocity, duration, status, start, flight)
+
+    def fly(self, departure: _Departure) -> tuple[_Impact, np.ndarray]:
+        landing = land(departure.flight, departure.start)
+        at_level = departure.phase + landing.time
+        flown = landing.time + _descend(at_level, -landing.rate, self.law, self.amplitude)
+        phase = reduce_angle(departure.phase + flown)
+        hit = impact(self.law, self.amplitude, phase, departure.flight.thrown - flown)
+        phase, velocity = start_of(self.amplitude, hit)
+        passed = departure.duration + flown - hit.instant.delay
+        return _Impact(reduce_angle(phase), np.zeros_like(phase), velocity, hit), passed
 
 
 def _prepare(signature: Signature, amplitude, phase, relative):
@@ -164,7 +204,7 @@ def _prepare(signature: Signature, amplitude, phase, relative):
     (lam, _), (phase, relative), shape = flatten([amplitude, like_law], [phase, relative])
     check_amplitude(lam)
     check_impact(phase, relative)
-    return signature.flat(shape), lam, reduce_angle(phase), relative, shape
+    return _Corrected(signature.flat(shape), lam), (reduce_angle(phase), relative), shape
 
 
 def simulate(
@@ -203,62 +243,9 @@ def simulate(
     >>> simulate(law, 0.0, 0.0, -2.0, 3).impact_velocity.round(13).tolist()
     [-2.0, -2.0, -2.0]
     """
-    law, lam, phase, velocity, shape = _prepare(signature, amplitude, phase, velocity)
-    relative = approach(phase, velocity, lam)
-    tables = np.full((6, impacts, phase.size), np.nan)
-    status = np.zeros(phase.size, dtype=np.int8)
-    for part in blocks(phase.size):
-        start = phase[part], relative[part]
-        _run(*start, law.take(part), pick(lam, part), tables[:, :, part], status[part])
-    time, angle, speed, duration, left, thrown = tables.reshape(6, impacts, *shape)
-    return ImpactSequence(
-        amplitude=np.broadcast_to(np.asarray(amplitude, dtype=float), shape),
-        contact=None,
-        time=time,
-        phase=angle,
-        displacement=0 * time,
-        relative_velocity=speed,
-        contact_duration=duration,
-        release_displacement=left,
-        relative_release_velocity=thrown,
-        status=status.reshape(shape),
-    )
-
-
-def _run(phase, relative, law: Signature, lam, tables, status) -> None:
-    """Fill the tables of one block, impact by impact."""
-    time = np.zeros_like(phase)
-    alive = np.arange(phase.size)
-    hit = impact(law, lam, *instant_of(law, lam, phase, relative))
-    for row in range(tables.shape[1]):
-        if row:
-            phase, relative = start_of(lam, hit)
-        end = _depart(hit, lam)
-        left, thrown = (
-            np.where(end.forever, np.nan, x) for x in (end.flight.displacement, end.flight.velocity)
-        )
-        record = (time, reduce_angle(phase), relative, end.duration, left, thrown)
-        for array, values in zip(tables, record, strict=True):
-            array[row, alive] = values
-        if end.forever.any():
-            status[alive[end.forever]] = Status.PERMANENT_CONTACT
-            going = np.flatnonzero(~end.forever)
-            law, lam, alive = law.take(going), pick(lam, going), alive[going]
-            time, end = time[going], _going(end, going)
-        if row == tables.shape[1] - 1 or not alive.size:
-            break
-        hit, flown = _land(end, law, lam)
-        time = time + (end.duration + flown - hit.instant.delay)
-
-
-def _going(end: _Departure, which) -> _Departure:
-    return _Departure(
-        end.duration[which],
-        end.phase[which],
-        end.flight.take(which),
-        end.start[which],
-        end.forever[which],
-    )
+    balls, (phase, velocity), shape = _prepare(signature, amplitude, phase, velocity)
+    state = phase, approach(phase, velocity, balls.amplitude)
+    return follow(balls, state, None, amplitude, shape, impacts)
 
 
 def corrected_cycle(
@@ -274,18 +261,5 @@ def corrected_cycle(
     >>> round(float(corrected_cycle(law, 0.0, 0.0, -2.0).relative_velocity), 13)
     -2.0
     """
-    law, lam, phase, relative, shape = _prepare(signature, amplitude, phase, relative_velocity)
-    out = np.full((4, phase.size), np.nan)
-    out[3] = np.inf
-    for part in blocks(phase.size):
-        here, level = law.take(part), pick(lam, part)
-        first = instant_of(here, level, phase[part], relative[part])
-        end = _depart(impact(here, level, *first), level)
-        going = np.flatnonzero(~end.forever)
-        end, here, level = _going(end, going), here.take(going), pick(level, going)
-        hit, flown = _land(end, here, level)
-        start, speed = start_of(level, hit)
-        time = end.duration + flown - hit.instant.delay
-        for row, values in zip(out, (reduce_angle(start), speed, 0 * speed, time), strict=True):
-            row[part.start + going] = values
-    return Cycle(*(row.reshape(shape) for row in out))
+    balls, state, shape = _prepare(signature, amplitude, phase, relative_velocity)
+    return next_impact(balls, state, shape)

@@ -11,14 +11,15 @@ next term is below 10⁻¹⁵. The ball then sticks to the table until it lifts 
 at Λ sin τ = 1 on the way up; for Λ ≤ 1 it stays for ever.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.motion.angles import reduce_angle, table
-from bouncing_ball.motion.ensembles import blocks, flatten, pick
+from bouncing_ball.motion.ensembles import BLOCK, flatten, pick
+from bouncing_ball.motion.follow import Columns, follow, next_impact
 from bouncing_ball.motion.landing import Flight, land
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence, Status
 from bouncing_ball.motion.starts import check_amplitude
@@ -29,17 +30,30 @@ _CHATTER = 1e-5
 _INSTANT = np.finfo(float).eps
 
 
-class Rebound(NamedTuple):
-    """What follows an impact: time until the ball leaves, δ′ and the table's
-    (Λ cos, Λ sin, phase) then, the time of settling, and whether it stays for ever."""
+class _Impact(NamedTuple):
+    """Impacts: table phase, δ = 0, δ′ before and after."""
 
-    duration: np.ndarray
+    phase: np.ndarray
+    displacement: np.ndarray
     velocity: np.ndarray
+    after: np.ndarray
+
+
+class _Rebound(NamedTuple):
+    """What follows impacts: table phase, δ = 0 and δ′ when the ball leaves, the time
+    until then, the :class:`Status`, the table's Λ cos and Λ sin, the time of settling."""
+
+    phase: np.ndarray
+    displacement: np.ndarray
+    velocity: np.ndarray
+    duration: np.ndarray
+    status: np.ndarray
     x: np.ndarray
     y: np.ndarray
-    phase: np.ndarray
     settling: np.ndarray
-    forever: np.ndarray
+
+    def take(self, which: Any) -> "_Rebound":
+        return _Rebound(*(x[which] for x in self))
 
 
 class ImpactCycle(NamedTuple):
@@ -65,50 +79,73 @@ def lift_off_phase(amplitude: ArrayLike) -> np.ndarray:
     return np.where(lam > 1, np.arcsin(1 / np.maximum(lam, 1.0)), np.nan)
 
 
-def _rebound(phase, velocity, restitution, amplitude) -> Rebound:
-    """From δ′ just after an impact to the moment of leaving the table."""
-    x, y = table(phase, amplitude)
-    gravity = 1 - y
-    pressed = (gravity > 0) | ((gravity == 0) & (x <= 0))
-    # Where the ball is not pressed, or r = 1, T₀ is not used.
-    loss = gravity * (1 - restitution)
-    usable = pressed & (loss > 0)
-    total = np.where(usable, 2 * velocity, 0.0) / np.where(usable, loss, 1.0)
-    limit = np.maximum(_CHATTER * gravity / np.maximum(amplitude, 1.0), _INSTANT)
-    short = usable & (total <= limit)
-    sticks = short | (pressed & (velocity == 0))
-    if not sticks.any():
+class _Instants(NamedTuple):
+    """The :class:`~bouncing_ball.motion.follow.Dynamics` of the restitution model."""
+
+    restitution: np.ndarray
+    amplitude: np.ndarray
+    block: int = BLOCK
+
+    @property
+    def columns(self) -> Columns:
+        return {"settling": lambda _, rebound: rebound.settling}
+
+    def take(self, which: Any) -> "_Instants":
+        return _Instants(pick(self.restitution, which), pick(self.amplitude, which))
+
+    def start(self, phase: np.ndarray, velocity: np.ndarray) -> _Impact:
+        """Just after an impact."""
+        return _Impact(phase, np.zeros_like(phase), -velocity / self.restitution, velocity)
+
+    def depart(self, impact: _Impact) -> _Rebound:
+        phase, velocity, amplitude = impact.phase, impact.after, self.amplitude
+        x, y = table(phase, amplitude)
         none = np.zeros_like(phase)
-        return Rebound(none, velocity, x, y, phase, none, sticks)
-    correction = np.where(short, x * total, 0.0) / np.where(short, 3 * gravity, 1.0)
-    settling = np.where(sticks, total * (1 + correction), 0.0)
-    lifts = np.broadcast_to(amplitude > 1, phase.shape)
-    lift = np.where(lifts, np.arcsin(1 / np.maximum(amplitude, 1.0)), 0.0)
-    wait = np.mod(reduce_angle(lift - (phase + settling)), 2 * np.pi)
-    # Rounding must not turn a lift-off that is due now into one a turn later.
-    wait = np.where(wait > 2 * np.pi - 1e-9, 0.0, wait)
-    duration = np.where(sticks, np.where(lifts, settling + wait, np.inf), 0.0)
-    # At lift-off Λ sin τ = 1 exactly.
-    away = np.sqrt(np.maximum((amplitude - 1) * (amplitude + 1), 0.0))
-    return Rebound(
-        duration,
-        np.where(sticks, 0.0, velocity),
-        np.where(sticks, away, x),
-        np.where(sticks, 1.0, y),
-        np.where(sticks, lift, phase),
-        settling,
-        sticks & ~lifts,
-    )
+        gravity = 1 - y
+        pressed = (gravity > 0) | ((gravity == 0) & (x <= 0))
+        # Where the ball is not pressed, or r = 1, T₀ is not used.
+        loss = gravity * (1 - self.restitution)
+        usable = pressed & (loss > 0)
+        total = np.where(usable, 2 * velocity, 0.0) / np.where(usable, loss, 1.0)
+        limit = np.maximum(_CHATTER * gravity / np.maximum(amplitude, 1.0), _INSTANT)
+        short = usable & (total <= limit)
+        sticks = short | (pressed & (velocity == 0))
+        status = np.zeros(phase.shape, dtype=np.int8)
+        if not sticks.any():
+            return _Rebound(phase, none, velocity, none, status, x, y, none)
+        correction = np.where(short, x * total, 0.0) / np.where(short, 3 * gravity, 1.0)
+        settling = np.where(sticks, total * (1 + correction), 0.0)
+        lifts = np.broadcast_to(amplitude > 1, phase.shape)
+        lift = np.where(lifts, np.arcsin(1 / np.maximum(amplitude, 1.0)), 0.0)
+        wait = np.mod(reduce_angle(lift - (phase + settling)), 2 * np.pi)
+        # Rounding must not turn a lift-off that is due now into one a turn later.
+        wait = np.where(wait > 2 * np.pi - 1e-9, 0.0, wait)
+        duration = np.where(sticks, np.where(lifts, settling + wait, np.inf), 0.0)
+        status[sticks & ~lifts] = Status.PERMANENT_CONTACT
+        # At lift-off Λ sin τ = 1 exactly.
+        away = np.sqrt(np.maximum((amplitude - 1) * (amplitude + 1), 0.0))
+        return _Rebound(
+            np.where(sticks, lift, phase),
+            none,
+            np.where(sticks, np.where(lifts, 0.0, np.nan), velocity),
+            duration,
+            status,
+            np.where(sticks, away, x),
+            np.where(sticks, 1.0, y),
+            settling,
+        )
 
-
-def _fly(rebound: Rebound, amplitude):
-    """Phase and δ′ of the next impact, and the time of flight."""
-    flight = Flight(np.zeros_like(rebound.phase), rebound.velocity, rebound.x, rebound.y, amplitude)
-    # From rest, with Λ sin τ ≥ 1: δ ≥ Λ cos τ s³/6 - Λ s⁴/24.
-    rest = (rebound.velocity == 0) & (rebound.y >= 1)
-    start = np.where(rest, 4 * rebound.x / np.maximum(amplitude, 1.0), 0.0)
-    landing = land(flight, np.maximum(start, flight.sure()))
-    return reduce_angle(rebound.phase + landing.time), -landing.rate, landing.time
+    def fly(self, rebound: _Rebound) -> tuple[_Impact, np.ndarray]:
+        flight = Flight(
+            rebound.displacement, rebound.velocity, rebound.x, rebound.y, self.amplitude
+        )
+        # From rest, with Λ sin τ ≥ 1: δ ≥ Λ cos τ s³/6 - Λ s⁴/24.
+        rest = (rebound.velocity == 0) & (rebound.y >= 1)
+        start = np.where(rest, 4 * rebound.x / np.maximum(self.amplitude, 1.0), 0.0)
+        landing = land(flight, np.maximum(start, flight.sure()))
+        phase, before = reduce_angle(rebound.phase + landing.time), -landing.rate
+        impact = _Impact(phase, np.zeros_like(phase), before, -self.restitution * before)
+        return impact, rebound.duration + landing.time
 
 
 def _prepare(restitution, amplitude, phase, velocity):
@@ -124,7 +161,7 @@ def _prepare(restitution, amplitude, phase, velocity):
     # A ball at rest on the table may come out of rounding as sinking by a little.
     if not np.all(relative >= -8 * np.finfo(float).eps * (np.abs(velocity) + lam)):
         raise ModelError("a ball cannot leave the table downwards: v < w′")
-    return r, lam, reduce_angle(phase), np.maximum(relative, 0.0), shape
+    return _Instants(r, lam), (reduce_angle(phase), np.maximum(relative, 0.0)), shape
 
 
 def simulate(
@@ -157,68 +194,14 @@ def simulate(
     >>> simulate(0.5, 0.0, 0.0, 4.0, 3).time.tolist()
     [0.0, 8.0, 12.0]
     """
-    r, lam, phase, after, shape = _prepare(restitution, amplitude, phase, velocity)
-    size = phase.size
-    tables = np.full((6, impacts, size), np.nan)
-    status = np.zeros(size, dtype=np.int8)
-    for part in blocks(size):
-        _run(
-            pick(r, part), pick(lam, part), phase[part], after[part],
-            tables[:, :, part], status[part],
-        )  # fmt: skip
-    tables = tables.reshape(6, impacts, *shape)
-    time, angle, before, duration, thrown, settling = tables
-    return ImpactSequence(
-        amplitude=np.broadcast_to(np.asarray(amplitude, dtype=float), shape),
-        contact=None,
-        time=time,
-        phase=angle,
-        displacement=0 * time,
-        relative_velocity=before,
-        contact_duration=duration,
-        release_displacement=0 * thrown,
-        relative_release_velocity=thrown,
-        status=status.reshape(shape),
-        settling=settling,
-    )
+    balls, state, shape = _prepare(restitution, amplitude, phase, velocity)
+    return follow(balls, state, None, amplitude, shape, impacts)
 
 
-def _run(r, lam, phase, after, tables, status) -> None:
-    """Fill the tables of one block, impact by impact."""
-    time, before = np.zeros_like(phase), -after / r
-    alive = np.arange(phase.size)
-    for row in range(tables.shape[1]):
-        rebound = _rebound(phase, after, r, lam)
-        thrown = np.where(rebound.forever, np.nan, rebound.velocity)
-        record = (time, phase, before, rebound.duration, thrown, rebound.settling)
-        for array, values in zip(tables, record, strict=True):
-            array[row, alive] = values
-        if rebound.forever.any():
-            status[alive[rebound.forever]] = Status.PERMANENT_CONTACT
-            going = np.flatnonzero(~rebound.forever)
-            r, lam, alive, time = pick(r, going), pick(lam, going), alive[going], time[going]
-            rebound = Rebound(*(x[going] for x in rebound))
-        if row == tables.shape[1] - 1 or not alive.size:
-            break
-        phase, before, flown = _fly(rebound, lam)
-        time = time + (rebound.duration + flown)
-        after = -r * before
-
-
-def _cycle(restitution, amplitude, phase, velocity):
-    """Phase of the next impact, δ′ before it and the time until it, after an impact (τ, v)."""
-    r, lam, phase, after, shape = _prepare(restitution, amplitude, phase, velocity)
-    out = np.full((3, phase.size), np.nan)
-    out[2] = np.inf
-    for part in blocks(phase.size):
-        here, level = pick(r, part), pick(lam, part)
-        rebound = _rebound(phase[part], after[part], here, level)
-        going = np.flatnonzero(~rebound.forever)
-        rebound = Rebound(*(x[going] for x in rebound))
-        landed, before, flown = _fly(rebound, pick(level, going))
-        for array, values in zip(out, (landed, before, rebound.duration + flown), strict=True):
-            array[part.start + going] = values
-    return (row.reshape(shape) for row in out)
+def _cycle(restitution, amplitude, phase, velocity) -> Cycle:
+    """The next impact, δ′ before it, after an impact (τ, v)."""
+    balls, state, shape = _prepare(restitution, amplitude, phase, velocity)
+    return next_impact(balls, state, shape)
 
 
 def impact_cycle(
@@ -231,9 +214,10 @@ def impact_cycle(
     >>> float(impact_cycle(0.5, 0.0, 0.0, 4.0).velocity)
     2.0
     """
-    landed, before, time = _cycle(restitution, amplitude, phase, velocity)
-    bounced = table(landed, np.asarray(amplitude))[0] - np.asarray(restitution) * before
-    return ImpactCycle(landed, bounced, time)
+    cycle = _cycle(restitution, amplitude, phase, velocity)
+    bounced = table(cycle.phase, np.asarray(amplitude))[0]
+    bounced = bounced - np.asarray(restitution) * cycle.relative_velocity
+    return ImpactCycle(cycle.phase, bounced, cycle.time)
 
 
 def section_cycle(
@@ -248,5 +232,4 @@ def section_cycle(
     """
     table_velocity, _ = table(np.asarray(phase, dtype=float), np.asarray(amplitude, dtype=float))
     after = table_velocity - np.asarray(restitution) * np.asarray(relative_velocity)
-    landed, before, time = _cycle(restitution, amplitude, phase, after)
-    return Cycle(landed, before, 0 * before, time)
+    return _cycle(restitution, amplitude, phase, after)

@@ -19,15 +19,15 @@ from bouncing_ball.impacts.laws.contact_law import ContactLaw
 from bouncing_ball.impacts.release import Release
 from bouncing_ball.motion import law_motion
 from bouncing_ball.motion.angles import reduce_angle, table
-from bouncing_ball.motion.contacts import Departure, Impact, follow, next_impact
 from bouncing_ball.motion.corrected_impacts import Rise
 from bouncing_ball.motion.ensembles import flatten, pick
 from bouncing_ball.motion.first_zero import first_zero
+from bouncing_ball.motion.follow import BELOW, Columns, Departure, Impact, follow, next_impact
 from bouncing_ball.motion.landing import Flight, land
 from bouncing_ball.motion.law_table import Table
 from bouncing_ball.motion.resumption import Resumption, leaves_fast
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence, Status
-from bouncing_ball.motion.starts import check_amplitude
+from bouncing_ball.motion.starts import approach, check_amplitude
 
 # Samples of the grip of a slow ball, and bisections of its return.
 _SAMPLES = 65
@@ -35,7 +35,7 @@ _BISECTIONS = 60
 
 
 class _Contact(NamedTuple):
-    """Balls with a contact law, see :class:`bouncing_ball.motion.contacts.Dynamics`."""
+    """The :class:`~bouncing_ball.motion.follow.Dynamics` of a contact law."""
 
     law: ContactLaw
     amplitude: np.ndarray
@@ -47,8 +47,15 @@ class _Contact(NamedTuple):
     def below(self) -> bool:
         return self.law.release is not Release.DISPLACEMENT
 
+    @property
+    def columns(self) -> Columns:
+        return BELOW if self.below else {}
+
     def take(self, which: Any) -> "_Contact":
         return self._replace(law=self.law.take(which), amplitude=pick(self.amplitude, which))
+
+    def start(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
+        return Impact.at_level(phase, velocity)
 
     def depart(self, impact: Impact) -> Departure:
         # -0 is no depth.
@@ -57,10 +64,11 @@ class _Contact(NamedTuple):
         end = self.table.release(touch) if self.table else law_motion.release(self.law, touch)
         status = np.where(end.undecided, Status.UNDECIDED, Status.BOUNCING)
         duration = np.where(end.undecided, np.inf, end.duration)
-        return Departure(duration, -end.depth, np.maximum(-end.rate, 0.0), status)
+        velocity = np.maximum(-end.rate, 0.0)
+        return Departure(impact.phase + duration, -end.depth, velocity, duration, status)
 
-    def fly(self, phase: np.ndarray, departure: Departure) -> tuple[Impact, np.ndarray]:
-        x, y = table(phase, self.amplitude)
+    def fly(self, departure: Departure) -> tuple[Impact, np.ndarray]:
+        x, y = table(departure.phase, self.amplitude)
         flight = Flight(departure.displacement, departure.velocity, x, y, self.amplitude)
         start = flight.sure()
         below = np.zeros_like(start)
@@ -80,7 +88,8 @@ class _Contact(NamedTuple):
             time[back] = again.time[again.resumed]
             below[back] = again.displacement[again.resumed]
             velocity[back] = again.velocity[again.resumed]
-        return Impact(reduce_angle(phase + time), below, velocity), time
+        impact = Impact(reduce_angle(departure.phase + time), below, velocity)
+        return impact, departure.duration + time
 
 
 def _return(law: ContactLaw, flight: Flight) -> Resumption:
@@ -155,7 +164,8 @@ def simulate(
     [-2.0, -2.0, -2.0]
     """
     balls, (phase, velocity), shape = _prepare(law, amplitude, phase, velocity)
-    return follow(balls, law, np.asarray(amplitude, float), phase, velocity, shape, impacts)
+    state = phase, approach(phase, velocity, balls.amplitude)
+    return follow(balls, state, law, amplitude, shape, impacts)
 
 
 def law_cycle(
@@ -170,5 +180,5 @@ def law_cycle(
     >>> round(float(cycle.relative_velocity), 11)
     -2.0
     """
-    balls, (phase, u), shape = _prepare(law, amplitude, phase, relative_velocity)
-    return next_impact(balls, phase, u, shape)
+    balls, state, shape = _prepare(law, amplitude, phase, relative_velocity)
+    return next_impact(balls, state, shape)

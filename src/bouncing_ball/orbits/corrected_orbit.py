@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.impacts.instant_map import (
-    Impact,
+    Hit,
     impact,
     instant_jacobian,
     meeting,
@@ -44,7 +44,7 @@ class CorrectedOrbit(Orbit):
         return cls.of(n, law, amplitude, hit.phase - delay, duration, delay - launch)
 
     @cached_property
-    def hit(self) -> Impact:
+    def hit(self) -> Hit:
         """The instant: phase ψ, depth, speeds."""
         start = meeting(self.law, self.amplitude, self.phase, self.impact_velocity)
         return impact(self.law, self.amplitude, *start)

@@ -28,10 +28,7 @@ ALLOWED = {
     ),
     # Units are parsed at the edge, and pint is imported there when it is asked for.
     "calculator": ({"impacts", "orbits", "studies"}, {"numpy", "xarray", "pint"}),
-    "atlas": (
-        {"datasets", "impacts", "orbits", "studies"},
-        {"numpy", "xarray"},
-    ),
+    "atlas": ({"datasets", "impacts", "orbits", "studies"}, {"numpy", "xarray"}),
     # Studies are imported by name when they are run.
     "configuration": ({"impacts", "orbits"}, {"yaml", "jsonschema", BY_NAME}),
     "audit": (
@@ -39,10 +36,7 @@ ALLOWED = {
         {"numpy", "scipy", "xarray"},
     ),
     # Pandoc and Typst only where the PDF is made.
-    "render": (
-        {"datasets"},
-        {"numpy", "xarray", "matplotlib", "jinja2", "pypandoc", "typst"},
-    ),
+    "render": ({"datasets"}, {"numpy", "xarray", "matplotlib", "jinja2", "pypandoc", "typst"}),
     # Pillow reads pictures for matplotlib.
     "record": (
         {"datasets", "configuration"},

@@ -123,12 +123,7 @@ def test_both_models_in_one_dataset_and_the_table(continuation_settings):
         "amplitude_max": 2.2,
         "points": 21,
     }
-    ranges = {
-        "n": [1, 2],
-        "restitution": 0.85,
-        "frequency_ratio": [10.0],
-        "amplitude_max": 1.5,
-    }
+    ranges = {"n": [1, 2], "restitution": 0.85, "frequency_ratio": [10.0], "amplitude_max": 1.5}
     printed = {
         "frequency_ratio": [10.0],
         "n": [1, 2],

@@ -149,10 +149,7 @@ def make():
                     ("frequency_ratio", "n", "bound"),
                     [[[0.5, 2.125]], [[1.0, 2.0]], [[0.5, 3.0]]],
                 ),
-                "restitution_range": (
-                    ("impact_map", "n", "bound"),
-                    [[[1.0, 2.5]], [[1.0, 2.0]]],
-                ),
+                "restitution_range": (("impact_map", "n", "bound"), [[[1.0, 2.5]], [[1.0, 2.0]]]),
             },
             coords={
                 "frequency_ratio": [10.0, 1000.0, 2.0],

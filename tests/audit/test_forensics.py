@@ -4,11 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from bouncing_ball.audit.forensics.altered_model import (
-    Altered,
-    altered_monodromy,
-    altered_orbit,
-)
+from bouncing_ball.audit.forensics.altered_model import Altered, altered_monodromy, altered_orbit
 from bouncing_ball.audit.forensics.bifurcations import bifurcations
 from bouncing_ball.audit.forensics.ranking import ALL_ROWS, SOFTER_ROWS, forensics
 from bouncing_ball.audit.forensics.readings import (

@@ -5,11 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from bouncing_ball.configuration.check import (
-    ConfigurationError,
-    check_configuration,
-    check_orbits,
-)
+from bouncing_ball.configuration.check import ConfigurationError, check_configuration, check_orbits
 from bouncing_ball.configuration.yaml_file import read_yaml
 
 CONFIG, SCHEMA = (

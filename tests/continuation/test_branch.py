@@ -12,12 +12,7 @@ from bouncing_ball.continuation.branch import (
     solve_at,
 )
 from bouncing_ball.continuation.corrector import NewtonSettings
-from bouncing_ball.continuation.events import (
-    Event,
-    LocationError,
-    fold,
-    parameter_bound,
-)
+from bouncing_ball.continuation.events import Event, LocationError, fold, parameter_bound
 from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.impacts.restitution_map import bounce, exact_map_jacobian, landing_gap
 from bouncing_ball.orbits import restitution_orbit as exact_orbits

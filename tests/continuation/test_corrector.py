@@ -3,13 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.continuation.corrector import (
-    NewtonSettings,
-    newton,
-    null_vector,
-    plane,
-    tangent,
-)
+from bouncing_ball.continuation.corrector import NewtonSettings, newton, null_vector, plane, tangent
 
 EPS = np.finfo(float).eps
 

@@ -4,13 +4,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.continuation.corrector import NewtonSettings
-from bouncing_ball.continuation.events import (
-    Event,
-    LocationError,
-    fold,
-    locate,
-    parameter_bound,
-)
+from bouncing_ball.continuation.events import Event, LocationError, fold, locate, parameter_bound
 
 SETTINGS = NewtonSettings()
 

@@ -29,10 +29,7 @@ EPS = np.finfo(float).eps
 SOFT = Contact.from_restitution(0.85, 4.0)
 STIFF = Contact.from_restitution(0.65, 50.0)
 PUSHING = Contact.from_restitution(0.65, 20.0, "force")
-HERTZ = {
-    "tsuji": Tsuji(500.0, 0.3),
-    "kuwabara-kono": KuwabaraKono(2e3, 0.008),
-}
+HERTZ = {"tsuji": Tsuji(500.0, 0.3), "kuwabara-kono": KuwabaraKono(2e3, 0.008)}
 # Of contacts and their derivatives: roundings, but for the laws without a closed form,
 # where it is the collocation's convergence, and of a simulated cycle its own tolerance, 1e-12
 # of the velocity in each of some ten steps.
@@ -112,10 +109,7 @@ def test_an_orbit_is_a_fixed_point_of_the_simulation(name, n, above, side):
     assert orbit.is_admissible()
     u = orbit.relative_impact_velocity
     growth = 1 + np.abs(orbit.monodromy()).max()
-    for cycle in (
-        model.cycle(orbit.amplitude, orbit.phase, u),
-        orbit.cycle(orbit.phase, u),
-    ):
+    for cycle in (model.cycle(orbit.amplitude, orbit.phase, u), orbit.cycle(orbit.phase, u)):
         rounding = SIMULATED.get(name, 100 * EPS * 2 * np.pi * n)
         assert abs(cycle.time - 2 * np.pi * n) < rounding * growth
         assert abs(cycle.relative_velocity - u) < rounding * growth

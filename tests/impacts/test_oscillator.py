@@ -9,11 +9,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from bouncing_ball.impacts.oscillator import (
-    Response,
-    exponential_response,
-    impulse_response,
-)
+from bouncing_ball.impacts.oscillator import Response, exponential_response, impulse_response
 from bouncing_ball.impacts.spring_damper import responses
 
 EPS = np.finfo(float).eps
@@ -89,11 +85,7 @@ def random_contacts():
 
 @pytest.mark.parametrize(
     ("name", "function"),
-    [
-        ("impulse", free),
-        ("gravity", forced(mpmath.mpf(0))),
-        ("table", forced(mpmath.mpc(0, 1))),
-    ],
+    [("impulse", free), ("gravity", forced(mpmath.mpf(0))), ("table", forced(mpmath.mpc(0, 1)))],
 )
 def test_all_fields_against_high_precision(name, function):
     s, omega, zeta = random_contacts()

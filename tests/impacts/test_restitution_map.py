@@ -5,11 +5,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from bouncing_ball.impacts.restitution_map import (
-    bounce,
-    exact_map_jacobian,
-    landing_gap,
-)
+from bouncing_ball.impacts.restitution_map import bounce, exact_map_jacobian, landing_gap
 
 EPS = np.finfo(float).eps
 STATES = [(0.3, 3.0, 0.9, 0.85), (1.2, 4.1, 1.4, 0.5), (-0.4, 2.2, 0.3, 1.0), (2.0, 6.0, 2.6, 0.1)]

@@ -6,12 +6,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.impacts.instant_map import (
-    impact,
-    instant_jacobian,
-    instant_of,
-    start_jacobian,
-)
+from bouncing_ball.impacts.instant_map import impact, instant_jacobian, instant_of, start_jacobian
 from bouncing_ball.impacts.signature import Instant, LinearSignature, Signature
 from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.motion import contacts, instants

@@ -116,10 +116,7 @@ def test_continuation_finds_the_bifurcations_of_the_closed_form(n, omega, releas
     assert branch.end_reason == "window"
     names = [special.name for special in branch.special]
     last = len(names) - 1 - names[::-1].index("saddle-node")
-    for point, index in (
-        (node, last),
-        (doubling, names.index("period doubling", last)),
-    ):
+    for point, index in ((node, last), (doubling, names.index("period doubling", last))):
         found = branch.special[index].point
         # Newton's stop at 1e-12, relative to 1 + |y| ≤ 20, is converged
         # quadratically; what is left are roundings of residuals of that size.

@@ -120,11 +120,7 @@ def test_orbits_on_the_stable_side(n, r, log_omega, release, share):
 # From ϖ = 10 the unstable side reaches up to the period doubling; a soft one
 # may turn before.
 @given(
-    families,
-    coefficients,
-    st.floats(np.log(10.0), np.log(1e4)),
-    releases,
-    st.floats(0.01, 0.99),
+    families, coefficients, st.floats(np.log(10.0), np.log(1e4)), releases, st.floats(0.01, 0.99)
 )
 def test_orbits_on_the_unstable_side(n, r, log_omega, release, share):
     contact = Contact(float(np.exp(log_omega)), float(damping_ratio(r)), release)

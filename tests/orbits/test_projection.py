@@ -48,11 +48,6 @@ def test_an_orbit_beside_the_branch():
     normal = np.array([-point.d_y, point.d_x]) / np.hypot(point.d_x, point.d_y)
     x, y = point.x + 1e-4 * normal[0], point.y + 1e-4 * normal[1]
     orbit = ContactOrbit(
-        1,
-        contact,
-        np.hypot(x, y),
-        np.arctan2(y, x),
-        point.contact_duration,
-        point.u + point.x,
+        1, contact, np.hypot(x, y), np.arctan2(y, x), point.contact_duration, point.u + point.x
     )
     assert float(nearest_excess(orbit)) == pytest.approx(0.02, abs=1e-9)

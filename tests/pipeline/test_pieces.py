@@ -41,14 +41,8 @@ def test_an_entry_that_would_be_misread(one_line, entry, said):
 @pytest.mark.parametrize(
     ("entry", "said"),
     [
-        (
-            NEW,
-            "fig17: no module src/bouncing_ball/render/figures/fig17.py, which must",
-        ),
-        (
-            replace(NEW, name="fig16", study="studies.sweeps.f"),
-            "no module src/bouncing_ball/stud",
-        ),
+        (NEW, "fig17: no module src/bouncing_ball/render/figures/fig17.py, which must"),
+        (replace(NEW, name="fig16", study="studies.sweeps.f"), "no module src/bouncing_ball/stud"),
         (
             replace(NEW, name="fig16", study="studies.orbit_branches.sweep"),
             "fig16: no function sweep in src/bouncing_ball/studies/orbit_branches",

@@ -46,11 +46,7 @@ def with_followers(names):
     ("keys", "value", "expected"),
     [
         (("figures", "fig08", "points"), 101, {"fig08", *WITNESS, *EVIDENCE}),
-        (
-            ("extensions", "ext_release", "restitution"),
-            0.9,
-            {"ext_release", *WITNESS, *EVIDENCE},
-        ),
+        (("extensions", "ext_release", "restitution"), 0.9, {"ext_release", *WITNESS, *EVIDENCE}),
         (("figures", "fig16", "tolerance"), 0.02, {"fig16", *EVIDENCE}),
         # Decides two claims by its damping alone.
         (("figures", "fig11", "restitution"), 0.7, {"fig11", *CLAIMS}),

@@ -70,10 +70,7 @@ def integrated_height(omega, r, lam):
         t, (_, v) = run.t_events[0][0], run.y_events[0][0]
         z, zdot = lam * np.sin(phase + t), v + lam * np.cos(phase + t)
         flight = brentq(
-            lambda s: z + zdot * s - s * s / 2 - lam * np.sin(phase + t + s),
-            5.0,
-            7.5,
-            xtol=1e-14,
+            lambda s: z + zdot * s - s * s / 2 - lam * np.sin(phase + t + s), 5.0, 7.5, xtol=1e-14
         )
         end = phase + t + flight
         return end, zdot - flight - lam * np.cos(end), z + zdot**2 / 2

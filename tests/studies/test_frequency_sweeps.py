@@ -78,12 +78,7 @@ def test_not_stable_where_there_is_no_orbit():
 
 
 def test_sweep_of_one_restitution(described):
-    parameters = {
-        "n": 2,
-        "restitution": 0.85,
-        "amplitude": [1.1, 0.6],
-        "frequency_ratio": SPAN,
-    }
+    parameters = {"n": 2, "restitution": 0.85, "amplitude": [1.1, 0.6], "frequency_ratio": SPAN}
     data = described(frequency_sweep(parameters, "displacement"))
     assert data.amplitude.values.tolist() == [1.1, 0.6]
     assert data.restitution.values.tolist() == [0.85, 0.85]

@@ -5,10 +5,7 @@ import pytest
 
 from bouncing_ball.studies.long_contacts import MOTIONS, basins, stable_windows
 
-WINDOWS = {
-    "restitution": [0.85, 0.65],
-    "frequency_ratio": {"min": 1.2, "max": 10.0, "samples": 11},
-}
+WINDOWS = {"restitution": [0.85, 0.65], "frequency_ratio": {"min": 1.2, "max": 10.0, "samples": 11}}
 BASINS = {
     "n": [1, 2],
     "restitution": 0.85,

@@ -259,12 +259,7 @@ def test_strong_damping(continuation_settings, release):
 
 
 def test_a_window_without_a_period_doubling(continuation_settings):
-    parameters = {
-        "n": [1],
-        "restitution": 0.85,
-        "frequency_ratio": [10.0],
-        "amplitude_max": 0.9,
-    }
+    parameters = {"n": [1], "restitution": 0.85, "frequency_ratio": [10.0], "amplitude_max": 0.9}
     printed = {
         "restitution": 0.85,
         "release": "displacement",

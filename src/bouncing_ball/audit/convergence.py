@@ -146,11 +146,7 @@ def other_rounding(parameters: Parameters, ulps: int) -> Parameters:
 def tighter(settings: Parameters) -> Parameters:
     """Settings of the continuation: Newton's tolerance a tenth, steps and angles half."""
     shorter = {key: settings[key] / 2 for key in ("initial_step", "largest_step", "max_angle")}
-    return {
-        **settings,
-        **shorter,
-        "newton_tolerance": settings["newton_tolerance"] / 10,
-    }
+    return {**settings, **shorter, "newton_tolerance": settings["newton_tolerance"] / 10}
 
 
 def on_the_old_grid(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:

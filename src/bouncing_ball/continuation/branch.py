@@ -6,13 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.continuation.corrector import (
-    NewtonSettings,
-    newton,
-    null_vector,
-    plane,
-    tangent,
-)
+from bouncing_ball.continuation.corrector import NewtonSettings, newton, null_vector, plane, tangent
 from bouncing_ball.continuation.events import Event, LocationError, SpecialPoint, locate
 from bouncing_ball.continuation.problem import Problem
 from bouncing_ball.continuation.step_control import StepControl

@@ -90,11 +90,7 @@ def vanishing(function: Callable[[np.ndarray], np.ndarray]) -> Condition:
 
 
 def locate(
-    problem: Problem,
-    event: Event,
-    left: np.ndarray,
-    right: np.ndarray,
-    settings: NewtonSettings,
+    problem: Problem, event: Event, left: np.ndarray, right: np.ndarray, settings: NewtonSettings
 ) -> SpecialPoint:
     """The zero of an event between two points of the branch.
 

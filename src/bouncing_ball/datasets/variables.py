@@ -308,9 +308,7 @@ VARIABLES: dict[str, Variable] = {
         "difference of the stiffest row from the restitution model", "Λ"
     ),
     "printed_stiff_difference": Variable(
-        "difference of the printed stiffest row from the restitution model",
-        "Λ",
-        equation="Table 1",
+        "difference of the printed stiffest row from the restitution model", "Λ", equation="Table 1"
     ),
     "soft_range_shift": Variable(
         "relative shift of the ends of the softest row from the restitution model", ""

@@ -36,9 +36,7 @@ class Minimum(NamedTuple):
 
 
 def permanent_contact_threshold(
-    frequency_ratio: ArrayLike,
-    damping_ratio: ArrayLike,
-    release: Release = Release.DISPLACEMENT,
+    frequency_ratio: ArrayLike, damping_ratio: ArrayLike, release: Release = Release.DISPLACEMENT
 ) -> np.ndarray:
     """Largest Λ of permanent contact, Λ_SD(ϖ) (Eq. 33) or Λ_F(ϖ).
 

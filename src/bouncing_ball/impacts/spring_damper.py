@@ -303,11 +303,5 @@ class Contact(Record):
     ) -> ContactFlow:
         """Relative state a time after (δ₀, δ′₀): :func:`contact_flow`."""
         return contact_flow(
-            time,
-            displacement,
-            velocity,
-            phase,
-            amplitude,
-            self.frequency_ratio,
-            self.damping_ratio,
+            time, displacement, velocity, phase, amplitude, self.frequency_ratio, self.damping_ratio
         )

@@ -89,11 +89,7 @@ def _prepare(contact: Contact, amplitude, *states):
 
 
 def simulate(
-    contact: Contact,
-    amplitude: ArrayLike,
-    phase: ArrayLike,
-    velocity: ArrayLike,
-    impacts: int,
+    contact: Contact, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
 ) -> ImpactSequence:
     """Follow balls from an impact through a number of impacts, the first included.
 

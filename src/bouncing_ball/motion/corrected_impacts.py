@@ -208,11 +208,7 @@ def _prepare(signature: Signature, amplitude, phase, relative):
 
 
 def simulate(
-    signature: Signature,
-    amplitude: ArrayLike,
-    phase: ArrayLike,
-    velocity: ArrayLike,
-    impacts: int,
+    signature: Signature, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
 ) -> ImpactSequence:
     """Follow balls from an impact through a number of impacts, the first included.
 

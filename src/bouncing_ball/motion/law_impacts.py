@@ -130,11 +130,7 @@ def _prepare(law: ContactLaw, amplitude, *states):
 
 
 def simulate(
-    law: ContactLaw,
-    amplitude: ArrayLike,
-    phase: ArrayLike,
-    velocity: ArrayLike,
-    impacts: int,
+    law: ContactLaw, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
 ) -> ImpactSequence:
     """Follow balls from an impact through a number of impacts, the first included.
 

@@ -234,11 +234,7 @@ def _branch_point(eps, omega, zeta, sine, n) -> BranchPoint:
     _, d_x, d_y = solve(
         *(
             db - (row[0] * u + row[1] * x + row[2] * y)
-            for db, row in (
-                (d_weight, d_release),
-                (dg - 1, d_velocity),
-                (d_fall, d_landing),
-            )
+            for db, row in ((d_weight, d_release), (dg - 1, d_velocity), (d_fall, d_landing))
         )
     )
 

@@ -151,11 +151,7 @@ def period_doubling(
 
 
 def nearest(
-    n: ArrayLike,
-    instant: Instant,
-    amplitude: ArrayLike,
-    phase: ArrayLike,
-    rest: ArrayLike = 0.0,
+    n: ArrayLike, instant: Instant, amplitude: ArrayLike, phase: ArrayLike, rest: ArrayLike = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
     """Λ and ψ of the point of the line that is nearest to (Λ cos ψ, Λ sin ψ).
 

@@ -9,13 +9,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.impacts.instant_map import (
-    Hit,
-    impact,
-    instant_jacobian,
-    meeting,
-    start_jacobian,
-)
+from bouncing_ball.impacts.instant_map import Hit, impact, instant_jacobian, meeting, start_jacobian
 from bouncing_ball.impacts.signature import Instant, Signature
 from bouncing_ball.motion.corrected_impacts import corrected_cycle
 from bouncing_ball.motion.sequence import Cycle

@@ -75,10 +75,7 @@ class LawOrbit(Orbit):
         """Absolute position and velocity at times 0 ≤ τ ≤ τ_b in contact."""
         depth, rate = self._in_contact(time)
         angle = self.phase + time
-        return (
-            self.amplitude * np.sin(angle) - depth,
-            self.amplitude * np.cos(angle) - rate,
-        )
+        return (self.amplitude * np.sin(angle) - depth, self.amplitude * np.cos(angle) - rate)
 
     def contact_acceleration(self, time: np.ndarray) -> np.ndarray:
         """Absolute acceleration in contact, f - 1."""

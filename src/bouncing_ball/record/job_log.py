@@ -9,12 +9,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from bouncing_ball.record.provenance import (
-    Provenance,
-    ProvenanceError,
-    file_digest,
-    read_mapping,
-)
+from bouncing_ball.record.provenance import Provenance, ProvenanceError, file_digest, read_mapping
 
 _SUM = "sha256"
 _MADE = "provenance"

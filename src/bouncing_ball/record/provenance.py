@@ -37,10 +37,7 @@ _FORMS = {
     "lock": f"{_SHA256}|unknown",
 }
 # Of a mapping in JSON: the forms of its keys and of its values.
-_MAPPINGS = {
-    "inputs": (_PATH, _SHA256),
-    "versions": (r"\w{1,40}", r"\d[\w.+!-]{0,40}"),
-}
+_MAPPINGS = {"inputs": (_PATH, _SHA256), "versions": (r"\w{1,40}", r"\d[\w.+!-]{0,40}")}
 _LONGEST = 100_000
 
 

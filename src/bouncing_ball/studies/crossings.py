@@ -7,9 +7,7 @@ from scipy.optimize.elementwise import find_root
 
 
 def last_crossing(
-    function: Callable[[np.ndarray, np.ndarray], np.ndarray],
-    ratios: np.ndarray,
-    values: np.ndarray,
+    function: Callable[[np.ndarray, np.ndarray], np.ndarray], ratios: np.ndarray, values: np.ndarray
 ) -> np.ndarray:
     """The largest ϖ at which each function changes its sign.
 

@@ -132,10 +132,7 @@ def basins(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         periods[k] = _shared_period(model, lam, found)
         for orbit in orbits:
             if orbit.n == 1:
-                places[:, k, _motion(orbit)] = (
-                    orbit.phase,
-                    -orbit.relative_impact_velocity,
-                )
+                places[:, k, _motion(orbit)] = (orbit.phase, -orbit.relative_impact_velocity)
     shares = [[(part == kind).mean() for kind in range(len(MOTIONS))] for part in ends]
     return describe(
         xr.Dataset(

@@ -331,11 +331,7 @@ def printed_ranges(printed: Mapping[str, Any], ratios: list, families: list) -> 
     """
     axes = {key: printed[key] for key in ("frequency_ratio", "n", "bound")}
     table = xr.DataArray(printed["values"], axes)
-    wanted = {
-        "frequency_ratio": ratios,
-        "n": families,
-        "bound": [SADDLE_NODE, PERIOD_DOUBLING],
-    }
+    wanted = {"frequency_ratio": ratios, "n": families, "bound": [SADDLE_NODE, PERIOD_DOUBLING]}
     return table.reindex(wanted).values
 
 

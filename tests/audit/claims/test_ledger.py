@@ -4,11 +4,7 @@ import copy
 
 import pytest
 
-from bouncing_ball.audit.claims.ledger import (
-    Condition,
-    Measure,
-    Relation,
-)
+from bouncing_ball.audit.claims.ledger import Condition, Measure, Relation
 from bouncing_ball.audit.claims.ledger_file import parse_ledger
 from bouncing_ball.errors import ModelError
 
@@ -19,10 +15,7 @@ TABLE = {
     "item": "Table 1",
     "statement": "{bound} for n = {n} at {frequency_ratio:g}",
     "over": {"frequency_ratio": [1e4, 2.0], "n": [1, 2], "bound": ["low", "high"]},
-    "printed": [
-        [["0.10", "0.20"], ["0.30", "0.40"]],
-        [["0.50", "0.60"], ["0.70", "0.80"]],
-    ],
+    "printed": [[["0.10", "0.20"], ["0.30", "0.40"]], [["0.50", "0.60"], ["0.70", "0.80"]]],
     "legibility": "clear",
     "remark": "read so",
     "decided_by": {"dataset": "table1", "variable": "computed", "at": {"rule": "a"}},

@@ -17,11 +17,7 @@ GRID = xr.Dataset(
         "kind": ("n", ["a", "b"]),
         "empty": ("none", np.empty(0)),
     },
-    coords={
-        "n": [1, 2],
-        "bound": ["low", "high"],
-        "ratio": ("ratio", [10.0, 10.0]),
-    },
+    coords={"n": [1, 2], "bound": ["low", "high"], "ratio": ("ratio", [10.0, 10.0])},
 ).assign(twice=("ratio", [1.0, 2.0]))
 DATA = {"grid": GRID}
 

@@ -115,10 +115,7 @@ def assess(ledger: Ledger, data: Mapping[str, xr.Dataset]) -> xr.Dataset:
                 "explanation_holds": ("explanation", list(holds.values())),
                 "explanation_checks": ("explanation", [words for _, words in checks.values()]),
             },
-            coords={
-                "claim": [claim.id for claim in ledger.claims],
-                "explanation": list(holds),
-            },
+            coords={"claim": [claim.id for claim in ledger.claims], "explanation": list(holds)},
             attrs={
                 "close_units": ledger.close_units,
                 **parameter_attributes(ledger.parameters, "paper."),

@@ -160,10 +160,7 @@ def _agrees(given: Any, paper: Any) -> bool:
     if isinstance(paper, Mapping):
         # What is of another kind, a text for a number, is not the paper's.
         with suppress(TypeError):
-            limits = (
-                given >= paper.get("at_least", given),
-                given <= paper.get("at_most", given),
-            )
+            limits = (given >= paper.get("at_least", given), given <= paper.get("at_most", given))
             return all(limits) and set(paper.get("includes", [])) <= set(_listed(given))
         return False
     # A list of one number is that number among the attributes.

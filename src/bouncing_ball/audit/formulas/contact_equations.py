@@ -13,13 +13,7 @@ from scipy.optimize.elementwise import find_root
 
 from bouncing_ball.audit.formulas import as_printed as printed
 from bouncing_ball.audit.formulas.disagreement import ROUNDING, Check, largest
-from bouncing_ball.audit.formulas.flow import (
-    contact_matrix,
-    fall_matrix,
-    flow,
-    matrix,
-    state,
-)
+from bouncing_ball.audit.formulas.flow import contact_matrix, fall_matrix, flow, matrix, state
 from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.motion.contacts import contact_cycle

@@ -20,12 +20,7 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.impacts.laws.contact_law import (
-    ContactLaw,
-    Slopes,
-    check_damping,
-    check_positive,
-)
+from bouncing_ball.impacts.laws.contact_law import ContactLaw, Slopes, check_damping, check_positive
 
 
 @dataclass(frozen=True, repr=False)

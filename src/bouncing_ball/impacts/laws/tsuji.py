@@ -26,12 +26,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import require
-from bouncing_ball.impacts.laws.contact_law import (
-    ContactLaw,
-    Slopes,
-    check_damping,
-    check_positive,
-)
+from bouncing_ball.impacts.laws.contact_law import ContactLaw, Slopes, check_damping, check_positive
 
 
 def tsuji_damping(restitution: ArrayLike) -> np.ndarray:

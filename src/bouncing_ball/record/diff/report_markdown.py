@@ -46,11 +46,7 @@ def to_markdown(comparison: Comparison) -> str:
         artifact for artifact in comparison.artifacts if artifact.outcome is not Outcome.IDENTICAL
     ]
     if shown:
-        lines += [
-            "",
-            "| artifact | outcome | of budget | what |",
-            "| --- | --- | ---: | --- |",
-        ]
+        lines += ["", "| artifact | outcome | of budget | what |", "| --- | --- | ---: | --- |"]
     for artifact in shown:
         name, share = escaped(artifact.name), share_text(artifact.share)
         what = "<br>".join(map(escaped, [*remarks(artifact), *changed_lines(artifact)]))

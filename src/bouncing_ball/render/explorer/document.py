@@ -76,9 +76,5 @@ def to_html(data: xr.Dataset, texts: Mapping[str, str] | None = None) -> str:
         "base-uri 'none'; form-action 'none'"
     )
     return environment.get_template("page.html.j2").render(
-        policy=policy,
-        script=script,
-        style=style,
-        references=references(data),
-        bound=repr(BOUND),
+        policy=policy, script=script, style=style, references=references(data), bound=repr(BOUND)
     )

@@ -138,7 +138,8 @@ def test_the_monodromy_is_the_jacobian_of_the_simulated_map(name, n, above, side
 
 @every_side
 @every_case
-@pytest.mark.parametrize("name", [name for name in MODELS if "corrected" not in name])
+# A law whose D falls with the speed is differentiated at a fixed time in its flight.
+@pytest.mark.parametrize("name", [name for name in MODELS if name != "corrected, kuwabara-kono"])
 def test_the_jacobian_of_the_contact(name, n, above, side):
     # Where the force vanishes the map does not feel the time of release, so that
     # the monodromy would not show an error in it.

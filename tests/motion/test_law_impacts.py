@@ -13,7 +13,7 @@ from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.motion import contacts as closed_form
 from bouncing_ball.motion.law_impacts import law_cycle, simulate
 from bouncing_ball.motion.law_motion import Touch, release
-from bouncing_ball.motion.law_table import Table
+from bouncing_ball.motion.law_table import ReleaseTable
 from bouncing_ball.motion.sequence import Status
 
 LAWS = [HuntCrossley(4e3, 0.08), Tsuji(4e3, 0.3), KuwabaraKono(4e3, 0.005)]
@@ -55,7 +55,7 @@ def test_an_interpolated_contact_is_that_of_the_collocation(law):
     rng = np.random.default_rng(2)
     size = 6000
     speed, phase = rng.uniform(3, 4, size), rng.uniform(0, 1, size)
-    table = Table(law, 1.0)
+    table = ReleaseTable(law, 1.0)
     touch = Touch(np.zeros(size), speed, phase, 1.0)
     found = table.release(touch)
     known = [cell for cell, coefficients in table.cells.items() if coefficients is not None]
@@ -73,7 +73,7 @@ def test_a_cell_with_two_kinds_of_contact_is_quartered():
     law = LAWS[1]
     rng = np.random.default_rng(3)
     speed, phase = rng.uniform(0.05, 0.1, 3000), rng.uniform(1.6, 2.3, 3000)
-    table = Table(law, 1.0)
+    table = ReleaseTable(law, 1.0)
     touch = Touch(np.zeros(3000), speed, phase, 1.0)
     found = table.release(touch)
     assert any(coefficients is None for coefficients in table.cells.values())

@@ -155,14 +155,3 @@ def test_max_height_of_a_ball_released_downwards():
     z, _ = orbit.contact_path(np.linspace(0, float(orbit.contact_duration), 20001))
     # Sampled to (1e-4)²: far below the difference of 0.4.
     assert float(orbit.max_height) == pytest.approx(z.max(), abs=1e-6)
-
-
-def test_arrays_of_orbits():
-    contact = Contact(np.array([5.0, 50.0]), 0.1)
-    orbits = orbit_at(contact, 1, np.array([[0.9], [1.1]]))
-    assert orbits.max_height.shape == orbits.apparent_restitution.shape == (2, 2)
-    single = orbit_at(Contact(50.0, 0.1), 1, 0.9)
-    for name in ("phase", "bounce_velocity", "max_height", "apparent_restitution"):
-        assert float(getattr(orbits, name)[0, 1]) == pytest.approx(
-            float(getattr(single, name)), rel=1e-12
-        )

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bouncing_ball.continuation.events import Event
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.impacts.signature import Instant, LinearSignature, Signature
 from bouncing_ball.impacts.spring_damper import Contact, Release
@@ -76,52 +75,6 @@ def test_orbits_solve_their_equations_and_close(release, side):
     np.testing.assert_allclose(before, after, atol=1e-13)
     start, end = orbit.contact_path(0 * orbit.phase), orbit.flight_path(2 * np.pi)
     np.testing.assert_allclose(start, end, atol=1e-13)
-
-
-def test_contact_jacobian_against_differences():
-    model, _ = models(10.0, 0.2, Release.FORCE)
-    orbit = model.orbit(1, 1.0)
-    u = float(orbit.relative_impact_velocity)
-
-    def end(phase, u):
-        run = model.simulate(1.0, phase, u + np.cos(phase), 1)
-        left = run.release_displacement[0], run.relative_release_velocity[0]
-        return np.array([run.contact_duration[0], *left])
-
-    h = 1e-6
-    differences = np.stack(
-        [
-            (end(orbit.phase + h, u) - end(orbit.phase - h, u)) / (2 * h),
-            (end(orbit.phase, u + h) - end(orbit.phase, u - h)) / (2 * h),
-        ],
-        axis=-1,
-    )
-    np.testing.assert_allclose(orbit.contact_jacobian(), differences, atol=1e-9)
-
-
-@pytest.mark.parametrize("release", RELEASES)
-def test_the_equations_for_a_continuation(release):
-    model, _ = models(8.0, 0.2, release)
-    system, orbit = model.system(2), model.orbit(2, 2.0)
-    y = system.point(orbit)
-    assert np.all(np.abs(system.residual(y)) < 1e-13)
-    assert system.orbit(y).distance(orbit) < 1e-13
-    steps = 1e-6 * np.eye(3)
-    differences = [(system.residual(y + s) - system.residual(y - s)) / 2e-6 for s in steps]
-    np.testing.assert_allclose(system.jacobian(y), np.transpose(differences), atol=1e-8)
-    ends = model.saddle_node(2), model.period_doubling(2)
-    for event, there in zip(system.events(), ends, strict=True):
-        assert isinstance(event, Event)
-        assert abs(event.function(system.point(there))) < 1e-7
-
-
-def test_nearest_and_by_numbers():
-    model, _ = models(8.0, 0.2, Release.DISPLACEMENT)
-    orbit = model.orbit(1, 1.2)
-    names = ("amplitude", "phase", "contact_duration", "impact_velocity")
-    again = model.orbit_of(1, *(getattr(orbit, k) for k in names))
-    assert again.max_height == orbit.max_height
-    assert model.nearest(again).distance(orbit) < 1e-14
 
 
 def test_orbits_at_one_amplitude_and_below():

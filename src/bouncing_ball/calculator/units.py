@@ -24,7 +24,7 @@ _TEXT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOT
 _UNIT = re.compile(r"(?:[^\W\d]|[ ·*/%°²³¹⁻]|\^-?\d(?![\d^])|_0|1(?= */)){1,40}")
 
 
-class Kind(NamedTuple):
+class UnitKind(NamedTuple):
     """What a parameter is: its SI unit, its name in words, an example."""
 
     unit: str
@@ -33,24 +33,24 @@ class Kind(NamedTuple):
 
 
 KINDS = {
-    "mass": Kind("kg", "a mass", "20 g"),
-    "frequency": Kind("Hz", "a frequency", "50 Hz"),
-    "angular_frequency": Kind("rad/s", "an angular frequency", "314 rad/s"),
-    "period": Kind("s", "a time", "20 ms"),
-    "amplitude": Kind("m", "a length", "0.1 mm"),
-    "acceleration": Kind("m/s^2", "an acceleration", "2 g"),
-    "gravity": Kind("m/s^2", "an acceleration", "9.81 m/s^2"),
-    "stiffness": Kind("N/m", "a stiffness", "1e6 N/m"),
-    "damping": Kind("N*s/m", "a damping", "10 N s/m"),
-    "damping_ratio": Kind("", "a number", "0.05"),
-    "restitution": Kind("", "a number", "0.85"),
-    "measured_restitution": Kind("", "a number", "0.85"),
-    "contact_time": Kind("s", "a time", "50 us"),
-    "drop_height": Kind("m", "a length", "1 m"),
-    "rebound_height": Kind("m", "a length", "70 cm"),
-    "reduced_modulus": Kind("Pa", "a pressure", "115 GPa"),
-    "radius": Kind("m", "a length", "5 mm"),
-    "tolerance": Kind("", "a number", "1 %"),
+    "mass": UnitKind("kg", "a mass", "20 g"),
+    "frequency": UnitKind("Hz", "a frequency", "50 Hz"),
+    "angular_frequency": UnitKind("rad/s", "an angular frequency", "314 rad/s"),
+    "period": UnitKind("s", "a time", "20 ms"),
+    "amplitude": UnitKind("m", "a length", "0.1 mm"),
+    "acceleration": UnitKind("m/s^2", "an acceleration", "2 g"),
+    "gravity": UnitKind("m/s^2", "an acceleration", "9.81 m/s^2"),
+    "stiffness": UnitKind("N/m", "a stiffness", "1e6 N/m"),
+    "damping": UnitKind("N*s/m", "a damping", "10 N s/m"),
+    "damping_ratio": UnitKind("", "a number", "0.05"),
+    "restitution": UnitKind("", "a number", "0.85"),
+    "measured_restitution": UnitKind("", "a number", "0.85"),
+    "contact_time": UnitKind("s", "a time", "50 us"),
+    "drop_height": UnitKind("m", "a length", "1 m"),
+    "rebound_height": UnitKind("m", "a length", "70 cm"),
+    "reduced_modulus": UnitKind("Pa", "a pressure", "115 GPa"),
+    "radius": UnitKind("m", "a length", "5 mm"),
+    "tolerance": UnitKind("", "a number", "1 %"),
 }
 """The parameters that are quantities, by the names of the calculator."""
 

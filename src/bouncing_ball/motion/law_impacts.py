@@ -24,7 +24,7 @@ from bouncing_ball.motion.ensembles import flatten, pick
 from bouncing_ball.motion.first_zero import first_zero
 from bouncing_ball.motion.follow import BELOW, Columns, Departure, Impact, follow, next_impact
 from bouncing_ball.motion.landing import Flight, land
-from bouncing_ball.motion.law_table import Table
+from bouncing_ball.motion.law_table import ReleaseTable
 from bouncing_ball.motion.resumption import Resumption, leaves_fast
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence, Status
 from bouncing_ball.motion.starts import approach, check_amplitude
@@ -39,7 +39,7 @@ class _Contact(NamedTuple):
 
     law: ContactLaw
     amplitude: np.ndarray
-    table: Table | None = None
+    table: ReleaseTable | None = None
     # The release has blocks of its own; fewer here share the few contacts that last long.
     block: int = 1 << 16
 
@@ -125,7 +125,7 @@ def _prepare(law: ContactLaw, amplitude, *states):
     lam = np.asarray(amplitude, dtype=float)
     check_amplitude(lam)
     (lam, _), states, shape = flatten([lam, np.zeros(law.shape)], states)
-    table = None if law.shape or np.ndim(lam) else Table(law, float(lam))
+    table = None if law.shape or np.ndim(lam) else ReleaseTable(law, float(lam))
     return _Contact(law.flat(shape), lam, table), states, shape
 
 

@@ -69,7 +69,7 @@ class Touch(NamedTuple):
         return Touch(*(pick(x, which) for x in self))
 
 
-class Departure(NamedTuple):
+class ContactEnd(NamedTuple):
     """Ends of contact: duration, p, p′; NaN and ``undecided`` where none was found."""
 
     duration: np.ndarray
@@ -330,7 +330,7 @@ def _advanced(balls: _Balls, end: _End) -> tuple[_Balls, np.ndarray]:
     ), good & balls.last
 
 
-def release(law: ContactLaw, touch: Touch) -> Departure:
+def release(law: ContactLaw, touch: Touch) -> ContactEnd:
     """The release of each ball.
 
     Examples
@@ -355,7 +355,7 @@ def release(law: ContactLaw, touch: Touch) -> Departure:
                 waiting = waiting.take(slice(free, None))
     if law.release is Release.DISPLACEMENT:
         depth = np.where(np.isnan(time), np.nan, 0.0)
-    return Departure(time, depth, rate, np.isnan(time))
+    return ContactEnd(time, depth, rate, np.isnan(time))
 
 
 def _joined(some: _Balls, more: _Balls, law: ContactLaw) -> _Balls:

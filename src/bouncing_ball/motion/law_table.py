@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bouncing_ball.impacts.laws.contact_law import ContactLaw
-from bouncing_ball.motion.law_motion import Departure, Touch, release
+from bouncing_ball.motion.law_motion import ContactEnd, Touch, release
 
 # Nodes of a cell along each axis, its widths in ln v and φ, and how often it is quartered.
 _NODES = 16
@@ -45,14 +45,14 @@ class _Cell(NamedTuple):
         return np.repeat(np.exp(log), _NODES), np.tile(phase, _NODES)
 
 
-class Table:
+class ReleaseTable:
     """Releases of one law at one Λ.
 
     Examples
     --------
     >>> from bouncing_ball.impacts.laws.linear import Linear
     >>> speed, zero = np.full(1000, 2.0), np.zeros(1000)
-    >>> table = Table(Linear(1e3, 0.0), 0.0)
+    >>> table = ReleaseTable(Linear(1e3, 0.0), 0.0)
     >>> again = [table.release(Touch(zero, speed, zero, 0.0)).rate for _ in range(2)]
     >>> [rate[0].round(11).tolist() for rate in again], len(table.cells)
     ([-2.0, -2.0], 1)
@@ -64,7 +64,7 @@ class Table:
         self.cells: dict[_Cell, np.ndarray | None] = {}
         self._integrated: Counter[_Cell] = Counter()
 
-    def release(self, touch: Touch) -> Departure:
+    def release(self, touch: Touch) -> ContactEnd:
         """The release of each ball."""
         out = np.full((3, touch.rate.size), np.nan)
         left = np.flatnonzero((touch.depth == 0) & (touch.rate > 0))
@@ -76,7 +76,7 @@ class Table:
         if rest.size:
             end = release(self.law, touch.take(rest))
             out[:, rest], undecided[rest] = end[:3], end.undecided
-        return Departure(out[0], out[1], out[2], undecided)
+        return ContactEnd(out[0], out[1], out[2], undecided)
 
     def _interpolate(self, level: int, touch: Touch, which, out) -> np.ndarray:
         """Fill in the balls in cells that are known; returns those in cells to be quartered."""

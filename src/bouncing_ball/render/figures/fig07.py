@@ -19,7 +19,7 @@ _ARROW = {
 }
 
 
-class Instant(NamedTuple):
+class Moment(NamedTuple):
     """An instant of the cycle, with the ball's height and velocity, and the paper's names."""
 
     time: float
@@ -29,20 +29,20 @@ class Instant(NamedTuple):
     velocity_name: str
 
 
-def _instants(data: xr.Dataset) -> list[Instant]:
+def _instants(data: xr.Dataset) -> list[Moment]:
     """Impact, release, and the next impact."""
     ball = data.ball.values
     released = float(ball[data.contact.values.astype(bool)][-1])
     duration, end = float(data.contact_duration), float(data.time[-1])
     before, after = float(data.impact_velocity), float(data.bounce_velocity)
     return [
-        Instant(0.0, float(ball[0]), before, r"$\tau_i=0$", r"$z′_i$"),
-        Instant(duration, released, after, r"$\tau_b$", r"$z′_b$"),
-        Instant(end, float(ball[-1]), before, r"$\tau_2=\tau_i+2\pi n$", r"$z′_2$"),
+        Moment(0.0, float(ball[0]), before, r"$\tau_i=0$", r"$z′_i$"),
+        Moment(duration, released, after, r"$\tau_b$", r"$z′_b$"),
+        Moment(end, float(ball[-1]), before, r"$\tau_2=\tau_i+2\pi n$", r"$z′_2$"),
     ]
 
 
-def _draw_velocity(axes: Axes, instant: Instant, reach: float) -> None:
+def _draw_velocity(axes: Axes, instant: Moment, reach: float) -> None:
     """An arrow along the ball's velocity: a tangent of fixed length in τ."""
     here = (instant.time, instant.height)
     rise = reach * instant.velocity
@@ -57,7 +57,7 @@ def _draw_velocity(axes: Axes, instant: Instant, reach: float) -> None:
         note(axes, instant.velocity_name, head, (-4, 1), ha="right", va="center")
 
 
-def _draw_instant(axes: Axes, instant: Instant, low: float, reach: float) -> None:
+def _draw_instant(axes: Axes, instant: Moment, low: float, reach: float) -> None:
     """A guide down to its name, a dot at the ball, and the ball's velocity."""
     axes.plot([instant.time, instant.time], [low, instant.height], **GUIDE)
     axes.plot(instant.time, instant.height, "o", color="black", markersize=3.5, zorder=5)

@@ -24,7 +24,7 @@ from bouncing_ball.continuation.branch import ContinuationError, continue_both_w
 from bouncing_ball.continuation.corrector import Condition, NewtonSettings, newton, plane
 from bouncing_ball.continuation.events import LocationError, parameter_bound, vanishing
 from bouncing_ball.continuation.step_control import StepControl
-from bouncing_ball.datasets.variables import describe
+from bouncing_ball.datasets.variables import described
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.orbits.interface import ImpactModel, Orbit, Route, System
@@ -504,13 +504,11 @@ def cross_check(datasets: Mapping[str, xr.Dataset], settings: Mapping[str, Any])
         largest[name] = [value for value, _, _ in worst]
         count[name] = [orbits for _, orbits, _ in worst]
     dims, shape = ("artifact", "comparison"), (len(largest), len(kinds))
-    return describe(
-        xr.Dataset(
-            {
-                "disagreement": (dims, np.reshape(list(largest.values()), shape)),
-                "orbits": (dims, np.reshape(list(count.values()), shape).astype(int)),
-                "budget": ("comparison", np.array(list(BUDGETS.values()))),
-            },
-            coords={"artifact": list(largest), "comparison": kinds},
-        )
+    return described(
+        {
+            "disagreement": (dims, np.reshape(list(largest.values()), shape)),
+            "orbits": (dims, np.reshape(list(count.values()), shape).astype(int)),
+            "budget": ("comparison", np.array(list(BUDGETS.values()))),
+        },
+        coords={"artifact": list(largest), "comparison": kinds},
     )

@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.audit.formulas import as_printed as printed
-from bouncing_ball.datasets.variables import describe
+from bouncing_ball.datasets.variables import described
 from bouncing_ball.orbits import restitution_orbit
 
 Datasets = Mapping[str, xr.Dataset]
@@ -375,4 +375,4 @@ def evidence(data: Datasets, parameters: Mapping[str, Any]) -> xr.Dataset:
     for part in parts:
         found |= part(data)
     found |= _permanent_contact(data["fig16"], parameters["permanent_contact_frequency_ratio"])
-    return describe(xr.Dataset({k: v.reset_coords(drop=True) for k, v in found.items()}))
+    return described({k: v.reset_coords(drop=True) for k, v in found.items()})

@@ -14,7 +14,7 @@ from bouncing_ball.motion.sequence import Status
 from bouncing_ball.orbits.contact_model import ContactModel
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.error_law import coefficients, permanent_contact_coefficient
-from bouncing_ball.orbits.interface import ImpactModel, Orbit, Side
+from bouncing_ball.orbits.interface import OBSERVABLES, ImpactModel, Orbit, Side
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 
 Answer = dict[str, Any]
@@ -52,7 +52,11 @@ def _measured(args: argparse.Namespace, model: ImpactModel, speed: float) -> Ans
         return described(model, speed)
     if args.model == "restitution":
         return {}
-    contact = _contact(args)
+    return _loss(_contact(args))
+
+
+def _loss(contact: Contact) -> Answer:
+    """What the contact loses: r of a free impact, and ζ."""
     return {
         "measured_restitution": float(contact.restitution),
         "damping_ratio": float(contact.damping_ratio),
@@ -62,12 +66,7 @@ def _measured(args: argparse.Namespace, model: ImpactModel, speed: float) -> Ans
 def _described(orbit: Orbit) -> Answer:
     """One orbit."""
     return {
-        "phase": float(orbit.phase),
-        "contact_duration": float(orbit.contact_duration),
-        "impact_velocity": float(orbit.impact_velocity),
-        "bounce_velocity": float(orbit.bounce_velocity),
-        "apparent_restitution": float(orbit.apparent_restitution),
-        "max_height": float(orbit.max_height),
+        **{name: float(getattr(orbit, name)) for name in OBSERVABLES if name != "amplitude"},
         "multipliers": [[x.real, x.imag] for x in orbit.multipliers().tolist()],
         "is_stable": bool(orbit.is_stable()),
         "is_admissible": bool(orbit.is_admissible()),
@@ -132,10 +131,8 @@ def limits(args: argparse.Namespace) -> Answer:
     for name in ("saddle_node", "period_doubling"):
         orbit = getattr(model, name)(args.n)
         if not orbit.exists:
-            branch, what = (
-                f"the branch of {args.n}-T orbits for {model.label}",
-                name.replace("_", " "),
-            )
+            what = name.replace("_", " ")
+            branch = f"the branch of {args.n}-T orbits for {model.label}"
             # Without a closed form only what is found is known.
             closed = args.law is None
             raise NoOrbitError(
@@ -172,8 +169,7 @@ def error_law(args: argparse.Namespace) -> Answer:
         "second_order": {
             "permanent_contact": abs(float(permanent_contact_coefficient(zeta, release)))
         },
-        "measured_restitution": float(contact.restitution),
-        "damping_ratio": float(zeta),
+        **_loss(contact),
     }
 
 
@@ -193,10 +189,7 @@ def permanent_contact(args: argparse.Namespace) -> Answer:
         lowest = permanent_contact_minimum(zeta, release)
         answer["minimum"] = float(lowest.threshold)
         answer["at_frequency_ratio"] = float(lowest.frequency_ratio)
-    return answer | {
-        "measured_restitution": float(contact.restitution),
-        "damping_ratio": float(contact.damping_ratio),
-    }
+    return answer | _loss(contact)
 
 
 def _columns(sequence: Any) -> Answer:

@@ -5,7 +5,8 @@ times are Ωt, lengths Ω²y/g, velocities Ωẏ/g, and phases and angles are in
 radians of the table's motion. Units follow the CF conventions ("1", "rad").
 """
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -415,8 +416,12 @@ def describe(dataset: xr.Dataset) -> xr.Dataset:
     'φ'
     """
     bare = [name for name in dataset.dims if name not in dataset.coords]
-    described = dataset.assign_coords({name: np.arange(dataset.sizes[name]) for name in bare})
-    for name in described.variables:
-        variable = VARIABLES[str(name)]
-        described[name].attrs = variable._asdict()
-    return described
+    whole = dataset.assign_coords({name: np.arange(dataset.sizes[name]) for name in bare})
+    for name in whole.variables:
+        whole[name].attrs = VARIABLES[str(name)]._asdict()
+    return whole
+
+
+def described(variables: Mapping[str, Any], coords: Mapping[str, Any] | None = None) -> xr.Dataset:
+    """A dataset of these variables, with the attributes of all: see :func:`describe`."""
+    return describe(xr.Dataset(variables, coords))

@@ -14,7 +14,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from bouncing_ball.datasets.variables import describe
+from bouncing_ball.datasets.variables import described
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.impacts.damping import damping_ratio
 from bouncing_ball.impacts.law_choice import law_of_impact
@@ -142,19 +142,17 @@ def law_errors(parameters: Mapping[str, Any]) -> xr.Dataset:
     threshold = [
         _height_threshold(name, parameters, ratios, errors[k, 0, 0]) for k, name in enumerate(NAMES)
     ]
-    return describe(
-        xr.Dataset(
-            {
-                "relative_error": (("law", "model", "quantity", "duration_ratio"), errors),
-                "error_threshold": ("law", np.array(threshold)),
-            },
-            coords={
-                "law": list(NAMES),
-                "model": list(SIMPLE),
-                "quantity": list(QUANTITIES),
-                "duration_ratio": ratios,
-            },
-        )
+    return described(
+        {
+            "relative_error": (("law", "model", "quantity", "duration_ratio"), errors),
+            "error_threshold": ("law", np.array(threshold)),
+        },
+        coords={
+            "law": list(NAMES),
+            "model": list(SIMPLE),
+            "quantity": list(QUANTITIES),
+            "duration_ratio": ratios,
+        },
     )
 
 
@@ -213,23 +211,21 @@ def figures_of_laws(parameters: Mapping[str, Any]) -> xr.Dataset:
         if models is not None:
             height[k, part] = models.orbit(n, lam).max_height
     held = [[_held(name, r, x) for x in ratios] for name in names]
-    return describe(
-        xr.Dataset(
-            {
-                "bifurcation_amplitude": (("law", "bound", "shown_ratio", "n"), np.array(bounds)),
-                "amplitude": (("law", "shown_ratio", "point"), branches[:, :, 0]),
-                "phase": (("law", "shown_ratio", "point"), branches[:, :, 1]),
-                "max_height": (("law", "duration_ratio"), height),
-                "restitution_max_height": ((), float(RestitutionModel(r).orbit(n, lam).max_height)),
-                "threshold_amplitude": (("law", "duration_ratio"), np.array(held)),
-            },
-            coords={
-                "law": list(names),
-                "bound": list(BOUNDS),
-                "shown_ratio": np.array(shown, dtype=float),
-                "n": list(families),
-                "duration_ratio": ratios,
-                "point": np.arange(branches.shape[-1]),
-            },
-        )
+    return described(
+        {
+            "bifurcation_amplitude": (("law", "bound", "shown_ratio", "n"), np.array(bounds)),
+            "amplitude": (("law", "shown_ratio", "point"), branches[:, :, 0]),
+            "phase": (("law", "shown_ratio", "point"), branches[:, :, 1]),
+            "max_height": (("law", "duration_ratio"), height),
+            "restitution_max_height": ((), float(RestitutionModel(r).orbit(n, lam).max_height)),
+            "threshold_amplitude": (("law", "duration_ratio"), np.array(held)),
+        },
+        coords={
+            "law": list(names),
+            "bound": list(BOUNDS),
+            "shown_ratio": np.array(shown, dtype=float),
+            "n": list(families),
+            "duration_ratio": ratios,
+            "point": np.arange(branches.shape[-1]),
+        },
     )

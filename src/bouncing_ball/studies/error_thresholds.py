@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from bouncing_ball.datasets.variables import describe
+from bouncing_ball.datasets.variables import describe, described
 from bouncing_ball.impacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits.contact_model import ContactModel
@@ -186,19 +186,17 @@ def error_thresholds(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         roots.append(found)
         statuses.append([str(s) for s in status])
     dims = ("quantity", "tolerance")
-    return describe(
-        xr.Dataset(
-            {
-                "relative_error": (("quantity", "frequency_ratio"), np.array(errors)),
-                "error_threshold": (dims, np.array(roots)),
-                "threshold_status": (dims, np.array(statuses)),
-            },
-            coords={
-                "quantity": [str(q) for q in quantities],
-                "frequency_ratio": ratios,
-                "tolerance": tolerances,
-            },
-        )
+    return described(
+        {
+            "relative_error": (("quantity", "frequency_ratio"), np.array(errors)),
+            "error_threshold": (dims, np.array(roots)),
+            "threshold_status": (dims, np.array(statuses)),
+        },
+        coords={
+            "quantity": [str(q) for q in quantities],
+            "frequency_ratio": ratios,
+            "tolerance": tolerances,
+        },
     )
 
 
@@ -215,14 +213,9 @@ def height_error(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     )
     contact = Contact.from_restitution(r, dataset.frequency_ratio.values, release)
     orbit = ContactModel(contact).orbit(n, lam)
-    for name, values in (
-        ("max_height", orbit.max_height),
-        ("phase", orbit.phase),
-        ("contact_duration", orbit.contact_duration),
-        ("impact_velocity", orbit.impact_velocity),
-        ("admissible", orbit.is_admissible()),
-    ):
-        dataset[name] = ("frequency_ratio", values)
+    for name in ("max_height", "phase", "contact_duration", "impact_velocity"):
+        dataset[name] = ("frequency_ratio", getattr(orbit, name))
+    dataset["admissible"] = ("frequency_ratio", orbit.is_admissible())
     dataset["restitution_max_height"] = RestitutionModel(r).orbit(n, lam).max_height
     return describe(dataset)
 

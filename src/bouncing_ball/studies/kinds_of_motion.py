@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.datasets.variables import describe
+from bouncing_ball.datasets.variables import described
 from bouncing_ball.motion.regularity import Stretching, period, stretching
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 
@@ -50,13 +50,11 @@ def kinds_of_motion(parameters: Mapping[str, Any]) -> xr.Dataset:
     shared = np.where(np.ptp(periods, axis=1) == 0, periods[:, 0], 0)
     growth = stretching(sequence, r, ensemble["transient"])
     exponents = np.array([Stretching(*rows).exponent() for rows in zip(*growth, strict=True)])
-    return describe(
-        xr.Dataset(
-            {
-                "amplitude": ("case", amplitude),
-                "motion_period": ("case", shared),
-                "lyapunov_exponent": ("case", exponents[:, 0]),
-                "lyapunov_error": ("case", exponents[:, 1]),
-            }
-        )
+    return described(
+        {
+            "amplitude": ("case", amplitude),
+            "motion_period": ("case", shared),
+            "lyapunov_exponent": ("case", exponents[:, 0]),
+            "lyapunov_error": ("case", exponents[:, 1]),
+        }
     )

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.datasets.variables import describe
+from bouncing_ball.datasets.variables import described
 from bouncing_ball.impacts.damping import damping_ratio
 from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.motion.regularity import period
@@ -56,21 +56,19 @@ def stable_windows(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     ]
     stiff, joining = np.array(limits).T
     along = ("restitution", "frequency_ratio")
-    return describe(
-        xr.Dataset(
-            {
-                "threshold_amplitude": (
-                    along,
-                    ContactModel(law).permanent_contact_threshold().reshape(shape),
-                ),
-                "window_amplitude": (along, window.amplitude.reshape(shape)),
-                "window_flight": (along, window.flight_time.reshape(shape)),
-                "window_end": (along, window.end.reshape(shape)),
-                "stiff_window": ("restitution", stiff),
-                "joining_ratio": ("restitution", joining),
-            },
-            coords={"restitution": restitution, "frequency_ratio": ratio},
-        )
+    return described(
+        {
+            "threshold_amplitude": (
+                along,
+                ContactModel(law).permanent_contact_threshold().reshape(shape),
+            ),
+            "window_amplitude": (along, window.amplitude.reshape(shape)),
+            "window_flight": (along, window.flight_time.reshape(shape)),
+            "window_end": (along, window.end.reshape(shape)),
+            "stiff_window": ("restitution", stiff),
+            "joining_ratio": ("restitution", joining),
+        },
+        coords={"restitution": restitution, "frequency_ratio": ratio},
     )
 
 
@@ -134,16 +132,14 @@ def basins(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
             if orbit.n == 1:
                 places[:, k, _motion(orbit)] = (orbit.phase, -orbit.relative_impact_velocity)
     shares = [[(part == kind).mean() for kind in range(len(MOTIONS))] for part in ends]
-    return describe(
-        xr.Dataset(
-            {
-                "amplitude": ("case", np.array(amplitudes, dtype=float)),
-                "destination": (("case", "start_speed", "start_phase"), ends),
-                "basin_share": (("case", "motion"), np.array(shares)),
-                "orbit_phase": (("case", "motion"), places[0]),
-                "orbit_speed": (("case", "motion"), places[1]),
-                "other_period": ("case", periods),
-            },
-            coords={"motion": list(MOTIONS), "start_phase": phase, "start_speed": speed},
-        )
+    return described(
+        {
+            "amplitude": ("case", np.array(amplitudes, dtype=float)),
+            "destination": (("case", "start_speed", "start_phase"), ends),
+            "basin_share": (("case", "motion"), np.array(shares)),
+            "orbit_phase": (("case", "motion"), places[0]),
+            "orbit_speed": (("case", "motion"), places[1]),
+            "other_period": ("case", periods),
+        },
+        coords={"motion": list(MOTIONS), "start_phase": phase, "start_speed": speed},
     )

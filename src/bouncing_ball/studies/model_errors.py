@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.datasets.variables import describe
+from bouncing_ball.datasets.variables import described
 from bouncing_ball.impacts.signature import LinearSignature
 from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits import error_law
@@ -154,21 +154,19 @@ def error_law_table(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         [tolerance],
         ratios,
     )
-    return describe(
-        xr.Dataset(
-            {
-                "coefficient": ("quantity", k),
-                "law_threshold": ("quantity", np.abs(k) / tolerance),
-                "error_threshold": (("model", "quantity"), found.threshold[..., 0]),
-                "threshold_status": (("model", "quantity"), found.status[..., 0]),
-                "error_zero": ("quantity", found.zero[:, 0]),
-                "second_order": ("quantity", _second_order(zeta, rule, n, lam)),
-                "permanent_coefficient": ((), still),
-                "permanent_law": ((), float(np.sqrt(abs(still) / tolerance))),
-                "permanent_threshold": ((), float(permanent[0])),
-            },
-            coords={"model": list(SIMPLE), "quantity": list(QUANTITIES)},
-        )
+    return described(
+        {
+            "coefficient": ("quantity", k),
+            "law_threshold": ("quantity", np.abs(k) / tolerance),
+            "error_threshold": (("model", "quantity"), found.threshold[..., 0]),
+            "threshold_status": (("model", "quantity"), found.status[..., 0]),
+            "error_zero": ("quantity", found.zero[:, 0]),
+            "second_order": ("quantity", _second_order(zeta, rule, n, lam)),
+            "permanent_coefficient": ((), still),
+            "permanent_law": ((), float(np.sqrt(abs(still) / tolerance))),
+            "permanent_threshold": ((), float(permanent[0])),
+        },
+        coords={"model": list(SIMPLE), "quantity": list(QUANTITIES)},
     )
 
 
@@ -234,23 +232,21 @@ def orders(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     ]
     span = parameters["frequency_ratio"]
     law = law_errors(sample["law_samples"], sample["seed"] + 1, span, release)
-    return describe(
-        xr.Dataset(
-            {
-                "relative_error": (("model", "quantity", "frequency_ratio"), curves),
-                "order": (("model", "quantity", "sample"), np.log2(pair[0] / pair[1])),
-                "law_remainder": (("quantity", "law_sample"), law.remainder),
-                "small_parameter": ("law_sample", law.small_parameter),
-                "stated_below": ((), error_law.STATED),
-            },
-            coords={
-                "model": list(SIMPLE),
-                "quantity": list(QUANTITIES),
-                "frequency_ratio": ratios,
-                "sample": np.arange(sample["samples"]),
-                "law_sample": np.arange(sample["law_samples"]),
-            },
-        )
+    return described(
+        {
+            "relative_error": (("model", "quantity", "frequency_ratio"), curves),
+            "order": (("model", "quantity", "sample"), np.log2(pair[0] / pair[1])),
+            "law_remainder": (("quantity", "law_sample"), law.remainder),
+            "small_parameter": ("law_sample", law.small_parameter),
+            "stated_below": ((), error_law.STATED),
+        },
+        coords={
+            "model": list(SIMPLE),
+            "quantity": list(QUANTITIES),
+            "frequency_ratio": ratios,
+            "sample": np.arange(sample["samples"]),
+            "law_sample": np.arange(sample["law_samples"]),
+        },
     )
 
 
@@ -273,23 +269,19 @@ def validity(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     always = found.status == ThresholdStatus.ALWAYS_WITHIN
     threshold[..., there] = np.where(always, ratios[0], found.threshold)
     zero[..., there] = found.zero
-    return describe(
-        xr.Dataset(
-            {
-                "error_threshold": (
-                    ("model", "quantity", "n", "amplitude_ratio", "restitution"),
-                    threshold,
-                ),
-                "error_zero": (("quantity", "n", "amplitude_ratio", "restitution"), zero),
-            },
-            coords={
-                "model": list(SIMPLE),
-                "quantity": list(QUANTITIES),
-                "n": axes[0],
-                "amplitude_ratio": axes[1],
-                "restitution": axes[2],
-            },
-        )
+    dims = ("quantity", "n", "amplitude_ratio", "restitution")
+    return described(
+        {
+            "error_threshold": (("model", *dims), threshold),
+            "error_zero": (dims, zero),
+        },
+        coords={
+            "model": list(SIMPLE),
+            "quantity": list(QUANTITIES),
+            "n": axes[0],
+            "amplitude_ratio": axes[1],
+            "restitution": axes[2],
+        },
     )
 
 
@@ -299,16 +291,14 @@ def height(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     r = parameters["restitution"]
     contact = Contact.from_restitution(r, ratios, Release.of(release))
     exact, simple, corrected = (m.orbit(n, lam) for m in models(contact))
-    return describe(
-        xr.Dataset(
-            {
-                "max_height": ("frequency_ratio", exact.max_height),
-                "admissible": ("frequency_ratio", exact.is_admissible()),
-                "corrected_max_height": ("frequency_ratio", corrected.max_height),
-                "restitution_max_height": ((), simple.max_height.flat[0]),
-            },
-            coords={"frequency_ratio": ratios},
-        )
+    return described(
+        {
+            "max_height": ("frequency_ratio", exact.max_height),
+            "admissible": ("frequency_ratio", exact.is_admissible()),
+            "corrected_max_height": ("frequency_ratio", corrected.max_height),
+            "restitution_max_height": ((), simple.max_height.flat[0]),
+        },
+        coords={"frequency_ratio": ratios},
     )
 
 
@@ -334,21 +324,19 @@ def domains(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         ends.append([[float(x.amplitude), float(x.phase)] for x in (fold, flip)])
     bounds = np.array(ends)
     dims = ("model", "point")
-    return describe(
-        xr.Dataset(
-            {
-                "amplitude": (dims, np.array(amplitude)),
-                "phase": (dims, np.array(phase)),
-                "stable": (dims, np.array(stable)),
-                "bifurcation_amplitude": (("model", "bound"), bounds[..., 0]),
-                "bifurcation_phase": (("model", "bound"), bounds[..., 1]),
-            },
-            coords={
-                "model": list(names),
-                "point": np.arange(2 * len(share) + 1),
-                "bound": ["saddle-node", "period doubling"],
-            },
-        )
+    return described(
+        {
+            "amplitude": (dims, np.array(amplitude)),
+            "phase": (dims, np.array(phase)),
+            "stable": (dims, np.array(stable)),
+            "bifurcation_amplitude": (("model", "bound"), bounds[..., 0]),
+            "bifurcation_phase": (("model", "bound"), bounds[..., 1]),
+        },
+        coords={
+            "model": list(names),
+            "point": np.arange(2 * len(share) + 1),
+            "bound": ["saddle-node", "period doubling"],
+        },
     )
 
 
@@ -373,19 +361,17 @@ def meeting_flights(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     jump = float(orbit.bounce_velocity + end - orbit.impact_velocity)
     apart = float(orbit.bounce_height - (start[0] + (start[1] - end / 2) * end))
     meeting = end - apart / jump
-    return describe(
-        xr.Dataset(
-            {
-                "ball": ("time", np.where(time < 0, before, np.where(inside, touching, after))),
-                "table": ("time", table),
-                "flight_before": ("time", before),
-                "flight_after": ("time", after),
-                "contact_force": ("time", force),
-                "contact_duration": ((), end),
-                "meeting_time": ((), meeting),
-                "meeting_height": ((), float(start[0] + (start[1] - meeting / 2) * meeting)),
-                "delay": ((), float(LinearSignature(contact)().delay)),
-            },
-            coords={"time": time},
-        )
+    return described(
+        {
+            "ball": ("time", np.where(time < 0, before, np.where(inside, touching, after))),
+            "table": ("time", table),
+            "flight_before": ("time", before),
+            "flight_after": ("time", after),
+            "contact_force": ("time", force),
+            "contact_duration": ((), end),
+            "meeting_time": ((), meeting),
+            "meeting_height": ((), float(start[0] + (start[1] - meeting / 2) * meeting)),
+            "delay": ((), float(LinearSignature(contact)().delay)),
+        },
+        coords={"time": time},
     )

@@ -5,7 +5,7 @@ from typing import Any
 
 import xarray as xr
 
-from bouncing_ball.datasets.variables import describe
+from bouncing_ball.datasets.variables import described
 from bouncing_ball.impacts.damping import damping_ratio
 from bouncing_ball.impacts.permanent_contact import (
     RESTITUTION_THRESHOLD,
@@ -27,18 +27,16 @@ def permanent_contact(parameters: Mapping[str, Any], release: str) -> xr.Dataset
     ratios = grid(parameters["frequency_ratio"])
     zeta = float(damping_ratio(parameters["restitution"]))
     lowest = permanent_contact_minimum(zeta, Release(release))
-    return describe(
-        xr.Dataset(
-            {
-                "threshold_amplitude": (
-                    "frequency_ratio",
-                    permanent_contact_threshold(ratios, zeta, Release(release)),
-                ),
-                "minimum_threshold": ((), float(lowest.threshold)),
-                "minimum_frequency_ratio": ((), float(lowest.frequency_ratio)),
-                "restitution_threshold": ((), RESTITUTION_THRESHOLD),
-                "damping_ratio": ((), zeta),
-            },
-            coords={"frequency_ratio": ratios},
-        )
+    return described(
+        {
+            "threshold_amplitude": (
+                "frequency_ratio",
+                permanent_contact_threshold(ratios, zeta, Release(release)),
+            ),
+            "minimum_threshold": ((), float(lowest.threshold)),
+            "minimum_frequency_ratio": ((), float(lowest.frequency_ratio)),
+            "restitution_threshold": ((), RESTITUTION_THRESHOLD),
+            "damping_ratio": ((), zeta),
+        },
+        coords={"frequency_ratio": ratios},
     )

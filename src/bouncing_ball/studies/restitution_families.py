@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.datasets.variables import describe
+from bouncing_ball.datasets.variables import described
 from bouncing_ball.orbits import restitution_orbit as orbits
 from bouncing_ball.orbits.restitution_orbit import ImpactMap, RestitutionOrbit
 
@@ -51,22 +51,20 @@ def restitution_orbits(parameters: Mapping[str, Any]) -> xr.Dataset:
     maps = list(ImpactMap)
     doubling = np.array([orbits.period_doubling(n, r, kind) for kind in maps])
     lift = np.array([[float(orbits.period_doubling_lift(r, kind))] for kind in maps])
-    return describe(
-        xr.Dataset(
-            {
-                "amplitude": (("n", "point"), amplitude),
-                "phase": (("n", "point"), phase),
-                "stable": (("n", "point"), stable),
-                "admissible": (("n", "point"), admissible),
-                "grazing_amplitude": ("n", grazing[:, 0]),
-                "grazing_phase": ("n", grazing[:, 1]),
-                "saddle_node_amplitude": ("n", fold),
-                "saddle_node_phase": ("n", np.zeros_like(fold)),
-                "period_doubling_amplitude": (("impact_map", "n"), doubling),
-                "period_doubling_phase": (("impact_map", "n"), np.arctan2(lift, fold)),
-            },
-            coords={"n": n, "impact_map": [str(kind) for kind in maps]},
-        )
+    return described(
+        {
+            "amplitude": (("n", "point"), amplitude),
+            "phase": (("n", "point"), phase),
+            "stable": (("n", "point"), stable),
+            "admissible": (("n", "point"), admissible),
+            "grazing_amplitude": ("n", grazing[:, 0]),
+            "grazing_phase": ("n", grazing[:, 1]),
+            "saddle_node_amplitude": ("n", fold),
+            "saddle_node_phase": ("n", np.zeros_like(fold)),
+            "period_doubling_amplitude": (("impact_map", "n"), doubling),
+            "period_doubling_phase": (("impact_map", "n"), np.arctan2(lift, fold)),
+        },
+        coords={"n": n, "impact_map": [str(kind) for kind in maps]},
     )
 
 
@@ -83,14 +81,12 @@ def restitution_history(parameters: Mapping[str, Any]) -> xr.Dataset:
     period = 2 * np.pi * n
     time = np.linspace(0.0, parameters["periods"] * period, parameters["samples"])
     height, velocity = orbits.path(n, lam, phase, time)
-    return describe(
-        xr.Dataset(
-            {
-                "time": ("sample", time),
-                "ball": ("sample", height),
-                "ball_velocity": ("sample", velocity),
-                "table": ("sample", lam * np.sin(time + phase)),
-                "phase": ((), float(phase)),
-            }
-        )
+    return described(
+        {
+            "time": ("sample", time),
+            "ball": ("sample", height),
+            "ball_velocity": ("sample", velocity),
+            "table": ("sample", lam * np.sin(time + phase)),
+            "phase": ((), float(phase)),
+        }
     )

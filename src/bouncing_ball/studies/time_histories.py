@@ -6,11 +6,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.datasets.variables import describe
+from bouncing_ball.datasets.variables import described
 from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.contact_model import ContactModel
 from bouncing_ball.orbits.interface import Orbit
+
+# What is published of each orbit.
+_STATE = ("phase", "contact_duration", "impact_velocity", "bounce_velocity")
 
 
 def _cycle(orbit: Orbit, samples: int) -> tuple[np.ndarray, ...]:
@@ -41,21 +44,16 @@ def contact_history(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     model = ContactModel(Contact.from_restitution(r, ratio, release))
     orbit = model.require_admissible(n, lam)
     time, ball, velocity, touching = _cycle(orbit, parameters["samples"])
-    return describe(
-        xr.Dataset(
-            {
-                "time": ("sample", time),
-                "ball": ("sample", ball),
-                "ball_velocity": ("sample", velocity),
-                "table": ("sample", lam * np.sin(time + orbit.phase)),
-                "contact": ("sample", touching),
-                "frequency_ratio": ((), float(parameters["frequency_ratio"])),
-                "phase": ((), float(orbit.phase)),
-                "contact_duration": ((), float(orbit.contact_duration)),
-                "impact_velocity": ((), float(orbit.impact_velocity)),
-                "bounce_velocity": ((), float(orbit.bounce_velocity)),
-            }
-        )
+    return described(
+        {
+            "time": ("sample", time),
+            "ball": ("sample", ball),
+            "ball_velocity": ("sample", velocity),
+            "table": ("sample", lam * np.sin(time + orbit.phase)),
+            "contact": ("sample", touching),
+            "frequency_ratio": ((), float(parameters["frequency_ratio"])),
+            **{name: ((), float(getattr(orbit, name))) for name in _STATE},
+        }
     )
 
 
@@ -70,33 +68,25 @@ def both_histories(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     n, lam, r = parameters["n"], parameters["amplitude"], parameters["restitution"]
     ratios = np.sort(np.array(parameters["frequency_ratio"], dtype=float))
     columns: dict[str, list[np.ndarray]] = {"table_phase": [], "ball": [], "contact": []}
-    states: dict[str, list[float]] = {
-        "phase": [],
-        "contact_duration": [],
-        "impact_velocity": [],
-        "bounce_velocity": [],
-    }
+    states: dict[str, list[float]] = {name: [] for name in _STATE}
     for ratio in ratios:
         orbit = ContactModel(Contact.from_restitution(r, ratio, release)).require_admissible(n, lam)
         time, ball, _, touching = _cycle(orbit, parameters["samples"])
         for name, values in zip(columns, (time + orbit.phase, ball, touching), strict=True):
             columns[name].append(values)
-        state = (orbit.phase, orbit.contact_duration, orbit.impact_velocity, orbit.bounce_velocity)
-        for name, value in zip(states, state, strict=True):
-            states[name].append(float(value))
+        for name in _STATE:
+            states[name].append(float(getattr(orbit, name)))
     phase = float(restitution_orbits.phase(n, r, lam))
     time = np.linspace(0.0, 2 * np.pi * n, parameters["samples"])
     height, _ = restitution_orbits.path(n, lam, phase, np.minimum(time, time[-1] * (1 - 1e-15)))
     dims = ("frequency_ratio", "sample")
-    return describe(
-        xr.Dataset(
-            {
-                **{name: (dims, np.array(values)) for name, values in columns.items()},
-                **{name: ("frequency_ratio", values) for name, values in states.items()},
-                "restitution_ball": ("sample", height),
-                "time": ("sample", time),
-                "restitution_phase": ((), phase),
-            },
-            coords={"frequency_ratio": ratios},
-        )
+    return described(
+        {
+            **{name: (dims, np.array(values)) for name, values in columns.items()},
+            **{name: ("frequency_ratio", values) for name, values in states.items()},
+            "restitution_ball": ("sample", height),
+            "time": ("sample", time),
+            "restitution_phase": ((), phase),
+        },
+        coords={"frequency_ratio": ratios},
     )

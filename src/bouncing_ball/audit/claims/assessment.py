@@ -18,7 +18,7 @@ from bouncing_ball.audit.claims.verdict import (
 )
 from bouncing_ball.datasets.netcdf import parameter_attributes
 from bouncing_ball.datasets.rounding import compared_text
-from bouncing_ball.datasets.variables import describe
+from bouncing_ball.datasets.variables import described
 
 
 def _condition(claim: Claim, criterion: Criterion) -> str:
@@ -104,23 +104,19 @@ def assess(ledger: Ledger, data: Mapping[str, xr.Dataset]) -> xr.Dataset:
     checks = {part.id: _checks(part, ledger, data) for part in ledger.explanations}
     holds = {name: met for name, (met, _) in checks.items()}
     rows = [_row(claim, decide(claim, ledger, data), holds) for claim in ledger.claims]
-    return describe(
-        xr.Dataset(
-            {
-                **{key: ("claim", np.array([row[key] for row in rows])) for key in rows[0]},
-                "explanation_text": (
-                    "explanation",
-                    [explanation.text for explanation in ledger.explanations],
-                ),
-                "explanation_holds": ("explanation", list(holds.values())),
-                "explanation_checks": ("explanation", [words for _, words in checks.values()]),
-            },
-            coords={"claim": [claim.id for claim in ledger.claims], "explanation": list(holds)},
-            attrs={
-                "close_units": ledger.close_units,
-                **parameter_attributes(ledger.parameters, "paper."),
-            },
-        )
+    return described(
+        {
+            **{key: ("claim", np.array([row[key] for row in rows])) for key in rows[0]},
+            "explanation_text": (
+                "explanation",
+                [explanation.text for explanation in ledger.explanations],
+            ),
+            "explanation_holds": ("explanation", list(holds.values())),
+            "explanation_checks": ("explanation", [words for _, words in checks.values()]),
+        },
+        coords={"claim": [claim.id for claim in ledger.claims], "explanation": list(holds)},
+    ).assign_attrs(
+        close_units=ledger.close_units, **parameter_attributes(ledger.parameters, "paper.")
     )
 
 

@@ -22,7 +22,7 @@ from bouncing_ball.audit.formulas.contact_equations import (
 from bouncing_ball.audit.formulas.disagreement import Check
 from bouncing_ball.audit.formulas.permanent_contact_equations import permanent_contact_checks
 from bouncing_ball.audit.formulas.restitution_equations import restitution_checks
-from bouncing_ball.datasets.variables import describe
+from bouncing_ball.datasets.variables import described
 
 # In the order of the paper.
 _PARTS: tuple[Callable[..., dict[str, Check]], ...] = (
@@ -51,16 +51,14 @@ def formulas(parameters: Mapping[str, Any]) -> xr.Dataset:
     points = parameters["curve_points"]
     admissible = points_with_one_impact(rng, points)
     disagreement, budget, comparison = zip(*checks.values(), strict=True)
-    return describe(
-        xr.Dataset(
-            {
-                "disagreement": ("formula", np.array(disagreement)),
-                "budget": ("formula", np.array(budget)),
-                "compared_with": ("formula", np.array(comparison)),
-                "static_error": static_error(parameters["static"]),
-                "curve_points": ((), points),
-                "curve_points_admissible": ((), admissible),
-            },
-            coords={"formula": list(checks)},
-        )
+    return described(
+        {
+            "disagreement": ("formula", np.array(disagreement)),
+            "budget": ("formula", np.array(budget)),
+            "compared_with": ("formula", np.array(comparison)),
+            "static_error": static_error(parameters["static"]),
+            "curve_points": ((), points),
+            "curve_points_admissible": ((), admissible),
+        },
+        coords={"formula": list(checks)},
     )

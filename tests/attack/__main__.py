@@ -5,11 +5,11 @@
 An attack is a module of this folder whose docstring's first line says what it
 does to what, with one function
 
-    attack(seed: int, seconds: float) -> tuple[int, int, list[str]]
+    attack(seed: int) -> Iterator[list[str]]
 
-that tries until its time is over and returns how many cases it tried, how many
-held, and one line for each that fell, from which the case can be repeated. It
-runs in a process of its own; one that does not end, or tries nothing, fell.
+that tries one or more cases at a time, and yields an empty text for each that held
+and for one that fell a line from which it can be repeated. It runs in a process of
+its own until its time is over; one that does not end, or tries nothing, fell.
 """
 
 import argparse
@@ -39,8 +39,11 @@ class Outcome:
 
     name: str
     tried: int
-    held: int
     fallen: tuple[str, ...]
+
+    @property
+    def held(self) -> int:
+        return max(0, self.tried - len(self.fallen))
 
     def row(self) -> str:
         numbers = f"{self.tried} | {self.held} | {len(self.fallen)}"
@@ -72,8 +75,14 @@ def run_here(name: str, seed: int, seconds: float) -> None:
     spec.loader.exec_module(module)
     # What the attacked code prints is no result.
     with contextlib.redirect_stdout(sys.stderr):
-        tried, held, fallen = module.attack(seed, seconds)
-    print(json.dumps([int(tried), int(held), list(fallen)]))
+        tried, fallen, end = 0, [], time.monotonic() + seconds
+        with contextlib.closing(module.attack(seed)) as cases:
+            for verdicts in cases:
+                tried += len(verdicts)
+                fallen += filter(None, verdicts)
+                if time.monotonic() > end:
+                    break
+    print(json.dumps([tried, fallen]))
 
 
 def run(name: str, seed: int, seconds: float) -> Outcome:
@@ -91,14 +100,14 @@ def run(name: str, seed: int, seconds: float) -> Outcome:
             out, err = process.communicate(timeout=seconds + GRACE)
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)
-            return Outcome(name, 1, 0, (f"seed {seed}: no end {GRACE:g} s after its time",))
+            return Outcome(name, 1, (f"seed {seed}: no end {GRACE:g} s after its time",))
     if process.returncode != 0:
         last = err.strip().splitlines()[-1:] or ["no message"]
-        return Outcome(name, 1, 0, (f"seed {seed}: ended with {process.returncode}: {last[0]}",))
-    tried, held, fallen = json.loads(out)
+        return Outcome(name, 1, (f"seed {seed}: ended with {process.returncode}: {last[0]}",))
+    tried, fallen = json.loads(out)
     if not tried:
-        return Outcome(name, 0, 0, (f"seed {seed}: nothing was tried in {seconds:.3g} s",))
-    return Outcome(name, tried, held, tuple(fallen))
+        return Outcome(name, 0, (f"seed {seed}: nothing was tried in {seconds:.3g} s",))
+    return Outcome(name, tried, tuple(fallen))
 
 
 def git(*arguments: str) -> str:

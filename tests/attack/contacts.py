@@ -7,7 +7,7 @@ branch, must have a multiplier of 1 or -1: at a pole or a grazing point it has
 none near. Each orbit that is called admissible must return to itself.
 """
 
-import time
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -72,22 +72,19 @@ def astray(contact: Contact, n: np.ndarray, lam: np.ndarray, side: Side) -> tupl
     return int(np.sum(admissible)), wrong
 
 
-def attack(seed: int, seconds: float) -> tuple[int, int, list[str]]:
+def attack(seed: int) -> Iterator[list[str]]:
     """Reported bifurcations and admissible orbits of random contacts."""
     rng = np.random.default_rng(seed)
-    end = time.monotonic() + seconds
-    tried, fallen = 0, []
-    while not tried or time.monotonic() < end:
+    while True:
         contact, n, names = draw(rng)
         count, wrong = wrong_limits(contact, n)
-        tried += count
-        fallen += [f"limits {name}" for name in names[wrong]]
+        fallen = [f"limits {name}" for name in names[wrong]]
+        yield [*fallen, *[""] * (count - len(fallen))]
         lam = 10 ** rng.uniform(-1.0, 2.0, BLOCK)
         for side in Side:
             count, wrong = astray(contact, n, lam, side)
-            tried += count
-            fallen += [
+            fallen = [
                 f"orbit {name} --amplitude {x!r} --side {side}"
                 for name, x in zip(names[wrong], lam[wrong].tolist(), strict=True)
             ]
-    return tried, tried - len(fallen), fallen
+            yield [*fallen, *[""] * (count - len(fallen))]

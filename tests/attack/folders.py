@@ -7,6 +7,7 @@ what is not printable, told what stands in a file outside the folder, or called
 the same what is not.
 """
 
+import itertools
 import json
 import os
 import resource
@@ -15,7 +16,7 @@ import struct
 import sys
 import time
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -307,11 +308,9 @@ def _faults(record: Path, new: Path, rules, must_differ: bool) -> list[str]:
 MAC = sys.platform == "darwin"
 
 
-def attack(seed: int, seconds: float) -> tuple[int, int, list[str]]:
+def attack(seed: int) -> Iterator[list[str]]:
     """Random changes of one side or both, a few at a time."""
     rules = read_tolerances(ROOT / "config" / "tolerances.yaml")
-    end = time.monotonic() + seconds
-    tried, fallen = 0, []
     with TemporaryDirectory() as name:
         base, sides = Path(name, "base"), [Path(name, side) for side in ("record", "new")]
         (base / "figures").mkdir(parents=True)
@@ -320,9 +319,9 @@ def attack(seed: int, seconds: float) -> tuple[int, int, list[str]]:
                 shutil.copyfile(path, base / "figures" / path.name)
         shutil.copyfile(ROOT / "paper.md", base / "paper.md")
         Path(name, "private").write_text(f"{SECRET}\n")
-        while not tried or time.monotonic() < end:
+        for number in itertools.count():
             # A case is found again by its own seed.
-            rng = np.random.default_rng([seed, tried])
+            rng = np.random.default_rng([seed, number])
             for side in sides:
                 shutil.copytree(base, side)
             done, seen = [], False
@@ -336,8 +335,7 @@ def attack(seed: int, seconds: float) -> tuple[int, int, list[str]]:
             # By intent: whatever it raises is what is looked for.
             except Exception as error:
                 faults = [f"{type(error).__name__}: {error}"[:200]]
-            fallen += [f"case [{seed}, {tried}], {'; '.join(done)}: {fault}" for fault in faults]
-            tried += 1
+            what = f"case [{seed}, {number}], {'; '.join(done)}"
+            yield [f"{what}: {', '.join(faults)}" if faults else ""]
             for side in sides:
                 shutil.rmtree(side)
-    return tried, tried - len({line.split("], ")[0] for line in fallen}), fallen

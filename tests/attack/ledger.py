@@ -5,9 +5,10 @@ line; a mutated dataset is drawn, set or judged, or is refused in one line.
 """
 
 import copy
+import itertools
 import time
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import redirect_stderr
 from importlib import import_module
 from io import StringIO
@@ -139,9 +140,8 @@ def judged(mapping: dict, schema: dict, data: dict[str, xr.Dataset]) -> None:
     assess(parse_ledger(mapping), data)
 
 
-def attack(seed: int, seconds: float) -> tuple[int, int, list[str]]:
-    """Mutated ledgers and damaged datasets in turn, until the time is over."""
-    end = time.monotonic() + seconds
+def attack(seed: int) -> Iterator[list[str]]:
+    """Mutated ledgers and damaged datasets in turn."""
     rng = np.random.default_rng(seed)
     mapping = read_yaml(ROOT / "config" / "claims.yaml")
     schema = read_yaml(ROOT / "config" / "claims.schema.yaml")
@@ -152,12 +152,11 @@ def attack(seed: int, seconds: float) -> tuple[int, int, list[str]]:
         for name in names(Kind.FIGURE, Kind.EXTENSION, Kind.TABLE)
         if STAGES[name].study and name in data
     ]
-    tried, fallen = 0, []
-    while time.monotonic() < end or not tried:
-        if tried % 3 == 0:
+    for number in itertools.count(1):
+        if number % 3 == 1:
             other, what = mutated(mapping, rng)
             said = fault(lambda other=other: judged(other, schema, data))
-        elif tried % 3 == 1:
+        elif number % 3 == 2:
             name = str(rng.choice(drawn))
             other, what = damaged(data[name], rng)
             what = f"{name}: {what}"
@@ -167,7 +166,4 @@ def attack(seed: int, seconds: float) -> tuple[int, int, list[str]]:
             other, what = damaged(data[name], rng)
             what = f"claims by {name}: {what}"
             said = fault(lambda name=name, other=other: assess(ledger, data | {name: other}))
-        tried += 1
-        if said:
-            fallen.append(f"seed {seed}, case {tried}: {what!a}: {said}")
-    return tried, tried - len(fallen), fallen
+        yield [f"seed {seed}, case {number}: {what!a}: {said}" if said else ""]

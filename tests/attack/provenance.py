@@ -6,13 +6,14 @@ must answer in time, or say in one printable line why not.
 """
 
 import contextlib
+import itertools
 import json
 import os
 import random
 import shlex
 import shutil
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -316,28 +317,23 @@ def explained(world: SmallRun, chance: random.Random) -> str:
     return f"{said}: slow" if time.monotonic() - begun > SECONDS else ""
 
 
-def attack(seed: int, seconds: float) -> tuple[int, int, list[str]]:
-    """Cases tried, how many held, and those that fell."""
-    end = time.monotonic() + seconds
-    tried, fallen = 0, []
+def attack(seed: int) -> Iterator[list[str]]:
+    """Small runs, one after the other."""
     with TemporaryDirectory() as folder, contextlib.ExitStack() as stack:
         template, copied = Path(folder, "template"), Path(folder, "copy")
         template.mkdir()
         with contextlib.chdir(template):
             SmallRun(template).create()
         stack.callback(os.chdir, ROOT)
-        while time.monotonic() < end or not tried:
+        for number in itertools.count():
             shutil.copytree(template, copied)
             os.chdir(copied)
-            chance = random.Random(f"{seed}/{tried}")
+            chance = random.Random(f"{seed}/{number}")
             case = proof if chance.random() < 0.7 else explained
             try:
                 why = case(SmallRun(copied), chance)
             except Exception as error:
                 why = f"{type(error).__name__}: {error}"
-            if why:
-                fallen.append(f"seed {seed}, case {tried}, {case.__name__}: {why}"[:300])
-            tried += 1
+            yield [f"seed {seed}, case {number}, {case.__name__}: {why}"[:300] if why else ""]
             os.chdir(ROOT)
             shutil.rmtree(copied)
-    return tried, tried - len(fallen), fallen

@@ -35,8 +35,8 @@ def test_nothing_falls_in_a_second(name):
 @pytest.mark.parametrize(
     ("body", "said"),
     [
-        ("return 3, 2, ['seed 7: case 2']", "seed 7: case 2"),
-        ("return 0, 0, []", "seed 7: nothing was tried in 1 s"),
+        ("yield ['', '', 'seed 7: case 2']", "seed 7: case 2"),
+        ("yield from ()", "seed 7: nothing was tried in 1 s"),
         ("raise ValueError('no')", "seed 7: ended with 1: ValueError: no"),
     ],
 )
@@ -45,7 +45,7 @@ def test_what_falls_is_said_and_ends_in_failure(tmp_path, body, said):
     folder.mkdir(parents=True)
     (folder / "__main__.py").write_bytes((HERE / "__main__.py").read_bytes())
     (folder / "walls.py").write_text(
-        f'"""Walls, knocked at."""\n\n\ndef attack(seed, seconds):\n    {body}\n', encoding="utf-8"
+        f'"""Walls, knocked at."""\n\n\ndef attack(seed):\n    {body}\n', encoding="utf-8"
     )
     table = tmp_path / "attacks.md"
     done = run("--seed", "7", "--seconds", "1", "--table", str(table), folder=folder)

@@ -49,12 +49,8 @@ def test_settings_reach_the_parts(continuation_settings):
     control, newton = controls(
         continuation_settings | {"largest_step": 0.07, "max_newton_iterations": 5}
     )
-    assert (control.initial, control.smallest, control.largest, control.max_angle) == (
-        0.02,
-        1e-8,
-        0.07,
-        0.2,
-    )
+    reached = control.initial, control.smallest, control.largest, control.max_angle
+    assert reached == (0.02, 1e-8, 0.07, 0.2)
     assert newton == (1e-12, 5)
 
 

@@ -1,7 +1,6 @@
-"""Events on a branch of n-T orbits on a contact, whatever its law."""
+"""Events on a branch of n-T orbits: of any model, and of a contact of any law."""
 
 from collections.abc import Callable
-from typing import Any
 
 from bouncing_ball.continuation.events import Event
 from bouncing_ball.orbits.stability import period_doubling_function, saddle_node_function
@@ -10,6 +9,14 @@ from bouncing_ball.orbits.stability import period_doubling_function, saddle_node
 # permanent contact. The equations are singular there, and rounding enters
 # divided by both: stop where 1e-12 is left.
 _MARGIN = 1e-4
+
+
+def bifurcations(trace_and_determinant: Callable) -> tuple[Event, Event]:
+    """Saddle-node and period doubling, from the monodromy's trace and determinant at y."""
+    return (
+        Event("saddle-node", lambda y: saddle_node_function(*trace_and_determinant(y))),
+        Event("period doubling", lambda y: period_doubling_function(*trace_and_determinant(y))),
+    )
 
 
 def branch_events(orbit: Callable, trace_and_determinant: Callable) -> tuple[Event, ...]:
@@ -22,13 +29,8 @@ def branch_events(orbit: Callable, trace_and_determinant: Callable) -> tuple[Eve
     trace_and_determinant : callable
         Those of the monodromy of an orbit.
     """
-
-    def stability(test: Callable) -> Callable[[Any], Any]:
-        return lambda y: test(*trace_and_determinant(orbit(y)))
-
     return (
-        Event("saddle-node", stability(saddle_node_function)),
-        Event("period doubling", stability(period_doubling_function)),
+        *bifurcations(lambda y: trace_and_determinant(orbit(y))),
         Event(
             "contact lost",
             lambda y: -orbit(y).relative_impact_velocity - _MARGIN,

@@ -12,8 +12,8 @@ import numpy as np
 from bouncing_ball.continuation.events import Event
 from bouncing_ball.impacts.instant_map import impact
 from bouncing_ball.impacts.signature import Signature
+from bouncing_ball.orbits.branch_events import bifurcations
 from bouncing_ball.orbits.corrected_orbit import CorrectedOrbit
-from bouncing_ball.orbits.stability import period_doubling_function, saddle_node_function
 
 
 @dataclass(frozen=True)
@@ -69,12 +69,6 @@ class CorrectedSystem:
         out[..., 1, 1] = 1
         return out
 
-    def _stability(self, test):
-        return lambda y: test(*self.orbit(y).trace_and_determinant())
-
     def events(self) -> tuple[Event, ...]:
         """Saddle-node and period doubling."""
-        return (
-            Event("saddle-node", self._stability(saddle_node_function)),
-            Event("period doubling", self._stability(period_doubling_function)),
-        )
+        return bifurcations(lambda y: self.orbit(y).trace_and_determinant())

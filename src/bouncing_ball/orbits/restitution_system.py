@@ -11,12 +11,9 @@ import numpy as np
 
 from bouncing_ball.continuation.events import Event
 from bouncing_ball.impacts.restitution_map import exact_map_jacobian
+from bouncing_ball.orbits.branch_events import bifurcations
 from bouncing_ball.orbits.restitution_orbit import RestitutionOrbit
-from bouncing_ball.orbits.stability import (
-    period_doubling_function,
-    saddle_node_function,
-    trace_and_determinant,
-)
+from bouncing_ball.orbits.stability import trace_and_determinant
 
 
 @dataclass(frozen=True)
@@ -71,18 +68,12 @@ class RestitutionSystem:
         out[..., 1, 2] = (1 + r) * np.cos(phase)
         return out
 
-    def _stability(self, test):
-        def function(y):
-            phase, velocity, amplitude = (y[..., k] for k in range(3))
-            period = np.full_like(phase, 2 * np.pi * self.n)
-            matrix = exact_map_jacobian(period, phase, velocity, amplitude, self.restitution)
-            return test(*trace_and_determinant(matrix))
-
-        return function
+    def _trace_and_determinant(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        phase, velocity, amplitude = (y[..., k] for k in range(3))
+        period = np.full_like(phase, 2 * np.pi * self.n)
+        matrix = exact_map_jacobian(period, phase, velocity, amplitude, self.restitution)
+        return trace_and_determinant(matrix)
 
     def events(self) -> tuple[Event, ...]:
         """Saddle-node and period doubling."""
-        return (
-            Event("saddle-node", self._stability(saddle_node_function)),
-            Event("period doubling", self._stability(period_doubling_function)),
-        )
+        return bifurcations(self._trace_and_determinant)

@@ -46,6 +46,16 @@ _KINDS = {
     "integer": "a whole number",
     "string": "a text",
 }
+_LIMITS = {
+    "minimum": "must be at least {:g}",
+    "maximum": "must be at most {:g}",
+    "exclusiveMinimum": "must be greater than {:g}",
+    "exclusiveMaximum": "must be less than {:g}",
+    "maxItems": "must have at most {} items",
+    "uniqueItems": "must not repeat an item",
+    "minLength": "must not be empty",
+    "maxLength": "must have at most {} characters",
+}
 
 
 def _looks_like_number(value: Any) -> bool:
@@ -66,32 +76,16 @@ def _allowed(error: ValidationError) -> str:
             words = "must be " + " or ".join(_KINDS.get(str(kind), str(kind)) for kind in kinds)
             if _looks_like_number(error.instance):
                 notes.insert(0, "powers of ten are written 1.0e+4, with point and sign")
-        case "minimum":
-            words = f"must be at least {limit:g}"
-        case "maximum":
-            words = f"must be at most {limit:g}"
-        case "exclusiveMinimum":
-            words = f"must be greater than {limit:g}"
-        case "exclusiveMaximum":
-            words = f"must be less than {limit:g}"
         case "enum":
             words = "must be one of " + ", ".join(map(str, limit))
         case "minItems":
             words = f"must have at least {limit} item{'s' if limit > 1 else ''}"
-        case "maxItems":
-            words = f"must have at most {limit} items"
-        case "uniqueItems":
-            words = "must not repeat an item"
-        case "minLength":
-            words = "must not be empty"
-        case "maxLength":
-            words = f"must have at most {limit} characters"
         case "minProperties":
             words = f"must have at least {limit} key{'s' if limit > 1 else ''}"
         case "pattern" | "oneOf" if notes:
             words = f"must be {notes.pop()}"
-        case _:
-            words = error.message
+        case rule:
+            words = _LIMITS[rule].format(limit) if rule in _LIMITS else error.message
     return f"{words} ({'; '.join(notes)})" if notes else words
 
 

@@ -73,7 +73,7 @@ def run_here(name: str, seed: int, seconds: float) -> None:
     spec = spec_from_file_location(f"attack_{name}", HERE / f"{name}.py")
     module = module_from_spec(spec)
     spec.loader.exec_module(module)
-    # What the attacked code prints is no result.
+    # What the attacked code prints is not a result.
     with contextlib.redirect_stdout(sys.stderr):
         tried, fallen, end = 0, [], time.monotonic() + seconds
         with contextlib.closing(module.attack(seed)) as cases:

@@ -1,4 +1,4 @@
-"""Random contacts: limits that are none, orbits to which the simulation does not return.
+"""Random contacts: limits that are no bifurcations, orbits to which the simulation does not return.
 
 Contacts of the whole range, from softer than the table's own period to nearly
 rigid, in families up to 200. At each bifurcation that is reported the

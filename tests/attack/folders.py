@@ -3,7 +3,7 @@
 Each case changes a few things in a copy of a part of the record, on either side:
 bits, ends of files, what they are, what they say and what they are called. A
 case fell if the comparison raised, took too long or too much memory, printed
-what is not printable, told what stands in a file outside the folder, or called
+what is not printable, quoted a file outside the folder, or called
 the same what is not.
 """
 
@@ -291,7 +291,7 @@ def _faults(record: Path, new: Path, rules, must_differ: bool) -> list[str]:
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2 ** (20 if MAC else 10)
     faults = []
     if any(SECRET in report for report in reports):
-        faults.append("a private file is told")
+        faults.append("a private file is quoted")
     if not all(line.isprintable() for report in reports for line in report.split("\n")):
         faults.append("raw text in a report")
     if "onload=f()>" in reports[2]:

@@ -19,7 +19,7 @@ BALLS = 400
 
 @dataclass(frozen=True, repr=False)
 class Changed(Signature):
-    """A signature with numbers multiplied, to be told from the right one."""
+    """A signature with numbers multiplied, which tests must tell from the right one."""
 
     law: LinearSignature
     delay: float = 1.0

@@ -129,7 +129,7 @@ def _by_quantity(found: np.ndarray) -> Errors:
 def first_order(instant: Instant, n: int, amplitude: float) -> tuple[Errors, bool]:
     """Moduli of the first-order errors, and whether the law is stated there.
 
-    Those of the permanent contact are none: they are of the second order.
+    Permanent contact has none: its error is of the second order.
     """
     absent: Errors = dict.fromkeys(map(str, Quantity))
     if not RestitutionModel(instant.restitution).orbit(n, amplitude).exists:

@@ -2,7 +2,7 @@
 
 With parameters of one's own an orbit may be nowhere, or an error never cross its
 tolerance. A study that found nothing says so in its dataset, so that a dataset
-that has lost its numbers is told from one that never had any.
+that has lost its numbers is not taken for one that never had any.
 """
 
 from typing import Any

@@ -1,6 +1,6 @@
 r"""One contact of any law under load, by collocation with spectral accuracy.
 
-Unknown are the acceleration at the nodes of :mod:`bouncing_ball.impacts.quadrature`,
+The unknowns are the acceleration at the nodes of :mod:`bouncing_ball.impacts.quadrature`,
 as ``B = D p″``, the duration D, and the end of the contact, p′_e and e = p_e/D ::
 
     B = D [1 - Λ sin(φ + D S) - f(p, p′)]

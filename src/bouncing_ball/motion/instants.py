@@ -26,7 +26,7 @@ from bouncing_ball.motion.starts import check_amplitude
 
 # Λ T₀/g and T₀/g below which chattering is summed up.
 _CHATTER = 1e-5
-# Nor is a time that no clock shows worth resolving, where g is tiny (Λ next to 1).
+# A time that no clock shows is not worth resolving either, where g is tiny (Λ next to 1).
 _INSTANT = np.finfo(float).eps
 
 

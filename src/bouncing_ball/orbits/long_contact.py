@@ -48,7 +48,7 @@ _JOINT_SAMPLES = 600
 # Next to the saddle-node, on its unstable side.
 _TO_SIDE = 1e-3
 _CLOSE = 1e-8
-# So far beyond an end, past all rounding, it is looked at what has happened.
+# What has happened is seen so far beyond an end, past all rounding.
 _BEYOND = 1e-8
 # A contact that opens on the way is shorter by a good part of an oscillation.
 _SHORTER = 1e-6

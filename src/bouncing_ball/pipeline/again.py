@@ -18,7 +18,7 @@ from bouncing_ball.record.carriers import read_provenance
 def make_again(name: str, results: Path, folder: Path) -> None:
     """Make what is made of an artifact's dataset in the results, in another folder.
 
-    Nothing for a name that is none of the stages'. The metadata of pictures are
+    Makes nothing for a name that no stage has. The metadata of pictures are
     those that the results have.
     """
     stage = STAGES.get(name)

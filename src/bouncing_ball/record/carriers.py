@@ -62,7 +62,7 @@ def read_attributes(path: Path) -> dict[str, Any]:
     Raises
     ------
     ProvenanceError
-        If the file is none of these, cannot be read, or is damaged.
+        If the file is of another kind, cannot be read, or is damaged.
     """
     shown = printable(path)
     reader = _READERS.get(path.suffix)

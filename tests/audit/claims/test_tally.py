@@ -28,7 +28,7 @@ def test_counts_from_the_best_to_the_worst_group_by_group():
         ),
         16,
     )
-    # The restatement is none of the six.
+    # The restatement does not count among the six.
     assert line == (
         "16 figures, Table 1, 6 claims; 1 restored formula: 1 reproduced; "
         "3 numbers: 1 reproduced, 1 close, 1 contradicted; "

@@ -115,14 +115,13 @@ def _floquet_function(release, test):
     return floquet
 
 
-def _zero(test, grid, args, *, last=False):
+def _zero(test, grid, values, args, *, last=False):
     """First, or last, zero of a test function along a grid; NaN where there is none.
 
     A test function would change sign at a pole as well. Closed upon, its value
     is then larger than at both ends of the bracket, and at a zero smaller: no
     tolerance decides that it is one.
     """
-    values = test(grid, *args)
     index, found = _bracket(values, last=last)
     root = _close(test, _at(grid, index), _at(grid, index + 1), found, args)
     size = np.abs(values)
@@ -154,11 +153,18 @@ def saddle_node(contact: Contact, n: ArrayLike) -> np.ndarray:
 
 
 def _saddle_node(release, omega, zeta, n):
-    args = omega, zeta, n
-    grid = _scan(*_range(Contact(omega, zeta, release), n), 1 / omega)
-    root = _zero(_floquet_function(release, saddle_node_function), grid, args)
-    width = _NEXT_TO * np.minimum(np.abs(root), 1 / omega)
-    fold, ends = _fold_function(release), (root - width, root + width)
+    contact = Contact(omega, zeta, release)
+    grid = _scan(*_range(contact, n), 1 / omega)
+    return _fold(contact, n, grid, branch_point(grid, contact, n))
+
+
+def _fold(contact, n, grid, points):
+    """The saddle-node, from the points of the branch along a grid."""
+    args = contact.frequency_ratio, contact.damping_ratio, n
+    values = saddle_node_function(points.trace, points.determinant)
+    root = _zero(_floquet_function(contact.release, saddle_node_function), grid, values, args)
+    width = _NEXT_TO * np.minimum(np.abs(root), 1 / contact.frequency_ratio)
+    fold, ends = _fold_function(contact.release), (root - width, root + width)
     left, right = (fold(x, *args) for x in ends)
     closer = _close(fold, *ends, left * right < 0, args)
     return np.where(np.isnan(closer), root, closer)
@@ -179,7 +185,35 @@ def _period_doubling(release, omega, zeta, n, fold):
     # The part of the scan on the stable side; its points beyond collapse there.
     grid = np.minimum(_scan(low, high, 1 / omega), end)
     flip = _floquet_function(release, period_doubling_function)
-    return _zero(flip, grid, (omega, zeta, n), last=True)
+    args = omega, zeta, n
+    return _zero(flip, grid, flip(grid, *args), args, last=True)
+
+
+def _surplus_function(release):
+    def surplus(excess, omega, zeta, n, lam):
+        return branch_point(excess, Contact(omega, zeta, release), n).amplitude - lam
+
+    return surplus
+
+
+def _stable_side(release, omega, zeta, n, lam):
+    """ε of the orbit at Λ between short contacts and the saddle-node.
+
+    One scan brackets both: Λ falls along it.
+    """
+    contact = Contact(omega, zeta, release)
+    low, high = _range(contact, n)
+    grid = _scan(low, high, 1 / omega)
+    points = branch_point(grid, contact, n)
+    fold = _fold(contact, n, grid, points)
+    # Without a fold Λ falls all the way, and the whole branch is this side.
+    end = np.where(np.isnan(fold), high, fold)
+    lowest = branch_point(end, contact, n).amplitude
+    below = np.where(grid < end, points.amplitude, lowest) <= lam
+    at = np.argmax(below, axis=0)
+    found = np.any(below, axis=0) & (at > 0) & (lowest <= lam)
+    ends = (np.minimum(_at(grid, k), end) for k in (np.maximum(at - 1, 0), at))
+    return _close(_surplus_function(release), *ends, found, (omega, zeta, n, lam))
 
 
 def orbit_at(
@@ -205,35 +239,31 @@ def orbit_at(
     1.0
     """
     omega, zeta, n, lam = _columns(contact, n, amplitude)
-    release = contact.release
-    local = Contact(omega, zeta, release)
-    fold = saddle_node(local, n)
-
-    def surplus(excess, omega, zeta, n, lam):
-        return branch_point(excess, Contact(omega, zeta, release), n).amplitude - lam
-
-    low, high = _range(local, n)
+    local = Contact(omega, zeta, contact.release)
     if side is Side.STABLE:
-        # Without a fold Λ falls all the way, and the whole branch is this side.
-        end = np.where(np.isnan(fold), high, fold)
-        above, below = (surplus(x, omega, zeta, n, lam) for x in (low, end))
-        found = (above > 0) & (below <= 0)
-        excess = _close(surplus, low, end, found, (omega, zeta, n, lam))
+        excess = _by_blocks(_stable_side, contact.release, omega, zeta, n, lam)
     else:
-        scale = _SCAN_START / omega
-        steps = np.linspace(0, 1, _SCAN).reshape(-1, *(1,) * fold.ndim)
-        outward = fold + scale * np.maximum((high - fold) / scale, 1.0) ** steps
-        grid = np.minimum(np.concatenate([fold[np.newaxis], outward]), high)
-        # The next turn of Λ is a point of the grid, so that no orbit next to it
-        # is missed between two points.
-        turn, turns = _bracket(branch_point(grid[1:], local, n).fold)
-        ends = _at(grid[1:], turn), _at(grid[1:], turn + 1)
-        summit = _close(_fold_function(release), *ends, turns, (omega, zeta, n))
-        grid = np.sort(np.concatenate([grid, np.where(turns, summit, high)[np.newaxis]]), axis=0)
-        index, found = _bracket(surplus(grid, omega, zeta, n, lam))
-        args = (omega, zeta, n, lam)
-        excess = _close(surplus, _at(grid, index), _at(grid, index + 1), found, args)
+        excess = _by_blocks(_unstable_side, contact.release, omega, zeta, n, lam)
     return ContactOrbit.from_branch(branch_point(excess, local, n), local, n)
+
+
+def _unstable_side(release, omega, zeta, n, lam):
+    """ε of the orbit at Λ beyond the saddle-node that is nearest to it."""
+    contact = Contact(omega, zeta, release)
+    fold, (_, high) = _saddle_node(release, omega, zeta, n), _range(contact, n)
+    scale, surplus = _SCAN_START / omega, _surplus_function(release)
+    steps = np.linspace(0, 1, _SCAN).reshape(-1, 1)
+    outward = fold + scale * np.maximum((high - fold) / scale, 1.0) ** steps
+    grid = np.minimum(np.concatenate([fold[np.newaxis], outward]), high)
+    # The next turn of Λ is a point of the grid, so that no orbit next to it
+    # is missed between two points.
+    turn, turns = _bracket(branch_point(grid[1:], contact, n).fold)
+    ends = _at(grid[1:], turn), _at(grid[1:], turn + 1)
+    summit = _close(_fold_function(release), *ends, turns, (omega, zeta, n))
+    grid = np.sort(np.concatenate([grid, np.where(turns, summit, high)[np.newaxis]]), axis=0)
+    args = (omega, zeta, n, lam)
+    index, found = _bracket(surplus(grid, *args))
+    return _close(surplus, _at(grid, index), _at(grid, index + 1), found, args)
 
 
 # Steps of the search for all orbits, in radians of the contact's oscillation and
@@ -271,12 +301,9 @@ def orbits_at(contact: Contact, n: int, amplitude: float) -> ContactOrbit:
         args = tuple(np.broadcast_to(x, at.shape) for x in (omega, zeta, index, *more))
         return _close(function, grid[at, 0], grid[at + 1, 0], np.full(at.shape, True), args)
 
-    def surplus(excess, omega, zeta, n, lam):
-        return branch_point(excess, Contact(omega, zeta, contact.release), n).amplitude - lam
-
     turns = roots(_fold_function(contact.release))
     grid = np.sort(np.concatenate([grid, turns[:, np.newaxis]]), axis=0)
-    excess = roots(surplus, lam)
+    excess = roots(_surplus_function(contact.release), lam)
     point = branch_point(excess, local, n)
     found = ContactOrbit.from_branch(point, local, n)
     # A sign change at a pole of the branch is not a root.

@@ -18,7 +18,7 @@ from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits import error_law
 from bouncing_ball.orbits.contact_model import ContactModel
 from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.interface import Side
+from bouncing_ball.orbits.interface import OBSERVABLES, Side
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.studies.crossings import last_crossing
 from bouncing_ball.studies.error_thresholds import (
@@ -85,27 +85,38 @@ def search(
     zeta, n, lam = np.broadcast_arrays(zeta, n, amplitude)
     shape = len(SIMPLE), len(quantities), lam.size
 
+    # Those of the orbit together, as one search finds it; the bifurcations each alone.
+    orbital = [k for k, name in enumerate(quantities) if name in OBSERVABLES]
+    groups = [orbital, *([k] for k in range(len(quantities)) if k not in orbital)]
+    count, simplest = np.prod(shape), lam.size * len(quantities)
+
     def error(ratio: np.ndarray, number: np.ndarray) -> np.ndarray:
         """Signed errors of numbered (model, quantity, orbit), each at its own ϖ."""
         model, quantity, orbit = np.unravel_index(number, shape)
         found = np.empty(len(number))
-        for k in np.unique(quantity):
-            at = np.flatnonzero(quantity == k)
-            contact = Contact(ratio[at], zeta[orbit[at]], rule)
-            both = errors(contact, n[orbit[at]], lam[orbit[at]], [quantities[k]])[:, 0]
-            found[at] = both[model[at], np.arange(at.size)]
+        for group in groups:
+            at = np.flatnonzero(np.isin(quantity, group))
+            if at.size:
+                contact, names = (
+                    Contact(ratio[at], zeta[orbit[at]], rule),
+                    [quantities[k] for k in group],
+                )
+                both = errors(contact, n[orbit[at]], lam[orbit[at]], names)
+                place = np.searchsorted(group, quantity[at])
+                found[at] = both[model[at], place, np.arange(at.size)]
         return found
+
+    def crossing(ratio: np.ndarray, number: np.ndarray) -> np.ndarray:
+        """What changes sign at a threshold; numbers beyond are for the zeros of the errors."""
+        signed = error(ratio, number % count)
+        return np.where(number < count, excess(_finite(signed), tolerance), signed)
 
     signed = errors(Contact(ratios[:, np.newaxis], zeta, rule), n, lam, quantities)
     scanned = np.moveaxis(signed, 2, -1).reshape(-1, ratios.size)
     outside = _finite(scanned) > tolerance
-    threshold = last_crossing(
-        lambda ratio, number: excess(_finite(error(ratio, number)), tolerance),
-        ratios,
-        excess(_finite(scanned), tolerance),
-    )
     # The restitution model's errors come first.
-    zero = last_crossing(error, ratios, scanned[: lam.size * len(quantities)])
+    scan = np.concatenate([excess(_finite(scanned), tolerance), scanned[:simplest]])
+    threshold, zero = np.split(last_crossing(crossing, ratios, scan), [count])
     return Search(
         np.where(outside[:, -1], np.nan, threshold).reshape(shape),
         np.array([str(status(row)) for row in outside]).reshape(shape),

@@ -3,7 +3,8 @@
 from collections.abc import Callable
 
 import numpy as np
-from scipy.optimize.elementwise import find_root
+
+from bouncing_ball.continuation.bracketed_root import bracketed_root
 
 
 def last_crossing(
@@ -43,12 +44,9 @@ def last_crossing(
     found = np.full(len(values), np.nan)
     if which.size:
         bracket = np.log(ratios[last]), np.log(ratios[last + 1])
-        with np.errstate(invalid="ignore"):  # of an interpolation that is then not taken
-            root = find_root(
-                lambda x, k: function(np.exp(x), k.astype(int)), bracket, args=(which,)
-            )
+        root = bracketed_root(lambda x, k: function(np.exp(x), k), *bracket, (which,))
         # On a sample rounding may turn the sign back: the root is that sample.
-        values_at_ends = np.abs(root.f_bracket)
-        end = np.where(values_at_ends[0] < values_at_ends[1], *bracket)
-        found[which] = np.exp(np.where(root.success, root.x, end))
+        size = np.abs(values[which, last]), np.abs(values[which, last + 1])
+        end = np.where(size[0] < size[1], *bracket)
+        found[which] = np.exp(np.where(np.isnan(root), end, root))
     return found

@@ -14,8 +14,9 @@ STEP = RATIOS[1] / RATIOS[0]
 
 def found(function, *tolerances, ratios=RATIOS):
     crossings = LastCrossings(np.array(tolerances), (1,))
-    for ratio in ratios[::-1]:
-        crossings.meet(ratio, np.array([function(ratio)]))
+    # At some ϖ together, the last time at fewer.
+    for part in np.split(ratios[::-1], range(4, len(ratios), 4)):
+        crossings.meet(part, np.array([[function(ratio)] for ratio in part]))
     return crossings.thresholds()[:, 0]
 
 
@@ -61,6 +62,25 @@ def test_where_a_model_has_no_orbit_the_error_is_not_tolerated():
     assert found(lambda w: 1e-6, 0.01)[0] == RATIOS[0]
 
 
+@pytest.mark.parametrize("together", [2, 3, 8, 61])
+def test_how_many_ratios_are_met_together_does_not_change_a_threshold(together):
+    # Errors that come and go, some of them with excursions, zeros and places without orbit.
+    random = np.random.default_rng(6)
+    waves = random.normal(size=(61, 200)).cumsum(axis=0) * random.uniform(0.001, 0.1, 200)
+    errors = np.where(random.uniform(size=waves.shape) < 0.01, np.nan, waves)
+    tolerances = np.array([0.3, 0.1, 0.01])
+
+    def met(size):
+        crossings = LastCrossings(tolerances, (200,))
+        for k in range(0, 61, size):
+            crossings.meet(RATIOS[::-1][k : k + size], errors[k : k + size])
+        return crossings.thresholds()
+
+    one_by_one = met(1)
+    assert np.array_equal(met(together), one_by_one)
+    assert len(np.unique(one_by_one)) > 300
+
+
 def direct(nodes, tolerances, ratios):
     """Thresholds of one node by scanning a grid and closing the crossings; (m, model, quantity)."""
     zeta, lam, names = nodes.damping_ratio[0], nodes.amplitude[0], [str(q) for q in OF_ORBITS]
@@ -90,7 +110,8 @@ def compare_with_direct_search(plan, count, seed, points):
         crossings = LastCrossings(plan.tolerances, (len(MODELS), len(OF_ORBITS), 1))
         for step in walk(one, plan.ratios):
             ratio = step.frequency_ratio
-            crossings.meet(ratio, orbit_errors(step.orbit, one.instant, ratio))
+            error = orbit_errors(step.orbit, one.instant, ratio[:, np.newaxis])
+            crossings.meet(ratio, np.moveaxis(error, 2, 0))
         ours, theirs = crossings.thresholds()[..., 0], direct(one, plan.tolerances, fine)
         assert np.array_equal(np.isinf(ours), np.isinf(theirs))
         finite = np.isfinite(ours)

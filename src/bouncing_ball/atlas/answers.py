@@ -90,22 +90,22 @@ def combined(one: Answers, other: Answers) -> Answers:
     return both
 
 
-def answers(nodes: Tiled, errors: Iterator[tuple[float, np.ndarray]]) -> Answers:
-    """The answers of each tile from signed errors, ϖ after ϖ from the largest.
+def answers(nodes: Tiled, errors: Iterator[tuple[np.ndarray, np.ndarray]]) -> Answers:
+    """The answers of each tile from signed errors, some ϖ after others from the largest.
 
     Parameters
     ----------
     nodes : Tiled
-    errors : iterator of (float, ndarray)
-        ϖ, and errors of shape (model, quantity, nodes).
+    errors : iterator of (ndarray, ndarray)
+        ϖ, decreasing, and errors of shape (ϖ, model, quantity, nodes).
     """
     quantities = len(nodes.law.coefficient)
     found = LastCrossings(nodes.tolerances, (len(MODELS), quantities, len(nodes.tile)))
     described = []
-    for ratio, error in errors:
-        found.meet(ratio, error)
-        if ratio in nodes.examined:
-            described.append(_described(nodes, ratio, error))
+    for ratios, error in errors:
+        found.meet(ratios, error)
+        at = np.nonzero(np.isin(ratios, nodes.examined))[0]
+        described += [_described(nodes, ratios[k], error[k]) for k in at]
     # ϖ came down; the answers are in order of the examined ones, which increase.
     columns = {
         name: np.stack([part[name] for part in described[::-1]], -1) for name in described[0]

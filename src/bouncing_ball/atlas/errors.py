@@ -64,17 +64,17 @@ class _Known(Signature):
         return Instant(self.delay, self.restitution, self.load, self.duration)
 
 
-def orbit_errors(orbit: ContactOrbit, one: Instant, frequency_ratio: float) -> np.ndarray:
-    """Errors of the quantities of orbits, shape (model, quantity, nodes); NaN without orbit.
+def orbit_errors(orbit: ContactOrbit, one: Instant, frequency_ratio: ArrayLike) -> np.ndarray:
+    """Errors of the quantities of orbits, shape (model, quantity, ...); NaN without orbit.
 
     Parameters
     ----------
     orbit : ContactOrbit
-        The exact orbits, all at one ϖ.
+        The exact orbits.
     one : Instant
         The signature of their contacts at ϖ = 1; its times are in proportion to 1/ϖ.
-    frequency_ratio : float
-        ϖ.
+    frequency_ratio : array_like
+        ϖ of the orbits.
 
     Examples
     --------

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from bouncing_ball.atlas.plan import Nodes
-from bouncing_ball.atlas.walk import extrapolated, stiff_start
+from bouncing_ball.atlas.walk import PAST, extrapolated, stiff_start
 from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits import limits, restitution_orbit
 from bouncing_ball.orbits.closed_form import BranchPoint, branch_point
@@ -37,13 +37,14 @@ def _flip(point: BranchPoint) -> np.ndarray:
     return period_doubling_function(point.trace, point.determinant)
 
 
-def limit_errors(nodes: Nodes, ratios: np.ndarray) -> Iterator[tuple[float, np.ndarray]]:
+def limit_errors(nodes: Nodes, ratios: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """Signed errors of saddle-node, period doubling and permanent contact.
 
     Yields
     ------
-    float, ndarray
-        ϖ from the largest to the smallest, and errors of shape (model, quantity, nodes).
+    ndarray, ndarray
+        ϖ, one by one from the largest to the smallest, and errors of shape
+        (1, model, quantity, nodes).
     """
     n, r, down = nodes.n, nodes.restitution, ratios[::-1]
     simple = RestitutionModel(r)
@@ -59,11 +60,13 @@ def limit_errors(nodes: Nodes, ratios: np.ndarray) -> Iterator[tuple[float, np.n
         exact = [fold, flip, ContactModel(contact).permanent_contact_threshold()]
         with np.errstate(divide="ignore"):
             yield (
-                float(ratio),
+                np.array([ratio]),
                 np.array(
                     [
-                        np.stack(exact) / np.stack(_bounds(model, n)) - 1
-                        for model in (simple, CorrectedModel.of_contact(contact))
+                        [
+                            np.stack(exact) / np.stack(_bounds(model, n)) - 1
+                            for model in (simple, CorrectedModel.of_contact(contact))
+                        ]
                     ]
                 ),
             )
@@ -84,18 +87,19 @@ def _track(
     down: np.ndarray,
 ) -> Iterator[np.ndarray]:
     """Λ at the zero of a test function for each ϖ of a decreasing sequence."""
-    before, t, n = None, stiff_start(start), start.n
+    along, past, n = np.log(down), stiff_start(start)[np.newaxis], start.n
     for k, ratio in enumerate(down):
         contact = start.contact(ratio)
 
         def value(t, contact=contact, ratio=ratio):
             return test(branch_point(t / ratio, contact, n))
 
-        guess = extrapolated(t, before, down, k)
+        before = along[max(k - len(past), 0) : max(k, 1)]
+        (guess,) = extrapolated(before, past, along[k : k + 1])
         found, closed = _secant(value, guess)
         if not np.all(closed):
             found[~closed] = ratio * direct(contact[~closed], n)
-        before, t = (t if k else None), found
+        past = np.concatenate([past if k else past[:0], found[np.newaxis]])[-PAST:]
         yield branch_point(found / ratio, contact, n).amplitude
 
 

@@ -58,12 +58,12 @@ class Nodes:
         """The signature of the contacts at ϖ = 1."""
         return LinearSignature(self.contact(1.0))()
 
-    def contact(self, frequency_ratio: float) -> Contact:
-        """The contacts of the nodes at one ϖ."""
-        ratio = np.full(self.restitution.shape, float(frequency_ratio))
+    def contact(self, frequency_ratio: float | np.ndarray) -> Contact:
+        """The contacts of the nodes at ϖ, an array of any shape that broadcasts with theirs."""
         if "damping_ratio" in self.__dict__:
-            return Contact(ratio, self.damping_ratio, self.release)
-        return Contact.from_restitution(self.restitution, ratio, self.release, measured=True)
+            return Contact(frequency_ratio, self.damping_ratio, self.release)
+        r = self.restitution
+        return Contact.from_restitution(r, frequency_ratio, self.release, measured=True)
 
     def __getitem__(self, key: Any) -> Self:
         return type(self)(self.release, self.n, self.restitution[key], self.amplitude[key])

@@ -24,12 +24,12 @@ from bouncing_ball.atlas.errors import (
 )
 from bouncing_ball.atlas.limits_walk import limit_errors
 from bouncing_ball.atlas.plan import Nodes, Plan, Row
-from bouncing_ball.atlas.walk import walk
+from bouncing_ball.atlas.walk import TOGETHER, walk
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.orbits import restitution_orbit
 
-BLOCK = 2048
-"""Nodes walked at once: as many as keep the arrays in the cache."""
+BLOCK = 8192 // TOGETHER
+"""Nodes walked at once: as many as keep the arrays in the cache, some ϖ long."""
 
 WALKED = ("unstable", "sought", "farthest")
 """Of the walk, not of errors: exact orbits that are not stable, orbits that were looked for
@@ -131,17 +131,21 @@ def _block(plan: Plan, nodes: Nodes, tile: np.ndarray) -> Answers:
         plan.ratios,
         plan.examined,
     )
-    unstable, sought, off = [], np.zeros(tile.shape, int), np.zeros(tile.shape)
+    unstable: list[np.ndarray] = []
+    sought, off = np.zeros(tile.shape, int), np.zeros(tile.shape)
 
-    def errors() -> Iterator[tuple[float, np.ndarray]]:
+    def errors() -> Iterator[tuple[np.ndarray, np.ndarray]]:
         nonlocal sought, off
         for step in walk(nodes, plan.ratios):
-            ratio, lam = step.frequency_ratio, step.orbit.amplitude
-            sought = sought + step.sought
-            off = np.fmax(off, np.abs(lam / nodes.amplitude - 1))
-            if ratio in plan.examined:
-                unstable.append(np.add.reduceat(~step.stable, tiled.starts, dtype=np.int32))
-            yield ratio, orbit_errors(step.orbit, nodes.instant, ratio)
+            sought = sought + np.sum(step.sought, axis=0)
+            away = np.abs(step.orbit.amplitude / nodes.amplitude - 1)
+            off = np.fmax(off, np.fmax.reduce(away, axis=0))
+            error = orbit_errors(step.orbit, nodes.instant, step.frequency_ratio[:, np.newaxis])
+            examined = np.isin(step.frequency_ratio, plan.examined)
+            unstable.extend(
+                np.add.reduceat(~step.stable[examined], tiled.starts, axis=1, dtype=np.int32)
+            )
+            yield step.frequency_ratio, np.moveaxis(error, 2, 0)
 
     return kept.answers(tiled, errors()) | {
         "unstable": np.stack(unstable[::-1], axis=-1),

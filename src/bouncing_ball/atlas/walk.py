@@ -8,8 +8,9 @@ from the stiffest contact. There the load a = 1 - Y alone delays the release, by
 
     t = √(1 - ζ²) (1 + r)² (1 - Y)/(2nπ r)
 
-At each softer ϖ, t is extrapolated along ln ϖ from the last two, and corrected once:
-with X and Y straight along ε, Λ² is a parabola, and of the two d with ::
+The next softer ϖ are taken some at a time: there t is that of the polynomial through the
+last eight along ln ϖ, corrected once. With X and Y straight along ε, Λ² is a parabola,
+and of the two d with ::
 
     (X + X′d)² + (Y + Y′d)² = Λ²
 
@@ -21,6 +22,7 @@ difference is known. Where it exceeds :data:`REACHED`, the orbit is looked for b
 """
 
 from collections.abc import Iterator
+from itertools import permutations
 from typing import NamedTuple
 
 import numpy as np
@@ -35,14 +37,18 @@ from bouncing_ball.orbits.stability import is_stable
 REACHED = 1e-6
 """Relative distance of an orbit's Λ from that asked for. Errors are then those of an
 orbit next to the node's, exact there; the walk mostly keeps within 1e-9."""
-# The extrapolation has no past at the stiffest contact.
+TOGETHER = 8
+"""Number of ϖ taken at once, so that also few nodes make long arrays."""
+PAST = 8
+"""Number of ϖ from which t is extrapolated."""
+# The extrapolation has no past at the stiffest contacts.
 _FIRST_CORRECTIONS = 4
 
 
 class Step(NamedTuple):
-    """The orbits of the nodes at one ϖ; NaN where there is none."""
+    """The orbits of the nodes at some ϖ, shape (ϖ, nodes); NaN where there is none."""
 
-    frequency_ratio: float
+    frequency_ratio: np.ndarray
     orbit: ContactOrbit
     stable: np.ndarray
     sought: np.ndarray
@@ -68,14 +74,32 @@ def stiff_start(nodes: Nodes) -> np.ndarray:
     return root * (1 + r) ** 2 * (1 - lift) / (2 * nodes.n * np.pi * r)
 
 
-def extrapolated(
-    t: np.ndarray, before: np.ndarray | None, ratios: np.ndarray, k: int
-) -> np.ndarray:
-    """t at ``ratios[k]``, along ln ϖ from those at the two ratios before it."""
-    if before is None:
-        return t
-    grown = np.log(ratios[k] / ratios[k - 1]) / np.log(ratios[k - 1] / ratios[k - 2])
-    return t + grown * (t - before)
+def extrapolated(at: np.ndarray, past: np.ndarray, to: np.ndarray) -> np.ndarray:
+    """Values at some places of the polynomial through values at others (Lagrange).
+
+    Parameters
+    ----------
+    at : ndarray, shape (m,)
+    past : ndarray, shape (m, ...)
+        The values at these places.
+    to : ndarray, shape (k,)
+
+    Returns
+    -------
+    ndarray, shape (k, ...)
+
+    Examples
+    --------
+    >>> extrapolated(np.array([0.0, 1.0, 2.0]), np.array([0.0, 1.0, 4.0]), np.array([3.0])).tolist()
+    [9.0]
+    """
+    places = range(len(at))
+    weights = np.ones((len(to), len(at)))
+    for i, j in permutations(places, 2):
+        weights[:, i] *= (to - at[j]) / (at[i] - at[j])
+    each = weights.reshape(*weights.shape, *(1,) * (past.ndim - 1))
+    # Not a matrix product, whose rounding depends on the number of nodes.
+    return sum(each[:, i] * past[i] for i in places)
 
 
 def correction(point: BranchPoint, amplitude: np.ndarray) -> np.ndarray:
@@ -97,27 +121,37 @@ def walk(nodes: Nodes, ratios: np.ndarray) -> Iterator[Step]:
     nodes : Nodes
     ratios : ndarray
         ϖ, increasing.
+
+    Yields
+    ------
+    Step
+        At :data:`TOGETHER` ϖ, the last one at fewer.
     """
-    down, before, t = ratios[::-1], None, stiff_start(nodes)
-    for k, ratio in enumerate(down):
+    down = ratios[::-1]
+    along, past = np.log(down), stiff_start(nodes)[np.newaxis]
+    for k in range(0, len(down), TOGETHER):
+        ratio = down[k : k + TOGETHER, np.newaxis]
         contact = nodes.contact(ratio)
-        excess = extrapolated(t, before, down, k) / ratio
-        for _ in range(1 if k > 1 else _FIRST_CORRECTIONS):
+        # Before the first step t is that of ϖ → ∞ at any ϖ.
+        before = along[max(k - len(past), 0) : max(k, 1)]
+        excess = extrapolated(before, past, along[k : k + TOGETHER]) / ratio
+        for _ in range(1 if k else _FIRST_CORRECTIONS):
             excess = excess + correction(branch_point(excess, contact, nodes.n), nodes.amplitude)
         point = branch_point(excess, contact, nodes.n)
-        before, t = (t if k else None), excess * ratio
+        past = np.concatenate([past if k else past[:0], excess * ratio])[-PAST:]
         orbit = ContactOrbit.from_branch(point, contact, nodes.n)
         stable = is_stable(point.trace, point.determinant)
         sought = ~(np.abs(point.amplitude / nodes.amplitude - 1) <= REACHED)
         if np.any(sought):
             orbit = _replaced(orbit, sought, contact, nodes)
             stable[sought] = orbit[sought].is_stable()
-        yield Step(float(ratio), orbit, stable, sought)
+        yield Step(ratio[:, 0], orbit, stable, sought)
 
 
 def _replaced(orbit: ContactOrbit, sought: np.ndarray, contact: Contact, nodes: Nodes):
     """The orbits, those not reached by the walk looked for directly."""
-    found = limits.orbit_at(contact[sought], nodes.n, nodes.amplitude[sought])
+    asked = np.broadcast_to(nodes.amplitude, sought.shape)[sought]
+    found = limits.orbit_at(contact[sought], nodes.n, asked)
     names = ("amplitude", "phase", "contact_duration", "impact_velocity")
     columns = [np.array(getattr(orbit, name)) for name in names]
     for column, name in zip(columns, names, strict=True):

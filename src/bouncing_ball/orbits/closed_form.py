@@ -44,7 +44,7 @@ from bouncing_ball.errors import require
 from bouncing_ball.impacts.spring_damper import Contact, responses
 
 # Points computed at once: as many as keep the intermediate arrays in the cache.
-_BLOCK = 2048
+_BLOCK = 8192
 # As in the oscillator's responses, of which only the values are
 # wanted here: their terms exceed the result by a factor of 16 at most.
 _DELICATE = 0.5

@@ -113,7 +113,7 @@ def _peaks(x: np.ndarray, errors: np.ndarray, tolerances: np.ndarray, within: np
     curve = np.where(bent, bend, -1.0)
     top, height = x1 - slope / (2 * curve), f1 - slope * slope / (4 * curve)
     each = tolerances.reshape(-1, 1)
-    there = bent & (f1 <= each) & (each < height) & within[:, *entry]
+    there = bent & (f1 <= each) & (each < height) & np.moveaxis(within, 0, -1)[entry].T
     which, at = np.nonzero(there)
     width = np.sqrt((height[at] - each[which, 0]) / -curve[at])
     place = np.array([which, *(index[at] for index in entry)])

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from bouncing_ball.atlas.plan import Nodes
-from bouncing_ball.atlas.walk import PAST, extrapolated, stiff_start
+from bouncing_ball.atlas.walk import extrapolated, stiff_start
 from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits import limits, restitution_orbit
 from bouncing_ball.orbits.closed_form import BranchPoint, branch_point
@@ -99,7 +99,7 @@ def _track(
         found, closed = _secant(value, guess)
         if not np.all(closed):
             found[~closed] = ratio * direct(contact[~closed], n)
-        past = np.concatenate([past if k else past[:0], found[np.newaxis]])[-PAST:]
+        past = np.concatenate([past if k else past[:0], found[np.newaxis]])[-2:]
         yield branch_point(found / ratio, contact, n).amplitude
 
 

@@ -14,6 +14,7 @@ from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits.contact_model import ContactModel
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.interface import OBSERVABLES, Side
+from bouncing_ball.orbits.law_calls import law_at_orbit
 from bouncing_ball.orbits.law_model import LawModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 
@@ -46,22 +47,13 @@ def test_a_soft_contact_has_its_long_orbit_too():
     np.testing.assert_allclose(found.contact_duration, expected.contact_duration, rtol=1e-11)
 
 
-def orbit_with(kind, r, duration, n=1, amplitude=1.0):
-    """The orbit on the law that has r and D at the orbit's own impact speed."""
-    speed = 2 * np.pi * n / (1 + r)
-    for _ in range(12):
-        law = law_of_impact(kind, r, duration, speed)
-        orbit = LawModel(law).require_orbit(n, amplitude)
-        speed = -float(orbit.relative_impact_velocity)
-    return law, orbit
-
-
 @every_kind
 def test_the_corrected_model_is_of_second_order(kind):
     rigid = RestitutionModel(0.65).require_orbit(1, 1.0)
     first, second = [], []
     for duration in (0.1, 0.05):
-        law, orbit = orbit_with(kind, 0.65, duration)
+        law = law_at_orbit(kind, 0.65, duration, 1, 1.0)
+        orbit = LawModel(law).require_orbit(1, 1.0)
         corrected = CorrectedModel(LawSignature(law)).require_orbit(1, 1.0)
         first.append(float(rigid.max_height / orbit.max_height - 1))
         second.append(float(corrected.max_height / orbit.max_height - 1))

@@ -210,19 +210,14 @@ def _prepare(signature: Signature, amplitude, phase, relative):
 def simulate(
     signature: Signature, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
 ) -> ImpactSequence:
-    """Follow balls from an impact through a number of impacts, the first included.
+    """As :func:`bouncing_ball.motion.contacts.simulate`, with contacts that are instants.
 
     Parameters
     ----------
     signature : Signature
         The contact law, seen from outside.
-    amplitude : array_like
-        Λ.
-    phase, velocity : array_like
-        Table phase φ and absolute velocity z′_i of the ball at the start of the
-        first contact.
-    impacts : int
-        Rows of the result, for every ball that does not stay for ever.
+    amplitude, phase, velocity, impacts
+        As there; the first impact is the start of a contact.
 
     Raises
     ------

@@ -132,18 +132,14 @@ def _prepare(law: ContactLaw, amplitude, *states):
 def simulate(
     law: ContactLaw, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
 ) -> ImpactSequence:
-    """Follow balls from an impact through a number of impacts, the first included.
+    """As :func:`bouncing_ball.motion.contacts.simulate`, on contacts of any law.
 
     Parameters
     ----------
     law : ContactLaw
         One law, or one for each ball.
-    amplitude : array_like
-        Λ.
-    phase, velocity : array_like
-        Table phase φ and absolute velocity z′_i of the ball at the first impact.
-    impacts : int
-        Rows of the result, for every ball that does not stay in contact.
+    amplitude, phase, velocity, impacts
+        As there.
 
     Raises
     ------

@@ -23,7 +23,6 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import NoOrbitError, require
 from bouncing_ball.impacts.restitution_map import bounce, landing_gap
-from bouncing_ball.motion.gap import clearance
 from bouncing_ball.motion.instants import section_cycle
 from bouncing_ball.motion.sequence import Cycle
 from bouncing_ball.orbits.interface import Orbit, check_index
@@ -241,16 +240,3 @@ class RestitutionOrbit(Orbit):
     def cycle(self, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
         """From impacts (φ, δ′) to the next, simulated."""
         return section_cycle(self.restitution, self.amplitude, phase, relative_velocity)
-
-    def is_admissible(self) -> np.ndarray:
-        """Whether the ball stays above the table, from the smallest gap of each flight.
-
-        Examples
-        --------
-        Over a table that accelerates less than gravity nothing can happen:
-
-        >>> bool(RestitutionOrbit.of(1, 0.5, 0.8, 1.2).is_admissible())
-        True
-        """
-        velocity, lam = self.relative_bounce_velocity, self.amplitude
-        return (velocity > 0) & (clearance(self.flight_time, self.phase, 0.0, velocity, lam) > 0)

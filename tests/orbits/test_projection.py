@@ -7,7 +7,7 @@ from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 from bouncing_ball.orbits.limits import saddle_node
-from bouncing_ball.orbits.projection import distance, nearest_excess
+from bouncing_ball.orbits.projection import nearest_excess
 
 
 @pytest.mark.parametrize("release", list(Release))
@@ -20,7 +20,8 @@ def test_points_of_the_branch_are_their_own_nearest(omega, release):
     found = nearest_excess(orbit)
     # Also at the fold. ε to the rounding of X and Y over the speed along ε.
     assert found == pytest.approx(excess, abs=1e-14)
-    assert distance(orbit, branch_point(found, contact, 2)).max() < 1e-12
+    again = ContactOrbit.from_branch(branch_point(found, contact, 2), contact, 2)
+    assert orbit.distance(again).max() < 1e-12
 
 
 def test_distance_is_the_largest_difference():
@@ -34,11 +35,13 @@ def test_distance_is_the_largest_difference():
         "contact_duration": point.contact_duration,
         "impact_velocity": point.u + point.x,
     }
-    assert float(distance(ContactOrbit(**base), point)) < 1e-14
+    orbit = ContactOrbit.from_branch(point, contact, 1)
+    assert float(ContactOrbit(**base).distance(orbit)) < 1e-14
     sizes = {"amplitude": 1, "phase": 1, "contact_duration": 10, "impact_velocity": 1}
     for name, size in sizes.items():
         moved = base | {name: base[name] + 1e-3}
-        assert float(distance(ContactOrbit(**moved), point)) == pytest.approx(size * 1e-3, rel=1e-9)
+        found = ContactOrbit(**moved).distance(orbit)
+        assert float(found) == pytest.approx(size * 1e-3, rel=1e-9)
 
 
 def test_an_orbit_beside_the_branch():

@@ -10,8 +10,6 @@ from bouncing_ball.impacts.restitution_map import bounce, exact_map_jacobian, la
 from bouncing_ball.orbits.restitution_orbit import (
     ImpactMap,
     branch,
-    max_height,
-    path,
     period_doubling,
     period_doubling_lift,
     phase,
@@ -115,31 +113,6 @@ def test_values():
         [1.032, 1.122, 1.259], abs=5e-4
     )
     assert saddle_node(np.array([1, 2, 3]), 0.85) == pytest.approx([0.255, 0.509, 0.764], abs=5e-4)
-
-
-@pytest.mark.parametrize(("n", "lam", "r"), [(1, 1.0, 0.85), (3, 2.0, 0.7)])
-def test_path_flies_from_impact_to_impact(n, lam, r):
-    phi = float(phase(n, r, lam))
-    period = 2 * np.pi * n
-    time = np.linspace(0.0, 2 * period, 2001)[:-1]
-    height, velocity = path(n, lam, phi, time)
-    # Free flight: the second difference of a parabola is exact.
-    h = time[1]
-    inner = height[:1000]
-    assert np.diff(inner, 2) / h**2 == pytest.approx(np.full(998, -1.0), abs=1e-8)
-    assert velocity[:1000] == pytest.approx(n * np.pi - time[:1000], abs=1e-12)
-    # On the table at every impact, the second cycle like the first. The
-    # phase of the second cycle is known to eps · 2 · period.
-    assert height[[0, 1000]] == pytest.approx(np.full(2, lam * np.sin(phi)), abs=1e-12)
-    assert height[1000:] == pytest.approx(height[:1000], abs=1e-12)
-    # The greatest height, sampled with a step h: off by h²/8 at most.
-    top = float(max_height(n, lam, phi))
-    assert top - h**2 / 8 <= height.max() <= top + 1e-12
-    # Just before an impact the velocity is -nπ, and the impact returns nπ.
-    before = float(path(n, lam, phi, period * (1 - 1e-15))[1])
-    assert before == pytest.approx(-n * np.pi, abs=1e-12)
-    table = lam * np.cos(phi)
-    assert table - r * (before - table) == pytest.approx(n * np.pi, abs=1e-12)
 
 
 @pytest.mark.parametrize(("n", "r", "top"), [(1, 0.85, 2.0), (5, 0.85, 1.4), (2, 1.0, 1.5)])

@@ -8,8 +8,7 @@ as fast; elsewhere both may nearly stand still. The nearest point in the space
 
 import numpy as np
 
-from bouncing_ball.motion.angles import reduce_angle
-from bouncing_ball.orbits.closed_form import BranchPoint, branch_point
+from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.contact_orbit import ContactOrbit
 
 # Gauss-Newton from a start that is right to rounding of D converges at once.
@@ -27,12 +26,3 @@ def nearest_excess(orbit: ContactOrbit) -> np.ndarray:
         square = point.d_x * point.d_x + point.d_y * point.d_y
         excess = excess + (along + own - excess) / (square + 1)
     return excess
-
-
-def distance(orbit: ContactOrbit, point: BranchPoint) -> np.ndarray:
-    """Largest difference in Λ, φ, ϖτ_b and z′_i."""
-    turn = reduce_angle(orbit.phase - point.phase)
-    angle = (orbit.contact_duration - point.contact_duration) * orbit.contact.frequency_ratio
-    impact = orbit.impact_velocity - (point.u + point.x)
-    differences = (orbit.amplitude - point.amplitude, turn, angle, impact)
-    return np.max(np.abs(np.broadcast_arrays(*differences)), axis=0)

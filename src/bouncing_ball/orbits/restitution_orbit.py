@@ -182,25 +182,6 @@ def max_height(n: ArrayLike, amplitude: ArrayLike, phase: ArrayLike) -> np.ndarr
     return np.asarray(amplitude) * np.sin(phase) + launch * launch / 2
 
 
-def path(
-    n: ArrayLike, amplitude: ArrayLike, phase: ArrayLike, time: ArrayLike
-) -> tuple[np.ndarray, np.ndarray]:
-    """Height and velocity of the ball at times since an impact (Eq. 4).
-
-    The velocity jumps at τ = 0, 2πn, 4πn …; there it is the one after impact.
-
-    Examples
-    --------
-    >>> height, velocity = path(1, 0.0, 0.0, np.pi)
-    >>> bool(np.isclose(height, np.pi**2 / 2)), float(velocity)
-    (True, 0.0)
-    """
-    launch = np.asarray(n) * np.pi
-    s = np.mod(time, 2 * launch)
-    height = np.asarray(amplitude) * np.sin(phase) + launch * s - s * s / 2
-    return height, launch - s
-
-
 class RestitutionOrbit(Orbit):
     """n-T orbits of the restitution model; ``law`` is r.
 

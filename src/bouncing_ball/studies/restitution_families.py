@@ -8,6 +8,7 @@ import xarray as xr
 
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.orbits import restitution_orbit as orbits
+from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import ImpactMap, RestitutionOrbit
 
 
@@ -77,16 +78,15 @@ def restitution_history(parameters: Mapping[str, Any]) -> xr.Dataset:
         If Λ lies below the saddle-node.
     """
     n, lam = parameters["n"], parameters["amplitude"]
-    phase = orbits.phase(n, parameters["restitution"], lam)
-    period = 2 * np.pi * n
-    time = np.linspace(0.0, parameters["periods"] * period, parameters["samples"])
-    height, velocity = orbits.path(n, lam, phase, time)
+    orbit = RestitutionModel(parameters["restitution"]).require_orbit(n, lam)
+    time = np.linspace(0.0, parameters["periods"] * 2 * np.pi * n, parameters["samples"])
+    height, velocity = orbit.path(time)
     return described(
         {
             "time": ("sample", time),
             "ball": ("sample", height),
             "ball_velocity": ("sample", velocity),
-            "table": ("sample", lam * np.sin(time + phase)),
-            "phase": ((), float(phase)),
+            "table": ("sample", lam * np.sin(time + orbit.phase)),
+            "phase": ((), float(orbit.phase)),
         }
     )

@@ -8,9 +8,9 @@ import xarray as xr
 
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.impacts.spring_damper import Contact
-from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.contact_model import ContactModel
 from bouncing_ball.orbits.interface import Orbit
+from bouncing_ball.orbits.restitution_model import RestitutionModel
 
 # What is published of each orbit.
 _STATE = ("phase", "contact_duration", "impact_velocity", "bounce_velocity")
@@ -76,9 +76,9 @@ def both_histories(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
             columns[name].append(values)
         for name in _STATE:
             states[name].append(float(getattr(orbit, name)))
-    phase = float(restitution_orbits.phase(n, r, lam))
+    rigid = RestitutionModel(r).require_orbit(n, lam)
     time = np.linspace(0.0, 2 * np.pi * n, parameters["samples"])
-    height, _ = restitution_orbits.path(n, lam, phase, np.minimum(time, time[-1] * (1 - 1e-15)))
+    height, _ = rigid.path(np.minimum(time, time[-1] * (1 - 1e-15)))
     dims = ("frequency_ratio", "sample")
     return described(
         {
@@ -86,7 +86,7 @@ def both_histories(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
             **{name: ("frequency_ratio", values) for name, values in states.items()},
             "restitution_ball": ("sample", height),
             "time": ("sample", time),
-            "restitution_phase": ((), phase),
+            "restitution_phase": ((), float(rigid.phase)),
         },
         coords={"frequency_ratio": ratios},
     )

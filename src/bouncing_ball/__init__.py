@@ -46,7 +46,7 @@ _PUBLIC = {
     "limits": "orbits.calls",
     "simulate": "orbits.calls",
     "model": "orbits.calls",
-    "design": "calculator.calls",
+    "design": "calculator.design_call",
     "Contact": "impacts.spring_damper",
     "ContactModel": "orbits.contact_model",
     "RestitutionModel": "orbits.restitution_model",

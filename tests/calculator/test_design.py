@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import bouncing_ball
-from bouncing_ball.calculator.calls import design
+from bouncing_ball.calculator.design_call import design
 from bouncing_ball.calculator.family import greatest
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.impacts.signature import LinearSignature

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from bouncing_ball.calculator.calls import design
-from bouncing_ball.calculator.page import page
+from bouncing_ball.calculator.design_call import design
+from bouncing_ball.calculator.page_data import page
 from bouncing_ball.cli.design import answer
 from bouncing_ball.cli.main import main
 from bouncing_ball.render.design_page import draw
@@ -59,7 +59,7 @@ def test_the_page_shows_the_case(found, data):
 
 def test_a_page_for_an_orbit_that_one_model_lacks(monkeypatch):
     lonely = design(**CASE | {"restitution": 0.85, "acceleration": 0.247}, stiffness=100.0)
-    monkeypatch.setattr("bouncing_ball.calculator.page._CHART", 2)
+    monkeypatch.setattr("bouncing_ball.calculator.page_data._CHART", 2)
     shown = page(lonely)
     assert shown.ball.sel(model="restitution").isnull().all()
     assert draw(answer(lonely), shown, []).axes
@@ -72,7 +72,7 @@ ASKED = ("design --mass 1 --angular-frequency 1 --gravity 1 --acceleration 1 --r
 @pytest.fixture
 def known(monkeypatch, data):
     """The chart once is enough."""
-    monkeypatch.setattr("bouncing_ball.calculator.page.page", lambda found: data)
+    monkeypatch.setattr("bouncing_ball.calculator.page_data.page", lambda found: data)
 
 
 def test_the_command_writes_it_and_answers_as_without(tmp_path, capsys, known):

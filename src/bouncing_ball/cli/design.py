@@ -6,8 +6,8 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
-from bouncing_ball.calculator.calls import design
 from bouncing_ball.calculator.design import Design
+from bouncing_ball.calculator.design_call import design
 from bouncing_ball.calculator.judgement import QUANTITIES, percent
 from bouncing_ball.calculator.units import KINDS, shown
 from bouncing_ball.errors import ModelError
@@ -22,7 +22,7 @@ def asked(args: argparse.Namespace) -> Design:
     Raises
     ------
     ModelError, NoOrbitError
-        As :func:`~bouncing_ball.calculator.calls.design`.
+        As :func:`~bouncing_ball.calculator.design_call.design`.
     """
     names = (*KINDS, "n", "release", "quantity")
     return design(**{name: getattr(args, name) for name in names})
@@ -36,7 +36,7 @@ def plot(found: Design, path: Path) -> None:
     ModelError
         If the file cannot be written.
     """
-    from bouncing_ball.calculator.page import page
+    from bouncing_ball.calculator.page_data import page
     from bouncing_ball.render.design_page import draw
     from bouncing_ball.render.figures.style import save, style
 

@@ -30,7 +30,7 @@ def draw(design: Mapping[str, Any], data: xr.Dataset, values: Sequence[tuple[str
     design : mapping
         The answer, as its JSON has it.
     data : Dataset
-        Chart and motion (:mod:`bouncing_ball.calculator.page`).
+        Chart and motion (:mod:`bouncing_ball.calculator.page_data`).
     values : sequence of (str, str)
         The numbers to list, by name, as texts.
     """

@@ -21,7 +21,7 @@ from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits.contact_model import ContactModel
 from bouncing_ball.orbits.interface import OBSERVABLES, ImpactModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.studies.crossings import last_crossing
+from bouncing_ball.studies.last_crossing import last_crossing
 from bouncing_ball.studies.parameters import grid
 from bouncing_ball.studies.permanent_contact_curve import permanent_contact
 

@@ -20,7 +20,6 @@ from bouncing_ball.orbits.contact_model import ContactModel
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.interface import OBSERVABLES, Side
 from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.studies.crossings import last_crossing
 from bouncing_ball.studies.error_thresholds import (
     Quantity,
     ThresholdStatus,
@@ -30,6 +29,7 @@ from bouncing_ball.studies.error_thresholds import (
     thresholds,
     values,
 )
+from bouncing_ball.studies.last_crossing import last_crossing
 from bouncing_ball.studies.parameters import grid
 
 QUANTITIES = tuple(error_law.FirstOrder._fields)

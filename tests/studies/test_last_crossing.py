@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bouncing_ball.studies.crossings import last_crossing
+from bouncing_ball.studies.last_crossing import last_crossing
 
 RATIOS = np.geomspace(1.0, 1e4, 9)
 

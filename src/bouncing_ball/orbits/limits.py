@@ -2,7 +2,7 @@
 
 Scalar root finding along the branch of :mod:`bouncing_ball.orbits.closed_form`,
 for arrays of contacts at once: a scan brackets the first root next to the
-fold, Chandrupatla's method (:mod:`bouncing_ball.continuation.bracketed_root`)
+fold, Chandrupatla's method (:func:`scipy.optimize.elementwise.find_root`)
 closes the bracket to the last digit.
 
 The branch comes from Λ → ∞ at short contacts, where Λ falls with the contact
@@ -13,7 +13,6 @@ fold. Entries for which the quantity does not exist are NaN.
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.continuation.bracketed_root import bracketed_root
 from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.motion.ensembles import blocks
 from bouncing_ball.orbits.closed_form import branch_point
@@ -79,10 +78,14 @@ def _at(grid, index):
 
 def _close(function, left, right, found, args):
     """Roots in brackets, NaN where there is none."""
+    # Imported here: it takes a third of a second, and not every run asks for limits.
+    from scipy.optimize.elementwise import find_root
+
     result = np.full(np.shape(found), np.nan)
     if np.any(found):
         chosen = tuple(x[found] for x in args)
-        result[found] = bracketed_root(function, left[found], right[found], chosen)
+        # The default tolerance is four units in the last place of the root.
+        result[found] = find_root(function, (left[found], right[found]), args=chosen).x
     return result
 
 
@@ -209,8 +212,8 @@ def _stable_side(release, omega, zeta, n, lam):
     below = np.where(grid < end, points.amplitude, lowest) <= lam
     at = np.argmax(below, axis=0)
     found = np.any(below, axis=0) & (at > 0) & (lowest <= lam)
-    left, right = (np.minimum(_at(grid, k), end) for k in (np.maximum(at - 1, 0), at))
-    return _close(_surplus_function(release), left, right, found, (omega, zeta, n, lam))
+    ends = (np.minimum(_at(grid, k), end) for k in (np.maximum(at - 1, 0), at))
+    return _close(_surplus_function(release), *ends, found, (omega, zeta, n, lam))
 
 
 def orbit_at(

@@ -3,8 +3,7 @@
 from collections.abc import Callable
 
 import numpy as np
-
-from bouncing_ball.continuation.bracketed_root import bracketed_root
+from scipy.optimize.elementwise import find_root
 
 
 def last_crossing(
@@ -44,9 +43,12 @@ def last_crossing(
     found = np.full(len(values), np.nan)
     if which.size:
         bracket = np.log(ratios[last]), np.log(ratios[last + 1])
-        root = bracketed_root(lambda x, k: function(np.exp(x), k), *bracket, (which,))
+        with np.errstate(invalid="ignore"):  # of an interpolation that is then not taken
+            root = find_root(
+                lambda x, k: function(np.exp(x), k.astype(int)), bracket, args=(which,)
+            )
         # On a sample rounding may turn the sign back: the root is that sample.
-        size = np.abs(values[which, last]), np.abs(values[which, last + 1])
-        end = np.where(size[0] < size[1], *bracket)
-        found[which] = np.exp(np.where(np.isnan(root), end, root))
+        values_at_ends = np.abs(root.f_bracket)
+        end = np.where(values_at_ends[0] < values_at_ends[1], *bracket)
+        found[which] = np.exp(np.where(root.success, root.x, end))
     return found

@@ -4,8 +4,6 @@ A contact that starts at the table's level is that of the collocation. One that 
 below it, or that is longer than the collocation solves for, is integrated.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 
 from bouncing_ball.impacts.collocation import Contacts, contacts, path
@@ -18,19 +16,10 @@ _SAME = 1e-9
 _INSIDE = 1e-11
 
 
-class Starts(NamedTuple):
-    """Starts of contact of one ball, in a row: p, p′, the table's phase, and durations."""
-
-    depth: np.ndarray
-    rate: np.ndarray
-    phase: np.ndarray
-    duration: np.ndarray
-
-
 def contact_path(
-    law: ContactLaw, starts: Starts, amplitude: float, which: np.ndarray, time: np.ndarray
+    law: ContactLaw, touch: Touch, duration: np.ndarray, which: np.ndarray, time: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """p and p′ at times after the starts ``which``.
+    """p and p′ at times after the starts ``which`` of one ball's contacts in a row.
 
     Examples
     --------
@@ -38,23 +27,22 @@ def contact_path(
 
     >>> from bouncing_ball.impacts.laws.linear import Linear
     >>> one, zero = np.ones(1), np.zeros(1)
-    >>> starts = Starts(zero, 1000.0 * one, zero, 1e-3 * np.pi * one)
-    >>> depth, _ = contact_path(Linear(1e3, 0.0), starts, 0.0, np.array([0]), 5e-4 * np.pi * one)
+    >>> touch, duration = Touch(zero, 1000.0 * one, zero, 0.0), 1e-3 * np.pi * one
+    >>> depth, _ = contact_path(Linear(1e3, 0.0), touch, duration, np.array([0]), duration / 2)
     >>> depth.round(5).tolist()
     [1.0]
     """
-    found = contacts(law, starts.rate, starts.phase, amplitude)
-    level = (starts.depth == 0) & (np.abs(found.duration / starts.duration - 1) <= _SAME)
+    found = contacts(law, touch.rate, touch.phase, touch.amplitude)
+    level = (touch.depth == 0) & (np.abs(found.duration / duration - 1) <= _SAME)
     depth, rate = np.full((2, time.size), np.nan)
     here = np.flatnonzero(level[which])
     if here.size:
         row = which[here]
         some = Contacts(*(x[row] for x in found))
-        depth[here], rate[here] = path(law, some, starts.rate[row], time[here])
+        depth[here], rate[here] = path(law, some, touch.rate[row], time[here])
     other = np.flatnonzero(~level[which])
     if other.size:
         row = which[other]
-        touch = Touch(starts.depth[row], starts.rate[row], starts.phase[row], amplitude)
-        inside = np.minimum(time[other], starts.duration[row] * (1 - _INSIDE))
-        depth[other], rate[other] = state_at(law, touch, inside)
+        inside = np.minimum(time[other], duration[row] * (1 - _INSIDE))
+        depth[other], rate[other] = state_at(law, touch.take(row), inside)
     return depth, rate

@@ -7,8 +7,9 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.impacts.laws.contact_law import ContactLaw
 from bouncing_ball.impacts.spring_damper import contact_flow
-from bouncing_ball.motion.contact_path import Starts, contact_path
+from bouncing_ball.motion.contact_path import contact_path
 from bouncing_ball.motion.landing import Flight
+from bouncing_ball.motion.law_motion import Touch
 from bouncing_ball.motion.sequence import ImpactSequence, Status
 
 
@@ -92,8 +93,9 @@ def _in_contact(sequence: ImpactSequence, index, touching, row, since):
         of, (sequence.phase, sequence.displacement, sequence.relative_velocity)
     )
     if isinstance(law, ContactLaw):
-        starts = Starts(-start, -rate, phase, of(sequence.contact_duration))
-        depth, entry = contact_path(law[index] if law.shape else law, starts, lam, impact, stay)
+        own, duration = law[index] if law.shape else law, of(sequence.contact_duration)
+        touch = Touch(-start, -rate, phase, lam)
+        depth, entry = contact_path(own, touch, duration, impact, stay)
         out[:, touching] = -depth, -entry
     elif law is not None:
         omega, zeta = (

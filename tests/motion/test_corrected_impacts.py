@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.impacts.instant_map import impact, instant_jacobian, instant_of, start_jacobian
+from bouncing_ball.impacts.instant_map import impact, instant_jacobian, meeting, start_jacobian
 from bouncing_ball.impacts.signature import Instant, LinearSignature, Signature
 from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.motion import contacts, instants
@@ -51,8 +51,11 @@ class Viscoelastic(Signature):
 def cycle_jacobian(law, lam, phase, velocity):
     """Of the map from start to start of contact, through the instants."""
     cycle = corrected_cycle(law, lam, phase, velocity)
-    first = impact(law, lam, *instant_of(law, lam, phase, velocity))
-    second = impact(law, lam, *instant_of(law, lam, phase + cycle.time, cycle.relative_velocity))
+    later, faster = phase + cycle.time, cycle.relative_velocity
+    first, second = (
+        impact(law, lam, *meeting(law, lam, at, relative + lam * np.cos(at)))
+        for at, relative in ((phase, velocity), (later, faster))
+    )
     flight = second.phase - first.phase
     between = instant_jacobian(lam, first, flight, second)
     return start_jacobian(lam, second) @ between @ np.linalg.inv(start_jacobian(lam, first))

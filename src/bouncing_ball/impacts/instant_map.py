@@ -68,27 +68,10 @@ def impact(signature: Signature, amplitude: ArrayLike, phase: ArrayLike, arrival
     return Hit(psi, p, speed, depth, y - depth, after, law)
 
 
-def instant_of(
-    signature: Signature, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike
-) -> tuple[np.ndarray, np.ndarray]:
-    """(ψ, p) of a contact that starts at (φ, δ′).
-
-    Examples
-    --------
-    >>> from bouncing_ball.impacts.signature import LinearSignature
-    >>> from bouncing_ball.impacts.spring_damper import Contact
-    >>> psi, p = instant_of(LinearSignature(Contact(np.pi, 0.0)), 0.0, 0.25, -1.5)
-    >>> float(psi), float(p)
-    (0.75, -2.0)
-    """
-    lam, phi, u = (np.asarray(x, dtype=float) for x in (amplitude, phase, relative_velocity))
-    return meeting(signature, lam, phi, u + lam * np.cos(phi))
-
-
 def meeting(
     signature: Signature, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike
 ) -> tuple[np.ndarray, np.ndarray]:
-    """:func:`instant_of` for the absolute velocity z′ of the ball.
+    """(ψ, p) of a contact that starts at φ with the absolute velocity z′ of the ball.
 
     Examples
     --------

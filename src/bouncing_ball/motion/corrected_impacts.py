@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.impacts.instant_map import Hit, impact, instant_of, start_of
+from bouncing_ball.impacts.instant_map import Hit, impact, meeting, start_of
 from bouncing_ball.impacts.signature import Signature
 from bouncing_ball.motion.angles import reduce_angle, table
 from bouncing_ball.motion.ensembles import BLOCK, flatten, pick
@@ -154,7 +154,8 @@ class _Corrected(NamedTuple):
         return _Corrected(self.law.take(which), pick(self.amplitude, which))
 
     def start(self, phase: np.ndarray, velocity: np.ndarray) -> _Impact:
-        instant = instant_of(self.law, self.amplitude, phase, velocity)
+        arrival = velocity + self.amplitude * np.cos(phase)
+        instant = meeting(self.law, self.amplitude, phase, arrival)
         hit = impact(self.law, self.amplitude, *instant)
         return _Impact(phase, np.zeros_like(phase), velocity, hit)
 

@@ -212,8 +212,8 @@ def _stable_side(release, omega, zeta, n, lam):
     below = np.where(grid < end, points.amplitude, lowest) <= lam
     at = np.argmax(below, axis=0)
     found = np.any(below, axis=0) & (at > 0) & (lowest <= lam)
-    ends = (np.minimum(_at(grid, k), end) for k in (np.maximum(at - 1, 0), at))
-    return _close(_surplus_function(release), *ends, found, (omega, zeta, n, lam))
+    left, right = (np.minimum(_at(grid, k), end) for k in (np.maximum(at - 1, 0), at))
+    return _close(_surplus_function(release), left, right, found, (omega, zeta, n, lam))
 
 
 def orbit_at(

@@ -68,8 +68,8 @@ def shown(fallen: tuple[str, ...]) -> list[str]:
     return [*fallen[:SHOWN], *more]
 
 
-def run_here(name: str, seed: int, seconds: float) -> None:
-    """One attack in this process; its outcome as JSON on standard output."""
+def run_here(name: str, seed: int, seconds: float) -> tuple[int, list[str]]:
+    """One attack in this process: how many cases it tried, and those that fell."""
     spec = spec_from_file_location(f"attack_{name}", HERE / f"{name}.py")
     module = module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -82,7 +82,7 @@ def run_here(name: str, seed: int, seconds: float) -> None:
                 fallen += filter(None, verdicts)
                 if time.monotonic() > end:
                     break
-    print(json.dumps([tried, fallen]))
+    return tried, fallen
 
 
 def run(name: str, seed: int, seconds: float) -> Outcome:
@@ -153,7 +153,7 @@ def main() -> int:
     if unknown:
         parser.error(f"unknown attack {', '.join(unknown)}; allowed: {', '.join(attacks())}")
     if options.here:
-        run_here(names[0], options.seed, options.seconds)
+        print(json.dumps(run_here(names[0], options.seed, options.seconds)))
         return 0
     print(f"seed {options.seed}, {options.seconds:g} s for {len(names)} attacks", flush=True)
     end = time.monotonic() + options.seconds

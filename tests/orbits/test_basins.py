@@ -36,7 +36,7 @@ def test_no_ball_leaves_a_trap_and_all_come_to_the_orbit(model, amplitude):
             cycle = model.cycle(amplitude, phase, velocity)
             phase, velocity = cycle.phase, cycle.relative_velocity
             assert disk.holds(phase, velocity).all()
-            assert cycle.time == pytest.approx(2 * np.pi * orbit.n, abs=2.0)
+            assert (abs(cycle.time - 2 * np.pi * orbit.n) < 2.0).all()
         assert disk.distance(phase, velocity).max() < 1e-6
 
 

@@ -36,6 +36,13 @@ _CANCELLATION = 4.0
 # term is 4⁴⁰/40! < 2e-24.
 _CIRCLE_POINTS = 40
 _CIRCLE_RADII = (1.0, 2.0, 4.0)
+# (z - ν) s for the points z of each circle, and its exponential.
+_CIRCLES = np.outer(
+    _CIRCLE_RADII, np.exp(2j * np.pi * (np.arange(_CIRCLE_POINTS) + 0.5) / _CIRCLE_POINTS)
+)
+_WAVES = np.exp(_CIRCLES)
+# Circles at once: as many as keep what is computed on them in the cache.
+_BLOCK = 512
 # |w| s² below which C, S and R are summed as series; the first neglected term
 # of the slowest, R, is 2·(k+1)/(2k+3)! < 1e-20 at k = 10.
 _SERIES_RANGE = 1.0
@@ -124,10 +131,10 @@ def impulse_response(s: ArrayLike, a: ArrayLike, q: ArrayLike, w: ArrayLike) -> 
     )
 
 
-def _quotient(nu, s, a, q, g: Response):
-    """h, ∂h/∂a and ∂h/∂q by the closed formula, where p(ν) is not small."""
+def _quotient(nu, wave, a, q, g: Response):
+    """h, ∂h/∂a and ∂h/∂q by the closed formula, where p(ν) is not small; ``wave`` is e^{νs}."""
     p = nu * nu + 2 * a * nu + q
-    h = (np.exp(nu * s) - g.rate - (nu + 2 * a) * g.value) / p
+    h = (wave - g.rate - (nu + 2 * a) * g.value) / p
     h_a = (-g.rate_d_a - 2 * g.value - (nu + 2 * a) * g.d_a - 2 * nu * h) / p
     h_q = (-g.rate_d_q - (nu + 2 * a) * g.d_q - h) / p
     return h, h_a, h_q
@@ -146,11 +153,11 @@ def _circle_mean(nu, s, a, q, g: Response):
     radii = np.stack([radius / np.abs(short) for radius in _CIRCLE_RADII])
     # The radius whose circle stays farthest, in proportion, from both poles.
     clearance = np.min(np.abs(radii[:, np.newaxis] - distance) / radii[:, np.newaxis], axis=1)
-    radius = np.take_along_axis(radii, np.argmax(clearance, axis=0)[np.newaxis], axis=0)[0]
-    angle = 2 * np.pi * (np.arange(_CIRCLE_POINTS) + 0.5) / _CIRCLE_POINTS
-    nodes = nu + column(radius) * np.exp(1j * angle)
+    which = np.argmax(clearance, axis=0)
+    nodes = nu + _CIRCLES[which] / column(short)
+    wave = column(np.exp(nu * short)) * _WAVES[which]
     wide = Response(*(column(x) for x in g))
-    on_circle = _quotient(nodes, column(short), column(a), column(q), wide)
+    on_circle = _quotient(nodes, wave, column(a), column(q), wide)
     return tuple(np.mean(x, axis=-1) for x in on_circle)
 
 
@@ -187,13 +194,17 @@ def exponential_response(
     delicate = np.abs(p) * s * s < _CANCELLATION
     if np.any(delicate):
         safe = np.where(delicate, 1e300, q)  # value unused; avoids 0/0
-        h, h_a, h_q = (np.array(x) for x in _quotient(nu, s, a, safe, g))
-        part = Response(*(np.asarray(x)[delicate] for x in g))
-        means = _circle_mean(nu, s[delicate], a[delicate], q[delicate], part)
-        for target, mean in zip((h, h_a, h_q), means, strict=True):
-            target[delicate] = mean if np.iscomplexobj(target) else mean.real
+        h, h_a, h_q = (np.array(x) for x in _quotient(nu, np.exp(nu * s), a, safe, g))
+        known = [np.ravel(x) for x in (s, a, q, *g)]
+        which = np.flatnonzero(delicate)
+        for start in range(0, which.size, _BLOCK):
+            at = which[start : start + _BLOCK]
+            time, damping, stiffness, *part = (x[at] for x in known)
+            means = _circle_mean(nu, time, damping, stiffness, Response(*part))
+            for target, mean in zip((h, h_a, h_q), means, strict=True):
+                target.reshape(-1)[at] = mean if np.iscomplexobj(target) else mean.real
     else:
-        h, h_a, h_q = _quotient(nu, s, a, q, g)
+        h, h_a, h_q = _quotient(nu, np.exp(nu * s), a, q, g)
     return Response(
         value=h,
         rate=nu * h + g.value,

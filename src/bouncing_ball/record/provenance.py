@@ -13,6 +13,7 @@ import platform
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, fields
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Self
@@ -257,6 +258,10 @@ def lock_digest(repository: Path) -> str:
     return file_digest(lock) if lock.is_file() else "unknown"
 
 
+# To find one all of a package's description is parsed.
+_version = cache(version)
+
+
 def versions() -> dict[str, str]:
     """Versions of Python and of the libraries that decide about the artifacts."""
-    return {"python": platform.python_version(), **{name: version(name) for name in LIBRARIES}}
+    return {"python": platform.python_version(), **{name: _version(name) for name in LIBRARIES}}

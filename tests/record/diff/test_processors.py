@@ -32,15 +32,15 @@ PROGRAM = """
 import json, sys
 from pathlib import Path
 from numpy._core._multiarray_umath import __cpu_features__
-from bouncing_ball.datasets.netcdf import write_dataset
-from bouncing_ball.audit.claims.ledger_file import read_ledger
-from bouncing_ball.audit.convergence import computations
+from bouncing_ball.configuration.stages import STAGES
+from bouncing_ball.configuration.study import load
 from bouncing_ball.configuration.yaml_file import read_yaml
-folder = Path(sys.argv[1])
-config = read_yaml(folder / "config.yaml")
-made = computations({**config, "printed": read_ledger(folder).table("Table 1")})
+from bouncing_ball.datasets.netcdf import write_dataset
+config = read_yaml(sys.argv[1])
 for name in sys.argv[3:]:
-    write_dataset(made[name].run(), Path(sys.argv[2], f"{name}.nc"))
+    stage = STAGES[name]
+    data = load(stage.study)(stage.parameters(config), *stage.settings(config).values())
+    write_dataset(data, Path(sys.argv[2], f"{name}.nc"))
 print(json.dumps([name for name, there in __cpu_features__.items() if there]))
 """
 
@@ -59,7 +59,7 @@ def environment(root: Path, switches: dict[str, str]) -> dict[str, str]:
 
 def made(folder: Path, switches: dict[str, str]) -> set[str]:
     """Run the stages in a process of its own; the features that it had."""
-    config = ROOT / "config"
+    config = ROOT / "config" / "config.yaml"
     done = subprocess.run(
         [sys.executable, "-c", PROGRAM, config, folder, *STAGES],
         env=environment(ROOT, switches),

@@ -31,8 +31,8 @@ def require(valid: "ArrayLike", value: "ArrayLike", name: str, allowed: str) -> 
     # Imported here: the command line needs the errors, and for --help no numpy.
     import numpy as np
 
-    valid, value = np.broadcast_arrays(valid, value)
     if not np.all(valid):
+        valid, value = np.broadcast_arrays(valid, value)
         first = value[~valid][0]
         raise ModelError(f"{name} = {first} is not {allowed}")
 

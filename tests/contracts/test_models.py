@@ -226,7 +226,7 @@ def test_the_path_is_continuous_and_closed(name, n, above, side):
     flying = np.linspace(duration, period, 50)[1:-1]
     z, v = orbit.path(flying)
     np.testing.assert_allclose(v * v / 2 + z, v[0] ** 2 / 2 + z[0], rtol=100 * EPS)
-    # A sampled parabola misses its top by a quarter of the step squared, at most.
+    # A sampled parabola misses its top by half of the step squared at most, next to an end.
     top = max(z.max(), orbit.path(np.linspace(0, duration, 500))[0].max())
     assert top - 1e-12 <= orbit.max_height <= top + (flying[1] - flying[0]) ** 2 / 2
 

@@ -14,9 +14,11 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
@@ -30,7 +32,38 @@ ROOT = Path(__file__).resolve().parents[2]
 IGNORED = shutil.ignore_patterns(
     ".git", ".venv*", "results", ".snakemake", "tests", "*.egg-info", "__pycache__", ".*_cache"
 )
+# A program, and no test.
+collect_ignore = ["starts.py"]
 SNAKEMAKE = Path(sys.executable).with_name("snakemake")
+
+
+@cache
+def starter() -> subprocess.Popen:
+    """What starts Snakemake for the tests of this process; it ends with it."""
+    # The program itself is started where a run is to be interrupted, by the commands that
+    # explain names, and where another Python or package is refused.
+    program = [sys.executable, Path(__file__).with_name("starts.py")]
+    return subprocess.Popen(program, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+
+
+def pytest_unconfigure() -> None:
+    if starter.cache_info().currsize:
+        starter().communicate()
+
+
+def started(
+    arguments: Sequence[str], folder: Path, environment: Mapping[str, str]
+) -> subprocess.CompletedProcess:
+    """What ``snakemake`` with these arguments does there, and says."""
+    server = starter()
+    with tempfile.TemporaryDirectory() as kept:
+        said = {name: str(Path(kept, name)) for name in ("stdout", "stderr")}
+        call = {"arguments": arguments, "folder": str(folder), "environment": dict(environment)}
+        server.stdin.write(json.dumps(call | said) + "\n")
+        server.stdin.flush()
+        status = int(server.stdout.readline())
+        texts = {name: Path(path).read_text(encoding="utf-8") for name, path in said.items()}
+    return subprocess.CompletedProcess(arguments, status, **texts)
 
 
 @dataclass(frozen=True)
@@ -41,14 +74,7 @@ class Tree:
 
     def run(self, *arguments: str, check: bool = True) -> subprocess.CompletedProcess:
         """Snakemake in this tree; the package is imported from this tree."""
-        done = subprocess.run(
-            [SNAKEMAKE, *arguments],
-            cwd=self.path,
-            env=self.environment(),
-            capture_output=True,
-            text=True,
-            check=False,
-        )
+        done = started(arguments, self.path, self.environment())
         if check and done.returncode != 0:
             pytest.fail(f"snakemake {' '.join(arguments)} failed:\n{done.stdout}{done.stderr}")
         return done
@@ -216,7 +242,8 @@ def pristine(shared, cloned) -> Tree:
 
     def make(folder: Path) -> None:
         tree = copy_tree(cloned.path, folder, with_git=True)
-        tree.interrupt(signal.SIGKILL, "--cores", "2", after=4)
+        # At the first: what was begun then is done twice.
+        tree.interrupt(signal.SIGKILL, "--cores", "2", after=1, of="figures/*.nc")
         early = tree.checksums("results")
         # Snakemake could not remove its lock; it says so and names this command.
         locked = tree.run("--cores", "2", check=False).stderr

@@ -1,10 +1,15 @@
 # Check the configuration before anything runs; names shared by the rules.
 
+import gc
 import os
 import shlex
 import sys
 from importlib.util import find_spec
 from pathlib import Path
+
+# What Snakemake has imported stays. Not to look through it for garbage again and again saves
+# half a second of each start.
+gc.freeze()
 
 # Snakemake starts jobs by the path of Python as it is.
 if shlex.quote(sys.executable) != sys.executable:

@@ -4,6 +4,7 @@ Scripts of the workflow are three lines on top of this; ``snakemake`` is the
 object that Snakemake gives them.
 """
 
+import gc
 import signal
 import sys
 import traceback
@@ -52,6 +53,8 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
     # file is locked, whose closing then waits for ever; files are written whole
     # or not at all, so nothing is lost.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+    # What has been imported stays: it is not looked through for garbage again.
+    gc.freeze()
     # With every dataset xarray asks whether its values are quantities of pint, and to import
     # pint takes longer than to read. Those of a job are plain numbers.
     without_pint = sys.modules.setdefault("pint", None) is None  # type: ignore[arg-type]

@@ -8,13 +8,13 @@ lead elsewhere on the way. Names and texts from such a folder are printed with
 """
 
 import gc
+import hashlib
 import os
 import resource
 import stat
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from functools import lru_cache
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
@@ -178,8 +178,11 @@ def _read_all(content: bytes) -> None:
             variable[...]
 
 
-# One dataset is asked for what it holds and, several times, for where it comes from.
-@lru_cache(maxsize=8)
+# Checksums of what has been read to its end: one dataset is asked for what it holds and,
+# for each file that is made from it, for where it comes from.
+_WHOLE: set[bytes] = set()
+
+
 def _check_end(content: bytes) -> None:
     """Read all of a dataset in a process of its own, which may crash or hang.
 
@@ -187,6 +190,9 @@ def _check_end(content: bytes) -> None:
     later, as it closes what it could not open; and many texts of a dataset may be
     one in its file. What is not read there is not opened here.
     """
+    checksum = hashlib.sha256(content).digest()
+    if checksum in _WHOLE:
+        return
     reader, writer = os.pipe()
     with warnings.catch_warnings():
         # Newer Pythons warn of threads, of which the child uses none.
@@ -217,6 +223,7 @@ def _check_end(content: bytes) -> None:
         raise UnreadableError("damaged: reading it does not end, or ends the program")
     if said:
         raise UnreadableError(said)
+    _WHOLE.add(checksum)
 
 
 def _limit_memory() -> None:

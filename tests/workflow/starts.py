@@ -12,10 +12,14 @@ import json
 import os
 import sys
 
-import jsonschema.validators  # noqa: F401
+# What Snakemake and the package import as they run.
+import jsonschema  # noqa: F401
+import nbformat  # noqa: F401
 import scipy.optimize.elementwise  # noqa: F401
+import smart_open  # noqa: F401
 import xarray  # noqa: F401
 from snakemake.cli import main as snakemake
+from snakemake.report import html_reporter  # noqa: F401
 
 
 def become(start: dict) -> None:

@@ -243,7 +243,7 @@ def pristine(shared, cloned) -> Tree:
     def make(folder: Path) -> None:
         tree = copy_tree(cloned.path, folder, with_git=True)
         # At the first: what was begun then is done twice.
-        tree.interrupt(signal.SIGKILL, "--cores", "2", after=1, of="figures/*.nc")
+        tree.interrupt(signal.SIGKILL, "--cores", "2", after=1, of="figures/[!.]*.nc")
         early = tree.checksums("results")
         # Snakemake could not remove its lock; it says so and names this command.
         locked = tree.run("--cores", "2", check=False).stderr

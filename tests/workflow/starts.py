@@ -11,15 +11,19 @@ import gc
 import json
 import os
 import sys
+from importlib import import_module
+
+from snakemake.cli import main as snakemake
 
 # What Snakemake and the package import as they run.
-import jsonschema  # noqa: F401
-import nbformat  # noqa: F401
-import scipy.optimize.elementwise  # noqa: F401
-import smart_open  # noqa: F401
-import xarray  # noqa: F401
-from snakemake.cli import main as snakemake
-from snakemake.report import html_reporter  # noqa: F401
+USED = (
+    "jsonschema",
+    "nbformat",
+    "scipy.optimize.elementwise",
+    "smart_open",
+    "snakemake.report.html_reporter",
+    "xarray",
+)
 
 
 def become(start: dict) -> None:
@@ -37,6 +41,8 @@ def become(start: dict) -> None:
 
 
 if __name__ == "__main__":
+    for name in USED:
+        import_module(name)
     assert "bouncing_ball" not in sys.modules
     gc.collect()
     gc.freeze()

@@ -87,19 +87,19 @@ def _track(
     down: np.ndarray,
 ) -> Iterator[np.ndarray]:
     """Λ at the zero of a test function for each ϖ of a decreasing sequence."""
-    along, past, n = np.log(down), stiff_start(start)[np.newaxis], start.n
+    along, n = np.log(down), start.n
+    at, past = along[:1], stiff_start(start)[np.newaxis]
     for k, ratio in enumerate(down):
         contact = start.contact(ratio)
 
         def value(t, contact=contact, ratio=ratio):
             return test(branch_point(t / ratio, contact, n))
 
-        before = along[max(k - len(past), 0) : max(k, 1)]
-        (guess,) = extrapolated(before, past, along[k : k + 1])
+        (guess,) = extrapolated(at, past, along[k : k + 1])
         found, closed = _secant(value, guess)
         if not np.all(closed):
             found[~closed] = ratio * direct(contact[~closed], n)
-        past = np.concatenate([past if k else past[:0], found[np.newaxis]])[-2:]
+        at, past = along[max(k - 1, 0) : k + 1], np.array([past[-1], found] if k else [found])
         yield branch_point(found / ratio, contact, n).amplitude
 
 

@@ -38,9 +38,8 @@ REACHED = 1e-6
 """Relative distance of an orbit's Λ from that asked for. Errors are then those of an
 orbit next to the node's, exact there; the walk mostly keeps within 1e-9."""
 TOGETHER = 8
-"""Number of ϖ taken at once, so that also few nodes make long arrays."""
-PAST = 8
-"""Number of ϖ from which t is extrapolated."""
+"""Number of ϖ taken at once, so that also few nodes make long arrays; t is extrapolated
+from as many."""
 # The extrapolation has no past at the stiffest contacts.
 _FIRST_CORRECTIONS = 4
 
@@ -128,17 +127,16 @@ def walk(nodes: Nodes, ratios: np.ndarray) -> Iterator[Step]:
         At :data:`TOGETHER` ϖ, the last one at fewer.
     """
     down = ratios[::-1]
-    along, past = np.log(down), stiff_start(nodes)[np.newaxis]
+    # Before the first step t is that of ϖ → ∞ at any ϖ.
+    at, past = np.log(down[:1]), stiff_start(nodes)[np.newaxis]
     for k in range(0, len(down), TOGETHER):
         ratio = down[k : k + TOGETHER, np.newaxis]
-        contact = nodes.contact(ratio)
-        # Before the first step t is that of ϖ → ∞ at any ϖ.
-        before = along[max(k - len(past), 0) : max(k, 1)]
-        excess = extrapolated(before, past, along[k : k + TOGETHER]) / ratio
+        contact, along = nodes.contact(ratio), np.log(ratio[:, 0])
+        excess = extrapolated(at, past, along) / ratio
         for _ in range(1 if k else _FIRST_CORRECTIONS):
             excess = excess + correction(branch_point(excess, contact, nodes.n), nodes.amplitude)
         point = branch_point(excess, contact, nodes.n)
-        past = np.concatenate([past if k else past[:0], excess * ratio])[-PAST:]
+        at, past = along, excess * ratio
         orbit = ContactOrbit.from_branch(point, contact, nodes.n)
         stable = is_stable(point.trace, point.determinant)
         sought = ~(np.abs(point.amplitude / nodes.amplitude - 1) <= REACHED)

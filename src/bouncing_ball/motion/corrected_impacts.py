@@ -175,10 +175,7 @@ class _Corrected(NamedTuple):
         if leaves.all():
             return _Departure(end, displacement, velocity, duration, status, start, flight)
         wait, x_rest, y_rest, start_rest = _from_rest(end, amplitude)
-        displacement, velocity = (
-            np.where(leaves, displacement, 0.0),
-            np.where(leaves, velocity, 0.0),
-        )
+        displacement, velocity = (np.where(leaves, x, 0.0) for x in (displacement, velocity))
         x, y = np.where(leaves, x, x_rest), np.where(leaves, y, y_rest)
         flight = Flight(displacement, velocity, x, y, amplitude)
         forever = ~leaves & (amplitude <= 1)

@@ -97,10 +97,8 @@ def search(
         for group in groups:
             at = np.flatnonzero(np.isin(quantity, group))
             if at.size:
-                contact, names = (
-                    Contact(ratio[at], zeta[orbit[at]], rule),
-                    [quantities[k] for k in group],
-                )
+                contact = Contact(ratio[at], zeta[orbit[at]], rule)
+                names = [quantities[k] for k in group]
                 both = errors(contact, n[orbit[at]], lam[orbit[at]], names)
                 place = np.searchsorted(group, quantity[at])
                 found[at] = both[model[at], place, np.arange(at.size)]

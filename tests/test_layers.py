@@ -18,35 +18,40 @@ BY_NAME = "(by name)"
 ALLOWED = {
     # Zarr only where it is written.
     "datasets": (set(), {"numpy", "xarray", "zarr", "numcodecs"}),
-    "impacts": (set(), {"numpy"}),
+    "contacts": (set(), {"numpy"}),
     "continuation": (set(), {"numpy"}),
-    "motion": ({"impacts"}, {"numpy"}),
-    "orbits": ({"impacts", "continuation", "motion"}, {"numpy", "scipy"}),
+    "motion": ({"contacts"}, {"numpy"}),
+    "orbits": ({"contacts", "continuation", "motion"}, {"numpy", "scipy"}),
     "studies": (
-        {"datasets", "impacts", "continuation", "motion", "orbits"},
+        {"datasets", "contacts", "continuation", "motion", "orbits"},
         {"numpy", "scipy", "xarray"},
     ),
     # Units are parsed at the edge, and pint is imported there when it is asked for.
-    "calculator": ({"impacts", "orbits", "studies"}, {"numpy", "xarray", "pint"}),
-    "atlas": ({"datasets", "impacts", "orbits", "studies"}, {"numpy", "xarray"}),
+    "calculator": ({"contacts", "orbits", "studies"}, {"numpy", "xarray", "pint"}),
+    "atlas": ({"datasets", "contacts", "orbits", "studies"}, {"numpy", "xarray"}),
     # Studies are imported by name when they are run.
-    "configuration": ({"impacts", "orbits"}, {"yaml", "jsonschema", BY_NAME}),
+    "configuration": ({"contacts", "orbits"}, {"yaml", "jsonschema", BY_NAME}),
     "audit": (
-        {"datasets", "impacts", "continuation", "motion", "orbits", "studies", "configuration"},
+        {"datasets", "contacts", "continuation", "motion", "orbits", "studies", "configuration"},
         {"numpy", "scipy", "xarray"},
     ),
+    "claims": ({"datasets", "configuration"}, {"numpy", "xarray"}),
     # Pandoc and Typst only where the PDF is made.
     "render": ({"datasets"}, {"numpy", "xarray", "matplotlib", "jinja2", "pypandoc", "typst"}),
     # Pillow reads pictures for matplotlib.
     "record": (
-        {"datasets", "configuration"},
+        {"datasets", "configuration", "compare"},
+        {"numpy", "xarray", "netCDF4", "matplotlib", "PIL", "jinja2"},
+    ),
+    "compare": (
+        {"datasets", "configuration", "record"},
         {"numpy", "xarray", "netCDF4", "matplotlib", "PIL", "jinja2"},
     ),
     "pipeline": ({"datasets", "atlas", "configuration", "render", "record"}, {"xarray", "yaml"}),
     "cli": (
         {
             "datasets",
-            "impacts",
+            "contacts",
             "motion",
             "orbits",
             "studies",
@@ -54,6 +59,7 @@ ALLOWED = {
             "configuration",
             "render",
             "record",
+            "compare",
         },
         {"numpy"},
     ),
@@ -121,19 +127,19 @@ def test_layer_imports_only_what_it_may(layer):
 @pytest.mark.parametrize(
     ("layer", "source"),
     [
-        ("impacts", "import scipy"),
-        ("impacts", "from bouncing_ball.orbits import limits"),
-        ("impacts", "from bouncing_ball import orbits"),
-        ("impacts", "from ..orbits.limits import orbit_at"),
-        ("continuation", "import bouncing_ball.impacts.spring_damper"),
-        ("continuation", "def f():\n    from bouncing_ball.impacts import damping"),
+        ("contacts", "import scipy"),
+        ("contacts", "from bouncing_ball.orbits import limits"),
+        ("contacts", "from bouncing_ball import orbits"),
+        ("contacts", "from ..orbits.limits import orbit_at"),
+        ("continuation", "import bouncing_ball.contacts.spring_damper"),
+        ("continuation", "def f():\n    from bouncing_ball.contacts import damping"),
         ("orbits", "from bouncing_ball.studies.parameters import grid"),
-        ("datasets", "from bouncing_ball.impacts import spring_damper"),
+        ("datasets", "from bouncing_ball.contacts import spring_damper"),
         ("studies", "from bouncing_ball.render.figures import style"),
         ("studies", "import matplotlib.pyplot as plt"),
         ("render", "from bouncing_ball.orbits import limits"),
         ("render", "from scipy.optimize import brentq"),
-        ("render", "import importlib\nimportlib.import_module('bouncing_ball.impacts')"),
+        ("render", "import importlib\nimportlib.import_module('bouncing_ball.contacts')"),
         ("render", "from .. import studies"),
         ("render", "from importlib import import_module\nimport_module(f'bouncing_ball.{name}')"),
         ("record", "from bouncing_ball.audit import convergence"),
@@ -150,9 +156,9 @@ def test_the_check_sees_violations(layer, source):
 @pytest.mark.parametrize(
     ("layer", "source"),
     [
-        ("impacts", "import numpy as np\nfrom bouncing_ball.errors import ModelError"),
-        ("impacts", "from .damping import damping_ratio\nimport dataclasses"),
-        ("orbits", "from bouncing_ball.impacts.spring_damper import Contact"),
+        ("contacts", "import numpy as np\nfrom bouncing_ball.errors import ModelError"),
+        ("contacts", "from .damping import damping_ratio\nimport dataclasses"),
+        ("orbits", "from bouncing_ball.contacts.spring_damper import SpringDamper"),
         ("render", "import matplotlib.pyplot as plt\nfrom bouncing_ball.datasets import netcdf"),
         ("pipeline", "import bouncing_ball\nbouncing_ball.__file__"),
     ],

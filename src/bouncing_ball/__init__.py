@@ -11,7 +11,7 @@ restitution coefficient, with ``frequency_ratio`` a spring-damper contact::
     bouncing_ball.limits(n=1, restitution=0.85, frequency_ratio=10.0)
     bouncing_ball.simulate(amplitude=1.0, restitution=0.85, frequency_ratio=10.0)
 
-Behind them are the models, :class:`ContactModel` of a :class:`Contact` and
+Behind them are the models, :class:`SpringDamperModel` of a :class:`SpringDamper` and
 :class:`RestitutionModel`, with one interface
 (:mod:`bouncing_ball.orbits.interface`); they work on arrays. Everything is
 dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g.
@@ -19,7 +19,7 @@ dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g.
 The layers, each importing only what lies above it in this list (and the errors):
 
 ``datasets``      names, symbols, units and netCDF files
-``impacts``       the impact: restitution map, spring-damper contact, permanent contact
+``contacts``      the impact: restitution map, spring-damper contact, permanent contact
 ``continuation``  pseudo-arclength continuation; knows nothing of balls
 ``motion``        event-driven simulation, from any initial state
 ``orbits``        n-T orbits, their stability and bifurcations
@@ -28,8 +28,10 @@ The layers, each importing only what lies above it in this list (and the errors)
 ``atlas``         how stiff is stiff enough, for all orbits: tiles, shards, one file
 ``configuration`` the parameters of a run, read and checked
 ``audit``         the paper under audit: claims, formulas, Table 1, every orbit by three routes
+``claims``        what the paper claims, and the verdict on each
 ``render``        figures, tables and the article; they compute nothing
-``record``        provenance, the accepted record, and the comparison with it
+``compare``       datasets, texts and pictures of two runs against each other
+``record``        provenance and the accepted record
 ``pipeline``      what the Snakefile needs of Python
 ``cli``           the command line, ``bouncing-ball``
 """
@@ -47,8 +49,8 @@ _PUBLIC = {
     "simulate": "orbits.calls",
     "model": "orbits.calls",
     "design": "calculator.design_call",
-    "Contact": "impacts.spring_damper",
-    "ContactModel": "orbits.contact_model",
+    "SpringDamper": "contacts.spring_damper",
+    "SpringDamperModel": "orbits.contact_model",
     "RestitutionModel": "orbits.restitution_model",
     "ModelError": "errors",
     "NoOrbitError": "errors",

@@ -4,7 +4,7 @@ import pytest
 from bouncing_ball.atlas.crossings import LastCrossings
 from bouncing_ball.atlas.errors import MODELS, OF_ORBITS, orbit_errors
 from bouncing_ball.atlas.walk import walk
-from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.studies.error_thresholds import ThresholdStatus, thresholds
 from bouncing_ball.studies.model_errors import errors
 
@@ -84,12 +84,12 @@ def test_how_many_ratios_are_met_together_does_not_change_a_threshold(together):
 def direct(nodes, tolerances, ratios):
     """Thresholds of one node by scanning a grid and closing the crossings; (m, model, quantity)."""
     zeta, lam, names = nodes.damping_ratio[0], nodes.amplitude[0], [str(q) for q in OF_ORBITS]
-    scanned = np.abs(errors(Contact(ratios, zeta, nodes.release), nodes.n, lam, names))
+    scanned = np.abs(errors(SpringDamper(ratios, zeta, nodes.release), nodes.n, lam, names))
     result = np.empty((len(tolerances), len(MODELS), len(names)))
     for i, j in np.ndindex(result.shape[1:]):
 
         def error(w, i=i, j=j):
-            contact = Contact(w, zeta, nodes.release)
+            contact = SpringDamper(w, zeta, nodes.release)
             return np.abs(errors(contact, nodes.n, lam, names[j : j + 1]))[i, 0]
 
         known = np.nan_to_num(scanned[i, j], nan=np.inf)

@@ -3,8 +3,8 @@ import pytest
 
 from bouncing_ball.atlas.plan import Plan
 from bouncing_ball.configuration.yaml_file import read_yaml
+from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import ModelError
-from bouncing_ball.impacts.release import Release
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 
 

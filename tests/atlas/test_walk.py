@@ -7,7 +7,7 @@ from bouncing_ball.atlas.limits_walk import limit_errors
 from bouncing_ball.atlas.walk import REACHED, stiff_start, walk
 from bouncing_ball.orbits import limits
 from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 
 COMPARED = [3.0, 10.0, 100.0, 1e4]
@@ -77,7 +77,10 @@ def test_the_limits_are_those_that_root_finding_gives(small):
         for (ratio,), (error,) in limit_errors(nodes, plan.ratios):
             if ratio not in COMPARED:
                 continue
-            exact, simple = ContactModel(nodes.contact(ratio)), RestitutionModel(nodes.restitution)
+            exact, simple = (
+                SpringDamperModel(nodes.contact(ratio)),
+                RestitutionModel(nodes.restitution),
+            )
             expected = [
                 getattr(exact, name)(n).amplitude / getattr(simple, name)(n).amplitude - 1
                 for name in ("saddle_node", "period_doubling")

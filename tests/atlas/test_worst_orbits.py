@@ -16,8 +16,8 @@ from bouncing_ball.atlas import shards
 from bouncing_ball.atlas.errors import MODELS, OF_ORBITS
 from bouncing_ball.atlas.plan import Plan
 from bouncing_ball.configuration.yaml_file import read_yaml
-from bouncing_ball.impacts.spring_damper import Contact
-from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.orbits.contact_model import SpringDamperModel
 
 ORBITS = Path(__file__).resolve().parents[1] / "orbits"
 Exact = runpy.run_path(str(ORBITS / "test_sixty_digits.py"))["Exact"]
@@ -64,8 +64,8 @@ def simple_in_digits(exact, n, lam, corrected):
 
 def simulated(contact, n, lam):
     """The quantities of the orbit at Λ read from one simulated cycle, and ε."""
-    orbit = ContactModel(contact).require_orbit(n, lam)
-    ball = ContactModel(contact).simulate(lam, orbit.phase, orbit.impact_velocity, 2)
+    orbit = SpringDamperModel(contact).require_orbit(n, lam)
+    ball = SpringDamperModel(contact).simulate(lam, orbit.phase, orbit.impact_velocity, 2)
     assert abs(ball.time[1] - 2 * np.pi * n) < 1e-9
     duration, leaving = ball.contact_duration[0], ball.relative_release_velocity[0]
     end = ball.phase[0] + duration
@@ -82,7 +82,7 @@ def check(plan, row, part, tile, ratio):
         stored = float(part["largest_error"][tile, i, j, k])
         r, lam = (float(part[f"worst_{x}"][tile, i, j, k]) for x in ("restitution", "amplitude"))
         rule = plan.releases[row.release]
-        contact = Contact.from_restitution(r, ratio, rule, measured=True)
+        contact = SpringDamper.from_restitution(r, ratio, rule, measured=True)
         values, start = simulated(contact, n, lam)
         exact = Exact(contact, n)
         near = float(part["farthest"][tile])

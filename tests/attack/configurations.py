@@ -20,11 +20,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.audit.claims.assessment import assess
-from bouncing_ball.audit.claims.ledger_file import read_ledger
-from bouncing_ball.audit.claims.tally import tally
 from bouncing_ball.audit.cross_check import cross_check
 from bouncing_ball.audit.evidence import evidence
+from bouncing_ball.claims.assessment import assess
+from bouncing_ball.claims.ledger_file import read_ledger
+from bouncing_ball.claims.tally import tally
 from bouncing_ball.configuration.check import check_configuration, check_orbits
 from bouncing_ball.configuration.conformity import resolved
 from bouncing_ball.configuration.schema import configuration_schema

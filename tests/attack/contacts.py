@@ -11,9 +11,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from bouncing_ball.impacts.damping import damping_ratio
-from bouncing_ball.impacts.spring_damper import Contact, Release
-from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
+from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.interface import Side
 
 BLOCK = 100
@@ -25,13 +25,13 @@ AT_ROOT = 1e-4
 RETURNS = 1e-11
 
 
-def draw(rng: np.random.Generator) -> tuple[Contact, np.ndarray, str]:
+def draw(rng: np.random.Generator) -> tuple[SpringDamper, np.ndarray, str]:
     """Contacts, families, and how each of them is named on the command line."""
     r = rng.uniform(0.05, 0.999, BLOCK)
     omega = 10 ** rng.uniform(-1.0, 4.0, BLOCK)
     n = np.floor(10 ** rng.uniform(0.0, np.log10(200.0), BLOCK))
     release = Release(str(rng.choice([str(one) for one in Release])))
-    contact = Contact(omega, damping_ratio(r), release)
+    contact = SpringDamper(omega, damping_ratio(r), release)
     names = [
         f"--restitution {a!r} --frequency-ratio {b!r} --n {int(c)} --release {release}"
         for a, b, c in zip(r.tolist(), omega.tolist(), n, strict=True)
@@ -39,9 +39,9 @@ def draw(rng: np.random.Generator) -> tuple[Contact, np.ndarray, str]:
     return contact, n, np.array(names)
 
 
-def wrong_limits(contact: Contact, n: np.ndarray) -> tuple[int, np.ndarray, np.ndarray]:
+def wrong_limits(contact: SpringDamper, n: np.ndarray) -> tuple[int, np.ndarray, np.ndarray]:
     """How many bifurcations are reported, and which contacts have one that is none."""
-    model = ContactModel(contact)
+    model = SpringDamperModel(contact)
     reported, wrong = 0, np.zeros(n.shape, dtype=bool)
     for orbit, at in ((model.saddle_node(n), 1.0), (model.period_doubling(n), -1.0)):
         there = orbit.exists
@@ -55,9 +55,11 @@ def wrong_limits(contact: Contact, n: np.ndarray) -> tuple[int, np.ndarray, np.n
     return reported, wrong
 
 
-def astray(contact: Contact, n: np.ndarray, lam: np.ndarray, side: Side) -> tuple[int, np.ndarray]:
+def astray(
+    contact: SpringDamper, n: np.ndarray, lam: np.ndarray, side: Side
+) -> tuple[int, np.ndarray]:
     """How many orbits are admissible, and which of them the simulation does not return to."""
-    orbit = ContactModel(contact).orbit(n, lam, side)
+    orbit = SpringDamperModel(contact).orbit(n, lam, side)
     admissible = orbit.is_admissible()
     wrong = np.zeros(n.shape, dtype=bool)
     if np.any(admissible):

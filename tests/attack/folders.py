@@ -23,14 +23,14 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from netCDF4 import Dataset
 
+from bouncing_ball.compare.folders import ComparisonError, compare_folders
+from bouncing_ball.compare.parts import read_data
+from bouncing_ball.compare.report_html import to_html
+from bouncing_ball.compare.report_json import to_json
+from bouncing_ball.compare.report_markdown import to_markdown
+from bouncing_ball.compare.report_terminal import to_terminal
+from bouncing_ball.compare.tolerance_file import read_tolerances
 from bouncing_ball.datasets.netcdf import write_dataset
-from bouncing_ball.record.diff.folders import ComparisonError, compare_folders
-from bouncing_ball.record.diff.parts import read_data
-from bouncing_ball.record.diff.report_html import to_html
-from bouncing_ball.record.diff.report_json import to_json
-from bouncing_ball.record.diff.report_markdown import to_markdown
-from bouncing_ball.record.diff.report_terminal import to_terminal
-from bouncing_ball.record.diff.tolerance_file import read_tolerances
 
 ROOT = Path(__file__).resolve().parents[2]
 NAMES = ("fig02", "fig11", "table1", "ext_basins", "explorer")

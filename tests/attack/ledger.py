@@ -18,8 +18,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.audit.claims.assessment import assess
-from bouncing_ball.audit.claims.ledger_file import parse_ledger, read_ledger
+from bouncing_ball.claims.assessment import assess
+from bouncing_ball.claims.ledger_file import parse_ledger, read_ledger
 from bouncing_ball.configuration.conformity import check_schema
 from bouncing_ball.configuration.stages import STAGES, Kind, names
 from bouncing_ball.configuration.yaml_file import read_yaml

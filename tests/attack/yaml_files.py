@@ -13,9 +13,9 @@ import numpy as np
 import yaml
 from ledger import mutated
 
+from bouncing_ball.compare.tolerance_file import read_tolerances
 from bouncing_ball.configuration.check import check_configuration, check_orbits
 from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
-from bouncing_ball.record.diff.tolerance_file import read_tolerances
 
 ROOT = Path(__file__).resolve().parents[2]
 FILES = ("config.yaml", "tolerances.yaml", "claims.yaml")

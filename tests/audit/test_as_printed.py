@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from bouncing_ball.audit.formulas import as_printed as printed
-from bouncing_ball.impacts import damping, permanent_contact
-from bouncing_ball.impacts import restitution_map as restitution
-from bouncing_ball.impacts.spring_damper import contact_flow
+from bouncing_ball.contacts import damping, permanent_contact
+from bouncing_ball.contacts import restitution_map as restitution
+from bouncing_ball.contacts.spring_damper import contact_flow
 from bouncing_ball.orbits import restitution_orbit as orbits
 from bouncing_ball.orbits.restitution_orbit import ImpactMap
 

@@ -12,7 +12,6 @@ import xarray as xr
 import yaml
 
 from bouncing_ball.audit import convergence
-from bouncing_ball.audit.claims.ledger_file import read_ledger
 from bouncing_ball.audit.convergence import (
     Computation,
     Variation,
@@ -22,10 +21,11 @@ from bouncing_ball.audit.convergence import (
     tighter,
     variations,
 )
+from bouncing_ball.claims.ledger_file import read_ledger
+from bouncing_ball.compare.budgets import changes
+from bouncing_ball.compare.tolerance_file import read_tolerances
 from bouncing_ball.configuration.stages import STAGES
 from bouncing_ball.datasets.netcdf import read_dataset
-from bouncing_ball.record.diff.budgets import changes
-from bouncing_ball.record.diff.tolerance_file import read_tolerances
 
 ROOT = Path(__file__).resolve().parents[2]
 

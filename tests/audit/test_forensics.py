@@ -16,9 +16,9 @@ from bouncing_ball.audit.forensics.readings import (
     readings,
 )
 from bouncing_ball.audit.forensics.steps import attainable, nearby
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError
-from bouncing_ball.impacts.damping import damping_ratio
-from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.limits import orbit_at, period_doubling, saddle_node
 from bouncing_ball.orbits.restitution_orbit import ImpactMap
@@ -160,7 +160,7 @@ def test_orbit_and_monodromy_are_those_of_the_altered_return_map(name, omega, n)
 @pytest.mark.parametrize("release", list(Release))
 def test_baseline_is_the_closed_form(release):
     omega = np.geomspace(1.5, 1e4, 6)[:, np.newaxis]
-    n, contact = np.array([1.0, 2.0, 3.0]), Contact(omega, ZETA, release)
+    n, contact = np.array([1.0, 2.0, 3.0]), SpringDamper(omega, ZETA, release)
     found = bifurcations(Altered(omega, ZETA, n, force=float(release is Release.FORCE)))
     for excess, find in zip(found, (saddle_node, period_doubling), strict=True):
         m = Altered(omega, ZETA, n, force=float(release is Release.FORCE))
@@ -196,7 +196,7 @@ def test_the_jump_of_the_damping_force_does_not_move_the_bifurcations():
 
 @pytest.mark.parametrize(("share", "where"), [(0.0, "start"), (0.5, "middle"), (1.0, "end")])
 def test_criteria_of_the_restitution_model(study, share, where):
-    contact = Contact(10.0, ZETA)
+    contact = SpringDamper(10.0, ZETA)
 
     def lifted(name):
         cell = {"frequency_ratio": 10.0, "n": 2, "bound": "period doubling"}
@@ -227,7 +227,7 @@ def test_a_step_is_counted_along_the_papers_unknowns():
     excess = bifurcations(m).period_doubling
     arc, amplitude = nearby(excess, m, 0.05)
     assert arc[0] < -0.04 and arc[-1] > 0.04
-    contact, half = Contact(10.0, ZETA), 0.01
+    contact, half = SpringDamper(10.0, ZETA), 0.01
 
     def unknowns(lam):
         orbit = orbit_at(contact, 1, lam)

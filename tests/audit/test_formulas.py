@@ -18,7 +18,7 @@ from bouncing_ball.audit.formulas.restitution_equations import (
     _located_doubling,
     _stability,
 )
-from bouncing_ball.impacts.spring_damper import contact_flow
+from bouncing_ball.contacts.spring_damper import contact_flow
 
 PARAMETERS = {
     "samples": 16,

@@ -8,10 +8,10 @@ from scipy.integrate import quad
 
 from bouncing_ball.calculator.case import Case, Table
 from bouncing_ball.calculator.contact_data import hertz, stiffness_and_damping
+from bouncing_ball.contacts.law_signature import free_impact
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.spring_damper import contact_flow
 from bouncing_ball.errors import ModelError
-from bouncing_ball.impacts.law_signature import free_impact
-from bouncing_ball.impacts.release import Release
-from bouncing_ball.impacts.spring_damper import contact_flow
 
 MASS = 0.02
 ROUNDING = 1e-12

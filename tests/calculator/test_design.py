@@ -9,11 +9,11 @@ import pytest
 import bouncing_ball
 from bouncing_ball.calculator.design_call import design
 from bouncing_ball.calculator.family import greatest
+from bouncing_ball.contacts.signature import LinearSignature
+from bouncing_ball.contacts.spring_damper import SpringDamper, contact_force
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.impacts.signature import LinearSignature
-from bouncing_ball.impacts.spring_damper import Contact, contact_force
 from bouncing_ball.orbits import error_law
-from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.studies.error_thresholds import Quantity, relative_error
 
@@ -42,8 +42,8 @@ def test_the_groups_are_those_of_the_model(steel):
 
 
 def test_the_errors_are_those_of_the_thresholds_table(steel):
-    contact = Contact(steel.frequency_ratio, steel.damping_ratio)
-    exact, simple = ContactModel(contact), RestitutionModel(0.85)
+    contact = SpringDamper(steel.frequency_ratio, steel.damping_ratio)
+    exact, simple = SpringDamperModel(contact), RestitutionModel(0.85)
     for one in steel.orbits:
         assert list(one.errors) == list(one.corrected_errors) == [str(q) for q in Quantity]
         for quantity in Quantity:
@@ -85,7 +85,7 @@ def test_loads_of_an_elastic_contact_follow_from_energy():
 def test_loads_of_a_damped_contact_by_a_fine_sample():
     found = design(**STEEL, restitution=0.3, n=1, release="force", tolerance=0.5, gravity="0.3 g")
     contact = found.case.contact
-    orbit = ContactModel(contact).orbit(1, found.amplitude)
+    orbit = SpringDamperModel(contact).orbit(1, found.amplitude)
     time = np.linspace(0, float(orbit.contact_duration), 200_001)
     flow = contact.flow(time, 0.0, orbit.relative_impact_velocity, orbit.phase, found.amplitude)
     force = contact_force(
@@ -123,7 +123,7 @@ def test_permanent_contact_needs_what_the_paper_computes():
 
 
 def test_the_corrected_three_numbers_are_the_signature_in_seconds(steel):
-    instant = LinearSignature(Contact(steel.frequency_ratio, steel.damping_ratio))()
+    instant = LinearSignature(SpringDamper(steel.frequency_ratio, steel.damping_ratio))()
     second = 1 / (100 * math.pi)
     three = dataclasses.astuple(steel.corrected)
     expected = float(instant.delay) * second, 0.85, float(instant.load) * second

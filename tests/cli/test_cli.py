@@ -13,8 +13,8 @@ import pytest
 
 import bouncing_ball
 from bouncing_ball.cli.main import main
-from bouncing_ball.impacts.damping import damping_ratio
-from bouncing_ball.impacts.spring_damper import Contact, Release
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.orbits import limits
 from bouncing_ball.orbits import restitution_orbit as restitution
 from bouncing_ball.orbits.interface import OBSERVABLES
@@ -44,7 +44,7 @@ def test_restitution_orbit_is_the_closed_form(ask):
 def test_spring_damper_orbit_in_full_precision(ask, release, side):
     answer = ask(*ORBIT, "--frequency-ratio", "10", "--release", release, "--side", side)
     assert list(answer) == [*FIELDS, "measured_restitution", "damping_ratio"]
-    contact = Contact(10.0, float(damping_ratio(0.85)), Release(release))
+    contact = SpringDamper(10.0, float(damping_ratio(0.85)), Release(release))
     orbit = limits.orbit_at(contact, 1, 1.0, limits.Side(side))
     for name in ("phase", "impact_velocity", "bounce_velocity", "max_height"):
         assert answer[name] == float(getattr(orbit, name))

@@ -5,9 +5,9 @@ import math
 import pytest
 
 from bouncing_ball.cli.main import main
-from bouncing_ball.impacts.laws import LAWS
-from bouncing_ball.impacts.laws.hunt_crossley import HuntCrossley
-from bouncing_ball.impacts.laws.tsuji import tsuji_damping
+from bouncing_ball.contacts.laws import LAWS
+from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
+from bouncing_ball.contacts.laws.tsuji import tsuji_damping
 from bouncing_ball.orbits.law_model import LawModel
 
 HERTZ = ("--law", "hunt-crossley", "--set", "stiffness=1000", "--set", "damping=0.08")

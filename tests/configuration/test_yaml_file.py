@@ -9,10 +9,10 @@ import pytest
 import yaml
 
 import bouncing_ball
-from bouncing_ball.audit.claims.ledger_file import read_ledger
+from bouncing_ball.claims.ledger_file import read_ledger
+from bouncing_ball.compare.tolerance_file import read_tolerances
 from bouncing_ball.configuration.conformity import check_schema
 from bouncing_ball.configuration.yaml_file import ConfigurationError, parse_yaml, read_yaml
-from bouncing_ball.record.diff.tolerance_file import read_tolerances
 
 ROOT = Path(bouncing_ball.__file__).resolve().parents[2]
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.contacts.restitution_map import bounce, exact_map_jacobian, landing_gap
 from bouncing_ball.continuation.branch import (
     Branch,
     ContinuationError,
@@ -14,7 +15,6 @@ from bouncing_ball.continuation.branch import (
 from bouncing_ball.continuation.corrector import NewtonSettings
 from bouncing_ball.continuation.events import Event, LocationError, fold, parameter_bound
 from bouncing_ball.continuation.step_control import StepControl
-from bouncing_ball.impacts.restitution_map import bounce, exact_map_jacobian, landing_gap
 from bouncing_ball.orbits import restitution_orbit as exact_orbits
 from bouncing_ball.orbits.stability import period_doubling_function, trace_and_determinant
 

@@ -14,9 +14,9 @@ from typing import ClassVar
 
 import numpy as np
 
+from bouncing_ball.contacts.batch import Batch
 from bouncing_ball.continuation.events import Event
-from bouncing_ball.impacts.records import Record
-from bouncing_ball.motion.instants import section_cycle, simulate
+from bouncing_ball.motion.restitution import section_cycle, simulate
 from bouncing_ball.motion.sequence import ImpactSequence
 from bouncing_ball.orbits.interface import Absence, ImpactModel, Orbit, Side, check_index
 from bouncing_ball.orbits.stability import period_doubling_function, saddle_node_function
@@ -26,7 +26,7 @@ _ITERATIONS = 12
 
 
 @dataclass(frozen=True, repr=False)
-class PlasticImpact(Record):
+class PlasticImpact(Batch):
     """r(v) of the impact, and the derivative of f(v) = r v."""
 
     yield_speed: float | np.ndarray

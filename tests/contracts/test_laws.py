@@ -1,22 +1,22 @@
 """What every law of a contact with a duration keeps: flow, release, energy.
 
 A new law is one more line of :data:`LAWS`. The Jacobian of the flow is tested in
-``tests/impacts/test_spring_damper.py``.
+``tests/contacts/test_spring_damper.py``.
 """
 
 import numpy as np
 import pytest
 
-from bouncing_ball.impacts.spring_damper import Contact, contact_force
+from bouncing_ball.contacts.spring_damper import SpringDamper, contact_force
 from bouncing_ball.motion.contacts import simulate
 
 EPS = np.finfo(float).eps
 LAWS = {
-    "linear": Contact(7.0, 0.2),
-    "linear, force release": Contact(7.0, 0.2, "force"),
-    "undamped": Contact(3.0, 0.0),
-    "soft": Contact(0.6, 0.1),
-    "stiff": Contact(2e3, 0.05),
+    "linear": SpringDamper(7.0, 0.2),
+    "linear, force release": SpringDamper(7.0, 0.2, "force"),
+    "undamped": SpringDamper(3.0, 0.0),
+    "soft": SpringDamper(0.6, 0.1),
+    "stiff": SpringDamper(2e3, 0.05),
 }
 every_law = pytest.mark.parametrize("name", LAWS)
 AMPLITUDE, PHASE, SPEED = 0.8, 0.7, -2.5

@@ -12,23 +12,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bouncing_ball.contacts.law_signature import LawSignature
+from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
+from bouncing_ball.contacts.laws.tsuji import Tsuji
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.continuation.corrector import NewtonSettings, newton
 from bouncing_ball.continuation.events import vanishing
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.impacts.law_signature import LawSignature
-from bouncing_ball.impacts.laws.kuwabara_kono import KuwabaraKono
-from bouncing_ball.impacts.laws.tsuji import Tsuji
-from bouncing_ball.impacts.spring_damper import Contact
-from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.interface import OBSERVABLES, Route, Side
 from bouncing_ball.orbits.law_model import LawModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 
 EPS = np.finfo(float).eps
-SOFT = Contact.from_restitution(0.85, 4.0)
-STIFF = Contact.from_restitution(0.65, 50.0)
-PUSHING = Contact.from_restitution(0.65, 20.0, "force")
+SOFT = SpringDamper.from_restitution(0.85, 4.0)
+STIFF = SpringDamper.from_restitution(0.65, 50.0)
+PUSHING = SpringDamper.from_restitution(0.65, 20.0, "force")
 HERTZ = {"tsuji": Tsuji(500.0, 0.3), "kuwabara-kono": KuwabaraKono(2e3, 0.008)}
 # Of contacts and their derivatives: roundings, but for the laws without a closed form,
 # where it is the collocation's convergence, and of a simulated cycle its own tolerance, 1e-12
@@ -39,10 +39,10 @@ OWN = runpy.run_path(str(Path(__file__).with_name("plastic_impact.py")))
 MODELS = {
     "restitution": RestitutionModel(0.65),
     "elastic": RestitutionModel(1.0),
-    "soft contact": ContactModel(SOFT),
-    "stiff contact": ContactModel(STIFF),
-    "force release": ContactModel(PUSHING),
-    "undamped contact": ContactModel(Contact(10.0, 0.0)),
+    "soft contact": SpringDamperModel(SOFT),
+    "stiff contact": SpringDamperModel(STIFF),
+    "force release": SpringDamperModel(PUSHING),
+    "undamped contact": SpringDamperModel(SpringDamper(10.0, 0.0)),
     "corrected": CorrectedModel.of_contact(STIFF),
     "corrected, force release": CorrectedModel.of_contact(PUSHING),
     "corrected, kuwabara-kono": CorrectedModel(LawSignature(HERTZ["kuwabara-kono"])),

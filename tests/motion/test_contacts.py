@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError
-from bouncing_ball.impacts.damping import damping_ratio
-from bouncing_ball.impacts.permanent_contact import permanent_contact_threshold
-from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.motion.contacts import contact_cycle, simulate
 from bouncing_ball.motion.history import history
 from bouncing_ball.motion.sequence import Status
@@ -28,7 +28,7 @@ RELEASES = list(Release)
 
 def build(case, release, side=Side.STABLE):
     n, r, omega, lam = case
-    contact = Contact(omega, float(damping_ratio(r)), release)
+    contact = SpringDamper(omega, float(damping_ratio(r)), release)
     return contact, lam, orbit_at(contact, n, lam, side)
 
 
@@ -58,7 +58,7 @@ def test_twenty_impacts_of_a_taylor_integrator(case, release, taylor_ball):
 def test_contacts_that_resume_below_the_level(omega, zeta, factor, taylor_ball):
     """Force release, little above the threshold of permanent contact: the table loses the
     ball and gets it back before it has come up to its level."""
-    contact = Contact(omega, zeta, Release.FORCE)
+    contact = SpringDamper(omega, zeta, Release.FORCE)
     lam = factor * float(permanent_contact_threshold(omega, zeta, Release.FORCE))
     got = simulate(contact, lam, 0.3, -0.2 + lam * np.cos(0.3), 20)
     resumed = got.displacement < 0
@@ -125,7 +125,7 @@ def test_the_stable_orbit_holds_and_the_unstable_one_is_left(case):
 def test_an_elastic_ball_on_a_table_at_rest_keeps_its_energy():
     """The only exact answer with many impacts: equal velocities and equal times."""
     omega, speed = 7.0, 1.5
-    sequence = simulate(Contact(omega, 0.0), 0.0, 0.0, -speed, 1000)
+    sequence = simulate(SpringDamper(omega, 0.0), 0.0, 0.0, -speed, 1000)
     assert sequence.status == Status.BOUNCING
     # 1000 impacts with an error of a unit in the last place each.
     np.testing.assert_allclose(sequence.impact_velocity, -speed, rtol=1e-13)
@@ -139,7 +139,7 @@ def test_an_elastic_ball_on_a_table_at_rest_keeps_its_energy():
 @pytest.mark.parametrize("release", RELEASES)
 @pytest.mark.parametrize(("omega", "zeta"), [(0.7, 0.3), (2.0, 0.1), (10.0, 0.05), (30.0, 0.2)])
 def test_permanent_contact_begins_and_ends_at_its_threshold(omega, zeta, release):
-    contact = Contact(omega, zeta, release)
+    contact = SpringDamper(omega, zeta, release)
     threshold = float(permanent_contact_threshold(omega, zeta, release))
     below, above = threshold * (1 - 1e-9), threshold * (1 + 1e-6)
     lam = np.array([below, above])
@@ -152,7 +152,7 @@ def test_permanent_contact_begins_and_ends_at_its_threshold(omega, zeta, release
 
 
 def test_cycle_of_a_permanent_contact():
-    cycle = contact_cycle(Contact(10.0, 0.1), 0.2, [0.0, 1.0], [0.0, -50.0])
+    cycle = contact_cycle(SpringDamper(10.0, 0.1), 0.2, [0.0, 1.0], [0.0, -50.0])
     assert np.isnan(cycle.phase[0]) and cycle.time[0] == np.inf
     assert np.isfinite(cycle.phase[1])
 
@@ -164,9 +164,9 @@ def test_ensembles_equal_single_runs_exactly(release):
     lam, omega = rng.uniform(0.5, 4.0, size), rng.uniform(1.5, 50.0, size)
     zeta, phase = rng.uniform(0.0, 0.4, size), rng.uniform(-3.0, 3.0, size)
     velocity = lam * np.cos(phase) - rng.uniform(0.0, 5.0, size)
-    many = simulate(Contact(omega, zeta, release), lam, phase, velocity, 30)
+    many = simulate(SpringDamper(omega, zeta, release), lam, phase, velocity, 30)
     for k in range(size):
-        contact = Contact(float(omega[k]), float(zeta[k]), release)
+        contact = SpringDamper(float(omega[k]), float(zeta[k]), release)
         one = simulate(contact, float(lam[k]), float(phase[k]), float(velocity[k]), 30)
         assert one.status == many.status[k]
         for name in ("time", "phase", "relative_velocity", "contact_duration", "displacement"):
@@ -177,7 +177,7 @@ def test_blocks_make_no_difference():
     """More balls than a block holds, in a shape of two dimensions."""
     rng = np.random.default_rng(4)
     phase = rng.uniform(-3.0, 3.0, (2, 9000))
-    contact = Contact(10.0, 0.05)
+    contact = SpringDamper(10.0, 0.05)
     many = simulate(contact, 1.5, phase, -4.0, 5)
     assert many.phase.shape == (5, 2, 9000)
     few = simulate(contact, 1.5, phase[1, -3:], -4.0, 5)
@@ -198,7 +198,7 @@ def test_blocks_make_no_difference():
 def test_the_ball_is_where_its_state_says(lam, omega, zeta, phase, speed, release):
     """In flight above the table or, after a release by force, unloaded; in contact below
     it or, by force, loaded."""
-    contact = Contact(omega, zeta, release)
+    contact = SpringDamper(omega, zeta, release)
     velocity = lam * np.cos(phase) - speed
     sequence = simulate(contact, lam, phase, velocity, 15)
     last = np.max(sequence.time[np.isfinite(sequence.time)])
@@ -215,7 +215,7 @@ def test_the_ball_is_where_its_state_says(lam, omega, zeta, phase, speed, releas
 
 
 def test_history_is_continuous_and_knows_its_end():
-    contact = Contact(5.0, 0.1)
+    contact = SpringDamper(5.0, 0.1)
     sequence = simulate(contact, 1.2, 0.5, -3.0, 6)
     event = np.concatenate([sequence.time[1:], (sequence.time + sequence.contact_duration)[:-1]])
     before, after = (history(sequence, event + x) for x in (-1e-9, 1e-9))
@@ -231,7 +231,7 @@ def test_history_is_continuous_and_knows_its_end():
 
 
 def test_section_collects_the_impacts():
-    sequence = simulate(Contact(10.0, 0.05), [0.9, 0.1], 0.8, -3.0, 200)
+    sequence = simulate(SpringDamper(10.0, 0.05), [0.9, 0.1], 0.8, -3.0, 200)
     phase, velocity = sequence.section(skip=50)
     there = np.isfinite(sequence.phase[50:])
     assert phase.shape == velocity.shape == (there.sum(),)
@@ -240,11 +240,11 @@ def test_section_collects_the_impacts():
 
 def test_errors_are_one_line(one_line):
     for arguments, part in (
-        ((Contact(1.0, 1.0), 1.0, 0.0, -1.0, 2), "underdamped"),
-        ((Contact(1.0, 0.0), 1.0, 0.0, -1.0, 2), "resonance"),
-        ((Contact(2.0, 0.1), -1.0, 0.0, -1.0, 2), "amplitude"),
-        ((Contact(2.0, 0.1), 1.0, 0.0, 1.5, 2), "rises"),
-        ((Contact(2.0, 0.1), 1.0, np.nan, 1.5, 2), "finite"),
+        ((SpringDamper(1.0, 1.0), 1.0, 0.0, -1.0, 2), "underdamped"),
+        ((SpringDamper(1.0, 0.0), 1.0, 0.0, -1.0, 2), "resonance"),
+        ((SpringDamper(2.0, 0.1), -1.0, 0.0, -1.0, 2), "amplitude"),
+        ((SpringDamper(2.0, 0.1), 1.0, 0.0, 1.5, 2), "rises"),
+        ((SpringDamper(2.0, 0.1), 1.0, np.nan, 1.5, 2), "finite"),
     ):
         with pytest.raises(ModelError) as error:
             simulate(*arguments)
@@ -255,7 +255,7 @@ def test_a_stiff_undamped_contact_ends_in_the_end():
     """A ball that hardly moves rides the table for thousands of oscillations of the contact,
     in which nothing decays, before it leaves; no zero is passed over on the way."""
     omega, lam, phase = 3000.0, 0.999, 2.0
-    ride = simulate(Contact(omega, 0.0), lam, phase, lam * np.cos(phase), 1)
+    ride = simulate(SpringDamper(omega, 0.0), lam, phase, lam * np.cos(phase), 1)
     assert ride.status == Status.BOUNCING and 1.0 < ride.contact_duration[0] < 10.0
     s = np.linspace(0.0, float(ride.contact_duration[0]), 400_001)[1:-1]
     steady = -1 / omega**2 + lam * np.sin(s + phase) / (omega**2 - 1)
@@ -269,7 +269,7 @@ def test_a_stiff_undamped_contact_ends_in_the_end():
 def test_nearly_critical_damping():
     """ζ → 1: the bound by half a free period is of no use, and not needed."""
     zeta = np.array([0.99, 0.99999, 1 - 1e-9])
-    cycle = contact_cycle(Contact(3.0, zeta), 2.0, -0.5, -3.0)
+    cycle = contact_cycle(SpringDamper(3.0, zeta), 2.0, -0.5, -3.0)
     # A smooth limit: the cycle changes by as little as ζ, times 100.
     assert np.all(np.isfinite(cycle.time))
     assert abs(cycle.time[1] - cycle.time[2]) < 1e-3

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from bouncing_ball.contacts.corrected_map import impact, instant_jacobian, meeting, start_jacobian
+from bouncing_ball.contacts.signature import Instant, LinearSignature, Signature
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError
-from bouncing_ball.impacts.instant_map import impact, instant_jacobian, meeting, start_jacobian
-from bouncing_ball.impacts.signature import Instant, LinearSignature, Signature
-from bouncing_ball.impacts.spring_damper import Contact, Release
-from bouncing_ball.motion import contacts, instants
+from bouncing_ball.motion import contacts, restitution
 from bouncing_ball.motion.corrected_impacts import corrected_cycle, simulate
 from bouncing_ball.motion.sequence import Status
 
@@ -71,7 +71,7 @@ def states(seed):
 def errors(release, omega, change=lambda law: law):
     """Of the next impact's time and velocity, one of each ball."""
     lam, phase, velocity, zeta = states(5)
-    contact = Contact(np.full(BALLS, omega), zeta, release)
+    contact = SpringDamper(np.full(BALLS, omega), zeta, release)
     exact = contacts.contact_cycle(contact, lam, phase, velocity)
     got = corrected_cycle(change(LinearSignature(contact)), lam, phase, velocity)
     return np.hypot(got.time - exact.time, got.relative_velocity - exact.relative_velocity)
@@ -114,7 +114,7 @@ def test_every_observable_of_an_impact_is_of_second_order(release):
     velocity = lam * np.cos(phase) - rng.uniform(2, 8, BALLS)
     found = []
     for omega in (500.0, 1000.0):
-        contact = Contact(omega, 0.2, release)
+        contact = SpringDamper(omega, 0.2, release)
         exact = contacts.simulate(contact, lam, phase, velocity, 1)
         got = simulate(LinearSignature(contact), lam, phase, velocity, 1)
         names = ("contact_duration", "relative_release_velocity", "release_displacement")
@@ -126,7 +126,7 @@ def test_every_observable_of_an_impact_is_of_second_order(release):
 @pytest.mark.parametrize("release", RELEASES)
 def test_jacobian_against_differences(release):
     lam, phase, velocity, zeta = states(6)
-    laws = LinearSignature(Contact(np.full(BALLS, 20.0), zeta, release)), Viscoelastic()
+    laws = LinearSignature(SpringDamper(np.full(BALLS, 20.0), zeta, release)), Viscoelastic()
     for law in laws:
         exact = cycle_jacobian(law, lam, phase, velocity)
 
@@ -149,11 +149,11 @@ def test_jacobian_against_differences(release):
 
 def test_without_delay_and_load_it_is_the_restitution_model():
     lam, phase, velocity, _ = states(7)
-    law = Changed(LinearSignature(Contact(5.0, 0.2)), delay=0.0, load=0.0, duration=0.0)
+    law = Changed(LinearSignature(SpringDamper(5.0, 0.2)), delay=0.0, load=0.0, duration=0.0)
     r = float(law(1.0).restitution)
     got = corrected_cycle(law, lam, phase, velocity)
     thrown = lam * np.cos(phase) - r * velocity
-    known = instants.impact_cycle(r, lam, phase, thrown)
+    known = restitution.impact_cycle(r, lam, phase, thrown)
     bounced = lam * np.cos(got.phase) - r * got.relative_velocity
     np.testing.assert_allclose(got.time, known.time, atol=1e-12)
     np.testing.assert_allclose(bounced, known.velocity, atol=1e-12)
@@ -163,10 +163,10 @@ def test_one_ball_alone_and_among_others_is_the_same():
     rng = np.random.default_rng(9)
     lam, phase = rng.uniform(0.3, 4, 50), rng.uniform(-3, 3, 50)
     velocity = lam * np.cos(phase) - rng.uniform(0.1, 6, 50)
-    contact = Contact(np.linspace(5, 50, 50), 0.15)
+    contact = SpringDamper(np.linspace(5, 50, 50), 0.15)
     many = simulate(LinearSignature(contact), lam, phase, velocity, 200)
     for k in (0, 17, 49):
-        one = Contact(float(contact.frequency_ratio[k]), 0.15)
+        one = SpringDamper(float(contact.frequency_ratio[k]), 0.15)
         alone = simulate(LinearSignature(one), lam[k], phase[k], velocity[k], 200)
         np.testing.assert_array_equal(alone.time, many.time[:, k])
         np.testing.assert_array_equal(alone.relative_velocity, many.relative_velocity[:, k])
@@ -176,7 +176,7 @@ def test_a_ball_above_the_table_at_every_landing():
     rng = np.random.default_rng(10)
     lam, phase = rng.uniform(0.3, 4, 300), rng.uniform(-3, 3, 300)
     velocity = lam * np.cos(phase) - rng.uniform(0.1, 6, 300)
-    run = simulate(LinearSignature(Contact(20.0, 0.1)), lam, phase, velocity, 300)
+    run = simulate(LinearSignature(SpringDamper(20.0, 0.1)), lam, phase, velocity, 300)
     there = np.isfinite(run.time)
     assert np.all(run.relative_velocity[there] <= 0)
     assert np.all(np.diff(run.time, axis=0)[there[1:]] > 0)
@@ -187,7 +187,7 @@ def test_a_ball_above_the_table_at_every_landing():
 
 def test_a_weak_impact_stays_and_lifts_off():
     """A ball set down gently stays until the table recedes with more than gravity."""
-    law = LinearSignature(Contact(20.0, 0.3))
+    law = LinearSignature(SpringDamper(20.0, 0.3))
     resting = simulate(law, 0.9, 0.0, 0.9 - 1e-3, 5)
     assert resting.status == Status.PERMANENT_CONTACT and resting.impacts == 1
     lifted = simulate(law, 1.5, 0.0, 1.5 - 1e-3, 2)
@@ -196,12 +196,12 @@ def test_a_weak_impact_stays_and_lifts_off():
     assert lifted.relative_release_velocity[0] == 0
     # In the exact contact the same ball leaves at the same moment, but for the
     # spring, which lets go where its force has gone: a delay of order 1/ϖ.
-    exact = contacts.simulate(Contact(20.0, 0.3), 1.5, 0.0, 1.5 - 1e-3, 1)
+    exact = contacts.simulate(SpringDamper(20.0, 0.3), 1.5, 0.0, 1.5 - 1e-3, 1)
     assert float(exact.contact_duration[0]) == pytest.approx(phase, abs=4 / 20)
 
 
 def test_bad_states_are_refused(one_line):
-    law = LinearSignature(Contact(20.0, 0.1))
+    law = LinearSignature(SpringDamper(20.0, 0.1))
     for arguments, part in (
         ((1.0, 0.0, 2.0), "rises from the table"),
         ((-1.0, 0.0, -2.0), "amplitude"),

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.impacts.spring_damper import Contact, Release, contact_flow
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper, contact_flow
 from bouncing_ball.motion.angles import table
 from bouncing_ball.motion.contacts import contact_cycle, simulate
 from bouncing_ball.motion.landing import Flight, land
@@ -108,7 +108,7 @@ def peaks(release, seed=0):
 def test_a_contact_that_just_ends(release, height):
     """The first height has its zeros 1e-6 apart when the curvature is one."""
     for s0, curvature, phase, omega, zeta, state, observed in peaks(release):
-        contact = Contact(omega, zeta, release)
+        contact = SpringDamper(omega, zeta, release)
         width = np.sqrt(2 * height / curvature)
         u, lam = state(height)
         ended = simulate(contact, lam, phase, u + lam * np.cos(phase), 1).contact_duration[0]
@@ -129,6 +129,6 @@ def test_a_ball_at_rest_on_the_table_starts_at_once():
     pressed, thrown = landing(2 * np.sin(phase), 2 * np.cos(phase), phase, 2.0)
     assert pressed == 0
     assert thrown > 1
-    cycle = contact_cycle(Contact(10.0, 0.1), 2.0, 1.0, 0.0)
+    cycle = contact_cycle(SpringDamper(10.0, 0.1), 2.0, 1.0, 0.0)
     # The contact of no duration changes nothing.
     assert abs(float(cycle.time) - thrown) < 1e-12

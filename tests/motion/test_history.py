@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.impacts.laws.hunt_crossley import HuntCrossley
-from bouncing_ball.impacts.laws.kuwabara_kono import KuwabaraKono
-from bouncing_ball.impacts.laws.linear import Linear
-from bouncing_ball.impacts.laws.tsuji import Tsuji
-from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
+from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
+from bouncing_ball.contacts.laws.linear import Linear
+from bouncing_ball.contacts.laws.tsuji import Tsuji
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion import contacts as closed_form
 from bouncing_ball.motion.history import history
 from bouncing_ball.motion.law_impacts import simulate
@@ -17,7 +17,7 @@ from bouncing_ball.motion.law_impacts import simulate
 def test_the_linear_law_has_the_history_of_the_closed_form(release):
     # The ball chatters at first, which resumes contacts below the level with the force release.
     start = 1.2, 0.4, -1.0, 6
-    exact = closed_form.simulate(Contact(20.0, 0.13, release), *start)
+    exact = closed_form.simulate(SpringDamper(20.0, 0.13, release), *start)
     time = np.linspace(0, float(exact.time[-1]), 4001)
     expected = history(exact, time)
     computed = history(simulate(Linear(20.0, 0.13, release), *start), time)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from bouncing_ball.motion.angles import reduce_angle
-from bouncing_ball.motion.instants import impact_cycle, simulate
 from bouncing_ball.motion.regularity import Stretching, period, stretching
+from bouncing_ball.motion.restitution import impact_cycle, simulate
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 
 R = 0.85

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
+from bouncing_ball.contacts.restitution_map import landing_gap
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper, contact_flow
 from bouncing_ball.continuation.corrector import NewtonSettings
-from bouncing_ball.impacts.restitution_map import landing_gap
-from bouncing_ball.impacts.spring_damper import Contact, Release, contact_flow
 from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
 from bouncing_ball.orbits.grazing import grazing_points
 from bouncing_ball.orbits.limits import Side, orbit_at
@@ -48,20 +48,20 @@ def test_random_orbits_against_samples(release):
     duration = rng.uniform(0.1, 1.0, size) * longest
     free = np.pi if release is Release.DISPLACEMENT else np.pi - 2 * np.arcsin(zeta)
     excess = duration * omega * np.sqrt(1 - zeta**2) - free
-    contact = Contact(omega, zeta, release)
-    orbit = ContactOrbit.from_branch(branch_point(excess, contact, n), contact, n)
+    contact = SpringDamper(omega, zeta, release)
+    orbit = SpringDamperOrbit.from_branch(branch_point(excess, contact, n), contact, n)
     admissible = orbit.is_admissible()
     assert np.array_equal(admissible, sampled(orbit))
     assert 0.2 < admissible.mean() < 0.8
 
 
 def test_missing_orbits_are_not_admissible():
-    orbit = orbit_at(Contact(10.0, 0.1), 1, np.array([0.1, 1.0]))
+    orbit = orbit_at(SpringDamper(10.0, 0.1), 1, np.array([0.1, 1.0]))
     assert orbit.is_admissible().tolist() == [False, True]
 
 
 def test_undamped_resonance_is_sampled():
-    orbit = orbit_at(Contact(1.0, 0.0), 1, np.array([0.8, 0.9]))
+    orbit = orbit_at(SpringDamper(1.0, 0.0), 1, np.array([0.8, 0.9]))
     assert orbit.is_admissible().tolist() == [True, True]
 
 
@@ -70,7 +70,7 @@ def test_grazing_is_located(omega, r_zeta, release):
     # On the unstable side the table rises into the flight from Λ ≈ 2.1 on.
     system = OrbitSystem(1, r_zeta, Parameter.AMPLITUDE, omega, release)
     lam = np.linspace(1.9, 2.4, 6)
-    orbit = orbit_at(Contact(omega, r_zeta, release), 1, lam, Side.UNSTABLE)
+    orbit = orbit_at(SpringDamper(omega, r_zeta, release), 1, lam, Side.UNSTABLE)
     y = np.stack([orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration, lam], axis=-1)
     found = grazing_points(system, lambda y: system.orbit(y).is_admissible(), y, NewtonSettings())
     assert len(found) == 1

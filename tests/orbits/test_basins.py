@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.orbits.basins import ELSEWHERE, PERMANENT, destinations, trap
-from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 
-SOFT = ContactModel(Contact.from_restitution(0.85, 2.0))
+SOFT = SpringDamperModel(SpringDamper.from_restitution(0.85, 2.0))
 
 
 def stable(model, families, amplitude):

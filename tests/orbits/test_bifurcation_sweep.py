@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.impacts.release import Release
-from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.stability import (
     period_doubling_function,
     saddle_node_function,
@@ -24,7 +24,7 @@ KINDS = {"saddle_node": saddle_node_function, "period_doubling": period_doubling
 def sample(seed: int, count: int, release: Release):
     random = np.random.default_rng(seed)
     omega = 10 ** random.uniform(-1, 6, count)
-    contact = Contact.from_restitution(random.uniform(0.02, 1, count), omega, release)
+    contact = SpringDamper.from_restitution(random.uniform(0.02, 1, count), omega, release)
     # Small families and large ones alike.
     n = np.where(
         random.random(count) < 0.5,
@@ -39,7 +39,7 @@ def sample(seed: int, count: int, release: Release):
 @pytest.mark.parametrize(("count", "_"), SIZES)
 def test_none_is_false(release, kind, count, _):
     contact, n = sample(7, count, release)
-    orbit = getattr(ContactModel(contact), kind)(n)
+    orbit = getattr(SpringDamperModel(contact), kind)(n)
     orbit = orbit[orbit.exists]
     assert orbit.size > 0.85 * count
     # The trace from the flow's Jacobian, which the search does not use. Its
@@ -54,7 +54,7 @@ def test_none_is_false(release, kind, count, _):
     assert np.max(value) < 1e-6
 
 
-def first_zero(contact: Contact, n: int, kind: str, edges) -> tuple[float, float]:
+def first_zero(contact: SpringDamper, n: int, kind: str, edges) -> tuple[float, float]:
     """Neighbouring points of a fine grid around the wanted zero; NaN without."""
     values = branch_point(edges, contact, n)
     test = KINDS[kind](values.trace, values.determinant)
@@ -70,7 +70,7 @@ def first_zero(contact: Contact, n: int, kind: str, edges) -> tuple[float, float
 def test_none_is_missing(release, _, count):
     contacts, families = sample(8, count, release)
     for contact, n in ((contacts[k], families[k]) for k in range(count)):
-        model = ContactModel(contact)
+        model = SpringDamperModel(contact)
         start, frequency = float(contact.free_angle), float(contact.damped_frequency)
         full = frequency * 2 * np.pi * n - start
         # Both time scales of the branch: the contact's and the fold's, 1/ϖ.

@@ -5,11 +5,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper, responses
 from bouncing_ball.errors import ModelError
-from bouncing_ball.impacts.permanent_contact import permanent_contact_threshold
-from bouncing_ball.impacts.spring_damper import Contact, Release, responses
 from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
 from bouncing_ball.orbits.stability import trace_and_determinant
 
@@ -33,7 +33,7 @@ def scaled_residual(system, point, contact):
 
 @given(log_ratios, dampings, families, releases, st.floats(-0.9, 1.0))
 def test_every_point_satisfies_the_papers_equations(log_omega, zeta, n, release, share):
-    contact = Contact(float(np.exp(log_omega)), zeta, release)
+    contact = SpringDamper(float(np.exp(log_omega)), zeta, release)
     omega_d = contact.frequency_ratio * np.sqrt((1 - zeta) * (1 + zeta))
     start = float(contact.free_angle)
     # Contacts from a tenth of the free one up to ε = 1, or up to the cycle's
@@ -49,7 +49,7 @@ def test_every_point_satisfies_the_papers_equations(log_omega, zeta, n, release,
 @pytest.mark.parametrize("omega", [2.0, 10.0, 1e3, 1e6])
 @pytest.mark.parametrize("n", [1, 3])
 def test_next_to_the_fold_at_any_stiffness(release, omega, n):
-    contact = Contact(omega, 0.05, release)
+    contact = SpringDamper(omega, 0.05, release)
     system = OrbitSystem(n, 0.05, Parameter.AMPLITUDE, omega, release)
     for excess in np.linspace(-1.0, 1.0, 9) / omega:
         point = branch_point(excess, contact, n)
@@ -60,7 +60,7 @@ def test_next_to_the_fold_at_any_stiffness(release, omega, n):
 @pytest.mark.parametrize("zeta", [0.0, 0.0517, 0.4, 0.9])
 @pytest.mark.parametrize("omega", [0.7, 1.0, 2.0, 10.0, 1e4, 1e6])
 def test_derivatives_along_the_branch(release, zeta, omega):
-    contact = Contact(omega, zeta, release)
+    contact = SpringDamper(omega, zeta, release)
     # The branch turns within 1/ϖ of ε; in those units all is of order one. D
     # is kept away from zero, where Λ is infinite.
     unit = min(1.0, 1 / omega, float(contact.free_angle) / 2)
@@ -85,7 +85,7 @@ def test_free_release_angles(zeta):
     omega = 3.0
     omega_d = omega * np.sqrt(1 - zeta**2)
     for release in Release:
-        angle = float(Contact(omega, zeta, release).free_angle)
+        angle = float(SpringDamper(omega, zeta, release).free_angle)
         g = responses(angle / omega_d, omega, zeta).impulse
         defect = g.value if release is Release.DISPLACEMENT else 2 * zeta * g.rate + omega * g.value
         assert abs(float(defect)) < 20 * EPS
@@ -104,7 +104,7 @@ def test_contact_filling_the_cycle_is_permanent_contact(n):
     # its threshold. A flight of length T changes Λ by the order T², and the
     # impact velocity is of order T.
     for omega, zeta in ((2.0, 0.05), (1.0, 0.3), (5.0, 0.1)):
-        contact = Contact(omega, zeta)
+        contact = SpringDamper(omega, zeta)
         omega_d = omega * np.sqrt(1 - zeta**2)
         flight = 1e-4
         point = branch_point((2 * np.pi * n - flight) * omega_d - np.pi, contact, n)
@@ -118,7 +118,7 @@ def test_contact_filling_the_cycle_is_permanent_contact(n):
 def test_permanent_contact_continues_into_a_stable_orbit(restitution, omega):
     # docs/closed-form.md, (9) and (10): both remainders are of first order in the
     # flight, and fall to a half with it.
-    contact = Contact.from_restitution(restitution, omega)
+    contact = SpringDamper.from_restitution(restitution, omega)
     flight = np.array([2e-2, 1e-2]) / omega
     excess = (2 * np.pi - flight) * contact.damped_frequency - contact.free_angle
     point = branch_point(excess, contact, 1)
@@ -138,7 +138,7 @@ def test_permanent_contact_continues_into_a_stable_orbit(restitution, omega):
     assert point.determinant == pytest.approx(decay**2, rel=2 * zeta * omega * flight[0] * 1.1)
     # At ϖ = 100 a flight of 1e-3 rises by 1e-11, well above the rounding of heights.
     excess = (2 * np.pi - 1e-3) * contact.damped_frequency - contact.free_angle
-    orbit = ContactOrbit.from_branch(branch_point(excess, contact, 1), contact, 1)
+    orbit = SpringDamperOrbit.from_branch(branch_point(excess, contact, 1), contact, 1)
     assert bool(orbit.is_stable()) and bool(orbit.is_admissible())
 
 
@@ -146,11 +146,11 @@ def test_permanent_contact_continues_into_a_stable_orbit(restitution, omega):
 def test_a_contact_of_several_periods_opens_in_every_one(omega, zeta):
     # As D → 2πn: one orbit of the ball for n = 1, none for n ≥ 2, whose contact
     # is over after one period, when δ becomes positive.
-    contact = Contact(omega, zeta)
+    contact = SpringDamper(omega, zeta)
     for n in (1, 2, 3):
         duration = 2 * np.pi * n - 0.05
         excess = float(duration * contact.damped_frequency - contact.free_angle)
-        orbit = ContactOrbit.from_branch(branch_point(excess, contact, n), contact, n)
+        orbit = SpringDamperOrbit.from_branch(branch_point(excess, contact, n), contact, n)
         assert orbit.defect() < 1e-10
         assert bool(orbit.is_admissible()) == (n == 1)
         touches = 2 * np.pi * np.arange(1, n) - 0.05 / 2
@@ -162,7 +162,7 @@ def test_a_contact_of_several_periods_opens_in_every_one(omega, zeta):
 def test_elastic_contact_of_half_a_period():
     # ζ = 0, ε = 0: the velocity is reversed whatever the forces, if these
     # vanish over the contact: Λ sin φ → 1 balances gravity.
-    point = branch_point(0.0, Contact(1e6, 0.0), 1)
+    point = branch_point(0.0, SpringDamper(1e6, 0.0), 1)
     assert float(point.amplitude) == pytest.approx(1.0, abs=1e-5)
     assert float(point.phase) == pytest.approx(np.pi / 2, abs=1e-5)
     assert float(point.u) == pytest.approx(-np.pi, abs=1e-5)
@@ -171,12 +171,12 @@ def test_elastic_contact_of_half_a_period():
 @given(log_ratios, dampings, families, releases, st.floats(-0.9, 1.0))
 def test_trace_and_determinant_are_those_of_the_linearised_flow(log_omega, zeta, n, release, share):
     # Worked out from the formula here, from the flow's Jacobian there.
-    contact = Contact(float(np.exp(log_omega)), zeta, release)
+    contact = SpringDamper(float(np.exp(log_omega)), zeta, release)
     excess = share * float(contact.free_angle) if share < 0 else share / 2
     point = branch_point(excess, contact, n)
     if not (0 < point.contact_duration < 2 * np.pi * n - 0.1 and point.u < -0.1):
         return
-    matrix = ContactOrbit.from_branch(point, contact, n).monodromy()
+    matrix = SpringDamperOrbit.from_branch(point, contact, n).monodromy()
     # Both lose digits where the ball leaves slowly, and entries are large.
     scale = 1 + np.abs(matrix).max() ** 2
     trace, det = trace_and_determinant(matrix)
@@ -189,19 +189,19 @@ def test_trace_and_determinant_are_those_of_the_linearised_flow(log_omega, zeta,
 def test_long_arrays_are_the_same_as_single_points():
     # More than two blocks, with the short and resonant contacts among them.
     excess = np.linspace(-3.1, 3.0, 5000)
-    whole = branch_point(excess, Contact(1.0, 0.0), 2)
+    whole = branch_point(excess, SpringDamper(1.0, 0.0), 2)
     assert whole.amplitude.shape == (5000,)
     for k in (0, 1, 2047, 2048, 3001, 4999):
-        single = branch_point(excess[k], Contact(1.0, 0.0), 2)
+        single = branch_point(excess[k], SpringDamper(1.0, 0.0), 2)
         for field, value in zip(whole, single, strict=True):
             assert float(field[k]) == pytest.approx(float(value), rel=1e-12, abs=1e-14)
 
 
 def test_broadcasting_over_contacts_and_families():
-    contact = Contact(np.array([[2.0], [10.0]]), 0.1)
+    contact = SpringDamper(np.array([[2.0], [10.0]]), 0.1)
     point = branch_point(0.1, contact, np.array([1, 2, 3]))
     assert point.amplitude.shape == (2, 3)
-    single = branch_point(0.1, Contact(10.0, 0.1), 3)
+    single = branch_point(0.1, SpringDamper(10.0, 0.1), 3)
     for name in single._fields:
         whole = np.broadcast_to(getattr(point, name), (2, 3))[1, 2]
         assert float(whole) == pytest.approx(float(getattr(single, name)), rel=1e-13)
@@ -210,5 +210,5 @@ def test_broadcasting_over_contacts_and_families():
 @pytest.mark.parametrize("zeta", [1.0, 1.5])
 def test_overdamped_contacts_are_refused(zeta, one_line):
     with pytest.raises(ModelError) as error:
-        branch_point(0.0, Contact(10.0, zeta), 1)
+        branch_point(0.0, SpringDamper(10.0, zeta), 1)
     one_line(error, f"ζ = {zeta}", "not below 1")

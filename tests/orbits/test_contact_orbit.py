@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from bouncing_ball.impacts.damping import damping_ratio
-from bouncing_ball.impacts.spring_damper import Contact, Release, contact_force
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper, contact_force
 from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.limits import orbit_at
 
 CASES = [
@@ -23,7 +23,7 @@ CASES = [
 
 def build(case):
     n, r, omega, lam, release = case
-    return orbit_at(Contact(omega, float(damping_ratio(r)), release), n, lam)
+    return orbit_at(SpringDamper(omega, float(damping_ratio(r)), release), n, lam)
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -105,7 +105,7 @@ def test_paths_join(case):
 
 
 def test_relative_velocities_and_apparent_restitution():
-    orbit = ContactOrbit(2, Contact(10.0, 0.1), 1.5, 0.4, 0.3, -6.0)
+    orbit = SpringDamperOrbit(2, SpringDamper(10.0, 0.1), 1.5, 0.4, 0.3, -6.0)
     # By hand: bounce velocity -6 + 4π - 0.3.
     assert orbit.bounce_velocity == pytest.approx(4 * np.pi - 6.3, rel=1e-15)
     before, after = -6.0 - 1.5 * np.cos(0.4), 4 * np.pi - 6.3 - 1.5 * np.cos(0.7)
@@ -116,8 +116,8 @@ def test_relative_velocities_and_apparent_restitution():
 
 def test_elastic_contacts_at_rest_return_all():
     # r = 1 at the fold, Λ → 0: table at rest, r_a = 1 and ½v² = height.
-    contact = Contact(30.0, 0.0)
-    orbit = ContactOrbit.from_branch(branch_point(1e-9, contact, 1), contact, 1)
+    contact = SpringDamper(30.0, 0.0)
+    orbit = SpringDamperOrbit.from_branch(branch_point(1e-9, contact, 1), contact, 1)
     assert float(orbit.apparent_restitution) == pytest.approx(1.0, abs=1e-8)
 
 
@@ -125,7 +125,7 @@ def test_max_height_of_a_ball_released_downwards():
     # A stable orbit of a soft contact: the ball turns round before release, so
     # its greatest height lies in the contact.
     r, omega, lam = 0.1546, 0.3691, 10.5378
-    orbit = orbit_at(Contact(omega, float(damping_ratio(r))), 1, lam)
+    orbit = orbit_at(SpringDamper(omega, float(damping_ratio(r))), 1, lam)
     assert float(orbit.bounce_velocity) < 0
     z, _ = orbit.contact_path(np.linspace(0, float(orbit.contact_duration), 20001))
     # Sampled to (1e-4)²: far below the difference of 0.4.

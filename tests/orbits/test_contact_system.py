@@ -5,6 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.continuation.branch import (
     continue_both_ways,
     continue_branch,
@@ -14,9 +17,6 @@ from bouncing_ball.continuation.branch import (
 from bouncing_ball.continuation.events import fold, parameter_bound
 from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.impacts.damping import damping_ratio
-from bouncing_ball.impacts.permanent_contact import permanent_contact_threshold
-from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
 from bouncing_ball.orbits.limits import orbit_at, period_doubling, saddle_node
@@ -101,7 +101,7 @@ def test_broadcasting():
 @pytest.mark.parametrize("n", [1, 2, 3])
 def test_continuation_finds_the_bifurcations_of_the_closed_form(n, omega, release):
     zeta = float(damping_ratio(0.85))
-    contact = Contact(omega, zeta, release)
+    contact = SpringDamper(omega, zeta, release)
     node = branch_point(saddle_node(contact, n), contact, n)
     doubling = branch_point(period_doubling(contact, n), contact, n)
     lam = float(node.amplitude + doubling.amplitude) / 2
@@ -146,7 +146,7 @@ def test_continuation_along_the_frequency_ratio(n, r, lam, release):
     target = parameter_bound(np.log(2.0), False, "there")
     way = continue_branch(system, start, increasing=False, events=(*system.events(), target))
     assert way.end_reason == "there"
-    expected = orbit_at(Contact(2.0, zeta, release), n, lam)
+    expected = orbit_at(SpringDamper(2.0, zeta, release), n, lam)
     # As in the comparison above.
     assert way.points[-1] == pytest.approx(
         np.array(
@@ -199,14 +199,14 @@ def test_guess_of_a_strongly_damped_contact_released_at_zero_force():
     # study starts from here for every contact.
     n, zeta, lam = 3, float(damping_ratio(0.3)), 5.155
     system = OrbitSystem(n, zeta, Parameter.LOG_FREQUENCY_RATIO, lam, Release.FORCE)
-    assert float(orbit_at(Contact(1e4, zeta, Release.FORCE), n, lam).contact_duration) > 0
+    assert float(orbit_at(SpringDamper(1e4, zeta, Release.FORCE), n, lam).contact_duration) > 0
     solve_at(system, system.guess(lam, 1e4))
 
 
 def follow_unstable_side(n, omega, r, lam, largest=0.2):
     zeta = float(damping_ratio(r))
     system = OrbitSystem(n, zeta, Parameter.AMPLITUDE, omega)
-    orbit = orbit_at(Contact(omega, zeta), n, lam)
+    orbit = orbit_at(SpringDamper(omega, zeta), n, lam)
     start = np.array([orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration, lam])
     events = (*system.events(), fold(system), parameter_bound(10.0, True, "window"))
     control = StepControl(largest=largest)
@@ -244,7 +244,7 @@ def test_flight_lost():
     # ϖ = 0.6, n = 2: a branch that reaches contacts as long as the cycle.
     zeta, n, omega = float(damping_ratio(0.3)), 2, 0.6
     system = OrbitSystem(n, zeta, Parameter.AMPLITUDE, omega)
-    contact = Contact(omega, zeta)
+    contact = SpringDamper(omega, zeta)
     fill = (2 * np.pi * n - 0.1) * omega
     point = branch_point(fill * np.sqrt(1 - zeta**2) - np.pi, contact, n)
     start = np.array([point.phase, point.u + point.x, fill, point.amplitude])
@@ -259,7 +259,7 @@ def test_flight_lost():
 
 def test_terminal_events_are_positive_on_an_orbit():
     system = OrbitSystem(1, 0.05, Parameter.AMPLITUDE, 10.0)
-    orbit = orbit_at(Contact(10.0, 0.05), 1, 0.9)
+    orbit = orbit_at(SpringDamper(10.0, 0.05), 1, 0.9)
     y = np.array([orbit.phase, orbit.impact_velocity, 10.0 * orbit.contact_duration, 0.9])
     events = {event.name: event for event in system.events()}
     assert list(events) == [

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.impacts.damping import restitution_coefficient
-from bouncing_ball.impacts.signature import LinearSignature
-from bouncing_ball.impacts.spring_damper import Contact, Release
+from bouncing_ball.contacts.damping import restitution_coefficient
+from bouncing_ball.contacts.signature import LinearSignature
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.motion.corrected_impacts import corrected_cycle
 from bouncing_ball.orbits import corrected_branch, limits, restitution_orbit, stability
 from bouncing_ball.orbits.closed_form import branch_point
@@ -19,7 +19,7 @@ def sample(seed, size, release, ratios=(1.0, 3.0)):
     """Random (n, contact, Λ) within the stable range of the corrected model."""
     rng = np.random.default_rng(seed)
     n = rng.integers(1, 6, size)
-    contact = Contact(10 ** rng.uniform(*ratios, size), rng.uniform(0.01, 0.6, size), release)
+    contact = SpringDamper(10 ** rng.uniform(*ratios, size), rng.uniform(0.01, 0.6, size), release)
     instant = LinearSignature(contact)()
     low = corrected_branch.saddle_node(n, instant)
     high, _ = corrected_branch.period_doubling(n, instant)
@@ -82,7 +82,7 @@ def test_orbits_between_the_bifurcations_are_stable(release):
 
 def test_the_restitution_model_is_the_limit_of_a_stiff_contact():
     n = np.array([1, 2, 3])
-    instant = LinearSignature(Contact(1e12, 0.1359))()
+    instant = LinearSignature(SpringDamper(1e12, 0.1359))()
     r = restitution_coefficient(0.1359)
     fold, doubling = restitution_orbit.saddle_node(n, r), restitution_orbit.period_doubling(n, r)
     np.testing.assert_allclose(corrected_branch.saddle_node(n, instant), fold, rtol=1e-11)
@@ -94,7 +94,7 @@ def test_the_restitution_model_is_the_limit_of_a_stiff_contact():
 @pytest.mark.parametrize("release", RELEASES)
 def test_elastic_orbits_hit_at_the_top_of_the_table(release):
     """r = 1: time reversal puts the instant at ψ = π/2 in the exact model too."""
-    contact = Contact(np.array([3.0, 10.0, 100.0]), 0.0, release)
+    contact = SpringDamper(np.array([3.0, 10.0, 100.0]), 0.0, release)
     instant = LinearSignature(contact)()
     psi = corrected_branch.instant_phase(1, instant, 0.8)
     np.testing.assert_allclose(psi, np.pi / 2, rtol=1e-15)
@@ -108,7 +108,7 @@ def test_the_branch_of_the_exact_contact_is_met_to_second_order(release):
     n, contact, _, lam = sample(5, 60, release)
     errors = []
     for omega in (400.0, 800.0):
-        stiff = Contact(np.full(60, omega), contact.damping_ratio, release)
+        stiff = SpringDamper(np.full(60, omega), contact.damping_ratio, release)
         instant = LinearSignature(stiff)()
         low = corrected_branch.saddle_node(n, instant)
         high, _ = corrected_branch.period_doubling(n, instant)
@@ -133,7 +133,7 @@ def test_the_branch_of_the_exact_contact_is_met_to_second_order(release):
 
 
 def test_no_orbit_below_the_saddle_node():
-    instant = LinearSignature(Contact(10.0, 0.1))()
+    instant = LinearSignature(SpringDamper(10.0, 0.1))()
     fold = float(corrected_branch.saddle_node(1, instant))
     below, above = (corrected_branch.instant_phase(1, instant, k * fold) for k in (0.999, 1.001))
     assert np.isnan(below) and np.isfinite(above)

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bouncing_ball.contacts.signature import Instant, LinearSignature, Signature
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.impacts.signature import Instant, LinearSignature, Signature
-from bouncing_ball.impacts.spring_damper import Contact, Release
-from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.interface import OBSERVABLES, Side
 
@@ -19,8 +19,8 @@ COMPARED = (*OBSERVABLES[1:], "release_displacement", "bounce_height")
 
 
 def models(omega, zeta, release):
-    contact = Contact(omega, zeta, release)
-    return CorrectedModel.of_contact(contact), ContactModel(contact)
+    contact = SpringDamper(omega, zeta, release)
+    return CorrectedModel.of_contact(contact), SpringDamperModel(contact)
 
 
 @pytest.mark.parametrize("side", list(Side))
@@ -79,7 +79,7 @@ def test_orbits_at_one_amplitude_and_below():
 def test_arrays_of_models():
     model, _ = models(np.array([5.0, 50.0]), 0.1, Release.DISPLACEMENT)
     assert model.shape == (2,)
-    one = CorrectedModel.of_contact(Contact(50.0, 0.1))
+    one = CorrectedModel.of_contact(SpringDamper(50.0, 0.1))
     assert model[1].orbit(1, 0.9).max_height == one.orbit(1, 0.9).max_height
     assert model.saddle_node(1).amplitude[1] == one.saddle_node(1).amplitude
     run = model.simulate(0.9, 0.0, -3.0, 20)
@@ -116,4 +116,4 @@ def test_a_law_that_depends_on_the_speed(n):
         np.testing.assert_allclose(computed.phase, expected.phase, atol=1e-9)
         np.testing.assert_allclose(computed.multipliers(), expected.multipliers(), rtol=1e-7)
     assert np.isnan(corrected.orbit(n, own.saddle_node(n).amplitude - 1e-9).phase)
-    assert not corrected.law.is_constant and LinearSignature(Contact(1.0, 0.1)).is_constant
+    assert not corrected.law.is_constant and LinearSignature(SpringDamper(1.0, 0.1)).is_constant

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
+from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
+from bouncing_ball.contacts.signature import LinearSignature
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.impacts.damping import damping_ratio, restitution_coefficient
-from bouncing_ball.impacts.permanent_contact import permanent_contact_threshold
-from bouncing_ball.impacts.signature import LinearSignature
-from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits import limits, restitution_orbit
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.error_law import (
@@ -55,7 +55,7 @@ def test_the_coefficients_are_the_limits_of_the_exact_errors(release):
     n, zeta, r, lam = sample(21, size, release)
     base = 2000.0
     parts = [
-        np.array(relative_errors(n, Contact(np.full(size, k * base), zeta, release), r, lam))
+        np.array(relative_errors(n, SpringDamper(np.full(size, k * base), zeta, release), r, lam))
         * (k * base)
         for k in (1, 2, 4)
     ]
@@ -92,7 +92,7 @@ def test_the_remainder_where_the_law_is_stated_to_hold(release):
     n, zeta = rng.integers(1, 6, size), damping_ratio(r, release)
     low, high = restitution_orbit.saddle_node(n, r), restitution_orbit.period_doubling(n, r)
     lam = low + rng.uniform(0, 1, size) * (high - low)
-    contact = Contact(10 ** rng.uniform(0, 4, size), zeta, release)
+    contact = SpringDamper(10 ** rng.uniform(0, 4, size), zeta, release)
     instant = LinearSignature(contact)()
     small = small_parameter(n, instant, lam)
     stated = small < STATED
@@ -117,7 +117,7 @@ def test_the_height_of_nearly_elastic_orbits(release):
 @pytest.mark.parametrize("release", RELEASES)
 def test_the_law_takes_any_signature(release):
     """At ϖ the first-order errors are K/ϖ."""
-    instant = LinearSignature(Contact(50.0, 0.2, release))()
+    instant = LinearSignature(SpringDamper(50.0, 0.2, release))()
     law, k = first_order(2, instant, 2.0), coefficients(2, 0.2, 2.0, release)
     np.testing.assert_allclose(np.array(law), np.array(k) / 50, rtol=1e-13)
 
@@ -145,6 +145,6 @@ def test_no_law_below_the_saddle_node(one_line):
 
 
 def test_names_are_those_of_the_orbits():
-    orbit = limits.orbit_at(Contact(10.0, 0.1), 1, 1.0)
+    orbit = limits.orbit_at(SpringDamper(10.0, 0.1), 1, 1.0)
     assert all(hasattr(orbit, name) for name in OF_ORBITS)
     assert set(OF_ORBITS) < set(FirstOrder._fields)

@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.contacts.law_choice import law_named, law_of_impact
+from bouncing_ball.contacts.law_signature import LawSignature, free_impact
+from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
+from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
+from bouncing_ball.contacts.laws.linear import Linear
+from bouncing_ball.contacts.laws.tsuji import Tsuji
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.impacts.law_choice import law_named, law_of_impact
-from bouncing_ball.impacts.law_signature import LawSignature, free_impact
-from bouncing_ball.impacts.laws.hunt_crossley import HuntCrossley
-from bouncing_ball.impacts.laws.kuwabara_kono import KuwabaraKono
-from bouncing_ball.impacts.laws.linear import Linear
-from bouncing_ball.impacts.laws.tsuji import Tsuji
-from bouncing_ball.impacts.spring_damper import Contact
-from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.interface import OBSERVABLES, Side
 from bouncing_ball.orbits.law_calls import law_at_orbit
@@ -25,8 +25,8 @@ every_kind = pytest.mark.parametrize("kind", KINDS, ids=[kind.name for kind in K
 @pytest.mark.parametrize("release", ["displacement", "force"])
 @pytest.mark.parametrize("omega", [2.0, 10.0, 200.0])
 def test_the_linear_law_has_the_orbits_of_the_closed_form(omega, release):
-    contact = Contact.from_restitution(0.85, omega, release)
-    exact, law = ContactModel(contact), Linear(omega, float(contact.damping_ratio), release)
+    contact = SpringDamper.from_restitution(0.85, omega, release)
+    exact, law = SpringDamperModel(contact), Linear(omega, float(contact.damping_ratio), release)
     model, n = LawModel(law), np.array([1, 2])
     for kind in ("saddle_node", "period_doubling"):
         computed, expected = getattr(model, kind)(n), getattr(exact, kind)(n)
@@ -41,9 +41,9 @@ def test_the_linear_law_has_the_orbits_of_the_closed_form(omega, release):
 
 @pytest.mark.long
 def test_a_soft_contact_has_its_long_orbit_too():
-    contact = Contact.from_restitution(0.85, 2.0)
+    contact = SpringDamper.from_restitution(0.85, 2.0)
     found = LawModel(Linear(2.0, float(contact.damping_ratio))).orbits(1, 0.9)
-    expected = ContactModel(contact).orbits(1, 0.9)
+    expected = SpringDamperModel(contact).orbits(1, 0.9)
     np.testing.assert_allclose(found.contact_duration, expected.contact_duration, rtol=1e-11)
 
 

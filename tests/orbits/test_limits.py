@@ -7,13 +7,13 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper, responses
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.impacts.damping import damping_ratio
-from bouncing_ball.impacts.spring_damper import Contact, Release, responses
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_model import ContactModel
-from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.contact_model import SpringDamperModel
+from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
 from bouncing_ball.orbits.limits import (
     Absence,
@@ -58,7 +58,7 @@ def amplitudes(contact, n):
 
 @given(families, coefficients, log_ratios, releases)
 def test_the_saddle_node_is_the_lowest_amplitude(n, r, log_omega, release):
-    contact = Contact(float(np.exp(log_omega)), float(damping_ratio(r)), release)
+    contact = SpringDamper(float(np.exp(log_omega)), float(damping_ratio(r)), release)
     excess = float(saddle_node(contact, n))
     point = branch_point(excess, contact, n)
     # ½ d(Λ²)/dε is a sum of X dX and Y dY, with X and Y from equations of
@@ -73,16 +73,16 @@ def test_the_saddle_node_is_the_lowest_amplitude(n, r, log_omega, release):
     # Λ vanishes at the fold of an elastic contact, and the phase is then
     # undefined; else a multiplier is one.
     assume(r < 0.999)
-    trace, det = stability(ContactOrbit.from_branch(point, contact, n))
+    trace, det = stability(SpringDamperOrbit.from_branch(point, contact, n))
     assert abs(float(saddle_node_function(trace, det))) <= 1e-10
 
 
 @given(families, coefficients, log_ratios, releases)
 def test_a_multiplier_is_minus_one_at_the_period_doubling(n, r, log_omega, release):
-    contact = Contact(float(np.exp(log_omega)), float(damping_ratio(r)), release)
+    contact = SpringDamper(float(np.exp(log_omega)), float(damping_ratio(r)), release)
     node, excess = float(saddle_node(contact, n)), float(period_doubling(contact, n))
     assert excess < node
-    orbit = ContactOrbit.from_branch(branch_point(excess, contact, n), contact, n)
+    orbit = SpringDamperOrbit.from_branch(branch_point(excess, contact, n), contact, n)
     trace, det = stability(orbit)
     # A root to the last digit; the trace has lost two or three.
     assert abs(float(period_doubling_function(trace, det))) <= 1e-11 * (1 + n)
@@ -106,7 +106,7 @@ def check_orbit(orbit, n, lam):
 
 @given(families, st.floats(0.2, 1.0), log_ratios, releases, st.floats(0.01, 0.99))
 def test_orbits_on_the_stable_side(n, r, log_omega, release, share):
-    contact = Contact(float(np.exp(log_omega)), float(damping_ratio(r)), release)
+    contact = SpringDamper(float(np.exp(log_omega)), float(damping_ratio(r)), release)
     node, doubling = amplitudes(contact, n)
     assume(np.isfinite(node) and np.isfinite(doubling) and r < 0.9999)
     lam = node + share * (doubling - node)
@@ -123,7 +123,7 @@ def test_orbits_on_the_stable_side(n, r, log_omega, release, share):
     families, coefficients, st.floats(np.log(10.0), np.log(1e4)), releases, st.floats(0.01, 0.99)
 )
 def test_orbits_on_the_unstable_side(n, r, log_omega, release, share):
-    contact = Contact(float(np.exp(log_omega)), float(damping_ratio(r)), release)
+    contact = SpringDamper(float(np.exp(log_omega)), float(damping_ratio(r)), release)
     node, doubling = amplitudes(contact, n)
     lam = node + share * (doubling - node)
     orbit = orbit_at(contact, n, lam, Side.UNSTABLE)
@@ -135,7 +135,7 @@ def test_orbits_on_the_unstable_side(n, r, log_omega, release, share):
 
 @given(families, st.floats(0.35, 0.999), log_ratios, releases, st.floats(1e-6, 0.5))
 def test_not_stable_beyond_the_period_doubling(n, r, log_omega, release, beyond):
-    contact = Contact(float(np.exp(log_omega)), float(damping_ratio(r)), release)
+    contact = SpringDamper(float(np.exp(log_omega)), float(damping_ratio(r)), release)
     _, doubling = amplitudes(contact, n)
     orbit = orbit_at(contact, n, doubling * (1 + beyond))
     assert float(orbit.contact_duration) > 0
@@ -144,7 +144,7 @@ def test_not_stable_beyond_the_period_doubling(n, r, log_omega, release, beyond)
 
 @given(families, coefficients, log_ratios, releases, st.floats(1e-9, 0.5))
 def test_nothing_below_the_saddle_node_on_the_stable_side(n, r, log_omega, release, below):
-    contact = Contact(float(np.exp(log_omega)), float(damping_ratio(r)), release)
+    contact = SpringDamper(float(np.exp(log_omega)), float(damping_ratio(r)), release)
     node, _ = amplitudes(contact, n)
     assume(node > 1e-6)
     assert np.isnan(orbit_at(contact, n, node * (1 - below)).contact_duration)
@@ -153,10 +153,10 @@ def test_nothing_below_the_saddle_node_on_the_stable_side(n, r, log_omega, relea
 def limit_errors(n, r, omega, release):
     """Differences from the restitution model, one per quantity."""
     zeta = float(damping_ratio(r))
-    contact = Contact(omega, zeta, release)
+    contact = SpringDamper(omega, zeta, release)
     if release is Release.FORCE:
         # A contact released at zero force returns more: the free velocity there.
-        angle = float(Contact(1.0, zeta, release).free_angle)
+        angle = float(SpringDamper(1.0, zeta, release).free_angle)
         free = responses(angle / np.sqrt(1 - zeta**2), 1.0, zeta).impulse
         r = -float(free.rate)
     lam = float(restitution_orbits.saddle_node(n, r)) + 0.3
@@ -210,11 +210,11 @@ def test_table_of_the_model_notes():
     }
     for omega, rows in expected.items():
         for n, row in enumerate(rows, start=1):
-            assert amplitudes(Contact(omega, zeta), n) == pytest.approx(row, abs=5.1e-5)
+            assert amplitudes(SpringDamper(omega, zeta), n) == pytest.approx(row, abs=5.1e-5)
 
 
 def test_the_unstable_side_starts_at_the_fold():
-    contact = Contact(10.0, float(damping_ratio(0.85)))
+    contact = SpringDamper(10.0, float(damping_ratio(0.85)))
     node, _ = amplitudes(contact, 1)
     near = [orbit_at(contact, 1, node * (1 + 1e-10), side) for side in Side]
     # Λ is quadratic there: √1e-10 in D, in units of the fold's scale.
@@ -225,14 +225,14 @@ def test_the_unstable_side_starts_at_the_fold():
 
 
 def test_arrays():
-    contact = Contact(np.array([[2.0], [10.0], [1e4]]), 0.0517)
+    contact = SpringDamper(np.array([[2.0], [10.0], [1e4]]), 0.0517)
     n = np.array([1, 2])
     nodes, doublings = saddle_node(contact, n), period_doubling(contact, n)
     assert nodes.shape == doublings.shape == (3, 2)
     orbits = orbit_at(contact, n, 0.1 + branch_point(nodes, contact, n).amplitude)
     for i, omega in enumerate((2.0, 10.0, 1e4)):
         for j, family in enumerate((1, 2)):
-            one = Contact(omega, 0.0517)
+            one = SpringDamper(omega, 0.0517)
             # Roots to four roundings, of angles where the rest is of order one.
             assert float(saddle_node(one, family)) == pytest.approx(nodes[i, j], abs=1e-14)
             assert float(period_doubling(one, family)) == pytest.approx(doublings[i, j], abs=1e-14)
@@ -241,36 +241,38 @@ def test_arrays():
 
 
 def test_missing_orbits_are_marked_among_others():
-    contact = Contact(10.0, float(damping_ratio(0.85)))
+    contact = SpringDamper(10.0, float(damping_ratio(0.85)))
     orbits = orbit_at(contact, 1, np.array([0.1, 0.5, 0.2, 1.0]))
     assert np.isnan(orbits.contact_duration).tolist() == [True, False, True, False]
     assert np.isnan(orbits.max_height).tolist() == [True, False, True, False]
 
 
 def test_a_required_orbit_is_that_of_the_stable_side():
-    contact = Contact(10.0, 0.05)
-    orbit = ContactModel(contact).require_orbit(1, 0.9)
+    contact = SpringDamper(10.0, 0.05)
+    orbit = SpringDamperModel(contact).require_orbit(1, 0.9)
     assert float(orbit.contact_duration) == float(orbit_at(contact, 1, 0.9).contact_duration)
     assert stable(orbit)
 
 
 def test_a_required_orbit_that_is_missing(one_line):
-    contact = Contact(10.0, float(damping_ratio(0.85)))
+    contact = SpringDamper(10.0, float(damping_ratio(0.85)))
     with pytest.raises(NoOrbitError) as error:
-        ContactModel(contact).require_orbit(1, 0.2)
+        SpringDamperModel(contact).require_orbit(1, 0.2)
     # The saddle-node of the model notes' table, 0.2400.
     one_line(error, "no 1-T orbit at Λ = 0.2 for ϖ = 10", "below the saddle-node at Λ = 0.239988")
     # Without a saddle-node Λ ends at permanent contact, 0.97, on its one side.
-    soft = Contact(2.592, float(damping_ratio(0.0893)))
+    soft = SpringDamper(2.592, float(damping_ratio(0.0893)))
     with pytest.raises(NoOrbitError) as error:
-        ContactModel(soft).require_orbit(1, 0.5)
+        SpringDamperModel(soft).require_orbit(1, 0.5)
     one_line(error, "no 1-T orbit at Λ = 0.5 for ϖ = 2.592", "does not reach this Λ")
     with pytest.raises(NoOrbitError) as error:
-        ContactModel(soft).require_orbit(1, 2.5, Side.UNSTABLE)
+        SpringDamperModel(soft).require_orbit(1, 2.5, Side.UNSTABLE)
     one_line(error, "Λ = 2.5", "no saddle-node, and so no other side")
     # The unstable side of r = 0.85, ϖ = 2 turns at Λ = 1.176.
     with pytest.raises(NoOrbitError) as error:
-        ContactModel(Contact(2.0, float(damping_ratio(0.85)))).require_orbit(1, 1.3, Side.UNSTABLE)
+        SpringDamperModel(SpringDamper(2.0, float(damping_ratio(0.85)))).require_orbit(
+            1, 1.3, Side.UNSTABLE
+        )
     one_line(error, "Λ = 1.3", "does not reach this Λ")
 
 
@@ -278,18 +280,18 @@ def test_reasons_for_missing_orbits():
     zeta = float(damping_ratio(0.85))
     amplitudes = np.array([0.1, 0.9, 1.3])
     below, there, short = Absence.BELOW_SADDLE_NODE, Absence.NONE, Absence.NOT_REACHED
-    contact = Contact(2.0, zeta)
+    contact = SpringDamper(2.0, zeta)
     assert absence(contact, 1, amplitudes).tolist() == [below, there, there]
     assert absence(contact, 1, amplitudes, Side.UNSTABLE).tolist() == [below, there, short]
     # At ϖ = 1 there is no fold.
     other = Absence.NO_OTHER_SIDE
-    assert absence(Contact(1.0, zeta), 1, 0.9, Side.UNSTABLE).tolist() == other
-    assert absence(Contact(1.0, zeta), 1, np.array([0.05, 0.9])).tolist() == [short, there]
+    assert absence(SpringDamper(1.0, zeta), 1, 0.9, Side.UNSTABLE).tolist() == other
+    assert absence(SpringDamper(1.0, zeta), 1, np.array([0.05, 0.9])).tolist() == [short, there]
 
 
 def test_without_a_fold():
     # Strong damping, soft contact: Λ falls all the way to permanent contact.
-    contact = Contact(2.592, float(damping_ratio(0.0893)))
+    contact = SpringDamper(2.592, float(damping_ratio(0.0893)))
     assert np.isnan(saddle_node(contact, 1))
     orbit = orbit_at(contact, 1, 2.5)
     assert float(orbit.amplitude) == pytest.approx(2.5, rel=1e-13)
@@ -301,12 +303,12 @@ def test_period_doubling_without_a_fold():
     # At ϖ = 1 the 1-T branch of r = 0.85 has no fold either. It is stable at
     # Λ = 1.2 and has a multiplier below -1 at 1.4: there is a period doubling
     # between, and NaN is for a side that has none.
-    contact = Contact(1.0, float(damping_ratio(0.85)))
+    contact = SpringDamper(1.0, float(damping_ratio(0.85)))
     assert np.isnan(saddle_node(contact, 1))
     assert stable(orbit_at(contact, 1, 1.2)) and not stable(orbit_at(contact, 1, 1.4))
     excess = period_doubling(contact, 1)
     assert np.isfinite(excess)
-    orbit = ContactOrbit.from_branch(branch_point(excess, contact, 1), contact, 1)
+    orbit = SpringDamperOrbit.from_branch(branch_point(excess, contact, 1), contact, 1)
     assert float(orbit.amplitude) == pytest.approx(1.29751875, abs=1e-8)
     assert abs(float(period_doubling_function(*stability(orbit)))) < 1e-10
 
@@ -317,7 +319,7 @@ def test_period_doubling_without_a_fold():
 def test_saddle_node_of_a_nearly_elastic_contact_released_at_zero_force(n, r, omega):
     # The fold is next to that of the displacement release, Λ → 0 as r → 1; the
     # derivative's roundings at vanishing contacts (Λ → ∞) are no fold.
-    contact = Contact(omega, float(damping_ratio(r)), Release.FORCE)
+    contact = SpringDamper(omega, float(damping_ratio(r)), Release.FORCE)
     point = branch_point(saddle_node(contact, n), contact, n)
     assert float(point.amplitude) < 1e-3
     assert abs(float(saddle_node_function(point.trace, point.determinant))) < 1e-9
@@ -326,7 +328,7 @@ def test_saddle_node_of_a_nearly_elastic_contact_released_at_zero_force(n, r, om
 def test_a_grazing_release_is_no_saddle_node():
     # The ball is left with no velocity relative to the table: the branch turns
     # there in Λ, but no multiplier is one.
-    contact = Contact(float(np.exp(2.0)), float(damping_ratio(0.05078125)))
+    contact = SpringDamper(float(np.exp(2.0)), float(damping_ratio(0.05078125)))
     excess = saddle_node(contact, 1)
     if np.isfinite(excess):
         point = branch_point(excess, contact, 1)
@@ -344,13 +346,13 @@ def test_no_numerical_warnings_on_the_way(n, r, omega, release):
     # The scan passes points at which the impact velocity is exactly zero.
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        saddle_node(Contact(omega, float(damping_ratio(r)), release), n)
+        saddle_node(SpringDamper(omega, float(damping_ratio(r)), release), n)
 
 
 @pytest.mark.parametrize("omega", [0.18, 0.32, 0.45])
 def test_a_very_soft_contact_has_no_fold_after_the_cycles_end(omega):
     # ϖ_d < 1/2: half a period of contact is longer than the cycle 2π.
-    contact = Contact(omega, float(damping_ratio(0.6)))
+    contact = SpringDamper(omega, float(damping_ratio(0.6)))
     duration = float(branch_point(saddle_node(contact, 1), contact, 1).contact_duration)
     assert np.isnan(duration) or duration < 2 * np.pi
 
@@ -358,6 +360,6 @@ def test_a_very_soft_contact_has_no_fold_after_the_cycles_end(omega):
 @pytest.mark.parametrize("omega", [0.18, 0.32])
 def test_the_unstable_side_of_a_very_soft_contact(omega):
     # None or an orbit, and no numerical warning on the way.
-    contact = Contact(omega, float(damping_ratio(0.6)))
+    contact = SpringDamper(omega, float(damping_ratio(0.6)))
     orbit = orbit_at(contact, 1, 40.0, Side.UNSTABLE)
     assert np.isnan(orbit.contact_duration) or 0 < float(orbit.contact_duration) < 2 * np.pi

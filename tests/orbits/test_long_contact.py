@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError
-from bouncing_ball.impacts.damping import damping_ratio
-from bouncing_ball.impacts.permanent_contact import permanent_contact_threshold
-from bouncing_ball.impacts.spring_damper import Contact, Release
-from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.long_contact import (
     End,
     joined,
@@ -21,7 +21,7 @@ RATIOS = np.array([1.2, 2.0, 5.0, 10.0])
 
 
 def contact(r, ratio, release=Release.DISPLACEMENT):
-    return Contact.from_restitution(r, ratio, release)
+    return SpringDamper.from_restitution(r, ratio, release)
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +32,7 @@ def window():
 
 def test_windows_found_by_another_program(window):
     """A referee's, from simulations at steps in Λ: the ends are known to such a step."""
-    begins = ContactModel(contact(0.85, RATIOS)).permanent_contact_threshold()
+    begins = SpringDamperModel(contact(0.85, RATIOS)).permanent_contact_threshold()
     assert begins == pytest.approx([0.3175, 0.7518, 0.9602, 0.9901], abs=1e-4)
     assert window.amplitude == pytest.approx([0.3342, 1.0955, 1.0054, 1.042], abs=2e-3)
 
@@ -58,7 +58,7 @@ def test_each_end_is_what_it_is_called(window):
 
 def test_balls_find_the_orbit_inside_the_window_and_none_beyond(window):
     law = contact(0.85, RATIOS)
-    model, last = ContactModel(law), orbit_with_flight(law, window.flight_time)
+    model, last = SpringDamperModel(law), orbit_with_flight(law, window.flight_time)
     begin = model.permanent_contact_threshold()
     inside = orbit_with_flight(law, 0.8 * window.flight_time)
     assert ((begin < inside.amplitude) & (inside.amplitude < window.amplitude)).all()
@@ -81,10 +81,10 @@ def test_every_damped_contact_has_a_window():
         np.ravel(x)
         for x in np.meshgrid([0.3, 0.5, 0.65, 0.85, 0.95, 0.99], np.geomspace(1.05, 100, 13))
     )
-    law = Contact(ratio, damping_ratio(r))
+    law = SpringDamper(ratio, damping_ratio(r))
     found = stable_window(law)
     assert (found.end != End.NONE).all() and (found.flight_time > 0).all()
-    assert (found.amplitude > ContactModel(law).permanent_contact_threshold()).all()
+    assert (found.amplitude > SpringDamperModel(law).permanent_contact_threshold()).all()
 
 
 @pytest.mark.parametrize("r", [0.3, 0.65, 0.85, 0.95])

@@ -5,11 +5,11 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from bouncing_ball.impacts.damping import damping_ratio
-from bouncing_ball.impacts.spring_damper import Contact, Release
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.limits import orbit_at
 from bouncing_ball.orbits.stability import trace_and_determinant
 
@@ -23,9 +23,9 @@ from bouncing_ball.orbits.stability import trace_and_determinant
 )
 def test_determinant_is_the_contraction_of_the_contact(n, r, log_omega, release, share):
     zeta, omega = float(damping_ratio(r)), float(np.exp(log_omega))
-    contact = Contact(omega, zeta, release)
+    contact = SpringDamper(omega, zeta, release)
     point = branch_point(share / omega, contact, n)
-    orbit = ContactOrbit.from_branch(point, contact, n)
+    orbit = SpringDamperOrbit.from_branch(point, contact, n)
     leaving = abs(float(orbit.relative_bounce_velocity))
     assume(leaving > 1e-3)  # the contact's end is not differentiable at zero
     matrix = orbit.monodromy()
@@ -44,7 +44,7 @@ def test_stiff_limit_is_the_restitution_map(n, r, lam):
     expected = np.array(restitution_orbits.trace_and_determinant(r, lam, phase))
     errors = []
     for omega in (1e4, 1e5):
-        orbit = orbit_at(Contact(omega, zeta), n, lam)
+        orbit = orbit_at(SpringDamper(omega, zeta), n, lam)
         errors.append(np.array(trace_and_determinant(orbit.monodromy())) - expected)
     # First order in 1/ϖ; the next order changes the ratio by 1e-4 or so.
     assert np.abs(errors[0]).max() < 100 / 1e4

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.impacts.signature import LinearSignature
-from bouncing_ball.impacts.spring_damper import Contact, Release
+from bouncing_ball.contacts.signature import LinearSignature
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.orbits import corrected_branch
-from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.contact_model import SpringDamperModel
 
 
 def constants(contact):
@@ -48,8 +48,8 @@ def shifted(instant, n, squared, jerk, lam):
 def test_it_is_of_third_order(n, zeta, release):
     errors = []
     for omega in (80.0, 160.0, 320.0):
-        contact = Contact(omega, zeta, release)
-        exact, instant = ContactModel(contact), LinearSignature(contact)()
+        contact = SpringDamper(omega, zeta, release)
+        exact, instant = SpringDamperModel(contact), LinearSignature(contact)()
         tau, squared, jerk, later = constants(contact)
         low = corrected_branch.saddle_node(n, instant)
         high, _ = corrected_branch.period_doubling(n, instant)

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from bouncing_ball.contacts.restitution_map import bounce, exact_map_jacobian, landing_gap
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.impacts.restitution_map import bounce, exact_map_jacobian, landing_gap
 from bouncing_ball.orbits.restitution_orbit import (
     ImpactMap,
     branch,

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from bouncing_ball.impacts.spring_damper import Contact, Release
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.orbits import limits
 from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.contact_model import SpringDamperModel
 
 EPS = np.finfo(float).eps
 STEP = mpf(10) ** -20
@@ -24,7 +24,7 @@ STEP = mpf(10) ** -20
 class Exact:
     """One contact and family in 60 digits."""
 
-    def __init__(self, contact: Contact, n: int):
+    def __init__(self, contact: SpringDamper, n: int):
         self.omega, self.zeta = (
             mpf(float(contact.frequency_ratio)),
             mpf(float(contact.damping_ratio)),
@@ -115,7 +115,7 @@ def contacts(seed: int, count: int, low: float, high: float):
     families = random.integers(1, 6, count)
     rules = random.permutation([*Release] * count)[:count]
     for w, r, n, rule in zip(omega, restitution, families, rules, strict=True):
-        yield Contact.from_restitution(float(r), float(w), Release(rule)), int(n), random
+        yield SpringDamper.from_restitution(float(r), float(w), Release(rule)), int(n), random
 
 
 def test_the_branch_in_sixty_digits():
@@ -134,7 +134,7 @@ def test_the_branch_in_sixty_digits():
     assert np.median(errors) < 4 * EPS
 
 
-def check_bifurcation(contact: Contact, n: int, kind: str, closed: float = 1e3 * EPS) -> bool:
+def check_bifurcation(contact: SpringDamper, n: int, kind: str, closed: float = 1e3 * EPS) -> bool:
     """Whether a reported bifurcation is one in 60 digits; False if none is reported."""
     sign = 1 if kind == "saddle_node" else -1
     excess = float(getattr(limits, kind)(contact, n))
@@ -163,10 +163,10 @@ NAMED = [(0.794141, 0.170932, 19), (0.775496, 0.244529, 13), (0.32412, 0.255791,
 def test_what_once_was_a_pole_or_a_grazing_orbit(restitution, omega, n, kind):
     # Reported at Λ = 6e17, at 1108 and at 7375: poles and one grazing orbit. The
     # zeros of the test functions have balls that rise at impact, and say so.
-    contact = Contact.from_restitution(restitution, omega)
+    contact = SpringDamper.from_restitution(restitution, omega)
     with mpmath.workdps(60):
         assert check_bifurcation(contact, n, kind)
-    orbit = getattr(ContactModel(contact), kind)(n)
+    orbit = getattr(SpringDamperModel(contact), kind)(n)
     assert orbit.relative_impact_velocity > 0
     assert not orbit.is_admissible()
 
@@ -185,7 +185,7 @@ def test_no_bifurcation_of_the_whole_range_is_false(rule):
     with mpmath.workdps(60):
         for _ in range(200):
             omega, n = 10 ** random.uniform(-1, 4), int(200 ** random.uniform())
-            contact = Contact.from_restitution(random.uniform(0.05, 0.999), omega, rule)
+            contact = SpringDamper.from_restitution(random.uniform(0.05, 0.999), omega, rule)
             for kind in ("saddle_node", "period_doubling"):
                 # Of 723, a root was off by 3.5e-10 of itself at most, at n = 173 and ϖ = 0.3,
                 # where the test function is steep. At a pole it is large.

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane
-from bouncing_ball.impacts.damping import damping_ratio
-from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.motion.contacts import contact_cycle
 from bouncing_ball.orbits import restitution_orbit as restitution
-from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
 from bouncing_ball.orbits.limits import Absence, Side, absence, orbit_at
 
@@ -43,18 +43,18 @@ def side(request):
 def drawn(request, rule, side):
     seed = [list(Release).index(rule), list(Side).index(side)]
     zeta, n, omega, lam = sample(seed, request.param)
-    contact = Contact(omega, zeta, rule)
+    contact = SpringDamper(omega, zeta, rule)
     return contact, n, lam, side, orbit_at(contact, n, lam, side)
 
 
 def chosen(orbit, which):
-    contact = Contact(
+    contact = SpringDamper(
         orbit.contact.frequency_ratio[which],
         orbit.contact.damping_ratio[which],
         orbit.contact.release,
     )
     parts = (orbit.amplitude, orbit.phase, orbit.contact_duration, orbit.impact_velocity)
-    return ContactOrbit(orbit.n[which], contact, *(x[which] for x in parts))
+    return SpringDamperOrbit(orbit.n[which], contact, *(x[which] for x in parts))
 
 
 def test_every_missing_orbit_has_its_reason(drawn):

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from bouncing_ball.audit.claims.ledger_file import read_ledger
+from bouncing_ball.claims.ledger_file import read_ledger
 from bouncing_ball.configuration.stages import ENTRIES, STAGES
 from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
 from bouncing_ball.pipeline.pieces import check_entries, check_pieces

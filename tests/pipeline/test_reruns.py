@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from bouncing_ball.audit.claims.ledger_file import read_ledger
+from bouncing_ball.claims.ledger_file import read_ledger
 from bouncing_ball.configuration.stages import studied
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.pipeline.sources import imports, sources
@@ -86,8 +86,8 @@ def users(file):
     ("file", "expected"),
     [
         ("studies/restitution_families.py", {"fig02", "fig03"}),
-        ("audit/claims/verdict.py", {"claims"}),
-        ("audit/claims/tally.py", set()),
+        ("claims/verdict.py", {"claims"}),
+        ("claims/tally.py", set()),
         ("render/figures/style.py", set()),
         ("configuration/stages.py", set()),
         # Eq. 34 as printed is among the evidence.

@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bouncing_ball.compare.outcome import Outcome
 from bouncing_ball.datasets.atomic import replacing
 from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
 from bouncing_ball.record.accept import (
@@ -27,7 +28,6 @@ from bouncing_ball.record.accept import (
     made_from,
     replace_record,
 )
-from bouncing_ball.record.diff.outcome import Outcome
 from bouncing_ball.record.proof import RefusedError, check_made, check_versions
 from bouncing_ball.record.provenance import LIBRARIES, Provenance, file_digest, versions
 from bouncing_ball.record.recipe import Run

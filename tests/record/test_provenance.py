@@ -44,7 +44,7 @@ def blank(width, height):
 
 LARGE = blank(9_000, 9_000)
 COMMIT = "c" * 40
-MODULES = sources("bouncing_ball.impacts.damping")
+MODULES = sources("bouncing_ball.contacts.damping")
 MADE = Provenance(
     commit=COMMIT,
     dirty="no",

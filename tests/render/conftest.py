@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from bouncing_ball.audit.claims.assessment import assess
-from bouncing_ball.audit.claims.ledger_file import read_ledger
 from bouncing_ball.audit.evidence import evidence
+from bouncing_ball.claims.assessment import assess
+from bouncing_ball.claims.ledger_file import read_ledger
 from bouncing_ball.configuration.stages import tables
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.netcdf import read_dataset

@@ -13,10 +13,10 @@ from statistics import median
 
 import numpy as np
 
-from bouncing_ball.impacts.damping import damping_ratio
-from bouncing_ball.impacts.law_choice import law_of_impact
-from bouncing_ball.impacts.laws import LAWS
-from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.law_choice import law_of_impact
+from bouncing_ball.contacts.laws import LAWS
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion import contacts
 from bouncing_ball.motion.law_impacts import simulate
 from bouncing_ball.orbits.law_calls import rigid_speed
@@ -50,7 +50,7 @@ def simulations(repetitions: int) -> None:
     phase, fall = rng.uniform(-3, 3, BALLS), rng.uniform(1.5, 5, BALLS)
     for r, lam, duration in CASES:
         zeta = damping_ratio(r)
-        linear = Contact(np.pi / duration / np.sqrt(1 - zeta**2), zeta)
+        linear = SpringDamper(np.pi / duration / np.sqrt(1 - zeta**2), zeta)
         start = lam, phase, -fall - lam, IMPACTS
         said = []
         for name in HERTZ:

@@ -12,10 +12,10 @@ import time
 
 import numpy as np
 
-from bouncing_ball.impacts.damping import damping_ratio
-from bouncing_ball.impacts.spring_damper import Contact, Release
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.motion import contacts as spring_damper
-from bouncing_ball.motion import instants as restitution
+from bouncing_ball.motion import restitution
 
 CASES = [
     # r, ϖ, Λ, release
@@ -48,7 +48,7 @@ def main() -> None:
         rng = np.random.default_rng(1)
         phase, speed = rng.uniform(-np.pi, np.pi, balls), rng.uniform(1.5, 5.0, balls)
         for r, omega, lam, release in CASES:
-            contact = Contact(omega, float(damping_ratio(r)), release)
+            contact = SpringDamper(omega, float(damping_ratio(r)), release)
             start = contact, lam, phase, -speed - lam, impacts
             found = rate(lambda start=start: spring_damper.simulate(*start), repetitions)
             name = f"r={r} ϖ={omega:g} Λ={lam} {release}"

@@ -7,12 +7,12 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, fsolve
 
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.impacts.damping import damping_ratio
-from bouncing_ball.impacts.permanent_contact import permanent_contact_threshold
-from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
-from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.limits import orbit_at
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.studies.error_thresholds import (
@@ -29,7 +29,7 @@ from bouncing_ball.studies.error_thresholds import (
 
 def error_of(quantity, n, r, lam, ratios):
     """Relative error of the restitution model, with the damping of Eq. 16."""
-    exact = ContactModel(Contact(ratios, float(damping_ratio(r))))
+    exact = SpringDamperModel(SpringDamper(ratios, float(damping_ratio(r))))
     return relative_error(quantity, exact, RestitutionModel(r), n, lam)
 
 
@@ -160,7 +160,7 @@ def test_all_quantities(described):
 
 def test_values_of_both_models():
     n, r, lam, omega = 2, 0.85, 1.0, 50.0
-    contact = Contact(omega, float(damping_ratio(r)))
+    contact = SpringDamper(omega, float(damping_ratio(r)))
     orbit = orbit_at(contact, n, lam)
     phi = float(restitution_orbits.phase(n, r, lam))
     expected = {
@@ -183,7 +183,7 @@ def test_values_of_both_models():
     for quantity, (simple, stiff) in expected.items():
         limit = float(value(quantity, RestitutionModel(r), n, lam))
         assert limit == pytest.approx(simple, rel=1e-14)
-        found = float(value(quantity, ContactModel(contact), n, lam))
+        found = float(value(quantity, SpringDamperModel(contact), n, lam))
         if stiff is not None:
             assert found == pytest.approx(float(stiff), rel=1e-13)
         error = error_of(quantity, n, r, lam, np.array([omega]))
@@ -213,7 +213,9 @@ def test_height_error_is_about_one_over_n_and_ratio(n, r, log_omega, share):
         for find in (restitution_orbits.saddle_node, restitution_orbits.period_doubling)
     )
     lam, omega = node + share * (doubling - node), float(np.exp(log_omega))
-    assume(np.isfinite(orbit_at(Contact(omega, float(damping_ratio(r))), n, lam).contact_duration))
+    assume(
+        np.isfinite(orbit_at(SpringDamper(omega, float(damping_ratio(r))), n, lam).contact_duration)
+    )
     error = error_of(Quantity.MAX_HEIGHT, n, r, lam, np.array([omega]))
     assert 0 < float(error[0]) * n * omega < (1.0 if omega > 10 else 1.04)
 
@@ -264,7 +266,7 @@ def test_force_release():
     at = {"quantity": "apparent_restitution"}
     assert str(dry.threshold_status.sel(at)[1].values) == ThresholdStatus.NEVER_WITHIN
     assert str(paper.threshold_status.sel(at)[1].values) == ThresholdStatus.FOUND
-    contact = Contact(1e4, float(damping_ratio(0.65)), Release.FORCE)
+    contact = SpringDamper(1e4, float(damping_ratio(0.65)), Release.FORCE)
     expected = float(orbit_at(contact, 1, 1.0).apparent_restitution) / 0.65 - 1
     assert float(dry.relative_error.sel(at)[-1]) == pytest.approx(expected, rel=1e-9)
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.impacts.damping import damping_ratio
-from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits.limits import orbit_at
 from bouncing_ball.studies.frequency_sweeps import apparent_restitution, frequency_sweep, sweep
 
@@ -31,7 +31,7 @@ def test_every_entry_is_the_orbit_of_its_parameters(described, release):
         zeta = float(damping_ratio(case["restitution"]))
         for ratio in data.frequency_ratio.values:
             at = row.sel(frequency_ratio=ratio)
-            orbit = orbit_at(Contact(ratio, zeta, Release(release)), 1, case["amplitude"])
+            orbit = orbit_at(SpringDamper(ratio, zeta, Release(release)), 1, case["amplitude"])
             if np.isnan(orbit.contact_duration):
                 assert np.isnan(at.phase) and not bool(at.stable)
                 continue

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.impacts.spring_damper import Contact, Release
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.orbits.error_law import STATED
 from bouncing_ball.studies import model_errors as study
 
@@ -76,7 +76,9 @@ def test_thresholds_and_zeros_are_exact():
         for orbit in range(2):
 
             def error(ratio, k=orbit, quantity=quantity):
-                return study.errors(Contact(ratio, zeta[k], rule), n[k], lam[k], [quantity])[:, 0]
+                return study.errors(SpringDamper(ratio, zeta[k], rule), n[k], lam[k], [quantity])[
+                    :, 0
+                ]
 
             for i in range(2):
                 if found.status[i, k, orbit] == "found":
@@ -119,6 +121,6 @@ def test_three_curves(described, release):
 
 def test_random_orbits_are_in_the_stable_range():
     n, zeta, lam, _ = study.random_orbits(500, 1, "force")
-    contact = Contact(1.0, zeta, Release.FORCE)
+    contact = SpringDamper(1.0, zeta, Release.FORCE)
     assert np.all((contact.restitution > 0.14) & (contact.restitution < 0.99))
     assert np.all((n >= 1) & (n <= 5)) and np.all(lam > 0)

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.continuation.branch import ContinuationError
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.impacts.damping import damping_ratio
-from bouncing_ball.impacts.permanent_contact import permanent_contact_threshold
-from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.limits import period_doubling, saddle_node
 from bouncing_ball.studies.orbit_branches import (
     PERIOD_DOUBLING,
@@ -33,7 +33,7 @@ FIGURE_8 = {
 
 
 def bifurcations(n, r, omega, release="displacement"):
-    contact = Contact(omega, float(damping_ratio(r)), Release(release))
+    contact = SpringDamper(omega, float(damping_ratio(r)), Release(release))
     return [
         float(branch_point(find(contact, n), contact, n).amplitude)
         for find in (saddle_node, period_doubling)
@@ -67,9 +67,9 @@ def test_points_are_orbits(figure_8):
     assert float(figure_8.residual.max()) < 1e-12
     for omega in FIGURE_8["frequency_ratio"]:
         row = figure_8.sel(frequency_ratio=omega)
-        orbit = ContactOrbit(
+        orbit = SpringDamperOrbit(
             1,
-            Contact(omega, zeta),
+            SpringDamper(omega, zeta),
             row.amplitude.values,
             row.phase.values,
             row.contact_duration.values,
@@ -78,7 +78,7 @@ def test_points_are_orbits(figure_8):
         # The explicit formula at the same contact duration: ε carries the
         # rounding of ϖD, and Λ changes by ϖ² over ε.
         excess = row.contact_duration.values * omega * np.sqrt(1 - zeta**2) - np.pi
-        point = branch_point(excess, Contact(omega, zeta), 1)
+        point = branch_point(excess, SpringDamper(omega, zeta), 1)
         assert point.amplitude == pytest.approx(row.amplitude.values, abs=1e-12 * (1 + omega**2))
         turn = np.angle(np.exp(1j * (point.phase - row.phase.values)))
         # Next to permanent contact the equations are nearly singular: 1e-9.
@@ -215,7 +215,7 @@ def test_both_ends_in_contact_with_each_other(continuation_settings):
 def test_a_branch_that_no_way_leads_to_starts_at_the_closed_form(continuation_settings, one_line):
     # At ϖ = 0.6 all ways from the restitution orbit are blocked.
     with pytest.raises(ContinuationError) as error:
-        _on_the_way(1, Contact.from_restitution(0.85, 0.6), 0.6465, continuation_settings)
+        _on_the_way(1, SpringDamper.from_restitution(0.85, 0.6), 0.6465, continuation_settings)
     one_line(error, "1-T orbit at Λ = 0.6465", "ϖ = 10000", "before 0.6", "lost: the")
     with pytest.raises(NoOrbitError) as missing:
         branch_along_amplitude(1, 0.85, 0.6, 1.5, "displacement", continuation_settings)

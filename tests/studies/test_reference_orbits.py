@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from bouncing_ball.impacts.spring_damper import Contact
-from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.studies.reference_orbits import reference_orbits
 
 GIVEN = {"frequency_ratio": {"min": 1.0, "max": 1e4, "samples": 40}, "seed": 31}
@@ -13,11 +13,11 @@ def test_they_satisfy_the_equations_of_the_contact():
     data = reference_orbits(GIVEN)
     for rule in ("displacement", "force"):
         part = data.sel(release=rule)
-        contact = Contact.from_restitution(
+        contact = SpringDamper.from_restitution(
             part.restitution.values, part.frequency_ratio.values, rule
         )
         names = ("amplitude", "phase", "contact_duration", "impact_velocity")
-        orbit = ContactModel(contact).orbit_of(
+        orbit = SpringDamperModel(contact).orbit_of(
             part.n.values.astype(int), *(part[name].values for name in names)
         )
         there = np.isfinite(part.phase.values)

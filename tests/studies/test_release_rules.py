@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.impacts.damping import damping_ratio, restitution_coefficient
-from bouncing_ball.impacts.oscillator import impulse_response
-from bouncing_ball.impacts.spring_damper import Contact, Release
+from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
+from bouncing_ball.contacts.oscillator import impulse_response
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.limits import saddle_node
 from bouncing_ball.studies.release_rules import release_rules
@@ -28,7 +28,7 @@ PARAMETERS = {
 @pytest.mark.slow
 def test_values_are_those_of_the_orbits():
     data = release_rules(PARAMETERS)
-    contact = Contact(1e3, float(damping_ratio(0.85)), Release.FORCE)
+    contact = SpringDamper(1e3, float(damping_ratio(0.85)), Release.FORCE)
     expected = branch_point(saddle_node(contact, 2), contact, 2).amplitude
     cell = data.bifurcation_amplitude.sel(release="force", n=2, bound="saddle-node")
     assert float(cell[-1]) == pytest.approx(float(expected), rel=1e-13)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.contacts.restitution_map import bounce, landing_gap
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.impacts.restitution_map import bounce, landing_gap
 from bouncing_ball.studies.restitution_families import restitution_history, restitution_orbits
 
 DOMAINS = {"n": [1, 2, 3], "restitution": 0.85, "amplitude_max": 2.0, "points": 81}

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.impacts.damping import damping_ratio
 from bouncing_ball.studies.time_histories import both_histories, contact_history
 
 ONE = {"n": 1, "restitution": 0.85, "amplitude": 1.0, "frequency_ratio": 4.0, "samples": 101}

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from bouncing_ball.compare.folders import compare_folders
+from bouncing_ball.compare.tolerance_file import read_tolerances
 from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
-from bouncing_ball.record.diff.folders import compare_folders
-from bouncing_ball.record.diff.tolerance_file import read_tolerances
 
 MAKEFILE = Path(__file__).resolve().parents[2] / "Makefile"
 REASON = """costs $5: "new" form of Eq. 8; it's `date` \\ 100 % #1"""

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 import yaml
 
-from bouncing_ball.audit.claims.assessment import assess
-from bouncing_ball.audit.claims.ledger_file import parse_ledger
 from bouncing_ball.audit.evidence import evidence
+from bouncing_ball.claims.assessment import assess
+from bouncing_ball.claims.ledger_file import parse_ledger
 from bouncing_ball.configuration.stages import STAGES
 from bouncing_ball.datasets.netcdf import attribute_name, parameter_attributes, read_dataset
 
@@ -229,7 +229,7 @@ def test_the_tables_show_every_claim_and_formula(pristine, verdicts):
 
 
 def test_snakemake_stops_at_once_with_that_line(fresh):
-    # The table that a stage asks for; other mistakes are in tests/audit/claims.
+    # The table that a stage asks for; other mistakes are in tests/claims.
     fresh.rewrite("config/claims.yaml", "id: Table 1\n", "id: Table 2\n")
     message = "config/claims.yaml: unknown table 'Table 1'; known: Table 2"
     done = fresh.run("--cores", "1", check=False)

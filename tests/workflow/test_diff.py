@@ -8,9 +8,9 @@ purpose: first as another processor does it, and then further.
 import json
 import shutil
 
+from bouncing_ball.compare.drift import span
+from bouncing_ball.compare.tolerance_file import read_tolerances
 from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
-from bouncing_ball.record.diff.drift import span
-from bouncing_ball.record.diff.tolerance_file import read_tolerances
 
 
 def test_a_run_against_its_record(complete):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import yaml
 
-from bouncing_ball.audit.claims.verdict import Verdict
+from bouncing_ball.claims.verdict import Verdict
 from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.render.article.render import render_article
 from bouncing_ball.render.atlas.tables import shares

@@ -32,7 +32,7 @@ def test_what_only_shows_runs_no_science_again(complete):
 
 
 def test_a_module_runs_the_stages_that_import_it(complete):
-    complete.edit("audit/claims/verdict.py")
+    complete.edit("claims/verdict.py")
     complete.edit("audit/forensics/readings.py")
     assert complete.planned() == {*made("forensics"), "Setting forensics", *CLAIMS}
 

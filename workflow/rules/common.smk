@@ -28,7 +28,7 @@ if package is None or Path(package.origin).resolve().parent != HERE:
         f"bouncing_ball is imported from {found}, not from {HERE}: use this checkout's .venv (make setup)"
     )
 
-from bouncing_ball.audit.claims.ledger_file import read_ledger
+from bouncing_ball.claims.ledger_file import read_ledger
 from bouncing_ball.configuration.check import check_configuration, check_orbits
 from bouncing_ball.configuration.stages import ENTRIES, STAGES, Kind, names, studied, tables
 from bouncing_ball.errors import ModelError

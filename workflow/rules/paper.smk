@@ -17,7 +17,7 @@ rule paper:
             "render.article.render",
             "render.atlas.tables",
             "render.tables.error_law",
-            "audit.claims.tally",
+            "claims.tally",
             "datasets.files",
             "datasets.netcdf",
             "configuration.yaml_file",

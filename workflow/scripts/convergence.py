@@ -4,12 +4,12 @@ import io
 from importlib import import_module
 
 from bouncing_ball.audit.convergence import Variation, computations, sensitivity
+from bouncing_ball.compare.budgets import changes
+from bouncing_ball.compare.pictures import compare_pictures, read_picture
+from bouncing_ball.compare.tolerance_file import read_tolerances
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.datasets.netcdf import parameter_attributes
 from bouncing_ball.pipeline.job import logged
-from bouncing_ball.record.diff.budgets import changes
-from bouncing_ball.record.diff.pictures import compare_pictures, read_picture
-from bouncing_ball.record.diff.tolerance_file import read_tolerances
 from bouncing_ball.render.figures.style import style
 from bouncing_ball.render.tables.formats import to_csv
 

@@ -3,8 +3,8 @@
 import sys
 from pathlib import Path
 
+from bouncing_ball.compare.reports import compare_and_report
 from bouncing_ball.pipeline.job import logged
-from bouncing_ball.record.diff.reports import compare_and_report
 
 reports = Path("results", "diff")
 with logged(snakemake) as lines:

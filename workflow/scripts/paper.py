@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from bouncing_ball.audit.claims.tally import tally
+from bouncing_ball.claims.tally import tally
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.datasets.netcdf import read_dataset

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.atlas.plan import Nodes
-from bouncing_ball.impacts.signature import Instant, Signature
+from bouncing_ball.contacts.signature import Instant, Signature
 from bouncing_ball.orbits import corrected_branch, error_law
-from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.corrected_orbit import CorrectedOrbit
 from bouncing_ball.orbits.interface import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
@@ -64,12 +64,12 @@ class _Known(Signature):
         return Instant(self.delay, self.restitution, self.load, self.duration)
 
 
-def orbit_errors(orbit: ContactOrbit, one: Instant, frequency_ratio: ArrayLike) -> np.ndarray:
+def orbit_errors(orbit: SpringDamperOrbit, one: Instant, frequency_ratio: ArrayLike) -> np.ndarray:
     """Errors of the quantities of orbits, shape (model, quantity, ...); NaN without orbit.
 
     Parameters
     ----------
-    orbit : ContactOrbit
+    orbit : SpringDamperOrbit
         The exact orbits.
     one : Instant
         The signature of their contacts at ϖ = 1; its times are in proportion to 1/ϖ.
@@ -78,11 +78,11 @@ def orbit_errors(orbit: ContactOrbit, one: Instant, frequency_ratio: ArrayLike) 
 
     Examples
     --------
-    >>> from bouncing_ball.impacts.signature import LinearSignature
-    >>> from bouncing_ball.impacts.spring_damper import Contact
+    >>> from bouncing_ball.contacts.signature import LinearSignature
+    >>> from bouncing_ball.contacts.spring_damper import SpringDamper
     >>> from bouncing_ball.orbits.limits import orbit_at
-    >>> one = LinearSignature(Contact(np.ones(1), 0.1))()
-    >>> orbit = orbit_at(Contact(np.array([100.0]), 0.1), 1, 1.0)
+    >>> one = LinearSignature(SpringDamper(np.ones(1), 0.1))()
+    >>> orbit = orbit_at(SpringDamper(np.array([100.0]), 0.1), 1, 1.0)
     >>> orbit_errors(orbit, one, 100.0).round(4)[:, 0].tolist()
     [[-0.0083], [-0.0]]
     """

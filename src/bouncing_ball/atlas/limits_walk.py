@@ -13,10 +13,10 @@ import numpy as np
 
 from bouncing_ball.atlas.plan import Nodes
 from bouncing_ball.atlas.walk import extrapolated, stiff_start
-from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits import limits, restitution_orbit
 from bouncing_ball.orbits.closed_form import BranchPoint, branch_point
-from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.stability import period_doubling_function
@@ -57,7 +57,7 @@ def limit_errors(nodes: Nodes, ratios: np.ndarray) -> Iterator[tuple[np.ndarray,
     ]
     for ratio, fold, flip in zip(down, *tracks, strict=True):
         contact = nodes.contact(ratio)
-        exact = [fold, flip, ContactModel(contact).permanent_contact_threshold()]
+        exact = [fold, flip, SpringDamperModel(contact).permanent_contact_threshold()]
         with np.errstate(divide="ignore"):
             yield (
                 np.array([ratio]),
@@ -82,7 +82,7 @@ def _bounds(model: RestitutionModel | CorrectedModel, n: int) -> list[np.ndarray
 
 def _track(
     test: Callable[[BranchPoint], np.ndarray],
-    direct: Callable[[Contact, int], np.ndarray],
+    direct: Callable[[SpringDamper, int], np.ndarray],
     start: Nodes,
     down: np.ndarray,
 ) -> Iterator[np.ndarray]:

@@ -18,10 +18,10 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.signature import Instant, LinearSignature
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError
-from bouncing_ball.impacts.release import Release
-from bouncing_ball.impacts.signature import Instant, LinearSignature
-from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits import restitution_orbit
 from bouncing_ball.studies.parameters import grid
 
@@ -58,12 +58,12 @@ class Nodes:
         """The signature of the contacts at ϖ = 1."""
         return LinearSignature(self.contact(1.0))()
 
-    def contact(self, frequency_ratio: float | np.ndarray) -> Contact:
+    def contact(self, frequency_ratio: float | np.ndarray) -> SpringDamper:
         """The contacts of the nodes at ϖ, an array of any shape that broadcasts with theirs."""
         if "damping_ratio" in self.__dict__:
-            return Contact(frequency_ratio, self.damping_ratio, self.release)
+            return SpringDamper(frequency_ratio, self.damping_ratio, self.release)
         r = self.restitution
-        return Contact.from_restitution(r, frequency_ratio, self.release, measured=True)
+        return SpringDamper.from_restitution(r, frequency_ratio, self.release, measured=True)
 
     def __getitem__(self, key: Any) -> Self:
         return type(self)(self.release, self.n, self.restitution[key], self.amplitude[key])

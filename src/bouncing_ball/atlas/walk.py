@@ -3,7 +3,7 @@ r"""Orbits at given Λ along ϖ, by walking on the branch and not by root findin
 On the branch of :mod:`bouncing_ball.orbits.closed_form` the product t = ϖε is almost
 constant along ϖ, and (X, Y) almost a straight line along ε. So the walk comes down
 from the stiffest contact. There the load a = 1 - Y alone delays the release, by
-``(1 + r) a/(r v ϖ²)`` for both rules (:mod:`bouncing_ball.impacts.signature`), with
+``(1 + r) a/(r v ϖ²)`` for both rules (:mod:`bouncing_ball.contacts.signature`), with
 ``v = 2nπ/(1 + r)``; in the contact's own angle ::
 
     t = √(1 - ζ²) (1 + r)² (1 - Y)/(2nπ r)
@@ -28,10 +28,10 @@ from typing import NamedTuple
 import numpy as np
 
 from bouncing_ball.atlas.plan import Nodes
-from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits import limits, restitution_orbit
 from bouncing_ball.orbits.closed_form import BranchPoint, branch_point
-from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.stability import is_stable
 
 REACHED = 1e-6
@@ -48,7 +48,7 @@ class Step(NamedTuple):
     """The orbits of the nodes at some ϖ, shape (ϖ, nodes); NaN where there is none."""
 
     frequency_ratio: np.ndarray
-    orbit: ContactOrbit
+    orbit: SpringDamperOrbit
     stable: np.ndarray
     sought: np.ndarray
     """Whether each orbit was looked for, as the walk had not reached it."""
@@ -61,7 +61,7 @@ def stiff_start(nodes: Nodes) -> np.ndarray:
     --------
     Where the table's acceleration balances gravity, Λ sin φ = 1, there is no load:
 
-    >>> from bouncing_ball.impacts.release import Release
+    >>> from bouncing_ball.contacts.release import Release
     >>> nodes = Nodes(Release.DISPLACEMENT, 1, np.array([1.0]), np.array([1.0]))
     >>> stiff_start(nodes).tolist()
     [0.0]
@@ -137,7 +137,7 @@ def walk(nodes: Nodes, ratios: np.ndarray) -> Iterator[Step]:
             excess = excess + correction(branch_point(excess, contact, nodes.n), nodes.amplitude)
         point = branch_point(excess, contact, nodes.n)
         at, past = along, excess * ratio
-        orbit = ContactOrbit.from_branch(point, contact, nodes.n)
+        orbit = SpringDamperOrbit.from_branch(point, contact, nodes.n)
         stable = is_stable(point.trace, point.determinant)
         sought = ~(np.abs(point.amplitude / nodes.amplitude - 1) <= REACHED)
         if np.any(sought):
@@ -146,7 +146,7 @@ def walk(nodes: Nodes, ratios: np.ndarray) -> Iterator[Step]:
         yield Step(ratio[:, 0], orbit, stable, sought)
 
 
-def _replaced(orbit: ContactOrbit, sought: np.ndarray, contact: Contact, nodes: Nodes):
+def _replaced(orbit: SpringDamperOrbit, sought: np.ndarray, contact: SpringDamper, nodes: Nodes):
     """The orbits, those not reached by the walk looked for directly."""
     asked = np.broadcast_to(nodes.amplitude, sought.shape)[sought]
     found = limits.orbit_at(contact[sought], nodes.n, asked)
@@ -154,4 +154,4 @@ def _replaced(orbit: ContactOrbit, sought: np.ndarray, contact: Contact, nodes: 
     columns = [np.array(getattr(orbit, name)) for name in names]
     for column, name in zip(columns, names, strict=True):
         column[sought] = getattr(found, name)
-    return ContactOrbit.of(nodes.n, contact, *columns)
+    return SpringDamperOrbit.of(nodes.n, contact, *columns)

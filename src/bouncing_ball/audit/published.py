@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.impacts.release import Release
-from bouncing_ball.impacts.spring_damper import Contact
-from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.interface import ImpactModel, Orbit, Route
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.studies.orbit_branches import PERIOD_DOUBLING, SADDLE_NODE
@@ -101,7 +101,7 @@ def contact_orbits(data: xr.Dataset) -> Iterator[Shown]:
         data.impact_velocity,
         admissible,
     )
-    model = ContactModel(Contact.from_restitution(r, omega, data.attrs["release"]))
+    model = SpringDamperModel(SpringDamper.from_restitution(r, omega, data.attrs["release"]))
     orbit = model.orbit_of(int(data.attrs["n"]), lam, phase, duration, velocity)
     yield Shown(model, orbit, admissible.astype(bool), _made(data))
 
@@ -150,8 +150,10 @@ def _located(data: xr.Dataset) -> Iterator[ShownLimits]:
             place.special_phase,
             place.special_contact_duration,
         )
-        contact = Contact.from_restitution(data.attrs["restitution"], omega, data.attrs["release"])
-        model = ContactModel(contact)
+        contact = SpringDamper.from_restitution(
+            data.attrs["restitution"], omega, data.attrs["release"]
+        )
+        model = SpringDamperModel(contact)
         yield ShownLimits(kind, model, n.astype(int), lam, phase, duration, Route.CONTINUATION)
 
 
@@ -161,9 +163,9 @@ def _along_frequency_ratio(data: xr.Dataset) -> Iterator[ShownLimits]:
         for kind in BIFURCATIONS:
             shown = data.bifurcation_amplitude.sel(release=rule, bound=kind)
             lam, omega, n = _row(shown, data.frequency_ratio, data.n)
-            contact = Contact(omega, float(data.damping_ratio), Release(str(rule)))
+            contact = SpringDamper(omega, float(data.damping_ratio), Release(str(rule)))
             unknown = np.full_like(lam, np.nan)
-            model = ContactModel(contact)
+            model = SpringDamperModel(contact)
             yield ShownLimits(kind, model, n.astype(int), lam, unknown, unknown, Route.FORMULA)
 
 

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bouncing_ball.impacts.law_signature import LawSignature
-from bouncing_ball.impacts.laws.tsuji import Tsuji
-from bouncing_ball.impacts.release import Release
-from bouncing_ball.impacts.signature import Instant, LinearSignature
-from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.contacts.law_signature import LawSignature
+from bouncing_ball.contacts.laws.tsuji import Tsuji
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.signature import Instant, LinearSignature
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.interface import ImpactModel
 from bouncing_ball.orbits.law_calls import rigid_speed
@@ -114,10 +114,10 @@ class Case:
         return self.damping / (2 * math.sqrt(self.stiffness * self.mass))
 
     @property
-    def contact(self) -> Contact:
+    def contact(self) -> SpringDamper:
         """ϖ = √(k/m)/Ω, ζ and the release rule."""
         own = math.sqrt(self.stiffness / self.mass)
-        return Contact(own / self.table.angular_frequency, self.zeta, self.release)
+        return SpringDamper(own / self.table.angular_frequency, self.zeta, self.release)
 
     @property
     def contact_time(self) -> float:

@@ -1,13 +1,13 @@
 r"""Stiffness and damping from what is known of a contact.
 
 A linear contact has two numbers, and any two that fix them will do. Of the free
-impact that ends at the angle π - 2α (:mod:`bouncing_ball.impacts.release`) ::
+impact that ends at the angle π - 2α (:mod:`bouncing_ball.contacts.release`) ::
 
     ω_d t = π - 2α,   ω_d = ω√(1 - ζ²),   k = mω²,   c = 2ζmω
 
 A drop test measures r = √(h′/h), whatever releases the contact. A Hertz contact has the
 force ``k x^{3/2} + C √(mk) x^{1/4} x′``, k = (4/3) E* √R, with the damping of Tsuji: its r
-is the same at every speed (:mod:`bouncing_ball.impacts.laws.tsuji`), and so E*, R and r are
+is the same at every speed (:mod:`bouncing_ball.contacts.laws.tsuji`), and so E*, R and r are
 all of it. Everything in SI units.
 """
 
@@ -15,11 +15,11 @@ import math
 from collections.abc import Mapping
 
 from bouncing_ball.calculator.case import Table
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.laws.tsuji import Tsuji, tsuji_damping
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, require
-from bouncing_ball.impacts.damping import damping_ratio
-from bouncing_ball.impacts.laws.tsuji import Tsuji, tsuji_damping
-from bouncing_ball.impacts.release import Release
-from bouncing_ball.impacts.spring_damper import Contact
 
 STIFF = ("stiffness", "contact_time", "reduced_modulus")
 """What says how stiff a contact is; a modulus goes with a radius."""
@@ -93,7 +93,7 @@ def loss(given: Given, release: Release) -> float | None:
     if name == "damping_ratio":
         zeta = given[name]
         require(zeta < 1, zeta, "damping_ratio", "below 1: the contact would not oscillate")
-        bounces = Contact(1.0, zeta, release).restitution > 0
+        bounces = SpringDamper(1.0, zeta, release).restitution > 0
         require(bounces, zeta, "damping_ratio", "so far below 1 that the ball bounces at all")
         return zeta
     if name == "rebound_height":
@@ -112,7 +112,7 @@ def of_contact_time(mass: float, contact_time: float, zeta: float, release: Rele
     1.0
     """
     # In the unit of time in which the contact's own frequency is 1.
-    omega = float(Contact(1.0, zeta, release).free_duration) / contact_time
+    omega = float(SpringDamper(1.0, zeta, release).free_duration) / contact_time
     return mass * omega * omega
 
 

@@ -7,10 +7,10 @@ from bouncing_ball.calculator.case import Case
 from bouncing_ball.calculator.family import Family, family
 from bouncing_ball.calculator.judgement import Judgement
 from bouncing_ball.calculator.needed import Needed
+from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
+from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.impacts.permanent_contact import RESTITUTION_THRESHOLD
-from bouncing_ball.impacts.release import Release
-from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.contact_model import SpringDamperModel
 
 STEPS = 50
 """Steps in one contact."""
@@ -140,7 +140,7 @@ def _notes(case: Case, one: Family) -> tuple[str, ...]:
 def _permanent_contact(case: Case) -> PermanentContact:
     if case.law is not None:
         return PermanentContact(None, RESTITUTION_THRESHOLD, None)
-    threshold = float(ContactModel(case.contact).permanent_contact_threshold())
+    threshold = float(SpringDamperModel(case.contact).permanent_contact_threshold())
     return PermanentContact(threshold, RESTITUTION_THRESHOLD, 1 - threshold / case.table.amplitude)
 
 

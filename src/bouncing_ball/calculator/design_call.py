@@ -18,10 +18,10 @@ from bouncing_ball.calculator.design import Design, describe, families, judged
 from bouncing_ball.calculator.judgement import QUANTITIES, Judgement, assess, percent
 from bouncing_ball.calculator.needed import RATIOS, Needed, needed
 from bouncing_ball.calculator.units import KINDS, number, shown
+from bouncing_ball.contacts.law_signature import free_impact
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError, require
-from bouncing_ball.impacts.law_signature import free_impact
-from bouncing_ball.impacts.release import Release
-from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits.interface import OBSERVABLES
 from bouncing_ball.orbits.law_calls import rigid_speed
 from bouncing_ball.orbits.restitution_model import RestitutionModel
@@ -99,7 +99,7 @@ def _hertz(
     zeta = loss(given, release)
     if zeta is None:
         raise ModelError("damping needs stiffness: a Hertz contact takes a restitution coefficient")
-    r = float(Contact(1.0, zeta, release).restitution)
+    r = float(SpringDamper(1.0, zeta, release).restitution)
     law = hertz(mass, given["reduced_modulus"], given["radius"], r, table)
     speed = rigid_speed(n or _lowest_stable(r, table.amplitude), r)
     time = float(free_impact(law, speed).duration) * table.time
@@ -235,7 +235,7 @@ def _choose(
             "damping needs stiffness, which is missing; to choose a contact, give its restitution "
             "instead"
         )
-    r = float(Contact(1.0, zeta, release).restitution)
+    r = float(SpringDamper(1.0, zeta, release).restitution)
     index = n or _lowest_stable(r, table.amplitude)
     if quantity in OBSERVABLES:
         RestitutionModel(r).require_orbit(index, table.amplitude)

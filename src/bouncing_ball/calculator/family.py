@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from bouncing_ball.calculator.case import Case
-from bouncing_ball.impacts.signature import Instant
-from bouncing_ball.impacts.spring_damper import Contact, contact_force
+from bouncing_ball.contacts.signature import Instant
+from bouncing_ball.contacts.spring_damper import SpringDamper, contact_force
 from bouncing_ball.orbits import error_law
 from bouncing_ball.orbits.interface import ImpactModel, Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
@@ -139,12 +139,12 @@ def first_order(instant: Instant, n: int, amplitude: float) -> tuple[Errors, boo
     return errors, bool(error_law.small_parameter(n, instant, amplitude) < error_law.STATED)
 
 
-def permanent_law(contact: Contact) -> float:
+def permanent_law(contact: SpringDamper) -> float:
     """|K₂|/ϖ², the error of the restitution model's permanent contact.
 
     Examples
     --------
-    >>> permanent_law(Contact(10.0, 0.0))
+    >>> permanent_law(SpringDamper(10.0, 0.0))
     0.01
     """
     second = error_law.permanent_contact_coefficient(contact.damping_ratio, contact.release)
@@ -167,7 +167,7 @@ def family(case: Case, n: int) -> Family:
     Examples
     --------
     >>> from bouncing_ball.calculator.case import Table
-    >>> from bouncing_ball.impacts.release import Release
+    >>> from bouncing_ball.contacts.release import Release
     >>> case = Case(1.0, Table(1.0, 0.1, 1.0), 100.0, 2.0, Release.DISPLACEMENT)
     >>> family(case, 1).exists
     False

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from bouncing_ball.calculator.family import first_order, permanent_law
-from bouncing_ball.impacts.release import Release
-from bouncing_ball.impacts.signature import LinearSignature
-from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.signature import LinearSignature
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits.interface import OBSERVABLES
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.studies.error_thresholds import Quantity
@@ -58,12 +58,12 @@ def needed(
     >>> round(found.frequency_ratio, 12), round(found.by_law, 12)
     (10.0, 10.0)
     """
-    simple = RestitutionModel(Contact(1.0, damping_ratio, release).restitution)
+    simple = RestitutionModel(SpringDamper(1.0, damping_ratio, release).restitution)
     if quantity in OBSERVABLES and not simple.orbit(n, lam).exists:
         return Needed(quantity, tolerance, None, None, None, NO_ORBIT, NO_ORBIT)
     found = search([damping_ratio], release, n, [lam], RATIOS, tolerance, (quantity,))
     ratios = [_number(float(ratio)) for ratio in found.threshold[:, 0, 0]]
-    unit = Contact(1.0, damping_ratio, release)
+    unit = SpringDamper(1.0, damping_ratio, release)
     if quantity == Quantity.PERMANENT_CONTACT:
         by_law: float | None = (permanent_law(unit) / tolerance) ** 0.5
     else:

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball.cli.contact_law import described, model_of, rigid_speed_of
+from bouncing_ball.contacts.permanent_contact import permanent_contact_minimum
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.impacts.permanent_contact import permanent_contact_minimum
-from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.motion.sequence import Status
-from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.error_law import coefficients, permanent_contact_coefficient
 from bouncing_ball.orbits.interface import OBSERVABLES, ImpactModel, Orbit, Side
@@ -20,13 +20,13 @@ from bouncing_ball.orbits.restitution_model import RestitutionModel
 Answer = dict[str, Any]
 
 
-def _contact(args: argparse.Namespace) -> Contact:
+def _contact(args: argparse.Namespace) -> SpringDamper:
     release = Release.of(args.release or Release.DISPLACEMENT)
     if args.damping_ratio is not None:
-        return Contact(args.frequency_ratio, args.damping_ratio, release)
+        return SpringDamper(args.frequency_ratio, args.damping_ratio, release)
     measured = args.measured_restitution is not None
     r = args.measured_restitution if measured else args.restitution
-    return Contact.from_restitution(r, args.frequency_ratio, release, measured=measured)
+    return SpringDamper.from_restitution(r, args.frequency_ratio, release, measured=measured)
 
 
 def _model(args: argparse.Namespace) -> ImpactModel:
@@ -37,7 +37,7 @@ def _model(args: argparse.Namespace) -> ImpactModel:
         return RestitutionModel(r)
     contact = _contact(args)
     return (
-        ContactModel(contact)
+        SpringDamperModel(contact)
         if args.model == "spring-damper"
         else CorrectedModel.of_contact(contact)
     )
@@ -55,7 +55,7 @@ def _measured(args: argparse.Namespace, model: ImpactModel, speed: float) -> Ans
     return _loss(_contact(args))
 
 
-def _loss(contact: Contact) -> Answer:
+def _loss(contact: SpringDamper) -> Answer:
     """What the contact loses: r of a free impact, and ζ."""
     return {
         "measured_restitution": float(contact.restitution),
@@ -181,7 +181,7 @@ def permanent_contact(args: argparse.Namespace) -> Answer:
     contact = _contact(args)
     zeta, release = contact.damping_ratio, contact.release
     answer = {
-        "threshold": float(ContactModel(contact).permanent_contact_threshold()),
+        "threshold": float(SpringDamperModel(contact).permanent_contact_threshold()),
         "minimum": None,
         "at_frequency_ratio": None,
     }

@@ -106,7 +106,7 @@ def _laws() -> str:
     """The contact laws, with the force and the parameters of each."""
     # Imported here: the laws need numpy.
     from bouncing_ball.cli.contact_law import options
-    from bouncing_ball.impacts.laws import LAWS
+    from bouncing_ball.contacts.laws import LAWS
 
     listed = (f"{law.name} {law.formula} ({', '.join(options(law))})" for law in LAWS.values())
     return "with the penetration p and a force over the weight of the ball: " + "; ".join(listed)

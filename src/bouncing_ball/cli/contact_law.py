@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from bouncing_ball.contacts.law_choice import law_named, law_of_impact
+from bouncing_ball.contacts.law_signature import LawSignature, free_impact
+from bouncing_ball.contacts.laws.contact_law import ContactLaw
+from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import ModelError
-from bouncing_ball.impacts.law_choice import law_named, law_of_impact
-from bouncing_ball.impacts.law_signature import LawSignature, free_impact
-from bouncing_ball.impacts.laws.contact_law import ContactLaw
-from bouncing_ball.impacts.release import Release
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.interface import ImpactModel, Side
 from bouncing_ball.orbits.law_calls import law_at_orbit, rigid_speed

@@ -37,7 +37,7 @@ def tolerance_file(given: str | None, record: Path) -> Path:
 def _compare(args: argparse.Namespace) -> tuple[list[str], int]:
     """Lines to print and the exit status, with the reports written."""
     # Imported here, so that --help and a mistyped argument need none of it.
-    from bouncing_ball.record.diff.reports import compare_and_report
+    from bouncing_ball.compare.reports import compare_and_report
     from bouncing_ball.record.reading import printable
 
     record, results = Path(args.record), Path(args.results)

@@ -104,8 +104,8 @@ def check_orbits(config: Mapping[str, Any]) -> None:
         One line that names the figure and says what is missing.
     """
     # Imported here: to refuse a mistyped key needs no scipy.
-    from bouncing_ball.impacts.spring_damper import Contact
-    from bouncing_ball.orbits.contact_model import ContactModel
+    from bouncing_ball.contacts.spring_damper import SpringDamper
+    from bouncing_ball.orbits.contact_model import SpringDamperModel
 
     for stage in STAGES.values():
         if not stage.one_motion:
@@ -113,9 +113,9 @@ def check_orbits(config: Mapping[str, Any]) -> None:
         part = stage.parameters(config)
         ratios = part["frequency_ratio"]
         for ratio in ratios if isinstance(ratios, list) else [ratios]:
-            contact = Contact.from_restitution(part["restitution"], ratio, config["release"])
+            contact = SpringDamper.from_restitution(part["restitution"], ratio, config["release"])
             try:
-                ContactModel(contact).require_admissible(part["n"], part["amplitude"])
+                SpringDamperModel(contact).require_admissible(part["n"], part["amplitude"])
             except ValueError as error:
                 raise ConfigurationError(
                     f"{stage.section}.frequency_ratio = {ratio}: {error}"

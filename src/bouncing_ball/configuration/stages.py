@@ -451,7 +451,7 @@ _AUDIT = (
         "claims",
         Kind.TABLE,
         "Verdicts on the paper's claims",
-        "audit.claims.assessment.verdicts",
+        "claims.assessment.verdicts",
         "ledger",
     ),
 )

@@ -20,8 +20,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError
-from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.motion.angles import sine_and_versine
 from bouncing_ball.motion.ensembles import pick
 from bouncing_ball.motion.first_zero import State, Zero, first_zero
@@ -61,7 +61,7 @@ class Oscillator(NamedTuple):
         return Oscillator(*(pick(x, which) for x in self))
 
 
-def oscillator(contact: Contact, amplitude: ArrayLike) -> Oscillator:
+def oscillator(contact: SpringDamper, amplitude: ArrayLike) -> Oscillator:
     """Constants of the contact of each ball; scalars stay scalars.
 
     Raises

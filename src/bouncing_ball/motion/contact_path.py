@@ -6,8 +6,8 @@ below it, or that is longer than the collocation solves for, is integrated.
 
 import numpy as np
 
-from bouncing_ball.impacts.collocation import Contacts, contacts, path
-from bouncing_ball.impacts.laws.contact_law import ContactLaw
+from bouncing_ball.contacts.collocation import Contacts, contacts, path
+from bouncing_ball.contacts.laws.contact_law import ContactLaw
 from bouncing_ball.motion.law_motion import Touch, state_at
 
 # Of the duration: another contact than the simulated one is not used.
@@ -25,7 +25,7 @@ def contact_path(
     --------
     Half an oscillation of an elastic contact, at its greatest depth v/ϖ:
 
-    >>> from bouncing_ball.impacts.laws.linear import Linear
+    >>> from bouncing_ball.contacts.laws.linear import Linear
     >>> one, zero = np.ones(1), np.zeros(1)
     >>> touch, duration = Touch(zero, 1000.0 * one, zero, 0.0), 1e-3 * np.pi * one
     >>> depth, _ = contact_path(Linear(1e3, 0.0), touch, duration, np.array([0]), duration / 2)

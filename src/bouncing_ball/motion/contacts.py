@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.angles import reduce_angle, table
 from bouncing_ball.motion.contact_motion import ContactMotion, Oscillator, oscillator, release
 from bouncing_ball.motion.ensembles import BLOCK, flatten
@@ -80,22 +80,22 @@ class _SpringDamper(NamedTuple):
         return impact, departure.duration + time
 
 
-def _prepare(contact: Contact, amplitude, *states):
+def _prepare(contact: SpringDamper, amplitude, *states):
     """Constants of the contacts, states as flat arrays, and their shape."""
     parameters = (contact.frequency_ratio, contact.damping_ratio, amplitude)
     (omega, zeta, lam), states, shape = flatten(parameters, states)
-    constants = oscillator(Contact(omega, zeta, contact.release), lam)
+    constants = oscillator(SpringDamper(omega, zeta, contact.release), lam)
     return _SpringDamper(constants), states, shape
 
 
 def simulate(
-    contact: Contact, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
+    contact: SpringDamper, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
 ) -> ImpactSequence:
     """Follow balls from an impact through a number of impacts, the first included.
 
     Parameters
     ----------
-    contact : Contact
+    contact : SpringDamper
         ϖ, ζ < 1 and the release rule; arrays give each ball its own.
     amplitude : array_like
         Λ.
@@ -113,7 +113,7 @@ def simulate(
     --------
     An elastic ball on a stiff table at rest keeps its speed:
 
-    >>> sequence = simulate(Contact(100.0, 0.0), 0.0, 0.0, -2.0, 3)
+    >>> sequence = simulate(SpringDamper(100.0, 0.0), 0.0, 0.0, -2.0, 3)
     >>> sequence.impact_velocity.round(13).tolist()
     [-2.0, -2.0, -2.0]
     """
@@ -123,7 +123,7 @@ def simulate(
 
 
 def contact_cycle(
-    contact: Contact, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike
+    contact: SpringDamper, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike
 ) -> Cycle:
     """The Poincaré map: from one impact (φ, δ′) to the next.
 
@@ -131,7 +131,7 @@ def contact_cycle(
     --------
     On a table at rest an undamped ball returns with the velocity it came with:
 
-    >>> cycle = contact_cycle(Contact(100.0, 0.0), 0.0, 0.0, -2.0)
+    >>> cycle = contact_cycle(SpringDamper(100.0, 0.0), 0.0, 0.0, -2.0)
     >>> round(float(cycle.relative_velocity), 13)
     -2.0
     """

@@ -1,6 +1,6 @@
 r"""Impacts of the corrected restitution model: instant, release, flight, landing.
 
-The impact is that of :mod:`bouncing_ball.impacts.instant_map`; the flight that
+The impact is that of :mod:`bouncing_ball.contacts.corrected_map`; the flight that
 follows is looked at from the end of the contact on, D - t_c after the
 instant. There the ball leaves if it rises and comes above the table's level.
 If not, the impact was too weak for its load, v of the order of a D, and the
@@ -21,8 +21,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.impacts.instant_map import Hit, impact, meeting, start_of
-from bouncing_ball.impacts.signature import Signature
+from bouncing_ball.contacts.corrected_map import Hit, impact, meeting, start_of
+from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.motion.angles import reduce_angle, table
 from bouncing_ball.motion.ensembles import BLOCK, flatten, pick
 from bouncing_ball.motion.first_zero import State, first_zero
@@ -226,9 +226,9 @@ def simulate(
     --------
     An elastic ball on a table at rest keeps its speed:
 
-    >>> from bouncing_ball.impacts.signature import LinearSignature
-    >>> from bouncing_ball.impacts.spring_damper import Contact
-    >>> law = LinearSignature(Contact(100.0, 0.0))
+    >>> from bouncing_ball.contacts.signature import LinearSignature
+    >>> from bouncing_ball.contacts.spring_damper import SpringDamper
+    >>> law = LinearSignature(SpringDamper(100.0, 0.0))
     >>> simulate(law, 0.0, 0.0, -2.0, 3).impact_velocity.round(13).tolist()
     [-2.0, -2.0, -2.0]
     """
@@ -244,9 +244,9 @@ def corrected_cycle(
 
     Examples
     --------
-    >>> from bouncing_ball.impacts.signature import LinearSignature
-    >>> from bouncing_ball.impacts.spring_damper import Contact
-    >>> law = LinearSignature(Contact(100.0, 0.0))
+    >>> from bouncing_ball.contacts.signature import LinearSignature
+    >>> from bouncing_ball.contacts.spring_damper import SpringDamper
+    >>> law = LinearSignature(SpringDamper(100.0, 0.0))
     >>> round(float(corrected_cycle(law, 0.0, 0.0, -2.0).relative_velocity), 13)
     -2.0
     """

@@ -5,8 +5,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.impacts.laws.contact_law import ContactLaw
-from bouncing_ball.impacts.spring_damper import contact_flow
+from bouncing_ball.contacts.laws.contact_law import ContactLaw
+from bouncing_ball.contacts.spring_damper import contact_flow
 from bouncing_ball.motion.contact_path import contact_path
 from bouncing_ball.motion.landing import Flight
 from bouncing_ball.motion.law_motion import Touch
@@ -42,7 +42,7 @@ def history(sequence: ImpactSequence, time: ArrayLike, ball: int | tuple[int, ..
 
     Examples
     --------
-    >>> from bouncing_ball.motion.instants import simulate
+    >>> from bouncing_ball.motion.restitution import simulate
     >>> history(simulate(1.0, 0.0, 0.0, 2.0, 2), [0.0, 2.0, 4.0]).height.tolist()
     [0.0, 2.0, 0.0]
     """

@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.impacts.laws.contact_law import ContactLaw
-from bouncing_ball.impacts.release import Release
+from bouncing_ball.contacts.laws.contact_law import ContactLaw
+from bouncing_ball.contacts.release import Release
 from bouncing_ball.motion import law_motion
 from bouncing_ball.motion.angles import reduce_angle, table
 from bouncing_ball.motion.corrected_impacts import Rise
@@ -150,7 +150,7 @@ def simulate(
     --------
     An elastic ball on a hard table at rest keeps its speed:
 
-    >>> from bouncing_ball.impacts.laws.hunt_crossley import HuntCrossley
+    >>> from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
     >>> sequence = simulate(HuntCrossley(1e6, 0.0), 0.0, 0.0, -2.0, 3)
     >>> sequence.impact_velocity.round(11).tolist()
     [-2.0, -2.0, -2.0]
@@ -167,7 +167,7 @@ def law_cycle(
 
     Examples
     --------
-    >>> from bouncing_ball.impacts.laws.hunt_crossley import HuntCrossley
+    >>> from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
     >>> cycle = law_cycle(HuntCrossley(1e6, 0.0), 0.0, 0.0, -2.0)
     >>> round(float(cycle.relative_velocity), 11)
     -2.0

@@ -27,10 +27,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.impacts.contact_scales import scales
-from bouncing_ball.impacts.laws.contact_law import ContactLaw
-from bouncing_ball.impacts.quadrature import scheme
-from bouncing_ball.impacts.release import Release
+from bouncing_ball.contacts.contact_scales import scales
+from bouncing_ball.contacts.laws.contact_law import ContactLaw
+from bouncing_ball.contacts.quadrature import scheme
+from bouncing_ball.contacts.release import Release
 from bouncing_ball.motion.ensembles import pick
 
 _NODES = 16
@@ -335,7 +335,7 @@ def release(law: ContactLaw, touch: Touch) -> ContactEnd:
 
     Examples
     --------
-    >>> from bouncing_ball.impacts.laws.linear import Linear
+    >>> from bouncing_ball.contacts.laws.linear import Linear
     >>> zero, two = np.zeros(1), np.full(1, 2.0)
     >>> end = release(Linear(1e3, 0.0), Touch(zero, two, zero, zero))
     >>> end.rate.round(12).tolist()
@@ -371,7 +371,7 @@ def state_at(law: ContactLaw, touch: Touch, time: np.ndarray) -> tuple[np.ndarra
 
     Examples
     --------
-    >>> from bouncing_ball.impacts.laws.linear import Linear
+    >>> from bouncing_ball.contacts.laws.linear import Linear
     >>> zero, one = np.zeros(1), np.ones(1)
     >>> touch = Touch(zero, 1e3 * one, zero, zero)
     >>> depth, rate = state_at(Linear(1e3, 0.0), touch, 5e-4 * np.pi * one)

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.impacts.laws.contact_law import ContactLaw
+from bouncing_ball.contacts.laws.contact_law import ContactLaw
 from bouncing_ball.motion.law_motion import ContactEnd, Touch, release
 
 # Nodes of a cell along each axis, its widths in ln v and φ, and how often it is quartered.
@@ -50,7 +50,7 @@ class ReleaseTable:
 
     Examples
     --------
-    >>> from bouncing_ball.impacts.laws.linear import Linear
+    >>> from bouncing_ball.contacts.laws.linear import Linear
     >>> speed, zero = np.full(1000, 2.0), np.zeros(1000)
     >>> table = ReleaseTable(Linear(1e3, 0.0), 0.0)
     >>> again = [table.release(Touch(zero, speed, zero, 0.0)).rate for _ in range(2)]

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.impacts.restitution_map import exact_map_jacobian
+from bouncing_ball.contacts.restitution_map import exact_map_jacobian
 from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.motion.sequence import ImpactSequence
 
@@ -30,7 +30,7 @@ def period(sequence: ImpactSequence, longest: int, closeness: float) -> np.ndarr
 
     Examples
     --------
-    >>> from bouncing_ball.motion.instants import simulate
+    >>> from bouncing_ball.motion.restitution import simulate
     >>> period(simulate(1.0, 0.0, 0.0, np.pi, 8), 4, 1e-9).tolist()
     1
 
@@ -98,7 +98,7 @@ def stretching(sequence: ImpactSequence, restitution: float, skip: int) -> Stret
     --------
     On a table at rest a velocity only shrinks, and a phase stays off for ever:
 
-    >>> from bouncing_ball.motion.instants import simulate
+    >>> from bouncing_ball.motion.restitution import simulate
     >>> parting = stretching(simulate(0.5, 0.0, 0.0, [4.0, 3.0], 16), 0.5, 12)
     >>> round(parting.exponent()[0], 5), parting.impacts.tolist()
     (0.0, [3, 3])

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.impacts.records import in_words
-from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.contacts.batch import in_words
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.angles import reduce_angle
 
 
@@ -46,7 +46,7 @@ class ImpactSequence:
     ----------
     amplitude : array
         Λ of each ball.
-    contact : Contact or None
+    contact : SpringDamper or None
         The spring-damper, or None for the restitution model.
     time, phase : array
         Time of the impact since the first one, and the table's phase, in [-π, π].
@@ -66,7 +66,7 @@ class ImpactSequence:
     """
 
     amplitude: np.ndarray
-    contact: Contact | None
+    contact: SpringDamper | None
     time: np.ndarray
     phase: np.ndarray
     displacement: np.ndarray

@@ -12,10 +12,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError
-from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.motion.sequence import ImpactSequence
-from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.interface import ImpactModel, Orbit, Side
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 
@@ -57,7 +57,9 @@ def model(
     RestitutionModel(restitution=0.85)
     """
     if frequency_ratio is not None:
-        return ContactModel(Contact.from_restitution(restitution, frequency_ratio, release))
+        return SpringDamperModel(
+            SpringDamper.from_restitution(restitution, frequency_ratio, release)
+        )
     if release != "displacement":
         raise ModelError("a release needs a contact: give its frequency ratio ϖ as well")
     return RestitutionModel(restitution)
@@ -87,9 +89,9 @@ def orbit(
     Examples
     --------
     >>> orbit(1, 1.0, restitution=0.85, frequency_ratio=10.0)  # doctest: +ELLIPSIS
-    ContactOrbit
+    SpringDamperOrbit
       n                     1
-      law                   Contact(frequency_ratio=10, damping_ratio=0.0516623, ...)
+      law                   SpringDamper(frequency_ratio=10, damping_ratio=0.0516623, ...)
       amplitude             1
       phase                 1.16848
       contact_duration      0.314782

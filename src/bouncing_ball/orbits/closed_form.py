@@ -6,7 +6,7 @@ At a fixed contact duration D they are *linear* in ::
     X = Λ cos φ,    Y = Λ sin φ,    u = δ′ at impact
 
 With T = 2πn - D the flight time, and g, G, h the responses of the contact at
-time D (see :mod:`bouncing_ball.impacts.spring_damper`), they read
+time D (see :mod:`bouncing_ball.contacts.spring_damper`), they read
 
 * release (Eq. 23): ``δ_b + κ δ′_b = 0``, that is ``u g + X Im h + Y Re h = G``
   for the displacement release, κ = 0;
@@ -22,7 +22,7 @@ For a stiff contact the branch occupies a range of D of order 1/ϖ² around the
 free half period, where D itself has too few digits left. The curve is
 therefore parametrised by the *excess angle* ε, ``ϖ_d D = θ₀ + ε``, with θ₀ the
 angle at which the free contact would be released, π - 2α with sin α = κϖ/2
-(:mod:`bouncing_ball.impacts.release`). The one coefficient that is sensitive,
+(:mod:`bouncing_ball.contacts.release`). The one coefficient that is sensitive,
 that of u in the release condition, is then proportional to sin ε.
 
 Differentiating the three equations along ε gives dΛ/dε. It vanishes at the
@@ -40,8 +40,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.spring_damper import SpringDamper, responses
 from bouncing_ball.errors import require
-from bouncing_ball.impacts.spring_damper import Contact, responses
 
 # Points computed at once: as many as keep the intermediate arrays in the cache.
 _BLOCK = 8192
@@ -96,7 +96,7 @@ class _Responses(NamedTuple):
 def _responses(duration, sin_angle, cos_angle, sin_d, cos_d, decay, omega, zeta, root):
     """Responses at time D, from the sine and cosine of ϖ_d D and of D.
 
-    The closed quotients of :mod:`bouncing_ball.impacts.oscillator` in real
+    The closed quotients of :mod:`bouncing_ball.contacts.oscillator` in real
     arithmetic; where they lose digits (short or resonant contacts) the values
     are taken from there.
     """
@@ -144,14 +144,14 @@ def _solve(rows, right):
     return solve(*right), solve
 
 
-def branch_point(excess: ArrayLike, contact: Contact, n: ArrayLike) -> BranchPoint:
+def branch_point(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> BranchPoint:
     """The n-T orbit whose contact lasts ``D = (θ₀ + ε)/ϖ_d``.
 
     Parameters
     ----------
     excess : array_like
         ε, in radians of the contact's own oscillation.
-    contact : Contact
+    contact : SpringDamper
         ϖ, ζ < 1 and the release rule.
     n : array_like of int
         Index of the family.
@@ -166,7 +166,7 @@ def branch_point(excess: ArrayLike, contact: Contact, n: ArrayLike) -> BranchPoi
     A stiff elastic contact lasts exactly half a free period when the table's
     acceleration balances gravity, Λ sin φ = 1:
 
-    >>> point = branch_point(0.0, Contact(1e6, 0.0), 1)
+    >>> point = branch_point(0.0, SpringDamper(1e6, 0.0), 1)
     >>> bool(abs(point.y - 1) < 1e-5), bool(abs(point.u + np.pi) < 1e-5)
     (True, True)
     """

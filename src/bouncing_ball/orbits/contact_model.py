@@ -8,13 +8,13 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.impacts.permanent_contact import permanent_contact_threshold
-from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.contacts import contact_cycle, simulate
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence
 from bouncing_ball.orbits import limits
 from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
 from bouncing_ball.orbits.interface import ImpactModel, Orbit, Side
 from bouncing_ball.orbits.projection import nearest_excess
@@ -25,25 +25,25 @@ _UNITS = 8
 
 
 @dataclass(frozen=True, repr=False)
-class ContactModel(ImpactModel):
+class SpringDamperModel(ImpactModel):
     """A ball on a spring-damper.
 
     Parameters
     ----------
-    contact : Contact
+    contact : SpringDamper
         ϖ, ζ < 1 and the release rule.
 
     Examples
     --------
-    >>> model = ContactModel(Contact.from_restitution(0.85, 2.0))
+    >>> model = SpringDamperModel(SpringDamper.from_restitution(0.85, 2.0))
     >>> model.orbits(1, 0.9).contact_duration.round(3).tolist()
     [1.602, 2.249, 5.182]
     """
 
-    contact: Contact
+    contact: SpringDamper
 
     name: ClassVar[str] = "spring-damper"
-    orbit_type: ClassVar[type[Orbit]] = ContactOrbit
+    orbit_type: ClassVar[type[Orbit]] = SpringDamperOrbit
     softens: ClassVar[bool] = True
 
     @property
@@ -52,11 +52,13 @@ class ContactModel(ImpactModel):
         contact = self.contact
         return f"ϖ = {float(contact.frequency_ratio):g}, ζ = {float(contact.damping_ratio):.4g}"
 
-    def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> ContactOrbit:
+    def orbit(
+        self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE
+    ) -> SpringDamperOrbit:
         """The n-T orbits at Λ on a side of the saddle-node; NaN where there is none."""
         return limits.orbit_at(self.contact, n, amplitude, Side(side))
 
-    def orbits(self, n: int, amplitude: float) -> ContactOrbit:
+    def orbits(self, n: int, amplitude: float) -> SpringDamperOrbit:
         """All n-T orbits of one contact at one Λ, in order of contact duration."""
         return limits.orbits_at(self.contact, n, amplitude)
 
@@ -64,14 +66,14 @@ class ContactModel(ImpactModel):
         """Why :meth:`orbit` finds none."""
         return limits.absence(self.contact, n, amplitude, Side(side))
 
-    def saddle_node(self, n: ArrayLike) -> ContactOrbit:
+    def saddle_node(self, n: ArrayLike) -> SpringDamperOrbit:
         """The orbits at the saddle-node; NaN where the branch has none.
 
         Without dissipation it is at Λ = 0, which is a difference of terms as large as z′_i.
 
         Examples
         --------
-        >>> ContactModel(Contact(10.0, 0.0)).saddle_node([1, 2]).amplitude.tolist()
+        >>> SpringDamperModel(SpringDamper(10.0, 0.0)).saddle_node([1, 2]).amplitude.tolist()
         [0.0, 0.0]
         """
         found = self._on_branch(limits.saddle_node(self.contact, n), n)
@@ -79,17 +81,17 @@ class ContactModel(ImpactModel):
         lam = np.where(found.amplitude <= rounding, 0.0, found.amplitude)
         return replace(found, amplitude=lam)
 
-    def period_doubling(self, n: ArrayLike) -> ContactOrbit:
+    def period_doubling(self, n: ArrayLike) -> SpringDamperOrbit:
         """The orbits at the period doubling nearest to it; NaN where there is none."""
         return self._on_branch(limits.period_doubling(self.contact, n), n)
 
-    def _on_branch(self, excess: np.ndarray, n) -> ContactOrbit:
-        return ContactOrbit.from_branch(branch_point(excess, self.contact, n), self.contact, n)
+    def _on_branch(self, excess: np.ndarray, n) -> SpringDamperOrbit:
+        return SpringDamperOrbit.from_branch(branch_point(excess, self.contact, n), self.contact, n)
 
-    def nearest(self, orbit: ContactOrbit) -> ContactOrbit:
+    def nearest(self, orbit: SpringDamperOrbit) -> SpringDamperOrbit:
         """The orbits of the closed form nearest to given ones in (Λ cos φ, Λ sin φ)."""
         point = branch_point(nearest_excess(orbit), orbit.contact, orbit.n)
-        return ContactOrbit.from_branch(point, orbit.contact, orbit.n)
+        return SpringDamperOrbit.from_branch(point, orbit.contact, orbit.n)
 
     def system(self, n: int | np.ndarray) -> OrbitSystem:
         """The paper's equations, continued in Λ."""

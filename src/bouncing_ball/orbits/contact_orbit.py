@@ -8,7 +8,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.contacts import contact_cycle
 from bouncing_ball.motion.sequence import Cycle
 from bouncing_ball.orbits.closed_form import BranchPoint
@@ -21,26 +21,26 @@ _RESONANCE = 1e-4
 _SAMPLES = 4000
 
 
-class ContactOrbit(Orbit):
-    """n-T orbits of the spring-damper model; ``law`` is the :class:`Contact`.
+class SpringDamperOrbit(Orbit):
+    """n-T orbits of the spring-damper model; ``law`` is the :class:`SpringDamper`.
 
     Examples
     --------
-    >>> from bouncing_ball.orbits.contact_model import ContactModel
-    >>> orbit = ContactModel(Contact(5.0, 0.0)).orbit(1, 0.5)
+    >>> from bouncing_ball.orbits.contact_model import SpringDamperModel
+    >>> orbit = SpringDamperModel(SpringDamper(5.0, 0.0)).orbit(1, 0.5)
     >>> float(orbit.determinant())
     1.0
     """
 
     @classmethod
-    def from_branch(cls, point: BranchPoint, contact: Contact, n: int | np.ndarray) -> Self:
+    def from_branch(cls, point: BranchPoint, contact: SpringDamper, n: int | np.ndarray) -> Self:
         """The orbit at a point of the closed-form branch."""
         return cls(
             n, contact, point.amplitude, point.phase, point.contact_duration, point.u + point.x
         )
 
     @property
-    def contact(self) -> Contact:
+    def contact(self) -> SpringDamper:
         """ϖ, ζ and the release rule."""
         return self.law
 
@@ -141,8 +141,8 @@ class ContactOrbit(Orbit):
 
         Examples
         --------
-        >>> from bouncing_ball.orbits.contact_model import ContactModel
-        >>> model = ContactModel(Contact(10.0, 0.05))
+        >>> from bouncing_ball.orbits.contact_model import SpringDamperModel
+        >>> model = SpringDamperModel(SpringDamper(10.0, 0.05))
         >>> bool(model.orbit(1, 1.0).is_admissible())
         True
         >>> bool(model.orbit(1, 2.3, "unstable").is_admissible())
@@ -153,7 +153,7 @@ class ContactOrbit(Orbit):
             return self.ravel().is_admissible()[0]
         resonant = ~self.can_be_simulated()
         admissible = np.zeros(shape, dtype=bool)
-        admissible[~resonant] = super(ContactOrbit, self[~resonant]).is_admissible()
+        admissible[~resonant] = super(SpringDamperOrbit, self[~resonant]).is_admissible()
         for index in zip(*np.nonzero(resonant), strict=True):
             admissible[index] = self[index]._sampled()
         return admissible

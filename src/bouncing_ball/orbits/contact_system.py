@@ -14,12 +14,12 @@ from enum import StrEnum
 
 import numpy as np
 
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.continuation.events import Event
-from bouncing_ball.impacts.release import Release
-from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.branch_events import branch_events
-from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.stability import trace_and_determinant
 
 
@@ -55,7 +55,7 @@ class OrbitSystem:
     fixed: float | np.ndarray
     release: Release = Release.DISPLACEMENT
 
-    def orbit(self, y: np.ndarray) -> ContactOrbit:
+    def orbit(self, y: np.ndarray) -> SpringDamperOrbit:
         """The orbits at points y of shape (..., 4)."""
         phase, impact, angle, p = (y[..., k] for k in range(4))
         fixed = np.broadcast_to(np.asarray(self.fixed, dtype=float), p.shape)
@@ -64,10 +64,10 @@ class OrbitSystem:
             amplitude, omega = p, fixed
         else:
             amplitude, omega = fixed, np.exp(p)
-        contact = Contact(omega, zeta, self.release)
-        return ContactOrbit(self.n, contact, amplitude, phase, angle / omega, impact)
+        contact = SpringDamper(omega, zeta, self.release)
+        return SpringDamperOrbit(self.n, contact, amplitude, phase, angle / omega, impact)
 
-    def point(self, orbit: ContactOrbit) -> np.ndarray:
+    def point(self, orbit: SpringDamperOrbit) -> np.ndarray:
         """y of given orbits."""
         omega = np.asarray(orbit.contact.frequency_ratio)
         by_amplitude = self.parameter is Parameter.AMPLITUDE
@@ -140,7 +140,7 @@ class OrbitSystem:
 
         Close to a solution for ϖ ≫ 1 only.
         """
-        contact = Contact(frequency_ratio, self.damping_ratio, self.release)
+        contact = SpringDamper(frequency_ratio, self.damping_ratio, self.release)
         r = float(contact.restitution)
         phase = float(restitution_orbits.phase(self.n, r, amplitude))
         angle = float(contact.free_duration * contact.frequency_ratio)

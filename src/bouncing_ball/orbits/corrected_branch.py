@@ -28,7 +28,7 @@ period doubling::
 
 A law whose signature depends on the speed has the curve ``nπ - X = r(v) v + σ(v) a`` in
 place of the line, and at each of its points a tangent of the same form
-(:meth:`~bouncing_ball.impacts.signature.Instant.tangent`): with b in place of r and e
+(:meth:`~bouncing_ball.contacts.signature.Instant.tangent`): with b in place of r and e
 in place of t_c, and (b - r) v added to the line's right side. The linearised cycle
 is that of the tangent, so that trace and determinant are as above, and so are the
 conditions at the saddle-node and at the period doubling. The points themselves come
@@ -40,7 +40,7 @@ All quantities are dimensionless; all functions broadcast.
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.impacts.signature import Instant
+from bouncing_ball.contacts.signature import Instant
 
 
 def _level(

@@ -7,9 +7,9 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.impacts.permanent_contact import RESTITUTION_THRESHOLD
-from bouncing_ball.impacts.signature import LinearSignature, Signature
-from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
+from bouncing_ball.contacts.signature import LinearSignature, Signature
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.corrected_impacts import corrected_cycle, simulate
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence
 from bouncing_ball.orbits import corrected_branch as formulas
@@ -38,7 +38,7 @@ class CorrectedModel(ImpactModel):
 
     Examples
     --------
-    >>> model = CorrectedModel.of_contact(Contact.from_restitution(0.65, 10.0))
+    >>> model = CorrectedModel.of_contact(SpringDamper.from_restitution(0.65, 10.0))
     >>> round(float(model.orbit(1, 1.0).max_height), 3)
     5.215
     """
@@ -49,7 +49,7 @@ class CorrectedModel(ImpactModel):
     orbit_type: ClassVar[type[Orbit]] = CorrectedOrbit
 
     @classmethod
-    def of_contact(cls, contact: Contact) -> "CorrectedModel":
+    def of_contact(cls, contact: SpringDamper) -> "CorrectedModel":
         """The model of a spring-damper contact."""
         return cls(LinearSignature(contact))
 

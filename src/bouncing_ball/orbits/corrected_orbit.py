@@ -9,8 +9,14 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.impacts.instant_map import Hit, impact, instant_jacobian, meeting, start_jacobian
-from bouncing_ball.impacts.signature import Instant, Signature
+from bouncing_ball.contacts.corrected_map import (
+    Hit,
+    impact,
+    instant_jacobian,
+    meeting,
+    start_jacobian,
+)
+from bouncing_ball.contacts.signature import Instant, Signature
 from bouncing_ball.motion.corrected_impacts import corrected_cycle
 from bouncing_ball.motion.sequence import Cycle
 from bouncing_ball.orbits import corrected_branch as formulas
@@ -22,9 +28,9 @@ class CorrectedOrbit(Orbit):
 
     Examples
     --------
-    >>> from bouncing_ball.impacts.signature import LinearSignature
-    >>> from bouncing_ball.impacts.spring_damper import Contact
-    >>> orbit = CorrectedOrbit.at(1, LinearSignature(Contact(np.pi, 0.0)), 0.8, np.pi / 2)
+    >>> from bouncing_ball.contacts.signature import LinearSignature
+    >>> from bouncing_ball.contacts.spring_damper import SpringDamper
+    >>> orbit = CorrectedOrbit.at(1, LinearSignature(SpringDamper(np.pi, 0.0)), 0.8, np.pi / 2)
     >>> float(orbit.bounce_velocity) == np.pi - 0.5, round(float(orbit.phase) - np.pi / 2, 12)
     (True, -0.5)
     """

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bouncing_ball.contacts.corrected_map import impact
+from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.continuation.events import Event
-from bouncing_ball.impacts.instant_map import impact
-from bouncing_ball.impacts.signature import Signature
 from bouncing_ball.orbits.branch_events import bifurcations
 from bouncing_ball.orbits.corrected_orbit import CorrectedOrbit
 
@@ -28,9 +28,9 @@ class CorrectedSystem:
 
     Examples
     --------
-    >>> from bouncing_ball.impacts.signature import LinearSignature
-    >>> from bouncing_ball.impacts.spring_damper import Contact
-    >>> system = CorrectedSystem(1, LinearSignature(Contact(5.0, 0.0)))
+    >>> from bouncing_ball.contacts.signature import LinearSignature
+    >>> from bouncing_ball.contacts.spring_damper import SpringDamper
+    >>> system = CorrectedSystem(1, LinearSignature(SpringDamper(5.0, 0.0)))
     >>> [abs(round(float(x), 12)) for x in system.residual(np.array([np.pi / 2, np.pi, 1.0]))]
     [0.0, 0.0]
     """

@@ -48,9 +48,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.impacts.release import Release
-from bouncing_ball.impacts.signature import Instant, LinearSignature
-from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.signature import Instant, LinearSignature
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits import restitution_orbit
 
 STATED = 0.3
@@ -192,7 +192,7 @@ def coefficients(
     >>> round(float(law.max_height) * (1 + 2 / np.pi**2), 14)
     -1.0
     """
-    contact = Contact(1.0, np.asarray(damping_ratio, dtype=float), release)
+    contact = SpringDamper(1.0, np.asarray(damping_ratio, dtype=float), release)
     return first_order(n, LinearSignature(contact)(), amplitude)
 
 

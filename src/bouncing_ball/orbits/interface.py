@@ -2,7 +2,7 @@
 
 Callers ask; none of them tests which model it has::
 
-    model = ContactModel(Contact.from_restitution(0.85, 10.0))  # or RestitutionModel(0.85)
+    model = SpringDamperModel(SpringDamper.from_restitution(0.85, 10.0))  # or RestitutionModel(…)
     orbit = model.require_orbit(1, 0.9)                # the 1-T orbit at Λ = 0.9
     orbit.phase, orbit.contact_duration, orbit.bounce_velocity, orbit.is_stable()
     model.saddle_node(1).amplitude, model.period_doubling(1).amplitude
@@ -25,9 +25,9 @@ from typing import Any, ClassVar, Protocol, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.batch import Batch, in_words
 from bouncing_ball.continuation.events import Event
 from bouncing_ball.errors import ModelError, NoOrbitError, require
-from bouncing_ball.impacts.records import Record, in_words
 from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence
 from bouncing_ball.orbits import stability
@@ -107,14 +107,14 @@ def check_index(n: ArrayLike) -> None:
 
 
 @dataclass(frozen=True, repr=False)
-class Orbit(Record, ABC):
+class Orbit(Batch, ABC):
     """n-T orbits of one model, one per element of the (broadcast) arrays.
 
     Parameters
     ----------
     n : int or array of int
         Index of the family.
-    law : Record
+    law : Batch
         The law of the impact: what the model is made of.
     amplitude, phase : array
         Λ and the table's phase φ at the start of contact.
@@ -369,7 +369,7 @@ class System(Protocol):
         """Bifurcations, and the ends of the domain in which an orbit makes sense."""
 
 
-class ImpactModel(Record, ABC):
+class ImpactModel(Batch, ABC):
     """A law of the impact and its n-T orbits. Frozen dataclasses of arrays.
 
     ``name`` is what users call it; ``routes`` are the ways to its orbits.

@@ -9,9 +9,9 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.law_choice import law_of_impact
+from bouncing_ball.contacts.laws.contact_law import ContactLaw
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.impacts.law_choice import law_of_impact
-from bouncing_ball.impacts.laws.contact_law import ContactLaw
 from bouncing_ball.orbits.interface import Side
 from bouncing_ball.orbits.law_model import LawModel
 
@@ -51,8 +51,8 @@ def law_at_orbit(
 
     Examples
     --------
-    >>> from bouncing_ball.impacts.law_signature import free_impact
-    >>> from bouncing_ball.impacts.laws.tsuji import Tsuji
+    >>> from bouncing_ball.contacts.law_signature import free_impact
+    >>> from bouncing_ball.contacts.laws.tsuji import Tsuji
     >>> law = law_at_orbit(Tsuji, 0.65, 0.1, 1, 1.0)
     >>> speed = -LawModel(law).orbit(1, 1.0).relative_impact_velocity
     >>> round(float(free_impact(law, speed).duration), 12)

@@ -15,15 +15,15 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.law_permanent_contact import permanent_contact
+from bouncing_ball.contacts.law_signature import free_impact
+from bouncing_ball.contacts.laws.contact_law import ContactLaw
+from bouncing_ball.contacts.signature import Instant
 from bouncing_ball.continuation.branch import Branch, ContinuationError, continue_branch
 from bouncing_ball.continuation.corrector import NewtonSettings, newton
 from bouncing_ball.continuation.events import Event, LocationError, parameter_bound, vanishing
 from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.errors import ModelError
-from bouncing_ball.impacts.law_permanent_contact import permanent_contact
-from bouncing_ball.impacts.law_signature import free_impact
-from bouncing_ball.impacts.laws.contact_law import ContactLaw
-from bouncing_ball.impacts.signature import Instant
 from bouncing_ball.motion.law_impacts import law_cycle, simulate
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence
 from bouncing_ball.orbits import corrected_branch as corrected
@@ -58,7 +58,7 @@ def restitution_speed(n: ArrayLike, law: ContactLaw) -> tuple[np.ndarray, Instan
 
     Examples
     --------
-    >>> from bouncing_ball.impacts.laws.hunt_crossley import HuntCrossley
+    >>> from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
     >>> speed, _ = restitution_speed(1, HuntCrossley(1e3, 0.0))
     >>> round(float(speed / np.pi), 12)
     1.0
@@ -121,7 +121,7 @@ class LawModel(ImpactModel):
 
     Examples
     --------
-    >>> from bouncing_ball.impacts.laws.tsuji import Tsuji, tsuji_damping
+    >>> from bouncing_ball.contacts.laws.tsuji import Tsuji, tsuji_damping
     >>> model = LawModel(Tsuji(500.0, tsuji_damping(0.85)))
     >>> limits = model.saddle_node(1).amplitude, model.period_doubling(1).amplitude
     >>> [round(float(x), 3) for x in limits]

@@ -1,6 +1,6 @@
 r"""n-T orbits of a ball on a contact of any law: path, equations and stability.
 
-The contact of an orbit is that of :mod:`bouncing_ball.impacts.collocation`, and so are
+The contact of an orbit is that of :mod:`bouncing_ball.contacts.collocation`, and so are
 its derivatives. All quantities are dimensionless.
 """
 
@@ -10,8 +10,8 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.impacts.collocation import Contacts, contacts, path
-from bouncing_ball.impacts.laws.contact_law import ContactLaw
+from bouncing_ball.contacts.collocation import Contacts, contacts, path
+from bouncing_ball.contacts.laws.contact_law import ContactLaw
 from bouncing_ball.motion.law_impacts import law_cycle
 from bouncing_ball.motion.sequence import Cycle
 from bouncing_ball.orbits.highest import highest
@@ -23,7 +23,7 @@ class LawOrbit(Orbit):
 
     Examples
     --------
-    >>> from bouncing_ball.impacts.laws.hunt_crossley import HuntCrossley
+    >>> from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
     >>> from bouncing_ball.orbits.law_model import LawModel
     >>> orbit = LawModel(HuntCrossley(1e3, 0.0)).orbit(1, 0.5)
     >>> float(orbit.determinant())

@@ -13,10 +13,10 @@ fold. Entries for which the quantity does not exist are NaN.
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.ensembles import blocks
 from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.interface import Absence, Side, check_index
 from bouncing_ball.orbits.stability import period_doubling_function, saddle_node_function
 
@@ -36,13 +36,13 @@ _BLOCK = 1024
 _NEXT_TO = 1e-4
 
 
-def _columns(contact: Contact, n: ArrayLike, *more: ArrayLike):
+def _columns(contact: SpringDamper, n: ArrayLike, *more: ArrayLike):
     check_index(n)
     arrays = (contact.frequency_ratio, contact.damping_ratio, n, *more)
     return np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in arrays))
 
 
-def _range(contact: Contact, n: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+def _range(contact: SpringDamper, n: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """ε at short contacts, where Λ is beyond any use, and at D → 2πn."""
     start = contact.free_angle
     full = contact.damped_frequency * 2 * np.pi * np.asarray(n)
@@ -100,7 +100,7 @@ def _by_blocks(search, release, *columns):
 
 def _fold_function(release):
     def fold(excess, omega, zeta, n):
-        return branch_point(excess, Contact(omega, zeta, release), n).fold
+        return branch_point(excess, SpringDamper(omega, zeta, release), n).fold
 
     return fold
 
@@ -109,7 +109,7 @@ def _floquet_function(release, test):
     """A test function of stability along the branch, of arrays."""
 
     def floquet(excess, omega, zeta, n):
-        point = branch_point(excess, Contact(omega, zeta, release), n)
+        point = branch_point(excess, SpringDamper(omega, zeta, release), n)
         return test(point.trace, point.determinant)
 
     return floquet
@@ -129,7 +129,7 @@ def _zero(test, grid, values, args, *, last=False):
     return np.where(np.abs(test(root, *args)) <= smallest, root, np.nan)
 
 
-def saddle_node(contact: Contact, n: ArrayLike) -> np.ndarray:
+def saddle_node(contact: SpringDamper, n: ArrayLike) -> np.ndarray:
     """Excess angle ε of the saddle-node, the first zero of 1 - tr + det.
 
     dΛ/dε vanishes there too, and with more digits for a stiff contact: next to
@@ -145,7 +145,7 @@ def saddle_node(contact: Contact, n: ArrayLike) -> np.ndarray:
 
     Examples
     --------
-    >>> contact = Contact(1e4, 0.05)
+    >>> contact = SpringDamper(1e4, 0.05)
     >>> bool(abs(branch_point(saddle_node(contact, 1), contact, 1).phase) < 1e-3)
     True
     """
@@ -153,7 +153,7 @@ def saddle_node(contact: Contact, n: ArrayLike) -> np.ndarray:
 
 
 def _saddle_node(release, omega, zeta, n):
-    contact = Contact(omega, zeta, release)
+    contact = SpringDamper(omega, zeta, release)
     grid = _scan(*_range(contact, n), 1 / omega)
     return _fold(contact, n, grid, branch_point(grid, contact, n))
 
@@ -170,7 +170,7 @@ def _fold(contact, n, grid, points):
     return np.where(np.isnan(closer), root, closer)
 
 
-def period_doubling(contact: Contact, n: ArrayLike) -> np.ndarray:
+def period_doubling(contact: SpringDamper, n: ArrayLike) -> np.ndarray:
     """Excess angle ε of the period doubling nearest to the saddle-node.
 
     NaN where the stable side has none.
@@ -180,7 +180,7 @@ def period_doubling(contact: Contact, n: ArrayLike) -> np.ndarray:
 
 
 def _period_doubling(release, omega, zeta, n, fold):
-    low, high = _range(Contact(omega, zeta, release), n)
+    low, high = _range(SpringDamper(omega, zeta, release), n)
     end = np.where(np.isnan(fold), high, fold)
     # The part of the scan on the stable side; its points beyond collapse there.
     grid = np.minimum(_scan(low, high, 1 / omega), end)
@@ -191,7 +191,7 @@ def _period_doubling(release, omega, zeta, n, fold):
 
 def _surplus_function(release):
     def surplus(excess, omega, zeta, n, lam):
-        return branch_point(excess, Contact(omega, zeta, release), n).amplitude - lam
+        return branch_point(excess, SpringDamper(omega, zeta, release), n).amplitude - lam
 
     return surplus
 
@@ -201,7 +201,7 @@ def _stable_side(release, omega, zeta, n, lam):
 
     One scan brackets both: Λ falls along it.
     """
-    contact = Contact(omega, zeta, release)
+    contact = SpringDamper(omega, zeta, release)
     low, high = _range(contact, n)
     grid = _scan(low, high, 1 / omega)
     points = branch_point(grid, contact, n)
@@ -217,13 +217,13 @@ def _stable_side(release, omega, zeta, n, lam):
 
 
 def orbit_at(
-    contact: Contact, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE
-) -> ContactOrbit:
+    contact: SpringDamper, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE
+) -> SpringDamperOrbit:
     """The n-T orbits at given Λ; NaN entries where there is none.
 
     Parameters
     ----------
-    contact : Contact
+    contact : SpringDamper
         ϖ and ζ, scalars or arrays, and the release rule.
     n, amplitude : array_like
         Index of the family and Λ.
@@ -234,22 +234,22 @@ def orbit_at(
 
     Examples
     --------
-    >>> orbit = orbit_at(Contact(1e4, 0.0517), 1, 1.0)
+    >>> orbit = orbit_at(SpringDamper(1e4, 0.0517), 1, 1.0)
     >>> abs(round(float(orbit.bounce_velocity) / np.pi, 3))
     1.0
     """
     omega, zeta, n, lam = _columns(contact, n, amplitude)
-    local = Contact(omega, zeta, contact.release)
+    local = SpringDamper(omega, zeta, contact.release)
     if side is Side.STABLE:
         excess = _by_blocks(_stable_side, contact.release, omega, zeta, n, lam)
     else:
         excess = _by_blocks(_unstable_side, contact.release, omega, zeta, n, lam)
-    return ContactOrbit.from_branch(branch_point(excess, local, n), local, n)
+    return SpringDamperOrbit.from_branch(branch_point(excess, local, n), local, n)
 
 
 def _unstable_side(release, omega, zeta, n, lam):
     """ε of the orbit at Λ beyond the saddle-node that is nearest to it."""
-    contact = Contact(omega, zeta, release)
+    contact = SpringDamper(omega, zeta, release)
     fold, (_, high) = _saddle_node(release, omega, zeta, n), _range(contact, n)
     scale, surplus = _SCAN_START / omega, _surplus_function(release)
     steps = np.linspace(0, 1, _SCAN).reshape(-1, 1)
@@ -272,7 +272,7 @@ _FINE = 0.02
 _MOST = 200_000
 
 
-def orbits_at(contact: Contact, n: int, amplitude: float) -> ContactOrbit:
+def orbits_at(contact: SpringDamper, n: int, amplitude: float) -> SpringDamperOrbit:
     """All n-T orbits of one contact at one Λ, in order of contact duration.
 
     Every root of Λ(ε) = Λ at which the ball comes in and leaves. The turns of Λ
@@ -282,12 +282,12 @@ def orbits_at(contact: Contact, n: int, amplitude: float) -> ContactOrbit:
 
     Examples
     --------
-    >>> orbits = orbits_at(Contact(2.0, 0.05), 1, 0.9)
+    >>> orbits = orbits_at(SpringDamper(2.0, 0.05), 1, 0.9)
     >>> orbits.contact_duration.round(3).tolist(), orbits.is_stable().tolist()
     ([1.601, 2.249, 5.193], [True, False, True])
     """
     omega, zeta, index, lam = (x.reshape(1) for x in _columns(contact, n, amplitude))
-    local = Contact(omega, zeta, contact.release)
+    local = SpringDamper(omega, zeta, contact.release)
     low, high = (float(np.ravel(x)[0]) for x in _range(local, n))
     step = _FINE * min(1.0, float(contact.damped_frequency))
     fine = np.arange(low, min(high, low + _MOST * step), step)
@@ -305,24 +305,24 @@ def orbits_at(contact: Contact, n: int, amplitude: float) -> ContactOrbit:
     grid = np.sort(np.concatenate([grid, turns[:, np.newaxis]]), axis=0)
     excess = roots(_surplus_function(contact.release), lam)
     point = branch_point(excess, local, n)
-    found = ContactOrbit.from_branch(point, local, n)
+    found = SpringDamperOrbit.from_branch(point, local, n)
     # A sign change at a pole of the branch is not a root.
     real = np.abs(found.amplitude - lam) <= 1e-6 * lam
     return found[real & (found.relative_impact_velocity < 0) & (found.relative_bounce_velocity > 0)]
 
 
 def absence(
-    contact: Contact, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE
+    contact: SpringDamper, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE
 ) -> np.ndarray:
     """The :class:`Absence` of each orbit that :func:`orbit_at` looks for, as text.
 
     Examples
     --------
-    >>> str(absence(Contact(10.0, 0.1), 1, 0.2))
+    >>> str(absence(SpringDamper(10.0, 0.1), 1, 0.2))
     'below the saddle-node'
     """
     omega, zeta, n, lam = _columns(contact, n, amplitude)
-    local = Contact(omega, zeta, contact.release)
+    local = SpringDamper(omega, zeta, contact.release)
     fold = branch_point(saddle_node(local, n), local, n).amplitude
     missing = ~orbit_at(local, n, lam, side).exists
     reason = np.where(np.isnan(fold), Absence.NO_OTHER_SIDE, Absence.NOT_REACHED)

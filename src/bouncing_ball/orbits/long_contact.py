@@ -25,12 +25,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq, minimize_scalar
 
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError
-from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.motion.contacts import simulate
 from bouncing_ball.orbits import limits
 from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
 
 # Flights from which the branch is followed, over the contact's own time unit or a
 # tenth, short enough for weak damping and long enough for rounding at ϖ = 200; and to
@@ -75,22 +75,22 @@ class Window(NamedTuple):
     end: np.ndarray
 
 
-def orbit_with_flight(contact: Contact, flight_time: ArrayLike) -> ContactOrbit:
+def orbit_with_flight(contact: SpringDamper, flight_time: ArrayLike) -> SpringDamperOrbit:
     """The 1-T orbits with a given time of flight, of contacts of the same shape.
 
     Examples
     --------
-    >>> orbit = orbit_with_flight(Contact.from_restitution(0.85, 2.0), 1.0)
+    >>> orbit = orbit_with_flight(SpringDamper.from_restitution(0.85, 2.0), 1.0)
     >>> float(orbit.flight_time.round(12)), bool(orbit.is_stable())
     (1.0, True)
     """
     angle = (2 * np.pi - np.asarray(flight_time)) * contact.frequency_ratio
     zeta, sine = contact.damping_ratio, contact.release_sine
     excess = angle * np.sqrt((1 - zeta) * (1 + zeta)) - 2 * np.arccos(sine)
-    return ContactOrbit.from_branch(branch_point(excess, contact, 1), contact, 1)
+    return SpringDamperOrbit.from_branch(branch_point(excess, contact, 1), contact, 1)
 
 
-def _usual(contact: Contact, flight_time: np.ndarray) -> np.ndarray:
+def _usual(contact: SpringDamper, flight_time: np.ndarray) -> np.ndarray:
     """Whether the orbits are stable and admissible; the second is asked where the first holds."""
     orbit = orbit_with_flight(contact, flight_time)
     good = orbit.is_stable()
@@ -99,7 +99,7 @@ def _usual(contact: Contact, flight_time: np.ndarray) -> np.ndarray:
     return good
 
 
-def _kind(contact: Contact, flight_time: np.ndarray) -> np.ndarray:
+def _kind(contact: SpringDamper, flight_time: np.ndarray) -> np.ndarray:
     """What is wrong with the orbits just beyond an end."""
     orbit = orbit_with_flight(contact, flight_time * (1 + _BEYOND))
     trace, determinant = orbit.trace_and_determinant()
@@ -110,17 +110,17 @@ def _kind(contact: Contact, flight_time: np.ndarray) -> np.ndarray:
     return np.where(1 - trace + determinant <= 0, End.SADDLE_NODE, kind)
 
 
-def stable_window(contact: Contact) -> Window:
+def stable_window(contact: SpringDamper) -> Window:
     """Where the stable orbits that begin at Λ_SD end.
 
     Parameters
     ----------
-    contact : Contact
+    contact : SpringDamper
         ϖ and ζ of shape (m,), and the release rule.
 
     Examples
     --------
-    >>> window = stable_window(Contact.from_restitution(0.85, np.array([1.2, 2.0, 10.0])))
+    >>> window = stable_window(SpringDamper.from_restitution(0.85, np.array([1.2, 2.0, 10.0])))
     >>> window.amplitude.round(4).tolist()
     [0.3342, 1.0955, 1.0433]
     >>> window.end.tolist()
@@ -128,7 +128,7 @@ def stable_window(contact: Contact) -> Window:
     """
     ratio = np.asarray(contact.frequency_ratio, dtype=float)
     zeta = np.broadcast_to(contact.damping_ratio, ratio.shape)
-    each = Contact(ratio, zeta, contact.release)
+    each = SpringDamper(ratio, zeta, contact.release)
     start = _SHORT / np.maximum(ratio, _SOFT)
     grid = start * (_LONG / start) ** np.linspace(0.0, 1.0, _SAMPLES)[:, np.newaxis]
     last = np.zeros(ratio.shape, dtype=int)
@@ -156,7 +156,7 @@ def stable_window(contact: Contact) -> Window:
     return Window(amplitude, flight, end)
 
 
-def joined(contact: Contact) -> bool:
+def joined(contact: SpringDamper) -> bool:
     """Whether all orbits from the saddle-node to Λ_SD are admissible, of one contact.
 
     Then the unstable side of the branch with a short contact leads to the orbits
@@ -187,7 +187,7 @@ def joining_ratio(damping_ratio: float, release: Release, low: float, high: floa
     """
 
     def together(ratio):
-        return joined(Contact(ratio, damping_ratio, release))
+        return joined(SpringDamper(ratio, damping_ratio, release))
 
     if not together(low) or together(high):
         return math.nan
@@ -241,7 +241,7 @@ def stiff_limit(damping_ratio: float) -> float:
 
     Examples
     --------
-    >>> from bouncing_ball.impacts.damping import damping_ratio
+    >>> from bouncing_ball.contacts.damping import damping_ratio
     >>> round(stiff_limit(float(damping_ratio(0.85))), 2)
     8.61
     """

@@ -9,13 +9,13 @@ as fast; elsewhere both may nearly stand still. The nearest point in the space
 import numpy as np
 
 from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
 
 # Gauss-Newton from a start that is right to rounding of D converges at once.
 _ITERATIONS = 4
 
 
-def nearest_excess(orbit: ContactOrbit) -> np.ndarray:
+def nearest_excess(orbit: SpringDamperOrbit) -> np.ndarray:
     """Excess angle ε of the point of the branch that is nearest in (X, Y, ε)."""
     contact = orbit.contact
     own = excess = orbit.contact_duration * contact.damped_frequency - contact.free_angle

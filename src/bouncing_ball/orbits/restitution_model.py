@@ -8,9 +8,9 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.errors import ModelError
-from bouncing_ball.impacts.permanent_contact import RESTITUTION_THRESHOLD
-from bouncing_ball.motion.instants import section_cycle, simulate
+from bouncing_ball.motion.restitution import section_cycle, simulate
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence
 from bouncing_ball.orbits import restitution_orbit as formulas
 from bouncing_ball.orbits.interface import Absence, ImpactModel, Orbit, Side

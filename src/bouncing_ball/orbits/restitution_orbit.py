@@ -21,9 +21,9 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.restitution_map import bounce, landing_gap
 from bouncing_ball.errors import NoOrbitError, require
-from bouncing_ball.impacts.restitution_map import bounce, landing_gap
-from bouncing_ball.motion.instants import section_cycle
+from bouncing_ball.motion.restitution import section_cycle
 from bouncing_ball.motion.sequence import Cycle
 from bouncing_ball.orbits.interface import Orbit, check_index
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bouncing_ball.contacts.restitution_map import exact_map_jacobian
 from bouncing_ball.continuation.events import Event
-from bouncing_ball.impacts.restitution_map import exact_map_jacobian
 from bouncing_ball.orbits.branch_events import bifurcations
 from bouncing_ball.orbits.restitution_orbit import RestitutionOrbit
 from bouncing_ball.orbits.stability import trace_and_determinant

@@ -65,7 +65,7 @@ def sources(*modules: str) -> list[str]:
 
     Examples
     --------
-    >>> [Path(file).name for file in sources("bouncing_ball.impacts.damping")]
+    >>> [Path(file).name for file in sources("bouncing_ball.contacts.damping")]
     ['__init__.py', 'errors.py', '__init__.py', 'damping.py', 'release.py']
     """
     for module in modules:

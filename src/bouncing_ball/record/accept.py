@@ -24,11 +24,11 @@ from itertools import takewhile
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from bouncing_ball.compare.folders import ComparisonError, artifacts_in, compare_folders
+from bouncing_ball.compare.outcome import Outcome
+from bouncing_ball.compare.report_terminal import to_terminal
+from bouncing_ball.compare.tolerance_file import read_tolerances
 from bouncing_ball.datasets.atomic import replacing
-from bouncing_ball.record.diff.folders import ComparisonError, artifacts_in, compare_folders
-from bouncing_ball.record.diff.outcome import Outcome
-from bouncing_ball.record.diff.report_terminal import to_terminal
-from bouncing_ball.record.diff.tolerance_file import read_tolerances
 from bouncing_ball.record.proof import RefusedError, check_made, check_versions
 from bouncing_ball.record.provenance import LOCK, Provenance, file_digest
 from bouncing_ball.record.recipe import Recipe, Run

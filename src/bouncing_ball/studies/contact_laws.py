@@ -14,17 +14,17 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.law_choice import law_of_impact
+from bouncing_ball.contacts.law_permanent_contact import permanent_contact
+from bouncing_ball.contacts.law_signature import LawSignature
+from bouncing_ball.contacts.laws import LAWS
+from bouncing_ball.contacts.laws.linear import Linear
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.impacts.damping import damping_ratio
-from bouncing_ball.impacts.law_choice import law_of_impact
-from bouncing_ball.impacts.law_permanent_contact import permanent_contact
-from bouncing_ball.impacts.law_signature import LawSignature
-from bouncing_ball.impacts.laws import LAWS
-from bouncing_ball.impacts.laws.linear import Linear
-from bouncing_ball.impacts.release import Release
-from bouncing_ball.impacts.spring_damper import Contact
-from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.interface import ImpactModel, Side
 from bouncing_ball.orbits.law_calls import law_at_orbit, rigid_speed
@@ -40,7 +40,7 @@ BOUNDS = ("saddle_node", "period_doubling")
 SIMPLE = ("restitution", "corrected")
 
 
-def linear_contact(restitution: float, duration: ArrayLike, release: Release) -> Contact:
+def linear_contact(restitution: float, duration: ArrayLike, release: Release) -> SpringDamper:
     """The spring-damper with r and D under a release rule, at every speed.
 
     Examples
@@ -48,15 +48,15 @@ def linear_contact(restitution: float, duration: ArrayLike, release: Release) ->
     >>> float(linear_contact(1.0, np.pi, Release.DISPLACEMENT).frequency_ratio)
     1.0
     """
-    unit = Contact(1.0, damping_ratio(restitution, release), release)
+    unit = SpringDamper(1.0, damping_ratio(restitution, release), release)
     omega = float(unit.free_duration) / np.asarray(duration, dtype=float)
-    return Contact(omega, unit.damping_ratio, release)
+    return SpringDamper(omega, unit.damping_ratio, release)
 
 
 def exact_model(name: str, restitution: float, duration: float, speed: float) -> ImpactModel:
     """The exact model of the contact with r and D at a speed."""
     if name in LINEAR:
-        return ContactModel(linear_contact(restitution, duration, LINEAR[name]))
+        return SpringDamperModel(linear_contact(restitution, duration, LINEAR[name]))
     return LawModel(law_of_impact(LAWS[name], restitution, duration, speed))
 
 
@@ -64,7 +64,7 @@ def exact_models(name: str, parameters: Mapping[str, Any], duration: np.ndarray)
     """The exact models of contacts with r and D at their own orbits' speeds."""
     r, n, lam = (parameters[key] for key in ("restitution", "n", "amplitude"))
     if name in LINEAR:
-        return ContactModel(linear_contact(r, duration, LINEAR[name]))
+        return SpringDamperModel(linear_contact(r, duration, LINEAR[name]))
     return LawModel(law_at_orbit(LAWS[name], r, duration, n, lam))
 
 
@@ -90,7 +90,7 @@ def stiff_enough(
 
 def corrected_model(exact: Any) -> CorrectedModel:
     """The corrected restitution model of one contact."""
-    if isinstance(exact, ContactModel):
+    if isinstance(exact, SpringDamperModel):
         return CorrectedModel.of_contact(exact.contact)
     return CorrectedModel(LawSignature(exact.law))
 

@@ -15,10 +15,10 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import describe, described
-from bouncing_ball.impacts.permanent_contact import RESTITUTION_THRESHOLD
-from bouncing_ball.impacts.spring_damper import Contact
-from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.interface import OBSERVABLES, ImpactModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.studies.last_crossing import last_crossing
@@ -88,7 +88,7 @@ def relative_error(
     --------
     Without damping, Λ_SD = 1 - 1/ϖ² above the resonance:
 
-    >>> stiff = ContactModel(Contact.from_restitution(1.0, np.array([2.0])))
+    >>> stiff = SpringDamperModel(SpringDamper.from_restitution(1.0, np.array([2.0])))
     >>> relative_error(Quantity.PERMANENT_CONTACT, stiff, RestitutionModel(1.0), 1, 1.0).tolist()
     [0.25]
     """
@@ -178,7 +178,7 @@ def error_thresholds(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     for quantity in quantities:
 
         def error(ratio, quantity=quantity):
-            exact = ContactModel(Contact.from_restitution(r, ratio, release))
+            exact = SpringDamperModel(SpringDamper.from_restitution(r, ratio, release))
             return relative_error(quantity, exact, simple, n, lam)
 
         errors.append(error(ratios))
@@ -211,8 +211,8 @@ def height_error(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         },
         release,
     )
-    contact = Contact.from_restitution(r, dataset.frequency_ratio.values, release)
-    orbit = ContactModel(contact).orbit(n, lam)
+    contact = SpringDamper.from_restitution(r, dataset.frequency_ratio.values, release)
+    orbit = SpringDamperModel(contact).orbit(n, lam)
     for name in ("max_height", "phase", "contact_duration", "impact_velocity"):
         dataset[name] = ("frequency_ratio", getattr(orbit, name))
     dataset["admissible"] = ("frequency_ratio", orbit.is_admissible())

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.impacts.spring_damper import Contact
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
-from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.limits import orbit_at
 from bouncing_ball.studies.columns import OBSERVED, columns
 from bouncing_ball.studies.parameters import grid
@@ -20,9 +20,9 @@ _ROUNDING = 1e-12
 
 def sweep(
     n: int, restitution: np.ndarray, amplitude: np.ndarray, ratios: np.ndarray, release: str
-) -> ContactOrbit:
+) -> SpringDamperOrbit:
     """Orbits on the stable side, shape (cases, ϖ); NaN where there is none."""
-    contact = Contact.from_restitution(restitution[:, np.newaxis], ratios, release)
+    contact = SpringDamper.from_restitution(restitution[:, np.newaxis], ratios, release)
     return orbit_at(contact, n, amplitude[:, np.newaxis])
 
 

@@ -6,13 +6,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.impacts.damping import damping_ratio
-from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.motion.regularity import period
 from bouncing_ball.orbits.basins import ELSEWHERE, PERMANENT, Destinations, destinations
-from bouncing_ball.orbits.contact_model import ContactModel
-from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.contact_model import SpringDamperModel
+from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.long_contact import joining_ratio, stable_window, stiff_limit
 from bouncing_ball.studies.parameters import grid
 
@@ -45,7 +45,7 @@ def stable_windows(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     shape = len(restitution), len(ratio)
     zeta = damping_ratio(restitution)
     # All contacts at once: many small steps cost more than large ones.
-    law = Contact(np.tile(ratio, shape[0]), np.repeat(zeta, shape[1]), Release(release))
+    law = SpringDamper(np.tile(ratio, shape[0]), np.repeat(zeta, shape[1]), Release(release))
     window = stable_window(law)
     paper = Release(release) is Release.DISPLACEMENT
     limits = [
@@ -60,7 +60,7 @@ def stable_windows(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         {
             "threshold_amplitude": (
                 along,
-                ContactModel(law).permanent_contact_threshold().reshape(shape),
+                SpringDamperModel(law).permanent_contact_threshold().reshape(shape),
             ),
             "window_amplitude": (along, window.amplitude.reshape(shape)),
             "window_flight": (along, window.flight_time.reshape(shape)),
@@ -72,7 +72,7 @@ def stable_windows(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     )
 
 
-def _stable_orbits(model: ContactModel, families: list[int], amplitude: float):
+def _stable_orbits(model: SpringDamperModel, families: list[int], amplitude: float):
     """The stable orbits at one Λ, each alone."""
     for n in families:
         found = model.orbits(n, amplitude)
@@ -80,14 +80,14 @@ def _stable_orbits(model: ContactModel, families: list[int], amplitude: float):
         yield from (kept[k] for k in range(kept.shape[0]))
 
 
-def _motion(orbit: ContactOrbit) -> int:
+def _motion(orbit: SpringDamperOrbit) -> int:
     """Index of its kind among :data:`MOTIONS`."""
     if int(orbit.n) > 1:
         return 3
     return 2 if float(orbit.contact_duration) > np.pi else 1
 
 
-def _shared_period(model: ContactModel, amplitude: float, ends: Destinations) -> int:
+def _shared_period(model: SpringDamperModel, amplitude: float, ends: Destinations) -> int:
     """Impacts after which most motions that are on no n-T orbit repeat; 0 if there is none."""
     # One that is given up as it rises, after a release below the table's level, has no impact.
     left = np.flatnonzero((ends.orbit == ELSEWHERE) & (ends.velocity < 0))
@@ -112,7 +112,7 @@ def basins(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     given up: by then rounding does not yet decide where a wandering ball goes.
     """
     r, ratio = parameters["restitution"], parameters["frequency_ratio"]
-    model = ContactModel(Contact.from_restitution(r, ratio, release))
+    model = SpringDamperModel(SpringDamper.from_restitution(r, ratio, release))
     count, amplitudes = parameters["starts"], parameters["amplitude"]
     middle = (np.arange(count) + 0.5) / count
     phase, speed = 2 * np.pi * middle - np.pi, parameters["velocity_max"] * middle

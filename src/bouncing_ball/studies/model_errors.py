@@ -12,11 +12,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.contacts.signature import LinearSignature
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.impacts.signature import LinearSignature
-from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits import error_law
-from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.interface import OBSERVABLES, Side
 from bouncing_ball.orbits.restitution_model import RestitutionModel
@@ -38,16 +38,16 @@ SIMPLE = ("restitution", "corrected")
 """The models that are compared with the exact one."""
 
 
-def models(contact: Contact) -> tuple[ContactModel, RestitutionModel, CorrectedModel]:
+def models(contact: SpringDamper) -> tuple[SpringDamperModel, RestitutionModel, CorrectedModel]:
     """The exact model of a contact, and the simple ones with the contact's own r."""
     return (
-        ContactModel(contact),
+        SpringDamperModel(contact),
         RestitutionModel(contact.restitution),
         CorrectedModel.of_contact(contact),
     )
 
 
-def errors(contact: Contact, n, amplitude, quantities=QUANTITIES) -> np.ndarray:
+def errors(contact: SpringDamper, n, amplitude, quantities=QUANTITIES) -> np.ndarray:
     """Signed relative errors, exact over simple model minus one; (model, quantity, ...)."""
     shape = np.broadcast_shapes(contact.shape, np.shape(n), np.shape(amplitude))
     exact, *simple = (
@@ -97,7 +97,7 @@ def search(
         for group in groups:
             at = np.flatnonzero(np.isin(quantity, group))
             if at.size:
-                contact = Contact(ratio[at], zeta[orbit[at]], rule)
+                contact = SpringDamper(ratio[at], zeta[orbit[at]], rule)
                 names = [quantities[k] for k in group]
                 both = errors(contact, n[orbit[at]], lam[orbit[at]], names)
                 place = np.searchsorted(group, quantity[at])
@@ -109,7 +109,7 @@ def search(
         signed = error(ratio, number % count)
         return np.where(number < count, excess(_finite(signed), tolerance), signed)
 
-    signed = errors(Contact(ratios[:, np.newaxis], zeta, rule), n, lam, quantities)
+    signed = errors(SpringDamper(ratios[:, np.newaxis], zeta, rule), n, lam, quantities)
     scanned = np.moveaxis(signed, 2, -1).reshape(-1, ratios.size)
     outside = _finite(scanned) > tolerance
     # The restitution model's errors come first.
@@ -132,7 +132,7 @@ def _second_order(zeta: float, rule: Release, n, amplitude) -> np.ndarray:
     Measured at two stiff contacts, and the third order taken off (Richardson).
     """
     ratios = np.array([_STIFF, 2 * _STIFF])
-    once, twice = (errors(Contact(ratios, zeta, rule), n, amplitude)[1] * ratios**2).T
+    once, twice = (errors(SpringDamper(ratios, zeta, rule), n, amplitude)[1] * ratios**2).T
     return 2 * twice - once
 
 
@@ -146,7 +146,7 @@ def error_law_table(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     n, lam, tolerance = (parameters[k] for k in ("n", "amplitude", "tolerance"))
     ratios, rule = grid(parameters["frequency_ratio"]), Release.of(release)
     # ζ of Eq. 16; the restitution model has the r that this contact really has.
-    one = Contact.from_restitution(parameters["restitution"], 1.0, rule)
+    one = SpringDamper.from_restitution(parameters["restitution"], 1.0, rule)
     zeta = float(one.damping_ratio)
 
     found = search([zeta], rule, n, lam, ratios, tolerance)
@@ -155,7 +155,7 @@ def error_law_table(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     permanent, _ = thresholds(
         lambda ratio: relative_error(
             Quantity.PERMANENT_CONTACT,
-            ContactModel(Contact(ratio, zeta, rule)),
+            SpringDamperModel(SpringDamper(ratio, zeta, rule)),
             RestitutionModel(1.0),
             n,
             lam,
@@ -193,7 +193,7 @@ def random_orbits(
     n, model = rng.integers(1, 6, size), RestitutionModel(r)
     low, high = model.saddle_node(n).amplitude, model.period_doubling(n).amplitude
     lam = low + rng.uniform(*places, size) * (high - low)
-    zeta = Contact.from_restitution(r, 1.0, rule, measured=True).damping_ratio
+    zeta = SpringDamper.from_restitution(r, 1.0, rule, measured=True).damping_ratio
     return n, zeta, lam, rng
 
 
@@ -218,7 +218,7 @@ def law_errors(
     """Errors of random orbits of the whole stable range, ϖ even in its logarithm."""
     n, zeta, lam, rng = random_orbits(size, seed, release)
     omega = np.exp(rng.uniform(np.log(span["min"]), np.log(span["max"]), size))
-    contact = Contact(omega, zeta, Release.of(release))
+    contact = SpringDamper(omega, zeta, Release.of(release))
     instant = LinearSignature(contact)()
     small = error_law.small_parameter(n, instant, lam)
     law = np.array(error_law.first_order(n, instant, lam))
@@ -230,13 +230,13 @@ def law_errors(
 def orders(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     """Errors along ϖ for one orbit, and the orders of convergence of random ones."""
     ratios, rule = grid(parameters["frequency_ratio"]), Release.of(release)
-    one = Contact.from_restitution(parameters["restitution"], ratios, rule)
+    one = SpringDamper.from_restitution(parameters["restitution"], ratios, rule)
     curves = np.abs(errors(one, parameters["n"], parameters["amplitude"]))
     sample = parameters["random"]
     n, zeta, lam, _ = random_orbits(sample["samples"], sample["seed"], release, (0.2, 0.95))
     stiff = sample["stiff_frequency_ratio"]
     pair = [
-        np.abs(errors(Contact(np.full(lam.shape, k * stiff), zeta, rule), n, lam))
+        np.abs(errors(SpringDamper(np.full(lam.shape, k * stiff), zeta, rule), n, lam))
         for k in (1.0, 2.0)
     ]
     span = parameters["frequency_ratio"]
@@ -271,7 +271,7 @@ def validity(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     lam = places * model.saddle_node(n).amplitude
     # Outside the stable range of the restitution model there is nothing to be right about.
     there = lam <= model.period_doubling(n).amplitude
-    zeta = np.asarray(Contact.from_restitution(r, 1.0, rule, measured=True).damping_ratio)
+    zeta = np.asarray(SpringDamper.from_restitution(r, 1.0, rule, measured=True).damping_ratio)
     found = search(zeta[there], rule, n[there], lam[there], ratios, parameters["tolerance"])
     threshold = np.full((len(SIMPLE), len(QUANTITIES), *r.shape), np.nan)
     zero = np.full(threshold.shape[1:], np.nan)
@@ -298,7 +298,7 @@ def height(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     """Greatest height along ϖ in all three models (Fig. 14 with a third curve)."""
     n, lam, ratios = parameters["n"], parameters["amplitude"], grid(parameters["frequency_ratio"])
     r = parameters["restitution"]
-    contact = Contact.from_restitution(r, ratios, Release.of(release))
+    contact = SpringDamper.from_restitution(r, ratios, Release.of(release))
     exact, simple, corrected = (m.orbit(n, lam) for m in models(contact))
     return described(
         {
@@ -314,7 +314,7 @@ def height(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
 def domains(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     """Phase against Λ in all three models (Fig. 15 with a third curve)."""
     n, top = parameters["n"], parameters["amplitude_max"]
-    contact = Contact.from_restitution(
+    contact = SpringDamper.from_restitution(
         parameters["restitution"], parameters["frequency_ratio"], Release.of(release)
     )
     names = ("spring-damper", *SIMPLE)
@@ -351,10 +351,10 @@ def domains(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
 
 def meeting_flights(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     """One contact, and the flights before and after it, continued into it."""
-    contact = Contact.from_restitution(
+    contact = SpringDamper.from_restitution(
         parameters["restitution"], parameters["frequency_ratio"], Release.of(release)
     )
-    orbit = ContactModel(contact).require_orbit(parameters["n"], parameters["amplitude"])
+    orbit = SpringDamperModel(contact).require_orbit(parameters["n"], parameters["amplitude"])
     end = float(orbit.contact_duration)
     time = np.linspace(-0.6 * end, 1.6 * end, parameters["samples"])
     start = orbit.contact_path(np.zeros(()))

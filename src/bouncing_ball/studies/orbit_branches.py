@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.continuation.branch import (
     Branch,
     ContinuationError,
@@ -23,9 +24,8 @@ from bouncing_ball.continuation.events import Event, fold, parameter_bound
 from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.impacts.spring_damper import Contact, Release
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
-from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
 from bouncing_ball.orbits.grazing import grazing_points
 from bouncing_ball.orbits.interface import Orbit
@@ -51,7 +51,7 @@ def controls(settings: Mapping[str, Any]) -> tuple[StepControl, NewtonSettings]:
 
 def followed_from_stiff(
     n: int,
-    contact: Contact,
+    contact: SpringDamper,
     amplitude: float,
     stiff: float,
     control: StepControl,
@@ -90,7 +90,7 @@ def followed_from_stiff(
 
 
 def _on_the_way(
-    n: int, contact: Contact, amplitude: float, settings: Mapping[str, Any]
+    n: int, contact: SpringDamper, amplitude: float, settings: Mapping[str, Any]
 ) -> np.ndarray:
     """(φ, z′_i, ϖ τ_b) of the orbit at Λ, followed along ϖ from a very stiff contact."""
     control, newton = controls(settings)
@@ -106,7 +106,7 @@ def _on_the_way(
 
 
 def _start(
-    n: int, contact: Contact, restitution: float, top: float, settings: Mapping[str, Any]
+    n: int, contact: SpringDamper, restitution: float, top: float, settings: Mapping[str, Any]
 ) -> np.ndarray:
     """A point of the branch along Λ of a contact, up to Λ = ``top``.
 
@@ -129,7 +129,7 @@ def _start(
             return np.append(_on_the_way(n, contact, amplitude, settings), amplitude)
         except ContinuationError:
             continue
-    model = ContactModel(contact)
+    model = SpringDamperModel(contact)
     found = model.orbit(n, np.array([*ways, (node + top) / 2, top]))
     if not np.any(found.exists):
         raise NoOrbitError(
@@ -157,8 +157,8 @@ def branch_along_amplitude(
         If it is not followed to its end.
     """
     control, newton = controls(settings)
-    contact = Contact.from_restitution(restitution, frequency_ratio, Release(release))
-    system = ContactModel(contact).system(n)
+    contact = SpringDamper.from_restitution(restitution, frequency_ratio, Release(release))
+    system = SpringDamperModel(contact).system(n)
     windows = (
         parameter_bound(0.0, False, "left the window at amplitude 0"),
         parameter_bound(amplitude_max, True, f"left the window at amplitude {amplitude_max:g}"),
@@ -262,7 +262,7 @@ def _row(
 
 def _missing(n: int, count: int) -> Orbit:
     """Orbits that do not exist."""
-    return ContactModel(Contact(1.0, 0.0)).system(n).orbit(np.full((count, 4), np.nan))
+    return SpringDamperModel(SpringDamper(1.0, 0.0)).system(n).orbit(np.full((count, 4), np.nan))
 
 
 def _ragged(rows, fill=np.nan):

@@ -5,14 +5,14 @@ from typing import Any
 
 import xarray as xr
 
-from bouncing_ball.datasets.variables import described
-from bouncing_ball.impacts.damping import damping_ratio
-from bouncing_ball.impacts.permanent_contact import (
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.permanent_contact import (
     RESTITUTION_THRESHOLD,
     permanent_contact_minimum,
     permanent_contact_threshold,
 )
-from bouncing_ball.impacts.spring_damper import Release
+from bouncing_ball.contacts.spring_damper import Release
+from bouncing_ball.datasets.variables import described
 from bouncing_ball.studies.parameters import grid
 
 

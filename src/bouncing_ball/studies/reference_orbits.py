@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.contacts.damping import restitution_coefficient
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.spring_damper import SpringDamper, contact_force
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.impacts.damping import restitution_coefficient
-from bouncing_ball.impacts.release import Release
-from bouncing_ball.impacts.spring_damper import Contact, contact_force
 from bouncing_ball.studies.model_errors import models, random_orbits
 from bouncing_ball.studies.parameters import grid
 
@@ -37,7 +37,7 @@ def reference_orbits(parameters: Mapping[str, Any]) -> xr.Dataset:
 def _under(rule: Release, omega: np.ndarray, seed: int) -> xr.Dataset:
     n, zeta, lam, _ = random_orbits(omega.size, seed, rule, _PLACES)
     r = restitution_coefficient(zeta)
-    exact, simple, corrected = models(Contact.from_restitution(r, omega, rule))
+    exact, simple, corrected = models(SpringDamper.from_restitution(r, omega, rule))
     orbit = exact.orbit(n, lam)
     trace, determinant = orbit.trace_and_determinant()
     by_r, repaired = simple.orbit(n, lam), corrected.orbit(n, lam)

@@ -15,10 +15,10 @@ import numpy as np
 import xarray as xr
 from scipy.optimize.elementwise import find_minimum
 
+from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.impacts.damping import damping_ratio, restitution_coefficient
-from bouncing_ball.impacts.spring_damper import Contact, Release
-from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.studies.error_thresholds import Quantity, relative_error, thresholds
 from bouncing_ball.studies.parameters import grid
@@ -39,7 +39,7 @@ def _lowest_doubling(
         return np.nan
 
     def doubling(log_ratio):
-        model = ContactModel(Contact(np.exp(log_ratio), zeta, rule))
+        model = SpringDamperModel(SpringDamper(np.exp(log_ratio), zeta, rule))
         return model.period_doubling(n).amplitude
 
     bracket = tuple(np.log(ratios[at + k]) for k in (-1, 0, 1))
@@ -54,7 +54,7 @@ def _bifurcations(parameters: Mapping[str, Any]) -> xr.Dataset:
     amplitudes = np.empty((len(rules), len(families), len(ratios), 2))
     turns = np.empty((len(rules), len(families)))
     for i, rule in enumerate(rules):
-        model = ContactModel(Contact(ratios, zeta, rule))
+        model = SpringDamperModel(SpringDamper(ratios, zeta, rule))
         for j, n in enumerate(families):
             amplitudes[i, j, :, 0] = model.saddle_node(n).amplitude
             amplitudes[i, j, :, 1] = model.period_doubling(n).amplitude
@@ -88,7 +88,7 @@ def _thresholds(wanted: Mapping[str, Any]) -> xr.Dataset:
         for j, quantity in enumerate(quantities):
 
             def error(ratio, quantity=quantity, rule=rule, reference=reference):
-                exact = ContactModel(Contact(ratio, loss, rule))
+                exact = SpringDamperModel(SpringDamper(ratio, loss, rule))
                 return relative_error(quantity, exact, RestitutionModel(reference), n, lam)
 
             value, status = thresholds(error, [wanted["tolerance"]], scan)

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.impacts.spring_damper import Contact
-from bouncing_ball.orbits.contact_model import ContactModel
+from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.interface import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 
@@ -41,7 +41,7 @@ def contact_history(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     """
     n, lam = parameters["n"], parameters["amplitude"]
     r, ratio = parameters["restitution"], parameters["frequency_ratio"]
-    model = ContactModel(Contact.from_restitution(r, ratio, release))
+    model = SpringDamperModel(SpringDamper.from_restitution(r, ratio, release))
     orbit = model.require_admissible(n, lam)
     time, ball, velocity, touching = _cycle(orbit, parameters["samples"])
     return described(
@@ -70,7 +70,9 @@ def both_histories(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     columns: dict[str, list[np.ndarray]] = {"table_phase": [], "ball": [], "contact": []}
     states: dict[str, list[float]] = {name: [] for name in _STATE}
     for ratio in ratios:
-        orbit = ContactModel(Contact.from_restitution(r, ratio, release)).require_admissible(n, lam)
+        orbit = SpringDamperModel(
+            SpringDamper.from_restitution(r, ratio, release)
+        ).require_admissible(n, lam)
         time, ball, _, touching = _cycle(orbit, parameters["samples"])
         for name, values in zip(columns, (time + orbit.phase, ball, touching), strict=True):
             columns[name].append(values)

@@ -2,7 +2,7 @@ r"""n-T orbits and their linearisation, with one equation or another altered.
 
 The baseline is the paper's system (Eqs. 11-26). Every alteration is a number
 in :class:`Altered`, so that many of them are solved in one sweep of arrays.
-The contact is not that of :mod:`bouncing_ball.impacts.spring_damper` but the paper's
+The contact is not that of :mod:`bouncing_ball.contacts.spring_damper` but the paper's
 own formula (Eqs. 12-13), in which a slip of the pen can be imitated::
 
     δ = Re(K e^{μs}) + Im(H (X + iY) e^{is}) - κ/ϖ²,    μ = -ζϖ + iϖ_d

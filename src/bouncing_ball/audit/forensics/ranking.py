@@ -10,10 +10,10 @@ from bouncing_ball.audit.forensics.altered_model import Altered, altered_orbit
 from bouncing_ball.audit.forensics.bifurcations import Bifurcations, bifurcations
 from bouncing_ball.audit.forensics.readings import Reading, readings
 from bouncing_ball.audit.forensics.steps import attainable, nearby, step_needed
+from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.datasets.rounding import levels
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import ModelError
-from bouncing_ball.impacts.damping import damping_ratio
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.restitution_orbit import ImpactMap
 

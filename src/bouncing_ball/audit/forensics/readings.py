@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.impacts.damping import damping_ratio
+from bouncing_ball.contacts.damping import damping_ratio
 
 BASELINE = "equations as they stand"
 HIGH_BOUNCE_STABILITY = "high-bounce stability"

@@ -14,11 +14,11 @@ from scipy.optimize.elementwise import find_root
 from bouncing_ball.audit.formulas import as_printed as printed
 from bouncing_ball.audit.formulas.disagreement import ROUNDING, Check, largest
 from bouncing_ball.audit.formulas.flow import contact_matrix, fall_matrix, flow, matrix, state
-from bouncing_ball.impacts.spring_damper import Contact
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.motion.contacts import contact_cycle
 from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_orbit import ContactOrbit
+from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.limits import orbit_at, saddle_node
 
 # The faintest rebound that a double can hold.
@@ -85,7 +85,7 @@ def orbit_checks(rng, samples) -> dict[str, Check]:
     """Checks of Eqs. 21 to 27 on orbits that repeat in the simulation."""
     omega, zeta = np.exp(rng.uniform(1, 5, samples)), rng.uniform(0.01, 0.3, samples)
     n = rng.integers(1, 4, samples)
-    contact = Contact(omega, zeta)
+    contact = SpringDamper(omega, zeta)
     fold = branch_point(saddle_node(contact, n), contact, n).amplitude
     lam = fold + rng.uniform(0.05, 0.5, samples)
     orbit = orbit_at(contact, n, lam)
@@ -136,12 +136,12 @@ def points_with_one_impact(rng, points: int) -> int:
     """
     omega, zeta = np.exp(rng.uniform(0, 5, points)), rng.uniform(0.01, 0.3, points)
     n = rng.integers(1, 6, points)
-    contact = Contact(omega, zeta)
+    contact = SpringDamper(omega, zeta)
     # From half a free contact to two, or to the whole cycle.
     longest = np.minimum(2.0, 2 * np.pi * n * contact.damped_frequency / np.pi)
     duration = np.pi / contact.damped_frequency * rng.uniform(0.5, longest)
     excess = duration * contact.damped_frequency - contact.free_angle
-    orbit = ContactOrbit.from_branch(branch_point(excess, contact, n), contact, n)
+    orbit = SpringDamperOrbit.from_branch(branch_point(excess, contact, n), contact, n)
     return int(np.sum(orbit.is_admissible()))
 
 

@@ -1,0 +1,41 @@
+"""The last line of a run: how many claims got which verdict."""
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.claims.verdict import Verdict
+
+# Restatements, which are counted apart, come last.
+_GROUPS = ("restored formula", "number", "statement", "restatement")
+
+
+def _counts(verdicts: np.ndarray) -> str:
+    numbers = {verdict: int(np.sum(verdicts == str(verdict))) for verdict in Verdict}
+    return ", ".join(f"{number} {verdict}" for verdict, number in numbers.items() if number)
+
+
+def tally(claims: xr.Dataset, figures: int) -> str:
+    """Figures made, claims and verdicts in one line, group by group.
+
+    Independent claims are counted apart from their restatements, and formulas
+    that had to be restored apart from numbers.
+
+    Examples
+    --------
+    >>> claims = xr.Dataset({"verdict": ("claim", ["close", "close", "reproduced"]),
+    ...                      "group": ("claim", ["number", "restatement", "number"]),
+    ...                      "explained": ("claim", [True, True, True])})
+    >>> tally(claims, 16)
+    '16 figures, Table 1, 2 claims; 2 numbers: 1 reproduced, 1 close; 1 restatement: 1 close'
+    """
+    verdicts, groups = claims.verdict.values, claims.group.values
+    parts = [f"{figures} figures, Table 1, {np.sum(groups != _GROUPS[-1])} claims"]
+    for group in _GROUPS:
+        own = verdicts[groups == group]
+        if own.size:
+            plural = "s" if own.size > 1 else ""
+            parts.append(f"{own.size} {group}{plural}: {_counts(own)}")
+    unexplained = int(np.sum(~claims.explained.values.astype(bool)))
+    if unexplained:
+        parts.append(f"{unexplained} without explanation")
+    return "; ".join(parts)

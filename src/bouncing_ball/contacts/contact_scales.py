@@ -1,0 +1,68 @@
+"""Scales of a contact: how deep the ball goes, how fast, and so how long it takes.
+
+They set the steps of the numerical methods and the starts of their iterations; what
+comes out does not depend on them.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from bouncing_ball.contacts.laws.contact_law import ContactLaw
+from bouncing_ball.errors import ModelError
+
+# Newton's method for ln p: one step for a power law, a few for a sum of powers.
+_ITERATIONS = 40
+_ENOUGH = 1e-3
+# Of ln p: for the slope, by differences, and the longest step.
+_DIFFERENCE, _LONGEST = 1e-4, 10.0
+
+
+class Scales(NamedTuple):
+    """Length P and speed V of a contact; it takes a few P/V."""
+
+    length: np.ndarray
+    speed: np.ndarray
+
+
+def depth(law: ContactLaw, rate: np.ndarray, power: float, wanted: np.ndarray) -> np.ndarray:
+    """p at which f(p, p′) p^power reaches a value."""
+
+    def logarithm(log):
+        p = np.exp(log)
+        return np.log(law.force(p, rate)) + power * log
+
+    log, target = np.zeros_like(wanted), np.log(wanted)
+    with np.errstate(all="ignore"):
+        for _ in range(_ITERATIONS):
+            missing = logarithm(log) - target
+            slope = (logarithm(log + _DIFFERENCE) - logarithm(log)) / _DIFFERENCE
+            step = np.clip(missing / slope, -_LONGEST, _LONGEST)
+            log = log - step
+            if np.all(np.abs(step) < _ENOUGH):
+                return np.exp(log)
+    raise ModelError(
+        f"{law.name} does not stop the ball: its force must push, be finite, and grow with the "
+        "penetration to any value"
+    )
+
+
+def scales(law: ContactLaw, speed: np.ndarray, load: np.ndarray) -> Scales:
+    """Scales of contacts with an impact speed under a load of at most ``load``.
+
+    ``f(P, V) P = V²``, and V² is the speed's and what the load gains where the contact
+    carries it.
+
+    Examples
+    --------
+    >>> from bouncing_ball.contacts.laws.linear import Linear
+    >>> length, speed = scales(Linear(10.0, 0.0), np.array([2.0]), np.array([0.0]))
+    >>> round(float(length[0]), 3), float(speed[0])
+    (0.2, 2.0)
+    """
+    v2 = speed * speed
+    if np.any(load > 0):
+        loaded = np.maximum(load, np.finfo(float).tiny)
+        v2 = v2 + load * depth(law, np.zeros_like(v2), 0.0, loaded)
+    v = np.sqrt(np.maximum(v2, np.finfo(float).tiny))
+    return Scales(depth(law, v, 1.0, v * v), v)

@@ -1,0 +1,104 @@
+"""Damping ratio and restitution coefficient of a linear contact (Eq. 16).
+
+Half a period of a free damped oscillator, without gravity, returns the
+velocity multiplied by ``r = exp(-π ζ / √(1 - ζ²))`` (Nagurka and Huang). If the
+contact ends where its force vanishes instead, at the angle π - 2 arcsin ζ, the
+velocity is multiplied by ``exp(-ζ (π - 2 arcsin ζ) / √(1 - ζ²))`` (Schwager and
+Pöschel, Granular Matter 9, 2007). Everything here is dimensionless.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.errors import require
+
+# Newton steps for β in 2β cot β = -ln r; the start is within 10 %, and each
+# step doubles the digits.
+_NEWTON_STEPS = 6
+
+
+def damping_ratio(restitution: ArrayLike, release: Release = Release.DISPLACEMENT) -> np.ndarray:
+    """Damping ratio ζ of a free contact with the restitution coefficient r.
+
+    ``ζ = -ln r / √(π² + ln² r)`` (Eq. 16) for the displacement release. For the
+    force release ζ = cos β with ``2β cot β = -ln r``.
+
+    Parameters
+    ----------
+    restitution : array_like
+        r in (0, 1], and above e⁻² for the force release.
+    release : Release
+        What ends the contact in which r is measured.
+
+    Raises
+    ------
+    ModelError
+        If any r lies outside its range: no linear contact has r = 0, which is
+        the limit ζ → 1, as e⁻² is for the force release.
+
+    Examples
+    --------
+    >>> float(damping_ratio(1.0))
+    0.0
+    >>> round(float(damping_ratio(0.65)), 4), round(float(damping_ratio(0.65, Release.FORCE)), 4)
+    (0.1359, 0.1499)
+    """
+    r = np.asarray(restitution, dtype=float)
+    require((r > 0) & (r <= 1), r, "restitution coefficient r", "in (0, 1]")
+    decrement = -np.log(r) + 0.0  # + 0.0 turns -0 into 0 at r = 1
+    if release is Release.DISPLACEMENT:
+        return decrement / np.hypot(np.pi, decrement)
+    allowed = "in (e⁻², 1], the range of the force release with ζ < 1"
+    require(decrement < 2, r, "restitution coefficient r", allowed)
+    # cos(π/2) is the rounding of π/2, no more than r = 1 itself is rounded by.
+    return np.where(decrement > 0, np.cos(_half_angle(decrement)), 0.0)
+
+
+def _half_angle(decrement: np.ndarray) -> np.ndarray:
+    """β in (0, π/2] with ``2β cot β = decrement`` < 2, by Newton's method.
+
+    2β cot β falls from 2 to 0 and is concave, so that the steps converge from
+    the right without leaving the interval. The start is the same curve as a
+    parabola through its ends, with the right slope at the second.
+    """
+    start = np.pi / 2 * np.sqrt(1 - decrement / 2)
+    beta = np.maximum(start, np.finfo(float).tiny)
+    for _ in range(_NEWTON_STEPS):
+        sine, cosine = np.sin(beta), np.cos(beta)
+        value = 2 * beta * cosine / sine - decrement
+        slope = 2 * (cosine * sine - beta) / (sine * sine)
+        beta = beta - value / slope
+    return beta
+
+
+def restitution_coefficient(
+    damping: ArrayLike, release: Release = Release.DISPLACEMENT
+) -> np.ndarray:
+    """Restitution coefficient of a free, underdamped linear contact.
+
+    ``r = exp(-(π - 2α) ζ/√(1 - ζ²))``, the inverse of :func:`damping_ratio`;
+    greater for the force release, whose contact ends before it pulls.
+
+    Parameters
+    ----------
+    damping : array_like
+        ζ in [0, 1).
+    release : Release
+        What ends the contact.
+
+    Raises
+    ------
+    ModelError
+        If any ζ lies outside [0, 1): at ζ ≥ 1 a free contact never returns.
+
+    Examples
+    --------
+    >>> float(restitution_coefficient(0.0))
+    1.0
+    """
+    zeta = np.asarray(damping, dtype=float)
+    allowed = "in [0, 1): an overdamped contact has no restitution coefficient"
+    require((zeta >= 0) & (zeta < 1), zeta, "damping ratio ζ", allowed)
+    angle = Release.of(release).free_angle(zeta)
+    return np.exp(-angle * zeta / np.sqrt((1 - zeta) * (1 + zeta)))

@@ -1,0 +1,140 @@
+r"""The contact law with a given restitution coefficient and contact duration.
+
+In units of its own scales P and P/v a free impact has one number that its
+restitution depends on, the law's *group*, C v, C or C v/P. It is found for the
+r that is wanted, once; the duration D then gives P, and both give K and C.
+"""
+
+from functools import lru_cache
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.contacts.law_signature import free_impact
+from bouncing_ball.contacts.laws import LAWS
+from bouncing_ball.contacts.laws.contact_law import ContactLaw
+from bouncing_ball.errors import ModelError, require
+
+Law = TypeVar("Law", bound=ContactLaw)
+
+# Doublings of the group until r is below the one wanted, and steps of the search: a
+# secant that keeps its bracket.
+_DOUBLINGS = 8
+_STEPS = 60
+_FIRST = 0.25
+_SETTLED = 4e-16
+
+
+def law_named(name: str) -> type[ContactLaw]:
+    """The law of a name.
+
+    Examples
+    --------
+    >>> law_named("tsuji").__name__
+    'Tsuji'
+    """
+    if name not in LAWS:
+        raise ModelError(f"unknown contact law {name!r}: one of {', '.join(LAWS)}")
+    return LAWS[name]
+
+
+def _free(kind: type[ContactLaw], group: float):
+    """r and D of the free impact in the law's own units."""
+    impact = free_impact(kind.of_scales(group, 1.0, 1.0), 1.0)
+    return float(impact.restitution), float(impact.duration)
+
+
+@lru_cache(maxsize=1024)
+def reference(kind: type[ContactLaw], restitution: float) -> tuple[float, float]:
+    """The group with a restitution coefficient r, and D v/P there.
+
+    Raises
+    ------
+    ModelError
+        If r is not in (0, 1], or so small that no impact was found that has it.
+
+    Examples
+    --------
+    >>> from bouncing_ball.contacts.laws.tsuji import Tsuji
+    >>> group, _ = reference(Tsuji, 1.0)
+    >>> group
+    0.0
+    """
+    require(0 < restitution <= 1, restitution, "restitution coefficient r", "in (0, 1]")
+    exact = kind.group_of(restitution)
+    if exact is None:
+        exact = 0.0 if restitution == 1 else _search(kind, restitution)
+    return exact, _free(kind, exact)[1]
+
+
+def _search(kind: type[ContactLaw], restitution: float) -> float:
+    def surplus(group):
+        return np.log(_free(kind, group)[0] / restitution)
+
+    left, right, above = 0.0, _FIRST, -np.log(restitution)
+    try:
+        for _ in range(_DOUBLINGS):
+            below = surplus(right)
+            if below <= 0:
+                break
+            left, above, right = right, below, 2 * right
+        else:
+            raise ModelError("out of range")
+    except ModelError:
+        raise ModelError(
+            f"restitution coefficient r = {restitution:g} is too small: no {kind.name} contact "
+            "with it was found; damped so strongly, the ball hardly leaves"
+        ) from None
+    for _ in range(_STEPS):
+        # Illinois' rule: the end that stays counts half.
+        middle = right - below * (right - left) / (below - above)
+        value = surplus(middle)
+        if value == 0 or abs(middle - right) <= _SETTLED * middle:
+            return float(middle)
+        if value * below < 0:
+            left, above = right, below
+        else:
+            above /= 2
+        right, below = middle, value
+    return float(right)
+
+
+def law_of_impact(
+    kind: type[Law], restitution: float, duration: ArrayLike, speed: ArrayLike
+) -> Law:
+    """The law whose free impact of speed v has the restitution r and the duration D.
+
+    Parameters
+    ----------
+    kind : type of ContactLaw
+    restitution : float
+        r in (0, 1].
+    duration, speed : array_like
+        D > 0 and v > 0.
+
+    Raises
+    ------
+    ModelError
+        If one is out of its range.
+
+    Examples
+    --------
+    >>> from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
+    >>> law = law_of_impact(HuntCrossley, 0.65, 0.1, 3.8)
+    >>> impact = free_impact(law, 3.8)
+    >>> round(float(impact.restitution), 12), round(float(impact.duration), 12)
+    (0.65, 0.1)
+    """
+    given, v = np.asarray(duration, dtype=float), np.asarray(speed, dtype=float)
+    for value, name in ((given, "contact duration D"), (v, "impact speed v")):
+        require((value > 0) & np.isfinite(value), value, name, "a finite number > 0")
+    group, taken = reference(kind, float(restitution))
+    try:
+        with np.errstate(all="ignore"):
+            return kind.of_scales(group, given * v / taken, v)
+    except ModelError:
+        raise ModelError(
+            f"a {kind.name} contact of duration D = {given} at the impact speed v = {v} "
+            "has no stiffness within the range of floating-point numbers"
+        ) from None

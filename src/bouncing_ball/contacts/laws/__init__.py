@@ -1,0 +1,12 @@
+"""Contact laws: what pushes the ball, one short module each."""
+
+from bouncing_ball.contacts.laws.contact_law import ContactLaw
+from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
+from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
+from bouncing_ball.contacts.laws.linear import Linear
+from bouncing_ball.contacts.laws.tsuji import Tsuji
+
+LAWS: dict[str, type[ContactLaw]] = {
+    law.name: law for law in (HuntCrossley, Tsuji, KuwabaraKono, Linear)
+}
+"""The laws by the names that users call them by."""

@@ -1,0 +1,167 @@
+r"""What a contact law is: a force, the rule that ends the contact, and its roots.
+
+With the penetration p = -δ of the ball into the table a contact obeys ::
+
+    p″ = a - f(p, p′),    a = 1 - Λ sin(τ + φ),    p(0) = 0,  p′(0) = v > 0
+
+All quantities are dimensionless (times Ωt, lengths Ω²y/g); f is the force over
+the weight of the ball. The laws in use are not smooth where p = 0, but they are
+analytic functions of ``p^{1/m}`` and p′, with m = 2 for a force like p^{3/2} or
+p^{1/2}, and m = 4 for one like p^{1/4}. That number m is part of a law: it is what the
+numerical methods need to know to lose no order at the ends of the contact.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.contacts.batch import Batch
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.errors import ModelError, require
+
+# Of the imaginary step, in parts of p or of 1: its square is lost in rounding.
+_IMAGINARY = 1e-20
+
+
+class Slopes(NamedTuple):
+    """Derivatives of a function of (p, p′)."""
+
+    by_penetration: np.ndarray
+    by_rate: np.ndarray
+
+
+def slopes_of(function: Callable, penetration: ArrayLike, rate: ArrayLike) -> Slopes:
+    """Derivatives by imaginary steps, exact to rounding for an analytic expression.
+
+    Examples
+    --------
+    >>> slopes = slopes_of(lambda p, u: p**1.5 * u, 4.0, 3.0)
+    >>> round(float(slopes.by_penetration), 12), round(float(slopes.by_rate), 12)
+    (9.0, 8.0)
+    """
+    p, u = np.asarray(penetration, dtype=float), np.asarray(rate, dtype=float)
+    small = _IMAGINARY * np.where(p > 0, p, 1.0)
+    by_penetration = np.imag(function(p + 1j * small, u)) / small
+    by_rate = np.imag(function(p, u + 1j * _IMAGINARY)) / _IMAGINARY
+    return Slopes(by_penetration, by_rate)
+
+
+@dataclass(frozen=True, repr=False)
+class ContactLaw(Batch, ABC):
+    """A contact law: a frozen dataclass of its dimensionless parameters.
+
+    A law of one's own defines :meth:`force`; the rest has defaults. ``root`` is m,
+    ``release`` what ends the contact. Parameters are checked in ``__post_init__``.
+    """
+
+    name: ClassVar[str]
+    formula: ClassVar[str]
+    """The force as the command line's help shows it."""
+    root: ClassVar[int] = 2
+    release = Release.DISPLACEMENT
+
+    @abstractmethod
+    def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """f(p, p′) for p > 0: force over the weight, positive when it pushes."""
+
+    def grip(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """Positive in contact, and zero where the ball is released."""
+        if self.release is Release.DISPLACEMENT:
+            return penetration + 0 * rate
+        return self.force(penetration, rate)
+
+    def slopes(self, penetration: np.ndarray, rate: np.ndarray) -> Slopes:
+        """Derivatives of the force."""
+        return slopes_of(self.force, penetration, rate)
+
+    def grip_slopes(self, penetration: np.ndarray, rate: np.ndarray) -> Slopes:
+        """Derivatives of the grip."""
+        return slopes_of(self.grip, penetration, rate)
+
+    @classmethod
+    def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
+        """The law that at a speed v has the scale P of length, and a dissipation.
+
+        In units of P and P/v the impact at v is that of stiffness 1, damping
+        ``group`` and speed 1.
+
+        Raises
+        ------
+        ModelError
+            If the law does not say how.
+        """
+        raise ModelError(f"{cls.name} is given by its parameters, not by restitution and duration")
+
+    @classmethod
+    def group_of(cls, restitution: float) -> float | None:
+        """The dissipation that has a restitution coefficient, if that has a closed form."""
+        return None
+
+    def fields(self) -> list[Any]:
+        """What the law is made of, numbers and names, in order."""
+        values = (getattr(self, field.name) for field in fields(self))
+        return [x if isinstance(x, str) else float(x) for x in values]
+
+    @classmethod
+    def parameter_names(cls) -> list[str]:
+        """Names of the numbers of the law."""
+        return [field.name for field in fields(cls) if field.name != "release"]
+
+    @classmethod
+    def chooses_release(cls) -> bool:
+        """Whether the release is a parameter, and not part of the law."""
+        return "release" in (field.name for field in fields(cls))
+
+    def parameters(self) -> dict[str, Any]:
+        """Names and values of the numbers of the law."""
+        return {name: getattr(self, name) for name in self.parameter_names()}
+
+    @property
+    def label(self) -> str:
+        """The law and its numbers, in words; of a single law."""
+        numbers = (f"{name.replace('_', ' ')} {float(x):.6g}" for name, x in
+                   self.parameters().items())  # fmt: skip
+        return f"{self.name} with {', '.join(numbers)}"
+
+    def columns(self) -> Self:
+        """The same laws, each for a row of states."""
+        return self._entries_of(lambda x: np.asarray(x)[..., np.newaxis] if np.ndim(x) else x)
+
+    def flat(self, shape: tuple[int, ...]) -> Self:
+        """One law for each ball of an array, in a row; a single law is that of all."""
+        if not self.shape:
+            return self
+        return self._entries(shape, np.unravel_index(np.arange(int(np.prod(shape))), shape))
+
+    def take(self, which: Any) -> Self:
+        """The laws of some balls of a row."""
+        return self[which] if self.shape else self
+
+
+def check_positive(value: ArrayLike, name: str) -> None:
+    """Raise :class:`ModelError` unless a parameter is finite and positive.
+
+    Examples
+    --------
+    >>> check_positive(-1.0, "stiffness K")
+    Traceback (most recent call last):
+    ...
+    bouncing_ball.errors.ModelError: stiffness K = -1.0 is not a finite number > 0
+    """
+    x = np.asarray(value, dtype=float)
+    require(np.isfinite(x) & (x > 0), x, name, "a finite number > 0")
+
+
+def check_damping(value: ArrayLike, name: str) -> None:
+    """Raise :class:`ModelError` unless a parameter is finite and not negative.
+
+    Examples
+    --------
+    >>> check_damping(0.0, "damping C")
+    """
+    x = np.asarray(value, dtype=float)
+    require(np.isfinite(x) & (x >= 0), x, name, "a finite number ≥ 0")

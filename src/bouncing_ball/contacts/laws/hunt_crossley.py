@@ -1,0 +1,70 @@
+r"""Hertz contact with Hunt and Crossley's damping.
+
+``f = K p^{3/2} (1 + C p′)``, released at p = 0, where the force vanishes too: it never
+pulls, as a free ball leaves with p′ > -1/C. The restitution coefficient
+depends on C v alone and falls with the speed, as 1 - (2/3) C v for a slow impact.
+
+Physical parameters: a ball of mass m on a plane with the force
+``k x^{3/2} (1 + λ ẋ)``, k = (4/3) E* √R, on a table of frequency Ω under gravity g,
+has ``K = k √g/(m Ω³)`` and ``C = λ g/Ω``.
+
+Source: K. H. Hunt and F. R. E. Crossley, *Coefficient of restitution
+interpreted as damping in vibroimpact*, Journal of Applied Mechanics 42 (1975) 440-445,
+as quoted by Simbody (``HuntCrossleyContact.h``: k xⁿ (1 + (3/2) c v), n = 3/2 for a
+sphere, and e = 1 - c v at low speed; its c is (2/3) λ).
+"""
+
+from dataclasses import dataclass
+from typing import ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.contacts.laws.contact_law import (
+    ContactLaw,
+    Slopes,
+    check_damping,
+    check_positive,
+)
+
+
+@dataclass(frozen=True, repr=False)
+class HuntCrossley(ContactLaw):
+    """Hertz contact with damping proportional to the elastic force.
+
+    Parameters
+    ----------
+    stiffness, damping : float or array
+        K > 0 and C ≥ 0.
+
+    Examples
+    --------
+    >>> float(HuntCrossley(2.0, 0.5).force(4.0, 1.0))
+    24.0
+    """
+
+    stiffness: float | np.ndarray
+    damping: float | np.ndarray
+
+    name: ClassVar[str] = "hunt-crossley"
+    formula: ClassVar[str] = "K p^1.5 (1 + C p′)"
+
+    def __post_init__(self):
+        check_positive(self.stiffness, "stiffness K")
+        check_damping(self.damping, "damping C")
+
+    def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """K p^{3/2} (1 + C p′)."""
+        elastic = self.stiffness * (penetration * np.sqrt(penetration))
+        return elastic * (1 + self.damping * rate)
+
+    def slopes(self, penetration: np.ndarray, rate: np.ndarray) -> Slopes:
+        """Derivatives of the force."""
+        slope = self.stiffness * np.sqrt(penetration)
+        return Slopes(1.5 * slope * (1 + self.damping * rate), slope * penetration * self.damping)
+
+    @classmethod
+    def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
+        """K = v²/P^{5/2} and C = group/v."""
+        v = np.asarray(speed, dtype=float)
+        return cls(v * v / np.asarray(length) ** 2.5, group / v)

@@ -1,0 +1,82 @@
+r"""Viscoelastic Hertz contact, of Kuwabara and Kono, and of Brilliantov et al.
+
+``f = K (p^{3/2} + C √p p′)``, released where the force vanishes, p + C p′ = 0: the
+surfaces do not adhere, and the ball leaves the still deformed contact. The
+restitution coefficient depends on C v^{1/5} K^{2/5} alone and falls with the speed, as
+1 - 1.15 C K^{2/5} v^{1/5} for a slow impact.
+
+Physical parameters: a ball of mass m with the force ``k (x^{3/2} + (3/2) A √x ẋ)``
+of a dissipative time A has ``K = k √g/(m Ω³)`` and ``C = (3/2) A Ω``.
+
+Sources: G. Kuwabara and K. Kono, Japanese Journal of Applied Physics 26 (1987)
+1230-1233, as quoted by the CGNS standard (``HertzKuwabaraKono``; the last page from
+memory); N. V. Brilliantov, F. Spahn, J.-M. Hertzsch and T. Pöschel, Physical Review E
+53 (1996) 5382-5392, as quoted by LAMMPS (``pair_style gran/hooke``); for the release
+T. Schwager and T. Pöschel, Physical Review E 78 (2008) 051304, as quoted by the toolbox
+ChattAbhi/Approx-ViscoElastic-CoR.
+"""
+
+from dataclasses import dataclass
+from typing import ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.contacts.laws.contact_law import (
+    ContactLaw,
+    Slopes,
+    check_damping,
+    check_positive,
+)
+from bouncing_ball.contacts.release import Release
+
+
+@dataclass(frozen=True, repr=False)
+class KuwabaraKono(ContactLaw):
+    """Viscoelastic Hertz contact that does not pull.
+
+    Parameters
+    ----------
+    stiffness, damping : float or array
+        K > 0 and C ≥ 0.
+
+    Examples
+    --------
+    >>> law = KuwabaraKono(2.0, 0.5)
+    >>> float(law.force(4.0, 1.0)), float(law.grip(4.0, -8.0))
+    (18.0, 0.0)
+    """
+
+    stiffness: float | np.ndarray
+    damping: float | np.ndarray
+
+    name: ClassVar[str] = "kuwabara-kono"
+    formula: ClassVar[str] = "K (p^1.5 + C √p p′)"
+    release = Release.FORCE
+
+    def __post_init__(self):
+        check_positive(self.stiffness, "stiffness K")
+        check_damping(self.damping, "damping C")
+
+    def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """K √p (p + C p′)."""
+        return self.stiffness * np.sqrt(penetration) * (penetration + self.damping * rate)
+
+    def slopes(self, penetration: np.ndarray, rate: np.ndarray) -> Slopes:
+        """Derivatives of the force."""
+        slope, drag = self.stiffness * np.sqrt(penetration), self.damping * rate
+        return Slopes(slope * (1.5 + 0.5 * drag / penetration), slope * self.damping)
+
+    def grip(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """p + C p′, of the sign of the force."""
+        return penetration + self.damping * rate
+
+    def grip_slopes(self, penetration: np.ndarray, rate: np.ndarray) -> Slopes:
+        """1 and C."""
+        return Slopes(np.ones_like(penetration + rate), self.damping + 0 * rate)
+
+    @classmethod
+    def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
+        """K = v²/P^{5/2} and C = group P/v."""
+        v, p = np.asarray(speed, dtype=float), np.asarray(length, dtype=float)
+        return cls(v * v / p**2.5, group * p / v)

@@ -1,0 +1,99 @@
+r"""Hertz contact with Tsuji's damping, as codes for granular matter use it.
+
+``f = K p^{3/2} + C √K p^{1/4} p′``, released at p = 0. With q = p^{5/4} and
+ds = p^{1/4} dt a free impact is linear, ::
+
+    d²q/ds² + C √K dq/ds + (5/4) K q = 0
+
+so that the restitution coefficient does not depend on the speed, and
+``C = √5 (-ln r)/√(π² + ln² r)`` exactly; with C ≥ √5 the ball does not leave.
+
+Physical parameters: a ball of mass m with the force ``k x^{3/2} + α √(m k) x^{1/4} ẋ``
+has ``K = k √g/(m Ω³)`` and C = α.
+
+Sources: Y. Tsuji, T. Tanaka and T. Ishida, Powder Technology 71 (1992) 239-250, as
+quoted by LAMMPS (``pair_style granular``); D. Antypov and J. A. Elliott, *On an
+analytical solution for the damped Hertzian spring*, Europhysics Letters 94 (2011)
+50004, as quoted by Yade (``doc/references.bib``, and the formula with its Eq. 17 in
+the sources). Y. T. Feng, arXiv:2603.27764 (2026), has the same change of variable
+and the formula for any power (abstract read).
+"""
+
+from dataclasses import dataclass
+from typing import ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.contacts.laws.contact_law import (
+    ContactLaw,
+    Slopes,
+    check_damping,
+    check_positive,
+)
+from bouncing_ball.errors import require
+
+
+def tsuji_damping(restitution: ArrayLike) -> np.ndarray:
+    """C of a restitution coefficient r in (0, 1].
+
+    Examples
+    --------
+    >>> float(tsuji_damping(1.0))
+    0.0
+    """
+    decrement = -np.log(np.asarray(restitution, dtype=float)) + 0.0
+    return np.sqrt(5) * decrement / np.hypot(np.pi, decrement)
+
+
+@dataclass(frozen=True, repr=False)
+class Tsuji(ContactLaw):
+    """Hertz contact whose restitution coefficient is the same at every speed.
+
+    Parameters
+    ----------
+    stiffness, damping : float or array
+        K > 0 and C in [0, √5).
+
+    Examples
+    --------
+    >>> float(Tsuji(4.0, 0.5).force(16.0, 1.0))
+    258.0
+    """
+
+    stiffness: float | np.ndarray
+    damping: float | np.ndarray
+
+    name: ClassVar[str] = "tsuji"
+    formula: ClassVar[str] = "K p^1.5 + C √K p^0.25 p′"
+    root: ClassVar[int] = 4
+
+    def __post_init__(self):
+        check_positive(self.stiffness, "stiffness K")
+        check_damping(self.damping, "damping C")
+        c = np.asarray(self.damping, dtype=float)
+        require(c < np.sqrt(5), c, "damping C", "below √5: with more the ball does not leave")
+
+    def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """K p^{3/2} + C √K p^{1/4} p′."""
+        half = np.sqrt(penetration)
+        loss = self.damping * np.sqrt(self.stiffness)
+        return self.stiffness * penetration * half + loss * np.sqrt(half) * rate
+
+    def slopes(self, penetration: np.ndarray, rate: np.ndarray) -> Slopes:
+        """Derivatives of the force."""
+        half = np.sqrt(penetration)
+        loss = self.damping * np.sqrt(self.stiffness) * np.sqrt(half)
+        return Slopes(1.5 * self.stiffness * half + loss * rate / (4 * penetration), loss)
+
+    @classmethod
+    def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
+        """K = v²/P^{5/2} and C = group."""
+        v = np.asarray(speed, dtype=float)
+        stiffness = v * v / np.asarray(length) ** 2.5
+        return cls(stiffness, np.asarray(group, dtype=float) + 0 * stiffness)
+
+    @classmethod
+    def group_of(cls, restitution: float) -> float:
+        """C of a restitution coefficient."""
+        return float(tsuji_damping(restitution))

@@ -1,0 +1,164 @@
+r"""What is left of a contact law outside the contact: the signature of an impact.
+
+In the table's frame the ball obeys δ″ = -a + F, with the load ``a = 1 - Λ sin τ``
+and F the contact force over the mass. Continue the free flights before and
+after the contact into it. Both fall with the same a, so that their distance
+grows as the impulse of F has come in, whatever the table does meanwhile::
+
+    δ_out(t) - δ_in(t) = ∫ F(s) (t - s) ds = J (t - t_c),    J = ∫ F ds
+
+They meet at one moment, the centroid of the force, ``t_c = ∫ s F ds / J``: to
+the outside a contact *is* an instantaneous impact at that moment, below the
+table's level, with the restitution ``r_c = -δ′_out/δ′_in`` of the continued
+flights. This much is exact. To second order in the duration of the contact
+its law enters by functions of one speed v = -δ′_in alone:
+
+* the *delay* t_c(v), from the start of contact to the instant, and with it the
+  depth h = v t_c of the instant below the table;
+* the *restitution* r(v) of the free impact, without load;
+* the *load sensitivity* σ(v), ``r_c = r + σ a/v``, v and a at the instant;
+* the *duration* D(v) of the contact, which says only when the ball leaves.
+
+For the linear contact they are constants. It ends where δ + κ δ′ = 0, see
+:mod:`bouncing_ball.contacts.release`. The free impact ends with δ′ = r v and
+δ = -κ r v, hence from F = δ″ and one integration by parts ::
+
+    t_c = (D δ′_b - δ_b)/((1 + r) v) = r (D + κ)/(1 + r)
+
+A constant load a adds -a G to δ, ``G = (1 - g′ - 2ζϖ g)/ϖ²`` with g the impulse
+response. The release then comes later by ``(1 + r) a/(r v ϖ²)``, and the
+velocity there is less by ``[2ζ(1 + r)/ϖ - κ] a``, to first order. From there
+back to the instant, and from the start on to it, the load acts for D in all,
+weighted by 1 and r: ``[D - (1 + r) t_c] a``. Together ::
+
+    σ = (1 - r)(D + κ) - 2ζ (1 + r)/ϖ
+
+All quantities are dimensionless; all functions broadcast.
+"""
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import Any, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.contacts.batch import Batch
+from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.errors import require
+
+
+class Instant(NamedTuple):
+    """The signature at an impact speed v, and the derivatives along v.
+
+    ``delay`` t_c, ``restitution`` r, ``load`` σ and ``duration`` D; t_c, σ and D
+    are times, r is a number.
+    """
+
+    delay: np.ndarray
+    restitution: np.ndarray
+    load: np.ndarray
+    duration: np.ndarray
+    d_delay: np.ndarray | float = 0.0
+    d_restitution: np.ndarray | float = 0.0
+    d_load: np.ndarray | float = 0.0
+
+    def tangent(self, speed: ArrayLike, load: ArrayLike) -> "tuple[Instant, np.ndarray]":
+        """The constant signature that changes alike next to a speed v and load a.
+
+        Its restitution is ``b = ∂(r v + σ a)/∂v = r + r′ v + σ′ a`` and its delay
+        ``e = ∂(v t_c)/∂v = t_c + t_c′ v``; and what is left, ``(b - r) v``, so that
+        ``r_c v = b v + σ a - (b - r) v₀`` to first order. Itself and 0 for a constant one.
+
+        Examples
+        --------
+        >>> instant, rest = Instant(1.0, 0.5, 0.0, 2.0, d_restitution=-0.125).tangent(2.0, 0.0)
+        >>> float(instant.restitution), float(rest)
+        (0.25, -0.5)
+        """
+        v = np.asarray(speed, dtype=float)
+        slope = self.restitution + (self.d_restitution * v + self.d_load * np.asarray(load))
+        depth = self.delay + self.d_delay * v
+        return Instant(depth, slope, self.load, self.duration), (slope - self.restitution) * v
+
+
+class Signature(Batch, ABC):
+    """A contact law, seen from outside: a frozen dataclass of its parameters."""
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether the impact speed changes nothing, as for a linear contact."""
+        return False
+
+    @property
+    def label(self) -> str:
+        """What the law is, in words; of a single one."""
+        instant = self(np.ones(self.shape))
+        return (
+            f"r = {float(instant.restitution):.4g}, t_c = {float(instant.delay):.4g}, "
+            f"σ = {float(instant.load):.4g}"
+        )
+
+    @abstractmethod
+    def __call__(self, speed: ArrayLike) -> Instant:
+        """The signature of impacts with speeds v > 0 at the instant."""
+
+    def flat(self, shape: tuple[int, ...]) -> Self:
+        """One law for each ball of an array, in a row; a single law is that of all."""
+        index = np.unravel_index(np.arange(math.prod(shape)), shape) if shape else (np.newaxis,)
+        return self._entries(shape, index)
+
+    def take(self, which: Any) -> Self:
+        """The laws of some balls of a row."""
+        return self[which] if self.shape else self
+
+
+@dataclass(frozen=True, repr=False)
+class LinearSignature(Signature):
+    """Signature of the spring-damper contact, in closed form.
+
+    Parameters
+    ----------
+    contact : SpringDamper
+        ϖ, ζ < 1 and the release rule.
+
+    Raises
+    ------
+    ModelError
+        If ζ ≥ 1: a free overdamped contact never ends.
+
+    Examples
+    --------
+    An elastic contact pushes symmetrically, and its load cancels:
+
+    >>> instant = LinearSignature(SpringDamper(2.0, 0.0))(1.0)
+    >>> float(instant.delay) == np.pi / 4, float(instant.restitution), float(instant.load)
+    (True, 1.0, 0.0)
+    """
+
+    contact: SpringDamper
+
+    def __post_init__(self):
+        zeta = np.asarray(self.contact.damping_ratio, dtype=float)
+        require(zeta < 1, zeta, "damping ratio ζ", "below 1: a free contact never ends")
+
+    @property
+    def is_constant(self) -> bool:
+        """A linear impact is the same at every speed."""
+        return True
+
+    def __call__(self, speed: ArrayLike = 1.0) -> Instant:
+        """The signature; the speed only gives the shape."""
+        contact, same = self.contact, np.ones(np.shape(speed))
+        r = same * contact.restitution
+        duration = same * contact.free_duration
+        # When the flight after the contact, continued, rises through δ = 0.
+        through = duration + contact.lag
+        loss = 2 * np.asarray(contact.damping_ratio) / contact.frequency_ratio
+        return Instant(
+            delay=r * through / (1 + r),
+            restitution=r,
+            load=(1 - r) * through - loss * (1 + r),
+            duration=duration,
+        )

@@ -1,0 +1,101 @@
+"""A small record and a copy of it that a test may change."""
+
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+import xarray as xr
+from PIL import Image
+from PIL.PngImagePlugin import PngInfo
+
+from bouncing_ball.compare.folders import Artifact, Comparison, compare_folders
+from bouncing_ball.compare.parts import Part
+from bouncing_ball.compare.tolerance_file import read_tolerances
+from bouncing_ball.compare.tolerances import Tolerances
+from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
+
+ROOT = Path(__file__).resolve().parents[2]
+# A sweep, two branches whose pictures are of one size, a schematic, two tables.
+NAMES = ("fig01", "fig05", "fig08", "fig09", "table1", "witness")
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A record, new artifacts, and the tolerances between them."""
+
+    record: Path
+    new: Path
+    rules: Tolerances
+
+    def compare(self) -> Comparison:
+        return compare_folders(self.record, self.new, self.rules)
+
+    def artifact(self, name: str) -> Artifact:
+        (found,) = compare_folders(self.record, self.new, self.rules, [name]).artifacts
+        return found
+
+    def part(self, file: str) -> Part:
+        return next(part for part in self.artifact(Path(file).stem).parts if part.file == file)
+
+    def dataset(self, name: str) -> xr.Dataset:
+        return read_dataset(self.record / "figures" / f"{name}.nc")
+
+    def write(self, name: str, data: xr.Dataset) -> None:
+        """Put a changed dataset among the new artifacts."""
+        write_dataset(data, self.new / "figures" / f"{name}.nc")
+
+    def variable(self, name: str, variable: str):
+        """The result for one variable, everything else being as it was."""
+        part = self.part(f"figures/{name}.nc")
+        found = {result.name: result for result in part.variables}
+        others = {key: result.outcome for key, result in found.items() if key != variable}
+        assert set(others.values()) <= {"identical"}, others
+        return found[variable]
+
+
+@pytest.fixture(scope="session")
+def rules() -> Tolerances:
+    """The tolerances of the repository."""
+    return read_tolerances(ROOT / "config" / "tolerances.yaml")
+
+
+def _put(source: Path, target: Path) -> None:
+    """A copy; of a picture a smaller one, which is read and compared ten times as fast."""
+    if source.suffix != ".png":
+        shutil.copyfile(source, target)
+        return
+    with Image.open(source) as picture:
+        text = PngInfo()
+        for key, value in picture.text.items():
+            text.add_text(key, value)
+        picture.reduce(3).save(target, pnginfo=text)
+
+
+@pytest.fixture(scope="session")
+def _record(tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("record")
+    (folder / "figures").mkdir()
+    for name in NAMES:
+        for path in (ROOT / "figures").glob(f"{name}.*"):
+            _put(path, folder / "figures" / path.name)
+    shutil.copyfile(ROOT / "paper.md", folder / "paper.md")
+    return folder
+
+
+def _two(record: Path, folder: Path, rules: Tolerances) -> Pair:
+    for side in ("record", "new"):
+        shutil.copytree(record, folder / side)
+    return Pair(folder / "record", folder / "new", rules)
+
+
+@pytest.fixture
+def pair(_record, rules, tmp_path) -> Pair:
+    """Two equal folders."""
+    return _two(_record, tmp_path, rules)
+
+
+@pytest.fixture(scope="module")
+def kept_pair(_record, rules, tmp_path_factory) -> Pair:
+    """Two equal folders, changed once for all tests of a module."""
+    return _two(_record, tmp_path_factory.mktemp("kept"), rules)

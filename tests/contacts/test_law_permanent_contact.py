@@ -1,0 +1,60 @@
+"""Permanent contact of any law: the closed form, and what a touch is."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from bouncing_ball.contacts.law_choice import law_of_impact
+from bouncing_ball.contacts.law_permanent_contact import permanent_contact
+from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
+from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
+from bouncing_ball.contacts.laws.linear import Linear
+from bouncing_ball.contacts.laws.tsuji import Tsuji
+from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.errors import ModelError
+
+
+@pytest.mark.parametrize("release", list(Release))
+@pytest.mark.parametrize("omega", [1.0, 2.0, 10.0])
+def test_the_linear_law_has_the_closed_form(omega, release):
+    found = permanent_contact(Linear(omega, 0.136, release))
+    exact = permanent_contact_threshold(omega, 0.136, release)
+    assert found.amplitude == pytest.approx(float(exact), rel=1e-12)
+
+
+@pytest.mark.parametrize("kind", [HuntCrossley, Tsuji, KuwabaraKono])
+def test_a_contact_below_the_threshold_is_held_and_above_it_is_not(kind):
+    law = law_of_impact(kind, 0.65, 0.6, 3.8)
+    threshold = permanent_contact(law).amplitude
+
+    def lowest(lam):
+        """The least grip in the last period of a motion that has settled."""
+
+        def rates(t, state):
+            p = max(state[0], 1e-300)
+            return [state[1], 1 - lam * np.sin(t) - float(law.force(np.float64(p), state[1]))]
+
+        end = 40 * 2 * np.pi
+        time = np.linspace(end - 2 * np.pi, end, 4001)
+        rest = (1 / float(law.stiffness)) ** (2 / 3)
+        run = solve_ivp(rates, (0, end), [rest, 0.0], "DOP853", time, rtol=1e-9, atol=1e-12)
+        return np.min(law.grip(*run.y)) / rest
+
+    # The grip at its least grows as the distance from the threshold, some parts of rest.
+    assert lowest(threshold * 0.999) > 0
+    assert lowest(threshold * 1.001) < lowest(threshold * 0.999)
+    assert abs(lowest(threshold * 0.9999)) < 2e-3
+
+
+def test_it_tends_to_gravity_for_a_hard_contact():
+    soft, hard = (
+        permanent_contact(law_of_impact(KuwabaraKono, 0.65, duration, 3.8)).amplitude
+        for duration in (0.4, 0.2)
+    )
+    assert 1 - hard < (1 - soft) / 2
+
+
+def test_a_contact_that_rings_is_refused():
+    with pytest.raises(ModelError, match="weakly damped, it rings"):
+        permanent_contact(Tsuji(1e9, 1e-3))

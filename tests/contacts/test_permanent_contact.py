@@ -1,0 +1,118 @@
+"""Permanent contact (Eqs. 28-36)."""
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.optimize import minimize_scalar
+
+from bouncing_ball.contacts.permanent_contact import (
+    RESTITUTION_THRESHOLD,
+    permanent_contact_minimum,
+    permanent_contact_threshold,
+)
+from bouncing_ball.contacts.spring_damper import Release, contact_flow, contact_force
+from bouncing_ball.errors import ModelError
+
+EPS = np.finfo(float).eps
+
+
+@given(st.floats(1e-3, 1e4), st.floats(0, 2))
+def test_threshold_against_the_papers_formula(omega, zeta):
+    with mpmath.workdps(50):
+        w, z = mpmath.mpf(omega), mpmath.mpf(zeta)
+        gamma = (w * w - 1) ** 2 + (2 * z * w) ** 2
+        exact = float(mpmath.sqrt(gamma) / w**2)
+    # 1 - 1/ϖ² loses digits next to ϖ = 1, to the rounding of 1/ϖ² ≈ 1.
+    computed = float(permanent_contact_threshold(omega, zeta))
+    assert abs(computed - exact) <= 6 * EPS * max(exact, 1.0)
+
+
+@pytest.mark.parametrize("release", list(Release))
+@pytest.mark.parametrize("zeta", [0.05, 0.4, 1.3])
+@pytest.mark.parametrize("omega", [0.7, 1.0, 3.0, 20.0])
+def test_steady_oscillation_just_reaches_the_release(omega, zeta, release):
+    # At the threshold the steady displacement touches zero from below, or the
+    # force from above: the flow, once the transient has gone, over a period.
+    lam = float(permanent_contact_threshold(omega, zeta, release))
+    slowest = omega * (zeta - np.sqrt(max(zeta**2 - 1, 0)))
+    settled = 2 * np.pi * np.ceil(40 / slowest / (2 * np.pi))
+    t = settled + np.linspace(0, 2 * np.pi, 20001)
+    flow = contact_flow(t, 0.0, 0.0, 0.0, lam, omega, zeta)
+    # In units of the weight, both oscillate about one with amplitude one; the
+    # sample nearest to the extremum is within (2π/40000)²/2 of it.
+    if release is Release.FORCE:
+        reserve = contact_force(flow.displacement, flow.velocity, omega, zeta)
+    else:
+        reserve = -(omega**2) * flow.displacement
+    assert abs(reserve.min()) < 2e-8
+    assert reserve.max() == pytest.approx(2.0, abs=2e-8)
+
+
+def test_limits():
+    assert RESTITUTION_THRESHOLD == 1.0
+    for zeta in (0.0, 0.136, 0.5):
+        # Λ_SD - 1 → (2ζ² - 1)/ϖ², the next term a factor 1/ϖ² smaller.
+        for omega in (1e2, 1e3):
+            slope = (float(permanent_contact_threshold(omega, zeta)) - 1) * omega**2
+            assert slope == pytest.approx(2 * zeta**2 - 1, abs=2 / omega**2 + 2 * EPS * omega**2)
+        # Λ_SD ϖ² → 1, off by (2ζ² - 1) ϖ².
+        for omega in (1e-3, 1e-5):
+            scaled = float(permanent_contact_threshold(omega, zeta)) * omega**2
+            assert scaled == pytest.approx(1.0, abs=2 * omega**2 + 4 * EPS)
+        assert float(permanent_contact_threshold(1.0, zeta)) == 2 * zeta
+
+
+@pytest.mark.parametrize(
+    ("zeta", "release"),
+    [(z, rule) for z in (0.05, 0.136, 0.4, 0.65) for rule in Release] + [(1.5, Release.FORCE)],
+)
+def test_minimum_against_a_minimiser(zeta, release):
+    lowest = permanent_contact_minimum(zeta, release)
+    found = minimize_scalar(
+        lambda w: float(permanent_contact_threshold(w, zeta, release)),
+        bounds=(0.5, 10.0),
+        method="bounded",
+        options={"xatol": 1e-10},
+    )
+    # A minimum locates to the square root of eps, its value to eps.
+    assert float(lowest.frequency_ratio) == pytest.approx(found.x, rel=1e-6)
+    assert float(lowest.threshold) == pytest.approx(found.fun, rel=1e-12)
+    at = float(permanent_contact_threshold(lowest.frequency_ratio, zeta, release))
+    assert float(lowest.threshold) == pytest.approx(at, rel=10 * EPS)
+
+
+@pytest.mark.parametrize("release", list(Release))
+def test_undamped_minimum_is_zero_at_resonance(release):
+    lowest = permanent_contact_minimum(0.0, release)
+    assert (float(lowest.threshold), float(lowest.frequency_ratio)) == (0.0, 1.0)
+
+
+def test_releases_agree_without_damping_and_differ_with_it():
+    omega = np.array([0.3, 1.0, 2.0, 50.0])
+    assert np.array_equal(
+        permanent_contact_threshold(omega, 0.0),
+        permanent_contact_threshold(omega, 0.0, Release.FORCE),
+    )
+    # A damper pulls before the displacement is zero: less is permanent contact.
+    assert np.all(
+        permanent_contact_threshold(omega, 0.2, Release.FORCE)
+        < permanent_contact_threshold(omega, 0.2)
+    )
+
+
+@pytest.mark.parametrize("zeta", [0.7072, 1.0, -0.1, np.nan])
+def test_minimum_outside_its_range(zeta, one_line):
+    with pytest.raises(ModelError) as error:
+        permanent_contact_minimum(zeta)
+    one_line(error, f"ζ = {zeta}", "[0, 1/√2)")
+
+
+def test_threshold_outside_its_range(one_line):
+    with pytest.raises(ModelError) as error:
+        permanent_contact_threshold(0.0, 0.1)
+    one_line(error, "ϖ = 0.0", "positive")
+    with pytest.raises(ModelError) as error:
+        permanent_contact_threshold(1.0, -0.1)
+    one_line(error, "ζ = -0.1", "≥ 0")

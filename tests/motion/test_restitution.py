@@ -1,0 +1,140 @@
+"""Impacts with a restitution coefficient: exact answers, chattering, sticking, lift-off."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bouncing_ball.contacts.restitution_map import exact_map_jacobian
+from bouncing_ball.errors import ModelError
+from bouncing_ball.motion.history import history
+from bouncing_ball.motion.restitution import impact_cycle, lift_off_phase, simulate
+from bouncing_ball.motion.sequence import Status
+from bouncing_ball.orbits import restitution_orbit as orbits
+
+
+@pytest.mark.parametrize(("n", "r", "lam"), [(1, 0.85, 1.0), (2, 0.65, 1.5), (3, 0.9, 0.8)])
+def test_orbits_are_fixed_points(n, r, lam):
+    for stable in (True, False):
+        phase = orbits.phase(n, r, lam, stable)
+        cycle = impact_cycle(r, lam, phase, n * np.pi)
+        # A few units in the last place, times the multiplier, below 10.
+        assert abs(cycle.phase - phase) < 1e-13
+        assert abs(cycle.velocity - n * np.pi) < 1e-13
+        assert abs(cycle.time - 2 * np.pi * n) < 1e-13
+
+
+def test_jacobian_is_that_of_the_exact_map():
+    r, lam, phase, velocity, step = 0.7, 1.3, 0.4, 3.0, 1e-5
+    around = step * np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]])
+    cycle = impact_cycle(r, lam, phase + around[:, 0], velocity + around[:, 1])
+    after = np.array([cycle.phase, cycle.velocity])
+    columns = [(after[:, k] - after[:, k + 1]) / (2 * step) for k in (1, 3)]
+    expected = exact_map_jacobian(cycle.time[0], phase, velocity, lam, r)
+    # Central differences: step² times third derivatives of order 10.
+    np.testing.assert_allclose(np.transpose(columns), expected, rtol=0, atol=1e-8)
+
+
+def test_the_stable_orbit_holds():
+    phase = orbits.phase(1, 0.85, 0.9)
+    sequence = simulate(0.85, 0.9, phase, np.pi, 51)
+    # A contraction: the errors of 1e-15 do not add up.
+    assert np.max(np.abs(sequence.phase - phase)) < 1e-13
+    np.testing.assert_allclose(sequence.apparent_restitution, 0.85, rtol=1e-13)
+
+
+def test_an_elastic_ball_on_a_table_at_rest_keeps_its_energy():
+    sequence = simulate(1.0, 0.0, 0.3, 2.0, 1000)
+    assert np.all(sequence.impact_velocity == -2) and np.all(np.diff(sequence.time) == 4)
+
+
+@pytest.mark.parametrize("r", [0.1, 0.5, 0.9, 0.99])
+def test_chattering_on_a_table_at_rest_is_a_geometric_series(r):
+    speed = 3.0
+    sequence = simulate(r, 0.0, 0.0, speed, 3000)
+    count = int(sequence.impacts)
+    assert sequence.status == Status.PERMANENT_CONTACT
+    index = np.arange(count)
+    # Rounding of each impact adds up, at most 1500 of them.
+    np.testing.assert_allclose(
+        sequence.relative_velocity[1:count], -speed * r ** index[:-1], rtol=1e-12
+    )
+    rest = sequence.time[count - 1] + sequence.settling[count - 1]
+    assert abs(rest - 2 * speed / (1 - r)) < 1e-12 * rest
+
+
+@pytest.mark.parametrize("lam", [1.0001, 1.2, 2.0, 3.0])
+def test_lift_off(lam):
+    """A ball at rest on the table leaves it where Λ sin τ = 1 on the way up."""
+    sequence = simulate(0.3, lam, -0.4, lam * np.cos(-0.4), 2)
+    assert abs(float(sequence.release_phase[0]) - np.arcsin(1 / lam)) < 1e-14
+    assert float(sequence.contact_duration[0]) == pytest.approx(0.4 + np.arcsin(1 / lam))
+    assert sequence.relative_release_velocity[0] == 0 and sequence.settling[0] == 0
+    # It lands where free flight from there meets the table.
+    start = float(lift_off_phase(lam))
+    s = float(sequence.time[1] - sequence.contact_duration[0])
+    gap = 1 + s * lam * np.cos(start) - s * s / 2 - lam * np.sin(start + s)
+    assert s > 4 * np.cos(start) and abs(gap) < 1e-14 * (1 + s * s)
+
+
+def test_a_table_below_gravity_keeps_the_ball():
+    sequence = simulate(0.5, [0.0, 0.5, 1.0], 0.0, 3.0, 300)
+    assert np.all(sequence.status == Status.PERMANENT_CONTACT)
+    assert np.all(np.isnan(sequence.relative_release_velocity[sequence.contact_duration > 0]))
+
+
+def test_the_sum_of_a_chattering_is_the_chattering():
+    """Chattering summed early, by a looser threshold, ends at the same time."""
+    import bouncing_ball.motion.restitution as module
+
+    ends = []
+    for threshold in (1e-5, 1e-7):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(module, "_CHATTER", threshold)
+            sequence = simulate(0.5, 0.8, -1.0, 2.0, 200)
+        last = int(sequence.impacts) - 1
+        ends.append(float(sequence.time[last] + sequence.settling[last]))
+    # The next term of the sum, T₀³ Λ²/g², is below 1e-15; rounding of the clock.
+    assert abs(ends[0] - ends[1]) < 1e-13
+
+
+def test_ensembles_equal_single_runs_exactly():
+    rng = np.random.default_rng(5)
+    r, lam = rng.uniform(0.1, 1.0, 50), rng.uniform(0.0, 4.0, 50)
+    phase = rng.uniform(-3.0, 3.0, 50)
+    velocity = lam * np.cos(phase) + rng.uniform(0.0, 5.0, 50)
+    many = simulate(r, lam, phase, velocity, 40)
+    for k in range(50):
+        one = simulate(float(r[k]), float(lam[k]), float(phase[k]), float(velocity[k]), 40)
+        for name in ("time", "phase", "relative_velocity", "contact_duration", "settling"):
+            np.testing.assert_array_equal(getattr(one, name), getattr(many, name)[:, k], name)
+
+
+@settings(max_examples=40)
+@given(
+    r=st.floats(0.05, 1.0),
+    lam=st.floats(0.0, 6.0),
+    phase=st.floats(-3.2, 3.2),
+    speed=st.floats(0.0, 8.0),
+)
+def test_the_ball_stays_above_the_table(r, lam, phase, speed):
+    sequence = simulate(r, lam, phase, lam * np.cos(phase) + speed, 25)
+    last = np.max(sequence.time[np.isfinite(sequence.time)])
+    dense = history(sequence, np.linspace(0, last, 3000))
+    # The rounding of the clock times the velocity, as for the spring-damper.
+    assert np.nanmin(dense.gap) >= -1e-12
+    # Each impact obeys the law and happens on the table, for flights of some length.
+    flown = np.isfinite(sequence.time[1:])
+    assert np.all(sequence.relative_velocity[1:][flown] <= 0)
+
+
+def test_errors_are_one_line(one_line):
+    for arguments, part in (
+        ((0.0, 1.0, 0.0, 3.0, 2), "(0, 1]"),
+        ((0.5, -1.0, 0.0, 3.0, 2), "amplitude"),
+        ((0.5, 1.0, 0.0, 0.5, 2), "downwards"),
+        ((0.5, 1.0, np.inf, 0.5, 2), "finite"),
+    ):
+        with pytest.raises(ModelError) as error:
+            simulate(*arguments)
+        one_line(error, part)

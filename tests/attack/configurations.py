@@ -33,12 +33,12 @@ from bouncing_ball.configuration.study import load
 from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
 from bouncing_ball.datasets.emptiness import statement
 from bouncing_ball.datasets.netcdf import parameter_attributes, read_dataset
+from bouncing_ball.figures.article.render import render_article
+from bouncing_ball.figures.atlas.tables import shares
+from bouncing_ball.figures.given import from_dataset
+from bouncing_ball.figures.tables.error_law import law_table
+from bouncing_ball.figures.tables.formats import to_csv, to_latex, to_markdown
 from bouncing_ball.orbits import restitution_orbit
-from bouncing_ball.render.article.render import render_article
-from bouncing_ball.render.atlas.tables import shares
-from bouncing_ball.render.given import from_dataset
-from bouncing_ball.render.tables.error_law import law_table
-from bouncing_ball.render.tables.formats import to_csv, to_latex, to_markdown
 
 ROOT = Path(__file__).resolve().parents[2]
 SECTIONS = ("figures", "tables", "extensions", "studies")
@@ -231,10 +231,10 @@ def run(case: Case) -> None:
 
 
 def _draw(name: str, data: xr.Dataset) -> None:
-    from bouncing_ball.render.figures.style import style
+    from bouncing_ball.figures.style import style
 
     with style():
-        draw = import_module(f"bouncing_ball.render.figures.{name}").draw
+        draw = import_module(f"bouncing_ball.figures.{name}").draw
         figure = from_dataset(draw, data, name)
         figure.set_dpi(20)
         figure.canvas.draw()
@@ -244,7 +244,7 @@ def _write(data: Mapping[str, xr.Dataset], changed: set[str]) -> None:
     """The tables that have changed, the article and the tally."""
     written = {name: (ROOT / "figures" / f"{name}.md").read_text("utf-8") for name in tables()}
     for name in changed & written.keys():
-        rows = import_module(f"bouncing_ball.render.tables.{name}").rows
+        rows = import_module(f"bouncing_ball.figures.tables.{name}").rows
         header, body = from_dataset(rows, data[name], name)
         to_csv(header, body), to_latex(header, body)
         written[name] = to_markdown(header, body)

@@ -14,7 +14,7 @@ import numpy as np
 
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
-from bouncing_ball.render.figures.style import canvas, save, style
+from bouncing_ball.figures.style import canvas, save, style
 
 ROOT = Path(__file__).resolve().parents[2]
 

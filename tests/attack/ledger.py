@@ -25,9 +25,9 @@ from bouncing_ball.configuration.stages import STAGES, Kind, names
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.errors import ModelError
-from bouncing_ball.render.figures.style import style
-from bouncing_ball.render.given import from_dataset
-from bouncing_ball.render.tables.formats import to_csv, to_latex, to_markdown
+from bouncing_ball.figures.given import from_dataset
+from bouncing_ball.figures.style import style
+from bouncing_ball.figures.tables.formats import to_csv, to_latex, to_markdown
 
 ROOT = Path(__file__).resolve().parents[2]
 # One case within this; a field of a hundred thousand million blanks takes the memory.
@@ -108,12 +108,12 @@ def rendered(name: str, data: xr.Dataset) -> None:
     """The figure or the table, as its job makes it."""
     path = f"results/figures/{name}.nc"
     if STAGES[name].kind is Kind.TABLE:
-        rows = import_module(f"bouncing_ball.render.tables.{name}").rows
+        rows = import_module(f"bouncing_ball.figures.tables.{name}").rows
         for form in (to_csv, to_markdown, to_latex):
             form(*from_dataset(rows, data, path))
         return
     with style():
-        draw = import_module(f"bouncing_ball.render.figures.{name}").draw
+        draw = import_module(f"bouncing_ball.figures.{name}").draw
         from_dataset(draw, data, path)
 
 

@@ -21,13 +21,13 @@ from matplotlib.figure import Figure
 
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
+from bouncing_ball.figures.style import save
 from bouncing_ball.record.explain import explain, lines
 from bouncing_ball.record.job_log import log_lines
 from bouncing_ball.record.proof import RefusedError, check_made
 from bouncing_ball.record.provenance import ProvenanceError, changes, digest
 from bouncing_ball.record.recipe import Recipe, Run, gather
 from bouncing_ball.record.revision import Revision
-from bouncing_ball.render.figures.style import save
 
 ROOT = Path(__file__).resolve().parents[2]
 COMMIT = "c" * 40

@@ -93,7 +93,7 @@ def test_stale_results_are_refused_whatever_their_times(tree, monkeypatch):
     tree.configure("figures", "fig11", "restitution", value=0.7)
     with open(tree.path / "workflow" / "scripts" / "table.py", "a", encoding="utf-8") as file:
         file.write("# edited\n")
-    tree.edit("render/figures/fig12.py")
+    tree.edit("figures/fig12.py")
     tree.commit("Other results")
     tree.run("--cores", "1", "--touch")
     # Snakemake now makes nothing, so that this is what `accept` finds:

@@ -30,21 +30,21 @@ def make_again(name: str, results: Path, folder: Path) -> None:
         inputs = (data,) if stage.study else ()
         _draw(name, inputs, source.with_suffix(".png"), folder)
     if name in tables():
-        from bouncing_ball.render.tables.formats import texts
+        from bouncing_ball.figures.tables.formats import texts
 
-        for suffix, text in texts(*load(f"render.tables.{name}.rows")(data)).items():
+        for suffix, text in texts(*load(f"figures.tables.{name}.rows")(data)).items():
             write_text(folder / f"{name}{suffix}", text)
     if stage.kind is Kind.PAGE:
-        from bouncing_ball.render.explorer.document import to_html
+        from bouncing_ball.figures.explorer.document import to_html
 
         write_text(folder / f"{name}.html", to_html(data))
 
 
 def _draw(name: str, inputs: tuple[xr.Dataset, ...], made: Path, folder: Path) -> None:
     # Imported here: matplotlib takes a second.
-    from bouncing_ball.render.figures.style import save_all, style
+    from bouncing_ball.figures.style import save_all, style
 
     with style():
-        figure = load(f"render.figures.{name}.draw")(*inputs)
+        figure = load(f"figures.{name}.draw")(*inputs)
         paths = [folder / f"{name}{suffix}" for suffix in (".png", ".svg")]
         save_all(figure, paths, read_provenance(made).attributes())

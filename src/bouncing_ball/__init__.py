@@ -29,7 +29,7 @@ The layers, each importing only what lies above it in this list (and the errors)
 ``configuration`` the parameters of a run, read and checked
 ``audit``         the paper under audit: claims, formulas, Table 1, every orbit by three routes
 ``claims``        what the paper claims, and the verdict on each
-``render``        figures, tables and the article; they compute nothing
+``figures``       figures, tables and the article; they compute nothing
 ``compare``       datasets, texts and pictures of two runs against each other
 ``record``        provenance and the accepted record
 ``pipeline``      what the Snakefile needs of Python

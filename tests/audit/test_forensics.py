@@ -19,11 +19,11 @@ from bouncing_ball.audit.forensics.steps import attainable, nearby
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError
+from bouncing_ball.figures.tables.forensics import rows
 from bouncing_ball.orbits.closed_form import branch_point
 from bouncing_ball.orbits.limits import orbit_at, period_doubling, saddle_node
 from bouncing_ball.orbits.restitution_orbit import ImpactMap
 from bouncing_ball.orbits.restitution_orbit import period_doubling as printed_doubling
-from bouncing_ball.render.tables.forensics import rows
 from bouncing_ball.studies.orbit_branches import stability_ranges
 
 R = 0.85

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from bouncing_ball.claims.assessment import assess
-from bouncing_ball.render.tables import claims, formulas
+from bouncing_ball.figures.tables import claims, formulas
 
 
 def table(result):

@@ -8,8 +8,8 @@ from bouncing_ball.compare.outcome import Outcome
 from bouncing_ball.compare.pages import read_page
 from bouncing_ball.compare.parts import judge
 from bouncing_ball.compare.tolerance_file import read_tolerances
+from bouncing_ball.figures.explorer.document import to_html
 from bouncing_ball.record.reading import UnreadableError
-from bouncing_ball.render.explorer.document import to_html
 from bouncing_ball.studies.reference_orbits import reference_orbits
 
 FILE = "explorer.html"

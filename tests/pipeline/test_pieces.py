@@ -41,7 +41,7 @@ def test_an_entry_that_would_be_misread(one_line, entry, said):
 @pytest.mark.parametrize(
     ("entry", "said"),
     [
-        (NEW, "fig17: no module src/bouncing_ball/render/figures/fig17.py, which must"),
+        (NEW, "fig17: no module src/bouncing_ball/figures/fig17.py, which must"),
         (replace(NEW, name="fig16", study="studies.sweeps.f"), "no module src/bouncing_ball/stud"),
         (
             replace(NEW, name="fig16", study="studies.orbit_branches.sweep"),

@@ -88,7 +88,7 @@ def users(file):
         ("studies/restitution_families.py", {"fig02", "fig03"}),
         ("claims/verdict.py", {"claims"}),
         ("claims/tally.py", set()),
-        ("render/figures/style.py", set()),
+        ("figures/style.py", set()),
         ("configuration/stages.py", set()),
         # Eq. 34 as printed is among the evidence.
         ("audit/formulas/as_printed.py", {"formulas", "evidence"}),

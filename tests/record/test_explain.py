@@ -14,12 +14,12 @@ from matplotlib.figure import Figure
 import bouncing_ball
 from bouncing_ball.cli.main import main
 from bouncing_ball.datasets.netcdf import write_dataset
+from bouncing_ball.figures.style import save
 from bouncing_ball.record import carriers
 from bouncing_ball.record import explain as explain_module
 from bouncing_ball.record.provenance import Provenance, digest, file_digest, versions
 from bouncing_ball.record.reading import UnreadableError
 from bouncing_ball.record.revision import Revision
-from bouncing_ball.render.figures.style import save
 
 ROOT = Path(bouncing_ball.__file__).resolve().parents[2]
 COMMIT, OTHER = "a" * 40, "b" * 40

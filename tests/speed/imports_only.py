@@ -39,7 +39,8 @@ def reduce_to_imports(script: Path) -> None:
     if script.stem == "stage":
         text += "from bouncing_ball.configuration.study import load\nload(snakemake.params.study)\n"
     if script.stem in ("figure", "table"):
-        text += f"name = 'bouncing_ball.render.{script.stem}s.' + Path(snakemake.output[0]).stem\n"
+        folder = "figures.tables" if script.stem == "table" else "figures"
+        text += f"name = 'bouncing_ball.{folder}.' + Path(snakemake.output[0]).stem\n"
         text += "import_module(name)\n"
     if script.stem == "figure":
         text += LATE_FIGURE

@@ -9,9 +9,7 @@ import time
 from importlib.util import find_spec
 from pathlib import Path
 
-import numpy as np
 import pytest
-import xarray as xr
 import yaml
 
 from bouncing_ball.atlas.plan import Plan

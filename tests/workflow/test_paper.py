@@ -10,10 +10,10 @@ import yaml
 
 from bouncing_ball.claims.verdict import Verdict
 from bouncing_ball.datasets.netcdf import read_dataset
-from bouncing_ball.render.article.render import render_article
-from bouncing_ball.render.atlas.tables import shares
-from bouncing_ball.render.tables.error_law import law_table
-from bouncing_ball.render.tables.formats import to_markdown
+from bouncing_ball.figures.article.render import render_article
+from bouncing_ball.figures.atlas.tables import shares
+from bouncing_ball.figures.tables.error_law import law_table
+from bouncing_ball.figures.tables.formats import to_markdown
 
 
 @pytest.fixture(scope="module")

@@ -37,7 +37,7 @@ def draw(data: xr.Dataset) -> Figure:
 '''
 STAGES = "src/bouncing_ball/configuration/stages.py"
 CONFIG = "config/config.yaml"
-FIGURE = "src/bouncing_ball/render/figures/ext_heights.py"
+FIGURE = "src/bouncing_ball/figures/ext_heights.py"
 
 
 def said(tree, *arguments):

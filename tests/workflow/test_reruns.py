@@ -26,7 +26,7 @@ def test_a_parameter_and_what_is_made_with_it(complete):
 
 def test_what_only_shows_runs_no_science_again(complete):
     # Another entry is no reason to run those that are there.
-    for file in ("render/figures/fig12.py", "render/tables/table1.py", "configuration/stages.py"):
+    for file in ("figures/fig12.py", "figures/tables/table1.py", "configuration/stages.py"):
         complete.edit(file)
     assert complete.planned() == {"Drawing fig12", "Setting table1", PAPER}
 

@@ -100,11 +100,11 @@ rule atlas_charts:
     input:
         parts=[rules.atlas_summary.output.data],
         source=modules(
-            "render.atlas.maps",
-            "render.atlas.limits",
-            "render.atlas.page",
-            "render.atlas.tables",
-            "render.tables.formats",
+            "figures.atlas.maps",
+            "figures.atlas.limits",
+            "figures.atlas.page",
+            "figures.atlas.tables",
+            "figures.tables.formats",
             "pipeline.atlas",
         ),
     output:

@@ -1,6 +1,6 @@
 # The page to explore the models, with the orbits that it checks itself against.
 
-EXPLORER = Path(ROOT, "src/bouncing_ball/render/explorer")
+EXPLORER = Path(ROOT, "src/bouncing_ball/figures/explorer")
 
 
 rule draw_explorer:
@@ -13,7 +13,7 @@ rule draw_explorer:
             for path in EXPLORER.iterdir()
             if path.suffix in (".js", ".css", ".j2")
         ),
-        source=modules("render.explorer.document", "datasets.netcdf", "datasets.files"),
+        source=modules("figures.explorer.document", "datasets.netcdf", "datasets.files"),
     output:
         html="results/figures/explorer.html",
     log:

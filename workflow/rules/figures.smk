@@ -10,9 +10,9 @@ for name in FIGURES:
         input:
             data=datasets([name] if STAGES[name].study else []),
             source=modules(
-                f"render.figures.{name}",
-                "render.figures.style",
-                "render.given",
+                f"figures.{name}",
+                "figures.style",
+                "figures.given",
                 "datasets.netcdf",
             ),
         output:

@@ -14,9 +14,9 @@ rule paper:
         data=datasets(DATASETS),
         tables=expand("results/figures/{table}.md", table=TABLES),
         source=modules(
-            "render.article.render",
-            "render.atlas.tables",
-            "render.tables.error_law",
+            "figures.article.render",
+            "figures.atlas.tables",
+            "figures.tables.error_law",
             "claims.tally",
             "datasets.files",
             "datasets.netcdf",
@@ -44,7 +44,7 @@ rule paper_pdf:
     input:
         paper=rules.paper.output.paper,
         figures=expand("results/figures/{figure}.svg", figure=FIGURES),
-        source=modules("render.article.pdf", "datasets.atomic"),
+        source=modules("figures.article.pdf", "datasets.atomic"),
     output:
         pdf="results/paper.pdf",
     log:

@@ -10,9 +10,9 @@ for name in TABLES:
         input:
             data=f"results/figures/{name}.nc",
             source=modules(
-                f"render.tables.{name}",
-                "render.tables.formats",
-                "render.given",
+                f"figures.tables.{name}",
+                "figures.tables.formats",
+                "figures.given",
                 "datasets.netcdf",
                 "datasets.files",
             ),

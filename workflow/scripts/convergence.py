@@ -9,9 +9,9 @@ from bouncing_ball.compare.pictures import compare_pictures, read_picture
 from bouncing_ball.compare.tolerance_file import read_tolerances
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.datasets.netcdf import parameter_attributes
+from bouncing_ball.figures.style import style
+from bouncing_ball.figures.tables.formats import to_csv
 from bouncing_ball.pipeline.job import logged
-from bouncing_ball.render.figures.style import style
-from bouncing_ball.render.tables.formats import to_csv
 
 
 def picture(name, computation, data):
@@ -21,7 +21,7 @@ def picture(name, computation, data):
         {**computation.parameters, "release": snakemake.params.run["release"]}
     )
     with style():
-        draw = import_module(f"bouncing_ball.render.figures.{name}").draw
+        draw = import_module(f"bouncing_ball.figures.{name}").draw
         draw(data.assign_attrs(labels)).savefig(file, format="png")
     return read_picture(file.getvalue())
 

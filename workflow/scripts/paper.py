@@ -6,11 +6,11 @@ from bouncing_ball.claims.tally import tally
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.datasets.netcdf import read_dataset
+from bouncing_ball.figures.article.render import render_article
+from bouncing_ball.figures.atlas.tables import shares
+from bouncing_ball.figures.tables.error_law import law_table
+from bouncing_ball.figures.tables.formats import to_markdown
 from bouncing_ball.pipeline.job import logged, read_input
-from bouncing_ball.render.article.render import render_article
-from bouncing_ball.render.atlas.tables import shares
-from bouncing_ball.render.tables.error_law import law_table
-from bouncing_ball.render.tables.formats import to_markdown
 
 
 def text_of(path):

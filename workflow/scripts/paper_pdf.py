@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from bouncing_ball.datasets.atomic import replacing
+from bouncing_ball.figures.article.pdf import article_pdf
 from bouncing_ball.pipeline.job import logged
-from bouncing_ball.render.article.pdf import article_pdf
 
 with logged(snakemake) as lines:
     paper = Path(snakemake.input.paper)

@@ -4,14 +4,14 @@ from importlib import import_module
 from pathlib import Path
 
 from bouncing_ball.datasets.files import write_text
+from bouncing_ball.figures.given import from_dataset
+from bouncing_ball.figures.tables.formats import texts
 from bouncing_ball.pipeline.job import logged, read_input, withdraw
-from bouncing_ball.render.given import from_dataset
-from bouncing_ball.render.tables.formats import texts
 
 with logged(snakemake) as lines:
     withdraw()
     name = Path(snakemake.output[0]).stem
-    rows = import_module(f"bouncing_ball.render.tables.{name}").rows
+    rows = import_module(f"bouncing_ball.figures.tables.{name}").rows
     path = snakemake.input.data
     table = texts(*from_dataset(rows, read_input(path), path))
     for path in snakemake.output:

@@ -37,8 +37,8 @@ def plot(found: Design, path: Path) -> None:
         If the file cannot be written.
     """
     from bouncing_ball.calculator.page_data import page
-    from bouncing_ball.render.design_page import draw
-    from bouncing_ball.render.figures.style import save, style
+    from bouncing_ball.figures.design_page import draw
+    from bouncing_ball.figures.style import save, style
 
     said = answer(found)
     judged = next(one for one in said["orbits"] if one["n"] == said["n"])

@@ -13,9 +13,9 @@ SECTIONS = ("figures", "tables", "extensions", "studies")
 
 # Where what draws or sets an artifact is, and what it is called.
 _RENDERERS = {
-    Kind.FIGURE: ("render.figures", "draw"),
-    Kind.EXTENSION: ("render.figures", "draw"),
-    Kind.TABLE: ("render.tables", "rows"),
+    Kind.FIGURE: ("figures", "draw"),
+    Kind.EXTENSION: ("figures", "draw"),
+    Kind.TABLE: ("figures.tables", "rows"),
 }
 
 
@@ -99,7 +99,7 @@ def check_pieces(stages: Mapping[str, Stage], run: Mapping[str, Any]) -> None:
             package, function = _RENDERERS[stage.kind]
             _require_function(stage, f"{package}.{stage.name}.{function}")
         if stage.tabulated:
-            _require_function(stage, f"render.tables.{stage.name}.rows")
+            _require_function(stage, f"figures.tables.{stage.name}.rows")
         if stage.study:
             study = _require_function(stage, stage.study)
             _require_keys(stage, run)

@@ -1,0 +1,141 @@
+"""One page to print: what ``bouncing-ball design`` says of a contact."""
+
+import textwrap
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from bouncing_ball.figures.quantities import NAMES
+from bouncing_ball.figures.style import COLOURS, CONTACT, RESTITUTION, TABLE, Look
+
+# A4 upright, in inches.
+_PAGE = 8.27, 11.69
+_LOOKS: dict[str, tuple[str, Look]] = {
+    "spring-damper": (CONTACT, {"linewidth": 2.2, "alpha": 0.75}),
+    "hertz": (CONTACT, {"linewidth": 2.2, "alpha": 0.75}),
+    "restitution": (RESTITUTION, {"linewidth": 1.0}),
+    "corrected": (COLOURS[3], {"linewidth": 1.2, "linestyle": (0, (4, 2))}),
+}
+
+
+def draw(design: Mapping[str, Any], data: xr.Dataset, values: Sequence[tuple[str, str]]) -> Figure:
+    """The page.
+
+    Parameters
+    ----------
+    design : mapping
+        The answer, as its JSON has it.
+    data : Dataset
+        Chart and motion (:mod:`bouncing_ball.calculator.page_data`).
+    values : sequence of (str, str)
+        The numbers to list, by name, as texts.
+    """
+    figure = Figure(figsize=_PAGE)
+    grid = figure.add_gridspec(
+        3, 2, left=0.1, right=0.95, top=0.86, bottom=0.06, hspace=0.34, wspace=0.42,
+        height_ratios=(1.0, 1.05, 1.05),
+    )  # fmt: skip
+    _title(figure, design)
+    _chart(figure.add_subplot(grid[0, 0]), design, data)
+    _errors(figure.add_subplot(grid[0, 1]), design)
+    _motion(figure.add_subplot(grid[1, :]), design, data)
+    _contact(figure.add_subplot(grid[2, 0]), data)
+    _numbers(figure.add_subplot(grid[2, 1]), values)
+    return figure
+
+
+def _title(figure: Figure, design: Mapping[str, Any]) -> None:
+    verdict = textwrap.fill(design["verdict"], 88)
+    figure.text(0.06, 0.965, verdict, fontsize=12, weight="bold", va="top")
+    reason = textwrap.fill(f"Reason: {design['reason']}.", 112)
+    below = 0.96 - 0.021 * (1 + verdict.count("\n"))
+    figure.text(0.06, below, reason, fontsize=9.5, va="top")
+
+
+def _chart(axes: Axes, design: Mapping[str, Any], data: xr.Dataset) -> None:
+    """From which ϖ on each simple model is right, over r; the case is the star."""
+    for name in data["simple"].values:
+        colour, look = _LOOKS[str(name)]
+        axes.plot(
+            data["restitution"], data.needed.sel(simple=name), color=colour, label=name, **look
+        )
+    ours = design["corrected"]["restitution"], design["frequency_ratio"]
+    axes.plot(*ours, "*", color=CONTACT, markersize=13, label="this contact", clip_on=False)
+    axes.set_yscale("log")
+    need = design["needed"]
+    axes.set(xlabel="restitution coefficient $r$", ylabel=r"frequency ratio $\varpi$")
+    axes.set_title(
+        f"right to {100 * need['tolerance']:g} % above the line:\n{NAMES[need['quantity']]}, "
+        rf"$n={design['n']}$, $\Lambda={design['amplitude']:.3g}$",
+        fontsize=9,
+    )
+    axes.grid(visible=True, axis="y", linewidth=0.3)
+    axes.legend(loc="best")
+
+
+def _errors(axes: Axes, design: Mapping[str, Any]) -> None:
+    """The errors of the case, quantity by quantity."""
+    one = next(each for each in design["orbits"] if each["n"] == design["n"])
+    names = list(one["errors"])
+    places = np.arange(len(names))[::-1]
+    for key, name, marker in (
+        ("errors", "restitution", "o"),
+        ("corrected_errors", "corrected", "D"),
+    ):
+        values = np.array([one[key][each] or np.nan for each in names])
+        axes.plot(values, places, marker, color=_LOOKS[name][0], label=name, markersize=5)
+    law = np.array([one["law_errors"][each] or np.nan for each in names])
+    axes.plot(law, places, "|", color=COLOURS[2], label="error law", markersize=13)
+    axes.axvline(design["needed"]["tolerance"], color=TABLE, linewidth=0.8, linestyle="--")
+    axes.set_xscale("log")
+    axes.set_yticks(places, [each.replace("_", " ") for each in names])
+    axes.set_title(f"relative error, {design['n']}-T orbit (dashed: tolerance)", fontsize=9)
+    axes.grid(visible=True, axis="x", linewidth=0.3)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.35, -0.1), ncols=3, columnspacing=1.0)
+
+
+def _scale(values: xr.DataArray) -> tuple[float, str]:
+    """Factor and prefix that keep the largest value between 1 and 1000."""
+    size = float(np.nanmax(np.abs(values)))
+    for factor, prefix in ((1.0, ""), (1e3, "m"), (1e6, "µ")):
+        if size * factor >= 1:
+            return factor, prefix
+    return 1e9, "n"
+
+
+def _curves(axes: Axes, time: xr.DataArray, heights: xr.DataArray) -> tuple[float, float]:
+    """All models over each other, in units with a prefix; their factors."""
+    (second, s), (metre, m) = _scale(time), _scale(heights)
+    for name in heights["model"].values:
+        colour, look = _LOOKS[str(name)]
+        curve = heights.sel(model=name)
+        if np.all(np.isnan(curve)):
+            continue
+        axes.plot(time * second, curve * metre, color=colour, label=name, **look)
+    axes.set(xlabel=f"time [{s}s]", ylabel=f"height [{m}m]")
+    return second, metre
+
+
+def _motion(axes: Axes, design: Mapping[str, Any], data: xr.Dataset) -> None:
+    second, metre = _curves(axes, data.time, data.ball)
+    axes.plot(data.time * second, data.table * metre, color=TABLE, label="table")
+    axes.set_title(f"the {design['n']}-T orbit", fontsize=9)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=4)
+
+
+def _contact(axes: Axes, data: xr.Dataset) -> None:
+    _curves(axes, data.since, data.gap)
+    axes.axhline(0.0, color=TABLE, linewidth=0.8)
+    axes.set_title("one contact: height above the table", fontsize=9)
+
+
+def _numbers(axes: Axes, values: Sequence[tuple[str, str]]) -> None:
+    axes.axis("off")
+    for row, (name, value) in enumerate(values):
+        height = 1.0 - row / len(values)
+        axes.text(-0.1, height, name, fontsize=8, va="top", transform=axes.transAxes)
+        axes.text(1.02, height, value, fontsize=8, va="top", ha="right", transform=axes.transAxes)

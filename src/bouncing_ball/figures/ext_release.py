@@ -1,0 +1,96 @@
+"""Extension: what the release rule changes in Table 1 and in the thresholds."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from bouncing_ball.figures.style import (
+    COLOURS,
+    GUIDE,
+    TABLE,
+    WIDE,
+    Look,
+    canvas,
+    logarithmic,
+    number,
+    parameters,
+)
+
+_LOOKS = {"saddle-node": "-", "period doubling": (0, (4, 1.5))}
+_MARKS = ("o", "x", "s")
+_NAMES = {"saddle_node": "saddle-node", "bounce_velocity": "bouncing-off velocity"}
+
+
+def _draw_shifts(axes: Axes, data: xr.Dataset) -> None:
+    """Shift of the bifurcations with ϖ, one curve for each family and bifurcation."""
+    for n, colour in zip(data.n.values, COLOURS, strict=False):
+        for bound, look in _LOOKS.items():
+            amplitude = data.bifurcation_amplitude.sel(n=n, bound=bound)
+            shift = amplitude.sel(release="force") - amplitude.sel(release="displacement")
+            label = f"$n={n}$, {bound}"
+            axes.plot(data.frequency_ratio, shift, color=colour, linestyle=look, label=label)
+    axes.axhline(0.0, **GUIDE)
+    logarithmic(axes, data.frequency_ratio)
+    axes.set_ylabel(r"shift of $\Lambda$, force minus displacement")
+    axes.set_title(parameters(data, "restitution"), fontsize=9)
+    axes.legend(
+        fontsize=6,
+        loc="lower right",
+        bbox_to_anchor=(1.0, 0.1),
+        ncols=2,
+        columnspacing=0.7,
+        handlelength=1.6,
+        handletextpad=0.4,
+    )
+
+
+def _draw_thresholds(axes: Axes, data: xr.Dataset) -> None:
+    """Threshold of each quantity, one mark for each reading; an arrow where there is none.
+
+    The marks of a quantity stand below one another, in the order of the legend.
+    """
+    rows = np.arange(data.sizes["quantity"])[::-1]
+    limit = data.attrs["thresholds__frequency_ratio__max"]
+    for k, (reading, mark) in enumerate(zip(data.reading.values, _MARKS, strict=False)):
+        colour, places = COLOURS[k], rows + 0.24 * (1 - k)
+        found = data.error_threshold.sel(reading=reading).values
+        status = data.threshold_status.sel(reading=reading).values
+        face = "none" if mark == "s" else colour
+        look: Look = {
+            "color": colour,
+            "label": str(reading),
+            "markersize": 5,
+            "markerfacecolor": face,
+        }
+        axes.plot(found, places, mark, **look)
+        never = np.array([text.startswith("outside") for text in status])
+        at_the_end = np.full(never.sum(), limit / 1.25)
+        axes.plot(at_the_end, places[never], ">", color=colour, markersize=6)
+    for row in rows[:-1]:
+        axes.axhline(row - 0.5, **GUIDE)
+    logarithmic(axes)
+    axes.set(
+        xlabel=rf"$\varpi$ for an error of {100 * data.attrs['thresholds__tolerance']:g} %",
+        xlim=(1, limit),
+        yticks=rows,
+        ylim=(-0.7, len(rows) - 0.3),
+    )
+    names = (str(name) for name in data.quantity.values)
+    axes.set_yticklabels([_NAMES.get(name, name.replace("_", " ")) for name in names])
+    axes.set_title(
+        rf"$n={data.attrs['thresholds__n']}$, $r={number(data.attrs['thresholds__restitution'])}$, "
+        rf"$\Lambda={number(data.attrs['thresholds__amplitude'])}$",
+        fontsize=9,
+    )
+
+
+def draw(data: xr.Dataset) -> Figure:
+    """Shift of the bifurcations (left) and thresholds of each quantity (right)."""
+    figure, (left, right) = canvas(WIDE, 3.8, columns=2, width_ratios=(1.0, 1.25))
+    _draw_shifts(left, data)
+    _draw_thresholds(right, data)
+    # What the arrows mean, in the colour of none of the readings.
+    right.plot([], [], ">", color=TABLE, markersize=6, label="never within the range")
+    figure.legend(*right.get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    return figure

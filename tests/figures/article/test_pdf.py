@@ -1,0 +1,119 @@
+"""The PDF of the accepted article: pages, captions, vectors, links."""
+
+import io
+import re
+import sys
+from pathlib import Path
+
+import pytest
+from pypdf import PdfReader
+
+from bouncing_ball.errors import ModelError
+from bouncing_ball.figures.article.pdf import article_pdf, for_pdf
+
+pytest.importorskip("pypandoc")
+pytest.importorskip("typst")
+
+ROOT = Path(__file__).resolve().parents[3]
+SMALL = """# A title
+
+Text with $\\varpi^2\\,(\\Lambda-1)$ and a [file](config/claims.yaml).
+
+![Figure 7](figures/fig07.png)
+**Figure 7.** One cycle.
+*From* [its dataset](figures/fig07.nc).
+
+| r | $\\zeta$ |
+| --- | --- |
+| 0.85 | 0.052 |
+"""
+
+
+@pytest.fixture(scope="module")
+def article():
+    text = (ROOT / "paper.md").read_text(encoding="utf-8")
+    return text, PdfReader(io.BytesIO(article_pdf(text, ROOT)))
+
+
+def uris(reader):
+    """The targets of all links that leave the document."""
+    for page in reader.pages:
+        for entry in page.get("/Annots", []):
+            action = entry.get_object().get("/A", {})
+            if "/URI" in action:
+                yield str(action["/URI"])
+
+
+def images(reader):
+    """Pictures made of pixels, also inside other graphics."""
+
+    def inside(resources):
+        for item in (resources or {}).get("/XObject", {}).values():
+            found = item.get_object()
+            if found["/Subtype"] == "/Image":
+                yield found
+            elif "/Resources" in found:
+                yield from inside(found["/Resources"])
+
+    return [image for page in reader.pages for image in inside(page["/Resources"])]
+
+
+def test_every_heading_and_every_caption_is_on_its_pages(article):
+    text, reader = article
+    words = re.sub(r"\s+", "", "".join(page.extract_text() for page in reader.pages))
+    headings = re.findall(r"^##+ (.*)$", text, re.MULTILINE)
+    captions = re.findall(r"^\*\*((?:Figure \d+|Extension)\.)\*\*", text, re.MULTILINE)
+    assert len(headings) > 15 and len(captions) > 20
+    for heading in headings:
+        assert re.sub(r"[\s`]+", "", heading) in words, heading
+    for name in ("Figure1.", "Figure8.", "Figure16."):
+        assert name in words
+    assert 15 < len(reader.pages) < 60
+    assert "Restitution coefficient" in reader.metadata.title
+
+
+def test_figures_are_vectors_and_linked_to_their_datasets(article):
+    text, reader = article
+    # A map is a picture within its drawing; nothing else is.
+    shown = re.findall(r"\]\(figures/(\w+)\.png\)", text)
+    drawings = [(ROOT / "figures" / f"{name}.svg").read_text(encoding="utf-8") for name in shown]
+    assert len(images(reader)) <= sum(drawing.count("<image") for drawing in drawings)
+    assert sum("<image" in drawing for drawing in drawings) < len(shown) / 4
+    linked = set(uris(reader))
+    datasets = set(re.findall(r"\]\((figures/\w+\.nc)\)", text))
+    assert len(datasets) > 15 and datasets <= linked
+    # All of the graphics is there: curves by the thousand.
+    operators = sum(len(page.get_contents().get_data()) for page in reader.pages)
+    assert operators > 500_000
+
+
+def test_a_short_one():
+    first, second = (article_pdf(SMALL, ROOT) for _ in range(2))
+    # No time and no machine in it.
+    assert first == second
+    reader = PdfReader(io.BytesIO(first))
+    words = " ".join(reader.pages[0].extract_text().split())
+    assert "One cycle. From its dataset" in words
+    assert sorted(uris(reader)) == ["../config/claims.yaml", "figures/fig07.nc"]
+
+
+def test_what_cannot_be_set_is_said_in_one_line(tmp_path, one_line):
+    with pytest.raises(ModelError) as error:
+        article_pdf(SMALL, tmp_path)
+    one_line(error, "the article cannot be set: ")
+    with pytest.raises(ModelError) as error:
+        article_pdf("No title", ROOT)
+    one_line(error, "the article does not begin with its title")
+
+
+@pytest.mark.parametrize("missing", ["pypandoc", "typst"])
+def test_a_missing_tool_is_named(missing, monkeypatch, one_line):
+    monkeypatch.setitem(sys.modules, missing, None)
+    with pytest.raises(ModelError) as error:
+        article_pdf(SMALL, ROOT)
+    one_line(error, "pip install 'bouncing-ball[pdf]'")
+
+
+def test_addresses_stay():
+    text = "[a](https://example.org) [b](figures/x.nc) [c](#part) [d](docs/x.md)"
+    assert for_pdf(text) == text.replace("(docs", "(../docs")

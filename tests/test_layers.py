@@ -16,8 +16,7 @@ BY_NAME = "(by name)"
 
 # For each layer, from the bottom: other layers of the package, and packages from outside.
 ALLOWED = {
-    # Zarr only where it is written.
-    "datasets": (set(), {"numpy", "xarray", "zarr", "numcodecs"}),
+    "datasets": (set(), {"numpy", "xarray"}),
     "contacts": (set(), {"numpy"}),
     "continuation": (set(), {"numpy"}),
     "motion": ({"contacts"}, {"numpy"}),

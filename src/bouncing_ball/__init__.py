@@ -16,7 +16,8 @@ Behind them are the models, :class:`SpringDamperModel` of a :class:`SpringDamper
 (:mod:`bouncing_ball.orbits.model`); they work on arrays. Everything is
 dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g.
 
-The layers, each importing only what lies above it in this list (and the errors):
+The layers, each importing only what lies above it in this list (and ``errors`` and
+``parameters``):
 
 ``datasets``      names, symbols, units and netCDF files
 ``contacts``      the impact: restitution map, spring-damper contact, permanent contact

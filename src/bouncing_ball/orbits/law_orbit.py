@@ -69,7 +69,8 @@ class LawOrbit(Orbit):
         return highest(self)
 
     def _in_contact(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        return path(self.law, self.contact, -self.relative_impact_velocity, time)
+        speed = -self.relative_impact_velocity
+        return path(self.law, self.contact, time, speed, self.phase, self.amplitude)
 
     def contact_path(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Absolute position and velocity at times 0 ≤ τ ≤ τ_b in contact."""

@@ -1,5 +1,7 @@
 # Datasets in, figures out.
 
+from bouncing_ball.figures import module_of
+
 for name in FIGURES:
 
     rule:
@@ -10,8 +12,8 @@ for name in FIGURES:
         input:
             data=datasets([name] if STAGES[name].study else []),
             source=modules(
-                f"figures.{name}",
-                "figures.style",
+                f"figures.{module_of(name)}",
+                "figures.files",
                 "figures.given",
                 "datasets.netcdf",
             ),

@@ -44,5 +44,16 @@ def drawing(name: str) -> Any:
     >>> drawing("fig08") is drawing("fig09")
     True
     """
-    module, _, function = DRAWINGS[name].partition(".")
-    return getattr(import_module(f"bouncing_ball.figures.{module}"), function)
+    function = DRAWINGS[name].partition(".")[2]
+    return getattr(import_module(f"bouncing_ball.figures.{module_of(name)}"), function)
+
+
+def module_of(name: str) -> str:
+    """The module of this package that draws a figure.
+
+    Examples
+    --------
+    >>> module_of("fig08")
+    'branches'
+    """
+    return DRAWINGS[name].partition(".")[0]

@@ -1,6 +1,5 @@
 """Figures without overlaps, and the words on them."""
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np

@@ -13,7 +13,7 @@ from bouncing_ball.figures.canvas import (
     number,
     parameters,
 )
-from bouncing_ball.figures.style import COLOURS, GUIDE, TABLE
+from bouncing_ball.figures.style import COLOURS, GUIDE, TABLE, Look
 
 _DASHES = {"saddle-node": "-", "period doubling": (0, (4, 1.5))}
 _MARKS = ("o", "x", "s")
@@ -43,8 +43,15 @@ def _draw_shifts(axes: Axes, data: xr.Dataset) -> None:
     logarithmic(axes, data.frequency_ratio)
     axes.set_ylabel(r"shift of $\Lambda$, force minus displacement")
     axes.set_title(parameters(data, "restitution"))
-    place = {"loc": "lower right", "bbox_to_anchor": (1.0, 0.1), "fontsize": 6, "ncols": 2}
-    axes.legend(columnspacing=0.7, handlelength=1.6, handletextpad=0.4, **place)
+    axes.legend(
+        fontsize=6,
+        loc="lower right",
+        bbox_to_anchor=(1.0, 0.1),
+        ncols=2,
+        columnspacing=0.7,
+        handlelength=1.6,
+        handletextpad=0.4,
+    )
 
 
 def _draw_thresholds(axes: Axes, data: xr.Dataset) -> None:
@@ -62,7 +69,7 @@ def _draw_thresholds(axes: Axes, data: xr.Dataset) -> None:
     for k, (reading, mark) in enumerate(zip(data.reading.values, _MARKS, strict=False)):
         one, colour, places = data.sel(reading=reading), COLOURS[k], rows + 0.24 * (1 - k)
         face = "none" if mark == "s" else colour
-        look = {"color": colour, "markerfacecolor": face, "markersize": 5}
+        look: Look = {"color": colour, "markerfacecolor": face, "markersize": 5}
         axes.plot(one.error_threshold, places, mark, label=str(reading), **look)
         never = one.threshold_status.str.startswith("outside").values
         at_the_end = np.full(never.sum(), limit / 1.25)

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from bouncing_ball.accuracy.errors import SIMPLE, errors, models, modulus, relative_errors
 from bouncing_ball.accuracy.quantities import OF_IMPACTS, OF_LIMITS, OF_ORBITS, Quantity, values
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 
 def test_the_groups_of_quantities():

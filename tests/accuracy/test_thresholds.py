@@ -14,8 +14,8 @@ from bouncing_ball.accuracy.thresholds import (
 )
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 RATIOS = np.geomspace(1.0, 1e4, 41)
 FOUND, ALWAYS, NEVER = ThresholdStatus

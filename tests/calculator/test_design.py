@@ -15,8 +15,8 @@ from bouncing_ball.calculator.family import greatest
 from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import SpringDamper, contact_force
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 STEEL = {"mass": "20 g", "frequency": "50 Hz", "acceleration": "0.8 g", "stiffness": "1e7 N/m"}
 # The orbit of Figs. 12-14 and of the thresholds, at 50 Hz.

@@ -11,7 +11,7 @@ from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.orbits.limits import orbit_at
+from bouncing_ball.orbits.spring_damper_limits import orbit_at
 from bouncing_ball.studies.error_thresholds import (
     error_thresholds,
     height_error,

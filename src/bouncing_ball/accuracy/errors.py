@@ -11,10 +11,10 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.accuracy.quantities import OF_IMPACTS, values
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.interface import ImpactModel
+from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 SIMPLE = ("restitution", "corrected")
 """The models that are compared with the exact one."""

@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.orbits.interface import ImpactModel
+from bouncing_ball.orbits.model import ImpactModel
 
 
 class Quantity(StrEnum):

@@ -16,7 +16,7 @@ from bouncing_ball.accuracy.errors import SIMPLE, errors, modulus, relative_erro
 from bouncing_ball.accuracy.quantities import OF_IMPACTS, OF_ORBITS
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.orbits.interface import ImpactModel
+from bouncing_ball.orbits.model import ImpactModel
 
 Numbered = Callable[[np.ndarray, np.ndarray], np.ndarray]
 """Values at ratios ϖ of the functions with given numbers; all three arrays of one shape."""

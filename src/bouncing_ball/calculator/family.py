@@ -12,7 +12,8 @@ from bouncing_ball.accuracy.quantities import Quantity, values
 from bouncing_ball.calculator.case import Case
 from bouncing_ball.contacts.signature import Instant
 from bouncing_ball.contacts.spring_damper import SpringDamper, contact_force
-from bouncing_ball.orbits.interface import ImpactModel, Orbit
+from bouncing_ball.orbits.model import ImpactModel
+from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 
 Errors = dict[str, float | None]

@@ -11,7 +11,7 @@ from bouncing_ball.calculator.design import Design
 from bouncing_ball.calculator.needed import RATIOS
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.orbits.interface import Orbit
+from bouncing_ball.orbits.orbit import Orbit
 
 # Restitution coefficients of the chart: as many as make the lines smooth, and from
 # which on. A linear contact that only pushes has r > e⁻².

@@ -19,9 +19,10 @@ from bouncing_ball.accuracy.thresholds import ThresholdStatus, search
 from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.orbits.contact_model import SpringDamperModel
-from bouncing_ball.orbits.interface import Side
+from bouncing_ball.orbits.model import Side
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.studies.law_distribution import law_errors
 from bouncing_ball.studies.parameters import grid
 from bouncing_ball.studies.random_orbits import random_orbits
@@ -184,7 +185,7 @@ def domains(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         coords={
             "model": list(names),
             "point": np.arange(2 * len(share) + 1),
-            "bound": ["saddle-node", "period doubling"],
+            "bound": list(Bifurcation),
         },
     )
 

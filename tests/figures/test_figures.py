@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.figures import DRAWINGS, drawing
+from bouncing_ball.configuration.study import load
+from bouncing_ball.figures import DRAWINGS
 from bouncing_ball.figures.branches import up_to_second_saddle_node
 from bouncing_ball.figures.canvas import number
 from bouncing_ball.figures.files import save
@@ -18,7 +19,7 @@ WITH_DATA = [name for name in DRAWINGS if name not in SCHEMATICS]
 
 def drawn(name, *data):
     with style():
-        return drawing(name)(*data)
+        return load(f"figures.{DRAWINGS[name]}")(*data)
 
 
 def lines(figure):
@@ -153,7 +154,7 @@ def test_files_are_the_same_every_time(record, tmp_path, kind):
     for run in ("first", "second"):
         path = tmp_path / run / f"fig11.{kind}"
         with style():
-            save(drawing("fig11")(record["fig11"]), path, {"provenance_commit": 'of <"ϖ">'})
+            save(drawn("fig11", record["fig11"]), path, {"provenance_commit": 'of <"ϖ">'})
         contents.append(path.read_bytes())
         assert read_attributes(path)["provenance_commit"] == 'of <"ϖ">'
     assert contents[0] == contents[1] and len(contents[0]) > 5000

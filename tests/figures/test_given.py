@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.configuration.study import load
 from bouncing_ball.datasets.emptiness import statement
 from bouncing_ball.errors import ModelError
-from bouncing_ball.figures import drawing
+from bouncing_ball.figures import DRAWINGS
 from bouncing_ball.figures.given import require_numbers
 from bouncing_ball.figures.style import style
 
@@ -22,4 +23,6 @@ def test_a_dataset_without_numbers_is_drawn_only_if_it_says_so(record, one_line,
     one_line(error, f"{path}: no finite number in ")
     assert str(error.value).endswith(f"make it again, snakemake --cores 2 --force {path}")
     with style():
-        assert drawing(name)(require_numbers(data.assign_attrs(statement(data)), path))
+        assert load(f"figures.{DRAWINGS[name]}")(
+            require_numbers(data.assign_attrs(statement(data)), path)
+        )

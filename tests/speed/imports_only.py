@@ -42,7 +42,7 @@ def reduce_to_imports(script: Path) -> None:
         text += "name = 'bouncing_ball.figures.tables.' + Path(snakemake.output[0]).stem\n"
         text += "import_module(name)\n"
     if script.stem == "figure":
-        text += "drawing(Path(snakemake.output[0]).stem)\n" + LATE_FIGURE
+        text += "load(snakemake.params.drawing)\n" + LATE_FIGURE
     script.write_text(text + FINISH, encoding="utf-8")
 
 

@@ -4,9 +4,6 @@ A drawing is a function ``draw(dataset) -> Figure``, and schematics take no data
 one kind share a module.
 """
 
-from importlib import import_module
-from typing import Any
-
 DRAWINGS = {
     "fig01": "schematics.restitution_model",
     "fig02": "histories.restitution_history",
@@ -33,27 +30,4 @@ DRAWINGS = {
     "ext_laws": "model_errors.contact_laws",
     "ext_hertz": "contact_laws.figures_of_laws",
 }
-"""The module and the function that draw each figure."""
-
-
-def drawing(name: str) -> Any:
-    """The function that draws a figure.
-
-    Examples
-    --------
-    >>> drawing("fig08") is drawing("fig09")
-    True
-    """
-    function = DRAWINGS[name].partition(".")[2]
-    return getattr(import_module(f"bouncing_ball.figures.{module_of(name)}"), function)
-
-
-def module_of(name: str) -> str:
-    """The module of this package that draws a figure.
-
-    Examples
-    --------
-    >>> module_of("fig08")
-    'branches'
-    """
-    return DRAWINGS[name].partition(".")[0]
+"""Where each figure is drawn: ``module.function`` of this package."""

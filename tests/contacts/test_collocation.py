@@ -6,20 +6,19 @@ from scipy.integrate import solve_ivp
 from scipy.special import beta
 
 from bouncing_ball.contacts.collocation import contacts, path
-from bouncing_ball.contacts.laws.contact_law import ContactLaw, slopes_of
+from bouncing_ball.contacts.contact_law import ContactLaw, slopes_of
 from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
-from bouncing_ball.contacts.laws.linear import Linear
 from bouncing_ball.contacts.laws.tsuji import Tsuji, tsuji_damping
 from bouncing_ball.contacts.quadrature import node_of, scheme, share
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError
-from bouncing_ball.motion.contacts import simulate
+from bouncing_ball.motion.contact import simulate
 
 LAWS = {
-    "linear": Linear(10.0, 0.136),
-    "linear, force release": Linear(10.0, 0.136, "force"),
+    "linear": SpringDamper(10.0, 0.136),
+    "linear, force release": SpringDamper(10.0, 0.136, "force"),
     "hunt-crossley": HuntCrossley(1e3, 0.08),
     "hunt-crossley, strong": HuntCrossley(1e3, 0.5),
     "tsuji": Tsuji(1e3, 0.3),
@@ -73,7 +72,7 @@ def test_the_linear_contact_is_that_of_the_closed_form(release):
     rng = np.random.default_rng(3)
     speed, phase, lam = rng.uniform(2, 6, 20), rng.uniform(-3, 3, 20), rng.uniform(0, 1, 20)
     exact = simulate(SpringDamper(12.0, 0.15, release), lam, phase, lam * np.cos(phase) - speed, 1)
-    end = contacts(Linear(12.0, 0.15, release), speed, phase, lam)
+    end = contacts(SpringDamper(12.0, 0.15, release), speed, phase, lam)
     # An absolute angle of some ϖD = 3 is what both round.
     np.testing.assert_allclose(end.duration, exact.contact_duration[0], rtol=1e-13)
     np.testing.assert_allclose(-end.rate, exact.relative_release_velocity[0], rtol=1e-13)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.contacts.spring_damper import SpringDamper, contact_force
-from bouncing_ball.motion.contacts import simulate
+from bouncing_ball.motion.contact import simulate
 
 EPS = np.finfo(float).eps
 LAWS = {

@@ -6,7 +6,7 @@ import pytest
 from bouncing_ball.contacts.damping import restitution_coefficient
 from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.motion.corrected_impacts import corrected_cycle
+from bouncing_ball.motion.corrected import corrected_cycle
 from bouncing_ball.orbits import corrected_branch, restitution_orbit, stability
 from bouncing_ball.orbits import spring_damper_limits as limits
 from bouncing_ball.orbits.corrected_model import CorrectedModel

@@ -18,7 +18,7 @@ from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.laws import LAWS
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion import contacts
-from bouncing_ball.motion.law_impacts import simulate
+from bouncing_ball.motion.contact import simulate
 from bouncing_ball.orbits.law_calls import rigid_speed
 from bouncing_ball.orbits.law_model import LawModel
 

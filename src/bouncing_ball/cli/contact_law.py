@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.law_choice import law_named, law_of_impact
 from bouncing_ball.contacts.law_signature import LawSignature, free_impact
-from bouncing_ball.contacts.laws.contact_law import ContactLaw
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import ModelError
 from bouncing_ball.orbits.corrected_model import CorrectedModel

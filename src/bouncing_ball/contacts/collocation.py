@@ -27,8 +27,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.contact_scales import scales
-from bouncing_ball.contacts.laws.contact_law import ContactLaw
 from bouncing_ball.contacts.quadrature import scheme
 from bouncing_ball.contacts.release import Release
 
@@ -49,8 +49,9 @@ _FIRST = 0.8
 _SHORTER, _LONGER, _SAFETY, _AGAIN = 0.3, 1.3, 0.9, 0.6
 # Contacts worked on at once: their nodes fit into the cache.
 _BLOCK = 1024
-# Panels of one contact at most: a dozen oscillations.
-_PANELS = 120
+# Panels of one contact at most: a dozen oscillations of an orbit's, some hundreds in a
+# simulation.
+_PANELS, MOST_PANELS = 120, 2000
 # A ball at rest on the table, in parts of V: its q is slow, and its time is not.
 _AT_REST = 1e-9
 # The end of the contact is taken where less than this part of it is left.
@@ -142,16 +143,21 @@ def _lever(law: ContactLaw, root):
 
 
 def _grip(law: ContactLaw, root, rate):
-    """What vanishes at the release: q, or the grip."""
-    return root if law.release is Release.DISPLACEMENT else law.grip(root**law.root, rate)
+    """What vanishes at the release: the grip, or q where that is a power of q."""
+    if law.release is Release.DISPLACEMENT:
+        return root
+    grip = law.grip(root**law.root, rate)
+    return grip if law.lag is None else np.where(law.lag == 0, root, grip)
 
 
 def _grip_slopes(law: ContactLaw, root, rate):
     """Its derivatives by q and p′."""
+    one = np.ones_like(root)
     if law.release is Release.DISPLACEMENT:
-        return np.ones_like(root), np.zeros_like(root)
+        return one, 0 * one
     by = law.grip_slopes(root**law.root, rate)
-    return by.by_penetration * _lever(law, root), by.by_rate
+    by_root = by.by_penetration * _lever(law, root)
+    return by_root if law.lag is None else np.where(law.lag == 0, one, by_root), by.by_rate
 
 
 def _left(law: ContactLaw, root, rate, time, until):
@@ -271,6 +277,17 @@ def _at_release(law: ContactLaw, panel: _Panel, by: np.ndarray, strain: np.ndarr
     return np.stack(ends, axis=1), np.exp(strain) * falls / (falls + step)
 
 
+def _begin(law: ContactLaw, start: Start) -> np.ndarray:
+    """The rows of :class:`_Motion` at the start."""
+    scale = scales(law, np.abs(start.rate), start.weight + np.abs(start.amplitude))
+    rest = _AT_REST * scale.speed
+    rate = np.where((start.depth == 0) & (start.rate < rest), rest, start.rate)
+    step = _FIRST * scale.length ** (1 / law.root) / scale.speed
+    root = start.depth ** (1 / law.root)
+    zero = np.zeros_like(rate)
+    return np.stack([root, rate, zero, zero, step, scale.length, scale.speed])
+
+
 def march(
     law: ContactLaw,
     start: Start,
@@ -298,10 +315,10 @@ def march(
     --------
     A quarter of an oscillation, down to the depth v/ϖ:
 
-    >>> from bouncing_ball.contacts.laws.linear import Linear
+    >>> from bouncing_ball.contacts.spring_damper import SpringDamper
     >>> zero = np.zeros(1)
     >>> start = Start(zero, np.full(1, np.pi), zero, zero, zero)
-    >>> march(Linear(np.pi, 0.0), start, until=np.full(1, 0.5)).penetration.round(12).tolist()
+    >>> march(SpringDamper(np.pi, 0.0), start, until=np.full(1, 0.5)).penetration.round(12).tolist()
     [1.0]
     """
     size = start.rate.size
@@ -320,7 +337,12 @@ def march(
                 panel = _panel(some, own, _Motion(*state[:, here]), limit)
                 state[4, here] = panel.following
                 good = np.flatnonzero(panel.good)
-                some, own, here, panel = some.take(good), own.take(good), here[good], panel.take(good)
+                some, own, here, panel = (
+                    some.take(good),
+                    own.take(good),
+                    here[good],
+                    panel.take(good),
+                )
                 ends = panel.root[-1], panel.rate[-1], panel.time[-1], panel.final
                 state[:4, here] = ends
                 done[here] = panel.last
@@ -341,15 +363,14 @@ def march(
     return Contacts(time, depth, rate, jacobian, contraction)
 
 
-def _begin(law: ContactLaw, start: Start) -> np.ndarray:
-    """The rows of :class:`_Motion` at the start."""
-    scale = scales(law, np.abs(start.rate), start.weight + np.abs(start.amplitude))
-    rest = _AT_REST * scale.speed
-    rate = np.where((start.depth == 0) & (start.rate < rest), rest, start.rate)
-    step = _FIRST * scale.length ** (1 / law.root) / scale.speed
-    root = start.depth ** (1 / law.root)
-    zero = np.zeros_like(rate)
-    return np.stack([root, rate, zero, zero, step, scale.length, scale.speed])
+def states(law: ContactLaw, start: Start, end, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """p and p′ at times within contacts in a row, of which the end (D, p_e, p′_e) is known."""
+    inside = np.flatnonzero((time > 0) & (time < (1 - _END) * end[0]))
+    found = march(law.take(inside), start.take(inside), MOST_PANELS, time[inside])
+    depth = np.where(time > 0, end[1], start.depth)
+    rate = np.where(time > 0, end[2], start.rate)
+    depth[inside], rate[inside] = found.penetration, found.rate
+    return depth, rate
 
 
 def _row(law: ContactLaw, *columns: ArrayLike):
@@ -422,17 +443,13 @@ def path(
 
     Examples
     --------
-    >>> from bouncing_ball.contacts.laws.linear import Linear
-    >>> law = Linear(np.pi, 0.0)
+    >>> from bouncing_ball.contacts.spring_damper import SpringDamper
+    >>> law = SpringDamper(np.pi, 0.0)
     >>> depth, rate = path(law, contacts(law, np.pi, weight=0.0), 0.5, np.pi, weight=0.0)
     >>> round(float(depth), 12), abs(round(float(rate), 12))
     (1.0, 0.0)
     """
-    laws, (t, *others), shape = _row(law, time, *found[:3], speed, phase, amplitude, weight)
-    (duration, depth, rate), (v, *table) = others[:3], others[3:]
-    inside = (t > 0) & (t < (1 - _END) * duration)
-    start = Start(0 * v, np.where(inside, v, np.nan), *table)
-    there = march(laws, start, until=t)
-    depth = np.where(inside, there.penetration, np.where(t > 0, depth, 0.0))
-    rate = np.where(inside, there.rate, np.where(t > 0, rate, v))
+    laws, (t, *columns), shape = _row(law, time, *found[:3], speed, phase, amplitude, weight)
+    start = Start(np.zeros_like(t), *columns[3:])
+    depth, rate = states(laws, start, columns[:3], t)
     return depth.reshape(shape), rate.reshape(shape)

@@ -25,8 +25,8 @@ from typing import ClassVar, NamedTuple, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
-from bouncing_ball.contacts.laws.contact_law import ContactLaw
 from bouncing_ball.contacts.oscillator import Response, exponential_response, impulse_response
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import require

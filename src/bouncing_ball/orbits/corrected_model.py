@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.contacts.signature import LinearSignature, Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.motion.corrected_impacts import corrected_cycle, simulate
+from bouncing_ball.motion.corrected import corrected_cycle, simulate
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence
 from bouncing_ball.orbits import corrected_branch as formulas
 from bouncing_ball.orbits.corrected_orbit import CorrectedOrbit

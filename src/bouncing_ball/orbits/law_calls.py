@@ -9,8 +9,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.law_choice import law_of_impact
-from bouncing_ball.contacts.laws.contact_law import ContactLaw
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits.law_model import LawModel
 from bouncing_ball.orbits.model import Side

@@ -15,16 +15,16 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.law_permanent_contact import permanent_contact
 from bouncing_ball.contacts.law_signature import free_impact
-from bouncing_ball.contacts.laws.contact_law import ContactLaw
 from bouncing_ball.contacts.signature import Instant
 from bouncing_ball.continuation.branch import Branch, ContinuationError, continue_branch
 from bouncing_ball.continuation.corrector import NewtonSettings, newton
 from bouncing_ball.continuation.events import Event, LocationError, parameter_bound, vanishing
 from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.errors import ModelError
-from bouncing_ball.motion.law_impacts import law_cycle, simulate
+from bouncing_ball.motion.contact import contact_cycle, simulate
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence
 from bouncing_ball.orbits import corrected_branch as corrected
 from bouncing_ball.orbits.law_orbit import LawOrbit
@@ -323,7 +323,7 @@ class LawModel(ImpactModel):
 
     def cycle(self, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
         """The Poincaré map, from an impact (φ, δ′) to the next."""
-        return law_cycle(self.law, amplitude, phase, relative_velocity)
+        return contact_cycle(self.law, amplitude, phase, relative_velocity)
 
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ up to which a steady contact is held all the time."""

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.contacts.laws.contact_law import ContactLaw
+from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.continuation.events import Event
 from bouncing_ball.orbits.branch_events import branch_events
 from bouncing_ball.orbits.law_orbit import LawOrbit

@@ -1,6 +1,6 @@
 """Contact laws: what pushes the ball, one short module each."""
 
-from bouncing_ball.contacts.laws.contact_law import ContactLaw
+from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji

@@ -88,7 +88,7 @@ def test_the_elastic_hertz_impact(law):
     assert float(end.duration) == pytest.approx(0.8 * beta(0.4, 0.5) * deepest / v, rel=1e-13)
     assert float(end.rate) == pytest.approx(-v, rel=1e-13)
     # Inside, the path is as exact as its coefficients have fallen.
-    assert float(path(law, end, v, end.duration / 2)[0]) == pytest.approx(deepest, rel=1e-9)
+    assert float(path(law, end, end.duration / 2, v, weight=0.0)[0]) == pytest.approx(deepest, rel=1e-9)
 
 
 @pytest.mark.parametrize("restitution", [0.95, 0.65, 0.3, 0.1])
@@ -134,15 +134,16 @@ def test_the_contraction_is_that_of_the_flow(law):
 
 @every_law
 def test_the_path_starts_and_ends_and_solves_the_equation(law):
-    end = contacts(law, SPEED, PHASE, AMPLITUDE)
+    start = SPEED, PHASE, AMPLITUDE
+    end = contacts(law, *start)
     duration = float(end.duration)
-    depth, rate = path(law, end, SPEED, [0.0, duration])
+    depth, rate = path(law, end, [0.0, duration], *start)
     np.testing.assert_allclose(depth, [0.0, end.penetration], rtol=0, atol=1e-14)
     np.testing.assert_allclose(rate, [SPEED, end.rate], rtol=0, atol=1e-12)
     h = 1e-4 * duration
     time = np.linspace(0.2, 0.8, 7) * duration
-    (_, ahead), (_, behind) = (path(law, end, SPEED, time + s * h) for s in (1, -1))
-    p, u = path(law, end, SPEED, time)
+    (_, ahead), (_, behind) = (path(law, end, time + s * h, *start) for s in (1, -1))
+    p, u = path(law, end, time, *start)
     push = 1 - AMPLITUDE * np.sin(PHASE + time) - law.force(p, u)
     # Second order: h²/6 times the third derivative of p′, v/D³.
     assert np.abs((ahead - behind) / (2 * h) - push).max() < 1e-6 * SPEED / duration

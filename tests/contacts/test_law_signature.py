@@ -41,7 +41,7 @@ def test_the_delay_is_the_centroid_of_the_force(law):
     x, w = np.polynomial.legendre.leggauss(60)
     x, w = (x + 1) / 2, w / 2
     time = float(end.duration) * share(x, law.root)
-    force = law.force(*path(law, end, v, time)) * w * share_rate(x, law.root)
+    force = law.force(*path(law, end, time, v, weight=0.0)) * w * share_rate(x, law.root)
     centroid = np.sum(force * time) / np.sum(force)
     assert centroid == pytest.approx(float(instant.delay), rel=1e-9)
 

@@ -138,8 +138,17 @@ class _Panel(NamedTuple):
 
 
 def _lever(law: ContactLaw, root):
-    """λ = dp/dq."""
-    return law.root * root ** (law.root - 1)
+    """λ = dp/dq, by products, which cost less than a power."""
+    lever = law.root * np.ones_like(root)
+    for _ in range(law.root - 1):
+        lever *= root
+    return lever
+
+
+def _load(start: Start, time):
+    """a = w - Λ sin(φ + t), by the tangent of the half angle, which costs less than a sine."""
+    tangent = np.tan((start.phase + time) / 2)
+    return start.weight - 2 * start.amplitude * tangent / (1 + tangent * tangent)
 
 
 def _grip(law: ContactLaw, root, rate):
@@ -185,8 +194,7 @@ def _panel(law: ContactLaw, start: Start, now: _Motion, until: np.ndarray | None
         q = now.root + step * (integral @ rate)
         lever = _lever(law, q[:-1])
         t = now.time + step * (integral @ lever)
-        load = start.weight - start.amplitude * np.sin(start.phase + t[:-1])
-        push = lever * (load - law.force(q[:-1] ** law.root, rate))
+        push = lever * (_load(start, t[:-1]) - law.force(q[:-1] * lever / law.root, rate))
         new = now.rate + step * (integral @ push)
         before, rate = rate, new[:-1]
         if sweep < _LOOK:

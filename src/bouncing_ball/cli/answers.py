@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from bouncing_ball.accuracy import error_law as error_laws
 from bouncing_ball.cli.readable import lines
 from bouncing_ball.contacts.law_signature import LawSignature, free_impact
 from bouncing_ball.contacts.laws.contact_law import ContactLaw
@@ -18,7 +19,6 @@ from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.motion.sequence import ImpactSequence, Status
 from bouncing_ball.orbits import calls
-from bouncing_ball.orbits import error_law as error_laws
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.law_model import LawModel, restitution_speed
 from bouncing_ball.orbits.orbit import OBSERVABLES, Orbit
@@ -69,8 +69,9 @@ def orbit(n=1, *, amplitude, side, index, **impact: Any) -> Answer:
     """The n-T orbit at Λ on a side of the saddle-node, or all of them, or one of all."""
     of = calls.model_of_orbit(n, amplitude, side, **impact)
     found = calls.chosen_orbit(of, n, amplitude, side, index)
-    several = {"orbits": [_orbit(one) for one in found]} if found.shape else _orbit(found)
-    return several | _described(of, -float(np.ravel(found.relative_impact_velocity)[0]))
+    several = [_orbit(found[k]) for k in range(found.size)] if found.shape else []
+    answer = {"orbits": several} if several else _orbit(found)
+    return answer | _described(of, -float(np.ravel(found.relative_impact_velocity)[0]))
 
 
 @takes(calls.limits)
@@ -122,8 +123,8 @@ def error_law(n=1, **given: Any) -> Answer:
     # K is the error at ϖ = 1, continued by its law.
     contact = _contact(frequency_ratio=1.0, **given)
     zeta, release = contact.damping_ratio, contact.release
-    law = error_laws.coefficients(n, zeta, amplitude, release)._asdict()
-    signed = {name: float(k) if math.isfinite(k) else None for name, k in law.items()}
+    law = error_laws.coefficients(n, zeta, amplitude, release)
+    signed = {str(name): float(k) if math.isfinite(k) else None for name, k in law.items()}
     second = abs(float(error_laws.permanent_contact_coefficient(zeta, release)))
     return {
         "coefficients": {name: k if k is None else abs(k) for name, k in signed.items()},

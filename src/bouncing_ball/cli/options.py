@@ -148,7 +148,7 @@ def add_options(parser: argparse.ArgumentParser, call: Callable) -> list[str]:
         required, default = parameter.default is parameter.empty, parameter.default
         if parameter.kind is parameter.POSITIONAL_ONLY:
             # Several arguments need a default, or argparse calls them required.
-            several = {} if required else {"nargs": "*", "default": []}
+            several: dict[str, Any] = {} if required else {"nargs": "*", "default": []}
             reading["metavar"] = name.upper()
             parser.add_argument(name, **reading, **several, help=text)
             continue

@@ -200,13 +200,12 @@ def _law_of_parameters(
     for name in known:
         if name not in named:
             raise ParameterError(f"{kind.name} needs {{parameters}} {name}=NUMBER as well")
-    if release is None:
-        return kind(**named)
-    if not kind.chooses_release():
+    if release is not None and not kind.chooses_release():
         raise ParameterError(
             f"the release is part of {kind.name}: {{release}} is for the linear law"
         )
-    return kind(**named, release=Release.of(release))
+    rule: Any = {} if release is None else {"release": Release.of(release)}
+    return kind(**named, **rule)
 
 
 def model_of_orbit(n: int, amplitude: float, side: str = "stable", **impact: Any) -> ImpactModel:

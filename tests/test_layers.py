@@ -26,7 +26,7 @@ ALLOWED = {
     "accuracy": ({"contacts", "continuation", "motion", "orbits"}, {"numpy", "scipy"}),
     "studies": (
         {"datasets", "contacts", "continuation", "motion", "orbits", "accuracy"},
-        {"numpy", "scipy", "xarray"},
+        {"numpy", "scipy", "xarray", "pydantic"},
     ),
     # Units are parsed at the edge, and pint is imported there when it is asked for.
     "calculator": ({"contacts", "orbits", "accuracy"}, {"numpy", "xarray", "pint"}),

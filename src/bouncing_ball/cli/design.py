@@ -51,7 +51,8 @@ def design(*, plot: Annotated[Path | None, drawing] = None, **given: Any) -> Ans
 def _draw(found: Design, path: Path) -> None:
     from bouncing_ball.calculator.page_data import page
     from bouncing_ball.figures.design_page import draw
-    from bouncing_ball.figures.style import save, style
+    from bouncing_ball.figures.files import save
+    from bouncing_ball.figures.style import style
 
     said = answer(found)
     judged = next(one for one in said["orbits"] if one["n"] == said["n"])

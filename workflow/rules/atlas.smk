@@ -1,8 +1,10 @@
 # The atlas: how stiff is stiff enough, everywhere. Not part of a run. Its summary is
 # accepted by hand, see docs/atlas.md, and the article takes its numbers from there.
 
-from bouncing_ball.pipeline.atlas import shard_minutes
+from bouncing_ball.pipeline.atlas import shard_minutes, shard_names
 
+# What the shards are made from.
+ATLAS = {key: part for key, part in config["atlas"].items() if key != "summary"}
 CHARTS = ["max_height", "bounce_velocity", "phase", "apparent_restitution", "limits", "page"]
 
 
@@ -14,9 +16,9 @@ rule atlas_shard:
     output:
         data="results/atlas/shards/{shard}.nc",
     wildcard_constraints:
-        shard=r"\d+-of-\d+",
+        shard=r"\d+-of-\d+|limits",
     params:
-        title="The atlas: the answers of some rows of tiles",
+        title="The atlas: the answers of some rows of tiles, or about the limits of the families",
         parameters=ATLAS,
     resources:
         runtime=lambda wildcards: shard_minutes(ATLAS),
@@ -29,38 +31,18 @@ rule atlas_shard:
         "../scripts/atlas_shard.py"
 
 
-rule atlas_limits:
-    message:
-        "Atlas: saddle-node, period doubling and permanent contact"
-    input:
-        source=modules("atlas.shards", "pipeline.atlas"),
-    output:
-        data="results/atlas/shards/limits.nc",
-    params:
-        title="The atlas: the answers about the limits of the families",
-        parameters=ATLAS,
-    resources:
-        runtime=30,
-        mem_mb=1000,
-    log:
-        "results/logs/atlas/shards/limits.log",
-    benchmark:
-        "results/benchmarks/atlas/shards/limits.tsv"
-    script:
-        "../scripts/atlas_limits.py"
-
-
 rule atlas_merge:
     message:
-        "Atlas: one file from its shards"
+        "Atlas: one file from its shards, and its summary"
     input:
-        parts=shard_files,
-        source=modules("atlas.merge", "pipeline.atlas"),
+        parts=[f"results/atlas/shards/{name}.nc" for name in [*shard_names(ATLAS), "limits"]],
+        source=modules("atlas.merge", "atlas.summary", "pipeline.atlas"),
     output:
         data="results/atlas/atlas.nc",
+        summary="results/atlas/summary.nc",
     params:
-        title="The atlas: how stiff a contact must be",
-        parameters=ATLAS,
+        titles=["The atlas: how stiff a contact must be", "The atlas in short"],
+        parameters=config["atlas"],
     resources:
         runtime=60,
         mem_mb=4000,
@@ -72,38 +54,13 @@ rule atlas_merge:
         "../scripts/atlas_merge.py"
 
 
-rule atlas_summary:
-    message:
-        "Atlas: its summary"
-    input:
-        parts=[rules.atlas_merge.output.data],
-        source=modules("atlas.summary", "pipeline.atlas"),
-    output:
-        data="results/atlas/summary.nc",
-    params:
-        title="The atlas in short",
-        parameters=RUN["atlas"],
-    resources:
-        runtime=10,
-        mem_mb=2000,
-    log:
-        "results/logs/atlas/summary.log",
-    benchmark:
-        "results/benchmarks/atlas/summary.tsv"
-    script:
-        "../scripts/atlas_summary.py"
-
-
-rule atlas_charts:
+rule atlas:
     message:
         "Atlas: charts and tables"
     input:
-        parts=[rules.atlas_summary.output.data],
+        data=rules.atlas_merge.output.summary,
         source=modules(
-            "figures.atlas.maps",
-            "figures.atlas.limits",
-            "figures.atlas.page",
-            "figures.atlas.tables",
+            *(f"figures.atlas.{part}" for part in ("maps", "limits", "page", "tables")),
             "figures.tables.formats",
             "pipeline.atlas",
         ),
@@ -120,11 +77,3 @@ rule atlas_charts:
         "results/benchmarks/atlas/charts.tsv"
     script:
         "../scripts/atlas_charts.py"
-
-
-rule atlas:
-    localrule: True
-    message:
-        "The atlas is up to date"
-    input:
-        rules.atlas_charts.output,

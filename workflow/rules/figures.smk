@@ -1,8 +1,9 @@
-# Datasets in, figures out.
+# Datasets in, figures out: each figure from the dataset of its name. The schematics, Figures 1
+# and 4, have none.
 
 from bouncing_ball.figures import DRAWINGS
 
-for name in FIGURES:
+for name, drawing in DRAWINGS.items():
 
     rule:
         name:
@@ -10,20 +11,20 @@ for name in FIGURES:
         message:
             f"Drawing {name}"
         input:
-            data=datasets([name] if STAGES[name].study else []),
+            data=datasets([name] if name in STUDIES else []),
             source=modules(
-                f"figures.{DRAWINGS[name]}".rpartition(".")[0],
+                f"figures.{drawing}".rpartition(".")[0],
                 "figures.files",
                 "figures.given",
                 "datasets.netcdf",
             ),
         params:
-            drawing=f"figures.{DRAWINGS[name]}",
+            drawing=f"figures.{drawing}",
         output:
             png=report(
                 f"results/figures/{name}.png",
-                caption=f"../report/{name if captioned(name) else 'figure'}.rst",
-                category="Figures" if STAGES[name].kind is Kind.FIGURE else "Beyond the paper",
+                caption=f"../report/{caption(name)}.rst",
+                category="Figures" if name.startswith("fig") else "Beyond the paper",
                 labels={"figure": name},
             ),
             svg=f"results/figures/{name}.svg",

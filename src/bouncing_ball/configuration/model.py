@@ -21,7 +21,7 @@ class _Sections(Parameters, strict=False):
 
 
 def configuration_model(
-    studies: Mapping[str, str], config: Mapping[str, Any], given: Sequence[str] = ()
+    studies: Mapping[str, str], config: Mapping[str, Any], **others: type[Parameters]
 ) -> type[BaseModel]:
     """The type of the whole configuration.
 
@@ -31,22 +31,27 @@ def configuration_model(
         The study of each artifact.
     config : mapping
         The configuration, which says in which section an artifact is.
-    given : sequence of str
-        What studies take that is not in the configuration.
+    **others : type
+        Of sections that no study takes.
+
+    Raises
+    ------
+    ConfigurationError
+        If a study is missing, or the parameters of an artifact.
     """
     places: dict[str, dict[str, Any]] = {name: {} for name in SECTIONS}
-    settings: dict[str, Any] = {}
+    keys: dict[str, Any] = {}
     for artifact, study in studies.items():
         for name, kind in taken(study).items():
             if name == "parameters":
                 where, key = section(artifact, config)
                 places[where][key] = (kind, ...)
-            elif name not in given:
-                settings[name] = (kind, ...)
+            else:
+                keys[name] = (kind, ...)
     for name, fields in places.items():
-        if fields:
-            settings[name] = (create_model(name, __base__=Parameters, **fields), ...)
-    return create_model("Configuration", __base__=_Sections, **settings)
+        keys[name] = (create_model(name, __base__=Parameters, **fields), ...)
+    keys |= {name: (kind, ...) for name, kind in others.items()}
+    return create_model("Configuration", __base__=_Sections, **keys)
 
 
 def check(model: type[BaseModel], config: Mapping[str, Any], **context: Any) -> None:

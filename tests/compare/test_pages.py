@@ -8,6 +8,7 @@ from bouncing_ball.compare.outcome import Outcome
 from bouncing_ball.compare.pages import read_page
 from bouncing_ball.compare.parts import judge
 from bouncing_ball.compare.tolerance_file import read_tolerances
+from bouncing_ball.configuration.study import typed
 from bouncing_ball.figures.explorer.document import to_html
 from bouncing_ball.record.reading import UnreadableError
 from bouncing_ball.studies.reference_orbits import reference_orbits
@@ -19,7 +20,7 @@ GIVEN = {"frequency_ratio": {"min": 1.0, "max": 1e4, "samples": 11}, "seed": 31}
 
 @pytest.fixture(scope="module")
 def data():
-    return reference_orbits(GIVEN)
+    return typed(reference_orbits)(GIVEN)
 
 
 def judged(folder, before, after):

@@ -16,7 +16,7 @@ from bouncing_ball.parameters import (
     number,
 )
 
-Ranges = Annotated[int, number("number of equal ranges; 2000 are finer than any map", ge=1, le=2000)]
+Ranges = Annotated[int, number("number of equal ranges, finer than any map at 2000", ge=1, le=2000)]
 Nodes = Annotated[
     int, number("even nodes in each range, whose row is held in memory", ge=1, le=10000)
 ]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.audit.formulas import as_printed as printed
+from bouncing_ball.claims import as_printed as printed
 from bouncing_ball.contacts import damping, permanent_contact
 from bouncing_ball.contacts import restitution_map as restitution
 from bouncing_ball.contacts.spring_damper import contact_flow

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from bouncing_ball.audit.formulas import as_printed as printed
+from bouncing_ball.claims import as_printed as printed
 from bouncing_ball.audit.formulas import formulas
 from bouncing_ball.audit.formulas import permanent_contact_equations as steady
 from bouncing_ball.audit.formulas.contact_equations import _measured_restitution

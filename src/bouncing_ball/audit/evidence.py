@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.audit.formulas import as_printed as printed
+from bouncing_ball.claims import as_printed as printed
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.orbits import restitution_orbit
 

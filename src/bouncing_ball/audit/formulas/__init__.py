@@ -2,7 +2,7 @@
 
 Each row of the dataset gives the largest disagreement over a sample of
 parameters and what rounding accounts for. The formulas are those of
-:mod:`bouncing_ball.audit.formulas.as_printed`; what they are compared with uses none of
+:mod:`bouncing_ball.claims.as_printed`; what they are compared with uses none of
 them.
 """
 

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.linalg import expm
 from scipy.optimize.elementwise import find_minimum, find_root
 
-from bouncing_ball.audit.formulas import as_printed as printed
+from bouncing_ball.claims import as_printed as printed
 from bouncing_ball.audit.formulas.disagreement import ROUNDING, Check, largest
 from bouncing_ball.audit.formulas.flow import contact_matrix, flow, state
 

@@ -7,7 +7,7 @@ differences of one cycle.
 import numpy as np
 from scipy.optimize.elementwise import find_root
 
-from bouncing_ball.audit.formulas import as_printed as printed
+from bouncing_ball.claims import as_printed as printed
 from bouncing_ball.audit.formulas.disagreement import ROUNDING, Check, largest
 from bouncing_ball.audit.formulas.flow import fall_matrix, flow, state
 from bouncing_ball.motion.angles import reduce_angle

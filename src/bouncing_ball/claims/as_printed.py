@@ -1,6 +1,6 @@
 r"""The paper's equations as it prints them, as far as they are legible, right or wrong.
 
-Used only to be checked (:mod:`bouncing_ball.audit.formulas`); nothing else is
+Used only to be checked (:mod:`bouncing_ball.claims.formulas`); nothing else is
 computed from them. All quantities are dimensionless; the functions broadcast.
 """
 

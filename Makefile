@@ -22,7 +22,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 # One thing after another: clean, run and compare share results/.
 .NOTPARALLEL:
-.PHONY: all setup lint test quick test-cluster test-long attack diff accept report clean ci setup-newest newest config-docs codecheck lock
+.PHONY: all setup lint test quick test-cluster test-long diff accept report clean ci setup-newest newest config-docs lock
 
 all: $(SETUP)
 	$(BIN)/snakemake --cores 2 $(QUIETLY)
@@ -67,19 +67,13 @@ test-cluster: $(SETUP)
 test-long: $(SETUP)
 	$(PYTEST) -m long --durations 20
 
-# Ten minutes of random attacks; the table of the result is docs/attacks.md.
-attack: $(SETUP)
-	$(BIN)/python tests/attack --seconds 600 --table docs/attacks.md
-
 # The results against the accepted record; reports in results/diff/.
 diff: $(SETUP)
 	$(BIN)/snakemake --cores 2 diff $(QUIETLY)
 
-# make accept REASON='why it moved' ONLY='fig08 table1'; with more reasons than one:
-# make accept REASON='a finer step | another root' ONLY='fig08 table1 | fig05'
-# As typed: neither make nor the shell reads anything in it.
-override export REASON := $(value REASON)
-override export ONLY := $(value ONLY)
+# make accept REASON='why it moved' ONLY='fig08 table1'
+export REASON
+export ONLY
 accept: $(SETUP)
 	$(BIN)/snakemake --cores 1 accept
 
@@ -98,7 +92,7 @@ ci:
 # whatever the others say.
 setup-newest:
 	$(PYTHON) -m venv --clear $(NEWEST)
-	$(NEWEST)/bin/python -m pip install --quiet --disable-pip-version-check --editable '.[test,pdf,zarr]'
+	$(NEWEST)/bin/python -m pip install --quiet --disable-pip-version-check --editable '.[test,pdf]'
 
 newest: setup-newest clean
 	$(MAKE) --keep-going all diff test VENV=$(NEWEST) SETUP=
@@ -106,10 +100,7 @@ newest: setup-newest clean
 config-docs: setup
 	$(BIN)/python -m bouncing_ball.configuration.documentation
 
-codecheck: setup
-	$(BIN)/python -m bouncing_ball.pipeline.codecheck
-
 # For maintainers; needs uv.
 lock:
-	uv pip compile pyproject.toml --extra test --extra pdf --extra lint --extra slurm --extra zarr --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate --upgrade --output-file requirements.lock
+	uv pip compile pyproject.toml --extra test --extra pdf --extra lint --extra slurm --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate --upgrade --output-file requirements.lock
 	printf 'flit_core\nsetuptools\nwheel\n' | uv pip compile - --constraint requirements.lock --universal --python-version 3.11 --generate-hashes --no-header --no-annotate --upgrade --output-file requirements-build.lock

@@ -41,7 +41,6 @@ localrules:
 
 # The accepted record in git.
 include: "workflow/rules/record.smk"
-include: "workflow/rules/crate.smk"
 # The results against the record, and what the budgets of that come from.
 include: "workflow/rules/diff.smk"
 include: "workflow/rules/convergence.smk"

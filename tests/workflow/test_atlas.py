@@ -9,9 +9,7 @@ import time
 from importlib.util import find_spec
 from pathlib import Path
 
-import numpy as np
 import pytest
-import xarray as xr
 import yaml
 
 from bouncing_ball.atlas.plan import Plan
@@ -85,26 +83,6 @@ def test_the_files_hold_what_the_package_computes(resumed):
     expected, found = shard(Plan(section), 1), read_dataset(tree.path / SHARDS[1])
     for name in expected.variables:
         assert found[name].values.tobytes() == expected[name].values.tobytes(), name
-
-
-def test_the_atlas_as_zarr(resumed):
-    # An extra, that the other tests here do without.
-    from zarr.storage import ZipStore
-
-    tree, *_ = resumed
-    tree.run("--cores", "1", *ATLAS[:3], "atlas_zarr")
-    folder = tree.path / "results/atlas"
-    expected = read_dataset(folder / "atlas.nc")
-    with ZipStore(folder / "atlas.zarr.zip", mode="r") as store:
-        found = xr.open_zarr(store).load()
-    for name in expected.variables:
-        assert found[name].values.tobytes() == expected[name].values.tobytes(), name
-        assert found[name].attrs == expected[name].attrs
-    for name, value in expected.attrs.items():
-        assert np.array_equal(found.attrs[name], value), name
-    sizes = found.threshold_counts.sizes
-    whole = [1 if name in ("release", "n", "quantity") else sizes[name] for name in sizes]
-    assert list(found.threshold_counts.encoding["chunks"]) == whole
 
 
 MISSING = [name for name in ("slurmctld", "slurmd", "sbatch") if not shutil.which(name)]

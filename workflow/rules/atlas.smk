@@ -128,23 +128,3 @@ rule atlas:
         "The atlas is up to date"
     input:
         rules.atlas_charts.output,
-
-
-# For publication; `atlas` does not need it.
-rule atlas_zarr:
-    message:
-        "Atlas: as chunked Zarr"
-    input:
-        parts=[rules.atlas_merge.output.data],
-        source=modules("datasets.zarr_file", "pipeline.atlas"),
-    output:
-        data="results/atlas/atlas.zarr.zip",
-    resources:
-        runtime=10,
-        mem_mb=2000,
-    log:
-        "results/logs/atlas/zarr.log",
-    benchmark:
-        "results/benchmarks/atlas/zarr.tsv"
-    script:
-        "../scripts/atlas_zarr.py"

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from bouncing_ball.audit.convergence import computations, variations
+from bouncing_ball.claims.convergence import computations, variations
 from bouncing_ball.compare.budgets import MEASURED
 from bouncing_ball.compare.data import compare_datasets
 from bouncing_ball.compare.tolerance_file import read_tolerances

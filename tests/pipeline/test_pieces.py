@@ -5,14 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from bouncing_ball.claims.ledger_file import read_ledger
 from bouncing_ball.configuration.stages import ENTRIES, STAGES
 from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
 from bouncing_ball.pipeline.pieces import check_entries, check_pieces
 
 CONFIG = Path(__file__).resolve().parents[2] / "config"
-LEDGER = read_ledger(CONFIG)
-RUN = read_yaml(CONFIG / "config.yaml") | {"ledger": {}, "printed": LEDGER.table("Table 1")}
+RUN = read_yaml(CONFIG / "config.yaml")
 NEW = replace(STAGES["fig08"], name="fig17", title="Figure 17: new")
 
 

@@ -73,7 +73,7 @@ def rebound(data: Data) -> xr.DataArray:
     """How much farther from r the apparent restitution is than for some softer contact."""
 
     def of(difference: xr.DataArray, _: xr.DataArray) -> xr.DataArray:
-        error = np.abs(difference)
+        error = abs(difference)
         axis = error.get_axis_num("frequency_ratio")
         closest = error.copy(data=np.fmin.accumulate(error.values, axis=axis))
         return (error - closest).max("frequency_ratio")

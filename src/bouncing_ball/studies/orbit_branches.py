@@ -35,6 +35,7 @@ from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_system import Parameter, SpringDamperSystem
 from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.studies.columns import OBSERVED, columns
+from bouncing_ball.studies.printed_table1 import printed_table
 
 SADDLE_NODE, PERIOD_DOUBLING = Bifurcation
 GRAZING = "grazing"
@@ -321,24 +322,6 @@ def both_domains(
     )
 
 
-def printed_ranges(printed: Mapping[str, Any], ratios: list, families: list) -> np.ndarray:
-    """A printed table at the frequency ratios and families computed, shape (ϖ, n, 2).
-
-    NaN where the paper has no entry.
-
-    Examples
-    --------
-    >>> printed = {"frequency_ratio": [10.0], "n": [1], "bound": ["saddle-node",
-    ...            "period doubling"], "values": [[[0.25, 1.0]]]}
-    >>> printed_ranges(printed, [10.0, 5.0], [1]).tolist()
-    [[[0.25, 1.0]], [[nan, nan]]]
-    """
-    axes = {key: printed[key] for key in ("frequency_ratio", "n", "bound")}
-    table = xr.DataArray(printed["values"], axes)
-    wanted = {"frequency_ratio": ratios, "n": families, "bound": [SADDLE_NODE, PERIOD_DOUBLING]}
-    return table.reindex(wanted).values
-
-
 def _limits(
     n: int, ratio: float, parameters: Mapping[str, Any], release: str, settings: Mapping[str, Any]
 ) -> tuple[Orbit, str]:
@@ -356,7 +339,6 @@ def stability_ranges(
     parameters: Mapping[str, Any],
     release: str,
     settings: Mapping[str, Any],
-    printed: Mapping[str, Any],
 ) -> xr.Dataset:
     """Ranges of Λ in which the n-T orbits are stable, computed and printed (Table 1).
 
@@ -382,10 +364,8 @@ def stability_ranges(
             "computed": (dims, columns["amplitude"]),
             "special_phase": (dims, columns["phase"]),
             "special_contact_duration": (dims, columns["contact_duration"]),
-            "printed": (
-                dims,
-                printed_ranges(printed, parameters["frequency_ratio"], parameters["n"]),
-            ),
+            # NaN where the paper has no entry.
+            "printed": printed_table().reindex(frequency_ratio=ratios, n=families),
             "restitution_range": (
                 ("impact_map", "n", "bound"),
                 np.array([np.stack([rigid, doubling], axis=-1) for doubling in doublings]),

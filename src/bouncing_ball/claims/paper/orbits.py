@@ -6,8 +6,8 @@ from bouncing_ball.claims import evidence
 from bouncing_ball.claims.claim import Claim, formula, number, of_formula, statement
 from bouncing_ball.claims.paper import explanations as why
 from bouncing_ball.claims.paper import restitution_model
-from bouncing_ball.claims.paper.table1 import AXES, printed_text
 from bouncing_ball.claims.verdict import above, at_least, at_most, below
+from bouncing_ball.studies.printed_table1 import AXES, printed_text
 
 _METHOD, _EXISTENCE = "Computational method", "Existence and stability"
 _FIGURES = "Figs. 8 and 9"

@@ -1,14 +1,13 @@
 """The article as Markdown, from templates, datasets, tables and references."""
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import xarray as xr
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from bouncing_ball.datasets.netcdf import attribute_name
 from bouncing_ball.errors import ModelError
 from bouncing_ball.figures.article.citations import Citations
 from bouncing_ball.figures.article.claim_texts import Claims
@@ -22,15 +21,6 @@ from bouncing_ball.figures.article.numbers import (
     short,
     value_at,
 )
-
-
-def paper_parameter(claims: xr.Dataset) -> Callable[[str, str], Any]:
-    """Access to the paper's own parameters, as the claims were judged with them."""
-
-    def parameter(dataset: str, key: str) -> Any:
-        return claims.attrs[attribute_name(f"paper.{dataset}.{key}")]
-
-    return parameter
 
 
 def versions(dataset: xr.Dataset) -> dict[str, str]:
@@ -83,7 +73,6 @@ def render_article(
         largest=largest,
         listed=listed,
         pairs=pairs,
-        paper=paper_parameter(data["claims"]),
         percent=percent,
         short=short,
         versions=versions,

@@ -8,8 +8,8 @@ import numpy as np
 from scipy.optimize.elementwise import find_root
 
 from bouncing_ball.claims import as_printed as printed
-from bouncing_ball.audit.formulas.disagreement import ROUNDING, Check, largest
-from bouncing_ball.audit.formulas.flow import fall_matrix, flow, state
+from bouncing_ball.claims.formulas.disagreement import ROUNDING, Check, largest
+from bouncing_ball.claims.formulas.flow import fall_matrix, flow, state
 from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.motion.restitution import impact_cycle, lift_off_phase
 

@@ -18,8 +18,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.audit import published
-from bouncing_ball.audit.published import Shown, ShownLimits
+from bouncing_ball.claims import published
+from bouncing_ball.claims.published import Shown, ShownLimits
 from bouncing_ball.continuation.branch import ContinuationError, continue_both_ways
 from bouncing_ball.continuation.corrector import Condition, NewtonSettings, newton, plane
 from bouncing_ball.continuation.events import LocationError, parameter_bound, vanishing

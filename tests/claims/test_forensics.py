@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from bouncing_ball.audit.forensics.altered_model import Altered, altered_monodromy, altered_orbit
-from bouncing_ball.audit.forensics.bifurcations import bifurcations
-from bouncing_ball.audit.forensics.ranking import ALL_ROWS, SOFTER_ROWS, forensics
-from bouncing_ball.audit.forensics.readings import (
+from bouncing_ball.claims.forensics.altered_model import Altered, altered_monodromy, altered_orbit
+from bouncing_ball.claims.forensics.bifurcations import bifurcations
+from bouncing_ball.claims.forensics.ranking import ALL_ROWS, SOFTER_ROWS, forensics
+from bouncing_ball.claims.forensics.readings import (
     BASELINE,
     FORMULA,
     HIGH_BOUNCE_STABILITY,
@@ -15,7 +15,7 @@ from bouncing_ball.audit.forensics.readings import (
     at_step,
     readings,
 )
-from bouncing_ball.audit.forensics.steps import attainable, nearby
+from bouncing_ball.claims.forensics.steps import attainable, nearby
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError

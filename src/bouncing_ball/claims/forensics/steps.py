@@ -7,7 +7,7 @@ paper's unknowns and its parameter, (z′_i, z′_b, τ_b, φ, A, B, Λ).
 
 import numpy as np
 
-from bouncing_ball.audit.forensics.altered_model import (
+from bouncing_ball.claims.forensics.altered_model import (
     Altered,
     altered_orbit,
     continuation_unknowns,

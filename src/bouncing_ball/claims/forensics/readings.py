@@ -43,7 +43,7 @@ class Reading:
     name, description : str
         The same in short and in full.
     equations : mapping
-        Fields of :class:`~bouncing_ball.audit.forensics.altered_model.Altered`
+        Fields of :class:`~bouncing_ball.claims.forensics.altered_model.Altered`
         that differ; arrays run over the rows of the table, shape (rows, 1).
     formula_from : float
         Rows of this ϖ and above are Eqs. 7 and 8 of the restitution model.

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize.elementwise import find_minimum, find_root
 
-from bouncing_ball.audit.forensics.altered_model import Altered, altered_monodromy, altered_orbit
+from bouncing_ball.claims.forensics.altered_model import Altered, altered_monodromy, altered_orbit
 
 # The scan runs over ε = sinh-spaced points from a thousandth of the free
 # contact to one that fills the cycle but for a thousandth; the middle of the

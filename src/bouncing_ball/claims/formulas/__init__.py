@@ -12,16 +12,16 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.audit.formulas.contact_equations import (
+from bouncing_ball.claims.formulas.contact_equations import (
     damping_checks,
     motion_checks,
     orbit_checks,
     points_with_one_impact,
     static_error,
 )
-from bouncing_ball.audit.formulas.disagreement import Check
-from bouncing_ball.audit.formulas.permanent_contact_equations import permanent_contact_checks
-from bouncing_ball.audit.formulas.restitution_equations import restitution_checks
+from bouncing_ball.claims.formulas.disagreement import Check
+from bouncing_ball.claims.formulas.permanent_contact_equations import permanent_contact_checks
+from bouncing_ball.claims.formulas.restitution_equations import restitution_checks
 from bouncing_ball.datasets.variables import described
 
 # In the order of the paper.

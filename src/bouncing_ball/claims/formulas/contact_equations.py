@@ -12,8 +12,8 @@ import xarray as xr
 from scipy.optimize.elementwise import find_root
 
 from bouncing_ball.claims import as_printed as printed
-from bouncing_ball.audit.formulas.disagreement import ROUNDING, Check, largest
-from bouncing_ball.audit.formulas.flow import contact_matrix, fall_matrix, flow, matrix, state
+from bouncing_ball.claims.formulas.disagreement import ROUNDING, Check, largest
+from bouncing_ball.claims.formulas.flow import contact_matrix, fall_matrix, flow, matrix, state
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.motion.contacts import contact_cycle

@@ -7,12 +7,12 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 
 from bouncing_ball.claims import as_printed as printed
-from bouncing_ball.audit.formulas import formulas
-from bouncing_ball.audit.formulas import permanent_contact_equations as steady
-from bouncing_ball.audit.formulas.contact_equations import _measured_restitution
-from bouncing_ball.audit.formulas.disagreement import ROUNDING, largest
-from bouncing_ball.audit.formulas.flow import contact_matrix, fall_matrix, flow, state
-from bouncing_ball.audit.formulas.restitution_equations import (
+from bouncing_ball.claims.formulas import formulas
+from bouncing_ball.claims.formulas import permanent_contact_equations as steady
+from bouncing_ball.claims.formulas.contact_equations import _measured_restitution
+from bouncing_ball.claims.formulas.disagreement import ROUNDING, largest
+from bouncing_ball.claims.formulas.flow import contact_matrix, fall_matrix, flow, state
+from bouncing_ball.claims.formulas.restitution_equations import (
     _exact_cycle,
     _holmes_cycle,
     _located_doubling,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.audit.cross_check import (
+from bouncing_ball.claims.cross_check import (
     BUDGETS,
     CLOSES,
     FORMULA,

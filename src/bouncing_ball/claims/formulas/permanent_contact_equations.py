@@ -5,8 +5,8 @@ from scipy.linalg import expm
 from scipy.optimize.elementwise import find_minimum, find_root
 
 from bouncing_ball.claims import as_printed as printed
-from bouncing_ball.audit.formulas.disagreement import ROUNDING, Check, largest
-from bouncing_ball.audit.formulas.flow import contact_matrix, flow, state
+from bouncing_ball.claims.formulas.disagreement import ROUNDING, Check, largest
+from bouncing_ball.claims.formulas.flow import contact_matrix, flow, state
 
 # A contact so soft that Λ_SD ϖ² is 1 but for ϖ².
 _SOFT = 1e-4

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.audit.forensics.altered_model import Altered, altered_orbit
-from bouncing_ball.audit.forensics.bifurcations import Bifurcations, bifurcations
-from bouncing_ball.audit.forensics.readings import Reading, readings
-from bouncing_ball.audit.forensics.steps import attainable, nearby, step_needed
+from bouncing_ball.claims.forensics.altered_model import Altered, altered_orbit
+from bouncing_ball.claims.forensics.bifurcations import Bifurcations, bifurcations
+from bouncing_ball.claims.forensics.readings import Reading, readings
+from bouncing_ball.claims.forensics.steps import attainable, nearby, step_needed
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.datasets.rounding import levels
 from bouncing_ball.datasets.variables import describe
@@ -17,6 +17,7 @@ from bouncing_ball.errors import ModelError
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.restitution_orbit import ImpactMap
 from bouncing_ball.orbits.stability import Bifurcation
+from bouncing_ball.studies.printed_table1 import AXES, RESTITUTION, printed_table
 
 BOUNDS = list(Bifurcation)
 ALL_ROWS, SOFTER_ROWS = "all rows", "softer rows"
@@ -121,7 +122,7 @@ def _order(distance: xr.DataArray, in_range: np.ndarray) -> np.ndarray:
     return np.lexsort((*keys, in_range, missing))
 
 
-def forensics(parameters: Mapping[str, Any], printed: Mapping[str, Any]) -> xr.Dataset:
+def forensics(parameters: Mapping[str, Any]) -> xr.Dataset:
     """Table 1 under every reading, the closest reading first.
 
     Parameters
@@ -150,6 +151,11 @@ def forensics(parameters: Mapping[str, Any], printed: Mapping[str, Any]) -> xr.D
     ModelError
         If the bounds are not a saddle-node and a period doubling, in this order.
     """
+    printed = {
+        **{name: list(labels) for name, labels in AXES.items()},
+        "values": printed_table().values.tolist(),
+        "restitution": RESTITUTION,
+    }
     if list(printed["bound"]) != BOUNDS:
         raise ModelError(f"printed.bound = {printed['bound']} must be {BOUNDS}")
     parameters, unit = {**parameters, "printed": printed}, parameters["last_digit"]

@@ -1,4 +1,4 @@
-"""The PDF of the accepted article: pages, captions, vectors, links."""
+"""The PDF of the article: pages, captions, vectors, links."""
 
 import io
 import re
@@ -30,8 +30,8 @@ Text with $\\varpi^2\\,(\\Lambda-1)$ and a [file](config/claims.yaml).
 
 
 @pytest.fixture(scope="module")
-def article():
-    text = (ROOT / "paper.md").read_text(encoding="utf-8")
+def article(record, texts):
+    text = texts(record)["article"]
     return text, PdfReader(io.BytesIO(article_pdf(text, ROOT)))
 
 

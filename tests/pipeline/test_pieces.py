@@ -69,7 +69,9 @@ def test_an_entry_without_a_piece(one_line, entry, said):
 
 
 def test_parameters_without_an_entry(one_line):
-    entries = {name: stage for name, stage in STAGES.items() if name != "fig11"}
+    entries = {name: stage for name, stage in STAGES.items() if name != "ext_basins"}
     with pytest.raises(ConfigurationError) as error:
         check_pieces(entries, RUN)
-    one_line(error, "figures.fig11 has no entry in src/bouncing_ball/configuration/stages.py")
+    one_line(
+        error, "extensions.ext_basins has no entry in src/bouncing_ball/configuration/stages.py"
+    )

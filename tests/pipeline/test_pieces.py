@@ -54,11 +54,11 @@ def test_an_entry_that_would_be_misread(one_line, entry, said):
         (replace(NEW, name="fig16", reads=("fig01",)), "fig16: it reads an unknown dataset fig01"),
         (
             replace(NEW, name="fig16", arguments=("release",)),
-            "orbit_branches takes (parameters, release, continuation), its entry gives (parameters, re",
+            "orbit_branches takes (parameters, release, continuation), its entry gives (parameters",
         ),
         (
             replace(NEW, name="fig16", reads=("fig08",)),
-            "orbit_branches takes (parameters, release, continuation), its entry gives (data, paramet",
+            "orbit_branches takes (parameters, release, continuation), its entry gives (data",
         ),
     ],
 )

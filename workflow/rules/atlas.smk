@@ -60,12 +60,17 @@ rule atlas:
     input:
         data=rules.atlas_merge.output.summary,
         source=modules(
+<<<<<<< HEAD
             *(f"figures.atlas.{part}" for part in ("maps", "limits", "page", "tables")),
+=======
+            "figures.atlas.charts",
+            "figures.atlas.tables",
+>>>>>>> main
             "figures.tables.formats",
             "pipeline.atlas",
         ),
     output:
-        charts=expand("results/atlas/{chart}.{kind}", chart=CHARTS, kind=["png", "svg"]),
+        charts=expand("results/atlas/{chart}.png", chart=CHARTS),
         shares="results/atlas/shares.md",
         worst="results/atlas/worst.md",
     resources:

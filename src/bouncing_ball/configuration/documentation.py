@@ -14,9 +14,15 @@ The keys of `config.yaml`, with what is allowed and why. This page and `schema.j
 editors read, are made from the types that stand beside the studies, by `make config-docs`;
 change those, not the page.
 
+<<<<<<< HEAD
 Everything is dimensionless but for angles, in radians. Numbers in powers of ten need a point and
 a sign, `1.0e+4`: YAML takes `1e4` for a text. To try a change without editing `config.yaml`,
 write only the keys that change into another file and name it last,
+=======
+Numbers in powers of ten need a point and a sign, `1.0e+4`: YAML takes `1e4`
+for a text. To try a change without editing `config.yaml`, write only the keys
+that change into another file and name it last,
+>>>>>>> main
 `snakemake --cores 2 fig12 --configfile mine.yaml`.
 """
 _TABLE = """

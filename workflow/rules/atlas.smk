@@ -33,16 +33,15 @@ rule atlas_shard:
 
 rule atlas_merge:
     message:
-        "Atlas: one file from its shards, and its summary"
+        "Atlas: one file from its shards"
     input:
         parts=[f"results/atlas/shards/{name}.nc" for name in [*shard_names(ATLAS), "limits"]],
-        source=modules("atlas.merge", "atlas.summary", "pipeline.atlas"),
+        source=modules("atlas.merge", "pipeline.atlas"),
     output:
         data="results/atlas/atlas.nc",
-        summary="results/atlas/summary.nc",
     params:
-        titles=["The atlas: how stiff a contact must be", "The atlas in short"],
-        parameters=config["atlas"],
+        title="The atlas: how stiff a contact must be",
+        parameters=ATLAS,
     resources:
         runtime=60,
         mem_mb=4000,
@@ -54,18 +53,33 @@ rule atlas_merge:
         "../scripts/atlas_merge.py"
 
 
+rule atlas_summary:
+    message:
+        "Atlas: its summary"
+    input:
+        parts=[rules.atlas_merge.output.data],
+        source=modules("atlas.summary", "pipeline.atlas"),
+    output:
+        data="results/atlas/summary.nc",
+    params:
+        title="The atlas in short",
+        parameters=config["atlas"],
+    log:
+        "results/logs/atlas/summary.log",
+    benchmark:
+        "results/benchmarks/atlas/summary.tsv"
+    script:
+        "../scripts/atlas_summary.py"
+
+
 rule atlas:
     message:
         "Atlas: charts and tables"
     input:
-        data=rules.atlas_merge.output.summary,
+        parts=[rules.atlas_summary.output.data],
         source=modules(
-<<<<<<< HEAD
-            *(f"figures.atlas.{part}" for part in ("maps", "limits", "page", "tables")),
-=======
             "figures.atlas.charts",
             "figures.atlas.tables",
->>>>>>> main
             "figures.tables.formats",
             "pipeline.atlas",
         ),
@@ -73,9 +87,6 @@ rule atlas:
         charts=expand("results/atlas/{chart}.png", chart=CHARTS),
         shares="results/atlas/shares.md",
         worst="results/atlas/worst.md",
-    resources:
-        runtime=10,
-        mem_mb=2000,
     log:
         "results/logs/atlas/charts.log",
     benchmark:

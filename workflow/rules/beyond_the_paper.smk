@@ -49,9 +49,7 @@ rule error_law:
     message:
         "Error law on random orbits: some minutes"
     input:
-        source=modules(
-            "studies.law_distribution", "datasets.files", "figures.tables.formats"
-        ),
+        source=modules("studies.law_distribution", "datasets.files", "figures.tables.formats"),
     output:
         summary="results/error_law.csv",
     params:

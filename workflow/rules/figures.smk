@@ -3,6 +3,12 @@
 
 from bouncing_ball.figures import DRAWINGS
 
+
+def caption(name):
+    own = Path(ROOT, f"workflow/report/{name}.rst").is_file()
+    return f"../report/{name if own else 'figure'}.rst"
+
+
 for name, drawing in DRAWINGS.items():
 
     rule:
@@ -23,7 +29,7 @@ for name, drawing in DRAWINGS.items():
         output:
             png=report(
                 f"results/figures/{name}.png",
-                caption=f"../report/{caption(name)}.rst",
+                caption=caption(name),
                 category="Figures" if name.startswith("fig") else "Beyond the paper",
                 labels={"figure": name},
             ),
@@ -34,3 +40,25 @@ for name, drawing in DRAWINGS.items():
             f"results/benchmarks/figures/{name}.tsv"
         script:
             "../scripts/figure.py"
+
+
+# The page to explore the models, with the orbits that it checks itself against.
+rule draw_explorer:
+    message:
+        "Writing results/figures/explorer.html"
+    input:
+        data="results/figures/explorer.nc",
+        texts=sorted(
+            os.path.relpath(path)
+            for path in Path(ROOT, "src/bouncing_ball/figures/explorer").iterdir()
+            if path.suffix in (".js", ".css", ".j2")
+        ),
+        source=modules("figures.explorer.document", "datasets.netcdf", "datasets.files"),
+    output:
+        html="results/figures/explorer.html",
+    log:
+        "results/logs/explorer.log",
+    benchmark:
+        "results/benchmarks/explorer.tsv"
+    script:
+        "../scripts/explorer.py"

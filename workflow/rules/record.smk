@@ -6,6 +6,18 @@
 from bouncing_ball.record.recipe import planned
 
 
+def request(wildcards):
+    """No file: reason and groups of an acceptance are checked before anything is made."""
+    # Imported here: no other target needs the record.
+    from bouncing_ball.record.accept import groups
+
+    try:
+        groups(os.environ.get("ONLY", ""), os.environ.get("REASON", ""))
+    except ValueError as error:
+        sys.exit(f"accept: {error}")
+    return []
+
+
 rule accept:
     message:
         "Copying the results over the record in figures/ and paper.md"

@@ -6,7 +6,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from bouncing_ball.configuration.model import resolved
+from bouncing_ball.configuration.check import resolved
 
 _HEAD = """# The configuration
 
@@ -14,15 +14,9 @@ The keys of `config.yaml`, with what is allowed and why. This page and `schema.j
 editors read, are made from the types that stand beside the studies, by `make config-docs`;
 change those, not the page.
 
-<<<<<<< HEAD
 Everything is dimensionless but for angles, in radians. Numbers in powers of ten need a point and
 a sign, `1.0e+4`: YAML takes `1e4` for a text. To try a change without editing `config.yaml`,
 write only the keys that change into another file and name it last,
-=======
-Numbers in powers of ten need a point and a sign, `1.0e+4`: YAML takes `1e4`
-for a text. To try a change without editing `config.yaml`, write only the keys
-that change into another file and name it last,
->>>>>>> main
 `snakemake --cores 2 fig12 --configfile mine.yaml`.
 """
 _TABLE = """
@@ -54,7 +48,7 @@ def _allowed(schema: Mapping[str, Any], root: Mapping[str, Any]) -> str:
 def _rows(schema, root, default, path) -> Iterator[str]:
     schema = resolved(schema, root)
     if schema.get("type") == "object":
-        for key, part in schema["properties"].items():
+        for key, part in schema.get("properties", {}).items():
             yield from _rows(part, root, default[key], [*path, key])
         return
     items = resolved(schema.get("items", {}), root)

@@ -13,10 +13,11 @@ restitution coefficient, with ``frequency_ratio`` a spring-damper contact::
 
 Behind them are the models, :class:`SpringDamperModel` of a :class:`SpringDamper` and
 :class:`RestitutionModel`, with one interface
-(:mod:`bouncing_ball.orbits.interface`); they work on arrays. Everything is
+(:mod:`bouncing_ball.orbits.model`); they work on arrays. Everything is
 dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g.
 
-The layers, each importing only what lies above it in this list (and the errors):
+The layers, each importing only what lies above it in this list (and ``errors`` and
+``parameters``):
 
 ``datasets``      names, symbols, units and netCDF files
 ``contacts``      the impact: restitution map, spring-damper contact, permanent contact
@@ -50,7 +51,7 @@ _PUBLIC = {
     "model": "orbits.calls",
     "design": "calculator.design_call",
     "SpringDamper": "contacts.spring_damper",
-    "SpringDamperModel": "orbits.contact_model",
+    "SpringDamperModel": "orbits.spring_damper_model",
     "RestitutionModel": "orbits.restitution_model",
     "ModelError": "errors",
     "NoOrbitError": "errors",

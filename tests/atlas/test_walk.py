@@ -1,14 +1,14 @@
-"""The walks against the root finding of :mod:`bouncing_ball.orbits.limits`."""
+"""The walks against the root finding of :mod:`bouncing_ball.orbits.spring_damper_limits`."""
 
 import numpy as np
 import pytest
 
 from bouncing_ball.atlas.limits_walk import limit_errors
 from bouncing_ball.atlas.walk import REACHED, stiff_start, walk
-from bouncing_ball.orbits import limits
-from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_model import SpringDamperModel
+from bouncing_ball.orbits import spring_damper_limits as limits
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_branch import branch_point
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 COMPARED = [3.0, 10.0, 100.0, 1e4]
 

@@ -17,7 +17,7 @@ from bouncing_ball.atlas.errors import MODELS, OF_ORBITS
 from bouncing_ball.atlas.plan import Plan
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.orbits.contact_model import SpringDamperModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 ORBITS = Path(__file__).resolve().parents[1] / "orbits"
 Exact = runpy.run_path(str(ORBITS / "test_sixty_digits.py"))["Exact"]

@@ -20,10 +20,10 @@ from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError
 from bouncing_ball.figures.tables.forensics import rows
-from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.limits import orbit_at, period_doubling, saddle_node
 from bouncing_ball.orbits.restitution_orbit import ImpactMap
 from bouncing_ball.orbits.restitution_orbit import period_doubling as printed_doubling
+from bouncing_ball.orbits.spring_damper_branch import branch_point
+from bouncing_ball.orbits.spring_damper_limits import orbit_at, period_doubling, saddle_node
 from bouncing_ball.studies.orbit_branches import stability_ranges
 
 R = 0.85

@@ -13,8 +13,8 @@ from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import SpringDamper, contact_force
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.orbits import error_law
-from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.studies.error_thresholds import Quantity, relative_error
 
 STEEL = {"mass": "20 g", "frequency": "50 Hz", "acceleration": "0.8 g", "stiffness": "1e7 N/m"}

@@ -15,9 +15,9 @@ import bouncing_ball
 from bouncing_ball.cli.main import main
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.orbits import limits
 from bouncing_ball.orbits import restitution_orbit as restitution
-from bouncing_ball.orbits.interface import OBSERVABLES
+from bouncing_ball.orbits import spring_damper_limits as limits
+from bouncing_ball.orbits.orbit import OBSERVABLES
 
 BOUNDS = ("saddle_node", "period_doubling")
 ROOT = Path(__file__).resolve().parents[2]

@@ -47,8 +47,8 @@ def test_circle_goes_round_and_stops_at_the_limit():
     branch = continue_branch(
         CIRCLE, np.array([1.0, 0.0]), increasing=True, events=[fold(CIRCLE)], max_points=120
     )
-    assert branch.start_reason == "starting point"
-    assert branch.end_reason == "reached the limit of 120 points"
+    assert str(branch.start) == "starting point"
+    assert str(branch.end) == "reached the limit of 120 points"
     assert len(branch.points) == 120
     assert np.hypot(*branch.points.T) == pytest.approx(np.ones(120), abs=EXACT)
     angle = np.unwrap(np.arctan2(branch.points[:, 1], branch.points[:, 0]))
@@ -108,7 +108,7 @@ def test_both_folds_of_a_cubic():
     assert np.array(branch.named("fold")) == pytest.approx(
         np.array([[-x, -2 * x / 3], [x, 2 * x / 3]]), abs=EXACT
     )
-    assert (branch.start_reason, branch.end_reason) == ("too large", "too small")
+    assert (str(branch.start), str(branch.end)) == ("too large", "too small")
     assert branch.points[[0, -1], 1] == pytest.approx([3.0, -3.0], abs=EXACT)
     assert CUBIC.residual(branch.points) == pytest.approx(
         np.zeros((len(branch.points), 1)), abs=EXACT
@@ -133,7 +133,7 @@ def test_both_folds_of_a_cubic():
 def test_straight_line_leaves_its_window():
     events = [parameter_bound(1.0, True, "window")]
     branch = continue_branch(LINE, np.array([0.0, 0.0]), increasing=True, events=events)
-    assert branch.end_reason == "window"
+    assert str(branch.end) == "window"
     assert branch.points[-1] == pytest.approx(np.array([2.0, 1.0]), abs=EXACT)
     assert branch.arclength[-1] == pytest.approx(np.sqrt(5), abs=EXACT)
     assert np.all(branch.points[:-1, 1] < 1.0)
@@ -148,7 +148,7 @@ def test_straight_line_leaves_its_window():
 def test_terminal_event_without_a_reason_gives_its_name():
     event = Event("far", lambda y: 1.0 - y[..., 0], terminal=True)
     branch = continue_branch(LINE, np.array([0.0, 0.0]), increasing=True, events=[event])
-    assert branch.end_reason == "far"
+    assert str(branch.end) == "far"
     assert branch.points[-1] == pytest.approx(np.array([1.0, 0.5]), abs=EXACT)
     assert [s.name for s in branch.special] == ["far"]
 
@@ -188,8 +188,8 @@ def test_corrector_failure_ends_the_branch():
     )
     control = StepControl(smallest=1e-6)
     branch = continue_branch(problem, np.array([0.0, 0.0]), increasing=True, control=control)
-    assert branch.end_reason.startswith("step too small (")
-    assert branch.end_reason.endswith("the corrector fails with residual nan")
+    assert str(branch.end).startswith("step too small (")
+    assert str(branch.end).endswith("the corrector fails with residual nan")
     # The last step tried was below twice the smallest.
     assert 1 - 2 * np.sqrt(2) * 1e-6 < branch.points[-1, 1] <= 1
 
@@ -200,8 +200,8 @@ def test_a_corner_ends_the_branch():
         lambda x, p: x - np.maximum(p, 0), lambda x, p: 1.0, lambda x, p: np.where(p < 0, 0.0, -1.0)
     )
     branch = continue_branch(problem, np.array([0.0, -0.5]), increasing=True)
-    assert branch.end_reason.startswith("step too small (")
-    assert branch.end_reason.endswith("the tangent turns by more than 0.2 rad")
+    assert str(branch.end).startswith("step too small (")
+    assert str(branch.end).endswith("the tangent turns by more than 0.2 rad")
     assert branch.points[-1] == pytest.approx(np.zeros(2), abs=1e-7)
 
 
@@ -217,7 +217,7 @@ def test_a_terminal_event_without_a_zero_ends_the_branch_close_to_it():
         branch = continue_branch(
             LINE, np.array([0.0, 0.0]), increasing=True, events=[event], control=control
         )
-        assert branch.end_reason.startswith(f"{reason} (within ")
+        assert str(branch.end).startswith(f"{reason} (within ")
         # The last step tried was below twice the smallest.
         assert 0.3 - 2e-6 < branch.points[-1, 1] < 0.3
         assert branch.special == ()
@@ -237,7 +237,7 @@ def test_an_event_that_cannot_be_located_gives_way_to_the_end():
     branch = continue_branch(
         LINE, np.array([0.0, 0.0]), increasing=True, events=[jump(False), end], control=control
     )
-    assert branch.end_reason == "window"
+    assert str(branch.end) == "window"
     assert branch.points[-1] == pytest.approx(np.array([0.58, 0.29]), abs=EXACT)
 
 
@@ -264,7 +264,7 @@ def test_reversed_and_named():
     assert np.array_equal(back.points, branch.points[::-1])
     assert np.array_equal(back.tangents, -branch.tangents[::-1])
     assert [s.name for s in back.special] == ["parameter bound", "fold"]
-    assert (back.start_reason, back.end_reason) == ("end", "starting point")
+    assert (str(back.start), str(back.end)) == ("end", "starting point")
     assert back.arclength[-1] == pytest.approx(branch.arclength[-1], rel=1e-14)
     assert branch.named("nothing") == []
 
@@ -380,7 +380,7 @@ def test_restitution_map_as_a_problem(n, r):
     [found] = branch.named("period doubling")
     phase = float(exact_orbits.phase(n, r, doubling))
     assert found == pytest.approx(np.array([phase, n * np.pi, doubling]), abs=EXACT * scale)
-    assert (branch.start_reason, branch.end_reason) == ("window", "window")
+    assert (str(branch.start), str(branch.end)) == ("window", "window")
     assert branch.points[[0, -1], 2] == pytest.approx([top, top], abs=EXACT * scale)
     # Λ cos φ is the same all along.
     along = branch.points[:, 2] * np.cos(branch.points[:, 0])

@@ -2,7 +2,7 @@
 
 Plastic spheres keep ``r = (c/v)^¼`` of a speed v above the yield speed c, and
 all of a lower one (K. L. Johnson, Contact Mechanics, 1985, §11.5). What the
-interface of :mod:`bouncing_ball.orbits.interface` asks of a model is here, and
+interface of :mod:`bouncing_ball.orbits.model` asks of a model is here, and
 no more: a law, its orbits, their equations, and the model.
 
 An n-T orbit has ``z′_i = -nπ`` whatever the law, so that with v = nπ + Λ cos φ the
@@ -18,7 +18,8 @@ from bouncing_ball.contacts.batch import Batch
 from bouncing_ball.continuation.events import Event
 from bouncing_ball.motion.restitution import section_cycle, simulate
 from bouncing_ball.motion.sequence import ImpactSequence
-from bouncing_ball.orbits.interface import Absence, ImpactModel, Orbit, Side, check_index
+from bouncing_ball.orbits.model import Absence, ImpactModel, Side
+from bouncing_ball.orbits.orbit import Orbit, check_index
 from bouncing_ball.orbits.stability import period_doubling_function, saddle_node_function
 
 # Newton's method for v is quadratic: from a start that is a few times v to rounding.

@@ -19,11 +19,12 @@ from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.continuation.corrector import NewtonSettings, newton
 from bouncing_ball.continuation.events import vanishing
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.interface import OBSERVABLES, Route, Side
 from bouncing_ball.orbits.law_model import LawModel
+from bouncing_ball.orbits.model import Route, Side
+from bouncing_ball.orbits.orbit import OBSERVABLES
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 EPS = np.finfo(float).eps
 SOFT = SpringDamper.from_restitution(0.85, 4.0)

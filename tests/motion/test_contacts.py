@@ -12,7 +12,7 @@ from bouncing_ball.errors import ModelError
 from bouncing_ball.motion.contacts import contact_cycle, simulate
 from bouncing_ball.motion.history import history
 from bouncing_ball.motion.sequence import Status
-from bouncing_ball.orbits.limits import Side, orbit_at
+from bouncing_ball.orbits.spring_damper_limits import Side, orbit_at
 
 CASES = [
     # n, r, ϖ, Λ

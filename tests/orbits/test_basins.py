@@ -6,8 +6,8 @@ import pytest
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.orbits.basins import ELSEWHERE, PERMANENT, destinations, trap
-from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 SOFT = SpringDamperModel(SpringDamper.from_restitution(0.85, 2.0))
 

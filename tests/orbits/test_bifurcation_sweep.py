@@ -5,8 +5,8 @@ import pytest
 
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_model import SpringDamperModel
+from bouncing_ball.orbits.spring_damper_branch import branch_point
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import (
     period_doubling_function,
     saddle_node_function,

@@ -7,10 +7,11 @@ from bouncing_ball.contacts.damping import restitution_coefficient
 from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.motion.corrected_impacts import corrected_cycle
-from bouncing_ball.orbits import corrected_branch, limits, restitution_orbit, stability
-from bouncing_ball.orbits.closed_form import branch_point
+from bouncing_ball.orbits import corrected_branch, restitution_orbit, stability
+from bouncing_ball.orbits import spring_damper_limits as limits
 from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.interface import Side
+from bouncing_ball.orbits.model import Side
+from bouncing_ball.orbits.spring_damper_branch import branch_point
 
 RELEASES = list(Release)
 

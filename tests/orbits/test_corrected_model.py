@@ -10,9 +10,10 @@ import pytest
 from bouncing_ball.contacts.signature import Instant, LinearSignature, Signature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.interface import OBSERVABLES, Side
+from bouncing_ball.orbits.model import Side
+from bouncing_ball.orbits.orbit import OBSERVABLES
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 RELEASES = list(Release)
 COMPARED = (*OBSERVABLES[1:], "release_displacement", "bounce_height")

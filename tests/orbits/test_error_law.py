@@ -8,8 +8,8 @@ from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.orbits import limits, restitution_orbit
-from bouncing_ball.orbits.closed_form import branch_point
+from bouncing_ball.orbits import restitution_orbit
+from bouncing_ball.orbits import spring_damper_limits as limits
 from bouncing_ball.orbits.error_law import (
     STATED,
     FirstOrder,
@@ -19,6 +19,7 @@ from bouncing_ball.orbits.error_law import (
     scale,
     small_parameter,
 )
+from bouncing_ball.orbits.spring_damper_branch import branch_point
 
 RELEASES = list(Release)
 OF_ORBITS = ("max_height", "bounce_velocity", "phase", "apparent_restitution")

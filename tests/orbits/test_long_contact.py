@@ -7,7 +7,6 @@ from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError
-from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.long_contact import (
     End,
     joined,
@@ -16,6 +15,7 @@ from bouncing_ball.orbits.long_contact import (
     stable_window,
     stiff_limit,
 )
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 RATIOS = np.array([1.2, 2.0, 5.0, 10.0])
 

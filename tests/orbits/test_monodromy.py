@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
-from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
-from bouncing_ball.orbits.limits import orbit_at
+from bouncing_ball.orbits.spring_damper_branch import branch_point
+from bouncing_ball.orbits.spring_damper_limits import orbit_at
+from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.stability import trace_and_determinant
 
 

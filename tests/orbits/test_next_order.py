@@ -6,7 +6,7 @@ import pytest
 from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.orbits import corrected_branch
-from bouncing_ball.orbits.contact_model import SpringDamperModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 
 def constants(contact):

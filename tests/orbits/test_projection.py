@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
-from bouncing_ball.orbits.limits import saddle_node
 from bouncing_ball.orbits.projection import nearest_excess
+from bouncing_ball.orbits.spring_damper_branch import branch_point
+from bouncing_ball.orbits.spring_damper_limits import saddle_node
+from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 
 
 @pytest.mark.parametrize("release", list(Release))

@@ -13,9 +13,9 @@ import pytest
 from mpmath import mp, mpf
 
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.orbits import limits
-from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_model import SpringDamperModel
+from bouncing_ball.orbits import spring_damper_limits as limits
+from bouncing_ball.orbits.spring_damper_branch import branch_point
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 EPS = np.finfo(float).eps
 STEP = mpf(10) ** -20

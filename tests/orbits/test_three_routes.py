@@ -8,9 +8,9 @@ from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane
 from bouncing_ball.motion.contacts import contact_cycle
 from bouncing_ball.orbits import restitution_orbit as restitution
-from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
-from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
-from bouncing_ball.orbits.limits import Absence, Side, absence, orbit_at
+from bouncing_ball.orbits.spring_damper_limits import Absence, Side, absence, orbit_at
+from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.orbits.spring_damper_system import Parameter, SpringDamperSystem
 
 # For each of two rules and two sides.
 SIZES = [1_000, pytest.param(25_000, marks=pytest.mark.long)]
@@ -71,7 +71,7 @@ def test_newton_on_the_full_system_agrees(drawn):
     contact, _, _, _, every = drawn
     orbit = chosen(every, np.isfinite(every.contact_duration))
     omega = orbit.contact.frequency_ratio
-    system = OrbitSystem(
+    system = SpringDamperSystem(
         orbit.n, orbit.contact.damping_ratio, Parameter.AMPLITUDE, omega, contact.release
     )
     y = np.stack(

@@ -12,9 +12,9 @@ from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
-from bouncing_ball.orbits.contact_model import SpringDamperModel
-from bouncing_ball.orbits.limits import orbit_at
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_limits import orbit_at
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.studies.error_thresholds import (
     Quantity,
     ThresholdStatus,

@@ -6,7 +6,7 @@ import pytest
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.orbits.limits import orbit_at
+from bouncing_ball.orbits.spring_damper_limits import orbit_at
 from bouncing_ball.studies.frequency_sweeps import apparent_restitution, frequency_sweep, sweep
 
 SPAN = {"min": 1.0, "max": 1000.0, "samples": 7}

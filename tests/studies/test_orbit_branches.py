@@ -8,9 +8,9 @@ from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.continuation.branch import ContinuationError
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
-from bouncing_ball.orbits.limits import period_doubling, saddle_node
+from bouncing_ball.orbits.spring_damper_branch import branch_point
+from bouncing_ball.orbits.spring_damper_limits import period_doubling, saddle_node
+from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.studies.orbit_branches import (
     PERIOD_DOUBLING,
     SADDLE_NODE,
@@ -207,7 +207,7 @@ def test_a_contact_stiffer_than_the_start(continuation_settings):
 def test_both_ends_in_contact_with_each_other(continuation_settings):
     # ϖ = 0.6, n = 2: the branch lies between permanent contact at both ends.
     _, branch = branch_along_amplitude(2, 0.3, 0.6, 10.0, "displacement", continuation_settings)
-    reasons = (branch.start_reason, branch.end_reason)
+    reasons = (str(branch.start), str(branch.end))
     assert all(reason.startswith(("flight lost", "contact lost")) for reason in reasons)
 
 

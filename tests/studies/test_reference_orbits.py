@@ -3,7 +3,7 @@
 import numpy as np
 
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.orbits.contact_model import SpringDamperModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.studies.reference_orbits import reference_orbits
 
 GIVEN = {"frequency_ratio": {"min": 1.0, "max": 1e4, "samples": 40}, "seed": 31}

@@ -6,8 +6,8 @@ import pytest
 from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
 from bouncing_ball.contacts.oscillator import impulse_response
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.limits import saddle_node
+from bouncing_ball.orbits.spring_damper_branch import branch_point
+from bouncing_ball.orbits.spring_damper_limits import saddle_node
 from bouncing_ball.studies.release_rules import release_rules
 
 PARAMETERS = {

@@ -14,10 +14,10 @@ from numpy.typing import ArrayLike
 from bouncing_ball.atlas.plan import Nodes
 from bouncing_ball.contacts.signature import Instant, Signature
 from bouncing_ball.orbits import corrected_branch, error_law
-from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.corrected_orbit import CorrectedOrbit
-from bouncing_ball.orbits.interface import Orbit
+from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.studies.error_thresholds import Quantity
 from bouncing_ball.studies.model_errors import SIMPLE as MODELS
 
@@ -80,7 +80,7 @@ def orbit_errors(orbit: SpringDamperOrbit, one: Instant, frequency_ratio: ArrayL
     --------
     >>> from bouncing_ball.contacts.signature import LinearSignature
     >>> from bouncing_ball.contacts.spring_damper import SpringDamper
-    >>> from bouncing_ball.orbits.limits import orbit_at
+    >>> from bouncing_ball.orbits.spring_damper_limits import orbit_at
     >>> one = LinearSignature(SpringDamper(np.ones(1), 0.1))()
     >>> orbit = orbit_at(SpringDamper(np.array([100.0]), 0.1), 1, 1.0)
     >>> orbit_errors(orbit, one, 100.0).round(4)[:, 0].tolist()

@@ -4,7 +4,7 @@ As in :mod:`bouncing_ball.atlas.walk` the walk comes down from the stiffest cont
 t = ϖε, almost a constant along ϖ. The saddle-node is the zero of ``½ dΛ²/dε``, the period
 doubling that of ``1 + tr + det``, both almost straight along ε: some steps of
 the secant method from the extrapolated t close them. Where these do not converge
-:mod:`bouncing_ball.orbits.limits` looks for the bifurcation.
+:mod:`bouncing_ball.orbits.spring_damper_limits` looks for the bifurcation.
 """
 
 from collections.abc import Callable, Iterator
@@ -14,11 +14,12 @@ import numpy as np
 from bouncing_ball.atlas.plan import Nodes
 from bouncing_ball.atlas.walk import extrapolated, stiff_start
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.orbits import limits, restitution_orbit
-from bouncing_ball.orbits.closed_form import BranchPoint, branch_point
-from bouncing_ball.orbits.contact_model import SpringDamperModel
+from bouncing_ball.orbits import restitution_orbit
+from bouncing_ball.orbits import spring_damper_limits as limits
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_branch import BranchPoint, branch_point
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import period_doubling_function
 
 _SECANTS = 6

@@ -1,6 +1,6 @@
 r"""Orbits at given Λ along ϖ, by walking on the branch and not by root finding.
 
-On the branch of :mod:`bouncing_ball.orbits.closed_form` the product t = ϖε is almost
+On the branch of :mod:`bouncing_ball.orbits.spring_damper_branch` the product t = ϖε is almost
 constant along ϖ, and (X, Y) almost a straight line along ε. So the walk comes down
 from the stiffest contact. There the load a = 1 - Y alone delays the release, by
 ``(1 + r) a/(r v ϖ²)`` for both rules (:mod:`bouncing_ball.contacts.signature`), with
@@ -18,7 +18,7 @@ the smaller one is that of the stable side. Two evaluations of the branch for ea
 orbit, where a bracketing root finder takes hundreds. What the walk gives is an orbit
 of the closed form in any case; only its Λ is not exactly that asked for, and the
 difference is known. Where it exceeds :data:`REACHED`, the orbit is looked for by
-:func:`bouncing_ball.orbits.limits.orbit_at`, whose word is the last.
+:func:`bouncing_ball.orbits.spring_damper_limits.orbit_at`, whose word is the last.
 """
 
 from collections.abc import Iterator
@@ -29,9 +29,10 @@ import numpy as np
 
 from bouncing_ball.atlas.plan import Nodes
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.orbits import limits, restitution_orbit
-from bouncing_ball.orbits.closed_form import BranchPoint, branch_point
-from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
+from bouncing_ball.orbits import restitution_orbit
+from bouncing_ball.orbits import spring_damper_limits as limits
+from bouncing_ball.orbits.spring_damper_branch import BranchPoint, branch_point
+from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.stability import is_stable
 
 REACHED = 1e-6

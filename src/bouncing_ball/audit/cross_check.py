@@ -19,7 +19,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.audit import published
-from bouncing_ball.audit.published import BIFURCATIONS, Shown, ShownLimits
+from bouncing_ball.audit.published import Shown, ShownLimits
 from bouncing_ball.continuation.branch import ContinuationError, continue_both_ways
 from bouncing_ball.continuation.corrector import Condition, NewtonSettings, newton, plane
 from bouncing_ball.continuation.events import LocationError, parameter_bound, vanishing
@@ -27,9 +27,10 @@ from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.motion.angles import reduce_angle
-from bouncing_ball.orbits.interface import ImpactModel, Orbit, Route, System
-from bouncing_ball.orbits.stability import period_doubling_function, saddle_node_function
-from bouncing_ball.studies.orbit_branches import SADDLE_NODE, controls, followed_from_stiff
+from bouncing_ball.orbits.model import ImpactModel, Route, System
+from bouncing_ball.orbits.orbit import Orbit
+from bouncing_ball.orbits.stability import Bifurcation
+from bouncing_ball.studies.orbit_branches import controls, followed_from_stiff
 
 # Periods over which the simulation must hold a stable orbit.
 HELD_PERIODS = 50
@@ -59,7 +60,6 @@ _STARTS = (1e-3, 1e-5, 1e-7)
 _UNSTABLE = -0.05
 # Samples of an orbit's path for each half period of the contact and the table.
 _SAMPLES = 64
-_TESTS = dict(zip(BIFURCATIONS, (saddle_node_function, period_doubling_function), strict=True))
 
 
 class CrossCheckError(ValueError):
@@ -267,11 +267,11 @@ def continuation_against_formula(shown: Shown) -> Disagreements:
 
 
 def _test_function(kind: str, orbit: Orbit) -> np.ndarray:
-    return _TESTS[kind](*orbit.trace_and_determinant())
+    return Bifurcation(kind).test(*orbit.trace_and_determinant())
 
 
 def _limit_of(model: ImpactModel, kind: str, n) -> Orbit:
-    return model.saddle_node(n) if kind == SADDLE_NODE else model.period_doubling(n)
+    return model.saddle_node(n) if kind == Bifurcation.SADDLE_NODE else model.period_doubling(n)
 
 
 def _limits_off(limits: ShownLimits, orbit: Orbit) -> np.ndarray:
@@ -435,7 +435,7 @@ def _simulated(shown: Shown) -> Iterator[Disagreements]:
     shown = shown.chosen(compared)
     yield simulation_closes(shown)
     yield simulation_holds(shown.chosen(shown.orbit.is_stable()))
-    tests = [_test_function(kind, shown.orbit) for kind in BIFURCATIONS]
+    tests = [_test_function(kind, shown.orbit) for kind in Bifurcation]
     yield simulation_leaves(shown.chosen(np.min(tests, axis=0) < _UNSTABLE))
 
 

@@ -17,10 +17,11 @@ import xarray as xr
 from bouncing_ball.audit.formulas import as_printed as printed
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.orbits import restitution_orbit
+from bouncing_ball.orbits.stability import Bifurcation
 
 Datasets = Mapping[str, xr.Dataset]
 Found = dict[str, xr.DataArray]
-BOUNDS = ("saddle-node", "period doubling")
+BOUNDS = tuple(Bifurcation)
 # A logarithmic grid meets its round numbers, and a sample a bifurcation, but for rounding.
 _GRID = 1e-9
 _EMPTY = np.empty(0)

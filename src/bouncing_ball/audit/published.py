@@ -12,12 +12,11 @@ import xarray as xr
 
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.orbits.contact_model import SpringDamperModel
-from bouncing_ball.orbits.interface import ImpactModel, Orbit, Route
+from bouncing_ball.orbits.model import ImpactModel, Route
+from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.studies.orbit_branches import PERIOD_DOUBLING, SADDLE_NODE
-
-BIFURCATIONS = (SADDLE_NODE, PERIOD_DOUBLING)
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.orbits.stability import Bifurcation
 
 
 class Shown(NamedTuple):
@@ -135,10 +134,10 @@ def _located(data: xr.Dataset) -> Iterator[ShownLimits]:
     """Bifurcations that a continuation located: along branches, or in Table 1."""
     if "special_kind" in data:
         kinds, amplitudes = data.special_kind, data.special_amplitude
-        rows = {kind: amplitudes.where(kinds == kind) for kind in BIFURCATIONS}
+        rows = {kind: amplitudes.where(kinds == kind) for kind in Bifurcation}
         families = xr.DataArray(data.attrs["n"])
     else:
-        rows = {kind: data.computed.sel(bound=kind) for kind in BIFURCATIONS}
+        rows = {kind: data.computed.sel(bound=kind) for kind in Bifurcation}
         families = data.n
     for kind, amplitudes in rows.items():
         place = data[["special_phase", "special_contact_duration"]]
@@ -160,7 +159,7 @@ def _located(data: xr.Dataset) -> Iterator[ShownLimits]:
 def _along_frequency_ratio(data: xr.Dataset) -> Iterator[ShownLimits]:
     """Bifurcations of the formula, under each rule that ends a contact."""
     for rule in data.release.values:
-        for kind in BIFURCATIONS:
+        for kind in Bifurcation:
             shown = data.bifurcation_amplitude.sel(release=rule, bound=kind)
             lam, omega, n = _row(shown, data.frequency_ratio, data.n)
             contact = SpringDamper(omega, float(data.damping_ratio), Release(str(rule)))
@@ -176,7 +175,7 @@ def _of_restitution(data: xr.Dataset, families: list[int]) -> Iterator[ShownLimi
         return
     n = np.array(families)
     model = RestitutionModel(np.full(len(n), r))
-    for kind, name in zip(BIFURCATIONS, ("saddle_node", "period_doubling"), strict=True):
+    for kind, name in zip(Bifurcation, ("saddle_node", "period_doubling"), strict=True):
         orbit = getattr(model, name)(n)
         lam, phase = orbit.amplitude, np.broadcast_to(orbit.phase, n.shape)
         if f"{name}_amplitude" in data:

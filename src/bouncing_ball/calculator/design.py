@@ -10,7 +10,7 @@ from bouncing_ball.calculator.needed import Needed
 from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.orbits.contact_model import SpringDamperModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 STEPS = 50
 """Steps in one contact."""

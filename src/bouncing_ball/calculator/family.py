@@ -10,7 +10,8 @@ from bouncing_ball.calculator.case import Case
 from bouncing_ball.contacts.signature import Instant
 from bouncing_ball.contacts.spring_damper import SpringDamper, contact_force
 from bouncing_ball.orbits import error_law
-from bouncing_ball.orbits.interface import ImpactModel, Orbit
+from bouncing_ball.orbits.model import ImpactModel
+from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.studies.error_thresholds import Quantity, values
 

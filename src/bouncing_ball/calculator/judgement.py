@@ -4,14 +4,15 @@ from typing import NamedTuple
 
 from bouncing_ball.calculator.family import Family
 from bouncing_ball.calculator.needed import Needed
+from bouncing_ball.orbits.stability import Bifurcation
 
 QUANTITIES = {
     "max_height": "greatest height",
     "bounce_velocity": "bouncing-off velocity",
     "phase": "phase of impact",
     "apparent_restitution": "apparent restitution",
-    "saddle_node": "saddle-node",
-    "period_doubling": "period doubling",
+    "saddle_node": str(Bifurcation.SADDLE_NODE),
+    "period_doubling": str(Bifurcation.PERIOD_DOUBLING),
     "permanent_contact": "threshold of permanent contact",
 }
 """The quantities as a sentence calls them."""

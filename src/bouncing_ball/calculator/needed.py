@@ -8,7 +8,7 @@ from bouncing_ball.calculator.family import first_order, permanent_law
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.orbits.interface import OBSERVABLES
+from bouncing_ball.orbits.orbit import OBSERVABLES
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.studies.error_thresholds import Quantity
 from bouncing_ball.studies.model_errors import search

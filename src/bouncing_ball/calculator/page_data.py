@@ -9,7 +9,7 @@ from bouncing_ball.calculator.design import Design
 from bouncing_ball.calculator.needed import RATIOS
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.orbits.interface import Orbit
+from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.studies.error_thresholds import ThresholdStatus
 from bouncing_ball.studies.model_errors import SIMPLE, search
 

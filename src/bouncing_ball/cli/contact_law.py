@@ -12,9 +12,9 @@ from bouncing_ball.contacts.laws.contact_law import ContactLaw
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import ModelError
 from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.interface import ImpactModel, Side
 from bouncing_ball.orbits.law_calls import law_at_orbit, rigid_speed
 from bouncing_ball.orbits.law_model import LawModel, restitution_speed
+from bouncing_ball.orbits.model import ImpactModel, Side
 
 
 def options(kind: type[ContactLaw]) -> list[str]:

@@ -76,6 +76,7 @@ def _needs(value: Any, path: tuple = ()) -> Iterator[tuple[tuple, float, list[in
 def _check_existence(config: Mapping[str, Any]) -> None:
     # Imported here: numpy is not needed to refuse a mistyped key.
     from bouncing_ball.orbits.restitution_orbit import period_doubling, saddle_node
+    from bouncing_ball.orbits.stability import Bifurcation
 
     for path, value, families, r in _needs(config):
         key = dotted(path)
@@ -85,7 +86,7 @@ def _check_existence(config: Mapping[str, Any]) -> None:
             lowest = 1.1 * float(period_doubling(n, r))
             what = "period doubling, with a tenth to spare,"
         else:
-            lowest, what = float(saddle_node(n, r)), "saddle-node"
+            lowest, what = float(saddle_node(n, r)), Bifurcation.SADDLE_NODE
         if value < lowest:
             raise ConfigurationError(
                 f"{key} = {value} must be at least {lowest:.6g}, the {what} of the "
@@ -105,7 +106,7 @@ def check_orbits(config: Mapping[str, Any]) -> None:
     """
     # Imported here: to refuse a mistyped key needs no scipy.
     from bouncing_ball.contacts.spring_damper import SpringDamper
-    from bouncing_ball.orbits.contact_model import SpringDamperModel
+    from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
     for stage in STAGES.values():
         if not stage.one_motion:

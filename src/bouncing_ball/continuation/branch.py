@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import Enum, auto
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +17,33 @@ class ContinuationError(RuntimeError):
     """No point to start from."""
 
 
+class Ending(Enum):
+    """How a branch can end."""
+
+    START = auto()
+    """Where it was started."""
+    EVENT = auto()
+    """At a terminal event, or where one comes so close that it cannot be located."""
+    STEP = auto()
+    """Where no step is short enough."""
+    POINTS = auto()
+    """Unfinished, after as many points as were allowed."""
+
+
+@dataclass(frozen=True)
+class End:
+    """An end of a branch: how, and a sentence that says why, as which it prints."""
+
+    kind: Ending
+    sentence: str
+
+    def __str__(self) -> str:
+        return self.sentence
+
+
+STARTED = End(Ending.START, "starting point")
+
+
 @dataclass(frozen=True)
 class Branch:
     """Points of a solution branch in order of arclength.
@@ -26,15 +54,15 @@ class Branch:
         y = (x, p) and the unit tangents.
     special : tuple of SpecialPoint
         Located events, in order.
-    start_reason, end_reason : str
-        Why the branch ends where it does, at either end.
+    start, end : End
+        Why the branch ends where it does, at either side.
     """
 
     points: np.ndarray
     tangents: np.ndarray
     special: tuple[SpecialPoint, ...]
-    start_reason: str
-    end_reason: str
+    start: End
+    end: End
 
     @property
     def arclength(self) -> np.ndarray:
@@ -48,8 +76,8 @@ class Branch:
             self.points[::-1],
             -self.tangents[::-1],
             self.special[::-1],
-            self.end_reason,
-            self.start_reason,
+            self.end,
+            self.start,
         )
 
     def named(self, name: str) -> list[np.ndarray]:
@@ -90,14 +118,14 @@ class _Step(NamedTuple):
 
 
 class _Rejected(Exception):
-    """A step that must be shorter; ``ending`` is why the branch ends if it cannot be.
+    """A step that must be shorter; ``end`` is why the branch ends if it cannot be.
 
-    Without an ending the cause is an error that no shorter step has cured.
+    With a cause, an error that no shorter step has cured, that is raised instead.
     """
 
-    def __init__(self, ending: str, cause: Exception | None = None):
-        super().__init__(ending)
-        self.ending, self.cause = ending, cause
+    def __init__(self, kind: Ending, sentence: str, cause: Exception | None = None):
+        super().__init__(sentence)
+        self.end, self.cause = End(kind, sentence), cause
 
 
 @dataclass(frozen=True)
@@ -125,12 +153,14 @@ class _Walk:
         found = newton(self.problem, predicted, plane(direction, predicted), self.settings)
         small = f"step too small ({length:.1e})"
         if not found.converged:
-            raise _Rejected(f"{small}: the corrector fails with residual {found.residual:.1e}")
+            failed = f"{small}: the corrector fails with residual {found.residual:.1e}"
+            raise _Rejected(Ending.STEP, failed)
         turned = tangent(self.problem.jacobian(found.point), direction)
         angle = float(np.arccos(np.clip(turned @ direction, -1.0, 1.0)))
         if not angle <= self.control.max_angle:
             limit = self.control.max_angle
-            raise _Rejected(f"{small}: the tangent turns by more than {limit} rad")
+            turns = f"{small}: the tangent turns by more than {limit} rad"
+            raise _Rejected(Ending.STEP, turns)
         after = self.values(found.point)
         located = self._locate(y, found.point, values, after, length)
         located.sort(key=lambda pair: float((pair[1].point - y) @ direction))
@@ -149,7 +179,7 @@ class _Walk:
             # The step may have left the domain in which the event makes sense.
             event, error = failure
             ending = f"{event.reason or event.name} (within {length:.0e})"
-            raise _Rejected(ending, None if event.terminal else error)
+            raise _Rejected(Ending.EVENT, ending, None if event.terminal else error)
         return located
 
 
@@ -181,7 +211,7 @@ def continue_branch(
     Returns
     -------
     Branch
-        With the reason why it ended.
+        With the reason why it ends.
 
     Raises
     ------
@@ -196,7 +226,7 @@ def continue_branch(
     values = walk.values(y)
     _require_inside(y, events, values)
     points, tangents, special = [y], [direction], []
-    length, reason = control.initial, f"reached the limit of {max_points} points"
+    length, end = control.initial, End(Ending.POINTS, f"reached the limit of {max_points} points")
     while len(points) < max_points:
         try:
             step = walk.step(y, direction, values, length)
@@ -207,22 +237,22 @@ def continue_branch(
                 continue
             if rejected.cause:
                 raise rejected.cause from None
-            reason = rejected.ending
+            end = rejected.end
             break
-        end = next((k for k, (event, _) in enumerate(step.located) if event.terminal), None)
-        passed = step.located if end is None else step.located[: end + 1]
+        last = next((k for k, (event, _) in enumerate(step.located) if event.terminal), None)
+        passed = step.located if last is None else step.located[: last + 1]
         special += [point for _, point in passed]
-        if end is not None:
-            event, last = passed[-1]
-            points.append(last.point)
-            tangents.append(tangent(problem.jacobian(last.point), direction))
-            reason = event.reason or event.name
+        if last is not None:
+            event, located = passed[-1]
+            points.append(located.point)
+            tangents.append(tangent(problem.jacobian(located.point), direction))
+            end = End(Ending.EVENT, event.reason or event.name)
             break
         y, direction, values = step.point, step.direction, step.values
         points.append(y)
         tangents.append(direction)
         length = control.after_success(length, step.iterations, step.angle)
-    return Branch(np.array(points), np.array(tangents), tuple(special), "starting point", reason)
+    return Branch(np.array(points), np.array(tangents), tuple(special), STARTED, end)
 
 
 def _require_inside(y: np.ndarray, events: Sequence[Event], values: list[float]) -> None:
@@ -247,8 +277,8 @@ def continue_both_ways(problem: Problem, start: np.ndarray, **options) -> Branch
         np.concatenate([back.points, ahead.points[1:]]),
         np.concatenate([back.tangents, ahead.tangents[1:]]),
         back.special + ahead.special,
-        back.start_reason,
-        ahead.end_reason,
+        back.start,
+        ahead.end,
     )
 
 
@@ -275,7 +305,7 @@ def resample(
     """
     arc = branch.arclength
     if len(arc) < 2:
-        raise ContinuationError(f"a branch of one point has no length: {branch.end_reason}")
+        raise ContinuationError(f"a branch of one point has no length: {branch.end}")
     wanted = np.linspace(0.0, arc[-1], count)
     for _ in range(_EQUALISING_ROUNDS):
         points = _interpolated(problem, branch, arc, wanted, settings)

@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from bouncing_ball.motion.angles import reduce_angle
-from bouncing_ball.orbits.interface import ImpactModel, Orbit
+from bouncing_ball.orbits.model import ImpactModel
+from bouncing_ball.orbits.orbit import Orbit
 
 PERMANENT = -1
 """Destination of a ball that stays on the table for ever."""

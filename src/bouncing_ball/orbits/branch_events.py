@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from bouncing_ball.continuation.events import Event
-from bouncing_ball.orbits.stability import period_doubling_function, saddle_node_function
+from bouncing_ball.orbits.stability import Bifurcation
 
 # Impact velocity and flight time vanish together where an orbit merges with
 # permanent contact. The equations are singular there, and rounding enters
@@ -11,12 +11,13 @@ from bouncing_ball.orbits.stability import period_doubling_function, saddle_node
 _MARGIN = 1e-4
 
 
-def bifurcations(trace_and_determinant: Callable) -> tuple[Event, Event]:
+def bifurcations(trace_and_determinant: Callable) -> tuple[Event, ...]:
     """Saddle-node and period doubling, from the monodromy's trace and determinant at y."""
-    return (
-        Event("saddle-node", lambda y: saddle_node_function(*trace_and_determinant(y))),
-        Event("period doubling", lambda y: period_doubling_function(*trace_and_determinant(y))),
-    )
+
+    def event(kind: Bifurcation) -> Event:
+        return Event(kind, lambda y: kind.test(*trace_and_determinant(y)))
+
+    return tuple(event(kind) for kind in Bifurcation)
 
 
 def branch_events(orbit: Callable, trace_and_determinant: Callable) -> tuple[Event, ...]:

@@ -15,9 +15,10 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError
 from bouncing_ball.motion.sequence import ImpactSequence
-from bouncing_ball.orbits.contact_model import SpringDamperModel
-from bouncing_ball.orbits.interface import ImpactModel, Orbit, Side
+from bouncing_ball.orbits.model import ImpactModel, Side
+from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 
 class Limits(NamedTuple):

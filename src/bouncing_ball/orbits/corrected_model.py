@@ -15,7 +15,8 @@ from bouncing_ball.motion.sequence import Cycle, ImpactSequence
 from bouncing_ball.orbits import corrected_branch as formulas
 from bouncing_ball.orbits.corrected_orbit import CorrectedOrbit
 from bouncing_ball.orbits.corrected_system import CorrectedSystem
-from bouncing_ball.orbits.interface import Absence, ImpactModel, Orbit, Side, check_index
+from bouncing_ball.orbits.model import Absence, ImpactModel, Side
+from bouncing_ball.orbits.orbit import Orbit, check_index
 
 # Rounds of tangents: Newton's method for an orbit; each gains a digit or more for a
 # bifurcation, and for the nearest point.

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.laws.contact_law import ContactLaw
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.orbits.interface import Side
 from bouncing_ball.orbits.law_model import LawModel
+from bouncing_ball.orbits.model import Side
 
 # Law and orbit in turn: the speed hardly depends on a law with the same r and D, and the
 # secant through two rounds leaves little of that.

@@ -27,10 +27,11 @@ from bouncing_ball.errors import ModelError
 from bouncing_ball.motion.law_impacts import law_cycle, simulate
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence
 from bouncing_ball.orbits import corrected_branch as corrected
-from bouncing_ball.orbits.interface import Absence, ImpactModel, Orbit, Route, Side, check_index
 from bouncing_ball.orbits.law_orbit import LawOrbit
 from bouncing_ball.orbits.law_system import LawSystem
-from bouncing_ball.orbits.stability import period_doubling_function, saddle_node_function
+from bouncing_ball.orbits.model import Absence, ImpactModel, Route, Side
+from bouncing_ball.orbits.orbit import Orbit, check_index
+from bouncing_ball.orbits.stability import Bifurcation
 
 # Speed of the orbit and its restitution depend on each other; each round gains a
 # digit or two, and a start needs three.
@@ -49,7 +50,8 @@ _FARTHER = 4.0
 _LOWEST = 1e-4
 # Farther above the fold than this there are steps in Λ, of at most so much in ln Λ.
 _WALK, _STRIDE = 2.0, 0.2
-_FOLD, _FLIP, _HERE = "saddle-node", "period doubling", "this amplitude"
+_FOLD, _FLIP = Bifurcation
+_HERE = "this amplitude"
 
 
 def restitution_speed(n: ArrayLike, law: ContactLaw) -> tuple[np.ndarray, Instant]:
@@ -184,7 +186,7 @@ class LawModel(ImpactModel):
     def _is_on(self, side: Side, n, law: ContactLaw, y: np.ndarray) -> np.ndarray:
         """Whether points lie on a side of the fold."""
         orbit = LawSystem(n, law).orbit(y)
-        test = saddle_node_function(*orbit.trace_and_determinant())
+        test = _FOLD.test(*orbit.trace_and_determinant())
         return test > 0 if side == Side.STABLE else test < 0
 
     def _on_branches(self, n, law: ContactLaw, lam, side: Side) -> np.ndarray:
@@ -342,10 +344,9 @@ def _located(kind: type[ContactLaw], values: tuple, n: float, name: str, guess: 
     """The bifurcation of a single law next to a guess; or else the first on the branch."""
     law = kind(*values)
     system = LawSystem(int(n), law)
-    test = saddle_node_function if name == _FOLD else period_doubling_function
 
     def function(y):
-        return test(*system.orbit(y).trace_and_determinant())
+        return Bifurcation(name).test(*system.orbit(y).trace_and_determinant())
 
     if np.all(np.isfinite(guess)):
         settings = NewtonSettings(max_iterations=_ITERATIONS)

@@ -15,7 +15,7 @@ from bouncing_ball.contacts.laws.contact_law import ContactLaw
 from bouncing_ball.motion.law_impacts import law_cycle
 from bouncing_ball.motion.sequence import Cycle
 from bouncing_ball.orbits.highest import highest
-from bouncing_ball.orbits.interface import Orbit
+from bouncing_ball.orbits.orbit import Orbit
 
 
 class LawOrbit(Orbit):

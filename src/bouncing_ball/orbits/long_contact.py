@@ -28,9 +28,10 @@ from scipy.optimize import brentq, minimize_scalar
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError
 from bouncing_ball.motion.contacts import simulate
-from bouncing_ball.orbits import limits
-from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
+from bouncing_ball.orbits import spring_damper_limits as limits
+from bouncing_ball.orbits.spring_damper_branch import branch_point
+from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.orbits.stability import Bifurcation
 
 # Flights from which the branch is followed, over the contact's own time unit or a
 # tenth, short enough for weak damping and long enough for rounding at ϖ = 200; and to
@@ -57,8 +58,8 @@ _SHORTER = 1e-6
 class End(StrEnum):
     """How a window of stable orbits ends."""
 
-    SADDLE_NODE = "saddle-node"
-    PERIOD_DOUBLING = "period doubling"
+    SADDLE_NODE = Bifurcation.SADDLE_NODE
+    PERIOD_DOUBLING = Bifurcation.PERIOD_DOUBLING
     CONTACT = "grazing in contact"
     """The contact would open on the way."""
     FLIGHT = "grazing in flight"

@@ -8,8 +8,8 @@ as fast; elsewhere both may nearly stand still. The nearest point in the space
 
 import numpy as np
 
-from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
+from bouncing_ball.orbits.spring_damper_branch import branch_point
+from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 
 # Gauss-Newton from a start that is right to rounding of D converges at once.
 _ITERATIONS = 4

@@ -13,7 +13,8 @@ from bouncing_ball.errors import ModelError
 from bouncing_ball.motion.restitution import section_cycle, simulate
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence
 from bouncing_ball.orbits import restitution_orbit as formulas
-from bouncing_ball.orbits.interface import Absence, ImpactModel, Orbit, Side
+from bouncing_ball.orbits.model import Absence, ImpactModel, Side
+from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_orbit import RestitutionOrbit
 from bouncing_ball.orbits.restitution_system import RestitutionSystem
 

@@ -25,7 +25,7 @@ from bouncing_ball.contacts.restitution_map import bounce, landing_gap
 from bouncing_ball.errors import NoOrbitError, require
 from bouncing_ball.motion.restitution import section_cycle
 from bouncing_ball.motion.sequence import Cycle
-from bouncing_ball.orbits.interface import Orbit, check_index
+from bouncing_ball.orbits.orbit import Orbit, check_index
 
 
 class ImpactMap(StrEnum):

@@ -5,6 +5,8 @@ It loses stability at a saddle-node, where a multiplier is +1 and
 ``1 - tr + det = 0``, or at a period doubling, -1 and ``1 + tr + det = 0``.
 """
 
+from enum import StrEnum
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -52,6 +54,25 @@ def saddle_node_function(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray
 def period_doubling_function(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
     """``1 + tr + det``: zero at a period doubling, positive on the stable side."""
     return 1 + np.asarray(trace) + np.asarray(determinant)
+
+
+class Bifurcation(StrEnum):
+    """The two losses of stability of an orbit along its branch."""
+
+    SADDLE_NODE = "saddle-node"
+    PERIOD_DOUBLING = "period doubling"
+
+    def test(self, trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
+        """The function of the monodromy that is zero there, and positive on the stable side.
+
+        Examples
+        --------
+        >>> [float(kind.test(1.5, 0.5)) for kind in Bifurcation]
+        [0.0, 3.0]
+        """
+        if self is Bifurcation.SADDLE_NODE:
+            return saddle_node_function(trace, determinant)
+        return period_doubling_function(trace, determinant)
 
 
 def is_stable(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bouncing_ball.orbits.interface import Orbit
+from bouncing_ball.orbits.orbit import Orbit
 
 OBSERVED = (
     "phase",

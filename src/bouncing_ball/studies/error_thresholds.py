@@ -18,9 +18,10 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import describe, described
-from bouncing_ball.orbits.contact_model import SpringDamperModel
-from bouncing_ball.orbits.interface import OBSERVABLES, ImpactModel
+from bouncing_ball.orbits.model import ImpactModel
+from bouncing_ball.orbits.orbit import OBSERVABLES
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.studies.last_crossing import last_crossing
 from bouncing_ball.studies.parameters import grid
 from bouncing_ball.studies.permanent_contact_curve import permanent_contact

@@ -9,8 +9,8 @@ import xarray as xr
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
-from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
-from bouncing_ball.orbits.limits import orbit_at
+from bouncing_ball.orbits.spring_damper_limits import orbit_at
+from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.studies.columns import OBSERVED, columns
 from bouncing_ball.studies.parameters import grid
 

@@ -11,9 +11,9 @@ from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.motion.regularity import period
 from bouncing_ball.orbits.basins import ELSEWHERE, PERMANENT, Destinations, destinations
-from bouncing_ball.orbits.contact_model import SpringDamperModel
-from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.long_contact import joining_ratio, stable_window, stiff_limit
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.studies.parameters import grid
 
 # Contacts between which the families part, for all r from 0.3 on.

@@ -16,10 +16,12 @@ from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.orbits import error_law
-from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.interface import OBSERVABLES, Side
+from bouncing_ball.orbits.model import Side
+from bouncing_ball.orbits.orbit import OBSERVABLES
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.studies.error_thresholds import (
     Quantity,
     ThresholdStatus,
@@ -344,7 +346,7 @@ def domains(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         coords={
             "model": list(names),
             "point": np.arange(2 * len(share) + 1),
-            "bound": ["saddle-node", "period doubling"],
+            "bound": list(Bifurcation),
         },
     )
 

@@ -12,8 +12,11 @@ import xarray as xr
 
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.continuation.branch import (
+    STARTED,
     Branch,
     ContinuationError,
+    End,
+    Ending,
     continue_both_ways,
     continue_branch,
     resample,
@@ -25,16 +28,17 @@ from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
-from bouncing_ball.orbits.contact_model import SpringDamperModel
-from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
 from bouncing_ball.orbits.grazing import grazing_points
-from bouncing_ball.orbits.interface import Orbit
+from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.orbits.spring_damper_system import Parameter, SpringDamperSystem
+from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.studies.columns import OBSERVED, columns
 
-SADDLE_NODE, PERIOD_DOUBLING = "saddle-node", "period doubling"
+SADDLE_NODE, PERIOD_DOUBLING = Bifurcation
 GRAZING = "grazing"
-_REACHED = "target reached"
+_REACHED = End(Ending.EVENT, "target reached")
 
 
 def controls(settings: Mapping[str, Any]) -> tuple[StepControl, NewtonSettings]:
@@ -67,14 +71,14 @@ def followed_from_stiff(
     ContinuationError
         If there is no orbit near that of the restitution model.
     """
-    towards = OrbitSystem(
+    towards = SpringDamperSystem(
         n, contact.damping_ratio, Parameter.LOG_FREQUENCY_RATIO, amplitude, contact.release
     )
     y = solve_at(towards, towards.guess(amplitude, stiff), newton)
     if contact.frequency_ratio >= stiff:
         along = null_vector(towards.jacobian(y))
-        return Branch(y[np.newaxis], along[np.newaxis], (), "starting point", _REACHED)
-    target = parameter_bound(np.log(float(contact.frequency_ratio)), False, _REACHED)
+        return Branch(y[np.newaxis], along[np.newaxis], (), STARTED, _REACHED)
+    target = parameter_bound(np.log(float(contact.frequency_ratio)), False, str(_REACHED))
     determinant = fold(towards).function
     side = np.sign(determinant(y))
     turn = Event(
@@ -97,10 +101,10 @@ def _on_the_way(
     omega = float(contact.frequency_ratio)
     stiff = max(settings["stiff_frequency_ratio"], omega)
     way = followed_from_stiff(n, contact, amplitude, stiff, control, newton)
-    if way.end_reason != _REACHED:
+    if way.end != _REACHED:
         raise ContinuationError(
             f"{n}-T orbit at Λ = {amplitude:.4g} followed from ϖ = {stiff:g} ends at "
-            f"ϖ = {np.exp(way.points[-1, -1]):.4g}, before {omega:g}: {way.end_reason}"
+            f"ϖ = {np.exp(way.points[-1, -1]):.4g}, before {omega:g}: {way.end}"
         )
     return way.points[-1, :-1]
 
@@ -146,7 +150,7 @@ def branch_along_amplitude(
     amplitude_max: float,
     release: str,
     settings: Mapping[str, Any],
-) -> tuple[OrbitSystem, Branch]:
+) -> tuple[SpringDamperSystem, Branch]:
     """The whole n-T branch up to Λ = ``amplitude_max``, with its special points.
 
     Raises
@@ -170,11 +174,11 @@ def branch_along_amplitude(
         control=control,
         settings=newton,
     )
-    for reason in (branch.start_reason, branch.end_reason):
-        if reason.startswith("reached the limit"):
+    for end in (branch.start, branch.end):
+        if end.kind is Ending.POINTS:
             raise ContinuationError(
                 f"the branch of {n}-T orbits at ϖ = {frequency_ratio:g} is not "
-                f"followed to its end: {reason}"
+                f"followed to its end: {end}"
             )
     return system, branch
 
@@ -196,7 +200,7 @@ def first_limits(branch: Branch) -> dict[str, np.ndarray]:
     doublings = [k for k, name in enumerate(names) if name == PERIOD_DOUBLING and k > node]
     if not doublings:
         raise NoOrbitError(
-            f"the branch from {branch.start_reason!r} to {branch.end_reason!r} has no "
+            f"the branch from {str(branch.start)!r} to {str(branch.end)!r} has no "
             f"{PERIOD_DOUBLING if nodes else SADDLE_NODE} to bound its stable range"
         )
     doubling = doublings[0]
@@ -256,7 +260,7 @@ def _row(
         _along(system.orbit(y)),
         [*(s.name for s in chosen), *[GRAZING] * len(grazing)],
         _places(system.orbit(points)),
-        [branch.start_reason, branch.end_reason],
+        [str(branch.start), str(branch.end)],
     )
 
 

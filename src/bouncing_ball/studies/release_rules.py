@@ -18,8 +18,9 @@ from scipy.optimize.elementwise import find_minimum
 from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.orbits.contact_model import SpringDamperModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.studies.error_thresholds import Quantity, relative_error, thresholds
 from bouncing_ball.studies.parameters import grid
 
@@ -70,7 +71,7 @@ def _bifurcations(parameters: Mapping[str, Any]) -> xr.Dataset:
             "release": [str(rule) for rule in rules],
             "n": families,
             "frequency_ratio": ratios,
-            "bound": ["saddle-node", "period doubling"],
+            "bound": list(Bifurcation),
         },
     )
 

@@ -8,9 +8,9 @@ import xarray as xr
 
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.orbits.contact_model import SpringDamperModel
-from bouncing_ball.orbits.interface import Orbit
+from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 # What is published of each orbit.
 _STATE = ("phase", "contact_duration", "impact_velocity", "bounce_velocity")

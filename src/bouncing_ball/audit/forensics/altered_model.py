@@ -11,7 +11,7 @@ own formula (Eqs. 12-13), in which a slip of the pen can be imitated::
 with X = Λ cos φ, Y = Λ sin φ, u = δ′ at the start, and K from δ = 0, δ′ = u at
 s = 0. At a fixed duration D the release, the velocity and the landing are
 linear in (X, Y, u) under every alteration, so that one 3×3 solve gives the
-orbit, as in :mod:`bouncing_ball.orbits.closed_form`.
+orbit, as in :mod:`bouncing_ball.orbits.spring_damper_branch`.
 
 All quantities are dimensionless; all functions broadcast.
 """

@@ -1,6 +1,6 @@
 """Saddle-node and period doubling of the altered models.
 
-As in :mod:`bouncing_ball.orbits.limits`: the branch starts at short contacts,
+As in :mod:`bouncing_ball.orbits.spring_damper_limits`: the branch starts at short contacts,
 where Λ is large and falls with the duration. The saddle-node is the first
 minimum of Λ, whatever the linearisation says: no orbit has a smaller Λ. The
 period doubling is the criterion's root next to it, on the side of the short

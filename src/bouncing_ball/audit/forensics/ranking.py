@@ -16,8 +16,9 @@ from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import ModelError
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.restitution_orbit import ImpactMap
+from bouncing_ball.orbits.stability import Bifurcation
 
-BOUNDS = ["saddle-node", "period doubling"]
+BOUNDS = list(Bifurcation)
 ALL_ROWS, SOFTER_ROWS = "all rows", "softer rows"
 
 

@@ -17,9 +17,9 @@ from bouncing_ball.audit.formulas.flow import contact_matrix, fall_matrix, flow,
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.motion.contacts import contact_cycle
-from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
-from bouncing_ball.orbits.limits import orbit_at, saddle_node
+from bouncing_ball.orbits.spring_damper_branch import branch_point
+from bouncing_ball.orbits.spring_damper_limits import orbit_at, saddle_node
+from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 
 # The faintest rebound that a double can hold.
 _FAINT = float(np.finfo(float).tiny)

@@ -141,7 +141,7 @@ function traceOf({omega, zeta, sine}, flight, [u, x, y], sinD, cosD, at, push) {
   return columns[0][0] + columns[1][1];
 }
 
-// ---- Roots, as bouncing_ball.orbits.limits finds them.
+// ---- Roots, as bouncing_ball.orbits.spring_damper_limits finds them.
 // Chandrupatla's method, to four units in the last place of the root.
 function rootOf(f, a, b, fa = f(a), fb = f(b)) {
   if (fa === 0) return a;

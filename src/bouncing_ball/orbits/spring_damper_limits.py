@@ -1,6 +1,6 @@
 """Saddle-node, period doubling and orbits at a given Λ, on the explicit branch.
 
-Scalar root finding along the branch of :mod:`bouncing_ball.orbits.closed_form`,
+Scalar root finding along the branch of :mod:`bouncing_ball.orbits.spring_damper_branch`,
 for arrays of contacts at once: a scan brackets the first root next to the
 fold, Chandrupatla's method (:func:`scipy.optimize.elementwise.find_root`)
 closes the bracket to the last digit.
@@ -15,9 +15,10 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.ensembles import blocks
-from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
-from bouncing_ball.orbits.interface import Absence, Side, check_index
+from bouncing_ball.orbits.model import Absence, Side
+from bouncing_ball.orbits.orbit import check_index
+from bouncing_ball.orbits.spring_damper_branch import branch_point
+from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.stability import period_doubling_function, saddle_node_function
 
 # Points of the scan on each side of ε = 0, spaced geometrically from a small
@@ -140,7 +141,7 @@ def saddle_node(contact: SpringDamper, n: ArrayLike) -> np.ndarray:
     Returns
     -------
     numpy.ndarray
-        To be given to :func:`~bouncing_ball.orbits.closed_form.branch_point`.
+        To be given to :func:`~bouncing_ball.orbits.spring_damper_branch.branch_point`.
         NaN where the branch has no fold.
 
     Examples

@@ -12,12 +12,13 @@ from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.contacts import contact_cycle, simulate
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence
-from bouncing_ball.orbits import limits
-from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
-from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
-from bouncing_ball.orbits.interface import ImpactModel, Orbit, Side
+from bouncing_ball.orbits import spring_damper_limits as limits
+from bouncing_ball.orbits.model import ImpactModel, Side
+from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.projection import nearest_excess
+from bouncing_ball.orbits.spring_damper_branch import branch_point
+from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.orbits.spring_damper_system import Parameter, SpringDamperSystem
 
 # Units in the last place of z′_i that rounding leaves of a Λ = 0; at most 3.9 were
 # seen for ϖ = 0.6…10⁶ and n = 1…100, under both rules.
@@ -93,10 +94,10 @@ class SpringDamperModel(ImpactModel):
         point = branch_point(nearest_excess(orbit), orbit.contact, orbit.n)
         return SpringDamperOrbit.from_branch(point, orbit.contact, orbit.n)
 
-    def system(self, n: int | np.ndarray) -> OrbitSystem:
+    def system(self, n: int | np.ndarray) -> SpringDamperSystem:
         """The paper's equations, continued in Λ."""
         contact = self.contact
-        return OrbitSystem(
+        return SpringDamperSystem(
             n, contact.damping_ratio, Parameter.AMPLITUDE, contact.frequency_ratio, contact.release
         )
 

@@ -6,9 +6,9 @@ from scipy.integrate import solve_ivp
 
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper, contact_force
-from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
-from bouncing_ball.orbits.limits import orbit_at
+from bouncing_ball.orbits.spring_damper_branch import branch_point
+from bouncing_ball.orbits.spring_damper_limits import orbit_at
+from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 
 CASES = [
     # n, r, ϖ, Λ, release

@@ -11,11 +11,8 @@ from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper, responses
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
-from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_model import SpringDamperModel
-from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
-from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
-from bouncing_ball.orbits.limits import (
+from bouncing_ball.orbits.spring_damper_branch import branch_point
+from bouncing_ball.orbits.spring_damper_limits import (
     Absence,
     Side,
     absence,
@@ -23,6 +20,9 @@ from bouncing_ball.orbits.limits import (
     period_doubling,
     saddle_node,
 )
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.orbits.spring_damper_system import Parameter, SpringDamperSystem
 from bouncing_ball.orbits.stability import (
     is_stable,
     period_doubling_function,
@@ -97,7 +97,7 @@ def check_orbit(orbit, n, lam):
     # In the continuation's variables; heights of the landing equation are of
     # order (2πn)².
     y = np.array([orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration, lam])
-    system = OrbitSystem(n, zeta, Parameter.AMPLITUDE, omega, orbit.contact.release)
+    system = SpringDamperSystem(n, zeta, Parameter.AMPLITUDE, omega, orbit.contact.release)
     scale = np.array([1, 1, 2 * np.pi * n]) * (2 * np.pi * n)
     assert np.all(np.abs(system.residual(y)) < 1e-12 * scale)
     assert float(orbit.relative_impact_velocity) < 0

@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.contacts import contact_cycle
 from bouncing_ball.motion.sequence import Cycle
-from bouncing_ball.orbits.closed_form import BranchPoint
 from bouncing_ball.orbits.highest import highest
-from bouncing_ball.orbits.interface import Orbit
+from bouncing_ball.orbits.orbit import Orbit
+from bouncing_ball.orbits.spring_damper_branch import BranchPoint
 
 # Near the undamped resonance the simulation has no steady part to work with;
 # the orbit is then sampled. Same measure as the simulation's own limit.
@@ -26,7 +26,7 @@ class SpringDamperOrbit(Orbit):
 
     Examples
     --------
-    >>> from bouncing_ball.orbits.contact_model import SpringDamperModel
+    >>> from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
     >>> orbit = SpringDamperModel(SpringDamper(5.0, 0.0)).orbit(1, 0.5)
     >>> float(orbit.determinant())
     1.0
@@ -141,7 +141,7 @@ class SpringDamperOrbit(Orbit):
 
         Examples
         --------
-        >>> from bouncing_ball.orbits.contact_model import SpringDamperModel
+        >>> from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
         >>> model = SpringDamperModel(SpringDamper(10.0, 0.05))
         >>> bool(model.orbit(1, 1.0).is_admissible())
         True

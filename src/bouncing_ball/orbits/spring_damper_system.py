@@ -19,7 +19,7 @@ from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.continuation.events import Event
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.branch_events import branch_events
-from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
+from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.stability import trace_and_determinant
 
 
@@ -31,7 +31,7 @@ class Parameter(StrEnum):
 
 
 @dataclass(frozen=True)
-class OrbitSystem:
+class SpringDamperSystem:
     """n-T orbits as a :class:`~bouncing_ball.continuation.problem.Problem`.
 
     Parameters

@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper, responses
 from bouncing_ball.errors import ModelError
-from bouncing_ball.orbits.closed_form import branch_point
-from bouncing_ball.orbits.contact_orbit import SpringDamperOrbit
-from bouncing_ball.orbits.contact_system import OrbitSystem, Parameter
+from bouncing_ball.orbits.spring_damper_branch import branch_point
+from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.orbits.spring_damper_system import Parameter, SpringDamperSystem
 from bouncing_ball.orbits.stability import trace_and_determinant
 
 EPS = np.finfo(float).eps
@@ -40,7 +40,7 @@ def test_every_point_satisfies_the_papers_equations(log_omega, zeta, n, release,
     # end (where the three equations become dependent).
     excess = share * start if share < 0 else min(share, 0.95 * (omega_d * 2 * np.pi * n - start))
     point = branch_point(excess, contact, n)
-    system = OrbitSystem(n, zeta, Parameter.AMPLITUDE, contact.frequency_ratio, release)
+    system = SpringDamperSystem(n, zeta, Parameter.AMPLITUDE, contact.frequency_ratio, release)
     # A 3 × 3 solve: its condition costs about two digits.
     assert np.all(np.abs(scaled_residual(system, point, contact)) < 1e-13)
 
@@ -50,7 +50,7 @@ def test_every_point_satisfies_the_papers_equations(log_omega, zeta, n, release,
 @pytest.mark.parametrize("n", [1, 3])
 def test_next_to_the_fold_at_any_stiffness(release, omega, n):
     contact = SpringDamper(omega, 0.05, release)
-    system = OrbitSystem(n, 0.05, Parameter.AMPLITUDE, omega, release)
+    system = SpringDamperSystem(n, 0.05, Parameter.AMPLITUDE, omega, release)
     for excess in np.linspace(-1.0, 1.0, 9) / omega:
         point = branch_point(excess, contact, n)
         assert np.all(np.abs(scaled_residual(system, point, contact)) < 1e-14)

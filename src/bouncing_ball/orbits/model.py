@@ -1,0 +1,201 @@
+"""What every model of the impact offers, and every n-T orbit.
+
+Callers ask; none of them tests which model it has::
+
+    model = SpringDamperModel(SpringDamper.from_restitution(0.85, 10.0))  # or RestitutionModel(…)
+    orbit = model.require_orbit(1, 0.9)                # the 1-T orbit at Λ = 0.9
+    orbit.phase, orbit.contact_duration, orbit.bounce_velocity, orbit.is_stable()
+    model.saddle_node(1).amplitude, model.period_doubling(1).amplitude
+    model.simulate(0.9, phase=0.0, velocity=-3.0, impacts=100).phase
+
+A new model is a subclass of :class:`ImpactModel`, with its orbits as a
+subclass of :class:`Orbit`: what follows from the flight alone is written here
+once. Models and orbits are arrays: all fields broadcast, and both are indexed,
+``orbit[3]``. Time runs from the start of contact, τ_i = 0; the contact ends
+at τ_b = D, the next one starts at τ_2 = 2πn. Everything is dimensionless.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import fields
+from enum import StrEnum
+from typing import Any, ClassVar, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.contacts.batch import Batch
+from bouncing_ball.continuation.events import Event
+from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.motion.sequence import Cycle, ImpactSequence
+from bouncing_ball.orbits.orbit import Orbit
+
+
+class Side(StrEnum):
+    """Side of the saddle-node on which an orbit lies."""
+
+    STABLE = "stable"
+    """The side that is stable next to the fold: the shorter contact."""
+    UNSTABLE = "unstable"
+
+    @classmethod
+    def of(cls, side: str) -> Side:
+        """The side of a name; ModelError for another.
+
+        Examples
+        --------
+        >>> Side.of("stable")
+        <Side.STABLE: 'stable'>
+        """
+        try:
+            return cls(side)
+        except ValueError:
+            raise ModelError(f"unknown side {side!r}: one of {', '.join(cls)}") from None
+
+
+class Route(StrEnum):
+    """Independent ways to a model's orbits."""
+
+    CONTINUATION = "continuation"
+    """Newton's method on its equations, :meth:`ImpactModel.system`."""
+    FORMULA = "formula"
+    """A closed form of its branch, :meth:`ImpactModel.nearest`."""
+    SIMULATION = "simulation"
+    """Its motion from event to event, :meth:`ImpactModel.cycle`."""
+
+
+class Absence(StrEnum):
+    """Why there is no orbit on a side of the branch at some Λ."""
+
+    NONE = "there is one"
+    BELOW_SADDLE_NODE = "below the saddle-node"
+    NO_OTHER_SIDE = "the branch has no saddle-node, and so no other side"
+    NOT_REACHED = "this side of the branch does not reach this Λ"
+    NOT_FOUND = "none was found, and there may be one"
+
+
+class System(Protocol):
+    """A model's equations as a :class:`~bouncing_ball.continuation.problem.Problem`.
+
+    y holds the unknowns and, last, the continuation parameter.
+    """
+
+    def residual(self, y: np.ndarray) -> np.ndarray:
+        """Defects, shape (..., N)."""
+
+    def jacobian(self, y: np.ndarray) -> np.ndarray:
+        """Exact Jacobian of the residual, shape (..., N, N + 1)."""
+
+    def orbit(self, y: np.ndarray) -> Orbit:
+        """The orbits at points y, with all their observables."""
+
+    def point(self, orbit: Any) -> np.ndarray:
+        """y of given orbits."""
+
+    def events(self) -> tuple[Event, ...]:
+        """Bifurcations, and the ends of the domain in which an orbit makes sense."""
+
+
+class ImpactModel(Batch, ABC):
+    """A law of the impact and its n-T orbits. Frozen dataclasses of arrays.
+
+    ``name`` is what users call it; ``routes`` are the ways to its orbits.
+    """
+
+    name: ClassVar[str]
+    routes: ClassVar[frozenset[Route]] = frozenset(Route)
+    orbit_type: ClassVar[type[Orbit]]
+    softens: ClassVar[bool] = False
+    """Whether its orbits are followed along ϖ, from those of the restitution model."""
+
+    @property
+    @abstractmethod
+    def label(self) -> str:
+        """Its parameters, in words; of a single model."""
+
+    @abstractmethod
+    def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> Orbit:
+        """The n-T orbits at Λ on a side of the saddle-node; NaN where there is none."""
+
+    @abstractmethod
+    def orbits(self, n: int, amplitude: float) -> Orbit:
+        """All n-T orbits at one Λ, in order of contact duration, shape (count,)."""
+
+    @abstractmethod
+    def absence(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> np.ndarray:
+        """The :class:`Absence` of each orbit that :meth:`orbit` looks for, as text."""
+
+    @abstractmethod
+    def saddle_node(self, n: ArrayLike) -> Orbit:
+        """The orbits at the saddle-node; NaN where the branch has none."""
+
+    @abstractmethod
+    def period_doubling(self, n: ArrayLike) -> Orbit:
+        """The orbits at the period doubling nearest to it; NaN where there is none."""
+
+    @abstractmethod
+    def nearest(self, orbit: Any) -> Orbit:
+        """The orbits of the closed form nearest to given ones (route FORMULA)."""
+
+    @abstractmethod
+    def system(self, n: int | np.ndarray) -> System:
+        """The equations of the orbits, continued in Λ (route CONTINUATION)."""
+
+    @abstractmethod
+    def simulate(
+        self, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
+    ) -> ImpactSequence:
+        """Impacts from a first one at phase φ, with absolute velocity z′_i before it."""
+
+    @abstractmethod
+    def cycle(self, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
+        """The Poincaré map, from an impact (φ, δ′) to the next (route SIMULATION)."""
+
+    @abstractmethod
+    def permanent_contact_threshold(self) -> np.ndarray:
+        """Λ up to which the ball stays on the table."""
+
+    def orbit_of(
+        self,
+        n: ArrayLike,
+        amplitude: ArrayLike,
+        phase: ArrayLike,
+        contact_duration: ArrayLike = 0.0,
+        impact_velocity: ArrayLike | None = None,
+    ) -> Any:
+        """Orbits known by their numbers, as a dataset has them: :meth:`Orbit.of`."""
+        (law,) = (getattr(self, field.name) for field in fields(self))
+        return self.orbit_type.of(n, law, amplitude, phase, contact_duration, impact_velocity)
+
+    def require_admissible(self, n: int, amplitude: float, side: Side = Side.STABLE) -> Orbit:
+        """:meth:`require_orbit`, if it is one of the ball.
+
+        Raises
+        ------
+        NoOrbitError
+            If there is none, or if it is inadmissible.
+        """
+        orbit = self.require_orbit(n, amplitude, side)
+        if not orbit.is_admissible():
+            raise NoOrbitError(
+                f"the {n}-T orbit at Λ = {amplitude:g} for {self.label} is inadmissible: "
+                "another impact or release comes first"
+            )
+        return orbit
+
+    def require_orbit(self, n: int, amplitude: float, side: Side = Side.STABLE) -> Orbit:
+        """The one orbit at Λ on a side of the saddle-node.
+
+        Raises
+        ------
+        NoOrbitError
+            If there is none, with the reason.
+        """
+        orbit = self.orbit(n, amplitude, side)
+        if not orbit.exists:
+            why = str(self.absence(n, amplitude, side))
+            if why == Absence.BELOW_SADDLE_NODE:
+                why = f"{why} at Λ = {float(self.saddle_node(n).amplitude):.6g}"
+            raise NoOrbitError(f"no {n}-T orbit at Λ = {amplitude:g} for {self.label}: {why}")
+        return orbit

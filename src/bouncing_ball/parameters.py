@@ -1,0 +1,159 @@
+"""The types from which parameters are made: what a number means, its unit and its range.
+
+A study takes a subclass of :class:`Parameters` that stands beside it. The check of the
+configuration, its one-line errors, its documentation and its JSON schema are made from these
+classes, so that a name, a range or a description stands once. A limit is there for a reason,
+which the description says.
+"""
+
+from typing import Annotated, Any, Self, TypeVar
+
+import numpy as np
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, Strict, model_validator
+
+_T = TypeVar("_T")
+
+
+class Parameters(BaseModel):
+    """The parameters of a study, with all keys and no others.
+
+    Nothing is converted, so that a text is no number and 801.0 no count. Numbers are finite.
+
+    Raises
+    ------
+    pydantic.ValidationError
+        As it is made from values that are not allowed.
+
+    Examples
+    --------
+    >>> Span(min=1, max=100.0, samples=3)
+    Span(min=1.0, max=100.0, samples=3)
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+
+def number(description: str, unit: str = "1", **limits: Any) -> Any:
+    """A description with a unit and the limits ``ge``, ``gt``, ``le`` and ``lt``."""
+    return Field(description=description, json_schema_extra={"unit": unit}, **limits)
+
+
+def _distinct(values: tuple) -> tuple:
+    if len(set(values)) < len(values):
+        raise ValueError("must not repeat an item")
+    return values
+
+
+Many = Annotated[tuple[_T, ...], Strict(False), Field(min_length=1), AfterValidator(_distinct)]
+"""One or more different values, a list in the configuration."""
+
+Family = Annotated[
+    int,
+    number(
+        "index n of the family, whose orbit repeats every 2πn; beyond 20 the rounding of 2πn is "
+        "more than the routes to an orbit may differ by",
+        ge=1,
+        le=20,
+    ),
+]
+Restitution = Annotated[
+    float,
+    number(
+        "restitution coefficient r, from which the contact's damping follows (Eq. 16); an r below "
+        "0.05 is that of a contact which the ball hardly leaves",
+        ge=0.05,
+        le=1,
+    ),
+]
+LossyRestitution = Annotated[
+    float,
+    number(
+        "restitution coefficient r; at r = 1 no orbit is asymptotically stable, and an r below "
+        "0.05 is that of a contact which the ball hardly leaves",
+        ge=0.05,
+        le=0.999,
+    ),
+]
+OwnRestitution = Annotated[
+    float,
+    number(
+        "restitution coefficient r, which a contact has under either release rule: r > e⁻² if it "
+        "ends where its force vanishes",
+        ge=0.15,
+        le=0.999,
+    ),
+]
+LawRestitution = Annotated[
+    float,
+    number(
+        "restitution coefficient r; contacts of every law have r from 0.3 to 0.99", ge=0.3, le=0.99
+    ),
+]
+ThresholdRestitution = Annotated[
+    float,
+    number(
+        "restitution coefficient r; the threshold of permanent contact has a minimum over ϖ where "
+        "ζ < 1/√2 (Eq. 36), which is r > e^-π",
+        gt=0.0433,
+        le=1,
+    ),
+]
+Amplitude = Annotated[
+    float,
+    number(
+        "amplitude Λ of the table's acceleration over gravity; at 1000 all orbits of the families "
+        "n ≤ 20 have long been unstable",
+        gt=0,
+        le=1000,
+    ),
+]
+AmplitudeMax = Annotated[
+    float,
+    number(
+        "upper end of the Λ axis, up to which branches are followed; at 100 all restitution orbits "
+        "of the families n ≤ 20 have long been unstable",
+        gt=0,
+        le=100,
+    ),
+]
+FrequencyRatio = Annotated[
+    float,
+    number(
+        "frequency ratio ϖ of contact and table; below 0.1 the ball sinks in by 100 g/Ω² at rest, "
+        "beyond 10⁶ a contact is lost in the rounding of the cycle",
+        ge=0.1,
+        le=1e6,
+    ),
+]
+Samples = Annotated[
+    int,
+    number(
+        "number of samples; two make a line, and more than 20001 no figure shows", ge=2, le=20001
+    ),
+]
+Tolerance = Annotated[float, number("relative error tolerated", gt=0, lt=1)]
+Seed = Annotated[int, number("seed of the random numbers", ge=0)]
+
+
+class Span(Parameters):
+    """A logarithmic grid of frequency ratios."""
+
+    min: Annotated[FrequencyRatio, Field(description="smallest frequency ratio ϖ")]
+    max: Annotated[FrequencyRatio, Field(description="largest frequency ratio ϖ, above min")]
+    samples: Samples
+
+    @model_validator(mode="after")
+    def _increasing(self) -> Self:
+        if self.min >= self.max:
+            raise ValueError(f"min = {self.min:g} must be less than max = {self.max:g}")
+        return self
+
+    def grid(self) -> np.ndarray:
+        """The frequency ratios, shape (samples,).
+
+        Examples
+        --------
+        >>> Span(min=1.0, max=100.0, samples=3).grid().tolist()
+        [1.0, 10.0, 100.0]
+        """
+        return np.geomspace(self.min, self.max, self.samples)

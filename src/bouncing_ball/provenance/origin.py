@@ -129,30 +129,30 @@ def read_attributes(path: Path) -> dict[str, Any]:
     if path.suffix not in CARRIERS:
         raise ProvenanceError(f"{path} is not one of {', '.join(CARRIERS)}")
     try:
-        return _read(path)
-    except OSError as error:
-        reason = error.strerror if path.suffix != ".nc" or error.errno == 2 else None
-        raise ProvenanceError(f"{path} cannot be read: {reason or 'damaged'}") from None
+        return attributes_in(path, path.suffix)
+    except FileNotFoundError:
+        raise ProvenanceError(f"{path} cannot be read: no such file") from None
     # The libraries raise errors of many types on a damaged file.
     except Exception:
         raise ProvenanceError(f"{path} cannot be read: damaged, or not ours") from None
 
 
-def _read(path: Path) -> dict[str, Any]:
+def attributes_in(file: Any, suffix: str) -> dict[str, Any]:
+    """Attributes of a dataset, by its path, or metadata of a picture, also of an open file."""
     # Imported here: each takes a while, and one of them is needed.
-    match path.suffix:
+    match suffix:
         case ".nc":
             from netCDF4 import Dataset
 
-            with Dataset(path) as dataset:
+            with Dataset(file) as dataset:
                 return {name: dataset.getncattr(name) for name in dataset.ncattrs()}
         case ".png":
             from PIL import Image
 
-            with Image.open(path, formats=["PNG"]) as picture:
+            with Image.open(file, formats=["PNG"]) as picture:
                 return dict(picture.info)
         case _:
             from xml.etree import ElementTree
 
-            found = ElementTree.parse(path).find(f".//{_DESCRIPTION}")
+            found = ElementTree.parse(file).find(f".//{_DESCRIPTION}")
             return {} if found is None else dict(json.loads(found.text or "{}"))

@@ -21,13 +21,14 @@ ALLOWED = {
     "continuation": (set(), {"numpy"}),
     "motion": ({"contacts"}, {"numpy"}),
     "orbits": ({"contacts", "continuation", "motion"}, {"numpy", "scipy"}),
+    "accuracy": ({"contacts", "continuation", "motion", "orbits"}, {"numpy", "scipy"}),
     "studies": (
-        {"datasets", "contacts", "continuation", "motion", "orbits"},
-        {"numpy", "scipy", "xarray", "pydantic"},
+        {"datasets", "contacts", "continuation", "motion", "orbits", "accuracy"},
+        {"numpy", "scipy", "xarray"},
     ),
     # Units are parsed at the edge, and pint is imported there when it is asked for.
-    "calculator": ({"contacts", "orbits", "studies"}, {"numpy", "xarray", "pint"}),
-    "atlas": ({"datasets", "contacts", "orbits", "studies"}, {"numpy", "xarray", "pydantic"}),
+    "calculator": ({"contacts", "orbits", "accuracy"}, {"numpy", "xarray", "pint"}),
+    "atlas": ({"datasets", "contacts", "orbits", "accuracy"}, {"numpy", "xarray"}),
     # Studies are imported by name when they are run.
     "configuration": ({"contacts", "orbits"}, {"yaml", "jsonschema", "pydantic", BY_NAME}),
     "audit": (
@@ -53,7 +54,7 @@ ALLOWED = {
             "contacts",
             "motion",
             "orbits",
-            "studies",
+            "accuracy",
             "calculator",
             "configuration",
             "figures",

@@ -5,6 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from bouncing_ball.accuracy.quantities import OF_ORBITS
+from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.calculator.case import Case, Table
 from bouncing_ball.calculator.contact_data import (
     STIFF,
@@ -23,9 +25,7 @@ from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError, require
 from bouncing_ball.orbits.law_calls import rigid_speed
-from bouncing_ball.orbits.orbit import OBSERVABLES
 from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.studies.error_thresholds import ThresholdStatus
 
 STANDARD_GRAVITY = 9.80665
 """Standard acceleration of gravity, in m/s²."""
@@ -237,7 +237,7 @@ def _choose(
         )
     r = float(SpringDamper(1.0, zeta, release).restitution)
     index = n or _lowest_stable(r, table.amplitude)
-    if quantity in OBSERVABLES:
+    if quantity in OF_ORBITS:
         RestitutionModel(r).require_orbit(index, table.amplitude)
     need = needed(quantity, tolerance, zeta, release, index, table.amplitude)
     if need.status == ThresholdStatus.NEVER_WITHIN:

@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
+from bouncing_ball.accuracy.error_law import coefficients, permanent_contact_coefficient
 from bouncing_ball.cli.contact_law import described, model_of, rigid_speed_of
 from bouncing_ball.contacts.permanent_contact import permanent_contact_minimum
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.motion.sequence import Status
 from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.error_law import coefficients, permanent_contact_coefficient
 from bouncing_ball.orbits.model import ImpactModel, Side
 from bouncing_ball.orbits.orbit import OBSERVABLES, Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
@@ -162,8 +162,8 @@ def error_law(args: argparse.Namespace) -> Answer:
     """
     contact = _contact(args)
     zeta, release = contact.damping_ratio, contact.release
-    law = coefficients(args.n, zeta, args.amplitude, release)._asdict()
-    signed = {name: float(k) if math.isfinite(k) else None for name, k in law.items()}
+    law = coefficients(args.n, zeta, args.amplitude, release)
+    signed = {str(name): float(k) if math.isfinite(k) else None for name, k in law.items()}
     return {
         "coefficients": {name: k if k is None else abs(k) for name, k in signed.items()},
         "signed": signed,

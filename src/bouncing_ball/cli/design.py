@@ -6,12 +6,12 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
+from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.calculator.design import Design
 from bouncing_ball.calculator.design_call import design
 from bouncing_ball.calculator.judgement import QUANTITIES, percent
 from bouncing_ball.calculator.units import KINDS, shown
 from bouncing_ball.errors import ModelError
-from bouncing_ball.studies.error_thresholds import ThresholdStatus
 
 Answer = dict[str, Any]
 

@@ -43,11 +43,10 @@ next to the saddle-node, within Λ - Λ_SN ~ 1/ϖ, for grazing and slow impacts,
 for small r.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.accuracy.quantities import OF_IMPACTS, Quantity
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import Instant, LinearSignature
 from bouncing_ball.contacts.spring_damper import SpringDamper
@@ -57,27 +56,18 @@ STATED = 0.3
 """δ below which the law is stated."""
 
 
-class FirstOrder(NamedTuple):
-    """Relative first-order errors, exact over restitution model minus one.
+ByQuantity = dict[Quantity, np.ndarray]
+"""One array for each quantity of an impact, in their order."""
 
-    ``saddle_node`` is infinite, and so is ``phase`` at it, where the
-    restitution model's value is 0: there is nothing to be relative to.
-    """
-
-    max_height: np.ndarray
-    bounce_velocity: np.ndarray
-    phase: np.ndarray
-    apparent_restitution: np.ndarray
-    saddle_node: np.ndarray
-    period_doubling: np.ndarray
-
-
-REMAINDER = FirstOrder(*(np.array(bound) for bound in (2.0, 2.0, 4.0, 2.0, 2.0, 2.0)))
+REMAINDER = dict.fromkeys(OF_IMPACTS, 2.0) | {Quantity.PHASE: 4.0}
 """M of each quantity: the stated remainder is M S δ. Measured, not proved."""
 
 
-def first_order(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> FirstOrder:
-    """Relative errors of the restitution model at the stable side's orbit.
+def first_order(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> ByQuantity:
+    """Relative first-order errors of the restitution model at the stable side's orbit.
+
+    That of the saddle-node is infinite at r = 1, and that of the phase at the saddle-node,
+    where the restitution model's value is 0: there is nothing to be relative to.
 
     Parameters
     ----------
@@ -98,7 +88,7 @@ def first_order(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> FirstOr
     A ball that leaves 0.1 late, and nothing else:
 
     >>> law = first_order(1, Instant(0.0, 0.5, 0.0, 0.1), 1.5)
-    >>> abs(float(law.max_height)), round(float(law.bounce_velocity) * np.pi, 15)
+    >>> abs(float(law["max_height"])), round(float(law["bounce_velocity"]) * np.pi, 15)
     (0.0, -0.1)
     """
     delay, r, load, duration = (np.asarray(x, dtype=float) for x in instant[:4])
@@ -111,14 +101,14 @@ def first_order(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> FirstOr
         higher = fold * later - half * delay
         unloaded = load - duration + (1 + r) * delay
         doubling = _period_doubling(half, r, delay, load, fold)
-        return FirstOrder(
-            max_height=higher / (lift + half * half / 2),
-            bounce_velocity=(delay - duration) / half,
-            phase=later / psi,
-            apparent_restitution=unloaded * (1 - lift) * (1 + r) / (2 * half * r),
-            saddle_node=-load / (half * (1 - r)),
-            period_doubling=doubling,
-        )
+        return {
+            Quantity.MAX_HEIGHT: higher / (lift + half * half / 2),
+            Quantity.BOUNCE_VELOCITY: (delay - duration) / half,
+            Quantity.PHASE: later / psi,
+            Quantity.APPARENT_RESTITUTION: unloaded * (1 - lift) * (1 + r) / (2 * half * r),
+            Quantity.SADDLE_NODE: -load / (half * (1 - r)),
+            Quantity.PERIOD_DOUBLING: doubling,
+        }
 
 
 def _period_doubling(half, r, delay, load, fold):
@@ -146,7 +136,7 @@ def small_parameter(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> np.
     return fold + duration * (1 + pull) * (1 + r) / (2 * half * r) + duration * np.maximum(1, lam)
 
 
-def scale(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> FirstOrder:
+def scale(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> ByQuantity:
     """S of each quantity: K with its parts added up without their signs.
 
     The apparent restitution's K is that of a small part of the contact force; its
@@ -155,8 +145,8 @@ def scale(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> FirstOrder:
     Examples
     --------
     >>> instant = Instant(0.05, 0.5, 0.1, 0.1)
-    >>> sizes = np.abs(np.array(first_order(1, instant, 1.3)))
-    >>> bool(np.all(sizes <= np.array(scale(1, instant, 1.3)) * (1 + 1e-15)))
+    >>> size = scale(1, instant, 1.3)
+    >>> all(abs(k) <= size[q] * (1 + 1e-15) for q, k in first_order(1, instant, 1.3).items())
     True
     """
     delay, r, load, duration = (np.asarray(x, dtype=float) for x in instant[:4])
@@ -166,14 +156,15 @@ def scale(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> FirstOrder:
     with np.errstate(divide="ignore", invalid="ignore"):
         shift = np.abs(load * (1 - lift)) / ((1 + r) * lift)
         node = np.abs(load) / (half * (1 - r))
-        return FirstOrder(
-            max_height=(fold * shift + (half + fold) * delay) / (lift + half * half / 2),
-            bounce_velocity=(duration - delay) / half,
-            phase=(shift + delay) / psi,
-            apparent_restitution=duration * (1 + np.abs(1 - lift)) * (1 + r) / (2 * half * r),
-            saddle_node=node,
-            period_doubling=node + delay / half,
-        )
+        whole = duration * (1 + np.abs(1 - lift))
+        return {
+            Quantity.MAX_HEIGHT: (fold * shift + (half + fold) * delay) / (lift + half * half / 2),
+            Quantity.BOUNCE_VELOCITY: (duration - delay) / half,
+            Quantity.PHASE: (shift + delay) / psi,
+            Quantity.APPARENT_RESTITUTION: whole * (1 + r) / (2 * half * r),
+            Quantity.SADDLE_NODE: node,
+            Quantity.PERIOD_DOUBLING: node + delay / half,
+        }
 
 
 def coefficients(
@@ -181,7 +172,7 @@ def coefficients(
     damping_ratio: ArrayLike,
     amplitude: ArrayLike,
     release: Release = Release.DISPLACEMENT,
-) -> FirstOrder:
+) -> ByQuantity:
     """K of each quantity for a linear contact: relative error K/ϖ + O(1/ϖ²).
 
     Examples
@@ -189,7 +180,7 @@ def coefficients(
     The rule of thumb 1/(nε) for r → 1, here where Λ sin φ = 1:
 
     >>> law = coefficients(1, 0.0, 1.0)
-    >>> round(float(law.max_height) * (1 + 2 / np.pi**2), 14)
+    >>> round(float(law["max_height"]) * (1 + 2 / np.pi**2), 14)
     -1.0
     """
     contact = SpringDamper(1.0, np.asarray(damping_ratio, dtype=float), release)

@@ -1,17 +1,12 @@
-"""The convergence study: what it varies, and its script on one figure."""
+"""The convergence study: what it varies."""
 
-import csv
-import runpy
-import sys
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import xarray as xr
 import yaml
 
-from bouncing_ball.audit import convergence
 from bouncing_ball.audit.convergence import (
     Computation,
     Variation,
@@ -22,9 +17,7 @@ from bouncing_ball.audit.convergence import (
     variations,
 )
 from bouncing_ball.claims.ledger_file import read_ledger
-from bouncing_ball.compare.budgets import changes
-from bouncing_ball.compare.tolerance_file import read_tolerances
-from bouncing_ball.configuration.stages import STAGES
+from bouncing_ball.compare.data import compare_datasets
 from bouncing_ball.datasets.netcdf import read_dataset
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -48,11 +41,12 @@ def test_every_stage_of_the_configuration_is_varied(config, made):
 
 def test_a_stage_is_what_the_pipeline_runs(made):
     # The accepted dataset again, but for what another processor rounds.
-    rules = read_tolerances(ROOT / "config" / "tolerances.yaml")
     for name in ("fig02", "fig05", "fig07", "fig11", "fig16", "forensics", "formulas"):
         record = read_dataset(ROOT / "figures" / f"{name}.nc")
-        for variable, change in changes(name, record, made[name].run(), rules).items():
-            assert change <= rules.of(name, variable).budget, (name, variable)
+        found = compare_datasets(name, record, made[name].run())
+        assert all(each.outcome.agrees for each in found if each.name != "(global attributes)"), (
+            found
+        )
 
 
 def test_tighter_settings(config):
@@ -106,51 +100,3 @@ def test_a_known_sensitivity():
         "x": {Variation.GRID: 0.0, Variation.ROUNDING: 2 * 2.0**-53},
         "y": {Variation.GRID: 10.0, Variation.ROUNDING: 0.0},
     }
-
-
-class Named(list):
-    """A job's files or parameters, in order and by name, as Snakemake gives them."""
-
-    def __init__(self, **named):
-        super().__init__(named.values())
-        self.__dict__.update(named)
-
-    def get(self, name, default):
-        return self.__dict__.get(name, default)
-
-    def items(self):
-        return self.__dict__.items()
-
-
-@pytest.mark.slow
-def test_the_script_writes_the_table(config, tmp_path, monkeypatch):
-    # Only one stage: the others take their time.
-    monkeypatch.setattr(convergence, "studied", lambda: [STAGES["fig11"]])
-    job = SimpleNamespace(
-        rule="convergence",
-        wildcards=(),
-        input=Named(tolerances=ROOT / "config" / "tolerances.yaml"),
-        output=Named(changes=tmp_path / "convergence.csv"),
-        params=Named(run=config | {"printed": {}}, figures=["fig11"]),
-        config=config,
-        log=[tmp_path / "log"],
-        scriptdir=str(ROOT / "workflow" / "scripts"),
-    )
-    # The script as Snakemake runs it: a copy, under its own name.
-    monkeypatch.setattr(
-        sys.modules["__main__"], "__file__", "somewhere/convergence.py", raising=False
-    )
-    # An interrupted job ends at once, but the tests are not to.
-    monkeypatch.setattr("signal.signal", lambda *_: None)
-    runpy.run_path(str(ROOT / "workflow/scripts/convergence.py"), {"snakemake": job})
-    with job.output.changes.open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
-    assert list(rows[0]) == ["artifact", "variable", "tolerances", "grid", "rounding"]
-    with (ROOT / "config" / "convergence.csv").open(encoding="utf-8", newline="") as file:
-        accepted = [row for row in csv.DictReader(file) if row["artifact"] == "fig11"]
-    assert [row["variable"] for row in rows] == [row["variable"] for row in accepted]
-    assert "picture" in [row["variable"] for row in rows]
-    for row in rows:
-        assert row["tolerances"] == "" and float(row["grid"]) >= 0
-        # A formula: a few roundings, of which no pixel knows.
-        assert 0 <= float(row["rounding"]) < (1.0 if row["variable"] == "picture" else 1e-13)

@@ -10,7 +10,6 @@ import yaml
 
 import bouncing_ball
 from bouncing_ball.claims.ledger_file import read_ledger
-from bouncing_ball.compare.tolerance_file import read_tolerances
 from bouncing_ball.configuration.conformity import check_schema
 from bouncing_ball.configuration.yaml_file import ConfigurationError, parse_yaml, read_yaml
 
@@ -41,7 +40,7 @@ def test_a_mistake_is_one_line(tmp_path, one_line, content, said):
 
 
 @MISTAKES
-def test_the_ledger_and_the_tolerances(tmp_path, one_line, content, said):
+def test_the_ledger(tmp_path, one_line, content, said):
     shutil.copyfile(ROOT / "config" / "claims.schema.yaml", tmp_path / "claims.schema.yaml")
     path = tmp_path / "claims.yaml"
     if content is not None:
@@ -49,9 +48,6 @@ def test_the_ledger_and_the_tolerances(tmp_path, one_line, content, said):
     with pytest.raises(ConfigurationError) as error:
         read_ledger(tmp_path)
     one_line(error, said)
-    with pytest.raises(ConfigurationError) as error:
-        read_tolerances(path)
-    one_line(error, f"{path}: {said}")
 
 
 @pytest.mark.parametrize("content", ["", "- 1\n", "text\n"])

@@ -16,7 +16,7 @@ from bouncing_ball.figures.style import (
     save,
     style,
 )
-from bouncing_ball.record.carriers import read_attributes
+from bouncing_ball.provenance.origin import read_attributes
 
 pytestmark = pytest.mark.slow
 

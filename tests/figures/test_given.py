@@ -2,11 +2,9 @@
 
 from importlib import import_module
 
-import numpy as np
 import pytest
 
 from bouncing_ball.configuration.stages import STAGES, Kind, names
-from bouncing_ball.datasets.emptiness import statement
 from bouncing_ball.errors import ModelError
 from bouncing_ball.figures.given import from_dataset
 from bouncing_ball.figures.style import style
@@ -42,24 +40,3 @@ def test_what_is_missing_is_named_with_what_to_do(record, name):
             assert again if variable in data.dims else str(error).endswith(FAULT.format(name))
             assert str(variable) in str(error) or "dimension" in str(error)
     assert refused
-
-
-@pytest.mark.parametrize("name", [*FIGURES, *TABLES])
-def test_no_empty_picture_and_no_empty_table(record, name):
-    data = record[name].copy(deep=True)
-    for values in data.data_vars.values():
-        if values.dtype.kind == "f":
-            values.values[...] = np.nan
-    with pytest.raises(ModelError) as error:
-        made(name, data)
-    assert "no finite number in " in str(error.value)
-    assert str(error.value).endswith(AGAIN.format(name))
-
-
-@pytest.mark.parametrize("name", ["fig05", "ext_rattling", "ext_validity", "table1"])
-def test_what_a_study_says_that_it_did_not_find_is_left_out(record, name):
-    data = record[name].copy(deep=True)
-    for values in data.data_vars.values():
-        if values.dtype.kind == "f":
-            values.values[...] = np.nan
-    assert made(name, data.assign_attrs(statement(data)))

@@ -7,12 +7,11 @@ from bouncing_ball.figures.atlas import limits, maps, page
 from bouncing_ball.figures.atlas.tables import shares, worst
 from bouncing_ball.figures.style import save, style
 from bouncing_ball.figures.tables.formats import to_markdown
-from bouncing_ball.pipeline.atlas import log_of
 from bouncing_ball.pipeline.job import logged, provenance, read_input
 
 with logged(snakemake), style():
     (summary,) = snakemake.input.parts
-    data = read_input(summary, log_of(summary))
+    data = read_input(summary)
     metadata = provenance(snakemake).attributes()
     for path in snakemake.output.charts:
         match Path(path).stem:

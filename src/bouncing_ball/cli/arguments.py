@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from bouncing_ball.cli.output import print_lines
-from bouncing_ball.record.reading import printable
+from bouncing_ball.errors import printable
 
 # Of frequency ratio and amplitude: beyond, their squares leave no digits.
 _LARGEST = 1e8
@@ -289,17 +289,7 @@ def _add_diff(sub: Parser) -> None:
         default=[],  # or argparse calls it required
         help="as fig08 or table1; default: all",
     )
-    sub.add_argument(
-        "--tolerances",
-        metavar="FILE",
-        help="default: config/tolerances.yaml of this checkout, else of RECORD",
-    )
-    for name, what in (
-        ("json", "everything that was found, as JSON"),
-        ("markdown", "a summary for continuous integration"),
-        ("html", "one page with all pictures"),
-    ):
-        sub.add_argument(f"--{name}", metavar="FILE", help=what)
+    sub.add_argument("--html", metavar="FILE", help="one page with all pictures")
 
 
 def _drawing(text: str) -> Path:

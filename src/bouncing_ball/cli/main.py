@@ -108,7 +108,7 @@ def _designed(args: argparse.Namespace) -> Answered:
 
 def _explained(args: argparse.Namespace) -> Answered:
     """Where an artifact comes from."""
-    from bouncing_ball.record.explain import explain, lines
+    from bouncing_ball.provenance.explain import explain, lines
 
     return explain(args.file), lines
 

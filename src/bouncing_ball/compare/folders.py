@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball.compare.data import VariableResult, compare_datasets, read_data
-from bouncing_ball.compare.files import UnreadableError, read_file
+from bouncing_ball.compare.files import read_file
 from bouncing_ball.compare.outcome import Outcome, worst
 from bouncing_ball.compare.pictures import compare_pictures, read_picture
 from bouncing_ball.compare.texts import Line, compare_texts, text_of_page, words_of_drawing
@@ -121,18 +121,11 @@ def _summary(file: str, lines: tuple[Line, ...]) -> Part:
     return Part(file, outcome, note, lines=lines)
 
 
-def _text(content: bytes) -> str:
-    try:
-        return content.decode("utf-8")
-    except UnicodeDecodeError:
-        raise UnreadableError("not UTF-8 text") from None
-
-
 _READERS: dict[str, Callable[[bytes], Any]] = {
     ".nc": read_data,
     ".png": read_picture,
-    ".svg": lambda content: words_of_drawing(_text(content)),
-    ".html": lambda content: text_of_page(_text(content)),
+    ".svg": words_of_drawing,
+    ".html": text_of_page,
 }
 
 
@@ -152,8 +145,23 @@ def _of_text(file: str, record: str, new: str, data: Outcome | None) -> Part:
     outcome = worst(line.outcome for line in lines)
     count = sum(line.outcome is outcome for line in lines)
     what = "changed" if outcome is Outcome.DRIFTED else "moved with their data"
-    note = f"{count} line{'s' * (count != 1)} {what}" if lines else ""
-    return Part(file, outcome, note, lines=lines)
+    return Part(file, outcome, f"{count} lines {what}" if lines else "", lines=lines)
+
+
+def _compared(file: str, artifact: str, record: bytes, new: bytes, data: Outcome | None) -> Part:
+    suffix = PurePosixPath(file).suffix
+    before, after = (_READERS.get(suffix, bytes.decode)(content) for content in (record, new))
+    if suffix == ".nc":
+        return _of_data(file, artifact, before, after)
+    if suffix == ".png":
+        seen = compare_pictures(before, after)
+        pictures = (record, new, seen.difference)
+        part = Part(file, seen.outcome, seen.note, seen.share, pictures=pictures)
+    else:
+        part = _of_text(file, before, after, data)
+    if other := redrawn(record, new, suffix):
+        return replace(part, decides=False, note=f"{part.note}; {other}".strip("; "))
+    return part
 
 
 def judge(
@@ -171,39 +179,21 @@ def judge(
     data : Outcome, optional
         The worst of the datasets that a text is made from.
     """
-    suffix = PurePosixPath(file).suffix
-    sides, held, reading = [], [], ""
-    try:
-        for reading, folder in zip(("record: ", "new: "), folders, strict=True):
-            sides.append(folder and read_file(folder, file))
-        record, new = sides
-        shown = (record, new, None) if suffix == ".png" else (None, None, None)
-        if record == new:
-            return Part(file, Outcome.IDENTICAL, share=0.0, pictures=shown)
-        if record is None or new is None:
-            outcome = Outcome.EXTRA if record is None else Outcome.MISSING
-            return Part(file, outcome, pictures=shown)
-        # Warnings of the libraries about a damaged file become one line.
-        with warnings.catch_warnings(), np.errstate(all="ignore"):
-            warnings.simplefilter("ignore")
-            for reading, content in (("record: ", record), ("new: ", new)):
-                held.append(_READERS.get(suffix, _text)(content))
-            reading = ""
-            if suffix == ".nc":
-                return _of_data(file, artifact, *held)
-            if suffix != ".png":
-                part = _of_text(file, *held, data)
-            else:
-                seen = compare_pictures(*held)
-                pictures = (record, new, seen.difference)
-                part = Part(file, seen.outcome, seen.note, seen.share, pictures=pictures)
-    # What the libraries raise on a damaged file has no end.
-    except Exception as error:
-        why = " ".join(str(error).split()) or type(error).__name__
-        return Part(file, Outcome.UNREADABLE, printable(f"{reading}{why}", 120))
-    if other := redrawn(record, new, suffix):
-        part = replace(part, decides=False, note="; ".join(filter(None, [part.note, other])))
-    return part
+    # Warnings of the libraries about a damaged file become one line.
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore")
+        try:
+            record, new = (read_file(folder, file) if folder else None for folder in folders)
+            if record is not None and new is not None and record != new:
+                return _compared(file, artifact, record, new, data)
+        # What the libraries raise on a damaged file has no end.
+        except Exception as error:
+            why = " ".join(str(error).split()) or type(error).__name__
+            return Part(file, Outcome.UNREADABLE, printable(why, 120))
+    outcome = Outcome.EXTRA if record is None else Outcome.MISSING
+    outcome = Outcome.IDENTICAL if record == new else outcome
+    shown = (record, new, None) if file.endswith(".png") else (None, None, None)
+    return Part(file, outcome, pictures=shown)
 
 
 def artifacts_in(folder: Path) -> dict[str, set[str]]:

@@ -36,11 +36,11 @@ def marked(record: str | None, new: str | None) -> tuple[_Words, _Words]:
     [(True, 'r, '), (False, '0.27'), (True, ', '), (False, 'table')]
     """
     sides = excerpts(record, new, _LONGEST)
-    words = [re.findall(r"[^\s,;|&]+|[\s,;|&]+", text) for text in sides]
+    old, now = (re.findall(r"[^\s,;|&]+|[\s,;|&]+", text) for text in sides)
     found: tuple[_Words, _Words] = ([], [])
-    for kind, a, b, c, d in SequenceMatcher(None, *words, autojunk=False).get_opcodes():
-        found[0].append((kind == "equal", "".join(words[0][a:b])))
-        found[1].append((kind == "equal", "".join(words[1][c:d])))
+    for kind, a, b, c, d in SequenceMatcher(None, old, now, autojunk=False).get_opcodes():
+        found[0].append((kind == "equal", "".join(old[a:b])))
+        found[1].append((kind == "equal", "".join(now[c:d])))
     return found
 
 

@@ -4,7 +4,6 @@ import re
 from dataclasses import dataclass
 from decimal import Decimal
 from difflib import SequenceMatcher
-from html.parser import HTMLParser
 from itertools import zip_longest
 
 from bouncing_ball.compare.outcome import Outcome
@@ -94,8 +93,8 @@ def compare_texts(record: str, new: str, data: Outcome | None) -> tuple[Line, ..
     """
     before, after = record.split("\n"), new.split("\n")
     # Lines belong together by their words, so that a number that moves keeps its line.
-    words = [[_NUMBER.sub("#", line) for line in side] for side in (before, after)]
-    blocks = SequenceMatcher(None, *words, autojunk=False).get_opcodes()
+    old_words, new_words = ([_NUMBER.sub("#", line) for line in side] for side in (before, after))
+    blocks = SequenceMatcher(None, old_words, new_words, autojunk=False).get_opcodes()
     found = []
     for _, first, last, new_first, new_last in blocks:
         pairs = zip_longest(before[first:last], after[new_first:new_last])
@@ -109,47 +108,27 @@ def compare_texts(record: str, new: str, data: Outcome | None) -> tuple[Line, ..
     return tuple(found)
 
 
-class _Page(HTMLParser):
-    """The text of a page and its scripts, but for data in JSON, which have a dataset."""
-
-    def __init__(self, page: str) -> None:
-        super().__init__()
-        self.texts: list[str] = []
-        self.data = False
-        self.feed(page)
-        self.close()
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.data = tag == "script" and ("type", "application/json") in attrs
-
-    def handle_endtag(self, tag: str) -> None:
-        self.data = False
-
-    def handle_data(self, data: str) -> None:
-        if not self.data:
-            self.texts.append(data)
-
-
-def text_of_page(page: str) -> str:
-    """The text of an HTML page, without its markup.
+def text_of_page(page: bytes) -> str:
+    """The text of an HTML page but for data in JSON, which have a dataset of their own.
 
     Examples
     --------
-    >>> text_of_page("<p>Λ = <b>1</b></p><script type='application/json'>{}</script>")
-    'Λ = 1'
+    >>> text_of_page(b'Orbits: <script type="application/json">{"n": 1}</script>')
+    'Orbits: <script type="application/json"></script>'
     """
-    return "".join(_Page(page).texts)
+    block = r'(<script type="application/json"[^>]*>)[^<]*(</script>)'
+    return re.sub(block, r"\1\2", page.decode())
 
 
-def words_of_drawing(drawing: str) -> str:
+def words_of_drawing(drawing: bytes) -> str:
     """The words of a vector graphic, one text a line: its labels, and the letters that draw them.
 
     matplotlib draws a text as outlines, one for each letter, with the text in a comment.
 
     Examples
     --------
-    >>> words_of_drawing('<!-- 0.5 --><use xlink:href="#DejaVuSans-30"/><text>Λ</text>')
-    '0.5\\nDejaVuSans-30\\nΛ'
+    >>> words_of_drawing(b'<!-- 0.5 --><use href="#DejaVuSans-30"/><text>r</text>').split()
+    ['0.5', 'DejaVuSans-30', 'r']
     """
-    words = re.findall(r'<!-- (.*?) -->|href="#(\w+-[0-9a-f]+)"|<text[^>]*>(.*?)</text>', drawing)
-    return "\n".join("".join(parts) for parts in words)
+    words = r'<!-- (.*?) -->|href="#(\w+-[0-9a-f]+)"|<text[^>]*>(.*?)</text>'
+    return "\n".join("".join(parts) for parts in re.findall(words, drawing.decode()))

@@ -7,7 +7,6 @@ from typing import TypeVar
 
 import xarray as xr
 
-from bouncing_ball.datasets.emptiness import lost_variables
 from bouncing_ball.errors import ModelError
 
 T = TypeVar("T")
@@ -27,8 +26,6 @@ def from_dataset(render: Callable[[xr.Dataset], T], data: xr.Dataset, path: str)
     bare = [str(name) for name in data.dims if name not in data.coords]
     if bare:
         raise ModelError(f"{path}: no coordinate {', '.join(bare)}: {again}")
-    if lost := lost_variables(data):
-        raise ModelError(f"{path}: no finite number in {', '.join(lost)}: {again}")
     try:
         return render(data)
     except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:

@@ -150,7 +150,7 @@ def attributes_in(file: Any, suffix: str) -> dict[str, Any]:
             from PIL import Image
 
             with Image.open(file, formats=["PNG"]) as picture:
-                return dict(picture.info)
+                return {str(name): value for name, value in picture.info.items()}
         case _:
             from xml.etree import ElementTree
 

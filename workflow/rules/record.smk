@@ -9,7 +9,7 @@ rule accept:
         "Copying the results over the record in figures/ and paper.md"
     params:
         record=ROOT,
-        files=lambda wildcards: sorted({*rules.all.input}),
+        files=lambda wildcards: sorted({str(file) for file in rules.all.input}),
     log:
         "results/logs/accept.log",
     script:

@@ -3,11 +3,15 @@
 import os
 from pathlib import Path
 
-from bouncing_ball.compare.accept import accept
+from bouncing_ball.compare.accept import RefusedError, accept
+from bouncing_ball.pipeline.conclusion import conclude
 from bouncing_ball.pipeline.job import logged
 
 with logged(snakemake) as lines:
     given = snakemake.params
     only = os.environ.get("ONLY", "").replace(",", " ").split()
-    lines += accept(Path(given.record), Path("results"), given.files, snakemake.config, only)
-    print(*lines, sep="\n", flush=True)
+    try:
+        lines += accept(Path(given.record), Path("results"), given.files, snakemake.config, only)
+        print(*lines, sep="\n", flush=True)
+    except RefusedError as error:
+        conclude(f"accept: {error}")

@@ -40,12 +40,13 @@ def _copied(artifact: Artifact, record: Path, results: Path) -> list[str]:
     """Copy what an artifact has in the results, remove what it has no more; one line for each."""
     said = []
     for part in artifact.parts:
+        old, new = record / part.file, results / part.file
         if part.outcome is Outcome.MISSING:
-            (record / part.file).unlink()
+            old.unlink()
             said.append(f"removed {part.file}")
-        elif part.outcome is not Outcome.IDENTICAL:
-            with replacing(record / part.file) as temporary:
-                shutil.copyfile(results / part.file, temporary)
+        elif not old.is_file() or old.read_bytes() != new.read_bytes():
+            with replacing(old) as temporary:
+                shutil.copyfile(new, temporary)
             said.append(f"copied {part.file}")
     return said
 

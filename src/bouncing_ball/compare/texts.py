@@ -130,5 +130,5 @@ def words_of_drawing(drawing: bytes) -> str:
     >>> words_of_drawing(b'<!-- 0.5 --><use href="#DejaVuSans-30"/><text>r</text>').split()
     ['0.5', 'DejaVuSans-30', 'r']
     """
-    words = r'<!-- (.*?) -->|href="#(\w+-[0-9a-f]+)"|<text[^>]*>(.*?)</text>'
+    words = r'<!-- (.*?) -->|href="#([\w-]+-[0-9a-f]+)"|<text[^>]*>(.*?)</text>'
     return "\n".join("".join(parts) for parts in re.findall(words, drawing.decode()))

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 import bouncing_ball
 from bouncing_ball.cli.main import main
 from bouncing_ball.datasets.netcdf import write_dataset
-from bouncing_ball.figures.style import save
+from bouncing_ball.figures.files import save
 from bouncing_ball.provenance import explain as module
 from bouncing_ball.provenance.origin import Provenance, gather, read_attributes, versions
 from bouncing_ball.provenance.revision import Revision

@@ -6,6 +6,7 @@ from typing import Any
 
 from bouncing_ball.configuration.stages import Kind, Stage
 from bouncing_ball.configuration.yaml_file import ConfigurationError
+from bouncing_ball.figures import DRAWINGS
 from bouncing_ball.pipeline.sources import module_file
 
 SECTIONS = ("figures", "tables", "extensions", "studies")
@@ -13,8 +14,6 @@ SECTIONS = ("figures", "tables", "extensions", "studies")
 
 # Where what draws or sets an artifact is, and what it is called.
 _RENDERERS = {
-    Kind.FIGURE: ("figures", "draw"),
-    Kind.EXTENSION: ("figures", "draw"),
     Kind.TABLE: ("figures.tables", "rows"),
 }
 
@@ -45,8 +44,11 @@ def _require_function(stage: Stage, name: str) -> ast.FunctionDef | None:
 
 def _require_arguments(stage: Stage, study: ast.FunctionDef) -> None:
     """Raise unless the study takes as many arguments as a job gives it."""
-    reads = bool(stage.reads) or stage.section == "ledger"
-    given = [*(["data"] if reads else []), "parameters", *stage.arguments]
+    given = [
+        *(["data"] if stage.reads else []),
+        *(["parameters"] if stage.section else []),
+        *stage.arguments,
+    ]
     taken = [argument.arg for argument in study.args.args]
     if not len(taken) - len(study.args.defaults) <= len(given) <= len(taken):
         raise ConfigurationError(
@@ -84,7 +86,7 @@ def check_pieces(stages: Mapping[str, Stage], run: Mapping[str, Any]) -> None:
     stages : mapping
         The entries by name.
     run : mapping
-        What a run is given: configuration, Table 1 and ledger.
+        The configuration.
 
     Raises
     ------
@@ -98,6 +100,12 @@ def check_pieces(stages: Mapping[str, Stage], run: Mapping[str, Any]) -> None:
         if stage.kind in _RENDERERS:
             package, function = _RENDERERS[stage.kind]
             _require_function(stage, f"{package}.{stage.name}.{function}")
+        if stage.kind in (Kind.FIGURE, Kind.EXTENSION):
+            if stage.name not in DRAWINGS:
+                raise ConfigurationError(
+                    f"{stage.name}: no drawing in DRAWINGS of src/bouncing_ball/figures/__init__.py"
+                )
+            _require_function(stage, f"figures.{DRAWINGS[stage.name]}")
         if stage.tabulated:
             _require_function(stage, f"figures.tables.{stage.name}.rows")
         if stage.study:

@@ -111,32 +111,37 @@ def _commands(made: Provenance, target: str, checked_out: bool | None) -> list[s
     return [f"git checkout {shlex.quote(made.commit)}", "make setup", *commands]
 
 
-def explain(path: Path) -> dict[str, Any]:
+def explain(file: Path, /) -> dict[str, Any]:
     """What an artifact is made from, as plain values.
+
+    Parameters
+    ----------
+    file
+        An artifact, or a copy of one.
 
     Raises
     ------
     ProvenanceError
         If the file is not one of this workflow, or carries no provenance.
     """
-    carriers = _carriers(path)
+    carriers = _carriers(file)
     made = _common([_provenance(carrier) for carrier in carriers])
     repository = checkout(Path.cwd(), Path(bouncing_ball.__file__).resolve())
     now = revision(repository) if repository else UNKNOWN
     checked_out = None if "unknown" in (made.commit, now.commit) else made.commit == now.commit
     target = made.target
-    if path.suffix not in CARRIERS:
-        target = f"results/{'' if path.name == 'paper.md' else 'figures/'}{path.name}"
+    if file.suffix not in CARRIERS:
+        target = f"results/{'' if file.name == 'paper.md' else 'figures/'}{file.name}"
     running = versions()
     return {
-        "file": str(path),
-        "artifact": f"{Path(target).stem}, a {_KINDS.get(path.suffix, 'text')}",
+        "file": str(file),
+        "artifact": f"{Path(target).stem}, a {_KINDS.get(file.suffix, 'text')}",
         "read_from": str(carriers[0]) if len(carriers) == 1 else f"{len(carriers)} datasets",
         "commit": made.commit,
         "checked_out": checked_out,
         "dirty": made.dirty,
         "configuration": flattened(_parsed(made.configuration)),
-        "parameters": _parameters(path, made),
+        "parameters": _parameters(file, made),
         "inputs": list(_parsed(made.inputs)),
         "versions": {
             name: {"made_with": version, "running": running.get(name)}

@@ -4,7 +4,8 @@ import re
 from pathlib import Path
 
 import pytest
-import yaml
+
+from bouncing_ball.claims.ledger import EXPLANATIONS
 
 ROOT = Path(__file__).resolve().parents[3]
 FOLDER = ROOT / "workflow" / "report" / "paper"
@@ -13,6 +14,7 @@ TEMPLATES = sorted(FOLDER.glob("*.md.j2"))
 JINJA = re.compile(r"\{\{.*?\}\}|\{%.*?%\}|\{#.*?#\}", re.DOTALL)
 DISPLAY = re.compile(r"\$\$.*?\$\$", re.DOTALL)
 INLINE = re.compile(r"\$[^$]+\$")
+CITATION = re.compile(r"\[@[^\]]+\]")
 CODE = re.compile(r"`[^`\n]*`")
 SPAN = r"\d+(?:[-–]\d+)?"
 NAMED = re.compile(rf"\b(?:Eq|Fig|Figure|Table|Eqs|Figs)s?\.? {SPAN}(?:(?:,| and|, and) {SPAN})*")
@@ -22,7 +24,7 @@ HEADING = re.compile(r"^#+ .*$", re.MULTILINE)
 
 def prose(text: str) -> str:
     """What is left of a template when all that may hold a digit is gone."""
-    for pattern in (JINJA, DISPLAY, INLINE, CODE, NAMED, FAMILY):
+    for pattern in (JINJA, DISPLAY, INLINE, CODE, CITATION, NAMED, FAMILY):
         text = pattern.sub(" ", text)
     return text
 
@@ -57,9 +59,8 @@ def test_no_number_is_typed(template):
 
 
 def test_no_number_is_typed_into_an_explanation():
-    ledger = yaml.safe_load((ROOT / "config" / "claims.yaml").read_text(encoding="utf-8"))
-    for explanation in ledger["explanations"]:
-        assert typed_numbers(explanation["text"]) == [], explanation["id"]
+    for explanation in EXPLANATIONS:
+        assert typed_numbers(explanation.text) == [], explanation.id
 
 
 @pytest.mark.parametrize(

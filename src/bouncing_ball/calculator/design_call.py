@@ -22,9 +22,9 @@ from bouncing_ball.contacts.law_signature import free_impact
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError, require
-from bouncing_ball.orbits.law_calls import rigid_speed
 from bouncing_ball.orbits.orbit import OBSERVABLES
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.restitution_orbit import rigid_speed
 from bouncing_ball.studies.error_thresholds import ThresholdStatus
 
 STANDARD_GRAVITY = 9.80665

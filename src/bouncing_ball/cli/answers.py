@@ -13,10 +13,11 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.motion.sequence import Status
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.error_law import coefficients, permanent_contact_coefficient
-from bouncing_ball.orbits.model import ImpactModel, Side
+from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.orbit import OBSERVABLES, Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.orbits.stability import Side
 
 Answer = dict[str, Any]
 

@@ -11,10 +11,13 @@ from bouncing_ball.contacts.law_signature import LawSignature, free_impact
 from bouncing_ball.contacts.laws.contact_law import ContactLaw
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import ModelError
+from bouncing_ball.orbits.calls import law_at_orbit
+from bouncing_ball.orbits.continued import restitution_speed
 from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.law_calls import law_at_orbit, rigid_speed
-from bouncing_ball.orbits.law_model import LawModel, restitution_speed
-from bouncing_ball.orbits.model import ImpactModel, Side
+from bouncing_ball.orbits.law_model import LawModel
+from bouncing_ball.orbits.model import ImpactModel
+from bouncing_ball.orbits.restitution_orbit import rigid_speed
+from bouncing_ball.orbits.stability import Side
 
 
 def options(kind: type[ContactLaw]) -> list[str]:
@@ -85,7 +88,7 @@ def _law_behind(model: Any) -> ContactLaw:
 
 def rigid_speed_of(model: Any, n: int) -> float:
     """2πn/(1 + r(v)) of the model's law: where limits are described."""
-    return float(restitution_speed(n, _law_behind(model))[0])
+    return float(restitution_speed(n, LawModel(_law_behind(model)))[0])
 
 
 def described(model: Any, speed: float) -> dict[str, Any]:

@@ -17,11 +17,10 @@ from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.orbits import error_law
 from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.model import Side
 from bouncing_ball.orbits.orbit import OBSERVABLES
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
-from bouncing_ball.orbits.stability import Bifurcation
+from bouncing_ball.orbits.stability import Bifurcation, Side
 from bouncing_ball.studies.error_thresholds import (
     Quantity,
     ThresholdStatus,

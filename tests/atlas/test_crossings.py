@@ -1,12 +1,10 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.accuracy.thresholds import ThresholdStatus, search
 from bouncing_ball.atlas.crossings import LastCrossings
 from bouncing_ball.atlas.errors import MODELS, OF_ORBITS, orbit_errors
 from bouncing_ball.atlas.walk import walk
-from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.studies.error_thresholds import ThresholdStatus, thresholds
-from bouncing_ball.studies.model_errors import errors
 
 RATIOS = np.geomspace(1.0, 1e3, 61)
 STEP = RATIOS[1] / RATIOS[0]
@@ -83,20 +81,11 @@ def test_how_many_ratios_are_met_together_does_not_change_a_threshold(together):
 
 def direct(nodes, tolerances, ratios):
     """Thresholds of one node by scanning a grid and closing the crossings; (m, model, quantity)."""
-    zeta, lam, names = nodes.damping_ratio[0], nodes.amplitude[0], [str(q) for q in OF_ORBITS]
-    scanned = np.abs(errors(SpringDamper(ratios, zeta, nodes.release), nodes.n, lam, names))
-    result = np.empty((len(tolerances), len(MODELS), len(names)))
-    for i, j in np.ndindex(result.shape[1:]):
-
-        def error(w, i=i, j=j):
-            contact = SpringDamper(w, zeta, nodes.release)
-            return np.abs(errors(contact, nodes.n, lam, names[j : j + 1]))[i, 0]
-
-        known = np.nan_to_num(scanned[i, j], nan=np.inf)
-        values, statuses = thresholds(error, tolerances, ratios, known)
-        always = [status is ThresholdStatus.ALWAYS_WITHIN for status in statuses]
-        result[:, i, j] = np.where(always, ratios[0], np.where(np.isnan(values), np.inf, values))
-    return result
+    arguments = nodes.damping_ratio, nodes.release, nodes.n, nodes.amplitude, ratios
+    searches = [search(*arguments, tolerance, OF_ORBITS) for tolerance in tolerances]
+    threshold, status = (np.stack([part[k][..., 0] for part in searches]) for k in (0, 1))
+    always = status == ThresholdStatus.ALWAYS_WITHIN
+    return np.where(always, ratios[0], np.where(np.isnan(threshold), np.inf, threshold))
 
 
 def compare_with_direct_search(plan, count, seed, points):

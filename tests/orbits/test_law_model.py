@@ -11,9 +11,8 @@ from bouncing_ball.contacts.laws.linear import Linear
 from bouncing_ball.contacts.laws.tsuji import Tsuji
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.orbits.calls import law_at_orbit
 from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.law_model import LawModel
+from bouncing_ball.orbits.law_model import LawModel, law_at_orbit
 from bouncing_ball.orbits.orbit import OBSERVABLES
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel

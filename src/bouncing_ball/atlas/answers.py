@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from bouncing_ball.accuracy.error_law import STATED
 from bouncing_ball.atlas.crossings import LastCrossings
 from bouncing_ball.atlas.errors import MODELS, Law
-from bouncing_ball.orbits.error_law import STATED
 
 PER_DECADE = 10
 """Bins of the histograms of thresholds in a decade of ϖ."""

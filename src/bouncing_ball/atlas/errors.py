@@ -1,7 +1,7 @@
 r"""Signed relative errors of the simple models, and what the error law says of them.
 
 The error of a quantity q is exact over simple minus one, as in
-:mod:`bouncing_ball.studies.model_errors`. The simple model is asked at the Λ at
+:mod:`bouncing_ball.accuracy.errors`. The simple model is asked at the Λ at
 which the exact orbit is, its closed form being exact there too.
 """
 
@@ -11,25 +11,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.accuracy import error_law
+from bouncing_ball.accuracy.errors import SIMPLE as MODELS
+from bouncing_ball.accuracy.errors import relative
+from bouncing_ball.accuracy.quantities import OF_LIMITS, OF_ORBITS, Quantity
 from bouncing_ball.atlas.plan import Nodes
 from bouncing_ball.contacts.signature import Instant, Signature
-from bouncing_ball.orbits import corrected_branch, error_law
+from bouncing_ball.orbits import corrected_branch
 from bouncing_ball.orbits.corrected_orbit import CorrectedOrbit
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
-from bouncing_ball.studies.error_thresholds import Quantity
-from bouncing_ball.studies.model_errors import SIMPLE as MODELS
-
-OF_ORBITS = (
-    Quantity.MAX_HEIGHT,
-    Quantity.BOUNCE_VELOCITY,
-    Quantity.PHASE,
-    Quantity.APPARENT_RESTITUTION,
-)
-"""Quantities of an orbit: functions of r, n and Λ."""
-OF_LIMITS = (Quantity.SADDLE_NODE, Quantity.PERIOD_DOUBLING, Quantity.PERMANENT_CONTACT)
-"""Quantities of a contact and its family: functions of r, the last without n."""
 
 
 class Law(NamedTuple):
@@ -95,11 +87,10 @@ def orbit_errors(orbit: SpringDamperOrbit, one: Instant, frequency_ratio: ArrayL
         CorrectedOrbit.at(n, _Known(delay, r, load, duration), lam, psi),
     )
     found = np.empty((len(MODELS), len(OF_ORBITS), *np.shape(lam)))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        for j, quantity in enumerate(OF_ORBITS):
-            exact = getattr(orbit, quantity)
-            for i, model in enumerate(simple):
-                found[i, j] = exact / getattr(model, quantity) - 1
+    for j, quantity in enumerate(OF_ORBITS):
+        exact = getattr(orbit, quantity)
+        for i, model in enumerate(simple):
+            found[i, j] = relative(exact, getattr(model, quantity))
     return found
 
 
@@ -126,9 +117,9 @@ def limit_law(nodes: Nodes, amplitude: np.ndarray) -> Law:
 def _law(nodes: Nodes, amplitude: np.ndarray, quantities: tuple[Quantity, ...]) -> Law:
     arguments = nodes.n, nodes.instant, amplitude
     first, size = error_law.first_order(*arguments), error_law.scale(*arguments)
-    remainder = [getattr(error_law.REMAINDER, q) * getattr(size, q) for q in quantities]
+    remainder = [error_law.REMAINDER[q] * size[q] for q in quantities]
     return Law(
-        np.stack([getattr(first, q) for q in quantities]),
+        np.stack([first[q] for q in quantities]),
         np.ones((len(quantities), 1)),
         np.stack(remainder),
         error_law.small_parameter(*arguments),

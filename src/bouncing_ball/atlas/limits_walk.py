@@ -11,6 +11,8 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from bouncing_ball.accuracy.errors import relative
+from bouncing_ball.accuracy.quantities import OF_LIMITS, values
 from bouncing_ball.atlas.plan import Nodes
 from bouncing_ball.atlas.walk import extrapolated, stiff_start
 from bouncing_ball.contacts.spring_damper import SpringDamper
@@ -59,26 +61,9 @@ def limit_errors(nodes: Nodes, ratios: np.ndarray) -> Iterator[tuple[np.ndarray,
     for ratio, fold, flip in zip(down, *tracks, strict=True):
         contact = nodes.contact(ratio)
         exact = [fold, flip, SpringDamperModel(contact).permanent_contact_threshold()]
-        with np.errstate(divide="ignore"):
-            yield (
-                np.array([ratio]),
-                np.array(
-                    [
-                        [
-                            np.stack(exact) / np.stack(_bounds(model, n)) - 1
-                            for model in (simple, CorrectedModel.of_contact(contact))
-                        ]
-                    ]
-                ),
-            )
-
-
-def _bounds(model: RestitutionModel | CorrectedModel, n: int) -> list[np.ndarray]:
-    return [
-        model.saddle_node(n).amplitude,
-        model.period_doubling(n).amplitude,
-        model.permanent_contact_threshold(),
-    ]
+        both = simple, CorrectedModel.of_contact(contact)
+        errors = [relative(exact, values(model, n, nodes.amplitude, OF_LIMITS)) for model in both]
+        yield np.array([ratio]), np.array([errors])
 
 
 def _track(

@@ -23,7 +23,6 @@ from bouncing_ball.contacts.signature import Instant, LinearSignature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError
 from bouncing_ball.orbits import restitution_orbit
-from bouncing_ball.studies.parameters import grid
 
 # A linear contact released by its force has a higher restitution coefficient.
 _LOWEST = {Release.DISPLACEMENT: 0.0, Release.FORCE: float(np.exp(-2))}
@@ -109,7 +108,9 @@ class Plan:
     @cached_property
     def ratios(self) -> np.ndarray:
         """All ϖ, increasing: the grid, with those examined among it."""
-        scanned = grid(self.parameters["frequency_ratio"])
+        scanned = np.geomspace(
+            *(self.parameters["frequency_ratio"][k] for k in ("min", "max", "samples"))
+        )
         apart = np.abs(np.log(scanned[:, np.newaxis] / self.examined)) > _SAME
         return np.sort(np.concatenate([scanned[np.all(apart, axis=1)], self.examined]))
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bouncing_ball.accuracy.errors import models
 from bouncing_ball.contacts.law_signature import LawSignature
 from bouncing_ball.contacts.laws.tsuji import Tsuji
 from bouncing_ball.contacts.release import Release
@@ -15,7 +16,6 @@ from bouncing_ball.orbits.law_model import LawModel
 from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
-from bouncing_ball.studies.model_errors import models
 
 
 @dataclass(frozen=True)

@@ -6,14 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bouncing_ball.accuracy import error_law
+from bouncing_ball.accuracy.errors import relative
+from bouncing_ball.accuracy.quantities import Quantity, values
 from bouncing_ball.calculator.case import Case
 from bouncing_ball.contacts.signature import Instant
 from bouncing_ball.contacts.spring_damper import SpringDamper, contact_force
-from bouncing_ball.orbits import error_law
 from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.studies.error_thresholds import Quantity, values
 
 Errors = dict[str, float | None]
 """Relative errors by quantity; None where there is nothing to compare, or to divide by."""
@@ -135,8 +136,8 @@ def first_order(instant: Instant, n: int, amplitude: float) -> tuple[Errors, boo
     absent: Errors = dict.fromkeys(map(str, Quantity))
     if not RestitutionModel(instant.restitution).orbit(n, amplitude).exists:
         return absent, False
-    first = error_law.first_order(n, instant, amplitude)._asdict()
-    errors = absent | {name: _number(abs(float(value))) for name, value in first.items()}
+    first = error_law.first_order(n, instant, amplitude)
+    errors = absent | {str(name): _number(abs(float(value))) for name, value in first.items()}
     return errors, bool(error_law.small_parameter(n, instant, amplitude) < error_law.STATED)
 
 
@@ -158,7 +159,7 @@ def _values(case: Case, model: ImpactModel, n: int) -> np.ndarray:
     About its static deflection that is one of another stiffness, not known here.
     """
     known = [q for q in Quantity if case.law is None or q is not Quantity.PERMANENT_CONTACT]
-    found = dict(zip(known, values(known, model, n, case.table.amplitude), strict=True))
+    found = dict(zip(known, values(model, n, case.table.amplitude, known), strict=True))
     return np.array([found.get(q, np.nan) for q in Quantity])
 
 
@@ -177,8 +178,7 @@ def family(case: Case, n: int) -> Family:
     orbits = {name: model.orbit(n, lam) for name, model in of.items()}
     standing = {name: _standing(of[name], orbits[name], n, lam) for name in of}
     exact, *simple = (_values(case, model, n) for model in of.values())
-    with np.errstate(divide="ignore", invalid="ignore"):
-        by_restitution, by_corrected = (np.abs(exact / each - 1) for each in simple)
+    by_restitution, by_corrected = (np.abs(relative(exact, each)) for each in simple)
     there, orbit = next(iter(standing.values())), next(iter(orbits.values()))
     depth, force = _loads(case, orbit) if there.exists else (math.nan, math.nan)
     law_errors, holds = first_order(case.instant(n), n, lam)

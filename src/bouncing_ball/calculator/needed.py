@@ -4,14 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bouncing_ball.accuracy.quantities import OF_ORBITS, Quantity
+from bouncing_ball.accuracy.thresholds import search
 from bouncing_ball.calculator.family import first_order, permanent_law
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.orbits.orbit import OBSERVABLES
 from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.studies.error_thresholds import Quantity
-from bouncing_ball.studies.model_errors import search
 
 # From contacts that last a good part of the table's period to stiffer ones than
 # any simulation has; so fine that no two crossings are seen as none.
@@ -19,7 +18,7 @@ RATIOS = np.geomspace(1.0, 1e6, 97)
 
 
 NO_ORBIT = "the restitution model has no such orbit"
-"""One more :class:`~bouncing_ball.studies.error_thresholds.ThresholdStatus`."""
+"""One more :class:`~bouncing_ball.accuracy.thresholds.ThresholdStatus`."""
 
 
 @dataclass(frozen=True)
@@ -59,9 +58,9 @@ def needed(
     (10.0, 10.0)
     """
     simple = RestitutionModel(SpringDamper(1.0, damping_ratio, release).restitution)
-    if quantity in OBSERVABLES and not simple.orbit(n, lam).exists:
+    if quantity in OF_ORBITS and not simple.orbit(n, lam).exists:
         return Needed(quantity, tolerance, None, None, None, NO_ORBIT, NO_ORBIT)
-    found = search([damping_ratio], release, n, [lam], RATIOS, tolerance, (quantity,))
+    found = search(damping_ratio, release, n, lam, RATIOS, tolerance, (quantity,))
     ratios = [_number(float(ratio)) for ratio in found.threshold[:, 0, 0]]
     unit = SpringDamper(1.0, damping_ratio, release)
     if quantity == Quantity.PERMANENT_CONTACT:

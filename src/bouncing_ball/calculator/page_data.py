@@ -5,13 +5,13 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.accuracy.errors import SIMPLE
+from bouncing_ball.accuracy.thresholds import ThresholdStatus, search
 from bouncing_ball.calculator.design import Design
 from bouncing_ball.calculator.needed import RATIOS
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.orbits.orbit import Orbit
-from bouncing_ball.studies.error_thresholds import ThresholdStatus
-from bouncing_ball.studies.model_errors import SIMPLE, search
 
 # Restitution coefficients of the chart: as many as make the lines smooth, and from
 # which on. A linear contact that only pushes has r > e⁻².

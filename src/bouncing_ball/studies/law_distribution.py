@@ -5,14 +5,19 @@ many are off it by more than the remainder that it states. The numbers are a
 sample's: too long for every run, so that the pipeline makes them on request.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.orbits.error_law import REMAINDER, STATED
-from bouncing_ball.studies.model_errors import QUANTITIES, LawErrors, law_errors
+from bouncing_ball.accuracy import error_law
+from bouncing_ball.accuracy.error_law import REMAINDER, STATED
+from bouncing_ball.accuracy.errors import errors
+from bouncing_ball.accuracy.quantities import OF_IMPACTS
+from bouncing_ball.contacts.signature import LinearSignature
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
+from bouncing_ball.studies.random_orbits import random_orbits
 
 BATCH = 5000
 """Orbits at a time: the scan for their bifurcations takes the memory."""
@@ -37,6 +42,37 @@ these ``exceed`` are beyond the remainder, of the others ``exceed elsewhere``. Q
 error over predicted value, of all that exist; the last two columns are shares of these."""
 
 
+class LawErrors(NamedTuple):
+    """Errors of random orbits beside the error law; rows are the quantities."""
+
+    frequency_ratio: np.ndarray
+    restitution: np.ndarray
+    """Signed relative error of the restitution model."""
+    corrected: np.ndarray
+    law: np.ndarray
+    """K/ϖ, what the law says of the first."""
+    remainder: np.ndarray
+    """|error - K/ϖ|/(S δ), which the law states to be below M."""
+    small_parameter: np.ndarray
+    """δ of each orbit."""
+
+
+def law_errors(
+    size: int, seed: int | Sequence[int], span: Mapping[str, Any], release: str
+) -> LawErrors:
+    """Errors of random orbits of the whole stable range, ϖ even in its logarithm."""
+    n, zeta, lam, rng = random_orbits(size, seed, release)
+    omega = np.exp(rng.uniform(np.log(span["min"]), np.log(span["max"]), size))
+    contact = SpringDamper(omega, zeta, Release.of(release))
+    instant = LinearSignature(contact)()
+    small = error_law.small_parameter(n, instant, lam)
+    law = np.array([*error_law.first_order(n, instant, lam).values()])
+    size = np.array([*error_law.scale(n, instant, lam).values()])
+    restitution, corrected = errors(contact, n, lam)
+    remainder = np.abs(restitution - law) / (size * small)
+    return LawErrors(omega, restitution, corrected, law, remainder, small)
+
+
 def sample(size: int, seed: int, span: Mapping[str, Any], release: str) -> LawErrors:
     """The errors of ``size`` random orbits, drawn in batches."""
     counts = [min(BATCH, size - start) for start in range(0, size, BATCH)]
@@ -47,7 +83,7 @@ def sample(size: int, seed: int, span: Mapping[str, Any], release: str) -> LawEr
 def summary(drawn: LawErrors, release: str) -> Iterator[list[str]]:
     """One row for each quantity and range of ϖ, the whole range first."""
     ranges = [(DECADES[0], DECADES[-1]), *pairwise(DECADES)]
-    for k, quantity in enumerate(QUANTITIES):
+    for k, quantity in enumerate(OF_IMPACTS):
         for low, high in ranges:
             inside = (drawn.frequency_ratio >= low) & (drawn.frequency_ratio <= high)
             there = inside & np.isfinite(drawn.restitution[k])
@@ -58,7 +94,7 @@ def _cells(drawn: LawErrors, k: int, there: np.ndarray) -> list[str]:
     """Counts, quantiles and shares of one quantity of the orbits chosen."""
     error, law = drawn.restitution[k, there], drawn.law[k, there]
     remainder, stated = drawn.remainder[k, there], drawn.small_parameter[there] < STATED
-    beyond = remainder > REMAINDER[k]
+    beyond = remainder > REMAINDER[OF_IMPACTS[k]]
     corrected = drawn.corrected[k, there]
     # Without an orbit of its own the corrected model is not nearer.
     nearer = np.abs(np.where(np.isfinite(corrected), corrected, np.inf)) < np.abs(error)

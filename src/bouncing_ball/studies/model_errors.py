@@ -3,125 +3,27 @@ r"""The corrected restitution model against the exact contact (beyond the paper)
 Errors are relative to the exact contact's model as in Eqs. 37-38,
 ``|q_SD - q|/|q|`` with q of the restitution model *of the contact's own r*, or
 of the corrected one. The law of the first order is that of
-:mod:`bouncing_ball.orbits.error_law`.
+:mod:`bouncing_ball.accuracy.error_law`.
 """
 
-from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.accuracy import error_law
+from bouncing_ball.accuracy.errors import SIMPLE, errors
+from bouncing_ball.accuracy.quantities import OF_IMPACTS, Quantity
+from bouncing_ball.accuracy.thresholds import ThresholdStatus, search
 from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.orbits import error_law
-from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.orbit import OBSERVABLES
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
-from bouncing_ball.orbits.stability import Bifurcation, Side
-from bouncing_ball.studies.error_thresholds import (
-    Quantity,
-    ThresholdStatus,
-    excess,
-    relative_error,
-    status,
-    thresholds,
-    values,
-)
-from bouncing_ball.studies.last_crossing import last_crossing
+from bouncing_ball.studies.law_distribution import law_errors
 from bouncing_ball.studies.parameters import grid
-
-QUANTITIES = tuple(error_law.FirstOrder._fields)
-"""Those that have a corrected value; permanent contact has no impact to repair."""
-SIMPLE = ("restitution", "corrected")
-"""The models that are compared with the exact one."""
-
-
-def models(contact: SpringDamper) -> tuple[SpringDamperModel, RestitutionModel, CorrectedModel]:
-    """The exact model of a contact, and the simple ones with the contact's own r."""
-    return (
-        SpringDamperModel(contact),
-        RestitutionModel(contact.restitution),
-        CorrectedModel.of_contact(contact),
-    )
-
-
-def errors(contact: SpringDamper, n, amplitude, quantities=QUANTITIES) -> np.ndarray:
-    """Signed relative errors, exact over simple model minus one; (model, quantity, ...)."""
-    shape = np.broadcast_shapes(contact.shape, np.shape(n), np.shape(amplitude))
-    exact, *simple = (
-        np.stack([np.broadcast_to(q, shape) for q in values(quantities, model, n, amplitude)])
-        for model in models(contact)
-    )
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.stack([exact / q - 1 for q in simple])
-
-
-class Search(NamedTuple):
-    """From which ϖ on each model is right, of several orbits; (model, quantity, orbit)."""
-
-    threshold: np.ndarray
-    """NaN where the status is not ``FOUND``."""
-    status: np.ndarray
-    zero: np.ndarray
-    """Where the restitution model's error passes through zero by accident, the largest ϖ;
-    (quantity, orbit), NaN if it does not."""
-
-
-def search(
-    zeta,
-    rule: Release,
-    n,
-    amplitude,
-    ratios: np.ndarray,
-    tolerance: float,
-    quantities: Sequence[str] = QUANTITIES,
-) -> Search:
-    """Thresholds and zeros of the errors, on a grid and then to the last digit.
-
-    ``zeta``, ``n`` and ``amplitude`` are those of the orbits, one-dimensional.
-    """
-    zeta, n, lam = np.broadcast_arrays(zeta, n, amplitude)
-    shape = len(SIMPLE), len(quantities), lam.size
-
-    # Those of the orbit together, as one search finds it; the bifurcations each alone.
-    orbital = [k for k, name in enumerate(quantities) if name in OBSERVABLES]
-    groups = [orbital, *([k] for k in range(len(quantities)) if k not in orbital)]
-    count, simplest = np.prod(shape), lam.size * len(quantities)
-
-    def error(ratio: np.ndarray, number: np.ndarray) -> np.ndarray:
-        """Signed errors of numbered (model, quantity, orbit), each at its own ϖ."""
-        model, quantity, orbit = np.unravel_index(number, shape)
-        found = np.empty(len(number))
-        for group in groups:
-            at = np.flatnonzero(np.isin(quantity, group))
-            if at.size:
-                contact = SpringDamper(ratio[at], zeta[orbit[at]], rule)
-                names = [quantities[k] for k in group]
-                both = errors(contact, n[orbit[at]], lam[orbit[at]], names)
-                place = np.searchsorted(group, quantity[at])
-                found[at] = both[model[at], place, np.arange(at.size)]
-        return found
-
-    def crossing(ratio: np.ndarray, number: np.ndarray) -> np.ndarray:
-        """What changes sign at a threshold; numbers beyond are for the zeros of the errors."""
-        signed = error(ratio, number % count)
-        return np.where(number < count, excess(_finite(signed), tolerance), signed)
-
-    signed = errors(SpringDamper(ratios[:, np.newaxis], zeta, rule), n, lam, quantities)
-    scanned = np.moveaxis(signed, 2, -1).reshape(-1, ratios.size)
-    outside = _finite(scanned) > tolerance
-    # The restitution model's errors come first.
-    scan = np.concatenate([excess(_finite(scanned), tolerance), scanned[:simplest]])
-    threshold, zero = np.split(last_crossing(crossing, ratios, scan), [count])
-    return Search(
-        np.where(outside[:, -1], np.nan, threshold).reshape(shape),
-        np.array([str(status(row)) for row in outside]).reshape(shape),
-        zero.reshape(shape[1:]),
-    )
-
+from bouncing_ball.studies.random_orbits import random_orbits
 
 _STIFF = 500.0
 """ϖ at which the second order is all of the corrected model's error, and rounding none of it."""
@@ -137,11 +39,6 @@ def _second_order(zeta: float, rule: Release, n, amplitude) -> np.ndarray:
     return 2 * twice - once
 
 
-def _finite(error: np.ndarray) -> np.ndarray:
-    """The modulus, infinite where one of the models lacks the quantity."""
-    return np.where(np.isnan(error), np.inf, np.abs(error))
-
-
 def error_law_table(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     """K, and the frequency ratio for a tolerance: exact, by the law, corrected."""
     n, lam, tolerance = (parameters[k] for k in ("n", "amplitude", "tolerance"))
@@ -150,82 +47,23 @@ def error_law_table(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     one = SpringDamper.from_restitution(parameters["restitution"], 1.0, rule)
     zeta = float(one.damping_ratio)
 
-    found = search([zeta], rule, n, lam, ratios, tolerance)
-    k = np.array(error_law.coefficients(n, zeta, lam, rule), dtype=float)
+    found = search(zeta, rule, n, lam, ratios, tolerance, tuple(Quantity))
+    k = np.array([*error_law.coefficients(n, zeta, lam, rule).values()], dtype=float)
     still = float(error_law.permanent_contact_coefficient(zeta, rule))
-    permanent, _ = thresholds(
-        lambda ratio: relative_error(
-            Quantity.PERMANENT_CONTACT,
-            SpringDamperModel(SpringDamper(ratio, zeta, rule)),
-            RestitutionModel(1.0),
-            n,
-            lam,
-        ),
-        [tolerance],
-        ratios,
-    )
     return described(
         {
             "coefficient": ("quantity", k),
             "law_threshold": ("quantity", np.abs(k) / tolerance),
-            "error_threshold": (("model", "quantity"), found.threshold[..., 0]),
-            "threshold_status": (("model", "quantity"), found.status[..., 0]),
-            "error_zero": ("quantity", found.zero[:, 0]),
+            "error_threshold": (("model", "quantity"), found.threshold[:, :-1, 0]),
+            "threshold_status": (("model", "quantity"), found.status[:, :-1, 0]),
+            "error_zero": ("quantity", found.zero[:-1, 0]),
             "second_order": ("quantity", _second_order(zeta, rule, n, lam)),
             "permanent_coefficient": ((), still),
             "permanent_law": ((), float(np.sqrt(abs(still) / tolerance))),
-            "permanent_threshold": ((), float(permanent[0])),
+            "permanent_threshold": ((), float(found.threshold[0, -1, 0])),
         },
-        coords={"model": list(SIMPLE), "quantity": list(QUANTITIES)},
+        coords={"model": list(SIMPLE), "quantity": list(OF_IMPACTS)},
     )
-
-
-def random_orbits(
-    size: int, seed: int | Sequence[int], release: str, places: tuple[float, float] = (0.0, 1.0)
-):
-    """Random (n, ζ, Λ) in the stable range of the restitution model, ``places`` of it.
-
-    r is even from 0.05 to 0.98, from 0.15 with the force release, whose linear
-    contacts go down to e⁻² only; n from 1 to 5.
-    """
-    rng, rule = np.random.default_rng(seed), Release.of(release)
-    lowest = 0.15 if rule is Release.FORCE else 0.05
-    r = rng.uniform(lowest, 0.98, size)
-    n, model = rng.integers(1, 6, size), RestitutionModel(r)
-    low, high = model.saddle_node(n).amplitude, model.period_doubling(n).amplitude
-    lam = low + rng.uniform(*places, size) * (high - low)
-    zeta = SpringDamper.from_restitution(r, 1.0, rule, measured=True).damping_ratio
-    return n, zeta, lam, rng
-
-
-class LawErrors(NamedTuple):
-    """Errors of random orbits beside the error law; rows are the quantities."""
-
-    frequency_ratio: np.ndarray
-    restitution: np.ndarray
-    """Signed relative error of the restitution model."""
-    corrected: np.ndarray
-    law: np.ndarray
-    """K/ϖ, what the law says of the first."""
-    remainder: np.ndarray
-    """|error - K/ϖ|/(S δ), which the law states to be below M."""
-    small_parameter: np.ndarray
-    """δ of each orbit."""
-
-
-def law_errors(
-    size: int, seed: int | Sequence[int], span: Mapping[str, Any], release: str
-) -> LawErrors:
-    """Errors of random orbits of the whole stable range, ϖ even in its logarithm."""
-    n, zeta, lam, rng = random_orbits(size, seed, release)
-    omega = np.exp(rng.uniform(np.log(span["min"]), np.log(span["max"]), size))
-    contact = SpringDamper(omega, zeta, Release.of(release))
-    instant = LinearSignature(contact)()
-    small = error_law.small_parameter(n, instant, lam)
-    law = np.array(error_law.first_order(n, instant, lam))
-    restitution, corrected = errors(contact, n, lam)
-    remainder = np.abs(restitution - law) / (np.array(error_law.scale(n, instant, lam)) * small)
-    return LawErrors(omega, restitution, corrected, law, remainder, small)
 
 
 def orders(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
@@ -252,7 +90,7 @@ def orders(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         },
         coords={
             "model": list(SIMPLE),
-            "quantity": list(QUANTITIES),
+            "quantity": list(OF_IMPACTS),
             "frequency_ratio": ratios,
             "sample": np.arange(sample["samples"]),
             "law_sample": np.arange(sample["law_samples"]),
@@ -274,7 +112,7 @@ def validity(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     there = lam <= model.period_doubling(n).amplitude
     zeta = np.asarray(SpringDamper.from_restitution(r, 1.0, rule, measured=True).damping_ratio)
     found = search(zeta[there], rule, n[there], lam[there], ratios, parameters["tolerance"])
-    threshold = np.full((len(SIMPLE), len(QUANTITIES), *r.shape), np.nan)
+    threshold = np.full((len(SIMPLE), len(OF_IMPACTS), *r.shape), np.nan)
     zero = np.full(threshold.shape[1:], np.nan)
     always = found.status == ThresholdStatus.ALWAYS_WITHIN
     threshold[..., there] = np.where(always, ratios[0], found.threshold)
@@ -287,65 +125,10 @@ def validity(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         },
         coords={
             "model": list(SIMPLE),
-            "quantity": list(QUANTITIES),
+            "quantity": list(OF_IMPACTS),
             "n": axes[0],
             "amplitude_ratio": axes[1],
             "restitution": axes[2],
-        },
-    )
-
-
-def height(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
-    """Greatest height along ϖ in all three models (Fig. 14 with a third curve)."""
-    n, lam, ratios = parameters["n"], parameters["amplitude"], grid(parameters["frequency_ratio"])
-    r = parameters["restitution"]
-    contact = SpringDamper.from_restitution(r, ratios, Release.of(release))
-    exact, simple, corrected = (m.orbit(n, lam) for m in models(contact))
-    return described(
-        {
-            "max_height": ("frequency_ratio", exact.max_height),
-            "admissible": ("frequency_ratio", exact.is_admissible()),
-            "corrected_max_height": ("frequency_ratio", corrected.max_height),
-            "restitution_max_height": ((), simple.max_height.flat[0]),
-        },
-        coords={"frequency_ratio": ratios},
-    )
-
-
-def domains(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
-    """Phase against Λ in all three models (Fig. 15 with a third curve)."""
-    n, top = parameters["n"], parameters["amplitude_max"]
-    contact = SpringDamper.from_restitution(
-        parameters["restitution"], parameters["frequency_ratio"], Release.of(release)
-    )
-    names = ("spring-damper", *SIMPLE)
-    # Towards the fold by squares: the phase depends on Λ there by a root.
-    share = np.linspace(0.0, 1.0, parameters["points"])[1:] ** 2
-    amplitude, phase, stable, ends = [], [], [], []
-    for model in models(contact):
-        fold, flip = model.saddle_node(n), model.period_doubling(n)
-        low = float(fold.amplitude)
-        lam = low + share * (top - low)
-        left, right = (model.orbit(n, lam, side) for side in (Side.UNSTABLE, Side.STABLE))
-        amplitude.append(np.concatenate([lam[::-1], [low], lam]))
-        phase.append(np.concatenate([left.phase[::-1], [float(fold.phase)], right.phase]))
-        # At the fold a multiplier is 1.
-        stable.append(np.concatenate([left.is_stable()[::-1], [False], right.is_stable()]))
-        ends.append([[float(x.amplitude), float(x.phase)] for x in (fold, flip)])
-    bounds = np.array(ends)
-    dims = ("model", "point")
-    return described(
-        {
-            "amplitude": (dims, np.array(amplitude)),
-            "phase": (dims, np.array(phase)),
-            "stable": (dims, np.array(stable)),
-            "bifurcation_amplitude": (("model", "bound"), bounds[..., 0]),
-            "bifurcation_phase": (("model", "bound"), bounds[..., 1]),
-        },
-        coords={
-            "model": list(names),
-            "point": np.arange(2 * len(share) + 1),
-            "bound": list(Bifurcation),
         },
     )
 

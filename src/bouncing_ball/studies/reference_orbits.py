@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.accuracy.errors import models
 from bouncing_ball.contacts.damping import restitution_coefficient
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper, contact_force
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.studies.model_errors import models, random_orbits
 from bouncing_ball.studies.parameters import grid
+from bouncing_ball.studies.random_orbits import random_orbits
 
 # Of the restitution model's stable range: from next to its saddle-node to beyond
 # its period doubling.

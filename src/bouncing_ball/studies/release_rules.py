@@ -15,13 +15,14 @@ import numpy as np
 import xarray as xr
 from scipy.optimize.elementwise import find_minimum
 
+from bouncing_ball.accuracy.quantities import Quantity
+from bouncing_ball.accuracy.thresholds import model_thresholds
 from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Bifurcation
-from bouncing_ball.studies.error_thresholds import Quantity, relative_error, thresholds
 from bouncing_ball.studies.parameters import grid
 
 READINGS = (
@@ -82,23 +83,20 @@ def _thresholds(wanted: Mapping[str, Any]) -> xr.Dataset:
     quantities = [Quantity(name) for name in wanted["quantities"]]
     scan, loss = grid(wanted["frequency_ratio"]), float(damping_ratio(r))
     own = float(restitution_coefficient(loss, Release.FORCE))
-    found = np.empty((len(READINGS), len(quantities)))
-    statuses = np.empty(found.shape, dtype=object)
-    for i, (rule, reading) in enumerate(READINGS):
-        reference = own if reading.endswith("own r") else r
-        for j, quantity in enumerate(quantities):
+    found = []
+    for rule, reading in READINGS:
 
-            def error(ratio, quantity=quantity, rule=rule, reference=reference):
-                exact = SpringDamperModel(SpringDamper(ratio, loss, rule))
-                return relative_error(quantity, exact, RestitutionModel(reference), n, lam)
+        def exact(ratio: np.ndarray, rule=rule) -> SpringDamperModel:
+            return SpringDamperModel(SpringDamper(ratio, loss, rule))
 
-            value, status = thresholds(error, [wanted["tolerance"]], scan)
-            found[i, j], statuses[i, j] = value[0], str(status[0])
+        simple = RestitutionModel(own if reading.endswith("own r") else r)
+        _, one = model_thresholds(exact, simple, n, lam, scan, [wanted["tolerance"]], quantities)
+        found.append(one)
     dims = ("reading", "quantity")
     return xr.Dataset(
         {
-            "error_threshold": (dims, found),
-            "threshold_status": (dims, statuses.astype(str)),
+            "error_threshold": (dims, np.array([one.ratio[:, 0] for one in found])),
+            "threshold_status": (dims, np.array([one.status[:, 0] for one in found])),
             "force_restitution": ((), own),
         },
         coords={

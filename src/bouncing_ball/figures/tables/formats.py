@@ -9,6 +9,17 @@ from bouncing_ball.errors import ModelError
 Rows = Sequence[Sequence[str]]
 
 
+def words(name: object) -> str:
+    """A name as a table has it.
+
+    Examples
+    --------
+    >>> words("max_height")
+    'max height'
+    """
+    return str(name).replace("_", " ")
+
+
 def to_csv(header: Sequence[str], rows: Rows) -> str:
     """Comma-separated values.
 

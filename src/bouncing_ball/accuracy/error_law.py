@@ -1,0 +1,203 @@
+r"""The error of the restitution model, to first order in the contact duration.
+
+The corrected model (:mod:`bouncing_ball.orbits.corrected_branch`) differs from the
+exact one by the second order, from the restitution model by the first: the
+delay t_c and the load sensitivity σ. So the first-order error of the
+restitution model is the derivative of the closed forms along (t_c, σ, D) at 0.
+With ``C = nπ (1 - r)/(1 + r)``, ``cos ψ₀ = C/Λ``, ``Y₀ = Λ sin ψ₀`` and
+``a₀ = 1 - Y₀`` of the restitution model's orbit ::
+
+    ψ = ψ₀ + σ a₀/((1 + r) Y₀)                (the line, at fixed Λ)
+    φ = ψ - t_c
+    max z = Λ sin ψ - v₀ t_c + (nπ)²/2,   v₀ = nπ + C = 2nπ/(1 + r)
+    z′_b = nπ - (D - t_c)
+    r_a = r + [σ - D + (1 + r) t_c] a₀/v₀
+    Λ_SN = (nπ(1 - r) - σ)/√((1 + r)² + σ²)
+
+and at the period doubling, with ``Y₀ - 1 = (1 - r)²/(1 + r)²`` there, from its
+two straight lines ::
+
+    δX = σ (Y₀ - 1)/(1 + r)
+    δY = [2 t_c (Y₀ - 1) - nπ σ C + (1 - r) δX]/(nπ (1 + r))
+    δΛ = (C δX + Y₀ δY)/Λ_PD
+
+For a linear contact t_c, σ and D are inversely proportional to ϖ: the
+signature at ϖ = 1 gives the K of a relative error K/ϖ + O(1/ϖ²). The contact
+is compared with the restitution model *of its own r*: with the force release
+that is not the r of Eq. 16, whose restitution model is not its limit.
+
+The permanent contact has no impact to repair, and its error is of the second
+order: ``Λ_SD = 1 + K₂/ϖ² + O(1/ϖ⁴)`` with K₂ = -(1 - 2ζ²) for the
+displacement release and -1 for the force release.
+
+The law holds while three numbers are small, δ = δ_SN + δ_load + δ_period::
+
+    δ_SN = |σ a₀| Λ/((1 + r) Y₀²)    shift of ψ over tan ψ₀, the distance to the fold
+    δ_load = D (1 + |a₀|)/(r v₀)     load against the speed of the ball that leaves
+    δ_period = D max(1, Λ)           contact against the period
+
+Its remainder was measured as ``|error - K| ≤ M S δ`` (all at the contact's own ϖ)
+for δ < 0.3, with S the :func:`scale` of K and M = 2 for the greatest height and
+the period doubling and less for the rest, but M = 4 for the phase. So it fails
+next to the saddle-node, within Λ - Λ_SN ~ 1/ϖ, for grazing and slow impacts, and
+for small r.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.accuracy.quantities import OF_IMPACTS, Quantity
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.signature import Instant, LinearSignature
+from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.orbits import restitution_orbit
+
+STATED = 0.3
+"""δ below which the law is stated."""
+
+
+ByQuantity = dict[Quantity, np.ndarray]
+"""One array for each quantity of an impact, in their order."""
+
+REMAINDER = dict.fromkeys(OF_IMPACTS, 2.0) | {Quantity.PHASE: 4.0}
+"""M of each quantity: the stated remainder is M S δ. Measured, not proved."""
+
+
+def first_order(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> ByQuantity:
+    """Relative first-order errors of the restitution model at the stable side's orbit.
+
+    That of the saddle-node is infinite at r = 1, and that of the phase at the saddle-node,
+    where the restitution model's value is 0: there is nothing to be relative to.
+
+    Parameters
+    ----------
+    n : array_like of int
+        Index of the family.
+    instant : Instant
+        Signature of the contact at the orbit's impact speed.
+    amplitude : array_like
+        Λ, at or above the saddle-node of the restitution model.
+
+    Raises
+    ------
+    NoOrbitError
+        If Λ lies below it.
+
+    Examples
+    --------
+    A ball that leaves 0.1 late, and nothing else:
+
+    >>> law = first_order(1, Instant(0.0, 0.5, 0.0, 0.1), 1.5)
+    >>> abs(float(law["max_height"])), round(float(law["bounce_velocity"]) * np.pi, 15)
+    (0.0, -0.1)
+    """
+    delay, r, load, duration = (np.asarray(x, dtype=float) for x in instant[:4])
+    lam, half = np.asarray(amplitude, dtype=float), np.asarray(n) * np.pi
+    psi = restitution_orbit.phase(n, r, lam)
+    fold = restitution_orbit.saddle_node(n, r)
+    lift = lam * np.sin(psi)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        later = load * (1 - lift) / ((1 + r) * lift) - delay
+        higher = fold * later - half * delay
+        unloaded = load - duration + (1 + r) * delay
+        doubling = _period_doubling(half, r, delay, load, fold)
+        return {
+            Quantity.MAX_HEIGHT: higher / (lift + half * half / 2),
+            Quantity.BOUNCE_VELOCITY: (delay - duration) / half,
+            Quantity.PHASE: later / psi,
+            Quantity.APPARENT_RESTITUTION: unloaded * (1 - lift) * (1 + r) / (2 * half * r),
+            Quantity.SADDLE_NODE: -load / (half * (1 - r)),
+            Quantity.PERIOD_DOUBLING: doubling,
+        }
+
+
+def _period_doubling(half, r, delay, load, fold):
+    lift = restitution_orbit.period_doubling_lift(r)
+    excess = ((1 - r) / (1 + r)) ** 2
+    d_x = load * excess / (1 + r)
+    d_y = (2 * delay * excess - half * load * fold + (1 - r) * d_x) / (half * (1 + r))
+    return (fold * d_x + lift * d_y) / (fold * fold + lift * lift)
+
+
+def small_parameter(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> np.ndarray:
+    """δ, which must be small for the law to hold; infinite at the saddle-node.
+
+    Examples
+    --------
+    >>> bool(small_parameter(1, Instant(0.05, 1.0, 0.0, 0.1), 1.0) < 0.3)
+    True
+    """
+    _, r, load, duration = (np.asarray(x, dtype=float) for x in instant[:4])
+    lam, half = np.asarray(amplitude, dtype=float), np.asarray(n) * np.pi
+    lift = lam * np.sin(restitution_orbit.phase(n, r, lam))
+    pull = np.abs(1 - lift)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        fold = np.abs(load) * pull * lam / ((1 + r) * lift * lift)
+    return fold + duration * (1 + pull) * (1 + r) / (2 * half * r) + duration * np.maximum(1, lam)
+
+
+def scale(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> ByQuantity:
+    """S of each quantity: K with its parts added up without their signs.
+
+    The apparent restitution's K is that of a small part of the contact force; its
+    scale is that of the whole.
+
+    Examples
+    --------
+    >>> instant = Instant(0.05, 0.5, 0.1, 0.1)
+    >>> size = scale(1, instant, 1.3)
+    >>> all(abs(k) <= size[q] * (1 + 1e-15) for q, k in first_order(1, instant, 1.3).items())
+    True
+    """
+    delay, r, load, duration = (np.asarray(x, dtype=float) for x in instant[:4])
+    lam, half = np.asarray(amplitude, dtype=float), np.asarray(n) * np.pi
+    psi = restitution_orbit.phase(n, r, lam)
+    fold, lift = restitution_orbit.saddle_node(n, r), lam * np.sin(psi)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shift = np.abs(load * (1 - lift)) / ((1 + r) * lift)
+        node = np.abs(load) / (half * (1 - r))
+        whole = duration * (1 + np.abs(1 - lift))
+        return {
+            Quantity.MAX_HEIGHT: (fold * shift + (half + fold) * delay) / (lift + half * half / 2),
+            Quantity.BOUNCE_VELOCITY: (duration - delay) / half,
+            Quantity.PHASE: (shift + delay) / psi,
+            Quantity.APPARENT_RESTITUTION: whole * (1 + r) / (2 * half * r),
+            Quantity.SADDLE_NODE: node,
+            Quantity.PERIOD_DOUBLING: node + delay / half,
+        }
+
+
+def coefficients(
+    n: ArrayLike,
+    damping_ratio: ArrayLike,
+    amplitude: ArrayLike,
+    release: Release = Release.DISPLACEMENT,
+) -> ByQuantity:
+    """K of each quantity for a linear contact: relative error K/ϖ + O(1/ϖ²).
+
+    Examples
+    --------
+    The rule of thumb 1/(nε) for r → 1, here where Λ sin φ = 1:
+
+    >>> law = coefficients(1, 0.0, 1.0)
+    >>> round(float(law["max_height"]) * (1 + 2 / np.pi**2), 14)
+    -1.0
+    """
+    contact = SpringDamper(1.0, np.asarray(damping_ratio, dtype=float), release)
+    return first_order(n, LinearSignature(contact)(), amplitude)
+
+
+def permanent_contact_coefficient(
+    damping_ratio: ArrayLike, release: Release = Release.DISPLACEMENT
+) -> np.ndarray:
+    """K₂ of the permanent contact: relative error K₂/ϖ² + O(1/ϖ⁴).
+
+    Examples
+    --------
+    >>> float(permanent_contact_coefficient(0.5)), float(permanent_contact_coefficient(0.0))
+    (-0.5, -1.0)
+    """
+    zeta = np.asarray(damping_ratio, dtype=float)
+    if release is Release.FORCE:
+        return np.full_like(zeta, -1.0)
+    return 2 * zeta * zeta - 1

@@ -1,0 +1,98 @@
+r"""Relative errors of the simple models against the exact contact (Eqs. 37-38).
+
+The error of a quantity q is ``(q_SD - q)/q`` with q of the simple model: the
+restitution model, or the corrected one. It is signed; the paper's is its modulus.
+"""
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.accuracy.quantities import OF_IMPACTS, values
+from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.orbits.corrected_model import CorrectedModel
+from bouncing_ball.orbits.model import ImpactModel
+from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+
+SIMPLE = ("restitution", "corrected")
+"""The models that are compared with the exact one."""
+
+
+def models(contact: SpringDamper) -> tuple[SpringDamperModel, RestitutionModel, CorrectedModel]:
+    """The exact model of a contact, and the simple ones with the contact's own r."""
+    return (
+        SpringDamperModel(contact),
+        RestitutionModel(contact.restitution),
+        CorrectedModel.of_contact(contact),
+    )
+
+
+def relative(exact: ArrayLike, simple: ArrayLike) -> np.ndarray:
+    """Signed relative errors, exact minus simple over simple value.
+
+    NaN where either is missing, and for 0/0; infinite over a simple value of 0, which
+    leaves nothing to be relative to (the saddle-node and the phase at r = 1).
+
+    Examples
+    --------
+    >>> relative([1.5, 1.0], [1.0, 0.0]).tolist()
+    [0.5, inf]
+    """
+    exact, simple = np.asarray(exact, dtype=float), np.asarray(simple, dtype=float)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return (exact - simple) / simple
+
+
+def modulus(error: ArrayLike) -> np.ndarray:
+    """Modulus of errors, infinite where there is none: what is missing is not right.
+
+    Examples
+    --------
+    >>> modulus([-0.5, np.nan]).tolist()
+    [0.5, inf]
+    """
+    return np.where(np.isnan(error), np.inf, np.abs(error))
+
+
+def relative_errors(
+    exact: ImpactModel,
+    simple: ImpactModel,
+    n: ArrayLike,
+    amplitude: ArrayLike,
+    quantities: Iterable[str] = OF_IMPACTS,
+) -> np.ndarray:
+    """Signed relative errors of a simple model, shape (quantity, ...).
+
+    Examples
+    --------
+    Without damping, Λ_SD = 1 - 1/ϖ² above the resonance:
+
+    >>> stiff = SpringDamperModel(SpringDamper.from_restitution(1.0, np.array([2.0])))
+    >>> relative_errors(stiff, RestitutionModel(1.0), 1, 1.0, ["permanent_contact"]).tolist()
+    [[-0.25]]
+    """
+    asked = tuple(quantities)
+    pairs = zip(*(values(model, n, amplitude, asked) for model in (exact, simple)), strict=True)
+    return np.stack([relative(*pair) for pair in pairs])
+
+
+def errors(
+    contact: SpringDamper,
+    n: ArrayLike,
+    amplitude: ArrayLike,
+    quantities: Iterable[str] = OF_IMPACTS,
+) -> np.ndarray:
+    """Signed relative errors of both simple models on contacts, (model, quantity, ...).
+
+    Examples
+    --------
+    >>> errors(SpringDamper(100.0, 0.1), 1, 1.0, ["max_height"]).round(4).tolist()
+    [[-0.0083], [-0.0]]
+    """
+    asked = tuple(quantities)
+    shape = np.broadcast_shapes(contact.shape, np.shape(n), np.shape(amplitude))
+    exact, *simple = (values(model, n, amplitude, asked) for model in models(contact))
+    found = [[relative(*pair) for pair in zip(exact, each, strict=True)] for each in simple]
+    return np.stack([[np.broadcast_to(error, shape) for error in each] for each in found])

@@ -1,0 +1,65 @@
+"""The seven quantities in which models are compared, and how a model is asked for them."""
+
+from collections.abc import Iterable
+from enum import StrEnum
+from functools import cache
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.orbits.model import ImpactModel
+
+
+class Quantity(StrEnum):
+    """What is compared between models."""
+
+    MAX_HEIGHT = "max_height"
+    BOUNCE_VELOCITY = "bounce_velocity"
+    PHASE = "phase"
+    APPARENT_RESTITUTION = "apparent_restitution"
+    SADDLE_NODE = "saddle_node"
+    PERIOD_DOUBLING = "period_doubling"
+    PERMANENT_CONTACT = "permanent_contact"
+
+
+OF_ORBITS = tuple(Quantity)[:4]
+"""Quantities of an orbit: functions of the contact, n and Λ."""
+OF_LIMITS = tuple(Quantity)[4:]
+"""Values of Λ: functions of the contact and of n, the permanent contact's without n."""
+OF_IMPACTS = tuple(Quantity)[:6]
+"""Those that depend on an impact. A ball held in permanent contact has none."""
+
+
+def values(
+    model: ImpactModel,
+    n: ArrayLike,
+    amplitude: ArrayLike,
+    quantities: Iterable[str] = OF_IMPACTS,
+) -> np.ndarray:
+    """Quantities in a model, all of the orbit from one search for it.
+
+    Returns
+    -------
+    ndarray, shape (quantity, ...)
+        NaN where the model has no such orbit or bifurcation.
+
+    Examples
+    --------
+    >>> from bouncing_ball.orbits.restitution_model import RestitutionModel
+    >>> asked = "bounce_velocity", "permanent_contact"
+    >>> bool(np.all(values(RestitutionModel(0.5), 1, 2.0, asked) == [np.pi, 1.0]))
+    True
+    """
+    orbit = cache(lambda: model.orbit(n, amplitude))
+
+    def value(quantity: str) -> np.ndarray:
+        match quantity:
+            case Quantity.SADDLE_NODE:
+                return model.saddle_node(n).amplitude
+            case Quantity.PERIOD_DOUBLING:
+                return model.period_doubling(n).amplitude
+            case Quantity.PERMANENT_CONTACT:
+                return model.permanent_contact_threshold()
+        return getattr(orbit(), quantity)
+
+    return np.stack(np.broadcast_arrays(*map(value, quantities)))

@@ -1,0 +1,219 @@
+r"""From which frequency ratio ϖ on an error stays within a tolerance.
+
+The threshold is the largest ϖ at which the modulus of the error crosses the tolerance,
+within the range scanned. Where a model lacks the quantity, the error is infinite.
+"""
+
+from collections.abc import Callable, Sequence
+from enum import StrEnum
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize.elementwise import find_root
+
+from bouncing_ball.accuracy.errors import SIMPLE, errors, modulus, relative_errors
+from bouncing_ball.accuracy.quantities import OF_IMPACTS, OF_ORBITS
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.orbits.model import ImpactModel
+
+Numbered = Callable[[np.ndarray, np.ndarray], np.ndarray]
+"""Values at ratios ϖ of the functions with given numbers; all three arrays of one shape."""
+
+# Errors are bounded for the root finder: they may vanish, or be infinite.
+_SMALLEST, _LARGEST = 1e-300, 1e3
+
+
+class ThresholdStatus(StrEnum):
+    """Outcome of the search for a threshold."""
+
+    FOUND = "found"
+    ALWAYS_WITHIN = "within the tolerance at every frequency ratio scanned"
+    NEVER_WITHIN = "outside the tolerance at the largest frequency ratio scanned"
+
+
+class Thresholds(NamedTuple):
+    """Thresholds and how the search for them ended, arrays of one shape."""
+
+    ratio: np.ndarray
+    """ϖ; NaN where the status is not ``FOUND``."""
+    status: np.ndarray
+
+
+def last_crossing(function: Numbered, ratios: np.ndarray, scanned: np.ndarray) -> np.ndarray:
+    """The largest ϖ at which each function changes its sign.
+
+    The last change between two samples is closed to the last digit; an even
+    number of changes between two samples goes unseen.
+
+    Parameters
+    ----------
+    function : callable
+    ratios : ndarray, shape (N,)
+        Increasing grid.
+    scanned : ndarray, shape (k, N)
+        The k functions on the grid; next to a NaN no change counts.
+
+    Returns
+    -------
+    ndarray, shape (k,)
+        NaN for a function that changes nowhere.
+
+    Examples
+    --------
+    >>> grid, levels = np.geomspace(1, 1e4, 9), np.array([0.01, 2.0])
+    >>> scanned = 1 / grid - levels[:, np.newaxis]
+    >>> last_crossing(lambda ratio, which: 1 / ratio - levels[which], grid, scanned)
+    array([100.,  nan])
+    """
+    known = np.isfinite(scanned)
+    turns = (scanned[:, 1:] > 0) != (scanned[:, :-1] > 0)
+    turns &= known[:, 1:] & known[:, :-1]
+    which = np.flatnonzero(turns.any(axis=1))
+    last = turns.shape[1] - 1 - np.argmax(turns[which, ::-1], axis=1)
+    found = np.full(len(scanned), np.nan)
+    if which.size:
+        bracket = np.log(ratios[last]), np.log(ratios[last + 1])
+        with np.errstate(invalid="ignore"):  # of an interpolation that is then not taken
+            root = find_root(
+                lambda x, k: function(np.exp(x), k.astype(int)), bracket, args=(which,)
+            )
+        # On a sample rounding may turn the sign back: the root is that sample.
+        values_at_ends = np.abs(root.f_bracket)
+        end = np.where(values_at_ends[0] < values_at_ends[1], *bracket)
+        found[which] = np.exp(np.where(root.success, root.x, end))
+    return found
+
+
+def thresholds(
+    error: Numbered, ratios: np.ndarray, scanned: np.ndarray, tolerances: ArrayLike
+) -> Thresholds:
+    """The ϖ above which each error stays within each tolerance, shape (k, m).
+
+    Parameters
+    ----------
+    error : callable
+        Signed relative errors.
+    ratios : ndarray, shape (N,)
+        Increasing grid.
+    scanned : ndarray, shape (k, N)
+        The k errors on the grid.
+    tolerances : array_like, shape (m,)
+
+    Examples
+    --------
+    >>> grid = np.geomspace(1, 1e4, 50)
+    >>> thresholds(lambda ratio, _: 1 / ratio, grid, 1 / grid[np.newaxis], [0.01, 2.0]).ratio
+    array([[100.,  nan]])
+    """
+    level = np.asarray(tolerances, dtype=float)
+    size, tolerance = modulus(scanned)[:, np.newaxis], level[:, np.newaxis]
+
+    def excess(error: np.ndarray, tolerance: np.ndarray) -> np.ndarray:
+        # ln(error/tolerance) is nearly a straight line in ln ϖ.
+        return np.log(np.clip(modulus(error), _SMALLEST, _LARGEST) / tolerance)
+
+    def crossing(ratio: np.ndarray, number: np.ndarray) -> np.ndarray:
+        which, place = np.divmod(number, level.size)
+        return excess(error(ratio, which), level[place])
+
+    outside = size > tolerance
+    rows = excess(size, tolerance).reshape(-1, ratios.size)
+    found = last_crossing(crossing, ratios, rows).reshape(outside.shape[:2])
+    never, always = outside[..., -1], ~outside.any(axis=-1)
+    status = np.select(
+        [never, always],
+        [str(ThresholdStatus.NEVER_WITHIN), str(ThresholdStatus.ALWAYS_WITHIN)],
+        str(ThresholdStatus.FOUND),
+    )
+    return Thresholds(np.where(never, np.nan, found), status)
+
+
+def model_thresholds(
+    exact: Callable[[np.ndarray], ImpactModel],
+    simple: ImpactModel,
+    n: int,
+    amplitude: float,
+    ratios: np.ndarray,
+    tolerances: ArrayLike,
+    quantities: Sequence[str],
+) -> tuple[np.ndarray, Thresholds]:
+    """One simple model against exact ones along ϖ: moduli of the errors, and thresholds.
+
+    Parameters
+    ----------
+    exact : callable
+        The exact models at an array of ϖ.
+
+    Returns
+    -------
+    ndarray, shape (quantity, N)
+    Thresholds, shape (quantity, tolerance)
+
+    Raises
+    ------
+    NoOrbitError
+        If the simple model has no orbit at Λ to compare with.
+    """
+    if set(quantities) & set(OF_ORBITS):
+        simple.require_orbit(n, amplitude)
+
+    scanned = relative_errors(exact(ratios), simple, n, amplitude, quantities)
+    found = []
+    for quantity, row in zip(quantities, scanned, strict=True):
+
+        def error(ratio: np.ndarray, _: np.ndarray, quantity=quantity) -> np.ndarray:
+            return relative_errors(exact(ratio), simple, n, amplitude, [quantity])[0]
+
+        found.append(thresholds(error, ratios, row[np.newaxis], tolerances))
+    return modulus(scanned), Thresholds(*map(np.concatenate, zip(*found, strict=True)))
+
+
+class Search(NamedTuple):
+    """From which ϖ on each simple model is right, of several orbits."""
+
+    threshold: np.ndarray
+    """Shape (model, quantity, orbit); NaN where the status is not ``FOUND``."""
+    status: np.ndarray
+    zero: np.ndarray
+    """Where the restitution model's error passes through zero by accident, the largest ϖ;
+    (quantity, orbit), NaN if it does not."""
+
+
+def search(
+    zeta: ArrayLike,
+    rule: Release,
+    n: ArrayLike,
+    amplitude: ArrayLike,
+    ratios: np.ndarray,
+    tolerance: float,
+    quantities: Sequence[str] = OF_IMPACTS,
+) -> Search:
+    """Thresholds and zeros of the errors of both simple models, for linear contacts.
+
+    ``zeta``, ``n`` and ``amplitude`` are those of the orbits, one-dimensional; the
+    restitution model has the contact's own r.
+    """
+    damping, index, lam = (np.atleast_1d(x) for x in np.broadcast_arrays(zeta, n, amplitude))
+    along = SpringDamper(ratios[:, np.newaxis], damping, rule)
+    scanned = np.moveaxis(errors(along, index, lam, quantities), 2, -1)
+    found, zeros = [], []
+    for k, quantity in enumerate(quantities):
+
+        def error(ratio: np.ndarray, number: np.ndarray, quantity=quantity) -> np.ndarray:
+            model, orbit = np.divmod(number, lam.size)
+            contact = SpringDamper(ratio, damping[orbit], rule)
+            both = errors(contact, index[orbit], lam[orbit], [quantity])
+            return both[model, 0, np.arange(number.size)]
+
+        rows = scanned[:, k].reshape(-1, ratios.size)
+        found.append(thresholds(error, ratios, rows, [tolerance]))
+        # The restitution model's errors come first.
+        zeros.append(last_crossing(error, ratios, rows[: lam.size]))
+    shape = len(SIMPLE), lam.size
+    ratio, status = (
+        np.stack([part.reshape(shape) for part in parts], axis=1)
+        for parts in zip(*found, strict=True)
+    )
+    return Search(ratio, status, np.array(zeros))

@@ -1,0 +1,136 @@
+"""The last crossing of a tolerance, against scans of fine grids."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.accuracy.errors import SIMPLE, errors, modulus
+from bouncing_ball.accuracy.quantities import OF_IMPACTS, Quantity
+from bouncing_ball.accuracy.thresholds import (
+    ThresholdStatus,
+    last_crossing,
+    model_thresholds,
+    search,
+    thresholds,
+)
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+
+RATIOS = np.geomspace(1.0, 1e4, 41)
+FOUND, ALWAYS, NEVER = ThresholdStatus
+
+
+def of(function, *tolerances):
+    scanned = function(RATIOS)[np.newaxis]
+    found = thresholds(lambda ratio, _: function(ratio), RATIOS, scanned, tolerances)
+    return found.ratio[0], found.status[0].tolist()
+
+
+def test_each_function_has_its_own_last_crossing():
+    levels = np.array([0.3, 0.001, 2.0, 1e-9])
+
+    def function(ratio, which):
+        return 1 / ratio - levels[which]
+
+    found = last_crossing(function, RATIOS, function(RATIOS, np.arange(4)[:, np.newaxis]))
+    np.testing.assert_allclose(found, [1 / 0.3, 1000.0, np.nan, np.nan], rtol=1e-14)
+
+
+def test_a_gap_is_no_crossing():
+    scanned = np.where(RATIOS < 50, 1.0, -1.0)
+    scanned[np.argmin(np.abs(RATIOS - 50))] = np.nan
+    assert np.isnan(last_crossing(lambda ratio, _: 50 - ratio, RATIOS, scanned[np.newaxis])).all()
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_power_is_closed_to_the_last_digit(sign):
+    ratio, status = of(lambda x: sign * x**-2.0, 0.01, 0.0004, 2.0, 1e-9)
+    assert ratio == pytest.approx([10.0, 50.0, np.nan, np.nan], rel=1e-14, nan_ok=True)
+    assert status == [FOUND, FOUND, ALWAYS, NEVER]
+
+
+def test_the_last_of_several_crossings_counts():
+    def wave(x):
+        return (1.5 + np.sin(4 * np.log(x))) / x
+
+    (ratio,), status = of(wave, 0.01)
+    fine = np.geomspace(1, 1e4, 200001)
+    crossings = np.nonzero(np.diff(wave(fine) > 0.01))[0]
+    assert status == [FOUND] and len(crossings) == 3
+    assert fine[crossings[-1]] <= ratio <= fine[crossings[-1] + 1]
+
+
+@pytest.mark.parametrize("absent", [np.nan, np.inf])
+def test_where_there_is_no_error_it_is_not_within_the_tolerance(absent):
+    (ratio,), status = of(lambda x: np.where(x < 7, absent, 0.001), 0.01)
+    assert status == [FOUND] and ratio == pytest.approx(7.0, rel=1e-12)
+    (ratio,), status = of(lambda x: np.where(x > 7, absent, 0.001), 0.01)
+    assert status == [NEVER] and np.isnan(ratio)
+
+
+def test_a_threshold_at_the_end_of_the_bifurcation():
+    # r = 0.0893 and 1-T: contacts have a saddle-node from ϖ = 3.6 on only.
+    def exact(ratio):
+        return SpringDamperModel(SpringDamper.from_restitution(0.0893, ratio))
+
+    asked = [Quantity.SADDLE_NODE]
+    error, found = model_thresholds(exact, RestitutionModel(0.0893), 1, 3.0, RATIOS, [0.5], asked)
+    assert found.status.tolist() == [[FOUND]]
+    fine = np.geomspace(1.0, 10.0, 20001)
+    there = np.isfinite(exact(fine).saddle_node(1).amplitude)
+    first = int(np.argmax(there))
+    assert np.all(there[first:]) and fine[first - 1] <= found.ratio[0, 0] <= fine[first]
+    assert np.array_equal(np.isinf(error[0]), RATIOS < found.ratio[0, 0])
+
+
+def test_no_orbit_to_compare_with(one_line):
+    def exact(ratio):
+        return SpringDamperModel(SpringDamper(ratio, 0.1))
+
+    simple = RestitutionModel(0.65)
+    with pytest.raises(NoOrbitError) as error:
+        model_thresholds(exact, simple, 1, 0.3, RATIOS, [0.1], ["phase"])
+    one_line(error, "no 1-T orbit at Λ = 0.3")
+    # The bifurcations do not ask for Λ.
+    _, found = model_thresholds(exact, simple, 1, 0.3, RATIOS, [0.1], ["saddle_node"])
+    assert found.ratio.shape == (1, 1)
+
+
+@pytest.mark.parametrize("release", list(Release))
+def test_the_thresholds_of_contacts_are_those_of_a_fine_scan(release):
+    zeta, n, lam, tolerance = np.array([0.136, 0.05]), np.array([1, 2]), np.array([1.0, 0.9]), 0.01
+    found = search(zeta, release, n, lam, RATIOS, tolerance, tuple(Quantity))
+    fine = np.geomspace(RATIOS[0], RATIOS[-1], 4001)
+    contact = SpringDamper(fine[:, np.newaxis], zeta, release)
+    scanned = np.moveaxis(errors(contact, n, lam, Quantity), 2, -1)
+    seen = set()
+    for index in np.ndindex(scanned.shape[:-1]):
+        outside = np.flatnonzero(modulus(scanned[index]) > tolerance)
+        # All are within the tolerance at last: no contact is as stiff as 10⁴.
+        assert found.status[index] == (FOUND if outside.size else ALWAYS)
+        seen.add(found.status[index])
+        if found.status[index] == FOUND:
+            low, high = fine[outside[-1]], fine[outside[-1] + 1]
+            assert low * (1 - 1e-12) <= found.threshold[index] <= high * (1 + 1e-12)
+        else:
+            assert np.isnan(found.threshold[index])
+        if index[0] == 0:
+            turns = np.flatnonzero(scanned[index][1:] * scanned[index][:-1] < 0)
+            low, high = (fine[turns[-1] + k] if turns.size else np.nan for k in (0, 1))
+            zero = found.zero[index[1:]]
+            assert (low <= zero <= high) if turns.size else np.isnan(zero)
+    assert seen == {FOUND, ALWAYS}
+
+
+def test_at_its_threshold_an_error_is_the_tolerance_and_at_its_zero_nothing():
+    zeta, lam = 0.136, 1.0
+    found = search(zeta, Release.DISPLACEMENT, 1, lam, RATIOS, 0.01)
+    assert np.isfinite(found.threshold).sum() > 6 and np.isfinite(found.zero).any()
+    for i, j in np.ndindex(len(SIMPLE), len(OF_IMPACTS)):
+        error = errors(SpringDamper(found.threshold[i, j], zeta), 1, lam)[i, j]
+        if np.isfinite(found.threshold[i, j, 0]):
+            # The error is a difference of numbers of order 1.
+            assert abs(float(error[0])) == pytest.approx(0.01, abs=1e-12)
+    for j in np.flatnonzero(np.isfinite(found.zero[:, 0])):
+        assert abs(errors(SpringDamper(found.zero[j], zeta), 1, lam)[0, j]) < 1e-12

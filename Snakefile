@@ -41,9 +41,8 @@ localrules:
 
 # The accepted record in git.
 include: "workflow/rules/record.smk"
-# The results against the record, and what the budgets of that come from.
+# The results against the record.
 include: "workflow/rules/diff.smk"
-include: "workflow/rules/convergence.smk"
 # The error law, on more orbits than a run can take.
 include: "workflow/rules/error_law.smk"
 # The atlas of thresholds, on more orbits still.

@@ -28,7 +28,6 @@ if package is None or Path(package.origin).resolve().parent != HERE:
         f"bouncing_ball is imported from {found}, not from {HERE}: use this checkout's .venv (make setup)"
     )
 
-from bouncing_ball.claims.ledger_file import read_ledger
 from bouncing_ball.configuration.check import check_configuration, check_orbits
 from bouncing_ball.configuration.stages import ENTRIES, STAGES, Kind, names, studied, tables
 from bouncing_ball.errors import ModelError
@@ -54,10 +53,8 @@ try:
     check_configuration(config, read_yaml(Path(ROOT, "config/schema.yaml")))
     if workflow.is_main_process:  # jobs need not look again
         check_orbits(config)
-    where = "config/claims.yaml"
-    LEDGER = read_ledger(Path(ROOT, "config"), set(DATASETS) - {"claims"})
     # All that parameters and settings of the stages are taken from.
-    RUN = config | {"printed": LEDGER.table("Table 1"), "ledger": LEDGER.source}
+    RUN = config
     where = "stages"
     if workflow.is_main_process:
         check_pieces(STAGES, RUN)
@@ -89,11 +86,6 @@ def files(artifacts):
 
 def captioned(name):
     return Path(ROOT, f"workflow/report/{name}.rst").is_file()
-
-
-def reads(stage):
-    """The artifacts whose datasets a stage takes; the ledger names its own."""
-    return LEDGER.datasets if stage.section == "ledger" else stage.reads
 
 
 def modules(*names):

@@ -141,8 +141,8 @@ def make_dataset(snakemake: Any) -> None:
         withdraw()
         job = snakemake.params
         data = {Path(path).stem: read_input(path) for path in snakemake.input.data}
-        inputs = [data] if data else []
-        dataset = typed(load(job.study))(*inputs, job.parameters, *job.settings.values())
+        inputs = [part for part in (data, job.parameters) if part]
+        dataset = typed(load(job.study))(*inputs, *job.settings.values())
         parameters = dataset.attrs or parameter_attributes(job.parameters | job.settings)
         publish(snakemake, dataset, {**parameters, **statement(dataset)})
         sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())

@@ -45,6 +45,5 @@ rule all:
 
 # The accepted record in git, and the results against it.
 include: "workflow/rules/record.smk"
-include: "workflow/rules/diff.smk"
 # How stiff is stiff enough, on more orbits than a run can take.
 include: "workflow/rules/atlas.smk"

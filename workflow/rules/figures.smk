@@ -21,7 +21,6 @@ for name, drawing in DRAWINGS.items():
             source=modules(
                 f"figures.{drawing}".rpartition(".")[0],
                 "figures.files",
-                "figures.given",
                 "datasets.netcdf",
             ),
         params:

@@ -15,7 +15,6 @@ rule set_table:
         source=lambda wildcards: modules(
             f"figures.tables.{wildcards.table}",
             "figures.tables.formats",
-            "figures.given",
             "datasets.netcdf",
             "datasets.files",
         ),

@@ -16,7 +16,5 @@ ALONG_FREQUENCY_RATIO = {
 
 
 use rule study as apparent_restitution with:
-    message:
-        "Apparent restitution: {params.title}"
     wildcard_constraints:
         artifact=stages(ALONG_FREQUENCY_RATIO),

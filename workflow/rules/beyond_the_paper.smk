@@ -36,8 +36,6 @@ BEYOND_THE_PAPER = {
 
 
 use rule study as beyond_the_paper with:
-    message:
-        "Beyond the paper: {params.title}"
     wildcard_constraints:
         artifact=stages(BEYOND_THE_PAPER),
 

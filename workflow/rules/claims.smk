@@ -26,7 +26,5 @@ READS["claims"] = READS_OF_CLAIMS
 
 
 use rule study as audit with:
-    message:
-        "The paper under audit: {params.title}"
     wildcard_constraints:
         artifact=stages(CLAIMS),

@@ -63,7 +63,7 @@ def modules(*names):
 # itself it makes none.
 rule study:
     message:
-        "{params.title}"
+        "{wildcards.artifact}: {params.title}"
     input:
         data=lambda wildcards: datasets(READS.get(wildcards.artifact, [])),
         source=lambda wildcards: modules(STUDIES[wildcards.artifact].rpartition(".")[0]),

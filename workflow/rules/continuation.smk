@@ -16,7 +16,5 @@ CONTINUATION = {
 
 
 use rule study as continuation_of_orbits with:
-    message:
-        "Continuation of n-T orbits: {params.title}"
     wildcard_constraints:
         artifact=stages(CONTINUATION),

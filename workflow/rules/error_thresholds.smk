@@ -11,7 +11,5 @@ ERROR_THRESHOLDS = {
 
 
 use rule study as error_thresholds with:
-    message:
-        "Error thresholds: {params.title}"
     wildcard_constraints:
         artifact=stages(ERROR_THRESHOLDS),

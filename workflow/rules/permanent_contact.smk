@@ -11,7 +11,5 @@ PERMANENT_CONTACT = {
 
 
 use rule study as permanent_contact with:
-    message:
-        "Permanent contact: {params.title}"
     wildcard_constraints:
         artifact=stages(PERMANENT_CONTACT),

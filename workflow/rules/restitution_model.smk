@@ -14,7 +14,5 @@ RESTITUTION_MODEL = {
 
 
 use rule study as restitution_model with:
-    message:
-        "Restitution model: {params.title}"
     wildcard_constraints:
         artifact=stages(RESTITUTION_MODEL),

@@ -11,7 +11,5 @@ TIME_HISTORIES = {
 
 
 use rule study as time_histories with:
-    message:
-        "Time histories: {params.title}"
     wildcard_constraints:
         artifact=stages(TIME_HISTORIES),

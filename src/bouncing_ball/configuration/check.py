@@ -49,9 +49,15 @@ def configuration_model(
             else:
                 keys[name] = (kind, ...)
     for name, fields in places.items():
+        fields = _in_order(fields, config.get(name))
         keys[name] = (create_model(name, __base__=Parameters, **fields), ...)
     keys |= {name: (kind, ...) for name, kind in others.items()}
-    return create_model("Configuration", __base__=_Sections, **keys)
+    return create_model("Configuration", __base__=_Sections, **_in_order(keys, config))
+
+
+def _in_order(fields: Mapping[str, Any], given: Any) -> dict[str, Any]:
+    """Fields in the order in which the configuration has them, missing ones last."""
+    return {name: fields[name] for name in [*(given or ()), *fields] if name in fields}
 
 
 def check(model: type[BaseModel], config: Mapping[str, Any], **context: Any) -> None:

@@ -4,11 +4,13 @@ import argparse
 import inspect
 import math
 import re
+import sys
 import typing
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NoReturn
 
+from bouncing_ball.cli.output import print_lines
 from bouncing_ball.errors import escaped
 from bouncing_ball.signatures import Range
 
@@ -25,6 +27,13 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"{self.prog}: {escaped(message)}\n")
+
+    def _print_message(self, message: str, file: Any = None) -> None:
+        # argparse itself says nothing where the help cannot be written.
+        if file is sys.stdout:
+            print_lines(message.splitlines())
+        else:
+            super()._print_message(message, file)
 
 
 def option(name: str) -> str:

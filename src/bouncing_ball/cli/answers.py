@@ -20,8 +20,9 @@ from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.motion.sequence import ImpactSequence, Status
 from bouncing_ball.orbits import calls
+from bouncing_ball.orbits.continued import restitution_speed
 from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.law_model import LawModel, restitution_speed
+from bouncing_ball.orbits.law_model import LawModel
 from bouncing_ball.orbits.orbit import OBSERVABLES, Orbit
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.signatures import takes
@@ -104,7 +105,7 @@ def limits(n=1, **impact: Any) -> Answer:
             "is_admissible": bool(orbit.is_admissible()),
         }
     # The limits have two impact speeds; a law is described at the restitution model's.
-    return found | _described(of, lambda law: float(restitution_speed(n, law)[0]))
+    return found | _described(of, lambda law: float(restitution_speed(n, LawModel(law))[0]))
 
 
 @takes(calls.orbit, "n", "amplitude", "release", *calls.LOSS)

@@ -1,31 +1,24 @@
-r"""The equations of the n-T orbits on a contact of any law, for a continuation.
+r"""The equations of n-T orbits whose contact follows from its start, for a continuation.
 
 Unknowns (φ, z′_i), the phase and the velocity at the impact; parameter Λ. The contact
-that starts so is solved for inside, so that two equations are left: velocity and
+that starts so gives its duration and its end, so that two equations are left: velocity and
 height of the flight that follows (Eqs. 24-25). All are of order one however short
 the contact is.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 
-from bouncing_ball.contacts.laws.contact_law import ContactLaw
 from bouncing_ball.continuation.events import Event
 from bouncing_ball.orbits.branch_events import branch_events
-from bouncing_ball.orbits.law_orbit import LawOrbit
-
-
-@lru_cache(maxsize=64)
-def _orbit(kind: Any, values: tuple, n: int, phase: float, impact: float, amplitude: float):
-    """One orbit: a step along a branch asks for its residual, Jacobian and events in turn."""
-    return LawOrbit.at(n, kind(*values), amplitude, phase, impact)
 
 
 @dataclass(frozen=True)
-class LawSystem:
+class ContactSystem:
     """n-T orbits as a :class:`~bouncing_ball.continuation.problem.Problem`.
 
     Parameters
@@ -33,60 +26,73 @@ class LawSystem:
     n : int
         Index of the family. It and the law's parameters may be arrays along the
         leading axis of y.
-    law : ContactLaw
+    law : Batch
+        The law of the impact.
+    at : callable
+        The orbits ``at(n, law, Λ, φ, z′_i)`` with contacts that start so.
+
+    Examples
+    --------
+    >>> from bouncing_ball.orbits.restitution_orbit import RestitutionOrbit
+    >>> system = ContactSystem(1, 1.0, RestitutionOrbit.at)
+    >>> defects = system.residual(np.array([np.pi / 2, -np.pi, 1.0]))
+    >>> [abs(round(float(x), 12)) for x in defects]
+    [0.0, 0.0]
     """
 
     n: int | np.ndarray
-    law: ContactLaw
+    law: Any
+    at: Callable
 
-    def orbit(self, y: np.ndarray) -> LawOrbit:
+    @cached_property
+    def _known(self) -> Callable:
+        # A step along a branch asks for its residual, Jacobian and events in turn.
+        def orbit(shape: tuple[int, ...], entries: bytes) -> Any:
+            phase, impact, amplitude = np.moveaxis(np.frombuffer(entries).reshape(shape), -1, 0)
+            return self.at(self.n, self.law, amplitude, phase, impact)
+
+        return lru_cache(maxsize=4)(orbit)
+
+    def orbit(self, y: np.ndarray) -> Any:
         """The orbits at points y = (φ, z′_i, Λ) of shape (..., 3)."""
-        if y.ndim == 1 and not self.law.shape and not np.ndim(self.n):
-            kind: Any = type(self.law)
-            return _orbit(kind, tuple(self.law.fields()), int(self.n), *y.tolist())
-        phase, impact, amplitude = (y[..., k] for k in range(3))
-        return LawOrbit.at(self.n, self.law, amplitude, phase, impact)
+        return self._known(y.shape, y.tobytes())
 
-    def point(self, orbit: LawOrbit) -> np.ndarray:
+    def point(self, orbit: Any) -> np.ndarray:
         """y of given orbits."""
         parts = orbit.phase, orbit.impact_velocity, orbit.amplitude
         return np.stack(np.broadcast_arrays(*parts), axis=-1)
 
     def residual(self, y: np.ndarray) -> np.ndarray:
         """Velocity defect and landing defect, shape (..., 2)."""
-        return self.orbit(y).residual()[..., 1:]
+        return self.orbit(y).residual()[..., -2:]
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """Exact Jacobian of the residual, shape (..., 2, 3)."""
-        return self.linearised(y)[1]
-
-    def linearised(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Residual and its Jacobian, from one contact."""
         o = self.orbit(y)
         lam, end = o.amplitude[..., np.newaxis], o.release_phase[..., np.newaxis]
         phase, flight = o.phase[..., np.newaxis], o.flight_time[..., np.newaxis]
         bounce = o.bounce_velocity[..., np.newaxis]
         # Derivatives along (φ, z′_i, Λ), the last axis.
         d_phase, d_impact, d_lam = np.eye(3)
-        d_speed = np.cos(phase) * d_lam - lam * np.sin(phase) * d_phase - d_impact
-        by = o.contact.jacobian
+        d_speed = d_impact - np.cos(phase) * d_lam + lam * np.sin(phase) * d_phase
+        by = o.contact_jacobian()
 
         def along(row):
             by_phase, by_speed, by_lam = (by[..., row, k, np.newaxis] for k in range(3))
             return by_phase * d_phase + by_speed * d_speed + by_lam * d_lam
 
-        d_duration, d_depth, d_rate = (along(row) for row in range(3))
+        d_duration, d_displacement, d_velocity = (along(row) for row in range(3))
         d_end, d_bounce = d_phase + d_duration, d_impact - d_duration
-        velocity = np.cos(end) * d_lam - lam * np.sin(end) * d_end - d_rate - d_bounce
+        velocity = d_velocity + np.cos(end) * d_lam - lam * np.sin(end) * d_end - d_bounce
         landing = (
-            (np.sin(end) - np.sin(phase)) * d_lam
+            d_displacement
+            + (np.sin(end) - np.sin(phase)) * d_lam
             + lam * (np.cos(end) * d_end - np.cos(phase) * d_phase)
-            - d_depth
             + flight * d_bounce
             - (bounce - flight) * d_duration
         )
-        return o.residual()[..., 1:], np.stack([velocity, landing], axis=-2)
+        return np.stack([velocity, landing], axis=-2)
 
     def events(self) -> tuple[Event, ...]:
         """Bifurcations, and the ends of the domain in which an orbit makes sense."""
-        return branch_events(self.orbit, LawOrbit.trace_and_determinant)
+        return branch_events(self.orbit)

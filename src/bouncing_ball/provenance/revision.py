@@ -1,18 +1,11 @@
-"""The state of the repository: which commit, and whether anything was changed.
-
-Asked of git, when a file is written or accepted. Without git, or in a folder
-that is not the top of its own repository, the answer is "unknown".
-"""
+"""The state of the repository: which commit, and whether anything was changed."""
 
 import os
 import subprocess
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import NamedTuple
 
-from bouncing_ball.errors import ModelError
-
-RECORD = ("figures", "paper.md", "accepted.csv")
+RECORD = ("figures", "paper.md")
 """What git holds of the results; a change there changes no result."""
 
 
@@ -38,21 +31,18 @@ def parse_status(text: str) -> Revision:
     >>> parse_status("# branch.oid (initial)\\n? Snakefile\\n")
     Revision(commit='unknown', dirty='unknown')
     """
-    changed = False
-    commit = ""
-    for line in text.splitlines():
-        if line.startswith("# branch.oid "):
-            commit = line.split()[-1]
-        changed = changed or not line.startswith("#")
-    if not commit or commit == "(initial)":
+    lines = text.splitlines()
+    commits = [line.split()[-1] for line in lines if line.startswith("# branch.oid ")]
+    if not commits or commits[0] == "(initial)":
         return UNKNOWN
-    return Revision(commit, "yes" if changed else "no")
+    changed = any(not line.startswith("#") for line in lines)
+    return Revision(commits[0], "yes" if changed else "no")
 
 
 def _git(folder: Path, *arguments: str) -> str | None:
-    """What git says, or None if it fails or is not there."""
-    # Called by a hook, git would pass on which repository it is at work in; and
-    # jobs that run side by side need not wait for each other's index.
+    """The output of git, or None if it fails or is not there."""
+    # A hook tells git by GIT_… which repository it works in, and that need not be this one.
+    # Jobs that run side by side need not wait for each other's lock of the index.
     environment = {key: value for key, value in os.environ.items() if key[:4] != "GIT_"}
     try:
         done = subprocess.run(
@@ -70,7 +60,8 @@ def _git(folder: Path, *arguments: str) -> str | None:
 def revision(folder: Path) -> Revision:
     """The commit checked out in a folder, and whether its tree is dirty.
 
-    Untracked files count, unless git ignores them; the record does not.
+    Untracked files count, unless git ignores them; the accepted record does not.
+    Unknown without git, or in a folder that is not the top of its own repository.
     """
     if (_git(folder, "rev-parse", "--show-cdup") or "inside").strip():
         return UNKNOWN
@@ -80,20 +71,6 @@ def revision(folder: Path) -> Revision:
         *(f":(exclude){name}" for name in RECORD),
     )
     return UNKNOWN if status is None else parse_status(status)
-
-
-def commit_date(folder: Path) -> str:
-    """The day of the commit checked out in a folder, in UTC.
-
-    Raises
-    ------
-    ModelError
-        If git knows none.
-    """
-    seconds = _git(folder, "show", "--no-patch", "--format=%ct", "HEAD")
-    if not seconds:
-        raise ModelError(f"no commit in {folder} to take the date from")
-    return datetime.fromtimestamp(int(seconds), UTC).date().isoformat()
 
 
 def checkout(*starts: Path) -> Path | None:

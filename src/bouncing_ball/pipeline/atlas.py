@@ -29,7 +29,7 @@ def shard_names(parameters: Mapping[str, Any]) -> list[str]:
     """
     from bouncing_ball.atlas.plan import Plan
 
-    count = Plan(parameters).shards
+    count = len(Plan(**parameters).shard_rows())
     return [f"{k:04d}-of-{count:04d}" for k in range(count)]
 
 
@@ -37,8 +37,8 @@ def shard_minutes(parameters: Mapping[str, Any]) -> int:
     """Minutes that a cluster should give to a shard."""
     from bouncing_ball.atlas.plan import Plan
 
-    plan = Plan(parameters)
-    seconds = plan.orbits / plan.shards * _SECONDS_PER_ORBIT
+    plan = Plan(**parameters)
+    seconds = plan.orbits / len(plan.shard_rows()) * _SECONDS_PER_ORBIT
     return _LEAST_MINUTES + math.ceil(seconds / 60)
 
 

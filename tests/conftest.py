@@ -19,10 +19,11 @@ from scipy.optimize import brentq
 
 from bouncing_ball.audit.evidence import evidence
 from bouncing_ball.configuration.stages import studied
-from bouncing_ball.configuration.study import load
+from bouncing_ball.configuration.study import load, typed
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.netcdf import parameter_attributes, read_dataset
 from bouncing_ball.datasets.variables import VARIABLES
+from bouncing_ball.studies.continuation import Continuation
 
 ROOT = Path(__file__).resolve().parents[1]
 # Programs that the tests start keep what they have compiled, whatever the shell says: else
@@ -131,7 +132,7 @@ def record_and_new():
     for stage in studied():
         if stage.name not in data and not stage.reads:
             parameters = stage.parameters(run)
-            made = load(stage.study)(parameters, *stage.settings(run).values())
+            made = typed(load(stage.study))(parameters, *stage.settings(run).values())
             named = parameter_attributes({**parameters, **stage.settings(run)})
             data[stage.name] = made.assign_attrs(named)
     limits = run["studies"]["evidence"]
@@ -172,7 +173,7 @@ def described():
 @pytest.fixture(scope="session")
 def continuation_settings():
     """The ``continuation`` section of the configuration."""
-    return read_yaml(ROOT / "config" / "config.yaml")["continuation"]
+    return Continuation(**read_yaml(ROOT / "config" / "config.yaml")["continuation"])
 
 
 CHROMIUM = next(

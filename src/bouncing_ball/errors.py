@@ -14,6 +14,22 @@ class ModelError(ValueError):
     """A parameter outside the range in which the model is defined."""
 
 
+class ParameterError(ModelError):
+    """Parameters of a call that do not go together, or one that is missing.
+
+    ``{name}`` in the text stands for a parameter, which the command line shows as its option.
+
+    Examples
+    --------
+    >>> str(ParameterError("{duration} needs {law}"))
+    'duration needs law'
+    """
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text.replace("{", "").replace("}", ""))
+        self.text = text
+
+
 class NoOrbitError(ValueError):
     """The requested periodic orbit does not exist, with the reason why."""
 

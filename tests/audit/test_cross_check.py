@@ -12,10 +12,18 @@ from bouncing_ball.audit.cross_check import (
     CrossCheckError,
     cross_check,
 )
+from bouncing_ball.configuration.study import typed
 from bouncing_ball.studies.frequency_sweeps import apparent_restitution, frequency_sweep
 from bouncing_ball.studies.orbit_branches import both_domains, orbit_branches, stability_ranges
 from bouncing_ball.studies.release_rules import release_rules
 from bouncing_ball.studies.restitution_families import restitution_history, restitution_orbits
+
+# As the configuration gives them.
+apparent_restitution, frequency_sweep = map(typed, (apparent_restitution, frequency_sweep))
+both_domains, orbit_branches, stability_ranges, release_rules = map(
+    typed, (both_domains, orbit_branches, stability_ranges, release_rules)
+)
+restitution_history, restitution_orbits = map(typed, (restitution_history, restitution_orbits))
 
 
 def with_attributes(data, parameters, release=None):
@@ -202,7 +210,7 @@ def test_an_orbit_that_rounding_moves_far(continuation_settings):
         "frequency_ratio": {"min": 0.1, "max": 1e6, "samples": 2},
     }
     data = with_attributes(frequency_sweep(parameters, "force"), parameters, "force")
-    settings = continuation_settings | {"newton_tolerance": 1e-6}
+    settings = continuation_settings.model_copy(update={"newton_tolerance": 1e-6})
     cross_check({"fig10": data}, settings)
     data["phase"][0, 0] += 1e-4
     with pytest.raises(CrossCheckError, match=r"ϖ = 0\.1"):

@@ -16,6 +16,7 @@ from bouncing_ball.audit.forensics.readings import (
     readings,
 )
 from bouncing_ball.audit.forensics.steps import attainable, nearby
+from bouncing_ball.configuration.study import typed
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError
@@ -173,7 +174,7 @@ def test_baseline_is_the_closed_form(release):
 def test_baseline_is_table_1_by_continuation(study, continuation_settings):
     table = {key: TABLE[key] for key in ("frequency_ratio", "n")}
     table |= {"restitution": R, "amplitude_max": 1.5}
-    expected = stability_ranges(table, "displacement", continuation_settings, TABLE).computed
+    expected = typed(stability_ranges)(table, "displacement", continuation_settings, TABLE).computed
     found = study.computed.sel(reading=BASELINE)
     assert found.values == pytest.approx(expected.values, abs=1e-9)
 

@@ -39,13 +39,12 @@ def all_texts(data):
         rows = import_module(f"bouncing_ball.figures.tables.{name}").rows(data[name])
         for form in (to_csv, to_latex, to_markdown):
             made[name, form.__name__] = form(*rows)
-    references = read_yaml(TEMPLATES / "references.yaml")
     texts = {name: made[name, "to_markdown"] for name in TABLES}
     summary = (ROOT / "config" / "error_law.csv").read_text(encoding="utf-8")
     texts["error_law"] = law_table(summary)
     data["atlas"] = read_dataset(ROOT / "config" / "atlas.nc")
     texts["atlas"] = to_markdown(*shares(data["atlas"]))
-    made["article"] = render_article(TEMPLATES, data, texts, references)
+    made["article"] = render_article(TEMPLATES, data, texts)
     return made
 
 

@@ -1,65 +1,28 @@
 """A figure or a table is made of what it shows, or refused in one line."""
 
-from importlib import import_module
-
 import numpy as np
 import pytest
 
-from bouncing_ball.configuration.stages import STAGES, Kind, names
+from bouncing_ball.configuration.study import load
 from bouncing_ball.datasets.emptiness import statement
 from bouncing_ball.errors import ModelError
-from bouncing_ball.figures.given import from_dataset
+from bouncing_ball.figures import DRAWINGS
+from bouncing_ball.figures.given import require_numbers
 from bouncing_ball.figures.style import style
 
-FIGURES = [name for name in names(Kind.FIGURE, Kind.EXTENSION) if STAGES[name].study]
-TABLES = [name for name in names(Kind.TABLE) if name != "claims"]
-FAULT = "{0}.py or in the study"
-AGAIN = "make it again, snakemake --cores 2 --force results/figures/{0}.nc"
 
-
-def made(name, data):
-    """The figure or the rows, as its job makes them."""
+@pytest.mark.parametrize("name", ["fig05", "ext_rattling", "ext_validity"])
+def test_a_dataset_without_numbers_is_drawn_only_if_it_says_so(record, one_line, name):
+    data = record[name].copy(deep=True)
+    for values in data.data_vars.values():
+        if values.dtype.kind == "f":
+            values.values[...] = np.nan
     path = f"results/figures/{name}.nc"
-    if name in TABLES:
-        return from_dataset(import_module(f"bouncing_ball.figures.tables.{name}").rows, data, path)
-    with style():
-        draw = import_module(f"bouncing_ball.figures.{name}").draw
-        return from_dataset(draw, data, path)
-
-
-@pytest.mark.parametrize("name", [*FIGURES, *TABLES])
-def test_what_is_missing_is_named_with_what_to_do(record, name):
-    data = record[name]
-    refused = 0
-    for variable in data.variables:
-        try:
-            made(name, data.drop_vars(variable))
-        except ModelError as error:
-            refused += 1
-            assert "\n" not in str(error)
-            assert str(error).startswith(f"results/figures/{name}.nc: ")
-            again = str(error).endswith(AGAIN.format(name))
-            assert again if variable in data.dims else str(error).endswith(FAULT.format(name))
-            assert str(variable) in str(error) or "dimension" in str(error)
-    assert refused
-
-
-@pytest.mark.parametrize("name", [*FIGURES, *TABLES])
-def test_no_empty_picture_and_no_empty_table(record, name):
-    data = record[name].copy(deep=True)
-    for values in data.data_vars.values():
-        if values.dtype.kind == "f":
-            values.values[...] = np.nan
     with pytest.raises(ModelError) as error:
-        made(name, data)
-    assert "no finite number in " in str(error.value)
-    assert str(error.value).endswith(AGAIN.format(name))
-
-
-@pytest.mark.parametrize("name", ["fig05", "ext_rattling", "ext_validity", "table1"])
-def test_what_a_study_says_that_it_did_not_find_is_left_out(record, name):
-    data = record[name].copy(deep=True)
-    for values in data.data_vars.values():
-        if values.dtype.kind == "f":
-            values.values[...] = np.nan
-    assert made(name, data.assign_attrs(statement(data)))
+        require_numbers(data, path)
+    one_line(error, f"{path}: no finite number in ")
+    assert str(error.value).endswith(f"make it again, snakemake --cores 2 --force {path}")
+    with style():
+        assert load(f"figures.{DRAWINGS[name]}")(
+            require_numbers(data.assign_attrs(statement(data)), path)
+        )

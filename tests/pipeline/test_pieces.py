@@ -41,7 +41,7 @@ def test_an_entry_that_would_be_misread(one_line, entry, said):
 @pytest.mark.parametrize(
     ("entry", "said"),
     [
-        (NEW, "fig17: no module src/bouncing_ball/figures/fig17.py, which must"),
+        (NEW, "fig17: no drawing in DRAWINGS of src/bouncing_ball/figures/__init__.py"),
         (replace(NEW, name="fig16", study="studies.sweeps.f"), "no module src/bouncing_ball/stud"),
         (
             replace(NEW, name="fig16", study="studies.orbit_branches.sweep"),

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 import bouncing_ball
 from bouncing_ball.cli.main import main
 from bouncing_ball.datasets.netcdf import write_dataset
-from bouncing_ball.figures.style import save
+from bouncing_ball.figures.files import save
 from bouncing_ball.record import carriers
 from bouncing_ball.record import explain as explain_module
 from bouncing_ball.record.provenance import Provenance, digest, file_digest, versions

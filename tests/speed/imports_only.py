@@ -38,12 +38,11 @@ def reduce_to_imports(script: Path) -> None:
     text = "".join(ast.unparse(node) + "\n" for node in imports) + LATE_DATA
     if script.stem == "stage":
         text += "from bouncing_ball.configuration.study import load\nload(snakemake.params.study)\n"
-    if script.stem in ("figure", "table"):
-        folder = "figures.tables" if script.stem == "table" else "figures"
-        text += f"name = 'bouncing_ball.{folder}.' + Path(snakemake.output[0]).stem\n"
+    if script.stem == "table":
+        text += "name = 'bouncing_ball.figures.tables.' + Path(snakemake.output[0]).stem\n"
         text += "import_module(name)\n"
     if script.stem == "figure":
-        text += LATE_FIGURE
+        text += "load(snakemake.params.drawing)\n" + LATE_FIGURE
     script.write_text(text + FINISH, encoding="utf-8")
 
 

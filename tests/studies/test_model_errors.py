@@ -81,22 +81,6 @@ def test_the_flights_meet_at_the_centroid_of_the_force(described, release):
     assert float(data.delay) == pytest.approx(float(data.meeting_time), rel=0.05)
 
 
-@pytest.mark.parametrize("release", RELEASES)
-def test_three_curves(described, release):
-    heights = described(study.height({**ORBIT, "frequency_ratio": SPAN}, release))
-    stiff = heights.isel(frequency_ratio=-1)
-    limit = float(heights.restitution_max_height)
-    assert float(stiff.max_height) == pytest.approx(limit, rel=1e-3)
-    assert float(stiff.corrected_max_height) == pytest.approx(float(stiff.max_height), rel=1e-8)
-    wanted = {"n": 2, "restitution": 0.65, "frequency_ratio": 10.0, "amplitude_max": 2.2}
-    data = described(study.domains({**wanted, "points": 51}, release))
-    fold = data.bifurcation_amplitude.sel(bound="saddle-node")
-    exact = float(fold.sel(model="spring-damper"))
-    assert abs(float(fold.sel(model="corrected")) / exact - 1) < 0.005
-    assert abs(float(fold.sel(model="restitution")) / exact - 1) > 0.02
-    assert np.all(np.isfinite(data.phase))
-
-
 def test_random_orbits_are_in_the_stable_range():
     n, zeta, lam, _ = random_orbits(500, 1, "force")
     contact = SpringDamper(1.0, zeta, Release.FORCE)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.configuration.study import typed
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
@@ -11,16 +12,24 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import period_doubling, saddle_node
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
-from bouncing_ball.studies.orbit_branches import (
+from bouncing_ball.studies.continuation import (
     PERIOD_DOUBLING,
     SADDLE_NODE,
     _on_the_way,
-    both_domains,
     branch_along_amplitude,
     controls,
     first_limits,
+)
+from bouncing_ball.studies.orbit_branches import (
+    Ranges,
+    both_domains,
     orbit_branches,
     stability_ranges,
+)
+
+# As the configuration gives them.
+both_domains, orbit_branches, stability_ranges = map(
+    typed, (both_domains, orbit_branches, stability_ranges)
 )
 
 FIGURE_8 = {
@@ -47,7 +56,7 @@ def figure_8(continuation_settings):
 
 def test_settings_reach_the_parts(continuation_settings):
     control, newton = controls(
-        continuation_settings | {"largest_step": 0.07, "max_newton_iterations": 5}
+        continuation_settings.model_copy(update={"largest_step": 0.07, "max_newton_iterations": 5})
     )
     reached = control.initial, control.smallest, control.largest, control.max_angle
     assert reached == (0.02, 1e-8, 0.07, 0.2)
@@ -198,7 +207,9 @@ def test_both_domains(continuation_settings, described):
 
 def test_a_contact_stiffer_than_the_start(continuation_settings):
     # The continuation then starts at that contact itself.
-    _, branch = branch_along_amplitude(1, 0.85, 1e5, 1.2, "displacement", continuation_settings)
+    _, branch = branch_along_amplitude(
+        1, 0.85, 1e5, 1.2, Release.DISPLACEMENT, continuation_settings
+    )
     limits = first_limits(branch)
     found = [limits[SADDLE_NODE][-1], limits[PERIOD_DOUBLING][-1]]
     assert found == pytest.approx(bifurcations(1, 0.85, 1e5), abs=1e-12)
@@ -255,7 +266,10 @@ def test_strong_damping(continuation_settings, release):
 
 
 def test_a_window_without_a_period_doubling(continuation_settings):
-    parameters = {"n": [1], "restitution": 0.85, "frequency_ratio": [10.0], "amplitude_max": 0.9}
+    # Less than the configuration allows.
+    parameters = Ranges.model_construct(
+        n=(1,), restitution=0.85, frequency_ratio=(10.0,), amplitude_max=0.9
+    )
     printed = {
         "restitution": 0.85,
         "release": "displacement",

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import yaml
 
 from bouncing_ball.claims.verdict import Verdict
 from bouncing_ball.datasets.netcdf import read_dataset
@@ -18,7 +17,7 @@ from bouncing_ball.figures.tables.formats import to_markdown
 
 @pytest.fixture(scope="module")
 def run(pristine):
-    """Folder of templates, datasets, tables and references of a complete run."""
+    """Folder of templates, datasets and tables of a complete run."""
     folder = pristine.path / "workflow" / "report" / "paper"
     results = pristine.path / "results" / "figures"
     data = {path.stem: read_dataset(path) for path in sorted(results.glob("*.nc"))}
@@ -27,8 +26,7 @@ def run(pristine):
     tables["error_law"] = law_table(summary.read_text(encoding="utf-8"))
     data["atlas"] = read_dataset(pristine.path / "config" / "atlas.nc")
     tables["atlas"] = to_markdown(*shares(data["atlas"]))
-    references = yaml.safe_load((folder / "references.yaml").read_text(encoding="utf-8"))
-    return folder, data, tables, references
+    return folder, data, tables
 
 
 @pytest.fixture(scope="module")
@@ -73,11 +71,11 @@ def test_every_claim_stands_with_its_verdict(text, run):
 
 
 def test_verdicts_follow_the_data(run):
-    folder, data, tables, references = run
+    folder, data, tables = run
     changed = data["claims"].copy(deep=True)
     changed["verdict"].values[:] = str(Verdict.UNDECIDABLE)
     changed["reason"].values[:] = "for the test"
-    text = render_article(folder, data | {"claims": changed}, {k: "" for k in tables}, references)
+    text = render_article(folder, data | {"claims": changed}, {k: "" for k in tables})
     bullets = re.findall(r"\*\*(\w+)\*\*; ", text)
     assert len(bullets) > 20 and set(bullets) == {str(Verdict.UNDECIDABLE)}
     # In prose the other verdicts are defined or counted, and their count is 0.
@@ -89,15 +87,15 @@ def test_verdicts_follow_the_data(run):
 
 
 def test_numbers_follow_the_data(run, text):
-    folder, data, tables, references = run
+    folder, data, tables = run
     changed = data["fig16"].copy(deep=True)
     changed["error_threshold"].values[:] = 77.77
-    other = render_article(folder, data | {"fig16": changed}, tables, references)
+    other = render_article(folder, data | {"fig16": changed}, tables)
     assert "77.77" in other and "77.77" not in text
 
 
 def test_a_run_with_other_parameters_says_so(run):
-    folder, data, tables, references = run
+    folder, data, tables = run
     changed = data["claims"].copy(deep=True)
     reason = "fig14 was computed with n = 2; the claim requires 1"
     at = np.flatnonzero(changed.claim.values == "height threshold")
@@ -105,7 +103,7 @@ def test_a_run_with_other_parameters_says_so(run):
     changed["reason"].values[at] = reason
     changed["verdict"] = changed.verdict.astype(object)
     changed["verdict"].values[at] = "not asked"
-    text = render_article(folder, data | {"claims": changed}, tables, references)
+    text = render_article(folder, data | {"claims": changed}, tables)
     assert text.index(reason) < text.index("## Abstract")
 
 

@@ -28,7 +28,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 
-def draw(data: xr.Dataset) -> Figure:
+def heights(data: xr.Dataset) -> Figure:
     """The figure."""
     figure, axes = plt.subplots()
     axes.semilogx(data.frequency_ratio, data.max_height[0])
@@ -37,7 +37,8 @@ def draw(data: xr.Dataset) -> Figure:
 '''
 STAGES = "src/bouncing_ball/configuration/stages.py"
 CONFIG = "config/config.yaml"
-FIGURE = "src/bouncing_ball/figures/ext_heights.py"
+FIGURE = "src/bouncing_ball/figures/heights.py"
+DRAWINGS = "src/bouncing_ball/figures/__init__.py"
 
 
 def said(tree, *arguments):
@@ -49,14 +50,16 @@ def said(tree, *arguments):
 
 
 def test_a_figure_with_its_own_parameters(fresh):
-    # Three files, and until the last is there the missing piece is named.
+    # Four files, and until the last is there the missing piece is named.
     fresh.rewrite(STAGES, ")\n\n_EXPLORER", ENTRY)
     assert said(fresh) == "configuration: missing key extensions.ext_heights"
     fresh.rewrite(CONFIG, "studies:\n  formulas:", PARAMETERS)
+    assert said(fresh) == f"stages: ext_heights: no drawing in DRAWINGS of {DRAWINGS}"
+    fresh.rewrite(DRAWINGS, "DRAWINGS = {", 'DRAWINGS = {\n    "ext_heights": "heights.heights",')
     assert said(fresh).startswith(f"stages: ext_heights: no module {FIGURE}")
     (fresh.path / FIGURE).write_text(DRAWING, encoding="utf-8")
     changed = fresh.git("status", "--porcelain").splitlines()
-    assert {line.split()[-1] for line in changed} == {STAGES, CONFIG, FIGURE}
+    assert {line.split()[-1] for line in changed} == {STAGES, CONFIG, FIGURE, DRAWINGS}
     fresh.run("--cores", "1", "ext_heights")
     kinds = {path.suffix for path in (fresh.path / "results/figures").glob("ext_heights.*")}
     assert kinds == {".nc", ".png", ".svg"}

@@ -16,7 +16,7 @@ rule convergence:
             "datasets.files",
             "compare.tolerance_file",
             "figures.tables.formats",
-            *(f"figures.{name}" for name in FIGURES),
+            *(f"figures.{DRAWINGS[name]}".rpartition(".")[0] for name in FIGURES),
             *(stage.module for stage in studied()),
         ),
     output:

@@ -1,5 +1,7 @@
 # Datasets in, figures out.
 
+from bouncing_ball.figures import DRAWINGS
+
 for name in FIGURES:
 
     rule:
@@ -10,11 +12,13 @@ for name in FIGURES:
         input:
             data=datasets([name] if STAGES[name].study else []),
             source=modules(
-                f"figures.{name}",
-                "figures.style",
+                f"figures.{DRAWINGS[name]}".rpartition(".")[0],
+                "figures.files",
                 "figures.given",
                 "datasets.netcdf",
             ),
+        params:
+            drawing=f"figures.{DRAWINGS[name]}",
         output:
             png=report(
                 f"results/figures/{name}.png",

@@ -10,7 +10,10 @@ rule paper:
         templates=sorted(os.path.relpath(path) for path in ARTICLE.glob("*.md.j2")),
         error_law="config/error_law.csv",
         atlas="config/atlas.nc",
-        references=os.path.relpath(ARTICLE / "references.yaml"),
+        references=[
+            os.path.relpath(ARTICLE / name)
+            for name in ("references.yaml", "numbered.csl")
+        ],
         data=datasets(DATASETS),
         tables=expand("results/figures/{table}.md", table=TABLES),
         source=modules(
@@ -20,7 +23,6 @@ rule paper:
             "claims.tally",
             "datasets.files",
             "datasets.netcdf",
-            "configuration.yaml_file",
         ),
     output:
         paper="results/paper.md",
@@ -35,7 +37,7 @@ rule paper:
         "../scripts/paper.py"
 
 
-# Not part of a run: pandoc and Typst are needed for nothing else.
+# Not part of a run: Typst is needed for nothing else.
 rule paper_pdf:
     name:
         "paper.pdf"
@@ -43,6 +45,7 @@ rule paper_pdf:
         "Setting results/paper.pdf"
     input:
         paper=rules.paper.output.paper,
+        template=os.path.relpath(ARTICLE / "article.typ"),
         figures=expand("results/figures/{figure}.svg", figure=FIGURES),
         source=modules("figures.article.pdf", "datasets.atomic"),
     output:

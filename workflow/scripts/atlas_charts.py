@@ -5,7 +5,8 @@ from pathlib import Path
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.figures.atlas import limits, maps, page
 from bouncing_ball.figures.atlas.tables import shares, worst
-from bouncing_ball.figures.style import save, style
+from bouncing_ball.figures.files import save
+from bouncing_ball.figures.style import style
 from bouncing_ball.figures.tables.formats import to_markdown
 from bouncing_ball.pipeline.atlas import log_of
 from bouncing_ball.pipeline.job import logged, provenance, read_input

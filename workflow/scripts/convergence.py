@@ -1,14 +1,15 @@
 """How much each number and each picture moves with what should not matter."""
 
 import io
-from importlib import import_module
 
 from bouncing_ball.audit.convergence import Variation, computations, sensitivity
 from bouncing_ball.compare.budgets import changes
 from bouncing_ball.compare.pictures import compare_pictures, read_picture
 from bouncing_ball.compare.tolerance_file import read_tolerances
+from bouncing_ball.configuration.study import load
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.datasets.netcdf import parameter_attributes
+from bouncing_ball.figures import DRAWINGS
 from bouncing_ball.figures.style import style
 from bouncing_ball.figures.tables.formats import to_csv
 from bouncing_ball.pipeline.job import logged
@@ -21,8 +22,7 @@ def picture(name, computation, data):
         {**computation.parameters, "release": snakemake.params.run["release"]}
     )
     with style():
-        draw = import_module(f"bouncing_ball.figures.{name}").draw
-        draw(data.assign_attrs(labels)).savefig(file, format="png")
+        load(f"figures.{DRAWINGS[name]}")(data.assign_attrs(labels)).savefig(file, format="png")
     return read_picture(file.getvalue())
 
 

@@ -4,7 +4,7 @@ from importlib import import_module
 from pathlib import Path
 
 from bouncing_ball.datasets.files import write_text
-from bouncing_ball.figures.given import from_dataset
+from bouncing_ball.figures.given import require_numbers
 from bouncing_ball.figures.tables.formats import texts
 from bouncing_ball.pipeline.job import logged, read_input, withdraw
 
@@ -13,7 +13,7 @@ with logged(snakemake) as lines:
     name = Path(snakemake.output[0]).stem
     rows = import_module(f"bouncing_ball.figures.tables.{name}").rows
     path = snakemake.input.data
-    table = texts(*from_dataset(rows, read_input(path), path))
+    table = texts(*rows(require_numbers(read_input(path), path)))
     for path in snakemake.output:
         write_text(path, table[Path(path).suffix])
     lines += snakemake.output

@@ -13,7 +13,7 @@ orbits that are inadmissible by the dataset *and* on their own path.
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -30,7 +30,7 @@ from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.orbits.model import ImpactModel, Route, System
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.stability import Bifurcation
-from bouncing_ball.studies.orbit_branches import controls, followed_from_stiff
+from bouncing_ball.studies.continuation import Continuation, controls, followed_from_stiff
 
 # Periods over which the simulation must hold a stable orbit.
 HELD_PERIODS = 50
@@ -128,7 +128,7 @@ def _normals(system: System, y: np.ndarray) -> np.ndarray:
     return np.linalg.svd(system.jacobian(y))[2][..., -1, :]
 
 
-def _coarse(settings: Mapping[str, Any]) -> tuple[StepControl, NewtonSettings]:
+def _coarse(settings: Continuation) -> tuple[StepControl, NewtonSettings]:
     """Long steps: the branch is only a guess, corrected at every orbit."""
     control, newton_settings = controls(settings)
     return replace(control, largest=_LARGEST_STEP, max_angle=_LARGEST_ANGLE), newton_settings
@@ -183,7 +183,7 @@ def _along_frequency_ratio(shown: Shown, y: np.ndarray, settings) -> np.ndarray:
     for pair in sorted(set(zip(zeta.tolist(), lam.tolist(), strict=True))):
         at = np.flatnonzero((zeta == pair[0]) & (lam == pair[1]))
         softest = orbit.law[at[np.argmin(omega[at])]]
-        stiff = max(settings["stiff_frequency_ratio"], float(omega[at].max()))
+        stiff = max(settings.stiff_frequency_ratio, float(omega[at].max()))
         # A hair beyond the softest contact, so that it lies inside the branch.
         softer = replace(softest, frequency_ratio=float(softest.frequency_ratio) * (1 - 1e-3))
         try:
@@ -225,7 +225,7 @@ def _rounding(system: System, n: int, y: np.ndarray, normals: np.ndarray) -> np.
     return np.finfo(float).eps * np.max(moved, axis=-1)
 
 
-def formula_against_continuation(shown: Shown, settings: Mapping[str, Any]) -> Disagreements:
+def formula_against_continuation(shown: Shown, settings: Continuation) -> Disagreements:
     """Orbits of the formula against solutions of the equations.
 
     Each in the plane through the orbit that is normal to its branch: well
@@ -312,7 +312,7 @@ def located_against_formula(limits: ShownLimits) -> Disagreements:
     return Disagreements(FORMULA, values, limits.name)
 
 
-def formula_against_equations(limits: ShownLimits, settings: Mapping[str, Any]) -> Disagreements:
+def formula_against_equations(limits: ShownLimits, settings: Continuation) -> Disagreements:
     """Bifurcations of the formula against the extended systems.
 
     The model's equations with the test function, solved from a start that is a
@@ -442,7 +442,7 @@ def _simulated(shown: Shown) -> Iterator[Disagreements]:
 # The table.
 
 
-def compare(data: xr.Dataset, settings: Mapping[str, Any]) -> Iterator[Disagreements]:
+def compare(data: xr.Dataset, settings: Continuation) -> Iterator[Disagreements]:
     """All comparisons for the orbits and bifurcations of one dataset.
 
     By the routes that a model has besides the one its orbits were made by.
@@ -479,7 +479,7 @@ def _worst(comparisons: list[Disagreements], kind: str) -> tuple[float, int, str
     return (largest if count else np.nan), count, where
 
 
-def cross_check(datasets: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.Dataset:
+def cross_check(datasets: Mapping[str, xr.Dataset], settings: Continuation) -> xr.Dataset:
     """Largest disagreement of every kind for every figure and table that shows an orbit.
 
     Raises

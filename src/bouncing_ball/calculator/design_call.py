@@ -24,6 +24,7 @@ from bouncing_ball.contacts.law_signature import free_impact
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError, require
+from bouncing_ball.orbits.calls import Index, Rule
 from bouncing_ball.orbits.law_calls import rigid_speed
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 
@@ -138,8 +139,8 @@ def design(
     measured_restitution: Any = None,
     drop_height: Any = None,
     rebound_height: Any = None,
-    n: int | None = None,
-    release: str = "displacement",
+    n: Index | None = None,
+    release: Rule = "displacement",
     quantity: str = "max_height",
     tolerance: Any = 0.01,
 ) -> Design:
@@ -153,24 +154,42 @@ def design(
     Parameters
     ----------
     mass
-        m of the ball.
+        Mass m of the ball.
     frequency, angular_frequency, period
-        Of the table; one of them. Hz are cycles, rad/s are not.
+        How fast the table moves: one of the three. Hz are cycles, rad/s are not.
     amplitude, acceleration
-        Of the table; one of them. ``"2 g"`` is twice the standard gravity.
+        How far the table moves: one of the two. "2 g" is twice the standard gravity.
     gravity
-        9.80665 m/s² if it is not given; in a gear pair the drag torque takes its part.
-    stiffness, contact_time, reduced_modulus, radius
-        k; or the duration of a free impact; or E* and R of a Hertz contact with the damping
-        of Tsuji.
-    damping, damping_ratio, restitution, measured_restitution, drop_height, rebound_height
-        c; or ζ; or r by Eq. 16; or r that a free impact really has; or a drop test.
-    n : int, optional
-        Index of the family; without it all of the first eight that exist.
-    release : str
+        9.80665 m/s² by default; in a gear pair the drag torque takes its part.
+    stiffness
+        k of the contact. Without any stiffness a contact is chosen.
+    contact_time
+        Duration of a free impact, in place of the stiffness.
+    reduced_modulus
+        E* of a Hertz contact with the damping of Tsuji, with its radius.
+    radius
+        R of a Hertz contact.
+    damping
+        c of the contact, with its stiffness.
+    damping_ratio
+        Damping ratio ζ.
+    restitution
+        Restitution coefficient r by Eq. 16.
+    measured_restitution
+        Restitution coefficient that a free impact has under the release rule.
+    drop_height
+        Height of a drop test, with that of the rebound.
+    rebound_height
+        Height of the rebound in a drop test.
+    n
+        Index of the family; by default the first eight, and a verdict on the first stable one.
+    release
         "displacement" or "force": what ends a contact.
-    quantity, tolerance
-        What must be right, and how far.
+    quantity
+        What must be right: max_height, bounce_velocity, phase, apparent_restitution,
+        saddle_node, period_doubling or permanent_contact.
+    tolerance
+        How far it may be off.
 
     Raises
     ------

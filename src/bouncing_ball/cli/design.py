@@ -4,41 +4,55 @@ import argparse
 import math
 from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
+from bouncing_ball.calculator import design_call
 from bouncing_ball.calculator.design import Design
-from bouncing_ball.calculator.design_call import design
 from bouncing_ball.calculator.judgement import QUANTITIES, percent
-from bouncing_ball.calculator.units import KINDS, shown
+from bouncing_ball.calculator.units import shown
 from bouncing_ball.errors import ModelError
+from bouncing_ball.signatures import takes
 
 Answer = dict[str, Any]
+_DRAWINGS = (".pdf", ".png", ".svg")
 
 
-def asked(args: argparse.Namespace) -> Design:
-    """The calculator's answer to what was asked.
-
-    Raises
-    ------
-    ModelError, NoOrbitError
-        As :func:`~bouncing_ball.calculator.design_call.design`.
-    """
-    names = (*KINDS, "n", "release", "quantity")
-    return design(**{name: getattr(args, name) for name in names})
-
-
-def plot(found: Design, path: Path) -> None:
-    """Draw the page to print.
+def drawing(text: str) -> Path:
+    """The file of a drawing, by its name.
 
     Raises
     ------
-    ModelError
-        If the file cannot be written.
+    argparse.ArgumentTypeError
+        If the name ends otherwise.
     """
+    path = Path(text)
+    # Of the text too: a path forgets the slash that makes it a folder's.
+    if path.suffix not in _DRAWINGS or not text.endswith(path.suffix):
+        raise argparse.ArgumentTypeError(f"{text!r} does not end in {' or '.join(_DRAWINGS)}")
+    return path
+
+
+@takes(design_call.design)
+def design(*, plot: Annotated[Path | None, drawing] = None, **given: Any) -> Answer:
+    """The calculator's answer, and the page to print.
+
+    Parameters
+    ----------
+    plot
+        A page to print: .pdf, .png or .svg.
+    """
+    found = design_call.design(**given)
+    if plot is not None:
+        _draw(found, plot)
+    return answer(found)
+
+
+def _draw(found: Design, path: Path) -> None:
     from bouncing_ball.calculator.page_data import page
     from bouncing_ball.figures.design_page import draw
-    from bouncing_ball.figures.style import save, style
+    from bouncing_ball.figures.files import save
+    from bouncing_ball.figures.style import style
 
     said = answer(found)
     judged = next(one for one in said["orbits"] if one["n"] == said["n"])

@@ -369,18 +369,6 @@ _MODELS: tuple[Stage, ...] = (
         " frequency_ratio:span",
         tabulated=True,
     ),
-    _corrected(
-        "fig14",
-        "Figure 14 with the corrected model",
-        "height",
-        "n restitution amplitude frequency_ratio:span",
-    ),
-    _corrected(
-        "fig15",
-        "Figure 15 with the corrected model",
-        "domains",
-        "n restitution:lossy_restitution frequency_ratio:ratio amplitude_max points",
-    ),
     Stage(
         "ext_laws",
         Kind.EXTENSION,

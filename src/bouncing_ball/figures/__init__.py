@@ -1,1 +1,33 @@
-"""Datasets turned into figures, tables and the article; nothing is computed here."""
+"""Datasets turned into figures, tables and the article; nothing is computed here.
+
+A drawing is a function ``draw(dataset) -> Figure``, and schematics take no dataset. Figures of
+one kind share a module.
+"""
+
+DRAWINGS = {
+    "fig01": "schematics.restitution_model",
+    "fig02": "histories.restitution_history",
+    "fig03": "branches.restitution_families",
+    "fig04": "schematics.spring_damper_model",
+    "fig05": "sweeps.apparent_restitution_of_cases",
+    "fig06": "sweeps.apparent_restitution",
+    "fig07": "histories.contact_history",
+    "fig08": "branches.domains",
+    "fig09": "branches.domains",
+    "fig10": "sweeps.bounce_velocity",
+    "fig11": "thresholds.permanent_contact",
+    "fig12": "histories.both_histories",
+    "fig13": "sweeps.poincare_map",
+    "fig14": "thresholds.height_error",
+    "fig15": "branches.both_domains",
+    "fig16": "thresholds.permanent_contact_error",
+    "ext_release": "release_rules.release_rules",
+    "ext_rattling": "long_contacts.stable_windows",
+    "ext_basins": "long_contacts.basins",
+    "ext_instant": "histories.meeting_flights",
+    "ext_orders": "model_errors.orders",
+    "ext_validity": "model_errors.validity",
+    "ext_laws": "model_errors.contact_laws",
+    "ext_hertz": "contact_laws.figures_of_laws",
+}
+"""Where each figure is drawn: ``module.function`` of this package."""

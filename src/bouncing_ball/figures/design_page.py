@@ -9,8 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bouncing_ball.figures.quantities import NAMES
-from bouncing_ball.figures.style import COLOURS, CONTACT, RESTITUTION, TABLE, Look
+from bouncing_ball.figures.style import COLOURS, CONTACT, QUANTITIES, RESTITUTION, TABLE, Look
 
 # A4 upright, in inches.
 _PAGE = 8.27, 11.69
@@ -69,7 +68,7 @@ def _chart(axes: Axes, design: Mapping[str, Any], data: xr.Dataset) -> None:
     need = design["needed"]
     axes.set(xlabel="restitution coefficient $r$", ylabel=r"frequency ratio $\varpi$")
     axes.set_title(
-        f"right to {100 * need['tolerance']:g} % above the line:\n{NAMES[need['quantity']]}, "
+        f"right to {100 * need['tolerance']:g} % above the line:\n{QUANTITIES[need['quantity']]}, "
         rf"$n={design['n']}$, $\Lambda={design['amplitude']:.3g}$",
         fontsize=9,
     )

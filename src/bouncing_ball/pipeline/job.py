@@ -15,7 +15,7 @@ from typing import Any
 
 import xarray as xr
 
-from bouncing_ball.configuration.study import load
+from bouncing_ball.configuration.study import load, typed
 from bouncing_ball.datasets.emptiness import statement
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.datasets.netcdf import (
@@ -142,7 +142,7 @@ def make_dataset(snakemake: Any) -> None:
         job = snakemake.params
         data = {Path(path).stem: read_input(path) for path in snakemake.input.data}
         inputs = [data] if data else []
-        dataset = load(job.study)(*inputs, job.parameters, *job.settings.values())
+        dataset = typed(load(job.study))(*inputs, job.parameters, *job.settings.values())
         parameters = dataset.attrs or parameter_attributes(job.parameters | job.settings)
         publish(snakemake, dataset, {**parameters, **statement(dataset)})
         sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())

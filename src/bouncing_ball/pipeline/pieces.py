@@ -6,6 +6,7 @@ from typing import Any
 
 from bouncing_ball.configuration.stages import Kind, Stage
 from bouncing_ball.configuration.yaml_file import ConfigurationError
+from bouncing_ball.figures import DRAWINGS
 from bouncing_ball.pipeline.sources import module_file
 
 SECTIONS = ("figures", "tables", "extensions", "studies")
@@ -13,8 +14,6 @@ SECTIONS = ("figures", "tables", "extensions", "studies")
 
 # Where what draws or sets an artifact is, and what it is called.
 _RENDERERS = {
-    Kind.FIGURE: ("figures", "draw"),
-    Kind.EXTENSION: ("figures", "draw"),
     Kind.TABLE: ("figures.tables", "rows"),
 }
 
@@ -98,6 +97,12 @@ def check_pieces(stages: Mapping[str, Stage], run: Mapping[str, Any]) -> None:
         if stage.kind in _RENDERERS:
             package, function = _RENDERERS[stage.kind]
             _require_function(stage, f"{package}.{stage.name}.{function}")
+        if stage.kind in (Kind.FIGURE, Kind.EXTENSION):
+            if stage.name not in DRAWINGS:
+                raise ConfigurationError(
+                    f"{stage.name}: no drawing in DRAWINGS of src/bouncing_ball/figures/__init__.py"
+                )
+            _require_function(stage, f"figures.{DRAWINGS[stage.name]}")
         if stage.tabulated:
             _require_function(stage, f"figures.tables.{stage.name}.rows")
         if stage.study:

@@ -154,19 +154,24 @@ def _target(path: Path, made: Provenance) -> str:
     return f"results/{'' if path.name == 'paper.md' else 'figures/'}{path.name}"
 
 
-def explain(path: Path) -> dict[str, Any]:
+def explain(file: Path, /) -> dict[str, Any]:
     """Where an artifact comes from; all of it plain JSON.
 
     The file may be anybody's, and what it holds anything. Nothing of it is
     run, and the commands are made of parts of known forms.
+
+    Parameters
+    ----------
+    file
+        An artifact, or a copy of one.
 
     Raises
     ------
     ProvenanceError
         If the file is not one of this workflow, or says nothing of it.
     """
-    _check_file(path)
-    carriers = _carriers(path)
+    _check_file(file)
+    carriers = _carriers(file)
     made = _common([read_provenance(carrier) for carrier in carriers])
     repository = checkout(Path.cwd(), Path(bouncing_ball.__file__).resolve())
     now = revision(repository) if repository else UNKNOWN
@@ -174,22 +179,22 @@ def explain(path: Path) -> dict[str, Any]:
     checked_out = made.commit == now.commit if known else None
     lock = lock_digest(repository) if repository else "unknown"
     running = versions()
-    target = _target(path, made)
+    target = _target(file, made)
     return {
-        "file": str(path),
-        "artifact": f"{Path(target).stem}, a {_KINDS.get(path.suffix, 'text')}",
+        "file": str(file),
+        "artifact": f"{Path(target).stem}, a {_KINDS.get(file.suffix, 'text')}",
         "read_from": str(carriers[0]) if len(carriers) == 1 else f"{len(carriers)} datasets",
         "commit": made.commit,
         "checked_out": checked_out,
         "dirty": made.dirty,
         "configuration": flattened(_mapping(made.configuration)),
-        "parameters": {"sha256": made.parameters, "values": _parameters(path, made, repository)},
+        "parameters": {"sha256": made.parameters, "values": _parameters(file, made, repository)},
         "sources": made.sources,
         "lock": {
             "sha256": made.lock,
             "unchanged": made.lock == lock if "unknown" not in (made.lock, lock) else None,
         },
-        "inputs": _inputs(path, made, repository),
+        "inputs": _inputs(file, made, repository),
         "versions": {
             name: {"made_with": version, "running": running.get(name)}
             for name, version in _mapping(made.versions).items()

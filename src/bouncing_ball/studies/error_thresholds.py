@@ -15,12 +15,13 @@ import xarray as xr
 from bouncing_ball.accuracy.quantities import Quantity
 from bouncing_ball.accuracy.thresholds import model_thresholds
 from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
+from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import describe, described
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.studies.parameters import grid
-from bouncing_ball.studies.permanent_contact_curve import permanent_contact
+from bouncing_ball.studies.permanent_contact_curve import PermanentContact, permanent_contact
 
 
 def error_thresholds(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
@@ -77,6 +78,9 @@ def height_error(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
 
 def permanent_contact_error(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     """Permanent contact along ϖ in both models, and ϖ_PC for ``tolerance`` (Fig. 16)."""
+    still = PermanentContact(
+        restitution=parameters["restitution"], frequency_ratio=parameters["frequency_ratio"]
+    )
     dataset = error_thresholds(
         {
             **parameters,
@@ -88,4 +92,4 @@ def permanent_contact_error(parameters: Mapping[str, Any], release: str) -> xr.D
         },
         release,
     )
-    return describe(dataset.merge(permanent_contact(parameters, release)))
+    return describe(dataset.merge(permanent_contact(still, Release(release))))

@@ -13,16 +13,14 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.accuracy import error_law
-from bouncing_ball.accuracy.errors import SIMPLE, errors, models
+from bouncing_ball.accuracy.errors import SIMPLE, errors
 from bouncing_ball.accuracy.quantities import OF_IMPACTS, Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus, search
 from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.orbits.model import Side
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
-from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.studies.law_distribution import law_errors
 from bouncing_ball.studies.parameters import grid
 from bouncing_ball.studies.random_orbits import random_orbits
@@ -131,61 +129,6 @@ def validity(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
             "n": axes[0],
             "amplitude_ratio": axes[1],
             "restitution": axes[2],
-        },
-    )
-
-
-def height(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
-    """Greatest height along ϖ in all three models (Fig. 14 with a third curve)."""
-    n, lam, ratios = parameters["n"], parameters["amplitude"], grid(parameters["frequency_ratio"])
-    r = parameters["restitution"]
-    contact = SpringDamper.from_restitution(r, ratios, Release.of(release))
-    exact, simple, corrected = (m.orbit(n, lam) for m in models(contact))
-    return described(
-        {
-            "max_height": ("frequency_ratio", exact.max_height),
-            "admissible": ("frequency_ratio", exact.is_admissible()),
-            "corrected_max_height": ("frequency_ratio", corrected.max_height),
-            "restitution_max_height": ((), simple.max_height.flat[0]),
-        },
-        coords={"frequency_ratio": ratios},
-    )
-
-
-def domains(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
-    """Phase against Λ in all three models (Fig. 15 with a third curve)."""
-    n, top = parameters["n"], parameters["amplitude_max"]
-    contact = SpringDamper.from_restitution(
-        parameters["restitution"], parameters["frequency_ratio"], Release.of(release)
-    )
-    names = ("spring-damper", *SIMPLE)
-    # Towards the fold by squares: the phase depends on Λ there by a root.
-    share = np.linspace(0.0, 1.0, parameters["points"])[1:] ** 2
-    amplitude, phase, stable, ends = [], [], [], []
-    for model in models(contact):
-        fold, flip = model.saddle_node(n), model.period_doubling(n)
-        low = float(fold.amplitude)
-        lam = low + share * (top - low)
-        left, right = (model.orbit(n, lam, side) for side in (Side.UNSTABLE, Side.STABLE))
-        amplitude.append(np.concatenate([lam[::-1], [low], lam]))
-        phase.append(np.concatenate([left.phase[::-1], [float(fold.phase)], right.phase]))
-        # At the fold a multiplier is 1.
-        stable.append(np.concatenate([left.is_stable()[::-1], [False], right.is_stable()]))
-        ends.append([[float(x.amplitude), float(x.phase)] for x in (fold, flip)])
-    bounds = np.array(ends)
-    dims = ("model", "point")
-    return described(
-        {
-            "amplitude": (dims, np.array(amplitude)),
-            "phase": (dims, np.array(phase)),
-            "stable": (dims, np.array(stable)),
-            "bifurcation_amplitude": (("model", "bound"), bounds[..., 0]),
-            "bifurcation_phase": (("model", "bound"), bounds[..., 1]),
-        },
-        coords={
-            "model": list(names),
-            "point": np.arange(2 * len(share) + 1),
-            "bound": list(Bifurcation),
         },
     )
 

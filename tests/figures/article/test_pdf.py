@@ -1,4 +1,4 @@
-"""The PDF of the accepted article: pages, captions, vectors, links."""
+"""The PDF of the article: pages, captions, vectors, links."""
 
 import io
 import re
@@ -11,10 +11,10 @@ from pypdf import PdfReader
 from bouncing_ball.errors import ModelError
 from bouncing_ball.figures.article.pdf import article_pdf, for_pdf
 
-pytest.importorskip("pypandoc")
 pytest.importorskip("typst")
 
 ROOT = Path(__file__).resolve().parents[3]
+TEMPLATE = ROOT / "workflow" / "report" / "paper" / "article.typ"
 SMALL = """# A title
 
 Text with $\\varpi^2\\,(\\Lambda-1)$ and a [file](config/claims.yaml).
@@ -30,9 +30,9 @@ Text with $\\varpi^2\\,(\\Lambda-1)$ and a [file](config/claims.yaml).
 
 
 @pytest.fixture(scope="module")
-def article():
-    text = (ROOT / "paper.md").read_text(encoding="utf-8")
-    return text, PdfReader(io.BytesIO(article_pdf(text, ROOT)))
+def article(record, texts):
+    text = texts(record)["article"]
+    return text, PdfReader(io.BytesIO(article_pdf(text, TEMPLATE, ROOT)))
 
 
 def uris(reader):
@@ -88,7 +88,7 @@ def test_figures_are_vectors_and_linked_to_their_datasets(article):
 
 
 def test_a_short_one():
-    first, second = (article_pdf(SMALL, ROOT) for _ in range(2))
+    first, second = (article_pdf(SMALL, TEMPLATE, ROOT) for _ in range(2))
     # No time and no machine in it.
     assert first == second
     reader = PdfReader(io.BytesIO(first))
@@ -99,18 +99,14 @@ def test_a_short_one():
 
 def test_what_cannot_be_set_is_said_in_one_line(tmp_path, one_line):
     with pytest.raises(ModelError) as error:
-        article_pdf(SMALL, tmp_path)
+        article_pdf(SMALL, TEMPLATE, tmp_path)
     one_line(error, "the article cannot be set: ")
-    with pytest.raises(ModelError) as error:
-        article_pdf("No title", ROOT)
-    one_line(error, "the article does not begin with its title")
 
 
-@pytest.mark.parametrize("missing", ["pypandoc", "typst"])
-def test_a_missing_tool_is_named(missing, monkeypatch, one_line):
-    monkeypatch.setitem(sys.modules, missing, None)
+def test_a_missing_tool_is_named(monkeypatch, one_line):
+    monkeypatch.setitem(sys.modules, "typst", None)
     with pytest.raises(ModelError) as error:
-        article_pdf(SMALL, ROOT)
+        article_pdf(SMALL, TEMPLATE, ROOT)
     one_line(error, "pip install 'bouncing-ball[pdf]'")
 
 

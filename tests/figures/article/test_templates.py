@@ -13,6 +13,7 @@ TEMPLATES = sorted(FOLDER.glob("*.md.j2"))
 JINJA = re.compile(r"\{\{.*?\}\}|\{%.*?%\}|\{#.*?#\}", re.DOTALL)
 DISPLAY = re.compile(r"\$\$.*?\$\$", re.DOTALL)
 INLINE = re.compile(r"\$[^$]+\$")
+CITATION = re.compile(r"\[@[^\]]+\]")
 CODE = re.compile(r"`[^`\n]*`")
 SPAN = r"\d+(?:[-–]\d+)?"
 NAMED = re.compile(rf"\b(?:Eq|Fig|Figure|Table|Eqs|Figs)s?\.? {SPAN}(?:(?:,| and|, and) {SPAN})*")
@@ -22,7 +23,7 @@ HEADING = re.compile(r"^#+ .*$", re.MULTILINE)
 
 def prose(text: str) -> str:
     """What is left of a template when all that may hold a digit is gone."""
-    for pattern in (JINJA, DISPLAY, INLINE, CODE, NAMED, FAMILY):
+    for pattern in (JINJA, DISPLAY, INLINE, CODE, CITATION, NAMED, FAMILY):
         text = pattern.sub(" ", text)
     return text
 

@@ -12,6 +12,8 @@ from bouncing_ball.datasets.rounding import levels
 from bouncing_ball.datasets.selection import index_of
 from bouncing_ball.errors import ModelError
 
+FORMATS = ("decimal", "distinct", "largest", "listed", "pairs", "percent", "short")
+"""What templates know of this module."""
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 

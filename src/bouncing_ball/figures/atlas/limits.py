@@ -5,8 +5,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bouncing_ball.figures.quantities import NAMES
-from bouncing_ball.figures.style import COLOURS, GUIDE, WIDE, Look, canvas
+from bouncing_ball.figures.canvas import WIDE, canvas
+from bouncing_ball.figures.style import COLOURS, GUIDE, QUANTITIES, Look
 
 _LOOK: dict[str, Look] = {
     "restitution": {"linestyle": "-", "linewidth": 1.2},
@@ -27,7 +27,7 @@ def draw(data: xr.Dataset) -> Figure:
         for axes, quantity in zip(line, data.limit_quantity.values, strict=True):
             part = data.sel(release=release, limit_quantity=quantity)
             _panel(axes, part, families)
-            axes.set_title(f"{NAMES[str(quantity)]}, {release}", fontsize=8)
+            axes.set_title(f"{QUANTITIES[str(quantity)]}, {release}", fontsize=8)
     for axes in panels[-1]:
         axes.set_xlabel("restitution coefficient $r$")
     for axes in panels[:, 0]:

@@ -12,8 +12,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 
-from bouncing_ball.figures.quantities import NAMES
-from bouncing_ball.figures.style import WIDE, canvas
+from bouncing_ball.figures.canvas import WIDE, canvas
+from bouncing_ball.figures.style import QUANTITIES
 
 LEVELS = (3, 5, 10, 20, 50, 100, 200, 500, 1000)
 """Bounds of the colours; the last colour is for what lies beyond."""
@@ -65,7 +65,7 @@ def draw(data: xr.Dataset, quantity: str, n: int = 1) -> Figure:
     bar.ax.set_yticklabels([f"{level:g}" for level in LEVELS])
     percent = 100 * float(data.summary_tolerance)
     bar.set_label(rf"$\varpi$ from which the error is below {percent:g} %")
-    figure.suptitle(rf"{NAMES[quantity]}: how stiff a contact must be, $n={n}$", fontsize=10)
+    figure.suptitle(rf"{QUANTITIES[quantity]}: how stiff a contact must be, $n={n}$", fontsize=10)
     figure.legend(handles=_handles(data), loc="outside lower center", ncols=3)
     return figure
 

@@ -7,8 +7,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from bouncing_ball.figures.quantities import NAMES
-from bouncing_ball.figures.style import GUIDE, WIDE, Look, canvas
+from bouncing_ball.figures.canvas import WIDE, canvas
+from bouncing_ball.figures.style import GUIDE, QUANTITIES, Look
 
 NEAR = 1
 """Ranges of positions next to the saddle-node that the colours leave out."""
@@ -34,11 +34,11 @@ def draw(data: xr.Dataset, release: str = "displacement") -> Figure:
         needed = one.needed.sel(quantity=quantity).max("n")
         away = needed.isel(position=slice(NEAR, None)).max("position")
         _panel(axes, away, needed.isel(position=slice(NEAR)).max("position"))
-        axes.set_title(NAMES[str(quantity)], fontsize=9)
+        axes.set_title(QUANTITIES[str(quantity)], fontsize=9)
     for axes, limit in zip(slots[4:], data.limit_quantity.values, strict=False):
         where = {"limit_quantity": limit, "tolerance": float(data.summary_tolerance)}
         _panel(axes, one.limit_needed.sel(where).max("n"), None)
-        axes.set_title(NAMES[str(limit)], fontsize=9)
+        axes.set_title(QUANTITIES[str(limit)], fontsize=9)
     for axes in slots[:-1]:
         axes.axhline(float(data.rule_of_thumb), **GUIDE)
     for axes in slots[-3:-1]:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.figures.accidents import accidental
+from bouncing_ball.figures.model_errors import accidental
 
 # One number for each family, whatever the amplitude.
 _BIFURCATIONS = ("saddle_node", "period_doubling")

@@ -1,0 +1,166 @@
+"""Options of a subcommand, from the signature and the docstring of its call."""
+
+import argparse
+import inspect
+import re
+import typing
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, NoReturn
+
+from bouncing_ball.cli.output import print_lines
+from bouncing_ball.errors import escaped
+from bouncing_ball.signatures import Range
+
+_OTHER_NAMES = {"parameters": "set"}
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser whose errors are one line and exit status 2."""
+
+    def __init__(self, *args: Any, **options: Any) -> None:
+        super().__init__(*args, **options)
+        # A value such as -1e6 or -5N/m is no option; Python 3.14 reads them so itself.
+        self._negative_number_matcher = re.compile(r"-\.?\d")
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"{self.prog}: {escaped(message)}\n")
+
+    def print_help(self, file=None) -> None:
+        print_lines(self.format_help().splitlines())
+
+
+def option(name: str) -> str:
+    """The option of a parameter.
+
+    Examples
+    --------
+    >>> option("damping_ratio")
+    '--damping-ratio'
+    """
+    return "--" + _OTHER_NAMES.get(name, name).replace("_", "-")
+
+
+def in_options(text: str) -> str:
+    """A text with ``{parameter}`` as its option."""
+    return re.sub(r"{(\w+)}", lambda found: option(found[1]), text)
+
+
+def meanings(call: Callable) -> dict[str, str]:
+    """What the docstring says of each parameter, and of those that are handed on.
+
+    Examples
+    --------
+    >>> meanings(meanings)
+    {}
+    """
+    handed_on = getattr(call, "handed_on", None)
+    found = meanings(handed_on) if handed_on else {}
+    entries = re.findall(
+        r"^(\w+(?:, \w+)*)(?: : .*)?\n((?: {4}.+\n?)+)", inspect.getdoc(call) or "", re.MULTILINE
+    )
+    for names, text in entries:
+        found |= dict.fromkeys(names.split(", "), " ".join(text.split()))
+    return found
+
+
+class _Assign(argparse.Action):
+    """Collects NAME=NUMBER, NAME=NUMBER, … in a dictionary."""
+
+    def __call__(self, parser, namespace, values, option_string=None):
+        found = getattr(namespace, self.dest) or {}
+        setattr(namespace, self.dest, {**found, values[0]: values[1]})
+
+
+def _assignment(text: str) -> tuple[str, float]:
+    name, equals, value = text.partition("=")
+    number = _float(value)
+    if not (name and equals and number in Range()):
+        raise argparse.ArgumentTypeError(f"{text!r} is not NAME=NUMBER, as stiffness=1000")
+    return name, number
+
+
+def _float(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        return float("nan")
+
+
+def _number_in(allowed: Range) -> Callable[[str], float]:
+    def parse(text: str) -> float:
+        if _float(text) not in allowed:
+            raise argparse.ArgumentTypeError(f"{text!r} is not {allowed}")
+        return float(text)
+
+    return parse
+
+
+def _count_in(allowed: Range) -> Callable[[str], int]:
+    def parse(text: str) -> int:
+        if not re.fullmatch(r"\s*\+?\d+\s*", text) or int(text) not in allowed:
+            span = f"{allowed.low:g} to {allowed.high:.0f}"
+            raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from {span}")
+        return int(text)
+
+    return parse
+
+
+def _reading(annotation: Any) -> dict[str, Any]:
+    """How argparse reads a value of a type."""
+    # X | None is read as X is.
+    kinds = [each for each in typing.get_args(annotation) if each is not type(None)]
+    if type(None) in typing.get_args(annotation):
+        return _reading(kinds[0])
+    origin = typing.get_origin(annotation)
+    if origin is typing.Annotated:
+        kind, how = kinds
+        if not isinstance(how, Range):
+            return {"type": how, "metavar": "FILE"}
+        whole = kind is int
+        return {
+            "type": _count_in(how) if whole else _number_in(how),
+            "metavar": "N" if whole else "X",
+        }
+    if origin is typing.Literal:
+        return {"choices": kinds}
+    if origin is Mapping:
+        return {"type": _assignment, "action": _Assign, "metavar": "NAME=NUMBER"}
+    if annotation is bool:
+        return {"action": "store_true"}
+    return {"metavar": "X"} | ({"type": annotation} if annotation in (int, str, Path) else {})
+
+
+def positional(call: Callable) -> list[str]:
+    """The parameters that are given by their places."""
+    found = inspect.signature(call).parameters.values()
+    return [p.name for p in found if p.kind is p.POSITIONAL_ONLY]
+
+
+def add_options(parser: argparse.ArgumentParser, call: Callable) -> list[str]:
+    """One option for each parameter, and arguments for those that are positional only.
+
+    Returns the names of the parameters.
+    """
+    texts, parameters = meanings(call), inspect.signature(call, eval_str=True).parameters
+    for name, parameter in parameters.items():
+        reading, text = _reading(parameter.annotation), texts.get(name, "")
+        required, default = parameter.default is parameter.empty, parameter.default
+        if parameter.kind is parameter.POSITIONAL_ONLY:
+            # Several arguments need a default, or argparse calls them required.
+            several: dict[str, Any] = {} if required else {"nargs": "*", "default": []}
+            reading["metavar"] = name.upper()
+            parser.add_argument(name, **reading, **several, help=text)
+            continue
+        if not required and default not in (None, False):
+            shown = f"{default:.4g}" if isinstance(default, float) else default
+            text += f" (default: {shown})"
+        parser.add_argument(
+            option(name),
+            dest=name,
+            required=required,
+            default=None if required else default,
+            help=text.replace("%", "%%"),
+            **reading,
+        )
+    return list(parameters)

@@ -1,0 +1,173 @@
+"""Motion of ball and table over time (Figs. 2, 7, 12 and the instant of an impact)."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from bouncing_ball.figures.canvas import WIDE, canvas, legend_below, note, number, parameters
+from bouncing_ball.figures.style import COLOURS, CONTACT, CORRECTED, GUIDE, RESTITUTION, TABLE
+
+_ARROW = {
+    **{"arrowstyle": "-|>", "color": "black", "linewidth": 0.9},
+    **{"shrinkA": 0, "shrinkB": 0, "mutation_scale": 9},
+}
+# From the softest contact to the stiffest.
+_DASHES = ((0, (1, 1)), (0, (3, 1, 1, 1)), (0, (5, 1.5)), (0, (8, 1.5)), "-", "-")
+_RIGID = "#b3b3b3"
+
+
+def restitution_history(data: xr.Dataset) -> Figure:
+    """Fig. 2: ball and table against time in periods of the table, restitution model."""
+    figure, axes = canvas(height=2.4)
+    periods = data.time / (2 * np.pi)
+    axes.plot(periods, data.ball, color=RESTITUTION, label="ball $z$")
+    axes.plot(periods, data.table, color=TABLE, label="table $w$")
+    axes.set(
+        xlabel=r"time $\tau/2\pi$",
+        ylabel="$z$, $w$",
+        xlim=(0, float(periods[-1])),
+        title=parameters(data, "n", "restitution", "amplitude"),
+    )
+    axes.set_ylim(top=1.25 * float(data.ball.max()))
+    axes.legend(loc="upper center", ncols=2)
+    return figure
+
+
+def contact_history(data: xr.Dataset) -> Figure:
+    """Fig. 7: one cycle with the instants and velocities of the paper's equations."""
+    figure, axes = canvas(5.0, 3.0)
+    time, ball, table = data.time.values, data.ball.values, data.table.values
+    touching, end = data.contact.values.astype(bool), float(time[-1])
+    axes.plot(time, table, color=TABLE)
+    axes.plot(time[~touching], ball[~touching], color=CONTACT)
+    axes.plot(time[touching], ball[touching], color=CONTACT, linewidth=2.6)
+    low = table.min() - 0.16 * (ball.max() - table.min())
+    duration, reach = float(data.contact_duration), 0.12 * end
+    before, after = float(data.impact_velocity), float(data.bounce_velocity)
+    for instant, height, velocity, name, symbol in (
+        (0.0, ball[0], before, r"$\tau_i=0$", r"$z′_i$"),
+        (duration, ball[touching][-1], after, r"$\tau_b$", r"$z′_b$"),
+        (end, ball[-1], before, r"$\tau_2=\tau_i+2\pi n$", r"$z′_2$"),
+    ):
+        axes.plot([instant, instant], [low, height], **GUIDE)
+        axes.plot(instant, height, "o", color="black", markersize=3.5, zorder=5)
+        note(axes, name, (instant, low), (0, -2), ha="center", va="top")
+        # The tangent into the impact, or out of the release, of a fixed length in τ.
+        side = np.copysign(reach, velocity)
+        here, far = (instant, height), (instant + side, height + side * velocity)
+        head, tail = (here, far) if velocity < 0 else (far, here)
+        axes.annotate("", xy=head, xytext=tail, arrowprops=_ARROW)
+        offset, ha = ((4, 1), "left") if velocity < 0 else ((-4, 1), "right")
+        note(axes, symbol, far, offset, ha=ha, va="center")
+    top, dip = int(np.argmax(ball)), int(np.argmin(table))
+    note(axes, "ball $z$", (time[top], ball[top]), (0, 5), ha="center", color=CONTACT)
+    place = {"ha": "center", "va": "bottom", "color": "#5f5f5f"}
+    note(axes, "table $w$", (time[dip], table[dip]), (0, 4), **place)
+    middle = (duration / 2, ball[touching].min())
+    note(axes, "contact", middle, (0, -9), ha="center", va="top", fontsize=8)
+    axes.annotate("flight", (time[top], 0.62 * ball[top]), ha="center", fontsize=8)
+    axes.set(
+        ylabel="$z$, $w$",
+        xticks=[],
+        xlim=(-0.16 * end, 1.12 * end),
+        ylim=(low, 1.15 * ball.max()),
+        title=parameters(data, "n", "restitution", "amplitude", "frequency_ratio"),
+    )
+    axes.set_xlabel(r"time $\tau$", labelpad=16)
+    return figure
+
+
+def both_histories(data: xr.Dataset) -> Figure:
+    """Fig. 12: height over τ, with the table at Λ sin τ for all curves; right, the summit."""
+    figure, (axes, summit) = canvas(WIDE, 3.4, columns=2, width_ratios=(2.4, 1.0))
+    n, amplitude = data.attrs["n"], data.attrs["amplitude"]
+    cycle = 2 * np.pi * n
+    time = np.linspace(-0.1 * 2 * np.pi, cycle + 0.35 * 2 * np.pi, 400)
+    axes.plot(time, amplitude * np.sin(time), color=TABLE, label="table")
+    for part in (axes, summit):
+        _draw_both_models(part, data, cycle)
+    halves = np.arange(0, 2 * n + 1)
+    axes.set_xticks(np.pi * halves, ["0", r"$\pi$", *(rf"${k}\pi$" for k in halves[2:])])
+    title = parameters(data, "n", "restitution", "amplitude")
+    axes.set(xlabel=r"time $\tau$", ylabel="$z$, $w$", xlim=(time[0], time[-1]), title=title)
+    # Enlarged so far that the stiffest contact is seen apart.
+    ball = data.restitution_ball.values
+    top, at = float(ball.max()), float(data.time[int(ball.argmax())] + data.restitution_phase)
+    below = max(3 * (top - float(data.ball.isel(frequency_ratio=-1).max())), 0.02 * top)
+    reach = np.sqrt(2 * below)  # of a free flight
+    summit.set(
+        xlabel=r"time $\tau$",
+        xlim=(at - reach, at + reach),
+        ylim=(top - below, top + 0.15 * below),
+        title="the summit, enlarged",
+    )
+    legend_below(figure, ncols=data.sizes["frequency_ratio"] + 2, columnspacing=1.2)
+    return figure
+
+
+def meeting_flights(data: xr.Dataset) -> Figure:
+    """The flights before and after a contact, continued; below, the contact force.
+
+    They meet at the centroid of the force.
+    """
+    figure, (top, below) = canvas(4.2, 3.6, rows=2, sharex=True, height_ratios=(2.2, 1.0))
+    time, end = data.time.values, float(data.contact_duration)
+    touching, near = (time >= 0) & (time <= end), (time > -0.15 * end) & (time < 1.15 * end)
+    flights = (("before", COLOURS[2], time >= 0), ("after", CORRECTED, time <= end))
+    for name, colour, continued in flights:
+        shown = continued & near
+        flight = data[f"flight_{name}"].values[shown]
+        top.plot(time[shown], flight, "--", color=colour, linewidth=1.1)
+    top.plot(time, data.table, color=TABLE, label="table")
+    top.plot(time, data.ball, color=CONTACT, label="ball")
+    top.plot(time[touching], data.ball.values[touching], color=CONTACT, linewidth=2.6)
+    for name, colour, _ in flights:
+        top.plot([], [], "--", color=colour, label=f"flight {name}, continued")
+    meeting, low = float(data.meeting_time), float(data.meeting_height)
+    top.plot(meeting, low, "o", color="black", markersize=5, zorder=5)
+    force = data.contact_force.values[touching]
+    below.fill_between(time[touching], force, color=CONTACT, alpha=0.25, linewidth=0)
+    below.plot(time[touching], force, color=CONTACT)
+    below.axhline(0.0, color="black", linewidth=0.5)
+    for axes in (top, below):
+        axes.axvline(meeting, **GUIDE)
+    note(below, "$t_c$", (meeting, 0), (3, 3), fontsize=9)
+    margin = float(data.table.values[touching].max()) - low
+    title = parameters(data, "n", "restitution", "amplitude", "frequency_ratio")
+    top.set(ylabel="height", ylim=(low - 0.12 * margin, low + 1.6 * margin), title=title)
+    span = (float(time[0]), float(time[-1]))
+    since = r"time since the start of contact $\tau$"
+    below.set(xlabel=since, ylabel="contact force", xlim=span)
+    legend_below(figure, ncols=2)
+    return figure
+
+
+def _draw_both_models(axes: Axes, data: xr.Dataset, cycle: float) -> None:
+    """Both models; the restitution model is a broad line, over which the others are seen."""
+    phase = data.time.values + float(data.restitution_phase)
+    rigid = _three_cycles(phase, data.restitution_ball.values, cycle)
+    axes.plot(*rigid, color=_RIGID, label="restitution", linewidth=3.5)
+    last = data.sizes["frequency_ratio"] - 1
+    for k, ratio in enumerate(data.frequency_ratio.values):
+        curve = data.sel(frequency_ratio=ratio)
+        axes.plot(
+            *_three_cycles(curve.table_phase.values, curve.ball.values, cycle),
+            # The stiffest contact is black and solid, whatever their number.
+            color=COLOURS[(last - k) % len(COLOURS)],
+            linestyle="-" if k == last else _DASHES[k % len(_DASHES)],
+            linewidth=0.9 if k == last else 1.3,
+            label=rf"$\varpi={number(ratio)}$",
+        )
+
+
+def _three_cycles(
+    phase: np.ndarray, ball: np.ndarray, cycle: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """The orbit repeats: the cycles before and after are drawn as well.
+
+    Each point once: where a cycle ends and the next begins, rounding would
+    make a segment without direction, and the dashes of the line start anew.
+    """
+    shifted = np.concatenate([phase[:-1] - cycle, phase[:-1], phase + cycle])
+    return shifted, np.concatenate([ball[:-1], ball[:-1], ball])

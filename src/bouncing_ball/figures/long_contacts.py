@@ -1,0 +1,109 @@
+"""Permanent contact and the orbits with a long contact: stable windows and basins."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from bouncing_ball.figures.canvas import WIDE, canvas, legend_below, logarithmic, number
+from bouncing_ball.figures.style import COLOURS, CONTACT, GUIDE, MARKS, TABLE, Look
+
+_MARKS: dict[str, Look] = {
+    "saddle-node": {**MARKS["saddle-node"], "color": COLOURS[1]},
+    "period doubling": {**MARKS["period doubling"], "color": COLOURS[3]},
+    "grazing in contact": {**MARKS["grazing"], "color": COLOURS[0]},
+    "grazing in flight": {**MARKS["grazing"], "marker": "v", "color": COLOURS[2]},
+}
+# A mark at so many samples, in a run of windows that end alike.
+_EVERY = 8
+# In the order of the motions; five steps of grey.
+_FILLS = ("#ffffff", "#b9d7ea", "#b34a10", "#e0a030", "#000000")
+_ORBITS = {1: "o", 2: "^"}
+_ORBIT: Look = {
+    **{"linestyle": "none", "color": "#000000", "markerfacecolor": "#ffffff"},
+    **{"markersize": 5, "zorder": 3},
+}
+
+
+def stable_windows(data: xr.Dataset) -> Figure:
+    """Left, the window of the first r and what ends it; right, ϖ² times the widths for all r."""
+    figure, (left, right) = canvas(WIDE, 3.2, columns=2)
+    _draw_window(left, data.isel(restitution=0))
+    ratio = data.frequency_ratio.values
+    for k, r in enumerate(sorted(data.restitution.values)):
+        one, colour = data.sel(restitution=r), COLOURS[k % len(COLOURS)]
+        width = ratio**2 * (one.window_amplitude - one.threshold_amplitude).values
+        for run in _runs(one.window_end.values):
+            right.plot(ratio[run], width[run], marker="." if run.size == 1 else "", color=colour)
+        right.plot([], [], color=colour, label=number(float(r)))
+        right.plot(ratio[-1], one.stiff_window, marker=5, color=colour, clip_on=False)
+    logarithmic(right)
+    right.set(
+        yscale="log",
+        xlabel=r"frequency ratio $\varpi$",
+        ylabel=r"$\varpi^2\,(\Lambda_{\mathrm{end}}-\Lambda_{SD})$",
+        title=r"its width for each $r$, and the limit for $\varpi\to\infty$",
+    )
+    right.legend(loc="lower right", title="$r$, from above")
+    return figure
+
+
+def basins(data: xr.Dataset) -> Figure:
+    """One panel for each Λ; each start has the colour of the motion it leads to."""
+    figure, row = canvas(WIDE, 3.1, columns=data.sizes["case"], sharey=True, squeeze=False)
+    for case, axes in zip(data.case.values, row[0], strict=True):
+        one = data.sel(case=case)
+        axes.imshow(
+            one.destination,
+            origin="lower",
+            extent=(-1.0, 1.0, 0.0, data.attrs["velocity_max"]),
+            aspect="auto",
+            interpolation="none",
+            cmap=ListedColormap(_FILLS),
+            vmin=-0.5,
+            vmax=len(_FILLS) - 0.5,
+        )
+        for k, mark in _ORBITS.items():
+            if np.isfinite(one.orbit_phase[k]):
+                axes.plot(one.orbit_phase[k] / np.pi, one.orbit_speed[k], marker=mark, **_ORBIT)
+        # Not the attribute of this name, which is a list.
+        amplitude = number(float(one["amplitude"]))
+        axes.set(title=rf"$\Lambda={amplitude}$", xlabel=r"phase of impact $\varphi/\pi$")
+        axes.spines[["top", "right"]].set_visible(True)
+    row[0, 0].set_ylabel(r"relative speed of impact $-\delta′$")
+    handles = [
+        Patch(facecolor=fill, edgecolor="#000000", linewidth=0.5, label=str(motion))
+        for fill, motion in zip(_FILLS, data.motion.values, strict=True)
+    ]
+    legend_below(figure, handles, ncols=len(handles), fontsize=7)
+    return figure
+
+
+def _runs(kinds: np.ndarray) -> list[np.ndarray]:
+    """Indices of neighbours whose window ends in the same way: the end jumps in between."""
+    edges = np.flatnonzero(kinds[1:] != kinds[:-1]) + 1
+    return np.split(np.arange(kinds.size), edges)
+
+
+def _draw_window(axes: Axes, window: xr.Dataset) -> None:
+    """The window of one r, its upper end marked by what ends it."""
+    ratio, kinds = window.frequency_ratio.values, window.window_end.values
+    low, high = window.threshold_amplitude.values, window.window_amplitude.values
+    for run in _runs(kinds):
+        axes.fill_between(ratio[run], low[run], high[run], color="#dcdcdc", linewidth=0)
+        axes.plot(ratio[run], high[run], color=TABLE, linewidth=0.8)
+    for kind, look in _MARKS.items():
+        runs = [run for run in _runs(kinds) if kinds[run[0]] == kind]
+        if runs:
+            # The ends of each run, and some in between.
+            there = np.unique(np.concatenate([[*run[::_EVERY], run[-1]] for run in runs]))
+            axes.plot(ratio[there], high[there], label=kind, **(look | {"markersize": 3.5}))
+    axes.plot(ratio, low, color=CONTACT, linewidth=1.3, label=r"$\Lambda_{SD}$")
+    axes.axhline(1.0, **GUIDE)
+    title = rf"stable window, $r={number(float(window.restitution))}$"
+    axes.set(xlabel=r"frequency ratio $\varpi$", ylabel=r"amplitude $\Lambda$", title=title)
+    logarithmic(axes)
+    axes.set_ylim(bottom=0.0)
+    axes.legend(loc="lower right", title="upper end")

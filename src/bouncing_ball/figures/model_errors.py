@@ -1,0 +1,143 @@
+"""Errors of the restitution and of the corrected model, quantity by quantity."""
+
+from typing import Any
+
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from bouncing_ball.figures.canvas import legend_below, logarithmic, panels, parameters
+from bouncing_ball.figures.style import CORRECTED, GUIDE, LAWS, QUANTITIES, RESTITUTION, Look
+
+# Bands that differ in grey and by their hatching; lines that differ by their dashes.
+_MODELS: dict[str, Look] = {
+    "restitution": {"color": RESTITUTION, "linestyle": "-", "linewidth": 1.2},
+    "corrected": {"color": CORRECTED, "linestyle": (0, (3, 1.5)), "linewidth": 1.2},
+}
+_BANDS: dict[str, Look] = {
+    "restitution": {"facecolor": "#d0d0d0", "edgecolor": "none"},
+    "corrected": {"facecolor": "none", "edgecolor": CORRECTED, "hatch": "////", "alpha": 0.5},
+}
+
+
+def orders(data: xr.Dataset) -> Figure:
+    """Errors of both models along ϖ, with the slopes 1 and 2."""
+    figure, axes_of = _by_quantity(data, 4.2, r"frequency ratio $\varpi$", "relative error")
+    ratio = data.frequency_ratio.values
+    for quantity, axes in axes_of.items():
+        for order, (model, look) in enumerate(_MODELS.items(), 1):
+            part, colour = data.sel(model=model, quantity=quantity), look["color"]
+            error = part.relative_error.values
+            axes.plot(ratio, error, color=colour, label=model)
+            # A guide of the slope through the last point.
+            axes.plot(ratio, error[-1] * (ratio[-1] / ratio) ** order, **GUIDE)
+            place: Look = {"transform": axes.transAxes, "ha": "right", "va": "top"}
+            text = f"order {float(part.order.median()):.2f}"
+            axes.text(0.97, 1.04 - 0.11 * order, text, color=colour, fontsize=8, **place)
+        logarithmic(axes)
+        axes.set(yscale="log", xlim=(ratio[0], ratio[-1]), ylim=(1e-9, 3.0))
+    figure.suptitle(
+        f"{parameters(data, 'n', 'restitution', 'amplitude')}; orders of "
+        f"{data.sizes['sample']} random orbits, median"
+    )
+    legend_below(figure, ncols=2)
+    return figure
+
+
+def contact_laws(data: xr.Dataset) -> Figure:
+    """Errors of both models on contacts of five laws, over the share of the cycle in contact."""
+    label = r"share of the cycle in contact, $D/(2\pi n)$"
+    figure, axes_of = _by_quantity(data, 5.0, label, "relative error")
+    share = 1 / (2 * data.attrs["n"] * data.duration_ratio.values)
+    for quantity, axes in axes_of.items():
+        for law in data["law"].values:
+            for model in data.model.values:
+                error = data.relative_error.sel(law=law, quantity=quantity, model=model)
+                name = str(law) if model == "restitution" else None
+                axes.plot(share, error, linewidth=1.1, label=name, **LAWS[str(law)])
+        for slope in (1, 2):
+            axes.plot(share[[0, -1]], share[[0, -1]] ** slope, **GUIDE)
+        axes.set(xscale="log", yscale="log")
+    spare = figure.axes[len(axes_of)]
+    spare.axis("off")
+    title = (
+        "upper five: restitution model\nlower five: corrected model\ndotted: slopes 1 and 2\n"
+        + parameters(data, "n", "restitution", "amplitude")
+    )
+    spare.legend(*figure.axes[0].get_legend_handles_labels(), loc="upper left", title=title)
+    return figure
+
+
+def validity(data: xr.Dataset) -> Figure:
+    """From which ϖ on each model is right: a band over n and Λ, and one orbit's line, over r."""
+    label = rf"$\varpi$ for {100 * data.attrs['tolerance']:g} %"
+    figure, axes_of = _by_quantity(data, 4.6, "restitution coefficient $r$", label)
+    middle = float(data.amplitude_ratio[data.sizes["amplitude_ratio"] // 2])
+    line: dict[str, Any] = {"n": int(data.n[0]), "amplitude_ratio": middle}
+    handles: dict[str, Any] = {}
+    for quantity, axes in axes_of.items():
+        part = data.sel(quantity=quantity)
+        for model, look in _MODELS.items():
+            found = part.error_threshold.sel(model=model)
+            lowest, highest = (f(("n", "amplitude_ratio")) for f in (found.min, found.max))
+            axes.fill_between(data.restitution, lowest, highest, linewidth=0.4, **_BANDS[model])
+            axes.plot(data.restitution, found.sel(line), label=model, **look)
+        _ring_accidents(axes, part.sel(line))
+        axes.set_yscale("log")
+        axes.grid(visible=True, axis="y", linewidth=0.3)
+        names = axes.get_legend_handles_labels()
+        handles |= dict(zip(*reversed(names), strict=True)) | handles
+    figure.suptitle(
+        rf"lines: $n={line['n']}$, $\Lambda={middle:g}\,\Lambda_{{SN}}$; bands: all $n$ of "
+        rf"{_listed(data.n)} and $\Lambda/\Lambda_{{SN}}$ of {_listed(data.amplitude_ratio)}"
+    )
+    legend_below(figure, list(handles.values()), ncols=len(handles))
+    return figure
+
+
+def accidental(data: xr.Dataset) -> xr.DataArray:
+    """Whether its error passes through zero above the ϖ from which it is within the tolerance.
+
+    The error then changes its sign there, and would be beyond the tolerance otherwise.
+
+    Examples
+    --------
+    >>> data = xr.Dataset(
+    ...     {"error_threshold": (("model", "restitution"), [[3.0, 80.0]]),
+    ...      "error_zero": ("restitution", [9.0, 2.0])}, coords={"model": ["restitution"]})
+    >>> accidental(data).values.tolist()
+    [True, False]
+    """
+    return data.error_zero > data.error_threshold.sel(model="restitution", drop=True)
+
+
+def _by_quantity(
+    data: xr.Dataset, height: float, xlabel: str, ylabel: str
+) -> tuple[Figure, dict[str, Axes]]:
+    """Two rows of three panels, one for each quantity, named on the outside only."""
+    figure, slots = panels(height, 2, 3)
+    for axes in slots:
+        axes.set(xlabel=xlabel, ylabel=ylabel)
+        axes.label_outer()
+    by_quantity = dict(zip(map(str, data["quantity"].values), slots, strict=False))
+    for quantity, axes in by_quantity.items():
+        axes.set_title(QUANTITIES[quantity])
+    return figure, by_quantity
+
+
+def _ring_accidents(axes: Axes, data: xr.Dataset) -> None:
+    """Rings where the restitution model's error is small because it passes through zero."""
+    there = accidental(data)
+    axes.plot(
+        data.restitution[there],
+        data.error_threshold.sel(model="restitution")[there],
+        "o",
+        color=RESTITUTION,
+        markerfacecolor="white",
+        markersize=4.5,
+        label="restitution, within the tolerance by an accidental zero",
+    )
+
+
+def _listed(values: xr.DataArray) -> str:
+    return ", ".join(f"{value:g}" for value in values.values)

@@ -1,0 +1,127 @@
+"""One orbit followed along ϖ, curve by curve (Figs. 5, 6, 10, 13)."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from bouncing_ball.figures.branches import draw_curve
+from bouncing_ball.figures.canvas import (
+    canvas,
+    legend_below,
+    logarithmic,
+    note,
+    number,
+    parameters,
+)
+from bouncing_ball.figures.style import COLOURS, GUIDE, RESTITUTION, Look
+
+_DASHES = ("-", (0, (5, 1.5)), (0, (1, 1)), (0, (5, 1.5, 1, 1.5)))
+# Above this frequency ratio the points crowd at that of the restitution model.
+_NAMED_UP_TO = 10.0
+_LIMIT: Look = {"markersize": 9, "zorder": 5, "linestyle": "none", "color": RESTITUTION}
+
+
+def apparent_restitution_of_cases(data: xr.Dataset) -> Figure:
+    """Fig. 5: a curve for each (r, Λ), named at its restitution coefficient."""
+    figure, axes = canvas(height=2.8)
+    ratio = data.frequency_ratio
+    for case, colour in zip(data.case, COLOURS, strict=False):
+        curve = data.sel(case=case)
+        r, lam = float(curve.restitution), float(curve.amplitude)
+        axes.axhline(r, **GUIDE)
+        draw_curve(axes, ratio, curve.apparent_restitution, curve.admissible, color=colour)
+        name = rf"$r={number(r)}$, $\Lambda={number(lam)}$"
+        note(axes, name, (float(ratio[-1]), r), (0, -3), ha="right", va="top", fontsize=8)
+    logarithmic(axes, ratio)
+    axes.set(ylabel="apparent restitution $r_a$", ylim=(0, 1.05), title=parameters(data, "n"))
+    return figure
+
+
+def apparent_restitution(data: xr.Dataset) -> Figure:
+    """Fig. 6: a curve for each Λ, with the restitution coefficient as a guide."""
+    figure, axes = canvas(height=2.6)
+    values = sorted(set(data.restitution.values.tolist()))
+    for restitution in values:
+        axes.axhline(restitution, **GUIDE)
+    _draw_amplitudes(axes, data, data.apparent_restitution)
+    axes.set_ylabel("apparent restitution $r_a$")
+    axes.legend(title=f"{parameters(data, 'n')}, $r={', '.join(map(number, values))}$")
+    return figure
+
+
+def bounce_velocity(data: xr.Dataset) -> Figure:
+    """Fig. 10: a curve for each Λ, with the restitution model's nπ as a guide."""
+    figure, axes = canvas(height=2.6)
+    limit = float(data.restitution_bounce_velocity)
+    axes.axhline(limit, **GUIDE)
+    name = rf"${round(limit / np.pi)}\pi$" if limit > 1.5 * np.pi else r"$\pi$"
+    note(axes, name, (float(data.frequency_ratio[0]), limit), (4, 3), fontsize=8)
+    _draw_amplitudes(axes, data, data.bounce_velocity)
+    axes.set_ylabel(r"bouncing-off velocity $z′_b$")
+    axes.legend(loc="lower right", title=parameters(data, "n", "restitution"))
+    return figure
+
+
+def poincare_map(data: xr.Dataset) -> Figure:
+    """Fig. 13: phase and velocity, over π, at the start and at the end of contact.
+
+    Each curve is traced by ϖ; a few of its values are marked on it.
+    """
+    figure, axes = canvas(4.4, 4.0)
+    for k, case in enumerate(data.case.values):
+        curve = data.sel(case=case)
+        colour = COLOURS[1 + k % (len(COLOURS) - 1)]
+        end = (curve.release_phase, curve.bounce_velocity, data.restitution_bounce_velocity)
+        start = (curve.phase, curve.impact_velocity, data.restitution_impact_velocity)
+        for (phase, velocity, limit), name, dashes, face in (
+            (end, r"end of contact, $(\varphi+\tau_b,\,z′_b)$", "-", colour),
+            (start, r"start of contact, $(\varphi,\,z′_i)$", (0, (4, 1.5)), "white"),
+        ):
+            look = {"color": colour, "linestyle": dashes, "markerfacecolor": face}
+            # Named once for all cases.
+            _draw_trace(axes, curve, phase, velocity, name if k == 0 else None, **look)
+            axes.plot(curve.restitution_phase / np.pi, limit / np.pi, "*", **_LIMIT)
+    axes.plot([], [], "*", label="restitution model", **_LIMIT)
+    axes.set(xlabel=r"phase of the table over $\pi$", ylabel=r"velocity of the ball, $z′/\pi$")
+    axes.margins(x=0.14)
+    axes.axhline(0.0, color="#8c8c8c", linewidth=0.5)
+    legend_below(figure, ncols=2)
+    amplitudes = "".join(rf", $\Lambda={number(x)}$" for x in data["amplitude"].values)
+    axes.set_title(parameters(data, "n", "restitution") + amplitudes)
+    return figure
+
+
+def _draw_amplitudes(axes: Axes, data: xr.Dataset, values: xr.DataArray) -> None:
+    """One curve for each case, labelled by its Λ."""
+    for k, case in enumerate(data.case.values):
+        one = data.sel(case=case)
+        draw_curve(
+            axes,
+            data.frequency_ratio,
+            values.sel(case=case),
+            one.admissible,
+            color=COLOURS[k % len(COLOURS)],
+            linestyle=_DASHES[k % len(_DASHES)],
+            label=rf"$\Lambda={number(float(one.amplitude))}$",
+        )
+    logarithmic(axes, data.frequency_ratio)
+
+
+def _draw_trace(axes: Axes, curve: xr.Dataset, phase, velocity, label, **look) -> None:
+    """Phase and velocity over π as ϖ varies, its round values marked.
+
+    Of a curve with a label the small values are named; the next one's would overlap.
+    """
+    x, y = phase.values / np.pi, velocity.values / np.pi
+    line = {"color": look["color"], "linestyle": look["linestyle"]}
+    draw_curve(axes, x, y, curve.admissible, **line)
+    axes.plot([], [], marker="o", markersize=4, label=label, **look)
+    for k, at in enumerate(np.flatnonzero(curve.labelled.values)):
+        axes.plot(x[at], y[at], marker="o", markersize=4, **look)
+        ratio = float(curve.frequency_ratio[at])
+        if label and ratio <= _NAMED_UP_TO:
+            # Neighbours on both sides of the curve.
+            offset, side = ((5, 4), "left") if k % 2 == 0 else ((-5, -4), "right")
+            name, point = rf"$\varpi={number(ratio)}$", (x[at], y[at])
+            note(axes, name, point, offset, ha=side, va="center", fontsize=8)

@@ -24,7 +24,8 @@ def shard_names(parameters: Mapping[str, Any]) -> list[str]:
     Examples
     --------
     >>> from bouncing_ball.configuration.yaml_file import read_yaml
-    >>> shard_names(read_yaml("config/config.yaml")["atlas"])[:2]
+    >>> section = read_yaml("config/config.yaml")["atlas"]
+    >>> shard_names({key: part for key, part in section.items() if key != "summary"})[:2]
     ['0000-of-0020', '0001-of-0020']
     """
     from bouncing_ball.atlas.plan import Plan

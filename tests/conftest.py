@@ -17,7 +17,6 @@ from hypothesis import HealthCheck, settings
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
-from bouncing_ball.audit.evidence import evidence
 from bouncing_ball.configuration.stages import studied
 from bouncing_ball.configuration.study import load, typed
 from bouncing_ball.configuration.yaml_file import read_yaml
@@ -126,7 +125,7 @@ def reference():
 
 @pytest.fixture(scope="session")
 def record_and_new():
-    """The accepted datasets by name; of stages new since then, and the evidence, computed."""
+    """The accepted datasets by name; those of stages new since then computed."""
     data = {path.stem: read_dataset(path) for path in sorted((ROOT / "figures").glob("*.nc"))}
     run = read_yaml(ROOT / "config" / "config.yaml")
     for stage in studied():
@@ -135,8 +134,7 @@ def record_and_new():
             made = typed(load(stage.study))(parameters, *stage.settings(run).values())
             named = parameter_attributes({**parameters, **stage.settings(run)})
             data[stage.name] = made.assign_attrs(named)
-    limits = run["studies"]["evidence"]
-    return data | {"evidence": evidence(data, limits).assign_attrs(limits)}
+    return data
 
 
 @pytest.fixture(scope="session")

@@ -33,23 +33,22 @@ ALLOWED = {
     "atlas": ({"datasets", "contacts", "orbits", "accuracy"}, {"numpy", "xarray", "pydantic"}),
     # Studies are imported by name when they are run.
     "configuration": ({"contacts", "orbits"}, {"yaml", "jsonschema", "pydantic", BY_NAME}),
-    "audit": (
+    "claims": (
         {"datasets", "contacts", "continuation", "motion", "orbits", "studies", "configuration"},
-        {"numpy", "scipy", "xarray", "pydantic"},
+        {"numpy", "scipy", "xarray"},
     ),
-    "claims": ({"datasets", "configuration"}, {"numpy", "xarray"}),
     # Pandoc and Typst only where the PDF is made.
     "figures": ({"datasets"}, {"numpy", "xarray", "matplotlib", "jinja2", "pypandoc", "typst"}),
-    # Pillow reads pictures for matplotlib.
-    "record": (
-        {"datasets", "configuration", "compare"},
-        {"numpy", "xarray", "netCDF4", "matplotlib", "PIL", "jinja2"},
-    ),
+    # netCDF4 and Pillow read attributes without the data.
+    "provenance": ({"configuration"}, {"numpy", "netCDF4", "PIL"}),
     "compare": (
-        {"datasets", "configuration", "record"},
-        {"numpy", "xarray", "netCDF4", "matplotlib", "PIL", "jinja2"},
+        {"datasets", "configuration", "provenance"},
+        {"numpy", "xarray", "netCDF4", "PIL", "jinja2"},
     ),
-    "pipeline": ({"datasets", "atlas", "configuration", "figures", "record"}, {"xarray", "yaml"}),
+    "pipeline": (
+        {"datasets", "atlas", "configuration", "figures", "provenance"},
+        {"xarray", "yaml"},
+    ),
     "cli": (
         {
             "datasets",
@@ -60,7 +59,7 @@ ALLOWED = {
             "calculator",
             "configuration",
             "figures",
-            "record",
+            "provenance",
             "compare",
         },
         # The calls of a subcommand are imported when it is used.
@@ -144,10 +143,10 @@ def test_layer_imports_only_what_it_may(layer):
         ("figures", "import importlib\nimportlib.import_module('bouncing_ball.contacts')"),
         ("figures", "from .. import studies"),
         ("figures", "from importlib import import_module\nimport_module(f'bouncing_ball.{name}')"),
-        ("record", "from bouncing_ball.audit import convergence"),
-        ("record", "import bouncing_ball\nbouncing_ball.audit.convergence.stages"),
+        ("compare", "from bouncing_ball.claims import convergence"),
+        ("compare", "import bouncing_ball\nbouncing_ball.claims.convergence.stages"),
         ("pipeline", "from bouncing_ball.cli.output import fail"),
-        ("cli", "from bouncing_ball.audit.evidence import evidence"),
+        ("cli", "from bouncing_ball.claims.evidence import dip"),
         ("cli", "import matplotlib"),
     ],
 )

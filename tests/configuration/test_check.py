@@ -85,7 +85,6 @@ FIG08, FIG05 = ("figures", "fig08"), ("figures", "fig05")
         (("tables", "table1", "printed"), [], "unknown key tables.table1.printed = []; allowed"),
         (("tables", "table1", "n"), [], "tables.table1.n = [] must have at least 1 item"),
         (("studies", "formulas", "samples"), 7, "studies.formulas.samples = 7 must be at least 8"),
-        (("studies", "evidence", "stiff_frequency_ratio"), 0, "ratio = 0 must be at least 0.1"),
         (("tables", "thresholds", "quantities"), ["height"], "'height' must be one of max_height"),
         (("figures", "fig11", "restitution"), 0.04, "= 0.04 must be greater than 0.0433"),
         (("continuation", "initial_step"), 0.5, "must lie between smallest_step"),

@@ -1,7 +1,6 @@
 """Files of the configuration that are no YAML, or not there."""
 
 import re
-import shutil
 import time
 from pathlib import Path
 
@@ -9,8 +8,6 @@ import pytest
 import yaml
 
 import bouncing_ball
-from bouncing_ball.claims.ledger_file import read_ledger
-from bouncing_ball.compare.tolerance_file import read_tolerances
 from bouncing_ball.configuration.conformity import check_schema
 from bouncing_ball.configuration.yaml_file import ConfigurationError, parse_yaml, read_yaml
 
@@ -38,29 +35,6 @@ def test_a_mistake_is_one_line(tmp_path, one_line, content, said):
     with pytest.raises(ConfigurationError, match=f"^{re.escape(said)}") as error:
         read_yaml(path)
     one_line(error, said)
-
-
-@MISTAKES
-def test_the_ledger_and_the_tolerances(tmp_path, one_line, content, said):
-    shutil.copyfile(ROOT / "config" / "claims.schema.yaml", tmp_path / "claims.schema.yaml")
-    path = tmp_path / "claims.yaml"
-    if content is not None:
-        path.write_bytes(content)
-    with pytest.raises(ConfigurationError) as error:
-        read_ledger(tmp_path)
-    one_line(error, said)
-    with pytest.raises(ConfigurationError) as error:
-        read_tolerances(path)
-    one_line(error, f"{path}: {said}")
-
-
-@pytest.mark.parametrize("content", ["", "- 1\n", "text\n"])
-def test_no_mapping(tmp_path, one_line, content):
-    shutil.copyfile(ROOT / "config" / "claims.schema.yaml", tmp_path / "claims.schema.yaml")
-    (tmp_path / "claims.yaml").write_text(content, encoding="utf-8")
-    with pytest.raises(ConfigurationError) as error:
-        read_ledger(tmp_path)
-    one_line(error, "the whole file = ", "must be a mapping of keys")
 
 
 @pytest.mark.parametrize(

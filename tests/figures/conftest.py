@@ -5,11 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from bouncing_ball.audit.evidence import evidence
-from bouncing_ball.claims.assessment import assess
-from bouncing_ball.claims.ledger_file import read_ledger
+from bouncing_ball.claims.ledger import ledger
 from bouncing_ball.configuration.stages import tables
-from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.figures.article.render import render_article
 from bouncing_ball.figures.atlas.tables import shares
@@ -19,7 +16,7 @@ from bouncing_ball.figures.tables.formats import to_csv, to_latex, to_markdown
 ROOT = Path(__file__).resolve().parents[2]
 TEMPLATES = ROOT / "workflow" / "report" / "paper"
 TABLES = tables()
-DERIVED = ("evidence", "claims")
+DERIVED = ("claims",)
 
 
 @pytest.fixture(scope="session")
@@ -30,10 +27,7 @@ def record(record_and_new):
 
 def all_texts(data):
     """All tables in all formats, and the article."""
-    parameters = read_yaml(ROOT / "config" / "config.yaml")["studies"]["evidence"]
-    found = evidence(data, parameters).assign_attrs(parameters)
-    data = {**data, "evidence": found}
-    data["claims"] = assess(read_ledger(ROOT / "config"), data)
+    data = {**data, "claims": ledger(data)}
     made = {}
     for name in TABLES:
         rows = import_module(f"bouncing_ball.figures.tables.{name}").rows(data[name])

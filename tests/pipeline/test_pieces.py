@@ -5,14 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from bouncing_ball.claims.ledger_file import read_ledger
 from bouncing_ball.configuration.stages import ENTRIES, STAGES
 from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
 from bouncing_ball.pipeline.pieces import check_entries, check_pieces
 
 CONFIG = Path(__file__).resolve().parents[2] / "config"
-LEDGER = read_ledger(CONFIG)
-RUN = read_yaml(CONFIG / "config.yaml") | {"ledger": {}, "printed": LEDGER.table("Table 1")}
+RUN = read_yaml(CONFIG / "config.yaml")
 NEW = replace(STAGES["fig08"], name="fig17", title="Figure 17: new")
 
 
@@ -56,11 +54,11 @@ def test_an_entry_that_would_be_misread(one_line, entry, said):
         (replace(NEW, name="fig16", reads=("fig01",)), "fig16: it reads an unknown dataset fig01"),
         (
             replace(NEW, name="fig16", arguments=("release",)),
-            "orbit_branches takes (parameters, release, settings), its entry gives (parameters, re",
+            "orbit_branches takes (parameters, release, continuation), its entry gives (parameters",
         ),
         (
             replace(NEW, name="fig16", reads=("fig08",)),
-            "orbit_branches takes (parameters, release, settings), its entry gives (data, paramet",
+            "orbit_branches takes (parameters, release, continuation), its entry gives (data",
         ),
     ],
 )
@@ -71,7 +69,9 @@ def test_an_entry_without_a_piece(one_line, entry, said):
 
 
 def test_parameters_without_an_entry(one_line):
-    entries = {name: stage for name, stage in STAGES.items() if name != "fig11"}
+    entries = {name: stage for name, stage in STAGES.items() if name != "ext_basins"}
     with pytest.raises(ConfigurationError) as error:
         check_pieces(entries, RUN)
-    one_line(error, "figures.fig11 has no entry in src/bouncing_ball/configuration/stages.py")
+    one_line(
+        error, "extensions.ext_basins has no entry in src/bouncing_ball/configuration/stages.py"
+    )

@@ -11,20 +11,15 @@ from pathlib import Path
 
 import pytest
 
-from bouncing_ball.claims.ledger_file import read_ledger
 from bouncing_ball.configuration.stages import studied
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.pipeline.sources import imports, sources
 
 ROOT = Path(__file__).resolve().parents[2]
 CONFIG = ROOT / "config"
-LEDGER = read_ledger(CONFIG)
-RUN = read_yaml(CONFIG / "config.yaml") | {
-    "printed": LEDGER.table("Table 1"),
-    "ledger": LEDGER.source,
-}
-# What rests on the orbits shown, and on the statements' evidence.
-CLAIMS, WITNESS, EVIDENCE = {"claims"}, {"witness", "claims"}, {"evidence", "claims"}
+RUN = read_yaml(CONFIG / "config.yaml")
+# What rests on the orbits shown.
+CLAIMS, WITNESS = {"claims"}, {"witness", "claims"}
 
 
 def given(run):
@@ -36,8 +31,7 @@ def with_followers(names):
     """The stages and all that read their datasets, or those made from these."""
     found = set(names)
     for stage in studied():  # each after those that it reads
-        reads = LEDGER.datasets if stage.name == "claims" else stage.reads
-        if found & set(reads):
+        if found & set(stage.reads):
             found.add(stage.name)
     return found
 
@@ -45,22 +39,20 @@ def with_followers(names):
 @pytest.mark.parametrize(
     ("keys", "value", "expected"),
     [
-        (("figures", "fig08", "points"), 101, {"fig08", *WITNESS, *EVIDENCE}),
-        (("extensions", "ext_release", "restitution"), 0.9, {"ext_release", *WITNESS, *EVIDENCE}),
-        (("figures", "fig16", "tolerance"), 0.02, {"fig16", *EVIDENCE}),
+        (("figures", "fig08", "points"), 101, {"fig08", *WITNESS}),
+        (("extensions", "ext_release", "restitution"), 0.9, {"ext_release", *WITNESS}),
+        (("figures", "fig16", "tolerance"), 0.02, {"fig16", *CLAIMS}),
         # Decides two claims by its damping alone.
         (("figures", "fig11", "restitution"), 0.7, {"fig11", *CLAIMS}),
         # Decides none.
         (("figures", "fig12", "amplitude"), 1.1, {"fig12", *WITNESS}),
         (("studies", "formulas", "seed"), 1, {"formulas", *CLAIMS}),
-        (("tables", "table1", "amplitude_max"), 1.6, {"table1", *WITNESS, *EVIDENCE}),
+        (("tables", "table1", "amplitude_max"), 1.6, {"table1", *WITNESS}),
         (
             ("continuation", "max_angle"),
             0.1,
-            {"fig08", "fig09", "fig15", "table1", *WITNESS, *EVIDENCE},
+            {"fig08", "fig09", "fig15", "table1", *WITNESS},
         ),
-        # A reworded claim.
-        (("ledger", "claims", 0, "remark"), "other words", CLAIMS),
     ],
 )
 def test_a_changed_parameter(keys, value, expected):
@@ -90,8 +82,7 @@ def users(file):
         ("claims/tally.py", set()),
         ("figures/style.py", set()),
         ("configuration/stages.py", set()),
-        # Eq. 34 as printed is among the evidence.
-        ("audit/formulas/as_printed.py", {"formulas", "evidence"}),
+        ("claims/as_printed.py", {"formulas", "claims"}),
     ],
 )
 def test_a_changed_module(file, expected):

@@ -34,14 +34,14 @@ def test_what_only_shows_runs_no_science_again(complete):
 
 def test_a_module_runs_the_stages_that_import_it(complete):
     complete.edit("claims/verdict.py")
-    complete.edit("audit/forensics/readings.py")
+    complete.edit("claims/forensics.py")
     assert complete.planned() == {*made("forensics"), "Setting forensics", *CLAIMS}
 
 
 def test_a_printed_number_of_table_1_runs_the_table_too(complete):
-    complete.rewrite("config/claims.yaml", '"1.032"', '"1.033"')
+    complete.rewrite("src/bouncing_ball/studies/printed_table1.py", '"1.032"', '"1.033"')
     assert complete.planned() == {
-        *made("table1", "forensics", "evidence"),
+        *made("table1", "forensics"),
         "Setting table1",
         "Setting forensics",
         *WITNESS,

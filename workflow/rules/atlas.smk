@@ -80,15 +80,13 @@ rule atlas_charts:
     input:
         parts=[rules.atlas_summary.output.data],
         source=modules(
-            "figures.atlas.maps",
-            "figures.atlas.limits",
-            "figures.atlas.page",
+            "figures.atlas.charts",
             "figures.atlas.tables",
             "figures.tables.formats",
             "pipeline.atlas",
         ),
     output:
-        charts=expand("results/atlas/{chart}.{kind}", chart=CHARTS, kind=["png", "svg"]),
+        charts=expand("results/atlas/{chart}.png", chart=CHARTS),
         shares="results/atlas/shares.md",
         worst="results/atlas/worst.md",
     resources:

@@ -28,12 +28,11 @@ if package is None or Path(package.origin).resolve().parent != HERE:
         f"bouncing_ball is imported from {found}, not from {HERE}: use this checkout's .venv (make setup)"
     )
 
-from bouncing_ball.claims.ledger_file import read_ledger
 from bouncing_ball.configuration.check import check_configuration, check_orbits
 from bouncing_ball.configuration.stages import ENTRIES, STAGES, Kind, names, studied, tables
 from bouncing_ball.errors import ModelError
 from bouncing_ball.configuration.yaml_file import read_yaml
-from bouncing_ball.pipeline.atlas import discard_damaged, shard_names
+from bouncing_ball.pipeline.atlas import shard_names
 from bouncing_ball.pipeline.pieces import check_entries, check_pieces
 from bouncing_ball.pipeline.sources import sources
 
@@ -54,10 +53,8 @@ try:
     check_configuration(config, read_yaml(Path(ROOT, "config/schema.yaml")))
     if workflow.is_main_process:  # jobs need not look again
         check_orbits(config)
-    where = "config/claims.yaml"
-    LEDGER = read_ledger(Path(ROOT, "config"), set(DATASETS) - {"claims"})
     # All that parameters and settings of the stages are taken from.
-    RUN = config | {"printed": LEDGER.table("Table 1"), "ledger": LEDGER.source}
+    RUN = config
     where = "stages"
     if workflow.is_main_process:
         check_pieces(STAGES, RUN)
@@ -91,11 +88,6 @@ def captioned(name):
     return Path(ROOT, f"workflow/report/{name}.rst").is_file()
 
 
-def reads(stage):
-    """The artifacts whose datasets a stage takes; the ledger names its own."""
-    return LEDGER.datasets if stage.section == "ledger" else stage.reads
-
-
 def modules(*names):
     """Source files that a job uses: those modules and all that they import.
 
@@ -110,21 +102,4 @@ ATLAS = {key: part for key, part in RUN["atlas"].items() if key != "summary"}
 
 
 def shard_files(wildcards):
-    """The shards of the atlas; one that is not what its job wrote is removed, and so made again."""
-    paths = [f"results/atlas/shards/{name}.nc" for name in [*shard_names(ATLAS), "limits"]]
-    if workflow.is_main_process:
-        for path in discard_damaged(paths):
-            logger.warning(f"{path} is not what its job wrote: it is made again")
-    return paths
-
-
-def request(wildcards):
-    """No file: reason and groups of an acceptance are checked before anything is made."""
-    # Imported here: no other target needs the record.
-    from bouncing_ball.record.accept import groups
-
-    try:
-        groups(os.environ.get("ONLY", ""), os.environ.get("REASON", ""))
-    except ModelError as error:
-        sys.exit(f"accept: {error}")
-    return []
+    return [f"results/atlas/shards/{name}.nc" for name in [*shard_names(ATLAS), "limits"]]

@@ -10,10 +10,7 @@ rule paper:
         templates=sorted(os.path.relpath(path) for path in ARTICLE.glob("*.md.j2")),
         error_law="config/error_law.csv",
         atlas="config/atlas.nc",
-        references=[
-            os.path.relpath(ARTICLE / name)
-            for name in ("references.yaml", "numbered.csl")
-        ],
+        references=[os.path.relpath(ARTICLE / name) for name in ("references.yaml", "numbered.csl")],
         data=datasets(DATASETS),
         tables=expand("results/figures/{table}.md", table=TABLES),
         source=modules(

@@ -6,7 +6,7 @@ rule stage:
     message:
         "{wildcards.artifact}: {params.title}"
     input:
-        data=lambda wildcards: datasets(reads(stage_of(wildcards))),
+        data=lambda wildcards: datasets(stage_of(wildcards).reads),
         source=lambda wildcards: modules(stage_of(wildcards).module),
     output:
         data="results/figures/{artifact}.nc",

@@ -19,8 +19,9 @@ from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.motion.sequence import ImpactSequence, Status
 from bouncing_ball.orbits import calls
+from bouncing_ball.orbits.continued import restitution_speed
 from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.law_model import LawModel, restitution_speed
+from bouncing_ball.orbits.law_model import LawModel
 from bouncing_ball.orbits.orbit import OBSERVABLES, Orbit
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.signatures import takes
@@ -103,7 +104,9 @@ def limits(n=1, **impact: Any) -> Answer:
     law = getattr(of, "law", None)
     law = law.law if isinstance(law, LawSignature) else law
     # The limits have two impact speeds; a law is described at the restitution model's.
-    rigid = float(restitution_speed(n, law)[0]) if isinstance(law, ContactLaw) else math.nan
+    rigid = (
+        float(restitution_speed(n, LawModel(law))[0]) if isinstance(law, ContactLaw) else math.nan
+    )
     return found | _described(of, rigid)
 
 

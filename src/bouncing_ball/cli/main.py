@@ -25,7 +25,7 @@ _COMMANDS = {
     ),
     "explain": (
         "where a figure, dataset or table comes from, and the command that makes it again",
-        "record.explain",
+        "provenance.explain",
     ),
     "diff": ("whether two folders of artifacts say the same", "cli.diff"),
 }

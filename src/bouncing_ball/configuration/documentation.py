@@ -21,10 +21,6 @@ The keys of `config.yaml`, with what is allowed. This page is made from
 `schema.yaml` and the entries of the stages by `make config-docs`; change those,
 not the page.
 
-Beside it is `claims.yaml`, the ledger of the paper's claims. What the paper
-printed is there and nowhere else; its schema, `claims.schema.yaml`, says how a
-claim is written.
-
 Numbers in powers of ten need a point and a sign, `1.0e+4`: YAML takes `1e4`
 for a text. To try a change without editing `config.yaml`, write only the keys
 that change into another file and name it last,

@@ -41,15 +41,13 @@ class Stage:
     keys: str = ""
     """Its parameters, ``name`` or ``name:kind``; ``config/schema.yaml`` describes the kinds."""
     arguments: tuple[str, ...] = ()
-    """Settings of the whole run: ``release``, ``continuation``, ``printed`` (Table 1)."""
+    """Settings of the whole run: ``release``, ``continuation``."""
     reads: tuple[str, ...] = ()
     """Artifacts whose datasets the study takes first, as a mapping by name."""
     tabulated: bool = False
     """Whether the dataset of a figure is set as a table too."""
     cross_checked: bool = False
     """Whether it shows orbits or bifurcations, which other routes must confirm."""
-    evidence: bool = False
-    """Whether statements of the paper in words are decided by it."""
     one_motion: bool = False
     """Whether the motion on one orbit is drawn for each ϖ, which so must be the ball's own."""
     nested: bool = True
@@ -79,7 +77,7 @@ class Stage:
         return {name: kind or name for name, _, kind in pairs}
 
     def parameters(self, run: Mapping[str, Any]) -> Any:
-        """Its section of what a run is given: configuration, Table 1 and ledger.
+        """Its section of the configuration, nothing if it has none.
 
         Examples
         --------
@@ -87,9 +85,9 @@ class Stage:
         {'n': 1}
         """
         part: Any = run
-        for key in self.section.split("."):
+        for key in self.section.split(".") if self.section else ():
             part = part[key]
-        return part
+        return part if self.section else {}
 
     def settings(self, run: Mapping[str, Any]) -> dict[str, Any]:
         """The settings of the whole run that the study takes, by name.
@@ -110,7 +108,6 @@ def _figure(
     arguments: tuple[str, ...] = (),
     *,
     cross_checked: bool = False,
-    evidence: bool = False,
     one_motion: bool = False,
 ) -> Stage:
     name = f"fig{number:02d}"
@@ -123,7 +120,6 @@ def _figure(
         keys,
         arguments,
         cross_checked=cross_checked,
-        evidence=evidence,
         one_motion=one_motion,
         # A cycle is split at the release, with half of the samples on either side, so
         # that a finer cycle has none of the old times.
@@ -172,7 +168,6 @@ _MODELS: tuple[Stage, ...] = (
         "studies.restitution_families.restitution_orbits",
         "n:families restitution amplitude_max points",
         cross_checked=True,
-        evidence=True,
     ),
     _figure(4, "the spring-damper model"),
     _figure(
@@ -182,7 +177,6 @@ _MODELS: tuple[Stage, ...] = (
         "n cases frequency_ratio:span",
         ("release",),
         cross_checked=True,
-        evidence=True,
     ),
     _figure(
         6,
@@ -191,7 +185,6 @@ _MODELS: tuple[Stage, ...] = (
         "n cases frequency_ratio:span",
         ("release",),
         cross_checked=True,
-        evidence=True,
     ),
     _figure(
         7,
@@ -209,7 +202,6 @@ _MODELS: tuple[Stage, ...] = (
         "n restitution:lossy_restitution frequency_ratio:four_ratios amplitude_max points",
         ("release", "continuation"),
         cross_checked=True,
-        evidence=True,
     ),
     _figure(
         9,
@@ -218,7 +210,6 @@ _MODELS: tuple[Stage, ...] = (
         "n restitution:lossy_restitution frequency_ratio:four_ratios amplitude_max points",
         ("release", "continuation"),
         cross_checked=True,
-        evidence=True,
     ),
     _figure(
         10,
@@ -227,7 +218,6 @@ _MODELS: tuple[Stage, ...] = (
         "n restitution amplitude:amplitudes frequency_ratio:span",
         ("release",),
         cross_checked=True,
-        evidence=True,
     ),
     _figure(
         11,
@@ -252,7 +242,6 @@ _MODELS: tuple[Stage, ...] = (
         "n restitution amplitude:amplitudes frequency_ratio:span",
         ("release",),
         cross_checked=True,
-        evidence=True,
     ),
     _figure(
         14,
@@ -261,7 +250,6 @@ _MODELS: tuple[Stage, ...] = (
         "n restitution amplitude frequency_ratio:span tolerance",
         ("release",),
         cross_checked=True,
-        evidence=True,
     ),
     _figure(
         15,
@@ -270,7 +258,6 @@ _MODELS: tuple[Stage, ...] = (
         "n restitution:lossy_restitution frequency_ratio:ratio amplitude_max points",
         ("release", "continuation"),
         cross_checked=True,
-        evidence=True,
     ),
     _figure(
         16,
@@ -278,7 +265,6 @@ _MODELS: tuple[Stage, ...] = (
         "studies.error_thresholds.permanent_contact_error",
         "restitution:damped_restitution frequency_ratio:span tolerance",
         ("release",),
-        evidence=True,
     ),
     Stage(
         "table1",
@@ -287,9 +273,8 @@ _MODELS: tuple[Stage, ...] = (
         "studies.orbit_branches.stability_ranges",
         "tables.table1",
         "n:families restitution:lossy_restitution frequency_ratio:ratios amplitude_max",
-        ("release", "continuation", "printed"),
+        ("release", "continuation"),
         cross_checked=True,
-        evidence=True,
     ),
     Stage(
         "thresholds",
@@ -299,7 +284,6 @@ _MODELS: tuple[Stage, ...] = (
         "tables.thresholds",
         "n restitution amplitude quantities tolerances frequency_ratio:span",
         ("release",),
-        evidence=True,
     ),
     Stage(
         "motions",
@@ -308,7 +292,6 @@ _MODELS: tuple[Stage, ...] = (
         "studies.kinds_of_motion.kinds_of_motion",
         "studies.motions",
         "n restitution:lossy_restitution amplitude:amplitudes ensemble",
-        evidence=True,
     ),
     Stage(
         "ext_release",
@@ -319,7 +302,6 @@ _MODELS: tuple[Stage, ...] = (
         "n:five_families restitution:lossy_restitution frequency_ratio:span"
         " thresholds:error_threshold",
         cross_checked=True,
-        evidence=True,
     ),
     Stage(
         "ext_rattling",
@@ -400,12 +382,18 @@ _EXPLORER = Stage(
     nested=False,
 )
 
+# What decides the claims: the keys of claims.parameters.PARAMETERS.
+_DECIDING = (
+    *(f"fig{k:02d}" for k in (3, 5, 6, 8, 9, 10, 11, 13, 14, 15, 16)),
+    *("table1", "thresholds", "ext_release", "motions", "formulas", "forensics", "witness"),
+)
+
 _AUDIT = (
     Stage(
         "formulas",
         Kind.TABLE,
         "The printed formulas against a second computation",
-        "audit.formulas.formulas",
+        "claims.formulas.formulas",
         "studies.formulas",
         nested=False,  # other random parameters
     ),
@@ -413,34 +401,23 @@ _AUDIT = (
         "forensics",
         Kind.TABLE,
         "Table 1 under readings of what the authors may have done",
-        "audit.forensics.ranking.forensics",
+        "claims.forensics.ranking.forensics",
         "studies.forensics",
-        arguments=("printed",),
     ),
     Stage(
         "witness",
         Kind.TABLE,
         "Continuation, formula and simulation for every orbit shown",
-        "audit.cross_check.cross_check",
+        "claims.cross_check.cross_check",
         "continuation",
         reads=tuple(stage.name for stage in _MODELS if stage.cross_checked),
     ),
     Stage(
-        "evidence",
-        Kind.DATASET,
-        "Evidence for the paper's statements",
-        "audit.evidence.evidence",
-        "studies.evidence",
-        reads=tuple(stage.name for stage in _MODELS if stage.evidence),
-        nested=False,  # some of it are steps from sample to sample
-    ),
-    # Reads what the ledger names.
-    Stage(
         "claims",
         Kind.TABLE,
         "Verdicts on the paper's claims",
-        "claims.assessment.verdicts",
-        "ledger",
+        "claims.ledger.ledger",
+        reads=_DECIDING,
     ),
 )
 

@@ -1,17 +1,11 @@
-"""What the rules and scripts of the atlas need: names, times and whole files of shards.
+"""What the rules and scripts of the atlas need: names and times of shards.
 
 Every job of every rule reads the rules; so the plan is imported when it is asked for.
 """
 
 import math
-from collections.abc import Iterable, Mapping
-from pathlib import Path
+from collections.abc import Mapping
 from typing import Any
-
-from bouncing_ball.record.job_log import is_as_written
-
-FOLDER = "results/atlas"
-LOGS = "results/logs/atlas"
 
 # Processor time of an orbit on a slow machine, with some to spare.
 _SECONDS_PER_ORBIT = 3e-6
@@ -41,24 +35,3 @@ def shard_minutes(parameters: Mapping[str, Any]) -> int:
     plan = Plan(**parameters)
     seconds = plan.orbits / len(plan.shard_rows()) * _SECONDS_PER_ORBIT
     return _LEAST_MINUTES + math.ceil(seconds / 60)
-
-
-def log_of(path: str) -> str:
-    """The log of the job that makes a file of the atlas.
-
-    Examples
-    --------
-    >>> log_of("results/atlas/shards/limits.nc")
-    'results/logs/atlas/shards/limits.log'
-    """
-    return str(Path(LOGS, Path(path).relative_to(FOLDER)).with_suffix(".log"))
-
-
-def discard_damaged(paths: Iterable[str]) -> list[str]:
-    """Remove files that are not what their jobs wrote; which they were."""
-    damaged = [
-        path for path in paths if Path(path).is_file() and not is_as_written(path, log_of(path))
-    ]
-    for path in damaged:
-        Path(path).unlink()
-    return damaged

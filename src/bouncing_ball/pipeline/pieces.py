@@ -44,8 +44,11 @@ def _require_function(stage: Stage, name: str) -> ast.FunctionDef | None:
 
 def _require_arguments(stage: Stage, study: ast.FunctionDef) -> None:
     """Raise unless the study takes as many arguments as a job gives it."""
-    reads = bool(stage.reads) or stage.section == "ledger"
-    given = [*(["data"] if reads else []), "parameters", *stage.arguments]
+    given = [
+        *(["data"] if stage.reads else []),
+        *(["parameters"] if stage.section else []),
+        *stage.arguments,
+    ]
     taken = [argument.arg for argument in study.args.args]
     if not len(taken) - len(study.args.defaults) <= len(given) <= len(taken):
         raise ConfigurationError(
@@ -83,7 +86,7 @@ def check_pieces(stages: Mapping[str, Stage], run: Mapping[str, Any]) -> None:
     stages : mapping
         The entries by name.
     run : mapping
-        What a run is given: configuration, Table 1 and ledger.
+        The configuration.
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """Existence and stability of n-T orbits by continuation (Figs. 8, 9, 15; Table 1)."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -26,6 +26,7 @@ from bouncing_ball.studies.continuation import (
     first_limits,
 )
 from bouncing_ball.studies.parameters import BranchEnd, Points, RangeEnd
+from bouncing_ball.studies.printed_table1 import printed_table
 
 GRAZING = "grazing"
 
@@ -184,30 +185,6 @@ def both_domains(
     )
 
 
-def printed_ranges(
-    printed: Mapping[str, Any], ratios: Sequence[float], families: Sequence[int]
-) -> np.ndarray:
-    """A printed table at the frequency ratios and families computed, shape (ϖ, n, 2).
-
-    NaN where the paper has no entry.
-
-    Examples
-    --------
-    >>> printed = {"frequency_ratio": [10.0], "n": [1], "bound": ["saddle-node",
-    ...            "period doubling"], "values": [[[0.25, 1.0]]]}
-    >>> printed_ranges(printed, [10.0, 5.0], [1]).tolist()
-    [[[0.25, 1.0]], [[nan, nan]]]
-    """
-    axes = {key: printed[key] for key in ("frequency_ratio", "n", "bound")}
-    table = xr.DataArray(printed["values"], axes)
-    wanted = {
-        "frequency_ratio": list(ratios),
-        "n": list(families),
-        "bound": [SADDLE_NODE, PERIOD_DOUBLING],
-    }
-    return table.reindex(wanted).values
-
-
 def _limits(
     n: int, ratio: float, parameters: Ranges, release: Release, continuation: Continuation
 ) -> tuple[Orbit, str]:
@@ -225,7 +202,6 @@ def stability_ranges(
     parameters: Ranges,
     release: Release,
     continuation: Continuation,
-    printed: Mapping[str, Any],
 ) -> xr.Dataset:
     """Ranges of Λ in which the n-T orbits are stable, computed and printed (Table 1).
 
@@ -251,7 +227,8 @@ def stability_ranges(
             "computed": (dims, columns["amplitude"]),
             "special_phase": (dims, columns["phase"]),
             "special_contact_duration": (dims, columns["contact_duration"]),
-            "printed": (dims, printed_ranges(printed, ratios, families)),
+            # NaN where the paper has no entry.
+            "printed": printed_table().reindex(frequency_ratio=list(ratios), n=list(families)),
             "restitution_range": (
                 ("impact_map", "n", "bound"),
                 np.array([np.stack([rigid, doubling], axis=-1) for doubling in doublings]),

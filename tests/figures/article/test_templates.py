@@ -4,7 +4,8 @@ import re
 from pathlib import Path
 
 import pytest
-import yaml
+
+from bouncing_ball.claims.ledger import EXPLANATIONS
 
 ROOT = Path(__file__).resolve().parents[3]
 FOLDER = ROOT / "workflow" / "report" / "paper"
@@ -58,9 +59,8 @@ def test_no_number_is_typed(template):
 
 
 def test_no_number_is_typed_into_an_explanation():
-    ledger = yaml.safe_load((ROOT / "config" / "claims.yaml").read_text(encoding="utf-8"))
-    for explanation in ledger["explanations"]:
-        assert typed_numbers(explanation["text"]) == [], explanation["id"]
+    for explanation in EXPLANATIONS:
+        assert typed_numbers(explanation.text) == [], explanation.id
 
 
 @pytest.mark.parametrize(

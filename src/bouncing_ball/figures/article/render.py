@@ -8,7 +8,6 @@ from typing import Any
 import xarray as xr
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from bouncing_ball.datasets.netcdf import attribute_name
 from bouncing_ball.figures.article import numbers
 from bouncing_ball.figures.article.claim_texts import Claims
 from bouncing_ball.figures.article.pandoc import with_citations
@@ -42,10 +41,6 @@ def render_article(
         value = numbers.value_at(data, dataset, variable, **where)
         return numbers.short(value) if digits is None else numbers.decimal(value, digits)
 
-    def paper(dataset: str, key: str) -> Any:
-        """A parameter of the paper, as the claims were judged with it."""
-        return data["claims"].attrs[attribute_name(f"paper.{dataset}.{key}")]
-
     def versions(dataset: xr.Dataset) -> dict[str, str]:
         """What a dataset says of the versions that made it; nothing if it does not."""
         return json.loads(dataset.attrs.get("provenance_versions", "{}"))
@@ -56,7 +51,6 @@ def render_article(
         tables=tables,
         claims=Claims(data["claims"]),
         at=at,
-        paper=paper,
         versions=versions,
     )
     return with_citations(environment.get_template("article.md.j2").render(), folder)

@@ -82,14 +82,15 @@ def imports(source: str, module: str) -> set[str]:
             # "from package import x" may import a module x.
             found |= {f"{name}.{alias.name}" for alias in node.names}
         elif isinstance(node, ast.Attribute) and ast.unparse(node.value) == PACKAGE:
-            # After "import package", what is taken from it; not where its file is.
-            found |= {f"{PACKAGE}.{node.attr}"} - {f"{PACKAGE}.__file__"}
+            # After "import package", what is taken from it.
+            found |= {f"{PACKAGE}.{node.attr}"}
         elif isinstance(node, ast.Call):
             called = ast.unparse(node.func)
             if called in ("__import__", "import_module", "importlib.import_module"):
                 name = node.args[0]
                 found.add(name.value if isinstance(name, ast.Constant) else BY_NAME)
-    return found
+    # Its file and its version are no modules.
+    return {name for name in found if not name.endswith("__")}
 
 
 def violations(layer: str, source: str, module: str) -> set[str]:

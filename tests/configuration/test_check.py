@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from bouncing_ball.atlas.parameters import AtlasParameters
+from bouncing_ball.atlas.plan import AtlasParameters
 from bouncing_ball.configuration.check import check, configuration_model
 from bouncing_ball.configuration.documentation import configuration_page, configuration_schema
 from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
@@ -84,7 +84,7 @@ SPAN = (*FIG05, "frequency_ratio")
         (("continuation", "initial_step"), 0.3, "continuation: initial_step = 0.3 must lie"),
         (("continuation", "smallest_step"), 1e-4, ""),
         (("atlas", "restitution", "max"), 0.05, "restitution: min = 0.05 must be less than max"),
-        (("atlas", "examined", 0), 2.0, "atlas: examined = 2 must be from frequency_ratio.min = 3"),
+        (("atlas", "examined", 0), 2.0, "atlas: examined = 2 must be from 3 to 100000"),
         (("atlas", "summary", "tolerance"), 0.3, "summary.tolerance = 0.3 must be one of"),
         # What the physics forbids.
         ((*FIG05, "cases", 3, "amplitude"), 1.0, "cases[3] = "),

@@ -16,9 +16,10 @@ rule atlas_shard:
     output:
         data="results/atlas/shards/{shard}.nc",
     wildcard_constraints:
+        # Some rows of tiles; or saddle-node, period doubling and permanent contact of all.
         shard=r"\d+-of-\d+|limits",
     params:
-        title="The atlas: the answers of some rows of tiles, or about the limits of the families",
+        title="The atlas: the answers of some rows of tiles, or about the limits of all families",
         parameters=ATLAS,
     resources:
         runtime=lambda wildcards: shard_minutes(ATLAS),
@@ -36,7 +37,7 @@ rule atlas_merge:
         "Atlas: one file from its shards"
     input:
         parts=[f"results/atlas/shards/{name}.nc" for name in [*shard_names(ATLAS), "limits"]],
-        source=modules("atlas.merge", "pipeline.atlas"),
+        source=modules("atlas.shards", "pipeline.atlas"),
     output:
         data="results/atlas/atlas.nc",
     params:

@@ -1,6 +1,6 @@
 # The configuration is checked before anything runs, against the studies of all stages.
 
-from bouncing_ball.atlas.parameters import AtlasParameters
+from bouncing_ball.atlas.plan import AtlasParameters
 from bouncing_ball.configuration.check import check, configuration_model
 from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
 

@@ -1,6 +1,6 @@
 """The page about the configuration and its JSON schema for editors."""
 
-from bouncing_ball.atlas.parameters import AtlasParameters
+from bouncing_ball.atlas.plan import AtlasParameters
 from bouncing_ball.configuration.check import configuration_model
 from bouncing_ball.configuration.documentation import configuration_page, configuration_schema
 from bouncing_ball.configuration.yaml_file import read_yaml

@@ -49,7 +49,7 @@ _PUBLIC = {
     "limits": "orbits.calls",
     "simulate": "orbits.calls",
     "model": "orbits.calls",
-    "design": "calculator.design_call",
+    "design": "calculator.design",
     "SpringDamper": "contacts.spring_damper",
     "SpringDamperModel": "orbits.spring_damper_model",
     "RestitutionModel": "orbits.restitution_model",

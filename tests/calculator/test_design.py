@@ -10,8 +10,8 @@ import bouncing_ball
 from bouncing_ball.accuracy import error_law
 from bouncing_ball.accuracy.errors import relative_errors
 from bouncing_ball.accuracy.quantities import Quantity
-from bouncing_ball.calculator.design_call import design
-from bouncing_ball.calculator.family import greatest
+from bouncing_ball.calculator.design import design
+from bouncing_ball.calculator.families import greatest
 from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import SpringDamper, contact_force
 from bouncing_ball.errors import ModelError, NoOrbitError

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from bouncing_ball.calculator.design_call import design
+from bouncing_ball.calculator.design import design
 from bouncing_ball.calculator.page_data import page
 from bouncing_ball.cli.design import answer
 from bouncing_ball.cli.main import main

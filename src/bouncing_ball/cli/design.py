@@ -6,11 +6,12 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
+from bouncing_ball.accuracy.quantities import Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
-from bouncing_ball.calculator import design_call
+from bouncing_ball.calculator import design as calculator
 from bouncing_ball.calculator.design import Design
-from bouncing_ball.calculator.judgement import QUANTITIES, percent
 from bouncing_ball.calculator.units import shown
+from bouncing_ball.calculator.verdict import QUANTITIES, percent
 from bouncing_ball.errors import ModelError
 from bouncing_ball.signatures import takes
 
@@ -33,7 +34,7 @@ def drawing(text: str) -> Path:
     return path
 
 
-@takes(design_call.design)
+@takes(calculator.design)
 def design(*, plot: Annotated[Path | None, drawing] = None, **given: Any) -> Answer:
     """The calculator's answer, and the page to print.
 
@@ -42,7 +43,7 @@ def design(*, plot: Annotated[Path | None, drawing] = None, **given: Any) -> Ans
     plot
         A page to print: .pdf, .png or .svg.
     """
-    found = design_call.design(**given)
+    found = calculator.design(**given)
     if plot is not None:
         _draw(found, plot)
     return answer(found)
@@ -147,16 +148,13 @@ def _family_lines(one: Answer) -> list[str]:
     lines += [_row(f"  {name}", value) for name, value in _orbit_values(one)]
     holds = "error law" if one["law_holds"] else "law, not stated"
     lines.append(_row("  relative error", "restitution", holds, "corrected"))
-    lines += [
-        _row(
-            f"    {words}",
-            _share(one["errors"][name]),
-            _share(one["law_errors"][name]),
-            _share(one["corrected_errors"][name]),
-        )
-        for name, words in QUANTITIES.items()
-    ]
-    return lines
+    of_impacts = [name for name in QUANTITIES if name != Quantity.PERMANENT_CONTACT]
+    return lines + [_error(one, name) for name in of_impacts]
+
+
+def _error(one: Answer, name: str) -> str:
+    errors = (one[key][name] for key in ("errors", "law_errors", "corrected_errors"))
+    return _row(f"    {QUANTITIES[Quantity(name)]}", *map(_share, errors))
 
 
 def lines(found: Answer) -> list[str]:
@@ -180,4 +178,6 @@ def lines(found: Answer) -> list[str]:
     ]
     for one in found["orbits"]:
         shown += _family_lines(one)
-    return shown
+    # That of the permanent contact is the same in all families.
+    head = _row("relative error", "restitution", "error law", "corrected")
+    return [*shown, "", head, _error(found["orbits"][0], Quantity.PERMANENT_CONTACT)]

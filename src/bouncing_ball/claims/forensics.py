@@ -124,7 +124,7 @@ def altered_ends(
         )
         return 1 + a + d + a * d - b * c
 
-    grid = np.linspace(-1, 1, _SAMPLES) * min(_REACH / omega, 0.9 * contact.free_angle)
+    grid = np.linspace(-1, 1, _SAMPLES) * np.minimum(_REACH / omega, 0.9 * contact.free_angle)
     lowest = int(np.nanargmin(amplitude(grid)))
     node = minimize_scalar(
         amplitude, bracket=grid[lowest - 1 : lowest + 2], options={"xtol": 1e-12}

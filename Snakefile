@@ -39,10 +39,8 @@ localrules:
     all,
 
 
-# The accepted record in git.
+# The accepted record in git, and the results against it.
 include: "workflow/rules/record.smk"
-# The results against the record.
-include: "workflow/rules/diff.smk"
 # The error law, on more orbits than a run can take.
 include: "workflow/rules/error_law.smk"
 # The atlas of thresholds, on more orbits still.

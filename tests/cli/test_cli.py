@@ -18,6 +18,7 @@ from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.orbits import restitution_orbit as restitution
 from bouncing_ball.orbits import spring_damper_limits as limits
 from bouncing_ball.orbits.orbit import OBSERVABLES
+from bouncing_ball.orbits.stability import Side
 
 BOUNDS = ("saddle_node", "period_doubling")
 ROOT = Path(__file__).resolve().parents[2]
@@ -45,7 +46,7 @@ def test_spring_damper_orbit_in_full_precision(ask, release, side):
     answer = ask(*ORBIT, "--frequency-ratio", "10", "--release", release, "--side", side)
     assert list(answer) == [*FIELDS, "measured_restitution", "damping_ratio"]
     contact = SpringDamper(10.0, float(damping_ratio(0.85)), Release(release))
-    orbit = limits.orbit_at(contact, 1, 1.0, limits.Side(side))
+    orbit = limits.orbit_at(contact, 1, 1.0, Side(side))
     for name in ("phase", "impact_velocity", "bounce_velocity", "max_height"):
         assert answer[name] == float(getattr(orbit, name))
     assert answer["is_stable"] is (side == "stable")

@@ -8,7 +8,6 @@ import pytest
 import yaml
 
 import bouncing_ball
-from bouncing_ball.compare.tolerance_file import read_tolerances
 from bouncing_ball.configuration.conformity import check_schema
 from bouncing_ball.configuration.yaml_file import ConfigurationError, parse_yaml, read_yaml
 
@@ -36,16 +35,6 @@ def test_a_mistake_is_one_line(tmp_path, one_line, content, said):
     with pytest.raises(ConfigurationError, match=f"^{re.escape(said)}") as error:
         read_yaml(path)
     one_line(error, said)
-
-
-@MISTAKES
-def test_the_tolerances(tmp_path, one_line, content, said):
-    path = tmp_path / "a.yaml"
-    if content is not None:
-        path.write_bytes(content)
-    with pytest.raises(ConfigurationError) as error:
-        read_tolerances(path)
-    one_line(error, f"{path}: {said}")
 
 
 @pytest.mark.parametrize(

@@ -19,8 +19,8 @@ from bouncing_ball.contacts.laws import LAWS
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion import contacts
 from bouncing_ball.motion.law_impacts import simulate
-from bouncing_ball.orbits.law_calls import rigid_speed
 from bouncing_ball.orbits.law_model import LawModel
+from bouncing_ball.orbits.restitution_orbit import rigid_speed
 
 HERTZ = ("hunt-crossley", "tsuji", "kuwabara-kono")
 # r, Λ and D; at Λ = 1 many balls are next to permanent contact.

@@ -5,8 +5,8 @@ import pytest
 
 from bouncing_ball.contacts.collocation import contacts
 from bouncing_ball.contacts.laws.linear import Linear
-from bouncing_ball.orbits.law_calls import rigid_speed
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.restitution_orbit import rigid_speed
 from bouncing_ball.studies.contact_laws import LINEAR, NAMES, exact_model, law_errors
 
 pytestmark = pytest.mark.slow

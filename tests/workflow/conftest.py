@@ -25,7 +25,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from bouncing_ball.record.provenance import LIBRARIES
+from bouncing_ball.provenance.origin import LIBRARIES
 
 ROOT = Path(__file__).resolve().parents[2]
 # A fresh clone: neither results nor the state of earlier runs.

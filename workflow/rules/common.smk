@@ -32,7 +32,7 @@ from bouncing_ball.configuration.check import check_configuration, check_orbits
 from bouncing_ball.configuration.stages import ENTRIES, STAGES, Kind, names, studied, tables
 from bouncing_ball.errors import ModelError
 from bouncing_ball.configuration.yaml_file import read_yaml
-from bouncing_ball.pipeline.atlas import discard_damaged, shard_names
+from bouncing_ball.pipeline.atlas import shard_names
 from bouncing_ball.pipeline.pieces import check_entries, check_pieces
 from bouncing_ball.pipeline.sources import sources
 
@@ -102,21 +102,4 @@ ATLAS = {key: part for key, part in RUN["atlas"].items() if key != "summary"}
 
 
 def shard_files(wildcards):
-    """The shards of the atlas; one that is not what its job wrote is removed, and so made again."""
-    paths = [f"results/atlas/shards/{name}.nc" for name in [*shard_names(ATLAS), "limits"]]
-    if workflow.is_main_process:
-        for path in discard_damaged(paths):
-            logger.warning(f"{path} is not what its job wrote: it is made again")
-    return paths
-
-
-def request(wildcards):
-    """No file: reason and groups of an acceptance are checked before anything is made."""
-    # Imported here: no other target needs the record.
-    from bouncing_ball.record.accept import groups
-
-    try:
-        groups(os.environ.get("ONLY", ""), os.environ.get("REASON", ""))
-    except ModelError as error:
-        sys.exit(f"accept: {error}")
-    return []
+    return [f"results/atlas/shards/{name}.nc" for name in [*shard_names(ATLAS), "limits"]]

@@ -12,7 +12,6 @@ for name in TABLES:
             source=modules(
                 f"figures.tables.{name}",
                 "figures.tables.formats",
-                "figures.given",
                 "datasets.netcdf",
                 "datasets.files",
             ),

@@ -13,10 +13,10 @@ from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import Instant, LinearSignature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.law_calls import rigid_speed
 from bouncing_ball.orbits.law_model import LawModel
 from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.restitution_orbit import rigid_speed
 
 
 @dataclass(frozen=True)

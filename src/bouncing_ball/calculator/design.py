@@ -28,8 +28,8 @@ from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError, require
 from bouncing_ball.orbits.calls import Index, Rule
-from bouncing_ball.orbits.law_calls import rigid_speed
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.restitution_orbit import rigid_speed
 
 STANDARD_GRAVITY = 9.80665
 """Standard acceleration of gravity, in m/s²."""

@@ -88,27 +88,14 @@ def _solve(
     condition_of: Callable[[System, np.ndarray], Condition],
     settings: NewtonSettings,
 ) -> np.ndarray:
-    """Solutions from many guesses, NaN where the iteration fails.
-
-    All together; if one of them fails, in halves, so that it spoils no other.
-    """
-    out = np.full_like(guess, np.nan)
-    stack = [np.arange(len(guess))]
-    while stack:
-        part = stack.pop()
-        if not part.size:
-            continue
-        system = system_of(part)
-        with np.errstate(all="ignore"):
-            found = newton(system, guess[part], condition_of(system, part), settings)
-        if found.converged:
-            out[part] = found.point
-        elif part.size > 1:
-            stack += np.array_split(part, 2)
-        elif found.residual < BUDGETS[FORMULA]:
-            # At the limit of rounding: the last step never gets short enough.
-            out[part] = found.point
-    return out
+    """Solutions from many guesses, NaN where the iteration fails."""
+    every = np.arange(len(guess))
+    system = system_of(every)
+    with np.errstate(all="ignore"):
+        found = newton(system, guess, condition_of(system, every), settings)
+    # At the limit of rounding the last step never gets short enough.
+    good = found.converged | (found.residual < BUDGETS[FORMULA])
+    return np.where(good[:, np.newaxis], found.point, np.nan)
 
 
 def _equations(model: ImpactModel, n: np.ndarray, which: np.ndarray) -> System:

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.restitution_law import RestitutionLaw
 from bouncing_ball.errors import ModelError
 from bouncing_ball.motion.angles import reduce_angle, table
 from bouncing_ball.motion.ensembles import BLOCK, flatten, pick
@@ -84,6 +85,8 @@ class _Instants(NamedTuple):
 
     restitution: np.ndarray
     amplitude: np.ndarray
+    law: RestitutionLaw | None = None
+    """Gives r of every impact but the first, where it depends on the speed."""
     block: int = BLOCK
 
     @property
@@ -91,7 +94,14 @@ class _Instants(NamedTuple):
         return {"settling": lambda _, rebound: rebound.settling}
 
     def take(self, which: Any) -> "_Instants":
-        return _Instants(pick(self.restitution, which), pick(self.amplitude, which))
+        law = None if self.law is None else self.law.take(which)
+        return _Instants(pick(self.restitution, which), pick(self.amplitude, which), law)
+
+    def at(self, speed: np.ndarray) -> np.ndarray:
+        """r of impacts with speeds v ≥ 0."""
+        if self.law is None:
+            return self.restitution
+        return self.law.restitution(np.maximum(speed, np.finfo(float).tiny))
 
     def start(self, phase: np.ndarray, velocity: np.ndarray) -> _Impact:
         """Just after an impact."""
@@ -104,7 +114,7 @@ class _Instants(NamedTuple):
         gravity = 1 - y
         pressed = (gravity > 0) | ((gravity == 0) & (x <= 0))
         # Where the ball is not pressed, or r = 1, T₀ is not used.
-        loss = gravity * (1 - self.restitution)
+        loss = gravity * (1 - self.at(-impact.velocity))
         usable = pressed & (loss > 0)
         total = np.where(usable, 2 * velocity, 0.0) / np.where(usable, loss, 1.0)
         limit = np.maximum(_CHATTER * gravity / np.maximum(amplitude, 1.0), _INSTANT)
@@ -144,7 +154,7 @@ class _Instants(NamedTuple):
         start = np.where(rest, 4 * rebound.x / np.maximum(self.amplitude, 1.0), 0.0)
         landing = land(flight, np.maximum(start, flight.sure()))
         phase, before = reduce_angle(rebound.phase + landing.time), -landing.rate
-        impact = _Impact(phase, np.zeros_like(phase), before, -self.restitution * before)
+        impact = _Impact(phase, np.zeros_like(phase), before, -self.at(landing.rate) * before)
         return impact, rebound.duration + landing.time
 
 
@@ -170,6 +180,7 @@ def simulate(
     phase: ArrayLike,
     velocity: ArrayLike,
     impacts: int,
+    law: RestitutionLaw | None = None,
 ) -> ImpactSequence:
     """Follow balls through a number of impacts, the one just before included.
 
@@ -183,6 +194,8 @@ def simulate(
     impacts : int
         Rows of the result, for every ball that does not come to rest for ever.
         The bounces summed up before sticking are not rows.
+    law : RestitutionLaw, optional
+        Gives r of the impacts after the first, which has ``restitution``.
 
     Raises
     ------
@@ -195,6 +208,7 @@ def simulate(
     [0.0, 8.0, 12.0]
     """
     balls, state, shape = _prepare(restitution, amplitude, phase, velocity)
+    balls = balls._replace(law=None if law is None else law.flat(shape))
     return follow(balls, state, None, amplitude, shape, impacts)
 
 

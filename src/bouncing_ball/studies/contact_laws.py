@@ -25,11 +25,12 @@ from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.law_calls import law_at_orbit, rigid_speed
-from bouncing_ball.orbits.law_model import LawModel
-from bouncing_ball.orbits.model import ImpactModel, Side
+from bouncing_ball.orbits.law_model import LawModel, law_at_orbit
+from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.restitution_orbit import rigid_speed
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.orbits.stability import Side
 from bouncing_ball.studies.parameters import grid
 
 HERTZ = ("hunt-crossley", "tsuji", "kuwabara-kono")

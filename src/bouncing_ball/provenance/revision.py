@@ -1,0 +1,82 @@
+"""The state of the repository: which commit, and whether anything was changed."""
+
+import os
+import subprocess
+from pathlib import Path
+from typing import NamedTuple
+
+RECORD = ("figures", "paper.md")
+"""What git holds of the results; a change there changes no result."""
+
+
+class Revision(NamedTuple):
+    """A commit (full hash) and whether the tree was dirty (yes or no), or unknown."""
+
+    commit: str
+    dirty: str
+
+
+UNKNOWN = Revision("unknown", "unknown")
+
+
+def parse_status(text: str) -> Revision:
+    """The revision from ``git status --porcelain=v2 --branch``.
+
+    Examples
+    --------
+    >>> parse_status("# branch.oid 1f0e\\n# branch.head main\\n")
+    Revision(commit='1f0e', dirty='no')
+    >>> parse_status("# branch.oid 1f0e\\n? src/new.py\\n").dirty
+    'yes'
+    >>> parse_status("# branch.oid (initial)\\n? Snakefile\\n")
+    Revision(commit='unknown', dirty='unknown')
+    """
+    lines = text.splitlines()
+    commits = [line.split()[-1] for line in lines if line.startswith("# branch.oid ")]
+    if not commits or commits[0] == "(initial)":
+        return UNKNOWN
+    changed = any(not line.startswith("#") for line in lines)
+    return Revision(commits[0], "yes" if changed else "no")
+
+
+def _git(folder: Path, *arguments: str) -> str | None:
+    """The output of git, or None if it fails or is not there."""
+    # A hook tells git by GIT_… which repository it works in, and that need not be this one.
+    # Jobs that run side by side need not wait for each other's lock of the index.
+    environment = {key: value for key, value in os.environ.items() if key[:4] != "GIT_"}
+    try:
+        done = subprocess.run(
+            ["git", "-C", str(folder), *arguments],
+            env=environment | {"GIT_OPTIONAL_LOCKS": "0"},
+            capture_output=True,
+            encoding="utf-8",
+            check=True,
+        )
+    except (OSError, subprocess.CalledProcessError):
+        return None
+    return done.stdout
+
+
+def revision(folder: Path) -> Revision:
+    """The commit checked out in a folder, and whether its tree is dirty.
+
+    Untracked files count, unless git ignores them; the accepted record does not.
+    Unknown without git, or in a folder that is not the top of its own repository.
+    """
+    if (_git(folder, "rev-parse", "--show-cdup") or "inside").strip():
+        return UNKNOWN
+    status = _git(
+        folder,
+        *("status", "--porcelain=v2", "--branch", "--untracked-files=normal", "--", "."),
+        *(f":(exclude){name}" for name in RECORD),
+    )
+    return UNKNOWN if status is None else parse_status(status)
+
+
+def checkout(*starts: Path) -> Path | None:
+    """The first folder, at or above the starts in turn, that holds this workflow."""
+    for start in starts:
+        for folder in (start, *start.parents):
+            if (folder / "Snakefile").is_file() and (folder / "src" / "bouncing_ball").is_dir():
+                return folder
+    return None

@@ -14,7 +14,6 @@ for name in FIGURES:
             source=modules(
                 f"figures.{DRAWINGS[name]}".rpartition(".")[0],
                 "figures.files",
-                "figures.given",
                 "datasets.netcdf",
             ),
             settings=os.path.relpath(Path(ROOT, "src/bouncing_ball/figures/matplotlibrc")),

@@ -6,7 +6,7 @@ CLAIMS = {
     "claims.formulas.formulas": {
         "formulas": "The printed formulas against a second computation",
     },
-    "claims.forensics.ranking.forensics": {
+    "claims.forensics.forensics": {
         "forensics": "Table 1 under readings of what the authors may have done",
     },
     "claims.cross_check.cross_check": {

@@ -23,6 +23,7 @@ for name, drawing in DRAWINGS.items():
                 "figures.files",
                 "datasets.netcdf",
             ),
+            settings=os.path.relpath(Path(ROOT, "src/bouncing_ball/figures/matplotlibrc")),
         params:
             drawing=f"figures.{drawing}",
         output:

@@ -9,6 +9,8 @@ import matplotlib
 # The hues of Okabe and Ito, which colour-blind readers can distinguish, darkened to a
 # contrast of at least 3:1 with white, in an order in which neighbours differ in
 # greyscale too (grey levels 0, 87, 132, 85, 130).
+RESOLUTION = 300
+"""Of pixels, in dots per inch."""
 COLOURS = ("#000000", "#0072B2", "#C77C00", "#AA3A00", "#3F96CC")
 RESTITUTION = "#000000"
 CONTACT = "#0072B2"
@@ -78,7 +80,7 @@ _SETTINGS: dict[Any, Any] = {
     "legend.frameon": False,
     "legend.handlelength": 2.2,
     "lines.linewidth": 1.3,
-    "savefig.dpi": 300,
+    "savefig.dpi": RESOLUTION,
     # Fixed salt and text as paths: identifiers and fonts do not depend on the
     # run or on the machine.
     "svg.hashsalt": "bouncing-ball",

@@ -304,6 +304,27 @@ VARIABLES: dict[str, Variable] = {
     ),
     "orbit": Variable("orbit along the frequency ratio, curve of a figure"),
     "measure": Variable("quantity compared along these orbits"),
+    "stiff_orbit_error": Variable(
+        "largest relative error of an orbit among stiff contacts", budget=1e-12
+    ),
+    "apparent_restitution_law_error": Variable(
+        "largest error of 1 - Λ sin φ as the limit of nπϖ(r - r_a)/[ζ(1 + r)²] on Fig. 6",
+        budget=1e-10,
+        scale=1.0,
+    ),
+    "short_of_lift": Variable("smallest 1 - Λ sin φ of Fig. 6, with φ of Eq. 6", budget=1e-11),
+    "inadmissible_orbits": Variable("orbits drawn that do not have one impact per period"),
+    "range_error": Variable("relative error of the ends of the stability range", budget=1e-12),
+    "printed_slight_move": Variable(
+        "largest relative move of a printed end from the stiffest row to the next",
+        equation="Table 1",
+    ),
+    "period_doubling_lowest": Variable(
+        "ϖ at which the period doubling is lowest", "ϖ", budget=1e-5
+    ),
+    "permanent_contact_error": Variable(
+        "relative error of Λ_CR at the printed threshold", equation="Eq. 38"
+    ),
     # claims: the paper against the replication
     "claim": Variable("claim of the paper"),
     "section": Variable("section of the paper"),

@@ -30,7 +30,7 @@ ALLOWED = {
     ),
     # Units are parsed at the edge, and pint is imported there when it is asked for.
     "calculator": ({"contacts", "orbits", "accuracy"}, {"numpy", "xarray", "pint"}),
-    "atlas": ({"datasets", "contacts", "orbits", "accuracy"}, {"numpy", "xarray"}),
+    "atlas": ({"datasets", "contacts", "orbits", "accuracy"}, {"numpy", "xarray", "pydantic"}),
     # Studies are imported by name when they are run.
     "configuration": ({"contacts", "orbits"}, {"yaml", "jsonschema", "pydantic", BY_NAME}),
     "claims": (

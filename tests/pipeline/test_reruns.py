@@ -82,7 +82,7 @@ def users(file):
         ("claims/tally.py", set()),
         ("figures/style.py", set()),
         ("configuration/stages.py", set()),
-        ("claims/as_printed.py", {"formulas", "claims"}),
+        ("claims/as_printed.py", {"formulas", "forensics", "claims"}),
     ],
 )
 def test_a_changed_module(file, expected):

@@ -14,9 +14,10 @@ rule atlas_shard:
     output:
         data="results/atlas/shards/{shard}.nc",
     wildcard_constraints:
-        shard=r"\d+-of-\d+",
+        # Some rows of tiles; or saddle-node, period doubling and permanent contact of all.
+        shard=r"\d+-of-\d+|limits",
     params:
-        title="The atlas: the answers of some rows of tiles",
+        title="The atlas: the answers of some rows of tiles, or about the limits of all families",
         parameters=ATLAS,
     resources:
         runtime=lambda wildcards: shard_minutes(ATLAS),
@@ -29,33 +30,12 @@ rule atlas_shard:
         "../scripts/atlas_shard.py"
 
 
-rule atlas_limits:
-    message:
-        "Atlas: saddle-node, period doubling and permanent contact"
-    input:
-        source=modules("atlas.shards", "pipeline.atlas"),
-    output:
-        data="results/atlas/shards/limits.nc",
-    params:
-        title="The atlas: the answers about the limits of the families",
-        parameters=ATLAS,
-    resources:
-        runtime=30,
-        mem_mb=1000,
-    log:
-        "results/logs/atlas/shards/limits.log",
-    benchmark:
-        "results/benchmarks/atlas/shards/limits.tsv"
-    script:
-        "../scripts/atlas_limits.py"
-
-
 rule atlas_merge:
     message:
         "Atlas: one file from its shards"
     input:
         parts=shard_files,
-        source=modules("atlas.merge", "pipeline.atlas"),
+        source=modules("atlas.shards", "pipeline.atlas"),
     output:
         data="results/atlas/atlas.nc",
     params:

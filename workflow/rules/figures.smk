@@ -16,6 +16,7 @@ for name in FIGURES:
                 "figures.files",
                 "datasets.netcdf",
             ),
+            settings=os.path.relpath(Path(ROOT, "src/bouncing_ball/figures/matplotlibrc")),
         params:
             drawing=f"figures.{DRAWINGS[name]}",
         output:

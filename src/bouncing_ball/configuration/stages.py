@@ -401,8 +401,7 @@ _AUDIT = (
         "forensics",
         Kind.TABLE,
         "Table 1 under readings of what the authors may have done",
-        "claims.forensics.ranking.forensics",
-        "studies.forensics",
+        "claims.forensics.forensics",
     ),
     Stage(
         "witness",

@@ -244,17 +244,13 @@ VARIABLES: dict[str, Variable] = {
     "threshold_bin": Variable(
         "lower end of a bin of thresholds; 0: at every ϖ scanned, infinity: at none", "ϖ"
     ),
-    "law_bin": Variable("lower end of a bin of error over error law"),
     "largest_threshold": Variable("ϖ from which the error of all nodes is tolerated", "ϖ"),
-    "smallest_threshold": Variable("ϖ from which the error of some node is tolerated", "ϖ"),
     "threshold_counts": Variable("number of nodes by the ϖ from which their error is tolerated"),
     "holding": Variable("number of nodes whose error is tolerated from this ϖ on"),
     "exceeding": Variable("number of nodes whose error exceeds the tolerance at this ϖ"),
     "largest_error": Variable("largest relative error of a node at this ϖ"),
     "worst_restitution": Variable("restitution coefficient of the node with this error", "r"),
     "worst_amplitude": Variable("amplitude of the node with this error", "Λ"),
-    "absent": Variable("number of nodes for which one of the models has no such quantity"),
-    "law_counts": Variable("number of nodes by their error over the error law"),
     "law_stated": Variable("number of nodes for which the error law is stated"),
     "law_exceeding": Variable("number of these beyond the stated remainder"),
     "unstable": Variable("number of nodes whose exact orbit is not stable"),
@@ -262,6 +258,9 @@ VARIABLES: dict[str, Variable] = {
     "farthest": Variable("largest relative distance of an orbit's Λ from its node's"),
     "limit_quantity": Variable("limit of the stable range, or of permanent contact"),
     "needed": Variable("ϖ from which the error of all nodes of a tile is tolerated", "ϖ"),
+    "limit_needed": Variable(
+        "ϖ from which the error of all limits of a range of r is tolerated", "ϖ"
+    ),
     "needed_quantile": Variable("ϖ from which the error of a share of nodes is tolerated", "ϖ"),
     "share": Variable("share of nodes"),
     "holding_share": Variable("share of nodes whose error is tolerated from this ϖ on"),
@@ -270,9 +269,7 @@ VARIABLES: dict[str, Variable] = {
     "failing_restitution": Variable("r below which all nodes lie on which it fails", "r"),
     "failing_position": Variable("position below which all nodes lie on which it fails"),
     "unstable_share": Variable("share of nodes whose exact orbit is not stable"),
-    "law_near": Variable("share of nodes whose error is within a tenth of the error law"),
     "worst_error": Variable("largest relative error where the rule of thumb begins"),
-    "absent_nodes": Variable("nodes for which one of the models has no such quantity there"),
     "corner_amplitude": Variable("amplitude at the corners of the tiles", "Λ"),
     "restitution_edge": Variable("ends of the ranges of r", "r"),
     "position_edge": Variable("ends of the ranges of positions"),
@@ -458,16 +455,6 @@ VARIABLES: dict[str, Variable] = {
 
 # The fields of a variable that its dataset carries.
 _ATTRIBUTES = ("long_name", "symbol", "units", "equation")
-
-# The atlas asks of the limits of a family what it asks of its orbits.
-_ASKED = (
-    "largest_threshold smallest_threshold threshold_counts holding exceeding largest_error "
-    "worst_restitution worst_amplitude absent law_counts law_stated law_exceeding needed"
-)
-VARIABLES |= {
-    f"limit_{name}": VARIABLES[name]._replace(long_name=f"{VARIABLES[name].long_name} (limits)")
-    for name in _ASKED.split()
-}
 
 
 def _branch(curve: float, multiplier: float) -> dict[str, Budget]:

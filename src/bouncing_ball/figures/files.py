@@ -4,12 +4,12 @@ import json
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from matplotlib import rcParams
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
 from bouncing_ball.datasets.atomic import replacing
+from bouncing_ball.figures.style import RESOLUTION
 
 
 def save_all(figure: Figure, paths: Iterable[str | Path], metadata: Mapping[str, str]) -> None:
@@ -36,7 +36,7 @@ def save(figure: Figure, path: str | Path, metadata: Mapping[str, str]) -> None:
             case ".svg":
                 FigureCanvasSVG(figure).print_svg(temporary, metadata=description)
             case ".png":
-                figure.set_dpi(rcParams["savefig.dpi"])
+                figure.set_dpi(RESOLUTION)
                 FigureCanvasAgg(figure).print_png(temporary, metadata=attributes)
             case _:
                 figure.savefig(temporary, metadata=attributes)

@@ -18,12 +18,13 @@ def shard_names(parameters: Mapping[str, Any]) -> list[str]:
     Examples
     --------
     >>> from bouncing_ball.configuration.yaml_file import read_yaml
-    >>> shard_names(read_yaml("config/config.yaml")["atlas"])[:2]
+    >>> section = read_yaml("config/config.yaml")["atlas"]
+    >>> shard_names({key: part for key, part in section.items() if key != "summary"})[:2]
     ['0000-of-0020', '0001-of-0020']
     """
     from bouncing_ball.atlas.plan import Plan
 
-    count = Plan(parameters).shards
+    count = len(Plan(**parameters).shard_rows())
     return [f"{k:04d}-of-{count:04d}" for k in range(count)]
 
 
@@ -31,6 +32,6 @@ def shard_minutes(parameters: Mapping[str, Any]) -> int:
     """Minutes that a cluster should give to a shard."""
     from bouncing_ball.atlas.plan import Plan
 
-    plan = Plan(parameters)
-    seconds = plan.orbits / plan.shards * _SECONDS_PER_ORBIT
+    plan = Plan(**parameters)
+    seconds = plan.orbits / len(plan.shard_rows()) * _SECONDS_PER_ORBIT
     return _LEAST_MINUTES + math.ceil(seconds / 60)

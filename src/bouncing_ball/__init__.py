@@ -29,11 +29,10 @@ The layers, each importing only what lies above it in this list (and ``errors`` 
 ``calculator``    units, cases and verdicts for an engineer's own contact
 ``atlas``         how stiff is stiff enough, for all orbits: tiles, shards, one file
 ``configuration`` the parameters of a run, read and checked
-``audit``         the paper under audit: claims, formulas, Table 1, every orbit by three routes
-``claims``        what the paper claims, and the verdict on each
+``claims``        what the paper claims and prints, and the verdict on each
 ``figures``       figures, tables and the article; they compute nothing
+``provenance``    the commit, the parameters and the versions that an artifact is made from
 ``compare``       datasets, texts and pictures of two runs against each other
-``record``        provenance and the accepted record
 ``pipeline``      what the Snakefile needs of Python
 ``cli``           the command line, ``bouncing-ball``
 """
@@ -50,7 +49,7 @@ _PUBLIC = {
     "limits": "orbits.calls",
     "simulate": "orbits.calls",
     "model": "orbits.calls",
-    "design": "calculator.design_call",
+    "design": "calculator.design",
     "SpringDamper": "contacts.spring_damper",
     "SpringDamperModel": "orbits.spring_damper_model",
     "RestitutionModel": "orbits.restitution_model",

@@ -5,6 +5,7 @@ import pytest
 
 from bouncing_ball.contacts.restitution_map import bounce, exact_map_jacobian, landing_gap
 from bouncing_ball.continuation.branch import (
+    STARTED,
     Branch,
     ContinuationError,
     continue_both_ways,
@@ -313,7 +314,7 @@ def test_resampling_with_too_long_steps(one_line):
     )
     ends = np.array([[0.0, 0.0], [np.sin(40.0), 1.0]])
     tangents = np.array([[1.0, 0.0], [1.0, 0.0]])
-    branch = Branch(ends, tangents, (), "", "")
+    branch = Branch(ends, tangents, (), STARTED, STARTED)
     with pytest.raises(ContinuationError) as error:
         resample(wave, branch, 5, NewtonSettings(max_iterations=3))
     one_line(error, "resampling to 5 points failed with residual")
@@ -321,7 +322,7 @@ def test_resampling_with_too_long_steps(one_line):
 
 def test_resampling_a_branch_of_one_point():
     # A branch whose first step fails has one point only.
-    alone = Branch(np.array([[1.0, 0.0]]), np.array([[0.0, 1.0]]), (), "", "")
+    alone = Branch(np.array([[1.0, 0.0]]), np.array([[0.0, 1.0]]), (), STARTED, STARTED)
     try:
         points = resample(CIRCLE, alone, 3)
     except ContinuationError as error:

@@ -55,14 +55,28 @@ def test_many_guesses_at_once():
     guess = 1.1 * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
     normals = np.stack([-np.sin(angles), np.cos(angles)], axis=-1)
     found = newton(Circle(), guess, plane(normals, guess), NewtonSettings())
-    assert found.converged
+    assert found.converged.all()
     assert found.point == pytest.approx(guess / 1.1, abs=4 * EPS)
 
 
-def test_one_bad_guess_fails_the_batch():
-    guess = np.array([[1.0, 0.6], [0.0, 0.0]])
-    found = newton(Circle(), guess, plane(np.array([1.0, -2.0]), guess * 0), NewtonSettings())
-    assert not found.converged
+def test_a_bad_guess_spoils_no_other():
+    # One converges, one meets a singular matrix, and one misses the circle.
+    guess = np.array([[1.0, 0.6], [0.0, 0.0], [1.0, 2.0]])
+    normals = np.array([[1.0, -2.0], [1.0, -2.0], [0.0, 1.0]])
+    through = np.array([[0.0, 0.0], [0.0, 0.0], [1.0, 2.0]])
+    found = newton(Circle(), guess, plane(normals, through), NewtonSettings())
+    assert found.converged.tolist() == [True, False, False]
+    assert found.point[0] == pytest.approx(np.array([2.0, 1.0]) / np.sqrt(5), abs=4 * EPS)
+    assert found.point[1].tolist() == [0.0, 0.0]
+
+
+def test_no_step_is_longer_than_the_longest():
+    settings = NewtonSettings(max_iterations=1, longest=0.1)
+    guess = np.array([3.0, 0.0])
+    found = newton(Circle(), guess, plane(np.array([0.0, 1.0]), guess), settings)
+    # Newton's own step, of (9 - 1)/6, is what convergence is judged by.
+    assert found.point == pytest.approx(np.array([2.9, 0.0]), abs=4 * EPS)
+    assert found.step == pytest.approx(8 / 6 / 3.9, rel=1e-14)
 
 
 def test_singular_matrix():

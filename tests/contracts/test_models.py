@@ -19,12 +19,14 @@ from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.continuation.corrector import NewtonSettings, newton
 from bouncing_ball.continuation.events import vanishing
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.orbits.continued import bifurcation, orbit_at, orbits_at
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.law_model import LawModel
-from bouncing_ball.orbits.model import Route, Side
+from bouncing_ball.orbits.model import ImpactModel, Route
 from bouncing_ball.orbits.orbit import OBSERVABLES
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.orbits.stability import Bifurcation, Side
 
 EPS = np.finfo(float).eps
 SOFT = SpringDamper.from_restitution(0.85, 4.0)
@@ -48,7 +50,7 @@ MODELS = {
     "corrected, force release": CorrectedModel.of_contact(PUSHING),
     "corrected, kuwabara-kono": CorrectedModel(LawSignature(HERTZ["kuwabara-kono"])),
     **{name: LawModel(law) for name, law in HERTZ.items()},
-    "one's own": OWN["PlasticModel"](OWN["PlasticImpact"](0.7)),
+    "one's own": OWN["MODEL"],
 }
 DISSIPATIVE = [name for name in MODELS if name not in ("elastic", "undamped contact")]
 # n, and Λ over the saddle-node's and below the table's grazing, Λ > 1 included.
@@ -139,22 +141,21 @@ def test_the_monodromy_is_the_jacobian_of_the_simulated_map(name, n, above, side
 
 @every_side
 @every_case
-# A law whose D falls with the speed is differentiated at a fixed time in its flight.
-@pytest.mark.parametrize("name", [name for name in MODELS if name != "corrected, kuwabara-kono"])
+# The corrected model's monodromy and equations are its own.
+@pytest.mark.parametrize("name", [name for name in MODELS if not name.startswith("corrected")])
 def test_the_jacobian_of_the_contact(name, n, above, side):
     # Where the force vanishes the map does not feel the time of release, so that
     # the monodromy would not show an error in it.
     model, orbit = some_orbit(name, n, above, side)
-    lam = float(orbit.amplitude)
 
     def contact(state):
-        velocity = state[1] + lam * np.cos(state[0])
-        end = model.simulate(lam, state[0], velocity, 1)
+        phase, relative, lam = state
+        end = model.simulate(lam, phase, relative + lam * np.cos(phase), 1)
         ends = end.contact_duration, end.release_displacement, end.relative_release_velocity
         return np.array([float(x[0]) for x in ends])
 
-    state = np.array([float(orbit.phase), float(orbit.relative_impact_velocity)])
-    expected = differences(contact, state, np.full(2, 1e-3))
+    parts = orbit.phase, orbit.relative_impact_velocity, orbit.amplitude
+    expected = differences(contact, np.array(parts, dtype=float), np.full(3, 1e-3))
     assert np.abs(orbit.contact_jacobian() - expected).max() < 1e-9 * (1 + np.abs(expected).max())
 
 
@@ -279,6 +280,34 @@ def test_all_orbits_at_an_amplitude(name):
     for side in Side:
         assert np.min(found.distance(model.orbit(1, 0.9, side))) < 1e-9
     assert model.orbits(1, 1e-3).size == 0
+
+
+@pytest.mark.parametrize(
+    "name", [name for name in DISSIPATIVE if Route.FORMULA in MODELS[name].routes]
+)
+def test_a_closed_form_is_what_the_continuation_finds(name):
+    # What a model overrides against what it would inherit.
+    model, n = MODELS[name], np.array([1, 2])
+    for kind in Bifurcation:
+        exact = {"saddle-node": model.saddle_node, "period doubling": model.period_doubling}[kind](
+            n
+        )
+        # The test functions' rounding over their slope, of order one.
+        np.testing.assert_allclose(
+            bifurcation(model, n, kind).amplitude, exact.amplitude, rtol=1e-9
+        )
+    lam = model.saddle_node(n).amplitude + np.array([[1e-3], [0.3], [0.8]])
+    for side in Side:
+        found, exact = orbit_at(model, n, lam, side), model.orbit(n, lam, side)
+        assert found.exists.tolist() == exact.exists.tolist()
+        # Next to the fold a rounding of Λ is its root in the phase.
+        assert np.nanmax(found.distance(exact)) < 1e-10
+        assert (ImpactModel.absence(model, n, lam, side) == model.absence(n, lam, side)).all()
+    # A closed form may know orbits with long contacts that no branch from here leads to.
+    exact = model.orbits(1, 0.9)
+    for orbit in map(orbits_at(model, 1, 0.9).__getitem__, range(2)):
+        assert np.min(orbit.distance(exact)) < 1e-10
+    assert np.isnan(orbit_at(model, 1, 1e-3, Side.STABLE).phase)
 
 
 @every_side

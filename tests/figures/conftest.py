@@ -5,11 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from bouncing_ball.audit.evidence import evidence
-from bouncing_ball.claims.assessment import assess
-from bouncing_ball.claims.ledger_file import read_ledger
-from bouncing_ball.configuration.stages import tables
-from bouncing_ball.configuration.yaml_file import read_yaml
+from bouncing_ball.claims.ledger import ledger
 from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.figures.article.render import render_article
 from bouncing_ball.figures.atlas.tables import shares
@@ -18,34 +14,30 @@ from bouncing_ball.figures.tables.formats import to_csv, to_latex, to_markdown
 
 ROOT = Path(__file__).resolve().parents[2]
 TEMPLATES = ROOT / "workflow" / "report" / "paper"
-TABLES = tables()
-DERIVED = ("evidence", "claims")
+TABLES = sorted(path.stem for path in (ROOT / "figures").glob("*.csv"))
+DERIVED = ("claims",)
 
 
 @pytest.fixture(scope="session")
-def record(record_and_new):
+def record(recorded):
     """The accepted datasets that are computed, not read off others."""
-    return {name: data for name, data in record_and_new.items() if name not in DERIVED}
+    return {name: data for name, data in recorded.items() if name not in DERIVED}
 
 
 def all_texts(data):
     """All tables in all formats, and the article."""
-    parameters = read_yaml(ROOT / "config" / "config.yaml")["studies"]["evidence"]
-    found = evidence(data, parameters).assign_attrs(parameters)
-    data = {**data, "evidence": found}
-    data["claims"] = assess(read_ledger(ROOT / "config"), data)
+    data = {**data, "claims": ledger(data)}
     made = {}
     for name in TABLES:
         rows = import_module(f"bouncing_ball.figures.tables.{name}").rows(data[name])
         for form in (to_csv, to_latex, to_markdown):
             made[name, form.__name__] = form(*rows)
-    references = read_yaml(TEMPLATES / "references.yaml")
     texts = {name: made[name, "to_markdown"] for name in TABLES}
     summary = (ROOT / "config" / "error_law.csv").read_text(encoding="utf-8")
     texts["error_law"] = law_table(summary)
     data["atlas"] = read_dataset(ROOT / "config" / "atlas.nc")
     texts["atlas"] = to_markdown(*shares(data["atlas"]))
-    made["article"] = render_article(TEMPLATES, data, texts, references)
+    made["article"] = render_article(TEMPLATES, data, texts)
     return made
 
 

@@ -10,8 +10,8 @@ from bouncing_ball.motion.corrected import corrected_cycle
 from bouncing_ball.orbits import corrected_branch, restitution_orbit, stability
 from bouncing_ball.orbits import spring_damper_limits as limits
 from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.model import Side
 from bouncing_ball.orbits.spring_damper_branch import branch_point
+from bouncing_ball.orbits.stability import Side
 
 RELEASES = list(Release)
 

@@ -11,9 +11,9 @@ from bouncing_ball.contacts.signature import Instant, LinearSignature, Signature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.model import Side
 from bouncing_ball.orbits.orbit import OBSERVABLES
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.orbits.stability import Side
 
 RELEASES = list(Release)
 COMPARED = (*OBSERVABLES[1:], "release_displacement", "bounce_height")
@@ -106,7 +106,7 @@ class _Plastic(Signature):
 @pytest.mark.parametrize("n", [1, 2])
 def test_a_law_that_depends_on_the_speed(n):
     # Against a model of its own, which solves for the speed.
-    corrected, own = CorrectedModel(_Plastic(0.7)), OWN["PlasticModel"](OWN["PlasticImpact"](0.7))
+    corrected, own = CorrectedModel(_Plastic(0.7)), OWN["MODEL"]
     for kind in ("saddle_node", "period_doubling"):
         computed, expected = getattr(corrected, kind)(n), getattr(own, kind)(n)
         assert float(computed.amplitude) == pytest.approx(float(expected.amplitude), rel=1e-14)

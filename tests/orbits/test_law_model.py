@@ -11,12 +11,11 @@ from bouncing_ball.contacts.laws.tsuji import Tsuji
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.law_calls import law_at_orbit
-from bouncing_ball.orbits.law_model import LawModel
-from bouncing_ball.orbits.model import Side
+from bouncing_ball.orbits.law_model import LawModel, law_at_orbit
 from bouncing_ball.orbits.orbit import OBSERVABLES
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.orbits.stability import Side
 
 KINDS = [SpringDamper, HuntCrossley, Tsuji, KuwabaraKono]
 every_kind = pytest.mark.parametrize("kind", KINDS, ids=[kind.name for kind in KINDS])

@@ -11,11 +11,9 @@ from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper, responses
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
+from bouncing_ball.orbits.model import Absence
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import (
-    Absence,
-    Side,
-    absence,
     orbit_at,
     period_doubling,
     saddle_node,
@@ -24,6 +22,7 @@ from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.spring_damper_system import Parameter, SpringDamperSystem
 from bouncing_ball.orbits.stability import (
+    Side,
     is_stable,
     period_doubling_function,
     saddle_node_function,
@@ -280,13 +279,13 @@ def test_reasons_for_missing_orbits():
     zeta = float(damping_ratio(0.85))
     amplitudes = np.array([0.1, 0.9, 1.3])
     below, there, short = Absence.BELOW_SADDLE_NODE, Absence.NONE, Absence.NOT_REACHED
-    contact = SpringDamper(2.0, zeta)
-    assert absence(contact, 1, amplitudes).tolist() == [below, there, there]
-    assert absence(contact, 1, amplitudes, Side.UNSTABLE).tolist() == [below, there, short]
+    model = SpringDamperModel(SpringDamper(2.0, zeta))
+    assert model.absence(1, amplitudes).tolist() == [below, there, there]
+    assert model.absence(1, amplitudes, Side.UNSTABLE).tolist() == [below, there, short]
     # At ϖ = 1 there is no fold.
-    other = Absence.NO_OTHER_SIDE
-    assert absence(SpringDamper(1.0, zeta), 1, 0.9, Side.UNSTABLE).tolist() == other
-    assert absence(SpringDamper(1.0, zeta), 1, np.array([0.05, 0.9])).tolist() == [short, there]
+    model, other = SpringDamperModel(SpringDamper(1.0, zeta)), Absence.NO_OTHER_SIDE
+    assert model.absence(1, 0.9, Side.UNSTABLE).tolist() == other
+    assert model.absence(1, np.array([0.05, 0.9])).tolist() == [short, there]
 
 
 def test_without_a_fold():

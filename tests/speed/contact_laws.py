@@ -18,8 +18,8 @@ from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.laws import LAWS
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.contact import simulate
-from bouncing_ball.orbits.law_calls import rigid_speed
 from bouncing_ball.orbits.law_model import LawModel
+from bouncing_ball.orbits.restitution_orbit import rigid_speed
 
 HERTZ = ("hunt-crossley", "tsuji", "kuwabara-kono")
 # r, Λ and D; at Λ = 1 many balls are next to permanent contact.

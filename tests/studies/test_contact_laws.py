@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.configuration.study import typed
 from bouncing_ball.contacts.collocation import contacts
-from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.orbits.law_calls import rigid_speed
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.restitution_orbit import rigid_speed
 from bouncing_ball.studies.contact_laws import LINEAR, NAMES, exact_model, law_errors
 
 pytestmark = pytest.mark.slow
@@ -27,7 +27,7 @@ TRIED = {
 def errors():
     span = {"min": np.pi / 0.1, "max": np.pi / 0.03, "samples": 2}
     one = {"n": 1, "restitution": 0.65, "amplitude": 1.0, "tolerance": 0.01}
-    return law_errors(one | {"frequency_ratio": span})
+    return typed(law_errors)(one | {"frequency_ratio": span})
 
 
 def law_at_rigid_speed(name, duration):
@@ -36,7 +36,7 @@ def law_at_rigid_speed(name, duration):
     if name not in LINEAR:
         return model, model.law
     contact = model.contact
-    return model, SpringDamper(contact.frequency_ratio, contact.damping_ratio, contact.release)
+    return model, contact
 
 
 def height_by_one_impact(law):

@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball.configuration.study import typed
 from bouncing_ball.studies.permanent_contact_curve import permanent_contact
+
+permanent_contact = typed(permanent_contact)
 
 PARAMETERS = {"restitution": 0.65, "frequency_ratio": {"min": 0.5, "max": 100.0, "samples": 201}}
 
@@ -30,10 +32,3 @@ def test_the_force_release_lifts_off_earlier(described):
     dry = described(permanent_contact(PARAMETERS, "force"))
     assert np.all(dry.threshold_amplitude < paper.threshold_amplitude)
     assert float(dry.threshold_amplitude.min()) >= float(dry.minimum_threshold)
-
-
-def test_damping_without_a_minimum(one_line):
-    # ζ ≥ 1/√2 is r ≤ e^{-π}.
-    with pytest.raises(ModelError) as error:
-        permanent_contact(PARAMETERS | {"restitution": 0.04}, "displacement")
-    one_line(error, "[0, 1/√2)")

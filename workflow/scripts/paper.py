@@ -3,7 +3,6 @@
 from pathlib import Path
 
 from bouncing_ball.claims.tally import tally
-from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.figures.article.render import render_article
@@ -23,9 +22,8 @@ with logged(snakemake) as lines:
     tables["error_law"] = law_table(text_of(snakemake.input.error_law))
     data["atlas"] = read_dataset(snakemake.input.atlas)
     tables["atlas"] = to_markdown(*shares(data["atlas"]))
-    references = read_yaml(snakemake.input.references)
     folder = Path(snakemake.input.templates[0]).parent
-    write_text(snakemake.output.paper, render_article(folder, data, tables, references))
+    write_text(snakemake.output.paper, render_article(folder, data, tables))
     last = tally(data["claims"], snakemake.params.figures)
     write_text(snakemake.output.tally, last + "\n")
     lines.append(last)

@@ -8,7 +8,7 @@ from bouncing_ball.pipeline.job import logged
 
 with logged(snakemake) as lines:
     paper = Path(snakemake.input.paper)
-    pdf = article_pdf(paper.read_text(encoding="utf-8"), paper.parent)
+    pdf = article_pdf(paper.read_text(encoding="utf-8"), snakemake.input.template, paper.parent)
     with replacing(snakemake.output.pdf) as temporary:
         temporary.write_bytes(pdf)
     lines.append(f"{snakemake.output.pdf}: {len(pdf) / 1e6:.1f} MB")

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -12,22 +13,22 @@ from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import Instant, LinearSignature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.law_calls import rigid_speed
 from bouncing_ball.orbits.law_model import LawModel
 from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.restitution_orbit import rigid_speed
 
 
 @dataclass(frozen=True)
 class Table:
-    """What excites the ball.
+    """The table's motion A sin Ωt, and gravity.
 
     Parameters
     ----------
     angular_frequency, height : float
         Ω in rad/s and the amplitude A of the table in m.
     gravity : float
-        g in m/s², or what takes its part: a drag over an inertia.
+        g in m/s²; in a gear pair the drag torque over the inertia.
 
     Examples
     --------
@@ -62,7 +63,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Case:
-    """A case to design for.
+    """A case to design for; its contact and its models are built once.
 
     Parameters
     ----------
@@ -73,6 +74,9 @@ class Case:
         k in N/m and c in N s/m.
     release : Release
         What ends a contact.
+    law : Tsuji, optional
+        A Hertz contact; stiffness and damping are then those of the linear contact with
+        its restitution coefficient and its duration at the orbit's impact speed.
 
     Examples
     --------
@@ -87,9 +91,15 @@ class Case:
     damping: float
     release: Release
     law: Tsuji | None = None
-    """A Hertz contact; stiffness and damping are then those of the linear contact
-    with its restitution coefficient and its duration at the orbit's impact speed."""
 
+    @cached_property
+    def contact(self) -> SpringDamper:
+        """ϖ = √(k/m)/Ω, ζ = c/(2√(km)) and the release rule."""
+        ratio = math.sqrt(self.stiffness / self.mass) / self.table.angular_frequency
+        zeta = self.damping / (2 * math.sqrt(self.stiffness * self.mass))
+        return SpringDamper(ratio, zeta, self.release)
+
+    @cached_property
     def models(self) -> dict[str, ImpactModel]:
         """By name: the exact model first, then the simple ones with the contact's own r."""
         if self.law is None:
@@ -101,23 +111,12 @@ class Case:
         }
 
     def instant(self, n: int) -> Instant:
-        """The signature of the contact at the speed of the restitution model's orbit."""
+        """The signature of the contact at the impact speed of the restitution model's orbit."""
         if self.law is None:
             return LinearSignature(self.contact)()
         found = LawSignature(self.law)(rigid_speed(n, float(self.contact.restitution)))
         # Interpolated, that of an elastic contact is 1 but for rounding.
         return found._replace(restitution=np.minimum(found.restitution, 1.0))
-
-    @property
-    def zeta(self) -> float:
-        """ζ = c/(2√(km))."""
-        return self.damping / (2 * math.sqrt(self.stiffness * self.mass))
-
-    @property
-    def contact(self) -> SpringDamper:
-        """ϖ = √(k/m)/Ω, ζ and the release rule."""
-        own = math.sqrt(self.stiffness / self.mass)
-        return SpringDamper(own / self.table.angular_frequency, self.zeta, self.release)
 
     @property
     def contact_time(self) -> float:
@@ -131,7 +130,13 @@ class Case:
             return float(self.law.stiffness) ** (-2 / 3) * self.table.length
         return self.mass * self.table.gravity / self.stiffness
 
-    @property
-    def weight(self) -> float:
-        """mg, in N."""
-        return self.mass * self.table.gravity
+    @cached_property
+    def permanent_contact(self) -> dict[str, float]:
+        """Λ up to which the ball stays down, by model; NaN for a Hertz contact.
+
+        At rest that contact has the stiffness of its static deflection, not k.
+        """
+        if self.law is not None:
+            return dict.fromkeys(self.models, math.nan)
+        found = {name: of.permanent_contact_threshold() for name, of in self.models.items()}
+        return {name: float(value) for name, value in found.items()}

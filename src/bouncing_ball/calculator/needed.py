@@ -6,8 +6,7 @@ import numpy as np
 
 from bouncing_ball.accuracy.quantities import OF_ORBITS, Quantity
 from bouncing_ball.accuracy.thresholds import search
-from bouncing_ball.calculator.family import first_order, permanent_law
-from bouncing_ball.contacts.release import Release
+from bouncing_ball.calculator.families import finite, first_order, permanent_law
 from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits.restitution_model import RestitutionModel
@@ -15,7 +14,6 @@ from bouncing_ball.orbits.restitution_model import RestitutionModel
 # From contacts that last a good part of the table's period to stiffer ones than
 # any simulation has; so fine that no two crossings are seen as none.
 RATIOS = np.geomspace(1.0, 1e6, 97)
-
 
 NO_ORBIT = "the restitution model has no such orbit"
 """One more :class:`~bouncing_ball.accuracy.thresholds.ThresholdStatus`."""
@@ -40,33 +38,30 @@ class Needed:
     corrected_status: str
 
 
-def _number(value: float) -> float | None:
-    return value if np.isfinite(value) else None
-
-
 def needed(
-    quantity: str, tolerance: float, damping_ratio: float, release: Release, n: int, lam: float
+    quantity: str, tolerance: float, contact: SpringDamper, n: int, amplitude: float
 ) -> Needed:
-    """The ϖ that a tolerance needs, for a contact of this damping.
+    """The ϖ that a tolerance needs, for contacts with the damping and release of this one.
 
     Examples
     --------
     Λ_SD = 1 - 1/ϖ² without damping:
 
-    >>> found = needed("permanent_contact", 0.01, 0.0, Release.DISPLACEMENT, 1, 1.0)
+    >>> found = needed("permanent_contact", 0.01, SpringDamper(5.0, 0.0), 1, 1.0)
     >>> round(found.frequency_ratio, 12), round(found.by_law, 12)
     (10.0, 10.0)
     """
-    simple = RestitutionModel(SpringDamper(1.0, damping_ratio, release).restitution)
-    if quantity in OF_ORBITS and not simple.orbit(n, lam).exists:
+    zeta, rule = contact.damping_ratio, contact.release
+    simple = RestitutionModel(contact.restitution)
+    if quantity in OF_ORBITS and not simple.orbit(n, amplitude).exists:
         return Needed(quantity, tolerance, None, None, None, NO_ORBIT, NO_ORBIT)
-    found = search(damping_ratio, release, n, lam, RATIOS, tolerance, (quantity,))
-    ratios = [_number(float(ratio)) for ratio in found.threshold[:, 0, 0]]
-    unit = SpringDamper(1.0, damping_ratio, release)
+    found = search(zeta, rule, n, amplitude, RATIOS, tolerance, (quantity,))
+    # The error law's K is the error at ϖ = 1.
+    unit = SpringDamper(1.0, zeta, rule)
     if quantity == Quantity.PERMANENT_CONTACT:
         by_law: float | None = (permanent_law(unit) / tolerance) ** 0.5
     else:
-        coefficient = first_order(LinearSignature(unit)(), n, lam)[0][quantity]
+        coefficient = first_order(LinearSignature(unit)(), n, amplitude)[0][quantity]
         by_law = None if coefficient is None else coefficient / tolerance
-    why = (str(status) for status in found.status[:, 0, 0])
-    return Needed(quantity, tolerance, ratios[0], by_law, ratios[1], *why)
+    ratio, corrected = map(finite, found.threshold[:, 0, 0])
+    return Needed(quantity, tolerance, ratio, by_law, corrected, *map(str, found.status[:, 0, 0]))

@@ -38,7 +38,7 @@ def page(design: Design) -> xr.Dataset:
     found = search(zeta, rule, design.n, lam, RATIOS, asked.tolerance, (asked.quantity,))
     always = found.status == ThresholdStatus.ALWAYS_WITHIN
     from_there_on = np.where(always, RATIOS[0], found.threshold)[:, 0]
-    of = design.case.models()
+    of = design.case.models
     orbits = {name: model.orbit(design.n, table.amplitude) for name, model in of.items()}
     return xr.Dataset(
         {

@@ -1,174 +1,141 @@
-"""The ledger: what the paper claims, and what decides each claim."""
+"""The ledger: every claim of the paper with its verdict, as a dataset."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from enum import StrEnum
-from typing import Any
+from collections.abc import Mapping, Sequence
 
-from bouncing_ball.errors import ModelError
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.claims import evidence
+from bouncing_ball.claims.claim import Claim, Explanation, defined_in
+from bouncing_ball.claims.paper import (
+    apparent_restitution,
+    both_models,
+    explanations,
+    introduction,
+    orbits,
+    permanent_contact,
+    restitution_model,
+    spring_damper_model,
+)
+from bouncing_ball.claims.parameters import PARAMETERS, PERMANENT_CONTACT, STIFF, TOLERANCE
+from bouncing_ball.claims.verdict import CLOSE_UNITS, Finding, Verdict
+from bouncing_ball.datasets.rounding import compared_text
+from bouncing_ball.datasets.variables import described
+
+_SECTIONS = (
+    introduction,
+    restitution_model,
+    spring_damper_model,
+    apparent_restitution,
+    orbits,
+    permanent_contact,
+    both_models,
+)
+CLAIMS: tuple[Claim, ...] = tuple(
+    claim for section in _SECTIONS for claim in defined_in(section, Claim)
+)
+"""Every claim of the paper that can be decided, in the order of the paper."""
+EXPLANATIONS: tuple[Explanation, ...] = tuple(defined_in(explanations, Explanation))
+"""Why some of them are not reproduced."""
+READS = tuple(PARAMETERS)
+"""The datasets that decide them."""
 
 
-class Relation(StrEnum):
-    """How a number compares with the bound of a condition."""
-
-    AT_MOST = "at_most"
-    AT_LEAST = "at_least"
-    BELOW = "below"
-    ABOVE = "above"
-
-    @property
-    def sign(self) -> str:
-        """The sign between two numbers."""
-        return {"at_most": "≤", "at_least": "≥", "below": "<", "above": ">"}[self]
+def _words(found: Mapping[str, Finding] | str) -> str:
+    """Each check of an explanation with its number, or why there are none."""
+    if isinstance(found, str):
+        return found
+    parts = []
+    for name, one in found.items():
+        text = compared_text(one.value, one.bound)
+        text = text if text.startswith("≤") else f"= {text}"
+        parts.append(f"{name} {text} (required {one.required})")
+    return "; ".join(parts)
 
 
-@dataclass(frozen=True)
-class Measure:
-    """One number of a dataset: its place, and how several become one.
+def _row(claim: Claim, data: Mapping[str, xr.Dataset], holding: set[str]) -> dict[str, object]:
+    """What the dataset says of one claim; ``holding`` names the explanations that hold."""
+    finding, reason, used = claim.verdict(data)
+    why = claim.explanation.id if claim.explanation else ""
+    settled = finding.verdict in (Verdict.REPRODUCED, Verdict.NOT_ASKED)
+    return {
+        "section": claim.section,
+        "item": claim.item,
+        "kind": claim.kind,
+        "group": claim.group,
+        "restates": claim.restates.id if claim.restates else "",
+        "statement": claim.statement,
+        "printed_text": claim.printed,
+        "legibility": "clear" if claim.clear else "damaged",
+        "remark": claim.remark,
+        "condition": claim.condition,
+        "decided_by": ", ".join(used),
+        "required": finding.required,
+        "limit": finding.bound,
+        "found": finding.value,
+        "deviation_units": finding.units,
+        "deviation": finding.relative,
+        "verdict": str(finding.verdict),
+        "reason": reason,
+        "printed_table": claim.table,
+        "explained_by": why,
+        "explained": settled or why in holding,
+    }
+
+
+def assess(
+    claims: Sequence[Claim], why: Sequence[Explanation], data: Mapping[str, xr.Dataset]
+) -> xr.Dataset:
+    """The verdict on each claim over ``claim``; over ``explanation`` whether its checks hold.
+
+    Raises
+    ------
+    ModelError
+        If a dataset that decides a claim or an explanation, or what is needed of it,
+        is missing.
+    """
+    checks = [explanation.check(data) for explanation in why]
+    holding = {one.id for one, (holds, _) in zip(why, checks, strict=True) if holds}
+    rows = [_row(claim, data, holding) for claim in claims]
+    return described(
+        {
+            **{key: ("claim", np.array([row[key] for row in rows])) for key in rows[0]},
+            "explanation_text": ("explanation", [one.text for one in why]),
+            "explanation_holds": ("explanation", [holds for holds, _ in checks]),
+            "explanation_checks": ("explanation", [_words(found) for _, found in checks]),
+        },
+        coords={"claim": [one.id for one in claims], "explanation": [one.id for one in why]},
+    )
+
+
+def ledger(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
+    """The verdict on every claim of the paper, and the numbers that the article prints with them.
 
     Parameters
     ----------
-    dataset, variable : str
-    at : tuple of (coordinate, value)
-        Labels to select; numbers are matched to rounding.
-    reduce : str
-        ``max``, ``min`` or ``sum`` over what is left, or ``value``: one number
-        must be left.
+    data : mapping of str to xarray.Dataset
+        The datasets of :data:`READS`, by name.
+
+    Returns
+    -------
+    xarray.Dataset
+        That of :func:`assess`, and functions of :mod:`bouncing_ball.claims.evidence` by
+        their names. The attributes are the paper's limits and what counts as close.
     """
-
-    dataset: str
-    variable: str
-    at: tuple[tuple[str, Any], ...] = ()
-    reduce: str = "value"
-
-    def __str__(self) -> str:
-        place = ", ".join(f"{key} = {value}" for key, value in self.at)
-        text = f"{self.dataset}: {self.variable}" + (f" at {place}" if place else "")
-        return text if self.reduce == "value" else f"{self.reduce} of {text}"
-
-
-@dataclass(frozen=True)
-class Condition:
-    """``relation`` to a bound, which is a printed number or a variable beside the
-    measured one."""
-
-    relation: Relation
-    bound: str
-    bound_is_variable: bool = False
-
-
-@dataclass(frozen=True)
-class Criterion:
-    """A measure with the condition it must meet; none for a printed number.
-
-    ``reading`` names it where a claim can be read in several ways.
-    """
-
-    measure: Measure
-    condition: Condition | None = None
-    reading: str = ""
-
-
-@dataclass(frozen=True)
-class Claim:
-    """A claim of the paper, and what decides it.
-
-    Parameters
-    ----------
-    id, kind, section, item, statement : str
-        Name; ``number``, ``formula`` or ``statement``; its place in the paper;
-        what it says, in our words.
-    printed : str
-        The number as printed, with its digits; empty if there is none.
-    unit : float or None
-        Unit of the last significant digit, where the digits do not show it.
-    legibility, remark : str
-        How legible it is in the text at hand; how it was read.
-    condition_text : str
-        The decidable condition into which a statement in words is turned.
-    criteria : tuple of Criterion
-        One, or one for each reading.
-    uses : tuple of str
-        Datasets that must have been computed with the paper's parameters.
-    explanation : str
-        Name of the explanation if it is not reproduced; empty if none.
-    table : str
-        The printed table whose entry it is; empty if none.
-    restates : str
-        Id of the claim that it says again; empty if it stands alone.
-    """
-
-    id: str
-    kind: str
-    section: str
-    item: str
-    statement: str
-    printed: str
-    unit: float | None
-    legibility: str
-    remark: str
-    condition_text: str
-    criteria: tuple[Criterion, ...]
-    uses: tuple[str, ...]
-    explanation: str
-    table: str = ""
-    restates: str = ""
-
-    @property
-    def group(self) -> str:
-        """What it is counted as.
-
-        A restatement apart from what stands alone, and a formula whose signs had
-        to be restored apart from a number: the check shows that the restored form
-        is right, not that the paper printed it.
-        """
-        if self.restates:
-            return "restatement"
-        if self.kind == "formula":
-            return "statement" if self.legibility == "clear" else "restored formula"
-        return self.kind
-
-
-@dataclass(frozen=True)
-class Explanation:
-    """Why claims are not reproduced, and the conditions that must hold for it."""
-
-    id: str
-    text: str
-    criteria: tuple[Criterion, ...]
-    uses: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class Ledger:
-    """All claims and explanations, and the paper's parameters by dataset.
-
-    ``tables`` are the printed tables by name, each with its axes, its
-    ``values`` as numbers, and the paper's other parameters of the dataset that
-    decides it. ``source`` is the mapping that all this was read from.
-    """
-
-    close_units: float
-    parameters: Mapping[str, Mapping[str, Any]]
-    claims: tuple[Claim, ...]
-    explanations: tuple[Explanation, ...]
-    tables: Mapping[str, Mapping[str, Any]]
-    source: Mapping[str, Any]
-
-    @property
-    def datasets(self) -> list[str]:
-        """Names of the datasets that decide something, sorted."""
-        used = [part.uses for part in self.claims] + [part.uses for part in self.explanations]
-        return sorted({name for names in used for name in names})
-
-    def table(self, name: str) -> Mapping[str, Any]:
-        """A printed table, as a stage takes it.
-
-        Raises
-        ------
-        ModelError
-            If the ledger has no such table.
-        """
-        if name not in self.tables:
-            raise ModelError(f"unknown table {name!r}; known: {', '.join(self.tables) or 'none'}")
-        return self.tables[name]
+    printed = (
+        evidence.stiff_orbit_error,
+        evidence.apparent_restitution_law_error,
+        evidence.short_of_lift,
+        evidence.inadmissible_orbits,
+        evidence.range_error,
+        evidence.printed_slight_move,
+        evidence.period_doubling_lowest,
+        evidence.permanent_contact_error,
+    )
+    numbers = {one.__name__: xr.DataArray(one(data)).reset_coords(drop=True) for one in printed}
+    return xr.merge([assess(CLAIMS, EXPLANATIONS, data), described(numbers)]).assign_attrs(
+        close_units=CLOSE_UNITS,
+        tolerance=TOLERANCE,
+        stiff_frequency_ratio=STIFF,
+        permanent_contact_frequency_ratio=PERMANENT_CONTACT,
+    )

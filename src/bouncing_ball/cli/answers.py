@@ -1,141 +1,100 @@
-"""What each subcommand answers, as plain dictionaries."""
+"""What each subcommand answers, as plain dictionaries.
 
-import argparse
+Options come from the signatures: of the public calls, and of what is added to them here.
+"""
+
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from bouncing_ball.accuracy.error_law import coefficients, permanent_contact_coefficient
-from bouncing_ball.cli.contact_law import described, model_of, rigid_speed_of
+from bouncing_ball.accuracy import error_law as error_laws
+from bouncing_ball.cli.readable import lines
+from bouncing_ball.contacts.contact_law import ContactLaw
+from bouncing_ball.contacts.law_signature import LawSignature, free_impact
 from bouncing_ball.contacts.permanent_contact import permanent_contact_minimum
-from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.motion.sequence import Status
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.signature import LinearSignature
+from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.errors import NoOrbitError, ParameterError
+from bouncing_ball.motion.sequence import ImpactSequence, Status
+from bouncing_ball.orbits import calls
+from bouncing_ball.orbits.continued import restitution_speed
 from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.model import ImpactModel, Side
+from bouncing_ball.orbits.law_model import LawModel
 from bouncing_ball.orbits.orbit import OBSERVABLES, Orbit
-from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.signatures import takes
 
 Answer = dict[str, Any]
+__all__ = ["error_law", "limits", "lines", "orbit", "permanent_contact", "simulate"]
 
 
-def _contact(args: argparse.Namespace) -> SpringDamper:
-    release = Release.of(args.release or Release.DISPLACEMENT)
-    if args.damping_ratio is not None:
-        return SpringDamper(args.frequency_ratio, args.damping_ratio, release)
-    measured = args.measured_restitution is not None
-    r = args.measured_restitution if measured else args.restitution
-    return SpringDamper.from_restitution(r, args.frequency_ratio, release, measured=measured)
+def _described(of: Any, speed: Callable[[ContactLaw], float] = lambda _: math.nan) -> Answer:
+    """r and ζ of a contact; of a contact law its parameters, and r and D at an impact speed."""
+    match of:
+        case SpringDamper():
+            return {
+                "measured_restitution": float(of.restitution),
+                "damping_ratio": float(of.damping_ratio),
+            }
+        case ContactLaw():
+            at = speed(of)
+            impact = free_impact(of, np.float64(at))
+            return {
+                "law": of.name,
+                "parameters": {name: float(x) for name, x in of.parameters().items()},
+                "measured_restitution": float(impact.restitution),
+                "free_duration": float(impact.duration),
+                "frequency_ratio": math.pi / float(impact.duration),
+                "at_impact_speed": at,
+            }
+        case SpringDamperModel(inner) | LinearSignature(inner):
+            return _described(inner, speed)
+        case CorrectedModel(inner) | LawModel(inner) | LawSignature(inner):
+            return _described(inner, speed)
+    return {}
 
 
-def _model(args: argparse.Namespace) -> ImpactModel:
-    if args.law is not None:
-        return model_of(args)
-    if args.model == "restitution":
-        r = args.restitution if args.measured_restitution is None else args.measured_restitution
-        return RestitutionModel(r)
-    contact = _contact(args)
-    return (
-        SpringDamperModel(contact)
-        if args.model == "spring-damper"
-        else CorrectedModel.of_contact(contact)
-    )
-
-
-def _measured(args: argparse.Namespace, model: ImpactModel, speed: float) -> Answer:
-    """What a free impact on the contact has, whatever was asked for: r and ζ.
-
-    Of a contact law, its parameters, and r and D at an impact speed.
-    """
-    if args.law is not None:
-        return described(model, speed)
-    if args.model == "restitution":
-        return {}
-    return _loss(_contact(args))
-
-
-def _loss(contact: SpringDamper) -> Answer:
-    """What the contact loses: r of a free impact, and ζ."""
+def _orbit(found: Orbit) -> Answer:
     return {
-        "measured_restitution": float(contact.restitution),
-        "damping_ratio": float(contact.damping_ratio),
+        **{name: float(getattr(found, name)) for name in OBSERVABLES if name != "amplitude"},
+        "multipliers": [[x.real, x.imag] for x in found.multipliers().tolist()],
+        "is_stable": bool(found.is_stable()),
+        "is_admissible": bool(found.is_admissible()),
+        "residual": float(found.defect()),
     }
 
 
-def _described(orbit: Orbit) -> Answer:
-    """One orbit."""
-    return {
-        **{name: float(getattr(orbit, name)) for name in OBSERVABLES if name != "amplitude"},
-        "multipliers": [[x.real, x.imag] for x in orbit.multipliers().tolist()],
-        "is_stable": bool(orbit.is_stable()),
-        "is_admissible": bool(orbit.is_admissible()),
-        "residual": float(orbit.defect()),
-    }
+@takes(calls.orbit)
+def orbit(n=1, *, amplitude, side, index, **impact: Any) -> Answer:
+    """The n-T orbit at Λ on a side of the saddle-node, or all of them, or one of all."""
+    of = calls.model_of_orbit(n, amplitude, side, **impact)
+    found = calls.chosen_orbit(of, n, amplitude, side, index)
+    several = [_orbit(found[k]) for k in range(found.size)] if found.shape else []
+    answer = {"orbits": several} if several else _orbit(found)
+    speed = -float(np.ravel(found.relative_impact_velocity)[0])
+    return answer | _described(of, lambda _: speed)
 
 
-def _all_orbits(model: ImpactModel, n: int, amplitude: float) -> Orbit:
-    """Every orbit at Λ, in order of contact duration.
-
-    Raises
-    ------
-    NoOrbitError
-        If there is none.
-    """
-    found = model.orbits(n, amplitude)
-    if not found.size:
-        raise NoOrbitError(f"no {n}-T orbit at Λ = {amplitude:g} for {model.label}")
-    return found
-
-
-def orbit(args: argparse.Namespace) -> Answer:
-    """The n-T orbit at Λ on a side of the saddle-node, or all of them, or one of all.
-
-    Raises
-    ------
-    NoOrbitError
-        With the reason, if there is none.
-    """
-    model = _model(args)
-    if args.side != "all" and args.index is None:
-        orbit = model.require_orbit(args.n, args.amplitude, Side(args.side))
-        return _described(orbit) | _measured(args, model, _speed(orbit))
-    found = _all_orbits(model, args.n, args.amplitude)
-    if args.index is None:
-        orbits = [_described(found[k]) for k in range(found.size)]
-        return {"orbits": orbits} | _measured(args, model, _speed(found[0]))
-    if args.index > found.size:
-        raise NoOrbitError(
-            f"no orbit {args.index}: {model.label} has {found.size} {args.n}-T orbits "
-            f"at Λ = {args.amplitude:g}"
-        )
-    orbit = found[args.index - 1]
-    return _described(orbit) | _measured(args, model, _speed(orbit))
-
-
-def _speed(orbit: Orbit) -> float:
-    """Speed of the impact, against the table."""
-    return -float(orbit.relative_impact_velocity)
-
-
-def limits(args: argparse.Namespace) -> Answer:
-    """Saddle-node and period doubling, and whether the orbits there are the ball's.
+@takes(calls.limits)
+def limits(n=1, **impact: Any) -> Answer:
+    """Saddle-node and period doubling, and whether the orbits there are admissible.
 
     Raises
     ------
     NoOrbitError
         If the branch has not both.
     """
-    model = _model(args)
+    of = calls.model_of_limits(n, **impact)
     found = {}
-    for name in ("saddle_node", "period_doubling"):
-        orbit = getattr(model, name)(args.n)
+    for name in calls.Limits._fields:
+        orbit = getattr(of, name)(n)
         if not orbit.exists:
-            what = name.replace("_", " ")
-            branch = f"the branch of {args.n}-T orbits for {model.label}"
+            what, branch = name.replace("_", " "), f"the branch of {n}-T orbits for {of.label}"
             # Without a closed form only what is found is known.
-            closed = args.law is None
+            closed = impact["law"] is None
             raise NoOrbitError(
                 f"{branch} has no {what}" if closed else f"no {what} was found on {branch}"
             )
@@ -145,11 +104,12 @@ def limits(args: argparse.Namespace) -> Answer:
             "contact_duration": float(orbit.contact_duration),
             "is_admissible": bool(orbit.is_admissible()),
         }
-    rigid = 0.0 if args.law is None else rigid_speed_of(model, args.n)
-    return found | _measured(args, model, rigid)
+    # The limits have two impact speeds; a law is described at the restitution model's.
+    return found | _described(of, lambda law: float(restitution_speed(n, LawModel(law))[0]))
 
 
-def error_law(args: argparse.Namespace) -> Answer:
+@takes(calls.orbit, "n", "amplitude", "release", *calls.LOSS)
+def error_law(n=1, **given: Any) -> Answer:
     """K of each quantity: the modulus of its relative error is K/ϖ + O(1/ϖ²).
 
     The restitution model has the contact's own r. ``signed`` has the sign of the
@@ -160,48 +120,63 @@ def error_law(args: argparse.Namespace) -> Answer:
     NoOrbitError
         If Λ lies below the saddle-node of the restitution model.
     """
-    contact = _contact(args)
+    amplitude = given.pop("amplitude")
+    # K is the error at ϖ = 1, continued by its law.
+    contact = _contact(frequency_ratio=1.0, **given)
     zeta, release = contact.damping_ratio, contact.release
-    law = coefficients(args.n, zeta, args.amplitude, release)
+    law = error_laws.coefficients(n, zeta, amplitude, release)
     signed = {str(name): float(k) if math.isfinite(k) else None for name, k in law.items()}
+    second = abs(float(error_laws.permanent_contact_coefficient(zeta, release)))
     return {
         "coefficients": {name: k if k is None else abs(k) for name, k in signed.items()},
         "signed": signed,
-        "second_order": {
-            "permanent_contact": abs(float(permanent_contact_coefficient(zeta, release)))
-        },
-        **_loss(contact),
+        "second_order": {"permanent_contact": second},
+        **_described(contact),
     }
 
 
-def permanent_contact(args: argparse.Namespace) -> Answer:
+def _contact(**given: Any) -> SpringDamper:
+    return calls.model(model="spring-damper", **given).contact  # type: ignore[attr-defined]
+
+
+@takes(calls.model, "release", *calls.LOSS)
+def permanent_contact(*, frequency_ratio: calls.FrequencyRatio, model, **given: Any) -> Answer:
     """Threshold at ϖ, and its minimum over ϖ.
 
     The minimum is null where there is none (ζ ≥ 1/√2, displacement release).
     """
-    contact = _contact(args)
-    zeta, release = contact.damping_ratio, contact.release
-    answer = {
+    if model == "corrected":
+        raise ParameterError(
+            "permanent-contact has no corrected form: there is no impact to correct, and the "
+            "restitution model's Λ = 1 is right to second order in 1/ϖ already"
+        )
+    if model == "restitution":
+        raise ParameterError(
+            "permanent-contact is Λ = 1 for {model} restitution, whatever its r (Eq. 9)"
+        )
+    contact = _contact(frequency_ratio=frequency_ratio, **given)
+    answer: Answer = {
         "threshold": float(SpringDamperModel(contact).permanent_contact_threshold()),
         "minimum": None,
         "at_frequency_ratio": None,
     }
-    if release is Release.FORCE or 2 * zeta * zeta < 1:
-        lowest = permanent_contact_minimum(zeta, release)
+    zeta = contact.damping_ratio
+    if contact.release is Release.FORCE or 2 * zeta * zeta < 1:
+        lowest = permanent_contact_minimum(zeta, contact.release)
         answer["minimum"] = float(lowest.threshold)
         answer["at_frequency_ratio"] = float(lowest.frequency_ratio)
-    return answer | _loss(contact)
+    return answer | _described(contact)
 
 
-def _columns(sequence: Any) -> Answer:
+def _columns(found: ImpactSequence) -> Answer:
     """The recorded impacts of one ball, as lists; null for what does not happen."""
-    there = np.isfinite(sequence.time)
+    there = np.isfinite(found.time)
     columns = {
-        "time": sequence.time,
-        "phase": sequence.phase,
-        "impact_velocity": sequence.impact_velocity,
-        "contact_duration": sequence.contact_duration,
-        "bounce_velocity": sequence.release_velocity,
+        "time": found.time,
+        "phase": found.phase,
+        "impact_velocity": found.impact_velocity,
+        "contact_duration": found.contact_duration,
+        "bounce_velocity": found.release_velocity,
     }
     return {
         name: [value if math.isfinite(value) else None for value in column[there].tolist()]
@@ -209,17 +184,11 @@ def _columns(sequence: Any) -> Answer:
     }
 
 
-def simulate(args: argparse.Namespace) -> Answer:
-    """The sequence of impacts from an initial impact.
-
-    Raises
-    ------
-    ModelError
-        If the ball does not approach the table at the first impact.
-    """
-    velocity = -math.pi if args.velocity is None else args.velocity
-    model = _model(args)
-    sequence = model.simulate(args.amplitude, args.phase, velocity, args.impacts)
-    status = Status(int(sequence.status)).name.lower().replace("_", " ")
-    speed = -float(sequence.relative_velocity[0])
-    return {"status": status} | _measured(args, model, speed) | {"sequence": _columns(sequence)}
+@takes(calls.simulate)
+def simulate(amplitude, phase, velocity, impacts, **impact: Any) -> Answer:
+    """The sequence of impacts from an initial impact."""
+    of = calls.model_of_impact(amplitude, phase, velocity, **impact)
+    found = of.simulate(amplitude, phase, velocity, impacts)
+    status = Status(int(found.status)).name.lower().replace("_", " ")
+    speed = -float(found.relative_velocity[0])
+    return {"status": status} | _described(of, lambda _: speed) | {"sequence": _columns(found)}

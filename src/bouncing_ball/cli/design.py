@@ -4,38 +4,52 @@ import argparse
 import math
 from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
+from bouncing_ball.accuracy.quantities import Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
+from bouncing_ball.calculator import design as calculator
 from bouncing_ball.calculator.design import Design
-from bouncing_ball.calculator.design_call import design
-from bouncing_ball.calculator.judgement import QUANTITIES, percent
-from bouncing_ball.calculator.units import KINDS, shown
+from bouncing_ball.calculator.units import shown
+from bouncing_ball.calculator.verdict import QUANTITIES, percent
 from bouncing_ball.errors import ModelError
+from bouncing_ball.signatures import takes
 
 Answer = dict[str, Any]
+_DRAWINGS = (".pdf", ".png", ".svg")
 
 
-def asked(args: argparse.Namespace) -> Design:
-    """The calculator's answer to what was asked.
-
-    Raises
-    ------
-    ModelError, NoOrbitError
-        As :func:`~bouncing_ball.calculator.design_call.design`.
-    """
-    names = (*KINDS, "n", "release", "quantity")
-    return design(**{name: getattr(args, name) for name in names})
-
-
-def plot(found: Design, path: Path) -> None:
-    """Draw the page to print.
+def drawing(text: str) -> Path:
+    """The file of a drawing, by its name.
 
     Raises
     ------
-    ModelError
-        If the file cannot be written.
+    argparse.ArgumentTypeError
+        If the name ends otherwise.
     """
+    path = Path(text)
+    # Of the text too: a path forgets the slash that makes it a folder's.
+    if path.suffix not in _DRAWINGS or not text.endswith(path.suffix):
+        raise argparse.ArgumentTypeError(f"{text!r} does not end in {' or '.join(_DRAWINGS)}")
+    return path
+
+
+@takes(calculator.design)
+def design(*, plot: Annotated[Path | None, drawing] = None, **given: Any) -> Answer:
+    """The calculator's answer, and the page to print.
+
+    Parameters
+    ----------
+    plot
+        A page to print: .pdf, .png or .svg.
+    """
+    found = calculator.design(**given)
+    if plot is not None:
+        _draw(found, plot)
+    return answer(found)
+
+
+def _draw(found: Design, path: Path) -> None:
     from bouncing_ball.calculator.page_data import page
     from bouncing_ball.figures.design_page import draw
     from bouncing_ball.figures.files import save
@@ -134,16 +148,13 @@ def _family_lines(one: Answer) -> list[str]:
     lines += [_row(f"  {name}", value) for name, value in _orbit_values(one)]
     holds = "error law" if one["law_holds"] else "law, not stated"
     lines.append(_row("  relative error", "restitution", holds, "corrected"))
-    lines += [
-        _row(
-            f"    {words}",
-            _share(one["errors"][name]),
-            _share(one["law_errors"][name]),
-            _share(one["corrected_errors"][name]),
-        )
-        for name, words in QUANTITIES.items()
-    ]
-    return lines
+    of_impacts = [name for name in QUANTITIES if name != Quantity.PERMANENT_CONTACT]
+    return lines + [_error(one, name) for name in of_impacts]
+
+
+def _error(one: Answer, name: str) -> str:
+    errors = (one[key][name] for key in ("errors", "law_errors", "corrected_errors"))
+    return _row(f"    {QUANTITIES[Quantity(name)]}", *map(_share, errors))
 
 
 def lines(found: Answer) -> list[str]:
@@ -167,4 +178,6 @@ def lines(found: Answer) -> list[str]:
     ]
     for one in found["orbits"]:
         shown += _family_lines(one)
-    return shown
+    # That of the permanent contact is the same in all families.
+    head = _row("relative error", "restitution", "error law", "corrected")
+    return [*shown, "", head, _error(found["orbits"][0], Quantity.PERMANENT_CONTACT)]

@@ -1,53 +1,73 @@
 """Entry point of ``bouncing-ball``."""
 
-import argparse
+import inspect
+import sys
 from collections.abc import Callable
+from importlib import import_module
 from typing import Any
 
-from bouncing_ball.cli.arguments import parse
+from bouncing_ball import __version__
+from bouncing_ball.cli.options import Parser, add_options, in_options, positional
 from bouncing_ball.cli.output import fail, flush, prepare, print_lines, to_json
-from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.errors import NoOrbitError, ParameterError
+
+# What each subcommand is for, and the module of its call. A module is imported when its
+# subcommand is used: the list of subcommands needs no numpy.
+_COMMANDS = {
+    "orbit": ("the n-T orbit at an amplitude", "cli.answers"),
+    "limits": ("saddle-node and period doubling of the n-T orbits", "cli.answers"),
+    "error-law": ("error of the restitution model to first order, K/ϖ", "cli.answers"),
+    "permanent-contact": ("the amplitude up to which the ball stays down", "cli.answers"),
+    "simulate": ("a sequence of impacts from any initial impact", "cli.answers"),
+    "design": (
+        "a contact with units: is a restitution coefficient enough, or which contact is",
+        "cli.design",
+    ),
+    "explain": (
+        "where a figure, dataset or table comes from, and the command that makes it again",
+        "provenance.explain",
+    ),
+    "diff": ("whether two folders of artifacts say the same", "cli.diff"),
+}
 
 
-def _lines(answer: dict[str, Any], prefix: str = "") -> list[str]:
-    """A readable table: one line for each value, ten digits."""
-    lines = []
-    for key, value in answer.items():
-        name = f"{prefix}{key.replace('_', ' ')}"
-        if isinstance(value, dict):
-            lines += _lines(value, f"{name}, ")
-        elif key == "multipliers":
-            shown = "   ".join(f"{re:.10g} {im:+.10g}i" for re, im in value)
-            lines.append(f"{name:<40}{shown}")
-        elif isinstance(value, bool):
-            lines.append(f"{name:<40}{'yes' if value else 'no'}")
-        elif isinstance(value, float):
-            lines.append(f"{name:<40}{value:.10g}")
-        elif value is None:
-            lines.append(f"{name:<40}none")
-        else:
-            lines.append(f"{name:<40}{value}")
-    return lines
+def _laws() -> str:
+    """The contact laws, with the force and the parameters of each."""
+    from bouncing_ball.contacts.laws import LAWS
+
+    listed = (
+        f"{law.name} {law.formula} ({', '.join(law.parameter_names()).replace('_', '-')})"
+        for law in LAWS.values()
+    )
+    return f"Laws, with the penetration p and a force over the ball's weight: {'; '.join(listed)}"
 
 
-def _table(rows: dict[str, list]) -> list[str]:
-    """Columns of a sequence, one line for each impact."""
-    head = "".join(f"{name.replace('_', ' '):>24}" for name in rows)
-    body = [
-        "".join(f"{'never' if value is None else format(value, '.12g'):>24}" for value in line)
-        for line in zip(*rows.values(), strict=True)
-    ]
-    return [head, *body]
+def _module(command: str) -> Any:
+    """The module of a subcommand: its call, and ``lines`` for what the call answers."""
+    return import_module(f"bouncing_ball.{_COMMANDS[command][1]}")
 
 
-def _readable(answer: dict[str, Any]) -> list[str]:
-    """The values; all orbits one after another, or a simulation as a table."""
-    nested = ("orbits", "sequence")
-    lines = _lines({key: value for key, value in answer.items() if key not in nested})
-    for index, orbit in enumerate(answer.get("orbits", []), start=1):
-        lines += ["", f"orbit {index}", *_lines(orbit)]
-    sequence = answer.get("sequence")
-    return lines + (_table(sequence) if sequence else [])
+def _call(command: str) -> Callable[..., Any]:
+    return getattr(_module(command), command.replace("-", "_"))
+
+
+def parser(arguments: list[str]) -> Parser:
+    """The parser of all subcommands, with the options of those that are named."""
+    top = Parser(
+        prog="bouncing-ball",
+        description="Periodic orbits of a ball on a vibrating table. All quantities are "
+        "dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g.",
+    )
+    top.add_argument("--version", action="version", version=f"{top.prog} {__version__}")
+    commands = top.add_subparsers(dest="command", parser_class=Parser)
+    for name, (text, _) in _COMMANDS.items():
+        sub = commands.add_parser(name, help=text, description=text)
+        if name in arguments:
+            names = add_options(sub, _call(name))
+            sub.epilog = _laws() if "law" in names else None
+            if "json" not in names:
+                sub.add_argument("--json", action="store_true", help="one JSON object")
+    return top
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -56,61 +76,33 @@ def main(arguments: list[str] | None = None) -> None:
     For ``diff`` see :mod:`bouncing_ball.cli.diff`.
     """
     prepare()
+    arguments = sys.argv[1:] if arguments is None else arguments
     try:
-        _run(parse(arguments))
+        top = parser(arguments)
+        given = vars(top.parse_args(arguments))
+        command = given.pop("command")
+        if command is None:
+            top.error(f"a command is missing, one of {', '.join(_COMMANDS)}")
+        _run(command, given)
     finally:
         flush()
 
 
-def _run(args: argparse.Namespace) -> None:
-    if args.command == "diff":
-        from bouncing_ball.cli import diff
+def _run(command: str, given: dict[str, Any]) -> None:
+    import numpy as np
 
-        diff.run(args)
+    call = _call(command)
+    as_json = "json" not in inspect.signature(call).parameters and given.pop("json")
+    arguments = [given.pop(name) for name in positional(call)]
     try:
-        others = {"explain": _explained, "design": _designed}
-        answer, readable = others.get(args.command, _answered)(args)
+        with np.errstate(all="ignore"):
+            answer = call(*arguments, **given)
     except ValueError as error:
-        if args.json:
-            print_lines([to_json({"error": str(error)})])
-        fail(str(error), status=1 if isinstance(error, NoOrbitError) else 2)
-    print_lines([to_json(answer)] if args.json else readable(answer))
-
-
-Answered = tuple[dict[str, Any], Callable[[dict[str, Any]], list[str]]]
-"""An answer, and the function that makes it readable."""
-
-# Imports where they are needed: --help and a mistyped argument need no numpy.
-
-
-def _answered(args: argparse.Namespace) -> Answered:
-    """What the models say."""
-    import numpy as np
-
-    from bouncing_ball.cli import answers
-
-    with np.errstate(all="ignore"):
-        return getattr(answers, args.command.replace("-", "_"))(args), _readable
-
-
-def _designed(args: argparse.Namespace) -> Answered:
-    """What the calculator says of a contact."""
-    import numpy as np
-
-    from bouncing_ball.cli import design
-
-    with np.errstate(all="ignore"):
-        found = design.asked(args)
-        if args.plot is not None:
-            design.plot(found, args.plot)
-    return design.answer(found), design.lines
-
-
-def _explained(args: argparse.Namespace) -> Answered:
-    """Where an artifact comes from."""
-    from bouncing_ball.record.explain import explain, lines
-
-    return explain(args.file), lines
+        text = in_options(error.text) if isinstance(error, ParameterError) else str(error)
+        if as_json:
+            print_lines([to_json({"error": text})])
+        fail(text, status=1 if isinstance(error, NoOrbitError) else 2)
+    print_lines([to_json(answer)] if as_json else _module(command).lines(answer))
 
 
 if __name__ == "__main__":

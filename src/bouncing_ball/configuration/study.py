@@ -1,20 +1,105 @@
-"""The study that an entry of the stages names.
+"""The studies that the rules name, and what each takes of a run.
 
-A module of its own: jobs need it, and are not run again when an entry is added.
+A study says by its signature what it takes: ``study(parameters, release, continuation)``. Its
+``parameters`` are a section of the configuration, ``figures.fig08``, ``data`` are the datasets
+that its rule names, and each further argument is the setting of the whole run with that name.
 """
 
-from collections.abc import Callable
+import inspect
+from collections.abc import Callable, Mapping
 from importlib import import_module
 from typing import Any
 
+from pydantic import ConfigDict, validate_call
+
+from bouncing_ball.configuration.yaml_file import ConfigurationError
+
+SECTIONS = ("figures", "tables", "extensions", "studies")
+"""Sections of the configuration in which each key is an artifact."""
+
 
 def load(study: str) -> Callable[..., Any]:
-    """The function that an entry names.
+    """The function that a rule names.
+
+    Raises
+    ------
+    ConfigurationError
+        If there is no such module or function.
 
     Examples
     --------
-    >>> load("studies.parameters.grid")({"min": 1.0, "max": 4.0, "samples": 3})
-    array([1., 2., 4.])
+    >>> load("contacts.damping.damping_ratio")(1.0).item()
+    0.0
     """
     module, _, function = study.rpartition(".")
-    return getattr(import_module(f"bouncing_ball.{module}"), function)
+    try:
+        return getattr(import_module(f"bouncing_ball.{module}"), function)
+    except (ModuleNotFoundError, AttributeError) as error:
+        raise ConfigurationError(f"{study}: {error}") from None
+
+
+def typed(study: Callable[..., Any]) -> Callable[..., Any]:
+    """A study that takes its parameters as they stand in the configuration.
+
+    Examples
+    --------
+    >>> sweep = load("studies.frequency_sweeps.apparent_restitution")
+    >>> case = {"restitution": 0.5, "amplitude": 1.5}
+    >>> span = {"min": 10.0, "max": 1000.0, "samples": 3}
+    >>> parameters = {"n": 1, "cases": [case], "frequency_ratio": span}
+    >>> typed(sweep)(parameters, "displacement").frequency_ratio.values.tolist()
+    [10.0, 100.0, 1000.0]
+    """
+    return validate_call(config=ConfigDict(arbitrary_types_allowed=True))(study)
+
+
+def taken(study: str) -> dict[str, Any]:
+    """What a study takes of a run: the type of each of its arguments but the data.
+
+    Examples
+    --------
+    >>> list(taken("studies.orbit_branches.orbit_branches"))
+    ['parameters', 'release', 'continuation']
+    """
+    signature = inspect.signature(load(study)).parameters.items()
+    return {name: each.annotation for name, each in signature if name != "data"}
+
+
+def section(artifact: str, run: Mapping[str, Any]) -> tuple[str, ...]:
+    """Where the parameters of an artifact are in the configuration.
+
+    Raises
+    ------
+    ConfigurationError
+        If they are nowhere.
+
+    Examples
+    --------
+    >>> section("fig02", {"figures": {"fig02": {"n": 1}}})
+    ('figures', 'fig02')
+    """
+    for name in SECTIONS:
+        if artifact in (run.get(name) or {}):
+            return name, artifact
+    raise ConfigurationError(
+        f"{artifact} has no parameters: a key {artifact} in one of {', '.join(SECTIONS)}"
+    )
+
+
+def arguments(study: str, artifact: str, run: Mapping[str, Any]) -> dict[str, Any]:
+    """What a study is given for an artifact, as it stands in the configuration.
+
+    Examples
+    --------
+    >>> run = {"release": "force", "figures": {"fig05": {"n": 1}}}
+    >>> arguments("studies.frequency_sweeps.apparent_restitution", "fig05", run)
+    {'parameters': {'n': 1}, 'release': 'force'}
+    """
+    given = {}
+    for name in taken(study):
+        if name == "parameters":
+            kind, key = section(artifact, run)
+            given[name] = run[kind][key]
+        else:
+            given[name] = run[name]
+    return given

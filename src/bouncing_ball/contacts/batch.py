@@ -89,6 +89,16 @@ class Batch:
             return self._entries_of(np.atleast_1d)
         return self[np.unravel_index(np.arange(self.size), self.shape)]
 
+    def flat(self, shape: tuple[int, ...]) -> Self:
+        """One element for each entry of an array, in a row; a single one is that of all."""
+        if not self.shape:
+            return self
+        return self._entries(shape, np.unravel_index(np.arange(math.prod(shape)), shape))
+
+    def take(self, which: Any) -> Self:
+        """Some elements of a row; a single one is that of all."""
+        return self[which] if self.shape else self
+
     def _entries_of(self, function: Callable[[Any], Any]) -> Self:
         values = {f.name: getattr(self, f.name) for f in fields(self)}
         numbers = {k: v if isinstance(v, Batch | str) else function(v) for k, v in values.items()}

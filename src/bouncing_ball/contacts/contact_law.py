@@ -137,16 +137,6 @@ class ContactLaw(Batch, ABC):
         """The same laws, each for a row of states."""
         return self._entries_of(lambda x: np.asarray(x)[..., np.newaxis] if np.ndim(x) else x)
 
-    def flat(self, shape: tuple[int, ...]) -> Self:
-        """One law for each ball of an array, in a row; a single law is that of all."""
-        if not self.shape:
-            return self
-        return self._entries(shape, np.unravel_index(np.arange(int(np.prod(shape))), shape))
-
-    def take(self, which: Any) -> Self:
-        """The laws of some balls of a row."""
-        return self[which] if self.shape else self
-
 
 def check_positive(value: ArrayLike, name: str) -> None:
     """Raise :class:`ModelError` unless a parameter is finite and positive.

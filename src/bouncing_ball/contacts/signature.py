@@ -36,10 +36,9 @@ weighted by 1 and r: ``[D - (1 + r) t_c] a``. Together ::
 All quantities are dimensionless; all functions broadcast.
 """
 
-import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -103,15 +102,6 @@ class Signature(Batch, ABC):
     @abstractmethod
     def __call__(self, speed: ArrayLike) -> Instant:
         """The signature of impacts with speeds v > 0 at the instant."""
-
-    def flat(self, shape: tuple[int, ...]) -> Self:
-        """One law for each ball of an array, in a row; a single law is that of all."""
-        index = np.unravel_index(np.arange(math.prod(shape)), shape) if shape else (np.newaxis,)
-        return self._entries(shape, index)
-
-    def take(self, which: Any) -> Self:
-        """The laws of some balls of a row."""
-        return self[which] if self.shape else self
 
 
 @dataclass(frozen=True, repr=False)

@@ -332,8 +332,8 @@ def _interpolated(problem, branch, arc, wanted, settings) -> np.ndarray:
     normal = branch.points[left + 1] - branch.points[left]
     normal = normal / np.linalg.norm(normal, axis=1, keepdims=True)
     found = newton(problem, guess, plane(normal, guess), settings)
-    if not found.converged:
+    if not np.all(found.converged):
         raise ContinuationError(
-            f"resampling to {len(wanted)} points failed with residual {found.residual:.1e}"
+            f"resampling to {len(wanted)} points failed with residual {found.residual.max():.1e}"
         )
     return found.point

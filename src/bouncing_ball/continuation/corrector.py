@@ -7,19 +7,23 @@ import numpy as np
 
 from bouncing_ball.continuation.problem import Problem
 
+_TINY = np.finfo(float).tiny
+
 
 class Correction(NamedTuple):
-    """Outcome of a Newton iteration.
+    """Outcome of Newton iterations, one for each guess.
 
-    ``point`` has the shape of the guess; ``residual`` is the largest entry of
-    the extended residual there; ``step`` the last Newton step's norm.
+    ``point`` has the shape of the guesses; ``converged``, ``residual``, the largest entry
+    of the extended residual at the last iteration, and ``step``, the norm of the last
+    Newton step relative to 1 + |y|, have that of its leading axes. ``iterations`` is how
+    many were done until all had converged or failed.
     """
 
     point: np.ndarray
-    converged: bool
+    converged: np.ndarray
     iterations: int
-    residual: float
-    step: float
+    residual: np.ndarray
+    step: np.ndarray
 
 
 class NewtonSettings(NamedTuple):
@@ -27,10 +31,12 @@ class NewtonSettings(NamedTuple):
 
     ``tolerance`` bounds the norm of the last step, relative to 1 + |y|. As the
     convergence is quadratic, the point is then as exact as F is computed.
+    No step is longer than ``longest``.
     """
 
     tolerance: float = 1e-12
     max_iterations: int = 8
+    longest: float = np.inf
 
 
 Condition = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
@@ -47,7 +53,7 @@ def newton(
     problem : Problem
         N equations.
     guess : ndarray, shape (..., N + 1)
-        Many guesses are iterated together, until all have converged.
+        Many guesses are iterated together; each rests when it has converged.
     condition : Condition
         The equation number N + 1, for instance a plane or a test function.
     settings : NewtonSettings
@@ -55,28 +61,42 @@ def newton(
     Returns
     -------
     Correction
-        ``converged`` is false if the iteration ran out, met a singular matrix
-        or left the domain of F.
+        Not converged is what ran out of iterations, met a singular matrix or left
+        the domain of F.
     """
     y = np.array(guess, dtype=float)
-    size = residual = np.inf
-    for iteration in range(1, settings.max_iterations + 1):
+    shape = y.shape[:-1]
+    converged, going = np.zeros(shape, dtype=bool), np.ones(shape, dtype=bool)
+    residual, size = np.full(shape, np.inf), np.full(shape, np.inf)
+    iteration = 0
+    while iteration < settings.max_iterations and np.any(going):
+        iteration += 1
         value, gradient = condition(y)
         right = np.concatenate([problem.residual(y), value[..., np.newaxis]], axis=-1)
         matrix = np.concatenate([problem.jacobian(y), gradient[..., np.newaxis, :]], axis=-2)
-        residual = float(np.max(np.abs(right)))
-        if not (np.isfinite(residual) and np.all(np.isfinite(matrix))):
-            return Correction(y, False, iteration, residual, size)
-        try:
-            change = np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
-        except np.linalg.LinAlgError:
-            return Correction(y, False, iteration, residual, size)
-        y = y - change
-        relative = np.linalg.norm(change, axis=-1) / (1 + np.linalg.norm(y, axis=-1))
-        size = float(np.max(relative))
-        if size <= settings.tolerance:
-            return Correction(y, True, iteration, residual, size)
-    return Correction(y, False, settings.max_iterations, residual, size)
+        residual = np.where(going, np.max(np.abs(right), axis=-1), residual)
+        going &= np.isfinite(residual) & np.all(np.isfinite(matrix), axis=(-2, -1))
+        change = _solve(np.where(going[..., np.newaxis, np.newaxis], matrix, np.nan), right)
+        length = np.linalg.norm(change, axis=-1)
+        change = (
+            change * np.minimum(1.0, settings.longest / np.maximum(length, _TINY))[..., np.newaxis]
+        )
+        going &= np.isfinite(length)
+        y = np.where(going[..., np.newaxis], y - change, y)
+        size = np.where(going, length / (1 + np.linalg.norm(y, axis=-1)), size)
+        converged |= going & (size <= settings.tolerance)
+        going &= ~converged
+    return Correction(y, converged, iteration, residual, size)
+
+
+def _solve(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Solutions of linear systems; NaN for a singular or unknown matrix."""
+    try:
+        return np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
+    except np.linalg.LinAlgError:
+        singular = np.linalg.det(matrix) == 0
+        matrix = np.where(singular[..., np.newaxis, np.newaxis], np.nan, matrix)
+        return np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
 
 
 def plane(normal: np.ndarray, through: np.ndarray) -> Condition:

@@ -113,7 +113,7 @@ def locate(
         found = newton(problem, left + share * chord, vanishing(event.function), patient)
         progress = (found.point - left) @ chord / (chord @ chord)
         if found.converged and -1e-6 <= progress <= 1 + 1e-6:
-            return SpecialPoint(event.name, found.point, found.residual)
+            return SpecialPoint(event.name, found.point, float(found.residual))
         middle = left + chord / 2
         halved = newton(problem, middle, plane(chord / np.linalg.norm(chord), middle), settings)
         if not halved.converged:

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.restitution_law import RestitutionLaw
 from bouncing_ball.errors import ModelError
 from bouncing_ball.motion.angles import reduce_angle, table
 from bouncing_ball.motion.ensembles import BLOCK, flatten, pick
@@ -75,6 +76,8 @@ class _Instants(NamedTuple):
 
     restitution: np.ndarray
     amplitude: np.ndarray
+    law: RestitutionLaw | None = None
+    """Gives r of every impact but the first, where it depends on the speed."""
     block: int = BLOCK
 
     @property
@@ -82,7 +85,14 @@ class _Instants(NamedTuple):
         return {"settling": lambda _, rebound: rebound.settling}
 
     def take(self, which: Any) -> "_Instants":
-        return _Instants(pick(self.restitution, which), pick(self.amplitude, which))
+        law = None if self.law is None else self.law.take(which)
+        return _Instants(pick(self.restitution, which), pick(self.amplitude, which), law)
+
+    def at(self, speed: np.ndarray) -> np.ndarray:
+        """r of impacts with speeds v ≥ 0."""
+        if self.law is None:
+            return self.restitution
+        return self.law.restitution(np.maximum(speed, np.finfo(float).tiny))
 
     def start(self, phase: np.ndarray, velocity: np.ndarray) -> _Impact:
         """Just after an impact."""
@@ -94,7 +104,7 @@ class _Instants(NamedTuple):
         none = np.zeros_like(phase)
         gravity, down = 1 - y, pressed(x, y)
         # Where the ball is not pressed, or r = 1, T₀ is not used.
-        loss = gravity * (1 - self.restitution)
+        loss = gravity * (1 - self.at(-impact.velocity))
         usable = down & (loss > 0)
         total = np.where(usable, 2 * velocity, 0.0) / np.where(usable, loss, 1.0)
         limit = np.maximum(_CHATTER * gravity / np.maximum(amplitude, 1.0), _INSTANT)
@@ -121,7 +131,7 @@ class _Instants(NamedTuple):
         )
         landing = land(flight, np.maximum(rebound.flown, flight.sure()))
         phase, before = reduce_angle(rebound.phase + landing.time), -landing.rate
-        impact = _Impact(phase, np.zeros_like(phase), before, -self.restitution * before)
+        impact = _Impact(phase, np.zeros_like(phase), before, -self.at(landing.rate) * before)
         return impact, rebound.duration + landing.time
 
 
@@ -147,6 +157,7 @@ def simulate(
     phase: ArrayLike,
     velocity: ArrayLike,
     impacts: int,
+    law: RestitutionLaw | None = None,
 ) -> ImpactSequence:
     """Follow balls through a number of impacts, the one just before included.
 
@@ -160,6 +171,8 @@ def simulate(
     impacts : int
         Rows of the result, for every ball that does not come to rest for ever.
         The bounces summed up before sticking are not rows.
+    law : RestitutionLaw, optional
+        Gives r of the impacts after the first, which has ``restitution``.
 
     Raises
     ------
@@ -172,6 +185,7 @@ def simulate(
     [0.0, 8.0, 12.0]
     """
     balls, state, shape = _prepare(restitution, amplitude, phase, velocity)
+    balls = balls._replace(law=None if law is None else law.flat(shape))
     return follow(balls, state, None, amplitude, shape, impacts)
 
 

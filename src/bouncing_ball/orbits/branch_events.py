@@ -1,4 +1,4 @@
-"""Events on a branch of n-T orbits: of any model, and of a contact of any law."""
+"""Events on a branch of n-T orbits of any model."""
 
 from collections.abc import Callable
 
@@ -11,27 +11,19 @@ from bouncing_ball.orbits.stability import Bifurcation
 _MARGIN = 1e-4
 
 
-def bifurcations(trace_and_determinant: Callable) -> tuple[Event, ...]:
-    """Saddle-node and period doubling, from the monodromy's trace and determinant at y."""
+def bifurcations(orbit: Callable) -> tuple[Event, ...]:
+    """Saddle-node and period doubling of the orbits at points y."""
 
     def event(kind: Bifurcation) -> Event:
-        return Event(kind, lambda y: kind.test(*trace_and_determinant(y)))
+        return Event(kind, lambda y: kind.test(*orbit(y).trace_and_determinant()))
 
     return tuple(event(kind) for kind in Bifurcation)
 
 
-def branch_events(orbit: Callable, trace_and_determinant: Callable) -> tuple[Event, ...]:
-    """Bifurcations, and the ends of the domain in which an orbit makes sense.
-
-    Parameters
-    ----------
-    orbit : callable
-        The orbit at a point y.
-    trace_and_determinant : callable
-        Those of the monodromy of an orbit.
-    """
+def branch_events(orbit: Callable) -> tuple[Event, ...]:
+    """Bifurcations, and the ends of the domain in which the orbits at points y make sense."""
     return (
-        *bifurcations(lambda y: trace_and_determinant(orbit(y))),
+        *bifurcations(orbit),
         Event(
             "contact lost",
             lambda y: -orbit(y).relative_impact_velocity - _MARGIN,

@@ -1,24 +1,50 @@
-"""The three calls that most people need: an orbit, its limits, a simulation.
+"""The calls that most people need: a model, an orbit, its limits, a simulation.
 
 Each takes the parameters of a model: r alone is the restitution model, r and ϖ
-are a spring-damper contact with the damping of r by Eq. 16.
+are a spring-damper contact with the damping of r by Eq. 16, a law is a contact of that law.
+The command line has the same calls, with the options from their signatures.
 """
 
-from __future__ import annotations
-
 import math
-from typing import NamedTuple
+from collections.abc import Callable, Mapping
+from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.contact_law import ContactLaw
+from bouncing_ball.contacts.law_choice import law_named, law_of_impact
+from bouncing_ball.contacts.law_signature import LawSignature
+from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.errors import ModelError
+from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError
 from bouncing_ball.motion.sequence import ImpactSequence
-from bouncing_ball.orbits.model import ImpactModel, Side
+from bouncing_ball.orbits.corrected_model import CorrectedModel
+from bouncing_ball.orbits.law_model import LawModel, law_at_orbit
+from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.restitution_orbit import rigid_speed
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.orbits.stability import Side
+from bouncing_ball.signatures import Range, takes
+
+# Of frequency ratio and amplitude: beyond, their squares leave no digits.
+FrequencyRatio = Annotated[Any, Range(1e-8, 1e8, "[]")]
+Amplitude = Annotated[Any, Range(0, 1e8, "(]")]
+Restitution = Annotated[Any, Range(0, 1, "(]")]
+DampingRatio = Annotated[Any, Range(0, 1, "[)")]
+Positive = Annotated[Any, Range(0)]
+Finite = Annotated[Any, Range()]
+Index = Annotated[int, Range(1, 1000, "[]")]
+# One impact takes a third of a millisecond of a processor: half a minute.
+Impacts = Annotated[int, Range(1, 100_000, "[]")]
+Rule = Literal["displacement", "force"]
+
+LOSS = ("restitution", "damping_ratio", "measured_restitution")
+"""The parameters that say how much an impact loses; one of them is needed."""
+
+LawAt = Callable[[type[ContactLaw], float, float], ContactLaw]
+"""The law of a kind whose free impact has r and D at the speed that a call is about."""
 
 
 class Limits(NamedTuple):
@@ -32,60 +58,220 @@ class Limits(NamedTuple):
 
 
 def model(
-    restitution: float | np.ndarray,
-    frequency_ratio: ArrayLike | None = None,
-    release: str = "displacement",
+    restitution: Restitution | None = None,
+    frequency_ratio: FrequencyRatio | None = None,
+    release: Rule | None = None,
+    *,
+    damping_ratio: DampingRatio | None = None,
+    measured_restitution: Restitution | None = None,
+    model: Literal["restitution", "spring-damper", "corrected"] | None = None,
+    law: str | None = None,
+    parameters: Mapping[str, float] | None = None,
+    duration: Positive | None = None,
+    speed: Positive | None = None,
 ) -> ImpactModel:
     """The model with these parameters.
 
     Parameters
     ----------
-    restitution : array_like
-        Restitution coefficient r in (0, 1].
+    restitution : array_like, optional
+        Restitution coefficient r in (0, 1]; of a contact it gives the damping by Eq. 16.
     frequency_ratio : array_like, optional
-        ϖ of a spring-damper contact; without it an impact is an instant.
-    release : str
-        What ends a contact: "displacement", as in the paper, or "force".
+        Frequency ratio ϖ of a spring-damper contact; without it an impact is an instant.
+    release : str, optional
+        What ends a contact: "displacement", as in the paper and by default, or "force".
+    damping_ratio : array_like, optional
+        Damping ratio ζ in [0, 1) of the contact, in place of the restitution.
+    measured_restitution : array_like, optional
+        Restitution coefficient that a free impact really has, in place of the restitution,
+        which is that of the displacement release: the force release has a higher one.
+    model : str, optional
+        "restitution", "spring-damper" or "corrected"; by default a spring-damper if ϖ is
+        given, and else a restitution coefficient.
+    law : str, optional
+        Name of a contact law, in place of the spring-damper.
+    parameters : mapping, optional
+        The law's parameters by name, such as stiffness=1000.
+    duration : float, optional
+        In place of the law's parameters, with the restitution: duration D of a free impact.
+    speed : float, optional
+        Impact speed of that free impact. By default it is that of the orbit; for limits that
+        of the restitution model, 2πn/(1 + r); for a simulation that of the first impact.
 
     Raises
     ------
     ModelError
-        If a parameter is out of range, or a release is given and no contact.
+        If a parameter is missing, out of range or contradicts another.
 
     Examples
     --------
     >>> model(0.85)
     RestitutionModel(restitution=0.85)
     """
-    if frequency_ratio is not None:
-        return SpringDamperModel(
-            SpringDamper.from_restitution(restitution, frequency_ratio, release)
+    given = {name: value for name, value in locals().items() if value is not None}
+    return _model(given, None)
+
+
+def _model(given: Mapping[str, Any], law_at: LawAt | None) -> ImpactModel:
+    """The model of the parameters that are not None."""
+    given = {name: value for name, value in given.items() if value is not None}
+    kind, losses = given.get("model"), [name for name in LOSS if name in given]
+    if len(losses) > 1:
+        raise ParameterError(f"argument {{{losses[1]}}}: not allowed with argument {{{losses[0]}}}")
+    if "law" in given:
+        law = _law(given, law_at)
+        return CorrectedModel(LawSignature(law)) if kind == "corrected" else LawModel(law)
+    for name in ("parameters", "duration", "speed"):
+        if name in given:
+            raise ParameterError(f"{{{name}}} needs {{law}}")
+    if not losses:
+        names = " ".join(f"{{{name}}}" for name in LOSS)
+        raise ParameterError(f"one of the arguments {names} is required")
+    if kind is None:
+        kind = "spring-damper" if "frequency_ratio" in given else "restitution"
+    if kind != "restitution":
+        if "frequency_ratio" not in given:
+            raise ParameterError(f"{{model}} {kind} needs {{frequency_ratio}}")
+        return _contact_model(kind, given, losses[0])
+    if losses[0] == "damping_ratio":
+        raise ParameterError(
+            "{damping_ratio} needs {frequency_ratio}; {model} restitution takes {restitution}"
         )
-    if release != "displacement":
-        raise ModelError("a release needs a contact: give its frequency ratio ϖ as well")
-    return RestitutionModel(restitution)
+    for name in ("frequency_ratio", "release"):
+        if name in given:
+            text = "has no meaning for {model} restitution, which has no contact"
+            raise ParameterError(f"{{{name}}} {text}")
+    return RestitutionModel(given[losses[0]])
 
 
+def _contact_model(kind: str, given: Mapping[str, Any], loss: str) -> ImpactModel:
+    ratio, rule = given["frequency_ratio"], Release.of(given.get("release", Release.DISPLACEMENT))
+    if loss == "damping_ratio":
+        contact = SpringDamper(ratio, given[loss], rule)
+    else:
+        measured = loss == "measured_restitution"
+        contact = SpringDamper.from_restitution(given[loss], ratio, rule, measured=measured)
+    if kind == "corrected":
+        return CorrectedModel.of_contact(contact)
+    return SpringDamperModel(contact)
+
+
+def _law(given: Mapping[str, Any], law_at: LawAt | None) -> ContactLaw:
+    """The contact law, by its parameters or by its free impact."""
+    name = given["law"]
+    if given.get("model") in ("restitution", "spring-damper"):
+        text = "has no {law}: corrected, or none, for the law itself"
+        raise ParameterError(f"{{model}} {given['model']} {text}")
+    for other in ("frequency_ratio", "damping_ratio", "measured_restitution"):
+        if other in given:
+            text = "{parameters}, or {restitution} and {duration}"
+            raise ParameterError(f"{{{other}}} does not go with {{law}} {name}: {text}")
+    kind = law_named(name)
+    needs = ", ".join(
+        f"{{parameters}} {x.replace('_', '-')}=NUMBER" for x in kind.parameter_names()
+    )
+    if "parameters" in given:
+        for other in ("restitution", "duration", "speed"):
+            if other in given:
+                text = f"does not go with {{parameters}}: {needs} are all of {name}"
+                raise ParameterError(f"{{{other}}} {text}")
+        return _law_of_parameters(kind, given["parameters"], given.get("release"))
+    if "restitution" not in given or "duration" not in given:
+        raise ParameterError(f"{{law}} {name} needs {needs}, or {{restitution}} and {{duration}}")
+    if "release" in given:
+        raise ParameterError("{release} goes with {law} linear and {parameters} only")
+    r, duration = given["restitution"], given["duration"]
+    if "speed" in given:
+        return law_of_impact(kind, r, duration, given["speed"])
+    if law_at is None:
+        raise ParameterError("{duration} needs {speed}")
+    return law_at(kind, r, duration)
+
+
+def _law_of_parameters(
+    kind: type[ContactLaw], parameters: Mapping[str, float], release: str | None
+) -> ContactLaw:
+    named = {name.replace("-", "_"): value for name, value in parameters.items()}
+    known = kind.parameter_names()
+    for name in named:
+        if name not in known:
+            raise ModelError(
+                f"unknown parameter {name!r} of {kind.name}: its parameters are {', '.join(known)}"
+            )
+    for name in known:
+        if name not in named:
+            raise ParameterError(f"{kind.name} needs {{parameters}} {name}=NUMBER as well")
+    if release is not None and not kind.chooses_release():
+        raise ParameterError(
+            f"the release is part of {kind.name}: {{release}} is for the linear law"
+        )
+    rule: Any = {} if release is None else {"release": Release.of(release)}
+    return kind(**named, **rule)
+
+
+def model_of_orbit(n: int, amplitude: float, side: str = "stable", **impact: Any) -> ImpactModel:
+    """The model; a law that is given by r and D has them at the impact speed of this orbit."""
+    own = Side.UNSTABLE if side == "unstable" else Side.STABLE
+    return _model(impact, lambda kind, r, d: law_at_orbit(kind, r, d, n, amplitude, own))
+
+
+def chosen_orbit(
+    of: ImpactModel, n: int, amplitude: float, side: str = "stable", index: int | None = None
+) -> Orbit:
+    """The orbit of a model on a side, or all of its orbits at Λ, or one of all by its number.
+
+    Raises
+    ------
+    NoOrbitError
+        If there is none, with the reason.
+    """
+    if side != "all" and index is None:
+        return of.require_orbit(n, amplitude, Side.of(side))
+    if side == "unstable" or (side == "all" and index is not None):
+        raise ParameterError("argument {index}: not allowed with argument {side}")
+    found = of.orbits(n, amplitude)
+    if not found.size:
+        raise NoOrbitError(f"no {n}-T orbit at Λ = {amplitude:g} for {of.label}")
+    if index is None:
+        return found
+    if index > found.size:
+        raise NoOrbitError(
+            f"no orbit {index}: {of.label} has {found.size} {n}-T orbits at Λ = {amplitude:g}"
+        )
+    return found[index - 1]
+
+
+@takes(model)
 def orbit(
-    n: int,
-    amplitude: float,
+    n: Index,
+    amplitude: Amplitude,
     *,
-    restitution: float,
-    frequency_ratio: float | None = None,
-    release: str = "displacement",
-    side: str = "stable",
+    side: Literal["stable", "unstable", "all"] = "stable",
+    index: Index | None = None,
+    **impact: Any,
 ) -> Orbit:
     """The n-T orbit at the excitation amplitude Λ.
 
-    ``side`` is the side of the saddle-node: the one that is stable next to it,
-    or the "unstable" one. For other parameters see :func:`model`.
+    Parameters
+    ----------
+    n : int
+        Index n of the family.
+    amplitude : float
+        Excitation amplitude Λ > 0.
+    side : str
+        Side of the saddle-node: "stable", the one that is stable next to it, or "unstable".
+        "all" is every orbit at this amplitude, in order of contact duration.
+    index : int, optional
+        The number of one of all orbits, from 1.
+    impact
+        The parameters of :func:`model`.
 
     Raises
     ------
     NoOrbitError
         If there is none, with the reason.
     ModelError
-        If a parameter is out of range.
+        If a parameter is missing, out of range or contradicts another.
 
     Examples
     --------
@@ -101,17 +287,29 @@ def orbit(
       apparent_restitution  0.851132
       max_height            5.41098
     """
-    return model(restitution, frequency_ratio, release).require_orbit(n, amplitude, Side.of(side))
+    return chosen_orbit(model_of_orbit(n, amplitude, side, **impact), n, amplitude, side, index)
 
 
-def limits(
-    n: int,
-    *,
-    restitution: float,
-    frequency_ratio: float | None = None,
-    release: str = "displacement",
-) -> Limits:
-    """Saddle-node and period doubling of the n-T orbits.
+def model_of_limits(n: int, **impact: Any) -> ImpactModel:
+    """The model; a law that is given by r and D has them at the restitution model's speed."""
+    return _model(impact, lambda kind, r, d: law_of_impact(kind, r, d, rigid_speed(n, r)))
+
+
+@takes(model)
+def limits(n: Index, **impact: Any) -> Limits:
+    """Saddle-node and period doubling of the n-T orbits; NaN where there is none.
+
+    Parameters
+    ----------
+    n : int
+        Index n of the family.
+    impact
+        The parameters of :func:`model`.
+
+    Raises
+    ------
+    ModelError
+        If a parameter is missing, out of range or contradicts another.
 
     Examples
     --------
@@ -121,29 +319,46 @@ def limits(
     >>> str(found).splitlines()[0]
     'saddle-node: RestitutionOrbit'
     """
-    of = model(restitution, frequency_ratio, release)
+    of = model_of_limits(n, **impact)
     return Limits(of.saddle_node(n), of.period_doubling(n))
 
 
+def model_of_impact(
+    amplitude: float, phase: float = 0.0, velocity: float = -math.pi, **impact: Any
+) -> ImpactModel:
+    """The model; a law that is given by r and D has them at the speed of this impact."""
+    speed = amplitude * np.cos(phase) - velocity
+    return _model(impact, lambda kind, r, d: law_of_impact(kind, r, d, speed))
+
+
+@takes(model)
 def simulate(
-    amplitude: float,
+    amplitude: Amplitude,
     *,
-    restitution: float,
-    frequency_ratio: float | None = None,
-    release: str = "displacement",
-    phase: ArrayLike = 0.0,
-    velocity: ArrayLike = -math.pi,
-    impacts: int = 100,
+    phase: Finite = 0.0,
+    velocity: Finite = -math.pi,
+    impacts: Impacts = 100,
+    **impact: Any,
 ) -> ImpactSequence:
     """Impacts in order, from a first one at a phase of the table.
 
-    ``velocity`` is that of the ball before the first impact. Arrays follow
-    many balls at once.
+    Parameters
+    ----------
+    amplitude : array_like
+        Excitation amplitude Λ; arrays follow many balls at once.
+    phase : array_like
+        Phase of the table at the first impact.
+    velocity : array_like
+        Absolute velocity of the ball before the first impact.
+    impacts : int
+        Number of impacts.
+    impact
+        The parameters of :func:`model`.
 
     Raises
     ------
     ModelError
-        If a parameter is out of range.
+        If a parameter is missing, out of range or contradicts another.
 
     Examples
     --------
@@ -152,5 +367,5 @@ def simulate(
     """
     if not isinstance(impacts, int) or impacts < 1:
         raise ModelError(f"number of impacts {impacts} is not a positive integer")
-    of = model(restitution, frequency_ratio, release)
+    of = model_of_impact(amplitude, phase, velocity, **impact)
     return of.simulate(amplitude, phase, velocity, impacts)

@@ -29,10 +29,9 @@ period doubling::
 A law whose signature depends on the speed has the curve ``nπ - X = r(v) v + σ(v) a`` in
 place of the line, and at each of its points a tangent of the same form
 (:meth:`~bouncing_ball.contacts.signature.Instant.tangent`): with b in place of r and e
-in place of t_c, and (b - r) v added to the line's right side. The linearised cycle
-is that of the tangent, so that trace and determinant are as above, and so are the
-conditions at the saddle-node and at the period doubling. The points themselves come
-from a few rounds of the closed form on the tangent at the last one.
+in place of t_c. The linearised cycle is that of the tangent, so that trace and
+determinant are as above. Its points have no closed form; the one for the signature at the
+restitution model's speed is where searches start, of this model and of any other.
 
 All quantities are dimensionless; all functions broadcast.
 """
@@ -43,27 +42,24 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.signature import Instant
 
 
-def _level(
-    n: ArrayLike, instant: Instant, rest: ArrayLike
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _level(n: ArrayLike, instant: Instant) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The right side nπ(1 - r) - σ, R and χ."""
     r, load = np.asarray(instant.restitution), np.asarray(instant.load)
-    side = np.asarray(n) * np.pi * (1 - r) - load + rest
+    side = np.asarray(n) * np.pi * (1 - r) - load
     return side, np.hypot(1 + r, load), np.arctan2(load, 1 + r)
 
 
-def saddle_node(n: ArrayLike, instant: Instant, rest: ArrayLike = 0.0) -> np.ndarray:
+def saddle_node(n: ArrayLike, instant: Instant) -> np.ndarray:
     """Λ at which the n-T orbits appear, (nπ(1 - r) - σ)/R.
 
-    ``rest`` is what a tangent adds to the right side. NaN where σ is so large that the
-    line lies on the other side of Λ = 0.
+    NaN where σ is so large that the line lies on the other side of Λ = 0.
 
     Examples
     --------
     >>> float(saddle_node(1, Instant(0.0, 1.0, 0.0, 0.0)))
     0.0
     """
-    side, radius, _ = _level(n, instant, rest)
+    side, radius, _ = _level(n, instant)
     return np.where(side >= 0, side, np.nan) / radius
 
 
@@ -83,7 +79,6 @@ def instant_phase(
     instant: Instant,
     amplitude: ArrayLike,
     stable_side: bool = True,
-    rest: ArrayLike = 0.0,
 ) -> np.ndarray:
     """Phase ψ of the instants on a side of the saddle-node; NaN below it.
 
@@ -92,7 +87,7 @@ def instant_phase(
     >>> float(instant_phase(1, Instant(0.0, 1.0, 0.0, 0.0), 1.0)) == np.pi / 2
     True
     """
-    side, radius, turned = _level(n, instant, rest)
+    side, radius, turned = _level(n, instant)
     across = radius * np.asarray(amplitude, dtype=float)
     there = across >= np.abs(side)
     lift = np.sqrt(np.where(there, (across - side) * (across + side), np.nan))
@@ -125,9 +120,7 @@ def trace_and_determinant(
     return trace, (rest * r - delay - delay * by_phase) / speed - r
 
 
-def period_doubling(
-    n: ArrayLike, instant: Instant, rest: ArrayLike = 0.0
-) -> tuple[np.ndarray, np.ndarray]:
+def period_doubling(n: ArrayLike, instant: Instant) -> tuple[np.ndarray, np.ndarray]:
     """Λ and ψ of the period doubling; NaN where there is none on the stable side.
 
     Examples
@@ -139,7 +132,7 @@ def period_doubling(
     delay, r, load = (np.asarray(x, dtype=float) for x in instant[:3])
     half = np.asarray(n) * np.pi
     lever = half - delay
-    a, b, s = 1 + r, -load, half * (1 - r) - load + rest
+    a, b, s = 1 + r, -load, half * (1 - r) - load
     c = lever * load - (1 - r)
     d = lever * (1 + r) - (1 - r) * delay
     t = half * (1 + r) - 2 * delay
@@ -151,7 +144,7 @@ def period_doubling(
 
 
 def nearest(
-    n: ArrayLike, instant: Instant, amplitude: ArrayLike, phase: ArrayLike, rest: ArrayLike = 0.0
+    n: ArrayLike, instant: Instant, amplitude: ArrayLike, phase: ArrayLike
 ) -> tuple[np.ndarray, np.ndarray]:
     """Λ and ψ of the point of the line that is nearest to (Λ cos ψ, Λ sin ψ).
 
@@ -161,7 +154,7 @@ def nearest(
     >>> round(float(amplitude), 12), float(phase) == np.pi / 2
     (1.0, True)
     """
-    side, radius, _ = _level(n, instant, rest)
+    side, radius, _ = _level(n, instant)
     x, y = np.asarray(amplitude) * np.cos(phase), np.asarray(amplitude) * np.sin(phase)
     a, b = (1 + np.asarray(instant.restitution)) / radius, -np.asarray(instant.load) / radius
     off = a * x + b * y - side / radius

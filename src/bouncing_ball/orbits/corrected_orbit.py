@@ -41,7 +41,10 @@ class CorrectedOrbit(Orbit):
         launch = np.asarray(n) * np.pi
         hit = impact(law, amplitude, phase, -launch)
         delay, duration = hit.instant.delay, hit.instant.duration
-        return cls.of(n, law, amplitude, hit.phase - delay, duration, delay - launch)
+        found = cls.of(n, law, amplitude, hit.phase - delay, duration, delay - launch)
+        # Known already: nobody needs to find it again.
+        vars(found)["hit"] = hit
+        return found
 
     @cached_property
     def hit(self) -> Hit:
@@ -80,26 +83,6 @@ class CorrectedOrbit(Orbit):
         start = self.bounce_velocity + self.after
         level = start - np.asarray(self.n) * np.pi
         return np.stack(np.broadcast_arrays(self.hit.velocity - start, level), axis=-1)
-
-    def contact_jacobian(self) -> np.ndarray:
-        """Jacobian of (τ_b, δ_b, δ′_b) in (τ, δ′) at the start of contact."""
-        hit, lam, end = self.hit, self.amplitude, self.release_phase
-        law, y = hit.instant, self.amplitude * np.sin(hit.phase)
-        by_speed = law.restitution + law.d_restitution * hit.speed + law.d_load * (1 - y)
-        x = lam * np.cos(hit.phase)
-        columns = []
-        for d_psi, d_p in ((1.0, 0.0), (0.0, 1.0)):
-            d_speed = -y * d_psi - d_p
-            d_rest = -law.d_delay * d_speed
-            d_after = by_speed * d_speed - (y + law.load * x) * d_psi
-            d_height = x * d_psi - (law.delay + law.d_delay * hit.speed) * d_speed
-            d_height = d_height + self.after * d_after + self.bounce_velocity * d_rest
-            moved = d_psi + d_rest
-            gap = d_height - lam * np.cos(end) * moved
-            rate = d_after - d_rest + lam * np.sin(end) * moved
-            columns.append(np.stack(np.broadcast_arrays(0 * gap, gap, rate), axis=-1))
-        back = np.linalg.inv(start_jacobian(lam, hit))
-        return np.stack(columns, axis=-1) @ back
 
     def monodromy(self) -> np.ndarray:
         """Jacobian of the return map (φ, δ′) → (φ₁, δ′₁), shape (..., 2, 2).

@@ -44,7 +44,8 @@ class CorrectedSystem:
         arrival = after - 2 * np.pi * self.n
         instant = impact(self.law, amplitude, psi, arrival).instant
         start, phase = arrival + instant.delay, psi - instant.delay
-        return CorrectedOrbit(self.n, self.law, amplitude, phase, instant.duration, start)
+        duration = instant.duration + 0 * psi
+        return CorrectedOrbit(self.n, self.law, amplitude, phase, duration, start)
 
     def point(self, orbit: CorrectedOrbit) -> np.ndarray:
         """y of given orbits."""
@@ -71,4 +72,4 @@ class CorrectedSystem:
 
     def events(self) -> tuple[Event, ...]:
         """Saddle-node and period doubling."""
-        return bifurcations(lambda y: self.orbit(y).trace_and_determinant())
+        return bifurcations(self.orbit)

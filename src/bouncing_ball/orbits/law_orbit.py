@@ -106,9 +106,9 @@ class LawOrbit(Orbit):
         return -self.law.grip(*self._in_contact(time))
 
     def contact_jacobian(self) -> np.ndarray:
-        """Jacobian of (τ_b, δ_b, δ′_b) in (τ, δ′) at the impact, shape (..., 3, 2)."""
-        sign = np.array([[1.0, -1.0], [-1.0, 1.0], [-1.0, 1.0]])
-        return self.contact.jacobian[..., :2] * sign
+        """Jacobian of (τ_b, δ_b, δ′_b) in (τ, δ′, Λ) at the impact, shape (..., 3, 3)."""
+        sign = np.array([[1.0, -1.0, 1.0], [-1.0, 1.0, -1.0], [-1.0, 1.0, -1.0]])
+        return self.contact.jacobian[..., :3] * sign
 
     def determinant(self) -> np.ndarray:
         """exp(-∫ ∂f/∂p′ dt) over the contact: the flight keeps areas."""

@@ -26,32 +26,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.batch import Batch
+from bouncing_ball.contacts.signature import Instant
 from bouncing_ball.continuation.events import Event
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence
+from bouncing_ball.orbits import continued
+from bouncing_ball.orbits.contact_system import ContactSystem
 from bouncing_ball.orbits.orbit import Orbit
-
-
-class Side(StrEnum):
-    """Side of the saddle-node on which an orbit lies."""
-
-    STABLE = "stable"
-    """The side that is stable next to the fold: the shorter contact."""
-    UNSTABLE = "unstable"
-
-    @classmethod
-    def of(cls, side: str) -> Side:
-        """The side of a name; ModelError for another.
-
-        Examples
-        --------
-        >>> Side.of("stable")
-        <Side.STABLE: 'stable'>
-        """
-        try:
-            return cls(side)
-        except ValueError:
-            raise ModelError(f"unknown side {side!r}: one of {', '.join(cls)}") from None
+from bouncing_ball.orbits.stability import Bifurcation, Side
 
 
 class Route(StrEnum):
@@ -87,7 +69,7 @@ class System(Protocol):
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """Exact Jacobian of the residual, shape (..., N, N + 1)."""
 
-    def orbit(self, y: np.ndarray) -> Orbit:
+    def orbit(self, y: np.ndarray) -> Any:
         """The orbits at points y, with all their observables."""
 
     def point(self, orbit: Any) -> np.ndarray:
@@ -98,13 +80,16 @@ class System(Protocol):
 
 
 class ImpactModel(Batch, ABC):
-    """A law of the impact and its n-T orbits. Frozen dataclasses of arrays.
+    """A law of the impact and its n-T orbits: a frozen dataclass with one field, the law.
 
-    ``name`` is what users call it; ``routes`` are the ways to its orbits.
+    ``name`` is what users call it; ``routes`` are the ways to its orbits. A model says what
+    the impact is to the outside (:meth:`signature`), and what its orbits are: a type with the
+    constructor ``at``, or a :meth:`system`. The orbits at Λ, their absence and bifurcations
+    follow by continuation; a closed form overrides them.
     """
 
     name: ClassVar[str]
-    routes: ClassVar[frozenset[Route]] = frozenset(Route)
+    routes: ClassVar[frozenset[Route]] = frozenset({Route.CONTINUATION, Route.SIMULATION})
     orbit_type: ClassVar[type[Orbit]]
     softens: ClassVar[bool] = False
     """Whether its orbits are followed along ϖ, from those of the restitution model."""
@@ -115,32 +100,8 @@ class ImpactModel(Batch, ABC):
         """Its parameters, in words; of a single model."""
 
     @abstractmethod
-    def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> Orbit:
-        """The n-T orbits at Λ on a side of the saddle-node; NaN where there is none."""
-
-    @abstractmethod
-    def orbits(self, n: int, amplitude: float) -> Orbit:
-        """All n-T orbits at one Λ, in order of contact duration, shape (count,)."""
-
-    @abstractmethod
-    def absence(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> np.ndarray:
-        """The :class:`Absence` of each orbit that :meth:`orbit` looks for, as text."""
-
-    @abstractmethod
-    def saddle_node(self, n: ArrayLike) -> Orbit:
-        """The orbits at the saddle-node; NaN where the branch has none."""
-
-    @abstractmethod
-    def period_doubling(self, n: ArrayLike) -> Orbit:
-        """The orbits at the period doubling nearest to it; NaN where there is none."""
-
-    @abstractmethod
-    def nearest(self, orbit: Any) -> Orbit:
-        """The orbits of the closed form nearest to given ones (route FORMULA)."""
-
-    @abstractmethod
-    def system(self, n: int | np.ndarray) -> System:
-        """The equations of the orbits, continued in Λ (route CONTINUATION)."""
+    def signature(self, speed: ArrayLike) -> Instant:
+        """What an impact of speed v > 0 is to the outside, from which searches start."""
 
     @abstractmethod
     def simulate(
@@ -149,12 +110,57 @@ class ImpactModel(Batch, ABC):
         """Impacts from a first one at phase φ, with absolute velocity z′_i before it."""
 
     @abstractmethod
-    def cycle(self, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
-        """The Poincaré map, from an impact (φ, δ′) to the next (route SIMULATION)."""
-
-    @abstractmethod
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ up to which the ball stays on the table."""
+
+    # What follows.
+
+    def system(self, n: int | np.ndarray) -> System:
+        """The equations of the orbits, continued in Λ (route CONTINUATION)."""
+        orbits: Any = self.orbit_type
+        return ContactSystem(n, self._law, orbits.at)
+
+    def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> Any:
+        """The n-T orbits at Λ on a side of the saddle-node; NaN where there is none."""
+        return continued.orbit_at(self, n, amplitude, Side(side))
+
+    def orbits(self, n: int, amplitude: float) -> Any:
+        """All n-T orbits at one Λ, in order of contact duration, shape (count,)."""
+        return continued.orbits_at(self, n, amplitude)
+
+    def absence(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> np.ndarray:
+        """The :class:`Absence` of each orbit that :meth:`orbit` looks for, as text."""
+        missing = ~self.orbit(n, amplitude, side).exists
+        below = np.asarray(amplitude) < self.saddle_node(n).amplitude
+        why = np.where(below, Absence.BELOW_SADDLE_NODE, Absence.NOT_FOUND)
+        return np.where(missing, why, Absence.NONE)
+
+    def saddle_node(self, n: ArrayLike) -> Any:
+        """The orbits at the saddle-node; NaN where the branch has none."""
+        return continued.bifurcation(self, n, Bifurcation.SADDLE_NODE)
+
+    def period_doubling(self, n: ArrayLike) -> Any:
+        """The orbits at the period doubling nearest to it; NaN where there is none."""
+        return continued.bifurcation(self, n, Bifurcation.PERIOD_DOUBLING)
+
+    def nearest(self, orbit: Any) -> Any:
+        """The orbits of the closed form nearest to given ones (route FORMULA).
+
+        Raises
+        ------
+        ModelError
+            If the model has no closed form.
+        """
+        raise ModelError(f"the orbits of the {self.name} model have no closed form")
+
+    def cycle(self, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
+        """The Poincaré map, from an impact (φ, δ′) to the next (route SIMULATION)."""
+        return self.orbit_of(1, amplitude, phase).cycle(phase, relative_velocity)
+
+    @property
+    def _law(self) -> Any:
+        (law,) = (getattr(self, field.name) for field in fields(self))
+        return law
 
     def orbit_of(
         self,
@@ -165,8 +171,7 @@ class ImpactModel(Batch, ABC):
         impact_velocity: ArrayLike | None = None,
     ) -> Any:
         """Orbits known by their numbers, as a dataset has them: :meth:`Orbit.of`."""
-        (law,) = (getattr(self, field.name) for field in fields(self))
-        return self.orbit_type.of(n, law, amplitude, phase, contact_duration, impact_velocity)
+        return self.orbit_type.of(n, self._law, amplitude, phase, contact_duration, impact_velocity)
 
     def require_admissible(self, n: int, amplitude: float, side: Side = Side.STABLE) -> Orbit:
         """:meth:`require_orbit`, if it is one of the ball.

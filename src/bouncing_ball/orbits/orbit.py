@@ -128,9 +128,13 @@ class Orbit(Batch, ABC):
     def residual(self) -> np.ndarray:
         """Defects of the model's equations, along the last axis."""
 
-    @abstractmethod
     def contact_jacobian(self) -> np.ndarray:
-        """Jacobian of (τ_b, δ_b, δ′_b) in (τ, δ′) at the impact, shape (..., 3, 2)."""
+        """Jacobian of (τ_b, δ_b, δ′_b) in (τ, δ′, Λ) at the impact, shape (..., 3, 3).
+
+        Λ, at a fixed δ′, is for the equations of the orbits. Not needed where both the
+        equations and the monodromy are a model's own.
+        """
+        raise NotImplementedError(f"{type(self).__name__} has a monodromy of its own")
 
     @abstractmethod
     def determinant(self) -> np.ndarray:
@@ -226,7 +230,7 @@ class Orbit(Batch, ABC):
         contact. One cycle is contact, then flight; the flight ends at an
         implicit event, whose time is differentiated through its condition.
         """
-        jacobian, lam = self.contact_jacobian(), np.asarray(self.amplitude)
+        jacobian, lam = self.contact_jacobian()[..., :2], np.asarray(self.amplitude)
         d_duration, d_displacement, d_velocity = (jacobian[..., k, :] for k in range(3))
         start = np.broadcast_to(np.array([1.0, 0.0]), d_duration.shape)
         d_release_phase = start + d_duration

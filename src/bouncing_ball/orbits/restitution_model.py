@@ -1,4 +1,4 @@
-"""The restitution-coefficient model and its n-T orbits, with the model interface."""
+"""Models whose impacts are instants, and their n-T orbits."""
 
 from __future__ import annotations
 
@@ -9,18 +9,75 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
+from bouncing_ball.contacts.restitution_law import RestitutionLaw, rebound
+from bouncing_ball.contacts.signature import Instant
 from bouncing_ball.errors import ModelError
-from bouncing_ball.motion.restitution import section_cycle, simulate
-from bouncing_ball.motion.sequence import Cycle, ImpactSequence
+from bouncing_ball.motion.restitution import simulate
+from bouncing_ball.motion.sequence import ImpactSequence
 from bouncing_ball.orbits import restitution_orbit as formulas
-from bouncing_ball.orbits.model import Absence, ImpactModel, Side
+from bouncing_ball.orbits.continued import both_sides
+from bouncing_ball.orbits.model import ImpactModel, Route
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_orbit import RestitutionOrbit
-from bouncing_ball.orbits.restitution_system import RestitutionSystem
+from bouncing_ball.orbits.stability import Side
+
+
+class _Instants(ImpactModel):
+    """What models of an instant share, whatever its restitution."""
+
+    orbit_type: ClassVar[type[Orbit]] = RestitutionOrbit
+
+    def signature(self, speed: ArrayLike) -> Instant:
+        """r alone: no delay, no load, no duration."""
+        v = np.asarray(speed, dtype=float)
+        r, slope = rebound(self._law, v)
+        none = np.zeros_like(v)
+        return Instant(none, r + none, none, none, d_restitution=(slope - r) / v)
+
+    def permanent_contact_threshold(self) -> np.ndarray:
+        """Λ_CR = 1 (Eq. 9)."""
+        return np.full(self.shape, RESTITUTION_THRESHOLD)
+
+    def simulate(
+        self, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
+    ) -> ImpactSequence:
+        """Impacts from a first one at phase φ, with absolute velocity z′_i before it.
+
+        Raises
+        ------
+        ModelError
+            If the ball rises from the table.
+        """
+        velocity, table = np.asarray(velocity, dtype=float), np.asarray(amplitude) * np.cos(phase)
+        if np.any(velocity > table):
+            raise ModelError("a ball that rises from the table has no impact: z′ > w′")
+        r, _ = rebound(self._law, table - velocity)
+        after = -r * velocity + (1 + r) * table
+        law = self._law if isinstance(self._law, RestitutionLaw) else None
+        return simulate(r, amplitude, phase, after, impacts, law)
 
 
 @dataclass(frozen=True, repr=False)
-class RestitutionModel(ImpactModel):
+class RestitutionLawModel(_Instants):
+    """A ball whose impacts are instants with a restitution coefficient r(v).
+
+    Parameters
+    ----------
+    law : RestitutionLaw
+    """
+
+    law: RestitutionLaw
+
+    name: ClassVar[str] = "restitution-law"
+
+    @property
+    def label(self) -> str:
+        """The law and its parameters."""
+        return repr(self.law)
+
+
+@dataclass(frozen=True, repr=False)
+class RestitutionModel(_Instants):
     """A ball whose impacts are instants: δ′ becomes -r δ′.
 
     Parameters
@@ -38,7 +95,7 @@ class RestitutionModel(ImpactModel):
     restitution: float | np.ndarray
 
     name: ClassVar[str] = "restitution"
-    orbit_type: ClassVar[type[Orbit]] = RestitutionOrbit
+    routes: ClassVar[frozenset[Route]] = frozenset(Route)
 
     def __post_init__(self):
         formulas.check_family(1, self.restitution)
@@ -59,15 +116,7 @@ class RestitutionModel(ImpactModel):
 
     def orbits(self, n: int, amplitude: float) -> RestitutionOrbit:
         """Both n-T orbits at one Λ, the stable side first; one at the saddle-node."""
-        both = np.stack([self.orbit(n, amplitude, side).phase for side in Side])
-        distinct = np.isfinite(both) & [True, bool(both[0] != both[1])]
-        phases = both[distinct]
-        return self.orbit_of(n, np.full_like(phases, amplitude), phases)
-
-    def absence(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> np.ndarray:
-        """Why :meth:`orbit` finds none."""
-        missing = np.asarray(amplitude) < formulas.saddle_node(n, self.restitution)
-        return np.where(missing, Absence.BELOW_SADDLE_NODE, Absence.NONE)
+        return both_sides(self, n, amplitude)
 
     def saddle_node(self, n: ArrayLike) -> RestitutionOrbit:
         """The orbits at the saddle-node, φ = 0."""
@@ -82,34 +131,4 @@ class RestitutionModel(ImpactModel):
         """The nearest orbits of the closed form, the line Λ cos φ = Λ_SN."""
         fold = formulas.saddle_node(orbit.n, orbit.restitution)
         lift = orbit.amplitude * np.sin(orbit.phase)
-        lam, phase = np.hypot(fold, lift), np.arctan2(lift, fold)
-        return self.orbit_of(orbit.n, lam, phase)
-
-    def system(self, n: int | np.ndarray) -> RestitutionSystem:
-        """The fixed points of the exact map, continued in Λ."""
-        return RestitutionSystem(n, self.restitution)
-
-    def simulate(
-        self, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
-    ) -> ImpactSequence:
-        """Impacts from a first one at phase φ, with absolute velocity z′_i before it.
-
-        Raises
-        ------
-        ModelError
-            If the ball rises from the table.
-        """
-        r, velocity = np.asarray(self.restitution), np.asarray(velocity, dtype=float)
-        table = np.asarray(amplitude) * np.cos(phase)
-        if np.any(velocity > table):
-            raise ModelError("a ball that rises from the table has no impact: z′ > w′")
-        after = -r * velocity + (1 + r) * table
-        return simulate(r, amplitude, phase, after, impacts)
-
-    def cycle(self, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
-        """The Poincaré map, from an impact (φ, δ′) to the next."""
-        return section_cycle(self.restitution, amplitude, phase, relative_velocity)
-
-    def permanent_contact_threshold(self) -> np.ndarray:
-        """Λ_CR = 1 (Eq. 9)."""
-        return np.full(self.shape, RESTITUTION_THRESHOLD)
+        return self.orbit_of(orbit.n, np.hypot(fold, lift), np.arctan2(lift, fold))

@@ -17,10 +17,12 @@ All quantities are dimensionless.
 """
 
 from enum import StrEnum
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.restitution_law import RestitutionLaw, rebound
 from bouncing_ball.contacts.restitution_map import bounce, landing_gap
 from bouncing_ball.errors import NoOrbitError, require
 from bouncing_ball.motion.restitution import section_cycle
@@ -55,6 +57,17 @@ def saddle_node(n: ArrayLike, restitution: ArrayLike) -> np.ndarray:
     check_family(n, restitution)
     r = np.asarray(restitution, dtype=float)
     return np.asarray(n) * np.pi * (1 - r) / (1 + r)
+
+
+def rigid_speed(n: int, restitution: float) -> float:
+    """Impact speed 2πn/(1 + r) of the n-T orbits, at every Λ.
+
+    Examples
+    --------
+    >>> bool(rigid_speed(2, 1.0) == 2 * np.pi)
+    True
+    """
+    return 2 * np.pi * n / (1 + restitution)
 
 
 def period_doubling_lift(
@@ -183,7 +196,7 @@ def max_height(n: ArrayLike, amplitude: ArrayLike, phase: ArrayLike) -> np.ndarr
 
 
 class RestitutionOrbit(Orbit):
-    """n-T orbits of the restitution model; ``law`` is r.
+    """n-T orbits with instantaneous impacts; ``law`` is r, or a :class:`RestitutionLaw`.
 
     Examples
     --------
@@ -192,32 +205,52 @@ class RestitutionOrbit(Orbit):
     (True, 0.25)
     """
 
+    @classmethod
+    def at(
+        cls,
+        n: ArrayLike,
+        law: RestitutionLaw | ArrayLike,
+        amplitude: ArrayLike,
+        phase: ArrayLike,
+        impact_velocity: ArrayLike,
+    ) -> Self:
+        """The orbits whose impacts are such."""
+        return cls.of(n, law, amplitude, phase, 0.0, impact_velocity)
+
+    def _rebound(self) -> tuple[np.ndarray, np.ndarray]:
+        """r and the slope of r v at the impact."""
+        return rebound(self.law, -self.relative_impact_velocity)
+
     @property
     def restitution(self) -> np.ndarray:
-        """r."""
-        return np.asarray(self.law)
+        """r of the impact."""
+        return self._rebound()[0]
 
     def residual(self) -> np.ndarray:
-        """Landing gap and velocity defect of the exact map (Eq. 5), shape (..., 2)."""
+        """Velocity and landing defects of the exact map (Eq. 5), shape (..., 2)."""
         time, launch = self.flight_time, self.bounce_velocity
         after = bounce(time, self.phase, launch, self.amplitude, self.restitution)
         gap = landing_gap(time, self.phase, launch, self.amplitude)
-        return np.stack(np.broadcast_arrays(gap, after - launch), axis=-1)
+        return np.stack(np.broadcast_arrays(after - launch, gap), axis=-1)
 
     def contact_jacobian(self) -> np.ndarray:
-        """Of an instant at the table's level: only δ′_b = -r δ′ varies."""
-        jacobian = np.zeros((*self.shape, 3, 2))
-        jacobian[..., 2, 1] = -self.restitution
+        """Of an instant at the table's level: only δ′_b = -r δ′ varies, with δ′."""
+        jacobian = np.zeros((*self.shape, 3, 3))
+        jacobian[..., 2, 1] = -self._rebound()[1]
         return jacobian
 
     def determinant(self) -> np.ndarray:
-        """r²."""
-        return self.restitution**2 + 0 * self.phase
+        """r d(r v)/dv: r² for a constant r."""
+        r, slope = self._rebound()
+        return r * slope + 0 * self.phase
 
     def trace_and_determinant(self) -> tuple[np.ndarray, np.ndarray]:
-        """1 + r² - (1 + r)² Λ sin φ, and r²."""
-        return trace_and_determinant(self.restitution, self.amplitude, self.phase)
+        """With s = d(r v)/dv: 1 + r s - (1 + r)(1 + s) Λ sin φ, and r s."""
+        r, slope = self._rebound()
+        lift = self.amplitude * np.sin(self.phase)
+        return 1 + r * slope - (1 + r) * (1 + slope) * lift, self.determinant()
 
     def cycle(self, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
         """From impacts (φ, δ′) to the next, simulated."""
-        return section_cycle(self.restitution, self.amplitude, phase, relative_velocity)
+        r, _ = rebound(self.law, -np.asarray(relative_velocity, dtype=float))
+        return section_cycle(r, self.amplitude, phase, relative_velocity)

@@ -15,11 +15,10 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.ensembles import blocks
-from bouncing_ball.orbits.model import Absence, Side
 from bouncing_ball.orbits.orbit import check_index
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
-from bouncing_ball.orbits.stability import period_doubling_function, saddle_node_function
+from bouncing_ball.orbits.stability import Side, period_doubling_function, saddle_node_function
 
 # Points of the scan on each side of ε = 0, spaced geometrically from a small
 # part of 1/ϖ, the scale of the fold, to the ends of the admissible range.
@@ -310,24 +309,3 @@ def orbits_at(contact: SpringDamper, n: int, amplitude: float) -> SpringDamperOr
     # A sign change at a pole of the branch is not a root.
     real = np.abs(found.amplitude - lam) <= 1e-6 * lam
     return found[real & (found.relative_impact_velocity < 0) & (found.relative_bounce_velocity > 0)]
-
-
-def absence(
-    contact: SpringDamper, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE
-) -> np.ndarray:
-    """The :class:`Absence` of each orbit that :func:`orbit_at` looks for, as text.
-
-    Examples
-    --------
-    >>> str(absence(SpringDamper(10.0, 0.1), 1, 0.2))
-    'below the saddle-node'
-    """
-    omega, zeta, n, lam = _columns(contact, n, amplitude)
-    local = SpringDamper(omega, zeta, contact.release)
-    fold = branch_point(saddle_node(local, n), local, n).amplitude
-    missing = ~orbit_at(local, n, lam, side).exists
-    reason = np.where(np.isnan(fold), Absence.NO_OTHER_SIDE, Absence.NOT_REACHED)
-    if side is Side.STABLE:
-        reason = np.full(missing.shape, Absence.NOT_REACHED)
-    reason = np.where(lam < fold, Absence.BELOW_SADDLE_NODE, reason)
-    return np.where(missing, reason, Absence.NONE)

@@ -9,16 +9,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
+from bouncing_ball.contacts.signature import Instant, LinearSignature
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.motion.contact import contact_cycle, simulate
-from bouncing_ball.motion.sequence import Cycle, ImpactSequence
+from bouncing_ball.motion.contact import simulate
+from bouncing_ball.motion.sequence import ImpactSequence
 from bouncing_ball.orbits import spring_damper_limits as limits
-from bouncing_ball.orbits.model import ImpactModel, Side
+from bouncing_ball.orbits.model import Absence, ImpactModel, Route
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.projection import nearest_excess
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.spring_damper_system import Parameter, SpringDamperSystem
+from bouncing_ball.orbits.stability import Side
 
 # Units in the last place of z′_i that rounding leaves of a Λ = 0; at most 3.9 were
 # seen for ϖ = 0.6…10⁶ and n = 1…100, under both rules.
@@ -45,6 +47,7 @@ class SpringDamperModel(ImpactModel):
 
     name: ClassVar[str] = "spring-damper"
     orbit_type: ClassVar[type[Orbit]] = SpringDamperOrbit
+    routes: ClassVar[frozenset[Route]] = frozenset(Route)
     softens: ClassVar[bool] = True
 
     @property
@@ -52,6 +55,10 @@ class SpringDamperModel(ImpactModel):
         """ϖ and ζ."""
         contact = self.contact
         return f"ϖ = {float(contact.frequency_ratio):g}, ζ = {float(contact.damping_ratio):.4g}"
+
+    def signature(self, speed: ArrayLike) -> Instant:
+        """The contact's own, the same at every speed."""
+        return LinearSignature(self.contact)(speed)
 
     def orbit(
         self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE
@@ -64,8 +71,18 @@ class SpringDamperModel(ImpactModel):
         return limits.orbits_at(self.contact, n, amplitude)
 
     def absence(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> np.ndarray:
-        """Why :meth:`orbit` finds none."""
-        return limits.absence(self.contact, n, amplitude, Side(side))
+        """Why :meth:`orbit` finds none: its search is complete.
+
+        Examples
+        --------
+        >>> model = SpringDamperModel(SpringDamper(10.0, 0.1))
+        >>> str(model.absence(1, 0.2))
+        'below the saddle-node'
+        """
+        why = super().absence(n, amplitude, side)
+        no_fold = np.isnan(self.saddle_node(n).amplitude) & (side == Side.UNSTABLE)
+        reason = np.where(no_fold, Absence.NO_OTHER_SIDE, Absence.NOT_REACHED)
+        return np.where(why == Absence.NOT_FOUND, reason, why)
 
     def saddle_node(self, n: ArrayLike) -> SpringDamperOrbit:
         """The orbits at the saddle-node; NaN where the branch has none.
@@ -106,10 +123,6 @@ class SpringDamperModel(ImpactModel):
     ) -> ImpactSequence:
         """Impacts from a first one at phase φ, with absolute velocity z′_i before it."""
         return simulate(self.contact, amplitude, phase, velocity, impacts)
-
-    def cycle(self, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
-        """The Poincaré map, from an impact (φ, δ′) to the next."""
-        return contact_cycle(self.contact, amplitude, phase, relative_velocity)
 
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ_SD(ϖ) or Λ_F(ϖ)."""

@@ -97,22 +97,17 @@ class SpringDamperOrbit(Orbit):
         )
 
     def contact_jacobian(self) -> np.ndarray:
-        """Jacobian of (τ_b, δ_b, δ′_b) in (τ, δ′) at the impact, shape (..., 3, 2).
+        """Jacobian of (τ_b, δ_b, δ′_b) in (τ, δ′, Λ) at the impact, shape (..., 3, 3).
 
         The duration is differentiated through δ_b + κ δ′_b = 0.
         """
-        by_time, by_velocity, by_phase = (
-            self._contact_flow(self.contact_duration).jacobian[..., :, k] for k in (0, 2, 3)
-        )
-
-        def released(rows):
-            return rows[..., 0] + self.contact.lag * rows[..., 1]
-
-        duration = np.stack(
-            [-released(by_phase) / released(by_time), -released(by_velocity) / released(by_time)],
-            axis=-1,
-        )
-        state = np.stack([by_phase, by_velocity], axis=-1)  # (..., [δ, δ′], [τ, u])
+        # Rows δ, δ′; columns (τ, δ′, Λ) of the start, and the time.
+        jacobian = self._contact_flow(self.contact_duration).jacobian
+        state, by_time = jacobian[..., [3, 2, 4]], jacobian[..., 0]
+        lag = np.asarray(self.contact.lag)
+        released = state[..., 0, :] + lag[..., np.newaxis] * state[..., 1, :]
+        pace = by_time[..., 0] + lag * by_time[..., 1]
+        duration = -released / pace[..., np.newaxis]
         state = state + by_time[..., :, np.newaxis] * duration[..., np.newaxis, :]
         return np.concatenate([duration[..., np.newaxis, :], state], axis=-2)
 

@@ -20,7 +20,6 @@ from bouncing_ball.continuation.events import Event
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.branch_events import branch_events
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
-from bouncing_ball.orbits.stability import trace_and_determinant
 
 
 class Parameter(StrEnum):
@@ -149,13 +148,11 @@ class SpringDamperSystem:
 
     def events(self) -> tuple[Event, ...]:
         """Those of every contact, and the loss of a release that leaves the table."""
-        saddle_node, period_doubling, contact, flight = branch_events(
-            self.orbit, lambda orbit: trace_and_determinant(orbit.monodromy())
-        )
+        *bifurcations, contact, flight = branch_events(self.orbit)
         release = Event(
             "release lost",
             lambda y: self.orbit(y).relative_bounce_velocity,
             terminal=True,
             reason="release lost: the ball no longer leaves the table as the contact ends",
         )
-        return saddle_node, period_doubling, contact, release, flight
+        return *bifurcations, contact, release, flight

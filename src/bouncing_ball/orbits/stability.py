@@ -10,6 +10,8 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.errors import ModelError
+
 
 def trace_and_determinant(monodromy: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """Trace and determinant of matrices of shape (..., 2, 2).
@@ -54,6 +56,28 @@ def saddle_node_function(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray
 def period_doubling_function(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
     """``1 + tr + det``: zero at a period doubling, positive on the stable side."""
     return 1 + np.asarray(trace) + np.asarray(determinant)
+
+
+class Side(StrEnum):
+    """Side of the saddle-node on which an orbit lies."""
+
+    STABLE = "stable"
+    """The side that is stable next to the fold: the shorter contact."""
+    UNSTABLE = "unstable"
+
+    @classmethod
+    def of(cls, side: str) -> "Side":
+        """The side of a name; ModelError for another.
+
+        Examples
+        --------
+        >>> Side.of("stable")
+        <Side.STABLE: 'stable'>
+        """
+        try:
+            return cls(side)
+        except ValueError:
+            raise ModelError(f"unknown side {side!r}: one of {', '.join(cls)}") from None
 
 
 class Bifurcation(StrEnum):

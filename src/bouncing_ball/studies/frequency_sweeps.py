@@ -1,25 +1,57 @@
 """Stable n-T orbits of the spring-damper model along ϖ (Figs. 5, 6, 10, 13)."""
 
-from collections.abc import Mapping
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 import xarray as xr
+from pydantic import AfterValidator, ValidationInfo
 
+from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.spring_damper_limits import orbit_at
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.parameters import Amplitude, Family, Many, Parameters, Restitution, Span
 from bouncing_ball.studies.columns import OBSERVED, columns
-from bouncing_ball.studies.parameters import grid
+from bouncing_ball.studies.parameters import OrbitAmplitude, require_orbit
 
 # Relative distance of two frequency ratios that are one but for the rounding of a grid.
 _ROUNDING = 1e-12
 
 
+class Case(Parameters):
+    """One curve: a contact's restitution coefficient and the amplitude of the table."""
+
+    restitution: Restitution
+    amplitude: Amplitude
+
+
+def _has_orbit(case: Case, info: ValidationInfo) -> Case:
+    if "n" in info.data:
+        require_orbit(case.amplitude, info.data["n"], case.restitution)
+    return case
+
+
+class Cases(Parameters):
+    """Orbits along ϖ of several cases."""
+
+    n: Family
+    cases: Many[Annotated[Case, AfterValidator(_has_orbit)]]
+    frequency_ratio: Span
+
+
+class Sweep(Parameters):
+    """Orbits along ϖ of one restitution coefficient and several amplitudes."""
+
+    n: Family
+    restitution: Restitution
+    amplitude: Many[OrbitAmplitude]
+    frequency_ratio: Span
+
+
 def sweep(
-    n: int, restitution: np.ndarray, amplitude: np.ndarray, ratios: np.ndarray, release: str
+    n: int, restitution: np.ndarray, amplitude: np.ndarray, ratios: np.ndarray, release: Release
 ) -> SpringDamperOrbit:
     """Orbits on the stable side, shape (cases, ϖ); NaN where there is none."""
     contact = SpringDamper.from_restitution(restitution[:, np.newaxis], ratios, release)
@@ -49,9 +81,9 @@ def with_round_values(ratios: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return merged, np.isin(merged, round_values)
 
 
-def _sweep_dataset(parameters, restitution, amplitude, release, ratios=None) -> xr.Dataset:
-    n = parameters["n"]
-    ratios = grid(parameters["frequency_ratio"]) if ratios is None else ratios
+def _sweep_dataset(
+    n: int, restitution: np.ndarray, amplitude: np.ndarray, ratios: np.ndarray, release: Release
+) -> xr.Dataset:
     orbits = sweep(n, restitution, amplitude, ratios, release)
     found = columns(orbits, *OBSERVED, "max_height")
     dims = ("case", "frequency_ratio")
@@ -65,32 +97,36 @@ def _sweep_dataset(parameters, restitution, amplitude, release, ratios=None) -> 
     )
 
 
-def apparent_restitution(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
-    """r_a along ϖ for ``cases`` of (r, Λ) (Eq. 17; Figs. 5 and 6)."""
-    cases = parameters["cases"]
-    restitution = np.array([case["restitution"] for case in cases], dtype=float)
-    amplitude = np.array([case["amplitude"] for case in cases], dtype=float)
-    return describe(_sweep_dataset(parameters, restitution, amplitude, release))
+def apparent_restitution(parameters: Cases, release: Release) -> xr.Dataset:
+    """r_a along ϖ for cases of (r, Λ), shape (case, ϖ); NaN where there is no orbit (Eq. 17).
+
+    Figures 5 and 6.
+    """
+    restitution = np.array([case.restitution for case in parameters.cases])
+    amplitude = np.array([case.amplitude for case in parameters.cases])
+    ratios = parameters.frequency_ratio.grid()
+    return describe(_sweep_dataset(parameters.n, restitution, amplitude, ratios, release))
 
 
-def frequency_sweep(
-    parameters: Mapping[str, Any], release: str, ratios: np.ndarray | None = None
-) -> xr.Dataset:
-    """The orbits along ϖ for one r and several Λ, with their restitution
-    limits (Fig. 10); at other ϖ than the configured ones, if given."""
-    amplitude = np.array(parameters["amplitude"], dtype=float)
-    r = parameters["restitution"]
-    restitution = np.full_like(amplitude, r)
-    dataset = _sweep_dataset(parameters, restitution, amplitude, release, ratios)
-    n = parameters["n"]
+def frequency_sweep(parameters: Sweep, release: Release) -> xr.Dataset:
+    """Orbits along ϖ for one r and several Λ, shape (case, ϖ), and their restitution limits.
+
+    NaN where there is no orbit (Fig. 10).
+    """
+    return describe(_with_limits(parameters, parameters.frequency_ratio.grid(), release))
+
+
+def _with_limits(parameters: Sweep, ratios: np.ndarray, release: Release) -> xr.Dataset:
+    n, r, amplitude = parameters.n, parameters.restitution, np.array(parameters.amplitude)
+    dataset = _sweep_dataset(n, np.full_like(amplitude, r), amplitude, ratios, release)
     dataset["restitution_phase"] = ("case", restitution_orbits.phase(n, r, amplitude))
     dataset["restitution_bounce_velocity"] = ((), n * np.pi)
     dataset["restitution_impact_velocity"] = ((), -n * np.pi)
-    return describe(dataset)
+    return dataset
 
 
-def poincare_map(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
+def poincare_map(parameters: Sweep, release: Release) -> xr.Dataset:
     """The same at round ϖ too, which are labelled in Fig. 13."""
-    ratios, labelled = with_round_values(grid(parameters["frequency_ratio"]))
-    dataset = frequency_sweep(parameters, release, ratios)
+    ratios, labelled = with_round_values(parameters.frequency_ratio.grid())
+    dataset = _with_limits(parameters, ratios, release)
     return describe(dataset.assign(labelled=("frequency_ratio", labelled)))

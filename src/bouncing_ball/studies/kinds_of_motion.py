@@ -1,7 +1,6 @@
 """Periodic, subharmonic and chaotic motion of the restitution model."""
 
-from collections.abc import Mapping
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 import xarray as xr
@@ -9,19 +8,40 @@ import xarray as xr
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.motion.regularity import Stretching, period, stretching
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.parameters import Family, LossyRestitution, Many, Parameters, number
+from bouncing_ball.studies.parameters import OrbitAmplitude
 
 # Two states are the same within this: a chaotic motion comes so close to an earlier
 # state once in 10⁸ impacts, and a stable one comes closer by any factor below 1.
 _SAME = 1e-6
 
 
-def kinds_of_motion(parameters: Mapping[str, Any]) -> xr.Dataset:
-    """What the balls do that start beside an n-T orbit, one motion for each Λ.
+class Ensemble(Parameters):
+    """Balls that start beside an orbit, with equal steps of the phase."""
 
-    From ``n``, ``restitution``, ``amplitude`` (a list) and ``ensemble``: the
-    number of ``balls``, which start with equal steps of the phase up to
-    ``displacement`` after that of the orbit; the ``transient`` impacts that are not looked at, the
-    ``impacts`` that are, and the ``longest_period`` looked for.
+    balls: Annotated[int, number("balls that start beside one orbit", ge=8, le=500)]
+    displacement: Annotated[
+        float,
+        number("largest displacement of their phase from the orbit's", "rad", ge=1e-6, le=1),
+    ]
+    transient: Annotated[int, number("impacts that are not looked at", ge=10, le=1000)]
+    impacts: Annotated[int, number("impacts that are looked at", ge=100, le=1000)]
+    longest_period: Annotated[
+        int, number("longest period looked for, in impacts, of which 100 hold three", ge=2, le=32)
+    ]
+
+
+class Motions(Parameters):
+    """Motions beside the n-T orbit, one for each amplitude."""
+
+    n: Family
+    restitution: LossyRestitution
+    amplitude: Many[OrbitAmplitude]
+    ensemble: Ensemble
+
+
+def kinds_of_motion(parameters: Motions) -> xr.Dataset:
+    """What the balls do that start beside an n-T orbit, one motion for each Λ, shape (case,).
 
     The period is 0 unless all balls have the same one. The exponent is that of
     all balls together, each until it sticks.
@@ -31,24 +51,23 @@ def kinds_of_motion(parameters: Mapping[str, Any]) -> xr.Dataset:
     NoOrbitError
         If an amplitude lies below the saddle-node.
     """
-    n, r = parameters["n"], parameters["restitution"]
-    amplitude, ensemble = np.array(parameters["amplitude"]), parameters["ensemble"]
-    model, balls = RestitutionModel(r), ensemble["balls"]
+    n, r, ensemble = parameters.n, parameters.restitution, parameters.ensemble
+    amplitude, model, balls = np.array(parameters.amplitude), RestitutionModel(r), ensemble.balls
     orbits = [model.require_orbit(n, lam) for lam in amplitude]
     phase = np.array([orbit.phase for orbit in orbits])[:, np.newaxis]
     velocity = np.array([orbit.impact_velocity for orbit in orbits])[:, np.newaxis]
     relative = np.array([orbit.relative_impact_velocity for orbit in orbits])[:, np.newaxis]
-    beside = phase + ensemble["displacement"] * np.arange(1, balls + 1) / balls
+    beside = phase + ensemble.displacement * np.arange(1, balls + 1) / balls
     table = amplitude[:, np.newaxis] * np.cos(beside)
     # So far from the orbit the table may fall faster than its ball: there is no impact at that
     # velocity, and the ball starts with the orbit's relative one.
     velocity = np.where(velocity < table, velocity, table + relative)
-    impacts = ensemble["transient"] + ensemble["impacts"]
+    impacts = ensemble.transient + ensemble.impacts
     sequence = model.simulate(amplitude[:, np.newaxis], beside, velocity, impacts + 1)
 
-    periods = period(sequence, ensemble["longest_period"], _SAME)
+    periods = period(sequence, ensemble.longest_period, _SAME)
     shared = np.where(np.ptp(periods, axis=1) == 0, periods[:, 0], 0)
-    growth = stretching(sequence, r, ensemble["transient"])
+    growth = stretching(sequence, r, ensemble.transient)
     exponents = np.array([Stretching(*rows).exponent() for rows in zip(*growth, strict=True)])
     return described(
         {

@@ -1,7 +1,6 @@
 """Orbits of the restitution model: time history and domains (Figs. 2 and 3)."""
 
-from collections.abc import Mapping
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 import xarray as xr
@@ -10,6 +9,27 @@ from bouncing_ball.datasets.variables import described
 from bouncing_ball.orbits import restitution_orbit as orbits
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import ImpactMap, RestitutionOrbit
+from bouncing_ball.parameters import Family, Many, Parameters, Restitution, Samples, number
+from bouncing_ball.studies.parameters import BranchEnd, OrbitAmplitude, Points
+
+
+class RestitutionDomains(Parameters):
+    """Families of the restitution model, followed along Λ."""
+
+    n: Many[Family]
+    restitution: Restitution
+    amplitude_max: BranchEnd
+    points: Points
+
+
+class RestitutionHistory(Parameters):
+    """One orbit of the restitution model over time."""
+
+    n: Family
+    restitution: Restitution
+    amplitude: OrbitAmplitude
+    periods: Annotated[int, number("periods of the orbit shown", ge=1, le=20)]
+    samples: Samples
 
 
 def _grazing(n: int, r: float, top: float) -> tuple[float, float]:
@@ -30,9 +50,8 @@ def _grazing(n: int, r: float, top: float) -> tuple[float, float]:
     return low, float(orbits.phase(n, r, low, stable_side=False))
 
 
-def restitution_orbits(parameters: Mapping[str, Any]) -> xr.Dataset:
-    """φ against Λ for several families, from ``n``, ``restitution``,
-    ``amplitude_max`` and ``points``.
+def restitution_orbits(parameters: RestitutionDomains) -> xr.Dataset:
+    """φ in rad against Λ for several families, shape (n, point), with their special orbits.
 
     The branch of each family runs from the unstable side to the stable one,
     out to Λ = ``amplitude_max``.
@@ -42,10 +61,10 @@ def restitution_orbits(parameters: Mapping[str, Any]) -> xr.Dataset:
     NoOrbitError
         If a family does not exist up to ``amplitude_max``.
     """
-    n = np.array(parameters["n"])
-    r, top = parameters["restitution"], parameters["amplitude_max"]
+    n = np.array(parameters.n)
+    r, top = parameters.restitution, parameters.amplitude_max
     fold = orbits.saddle_node(n, r)
-    amplitude, phase = orbits.branch(n, r, top, parameters["points"])
+    amplitude, phase = orbits.branch(n, r, top, parameters.points)
     shown = RestitutionOrbit.of(n[:, np.newaxis], r, amplitude, phase)
     stable, admissible = shown.is_stable(), shown.is_admissible()
     grazing = np.array([_grazing(int(k), r, top) for k in n])
@@ -69,17 +88,17 @@ def restitution_orbits(parameters: Mapping[str, Any]) -> xr.Dataset:
     )
 
 
-def restitution_history(parameters: Mapping[str, Any]) -> xr.Dataset:
-    """Ball and table over ``periods`` of the orbit, restitution model (Fig. 2).
+def restitution_history(parameters: RestitutionHistory) -> xr.Dataset:
+    """Ball and table over ``periods`` of the orbit, restitution model, shape (sample,) (Fig. 2).
 
     Raises
     ------
     NoOrbitError
         If Λ lies below the saddle-node.
     """
-    n, lam = parameters["n"], parameters["amplitude"]
-    orbit = RestitutionModel(parameters["restitution"]).require_orbit(n, lam)
-    time = np.linspace(0.0, parameters["periods"] * 2 * np.pi * n, parameters["samples"])
+    n, lam = parameters.n, parameters.amplitude
+    orbit = RestitutionModel(parameters.restitution).require_orbit(n, lam)
+    time = np.linspace(0.0, parameters.periods * 2 * np.pi * n, parameters.samples)
     height, velocity = orbit.path(time)
     return described(
         {

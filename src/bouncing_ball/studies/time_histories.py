@@ -1,19 +1,39 @@
 """Time histories of orbits of the spring-damper model (Figs. 7 and 12)."""
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.parameters import Family, Many, Parameters, Restitution, Samples
+from bouncing_ball.studies.parameters import MotionRatio, OrbitAmplitude
 
 # What is published of each orbit.
 _STATE = ("phase", "contact_duration", "impact_velocity", "bounce_velocity")
+
+
+class ContactHistory(Parameters):
+    """One cycle of one orbit."""
+
+    n: Family
+    restitution: Restitution
+    amplitude: OrbitAmplitude
+    frequency_ratio: MotionRatio
+    samples: Samples
+
+
+class Histories(Parameters):
+    """One cycle on several contacts."""
+
+    n: Family
+    restitution: Restitution
+    amplitude: OrbitAmplitude
+    frequency_ratio: Many[MotionRatio]
+    samples: Samples
 
 
 def _cycle(orbit: Orbit, samples: int) -> tuple[np.ndarray, ...]:
@@ -31,19 +51,18 @@ def _cycle(orbit: Orbit, samples: int) -> tuple[np.ndarray, ...]:
     return time, *(np.concatenate(part) for part in zip(*pairs, strict=True)), touching
 
 
-def contact_history(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
-    """One cycle of the spring-damper model from the start of contact (Fig. 7).
+def contact_history(parameters: ContactHistory, release: Release) -> xr.Dataset:
+    """One cycle of the spring-damper model from the start of contact, shape (sample,) (Fig. 7).
 
     Raises
     ------
     NoOrbitError
         If the orbit does not exist or is inadmissible.
     """
-    n, lam = parameters["n"], parameters["amplitude"]
-    r, ratio = parameters["restitution"], parameters["frequency_ratio"]
-    model = SpringDamperModel(SpringDamper.from_restitution(r, ratio, release))
-    orbit = model.require_admissible(n, lam)
-    time, ball, velocity, touching = _cycle(orbit, parameters["samples"])
+    lam, ratio = parameters.amplitude, parameters.frequency_ratio
+    contact = SpringDamper.from_restitution(parameters.restitution, ratio, release)
+    orbit = SpringDamperModel(contact).require_admissible(parameters.n, lam)
+    time, ball, velocity, touching = _cycle(orbit, parameters.samples)
     return described(
         {
             "time": ("sample", time),
@@ -51,35 +70,35 @@ def contact_history(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
             "ball_velocity": ("sample", velocity),
             "table": ("sample", lam * np.sin(time + orbit.phase)),
             "contact": ("sample", touching),
-            "frequency_ratio": ((), float(parameters["frequency_ratio"])),
+            "frequency_ratio": ((), ratio),
             **{name: ((), float(getattr(orbit, name))) for name in _STATE},
         }
     )
 
 
-def both_histories(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
-    """Both models against the phase of the table, for several ϖ (Fig. 12).
+def both_histories(parameters: Histories, release: Release) -> xr.Dataset:
+    """Both models against the phase of the table in rad, shape (ϖ, sample) (Fig. 12).
 
     Raises
     ------
     NoOrbitError
         If an orbit does not exist or is inadmissible.
     """
-    n, lam, r = parameters["n"], parameters["amplitude"], parameters["restitution"]
-    ratios = np.sort(np.array(parameters["frequency_ratio"], dtype=float))
+    n, lam, r = parameters.n, parameters.amplitude, parameters.restitution
+    ratios = np.sort(parameters.frequency_ratio)
     columns: dict[str, list[np.ndarray]] = {"table_phase": [], "ball": [], "contact": []}
     states: dict[str, list[float]] = {name: [] for name in _STATE}
     for ratio in ratios:
         orbit = SpringDamperModel(
             SpringDamper.from_restitution(r, ratio, release)
         ).require_admissible(n, lam)
-        time, ball, _, touching = _cycle(orbit, parameters["samples"])
+        time, ball, _, touching = _cycle(orbit, parameters.samples)
         for name, values in zip(columns, (time + orbit.phase, ball, touching), strict=True):
             columns[name].append(values)
         for name in _STATE:
             states[name].append(float(getattr(orbit, name)))
     rigid = RestitutionModel(r).require_orbit(n, lam)
-    time = np.linspace(0.0, 2 * np.pi * n, parameters["samples"])
+    time = np.linspace(0.0, 2 * np.pi * n, parameters.samples)
     height, _ = rigid.path(np.minimum(time, time[-1] * (1 - 1e-15)))
     dims = ("frequency_ratio", "sample")
     return described(

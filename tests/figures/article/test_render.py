@@ -9,16 +9,14 @@ import xarray as xr
 import yaml
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.figures.article.citations import READ, Citations
 from bouncing_ball.figures.article.claim_texts import Claims
 from bouncing_ball.figures.article.numbers import value_at
+from bouncing_ball.figures.article.pandoc import with_citations
 from bouncing_ball.figures.article.places import places
 from bouncing_ball.figures.article.render import render_article
 
 ROOT = Path(__file__).resolve().parents[3]
-REFERENCES = yaml.safe_load(
-    (ROOT / "workflow" / "report" / "paper" / "references.yaml").read_text(encoding="utf-8")
-)
+TEMPLATES = ROOT / "workflow" / "report" / "paper"
 
 
 def claims(**changes):
@@ -55,9 +53,9 @@ def claims(**changes):
 
 @pytest.fixture
 def render(tmp_path):
-    def run(template, references=None, **data):
+    def run(template, **data):
         (tmp_path / "article.md.j2").write_text(template, encoding="utf-8")
-        return render_article(tmp_path, {"claims": claims()} | data, {}, references or {})
+        return render_article(tmp_path, {"claims": claims()} | data, {})
 
     return run
 
@@ -81,18 +79,12 @@ def test_verdicts_come_from_the_claims(render):
         ('{{ at("t", "x", 2, n=7) }}', "t: x: n = 7 is not among 1, 2"),
         ('{{ at("t", "x", 2) }}', "t: x at {} is 2 numbers, not one"),
         ('{{ claims("height") }}', "no claim 'height' in the ledger"),
-        ('{{ cite("nobody") }}', "no reference 'nobody'"),
     ],
 )
 def test_what_is_not_there_is_an_error(render, template, message):
     data = xr.Dataset({"x": ("n", [1.0, 2.0])}, {"n": [1, 2]})
     with pytest.raises(ModelError, match=re.escape(message)):
         render(template, t=data)
-
-
-def test_a_reference_must_be_cited(render):
-    with pytest.raises(ModelError, match="references never cited: a"):
-        render("nothing", references={"a": {"text": "A."}})
 
 
 def test_explanations_are_those_of_claims_not_reproduced():
@@ -129,18 +121,11 @@ def test_other_parameters_are_reported_once():
     assert shown.explanations() == []
 
 
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("Fig. 3", {"Fig. 3"}),
-        ("Eqs. 30-31", {"Eq. 30", "Eq. 31"}),
-        ("Figs. 8 and 9, Table 1", {"Fig. 8", "Fig. 9", "Table 1"}),
-        ("Figs. 11-13 and 15", {"Fig. 11", "Fig. 12", "Fig. 13", "Fig. 15"}),
-        ("text", set()),
-    ],
-)
-def test_places(text, expected):
-    assert places(text) == expected
+def test_places():
+    text = "Figs. 11-13 and 15, Eqs. 30-31, Table 1"
+    figures = {"Fig. 11", "Fig. 12", "Fig. 13", "Fig. 15"}
+    assert places(text) == figures | {"Eq. 30", "Eq. 31", "Table 1"}
+    assert places("text") == set()
 
 
 def test_numbers_match_to_rounding_only():
@@ -148,34 +133,26 @@ def test_numbers_match_to_rounding_only():
     assert value_at(data, "t", "x", r=0.3) == 1.0
 
 
-def test_a_doi_that_was_not_checked_says_so():
-    works = {"a": {"text": "A.", "doi": "10.1/x", "doi_checked": False}}
-    cited = Citations(works)
-    cited.cite("a")
-    assert cited.listing() == "1. A. doi:10.1/x (DOI not checked)."
+def test_pandoc_numbers_citations_and_lists_the_works(tmp_path):
+    for name in ("references.yaml", "numbered.csl"):
+        (tmp_path / name).write_bytes((TEMPLATES / name).read_bytes())
+    text = "A *b* [@holmes1982; @carbonelli2011], $x_1$ [@holmes1982].\n\n"
+    text += '<div id="refs"></div>\n\nEnd.\n'
+    head, holmes, paper, end = filter(None, with_citations(text, tmp_path).splitlines())
+    assert head == "A *b* [1, 2], $x_1$ [1]." and end == "End."
+    # What is not known of a work is said.
+    assert holmes.startswith('1. P. J. Holmes, "The dynamics of repeated impacts')
+    assert "Vibration 84 (1982) 173–189. No DOI found. Not read: " in holmes
+    assert paper.endswith("doi:10.1115/DETC2011-47870 (DOI not checked).")
+    with pytest.raises(ModelError, match="nobody not found"):
+        with_citations("[@nobody]\n", tmp_path)
 
 
-def test_a_work_that_was_not_read_says_so():
-    works = {"a": {"text": "A.", "read": "no"}, "b": {"text": "B.", "read": "abstract"}}
-    cited = Citations(works)
-    cited.cite("a", "b")
-    assert cited.listing().splitlines() == [
-        "1. A. No DOI found. Not read: cited from memory.",
-        "2. B. No DOI found. Read in part: an abstract or a passage.",
-    ]
-
-
-@pytest.mark.parametrize("key", REFERENCES)
-def test_references_are_whole(key):
-    entry = REFERENCES[key]
-    assert set(entry) <= {"text", "doi", "doi_checked", "read"}
-    assert entry.get("read", "abstract") in READ
-    assert entry["text"].rstrip().endswith(".")
-    if "doi" in entry:
-        assert re.fullmatch(r"10\.\d{4,5}/\S+", entry["doi"])
-        assert isinstance(entry["doi_checked"], bool)
-    else:
-        assert "doi_checked" not in entry
+def test_every_reference_is_cited():
+    known = yaml.safe_load((TEMPLATES / "references.yaml").read_text(encoding="utf-8"))
+    texts = "".join(path.read_text(encoding="utf-8") for path in TEMPLATES.glob("*.md.j2"))
+    cited = re.findall(r"@(\w+)", " ".join(re.findall(r"\[@[^]]+\]", texts)))
+    assert {work["id"] for work in known["references"]} == set(cited)
 
 
 def test_nan_is_not_printed():

@@ -1,8 +1,7 @@
 """The article as a PDF: Markdown by pandoc into Typst, which sets it.
 
-Both come from the package registry, pandoc inside ``pypandoc_binary``, and are needed for
-this only (the extra ``pdf``). The figures are embedded as vectors. The same text and
-figures give the same bytes: no time, and no font of the machine.
+Typst is needed for this only (the extra ``pdf``). The figures are embedded as vectors. The same
+text and figures give the same bytes: no time, and no font of the machine.
 """
 
 import re
@@ -10,35 +9,14 @@ from pathlib import Path
 from typing import Any
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball.figures.article.pandoc import pandoc
 
 # A figure of the article: the picture, and its caption on the lines after it.
 _FIGURE = re.compile(r"^!\[[^\]\n]*\]\((\S+)\.png\)\n((?:.+\n)+)", re.MULTILINE)
 # A link to a file of the repository that is not among the results.
 _OUTSIDE = re.compile(r"\]\((?!https?:|figures/|#)")
-_TITLE = re.compile(r"\A# (.+)\n")
 # GitHub's Markdown and formulas; quotes stay as they are.
 _READER = "commonmark_x+implicit_figures-smart"
-
-_STYLE = """\
-#set document(title: [{title}], date: none)
-#set page(paper: "a4", margin: (x: 2.1cm, y: 2.3cm), numbering: "1")
-#set text(font: "Libertinus Serif", size: 10pt, lang: "en")
-#set par(justify: true)
-#set heading(numbering: none)
-#show heading: set block(above: 1.4em, below: 0.8em)
-#show raw: set text(size: 0.9em)
-#show link: set text(fill: rgb("#00497a"))
-#set table(stroke: none, inset: (x: 3pt, y: 2.5pt), align: left + top)
-#show table: set text(size: 7pt)
-#show table: set par(justify: false)
-#show table: set align(left)
-#show figure.where(kind: table): set block(breakable: true)
-#set figure(supplement: none, numbering: none)
-#show figure.caption: it => align(left, text(size: 9pt, it.body))
-#let horizontalrule = line(length: 100%, stroke: 0.5pt)
-#align(center, par(justify: false, text(size: 16pt, weight: "bold")[{title}]))
-#v(1em)
-"""
 
 
 def for_pdf(markdown: str) -> str:
@@ -56,30 +34,8 @@ def for_pdf(markdown: str) -> str:
     return _OUTSIDE.sub("](../", captioned)
 
 
-def to_typst(markdown: str) -> str:
-    """The article as a Typst document.
-
-    Raises
-    ------
-    ModelError
-        If it has no title, or pandoc is not installed.
-    """
-    try:
-        import pypandoc
-    except ImportError:
-        raise ModelError("the PDF needs the extra pdf: pip install 'bouncing-ball[pdf]'") from None
-    title = _TITLE.match(markdown)
-    if title is None:
-        raise ModelError("the article does not begin with its title, '# …'")
-    body, heading = (
-        pypandoc.convert_text(text, "typst", format=_READER, extra_args=["--wrap=none"])
-        for text in (for_pdf(markdown[title.end() :]), title[1])
-    )
-    return _STYLE.replace("{title}", heading.strip()) + body
-
-
-def article_pdf(markdown: str, folder: str | Path) -> bytes:
-    """The PDF of an article whose pictures are in a folder.
+def article_pdf(markdown: str, template: str | Path, folder: str | Path) -> bytes:
+    """The PDF of an article, by a Typst template of pandoc, whose pictures are in a folder.
 
     Raises
     ------
@@ -89,8 +45,10 @@ def article_pdf(markdown: str, folder: str | Path) -> bytes:
     try:
         import typst
     except ImportError:
-        raise ModelError("the PDF needs the extra pdf: pip install 'bouncing-ball[pdf]'") from None
-    source = to_typst(markdown).encode()
+        raise ModelError("Typst is missing: pip install 'bouncing-ball[pdf]'") from None
+    # The heading of the first level is the title.
+    options = ("--standalone", f"--template={template}", "--shift-heading-level-by=-1")
+    source = pandoc(for_pdf(markdown), _READER, "typst", *options).encode()
     # Its types know a text and a folder of one kind only.
     compiler: Any = typst.compile
     try:

@@ -1,59 +1,30 @@
 """The article as Markdown, from templates, datasets, tables and references."""
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import xarray as xr
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from bouncing_ball.datasets.netcdf import attribute_name
-from bouncing_ball.errors import ModelError
-from bouncing_ball.figures.article.citations import Citations
+from bouncing_ball.figures.article import numbers
 from bouncing_ball.figures.article.claim_texts import Claims
-from bouncing_ball.figures.article.numbers import (
-    decimal,
-    distinct,
-    largest,
-    listed,
-    pairs,
-    percent,
-    short,
-    value_at,
-)
-
-
-def paper_parameter(claims: xr.Dataset) -> Callable[[str, str], Any]:
-    """Access to the paper's own parameters, as the claims were judged with them."""
-
-    def parameter(dataset: str, key: str) -> Any:
-        return claims.attrs[attribute_name(f"paper.{dataset}.{key}")]
-
-    return parameter
-
-
-def versions(dataset: xr.Dataset) -> dict[str, str]:
-    """What a dataset says of the versions that made it; nothing if it does not."""
-    return json.loads(dataset.attrs.get("provenance_versions", "{}"))
+from bouncing_ball.figures.article.pandoc import with_citations
 
 
 def render_article(
-    folder: str | Path,
-    data: Mapping[str, xr.Dataset],
-    tables: Mapping[str, str],
-    references: Mapping[str, Mapping[str, Any]],
+    folder: str | Path, data: Mapping[str, xr.Dataset], tables: Mapping[str, str]
 ) -> str:
-    """The text of ``article.md.j2`` in a folder.
+    """The text of ``article.md.j2`` in a folder, with its citations.
 
-    Templates know ``data`` and ``tables`` by name, ``claims``, ``cite`` and
-    ``references``, and the number formats of :mod:`bouncing_ball.figures.article.numbers`.
+    Templates know ``data`` and ``tables`` by name, ``claims``, and the number formats of
+    :mod:`bouncing_ball.figures.article.numbers`; they cite as pandoc does, ``[@key]``.
 
     Raises
     ------
     ModelError
-        If a place of a dataset, a claim, an explanation or a reference is not
-        there, or if a reference is never cited.
+        If a place of a dataset, a claim, an explanation or a reference is not there.
     jinja2.UndefinedError
         If a template names anything else that is not there.
     """
@@ -64,31 +35,22 @@ def render_article(
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    citations = Citations(references)
 
     def at(dataset: str, variable: str, digits: int | None = None, **where: Any) -> str:
         """One number of a dataset as text, with so many decimals."""
-        value = value_at(data, dataset, variable, **where)
-        return short(value) if digits is None else decimal(value, digits)
+        value = numbers.value_at(data, dataset, variable, **where)
+        return numbers.short(value) if digits is None else numbers.decimal(value, digits)
+
+    def versions(dataset: xr.Dataset) -> dict[str, str]:
+        """What a dataset says of the versions that made it; nothing if it does not."""
+        return json.loads(dataset.attrs.get("provenance_versions", "{}"))
 
     environment.globals.update(
+        {name: getattr(numbers, name) for name in numbers.FORMATS},
         data=data,
         tables=tables,
         claims=Claims(data["claims"]),
         at=at,
-        cite=citations.cite,
-        references=citations.listing,
-        decimal=decimal,
-        distinct=distinct,
-        largest=largest,
-        listed=listed,
-        pairs=pairs,
-        paper=paper_parameter(data["claims"]),
-        percent=percent,
-        short=short,
         versions=versions,
     )
-    text = environment.get_template("article.md.j2").render()
-    if citations.uncited():
-        raise ModelError(f"references never cited: {', '.join(citations.uncited())}")
-    return text
+    return with_citations(environment.get_template("article.md.j2").render(), folder)

@@ -1,12 +1,11 @@
 """Error law of the restitution model: exact thresholds, formula, corrected model."""
 
-from collections.abc import Sequence
-
-import numpy as np
 import xarray as xr
 
+from bouncing_ball.figures.tables.formats import Table, number, words
 
-def rows(data: xr.Dataset) -> tuple[Sequence[str], list[list[str]]]:
+
+def rows(data: xr.Dataset) -> Table:
     """One row for each quantity; the permanent contact last, without a correction.
 
     C is the corrected model's error times ϖ²; the last column is the ϖ at which
@@ -16,31 +15,17 @@ def rows(data: xr.Dataset) -> tuple[Sequence[str], list[list[str]]]:
     body = []
     for quantity in data.quantity.values:
         part = data.sel(quantity=quantity)
-        line = [
-            str(quantity).replace("_", " "),
-            f"{float(part.coefficient):.4f}",
-            f"{float(part.second_order):.4f}",
-            f"{float(part.law_threshold):.4g}",
+        found = [
+            f"{value:.4g}"
+            if status == "found"
+            else ("all" if status.startswith("within") else "none")
+            for value, status in zip(
+                part.error_threshold.values, part.threshold_status.values, strict=True
+            )
         ]
-        for model in data.model.values:
-            found, status = part.error_threshold.sel(model=model), part.threshold_status
-            text = str(status.sel(model=model).item())
-            line.append(f"{float(found):.4g}" if text == "found" else _outside(text))
-        zero = float(part.error_zero)
-        body.append([*line, f"{zero:.3g}" if np.isfinite(zero) else "–"])
-    body.append(
-        [
-            "permanent contact, second order",
-            f"{float(data.permanent_coefficient):.4f}",
-            "–",
-            f"{float(data.permanent_law):.4g}",
-            f"{float(data.permanent_threshold):.4g}",
-            "–",
-            "–",
-        ]
-    )
-    return header, body
-
-
-def _outside(status: str) -> str:
-    return "all" if status.startswith("within") else "none"
+        law = [f"{float(x):.4f}" for x in (part.coefficient, part.second_order)]
+        law.append(f"{float(part.law_threshold):.4g}")
+        body.append([words(quantity), *law, *found, number(part.error_zero, ".3g")])
+    law = [f"{float(data.permanent_coefficient):.4f}", "–", f"{float(data.permanent_law):.4g}"]
+    found = [f"{float(data.permanent_threshold):.4g}", "–", "–"]
+    return header, [*body, ["permanent contact, second order", *law, *found]]

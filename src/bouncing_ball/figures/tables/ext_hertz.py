@@ -1,21 +1,17 @@
 """Stability ranges on contacts of other laws, laid out as Table 1."""
 
-from collections.abc import Sequence
+from itertools import product
 
 import xarray as xr
 
+from bouncing_ball.figures.tables.formats import Table
 
-def rows(data: xr.Dataset) -> tuple[Sequence[str], list[list[str]]]:
+
+def rows(data: xr.Dataset) -> Table:
     """One row for each law and π/D, one column for each n: from saddle-node to doubling."""
-    header = ["law", "π/D", *(f"n = {n}" for n in data.n.values)]
     body = []
-    for law in data["law"].values:
-        for ratio in data.shown_ratio.values:
-            part = data.bifurcation_amplitude.sel(law=law, shown_ratio=ratio)
-            ranges = [
-                f"{float(part.sel(bound='saddle_node', n=n)):.4f}–"
-                f"{float(part.sel(bound='period_doubling', n=n)):.4f}"
-                for n in data.n.values
-            ]
-            body.append([str(law), f"{ratio:g}", *ranges])
-    return header, body
+    for law, ratio in product(data["law"].values, data.shown_ratio.values):
+        ends = data.bifurcation_amplitude.sel(law=law, shown_ratio=ratio).transpose("n", ...)
+        ranges = [f"{low:.4f}–{high:.4f}" for low, high in ends.values]
+        body.append([str(law), f"{ratio:g}", *ranges])
+    return ["law", "π/D", *(f"n = {n}" for n in data.n.values)], body

@@ -1,29 +1,26 @@
 """Errors on contacts of five laws with the same restitution coefficient and duration."""
 
-from collections.abc import Sequence
+from itertools import product
 
 import numpy as np
 import xarray as xr
 
-# Contacts that are shown: soft, middling and hard ones of the grid.
-_SHARES = (0.0, 0.5, 1.0)
+from bouncing_ball.figures.tables.formats import Table, number, words
 
 
-def rows(data: xr.Dataset) -> tuple[Sequence[str], list[list[str]]]:
-    """One row for each quantity and law: both models at three π/D, and the height's threshold."""
+def rows(data: xr.Dataset) -> Table:
+    """One row for each quantity and law: both models at three π/D, and the height's threshold.
+
+    The contacts shown are the softest, the middle and the stiffest of the grid.
+    """
     last = data.sizes["duration_ratio"] - 1
-    chosen = [round(share * last) for share in _SHARES]
-    ratios = data.duration_ratio.values[chosen]
-    header = ["quantity", "law"]
-    header += [f"{model}, π/D = {x:.3g}" for model in data.model.values for x in ratios]
-    header.append(f"π/D for {100 * data.attrs['tolerance']:g} %")
+    shown = data.isel(duration_ratio=[round(share * last) for share in (0.0, 0.5, 1.0)])
+    columns = product(data.model.values, shown.duration_ratio.values)
     body = []
-    for quantity in data["quantity"].values:
-        for law in data["law"].values:
-            part = data.relative_error.sel(quantity=quantity, law=law).isel(duration_ratio=chosen)
-            numbers = [f"{x:.2g}" for x in part.values.ravel()]
-            found = float(data.error_threshold.sel(law=law))
-            there = quantity == "max_height" and np.isfinite(found)
-            text = f"{found:.4g}" if there else "–"
-            body.append([str(quantity).replace("_", " "), str(law), *numbers, text])
-    return header, body
+    for quantity, law in product(data["quantity"].values, data["law"].values):
+        errors = shown.relative_error.sel(quantity=quantity, law=law).values.ravel()
+        found = float(data.error_threshold.sel(law=law)) if quantity == "max_height" else np.nan
+        cells = [*(f"{error:.2g}" for error in errors), number(found, ".4g")]
+        body.append([words(quantity), str(law), *cells])
+    named = [f"{model}, π/D = {ratio:.3g}" for model, ratio in columns]
+    return ["quantity", "law", *named, f"π/D for {100 * data.attrs['tolerance']:g} %"], body

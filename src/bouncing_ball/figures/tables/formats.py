@@ -3,10 +3,37 @@
 import csv
 import io
 from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
 
 from bouncing_ball.errors import ModelError
 
 Rows = Sequence[Sequence[str]]
+Table = tuple[list[str], list[list[str]]]
+"""Header and rows, which ``rows(dataset)`` of each table gives."""
+
+
+def words(name: object) -> str:
+    """A name as a table has it.
+
+    Examples
+    --------
+    >>> words("max_height")
+    'max height'
+    """
+    return str(name).replace("_", " ")
+
+
+def number(value: Any, form: str) -> str:
+    """A number in a format, or a dash where there is none.
+
+    Examples
+    --------
+    >>> number(2.0, ".2f"), number(float("nan"), ".2f")
+    ('2.00', '–')
+    """
+    return f"{float(value):{form}}" if np.isfinite(value) else "–"
 
 
 def to_csv(header: Sequence[str], rows: Rows) -> str:

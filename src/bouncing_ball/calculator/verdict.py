@@ -1,0 +1,136 @@
+"""The answer in one sentence, and why."""
+
+from typing import NamedTuple
+
+from bouncing_ball.accuracy.quantities import Quantity
+from bouncing_ball.accuracy.thresholds import ThresholdStatus
+from bouncing_ball.calculator.case import Case
+from bouncing_ball.calculator.families import Family
+from bouncing_ball.calculator.needed import Needed
+from bouncing_ball.calculator.units import shown
+from bouncing_ball.contacts.release import Release
+
+QUANTITIES = {
+    Quantity.MAX_HEIGHT: "greatest height",
+    Quantity.BOUNCE_VELOCITY: "bouncing-off velocity",
+    Quantity.PHASE: "phase of impact",
+    Quantity.APPARENT_RESTITUTION: "apparent restitution",
+    Quantity.SADDLE_NODE: "saddle-node",
+    Quantity.PERIOD_DOUBLING: "period doubling",
+    Quantity.PERMANENT_CONTACT: "threshold of permanent contact",
+}
+"""The quantities as a sentence calls them."""
+
+
+class Verdict(NamedTuple):
+    """Whether the restitution model is good enough, in one sentence, and the reason."""
+
+    is_good_enough: bool
+    sentence: str
+    reason: str
+
+
+def percent(share: float) -> str:
+    """A share in percent, two digits; what is very little as such.
+
+    Examples
+    --------
+    >>> percent(0.0123), percent(2.5e-5), percent(1e-9), percent(0.996)
+    ('1.2 %', '0.0025 %', 'less than 0.001 %', '100 %')
+    """
+    if 0 < share < 1e-5:
+        return "less than 0.001 %"
+    return f"{100 * share:.2g} %" if share < 0.995 else f"{100 * share:.0f} %"
+
+
+def _subject(quantity: str, n: int) -> str:
+    of_family = "" if quantity == Quantity.PERMANENT_CONTACT else f" of the {n}-T orbit"
+    return f"the {QUANTITIES[Quantity(quantity)]}{of_family}"
+
+
+def _disagreement(family: Family) -> str | None:
+    """What the restitution model says of the orbit that is not so, before any number."""
+    exact, simple = next(iter(family.standing.values())), family.standing["restitution"]
+    orbit = f"{family.n}-T orbit"
+    if exact.exists != simple.exists:
+        missed = f"it misses the {orbit}, which the contact has"
+        return missed if exact.exists else f"it has the {orbit}, which the contact has not"
+    for name, word in (("is_admissible", "free of other impacts"), ("is_stable", "stable")):
+        if getattr(exact, name) != getattr(simple, name):
+            own, other = ("is", "is not") if getattr(simple, name) else ("is not", "is")
+            return f"its {orbit} {own} {word}, and the contact's {other}"
+    return None
+
+
+def assessed(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
+    """The verdict on a given contact: the orbits agree, and the error is within the tolerance."""
+    tolerance, subject = percent(needed.tolerance), _subject(needed.quantity, family.n)
+    error, wrong = family.errors[needed.quantity], _disagreement(family)
+    if wrong is None and error is None:
+        name = QUANTITIES[Quantity(needed.quantity)]
+        sentence = f"Whether the restitution model is good enough in the {name} is not known."
+        return Verdict(False, sentence, "this contact, or the model, has no value to compare")
+    good = wrong is None and error is not None and error <= needed.tolerance
+    if good:
+        found = f"good enough: {subject} is {percent(error or 0.0)} off, within {tolerance}"
+    else:
+        wrong = wrong or f"{subject} is {percent(error or 0.0)} off, beyond {tolerance}"
+        found = f"not good enough: {wrong}{_instead(family, needed)}"
+    reason = _reason(needed, frequency_ratio, good, tolerance)
+    return Verdict(good, f"The restitution model is {found}.", reason)
+
+
+def _instead(family: Family, needed: Needed) -> str:
+    """Whether the corrected model will do."""
+    error = family.corrected_errors[needed.quantity]
+    exact, corrected = next(iter(family.standing.values())), family.standing["corrected"]
+    same = (exact.exists, exact.is_stable) == (corrected.exists, corrected.is_stable)
+    if same and error is not None and error <= needed.tolerance:
+        return f"; the corrected restitution model is, with {percent(error)}"
+    return "; nor is the corrected one: simulate the contact"
+
+
+def _reason(needed: Needed, frequency_ratio: float, good: bool, tolerance: str) -> str:
+    """The contact's ϖ against the one that the tolerance needs."""
+    if needed.frequency_ratio is None:
+        return f"the error is {needed.status}"
+    place = "above" if frequency_ratio >= needed.frequency_ratio else "below"
+    text = (
+        f"the contact's frequency ratio ϖ = {frequency_ratio:.4g} is {place} the "
+        f"ϖ = {needed.frequency_ratio:.4g} from which on the error stays within {tolerance}"
+    )
+    if good and place == "below":
+        text += ": that it is small here is an accident of its passing through zero"
+    return text
+
+
+def chosen(case: Case, needed: Needed, n: int) -> Verdict:
+    """The verdict on the most compliant contact within the tolerance."""
+    tolerance = percent(needed.tolerance)
+    sentence = (
+        f"A simulation needs a contact of at least {shown(case.stiffness, 'N/m')}, with a contact "
+        f"time of {shown(case.contact_time, 's')} or less and a damping of "
+        f"{shown(case.damping, 'N s/m')} at that stiffness: {_subject(needed.quantity, n)} is "
+        f"then within {tolerance} of the restitution model's."
+    )
+    if needed.status == ThresholdStatus.ALWAYS_WITHIN:
+        return Verdict(True, sentence, f"the error is {needed.status}")
+    ratio = float(case.contact.frequency_ratio)
+    where = f"for the last time at the frequency ratio ϖ = {ratio:.4g}"
+    return Verdict(True, sentence, f"the error crosses {tolerance} {where}")
+
+
+def notes(case: Case, family: Family) -> tuple[str, ...]:
+    """What a user should know beside the verdict."""
+    found, contact = [], case.contact
+    if family.exists and not (family.is_stable and family.is_admissible):
+        what = "unstable" if family.is_admissible else "inadmissible: another impact comes first"
+        found.append(f"the {family.n}-T orbit is {what}, and no ball will keep to it")
+    if float(contact.frequency_ratio) < 1:
+        found.append("the contact is slower than the table: no impact, but a ball on a spring")
+    pulls = case.release is Release.DISPLACEMENT and float(contact.damping_ratio) > 0
+    if case.law is None and pulls:
+        found.append(
+            "the contact pulls before it is released at δ = 0; one that cannot pull has the other r"
+        )
+    return tuple(found)

@@ -1,0 +1,61 @@
+"""Claims about the apparent restitution, Figs. 5 and 6."""
+
+from bouncing_ball.claims import evidence
+from bouncing_ball.claims.claim import number, statement
+from bouncing_ball.claims.paper import explanations as why
+from bouncing_ball.claims.verdict import at_least, at_most
+
+_SECTION = "Damping ratio"
+
+
+@statement(_SECTION, "Fig. 5", explanation=why.below_r)
+def closer_with_stiffness(data):
+    """the stiffer the contact, the closer the apparent restitution is to r
+
+    Condition: on no curve of Figs. 5 and 6 does the difference from r grow again by more than is
+    seen
+
+    Remark: it grows again where the apparent restitution sinks below r
+    """
+    seen = {"a hundredth is seen": 0.01, "a thousandth is seen": 0.001}
+    return {reading: at_most(evidence.rebound(data), limit) for reading, limit in seen.items()}
+
+
+@statement(_SECTION, "Fig. 6")
+def depends_on_amplitude(data):
+    """the apparent restitution depends on the amplitude
+
+    Condition: the three curves are at least 1 % apart somewhere
+    """
+    return at_least(evidence.curves_of_fig06(data)[0], 0.01)
+
+
+@statement(_SECTION, "Fig. 6", id="dip at 1.2", explanation=why.swapped_labels)
+def dip_at_12(data):
+    """at an amplitude of 1.2 the apparent restitution first decreases slightly, then rises
+
+    Condition: the curve of that amplitude sinks below r by what is seen
+    """
+    seen = {"a thousandth is seen": 0.001, "a hundredth is seen": 0.01}
+    return {reading: at_least(evidence.dip(data, 1.2), limit) for reading, limit in seen.items()}
+
+
+@number(_SECTION, "Fig. 6", "0.81", id="soft end of 1.2")
+def soft_end_of_12(data):
+    """at an amplitude of 1.2 the apparent restitution tends to this value at a frequency ratio of 1
+
+    Remark: so it does, in these digits, at the other two amplitudes
+    """
+    return data["fig06"].apparent_restitution.sel(case=2, frequency_ratio=1.0)
+
+
+@statement(_SECTION, "Figs. 5 and 6")
+def negligible_above_100(data):
+    """the apparent restitution differs negligibly from r above a frequency ratio of 100
+
+    Condition: the difference is below a hundredth on every curve from there on
+
+    Remark: the difference itself, as the paper says; its share of r is below, at the conclusion
+    """
+    worst = evidence.apparent(data, lambda off, _: evidence.worst_when_stiff(abs(off)))
+    return at_most(worst, 0.01)

@@ -1,0 +1,51 @@
+"""Answers to read: a table of values, and a simulation as columns."""
+
+from typing import Any
+
+
+def _value(value: Any) -> str:
+    """Ten digits of a number, and words for the rest."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:.10g}"
+    return "none" if value is None else str(value)
+
+
+def _rows(answer: dict[str, Any], prefix: str = "") -> list[str]:
+    rows = []
+    for key, value in answer.items():
+        name = f"{prefix}{key.replace('_', ' ')}"
+        if isinstance(value, dict):
+            rows += _rows(value, f"{name}, ")
+        elif key == "multipliers":
+            shown = "   ".join(f"{re:.10g} {im:+.10g}i" for re, im in value)
+            rows.append(f"{name:<40}{shown}")
+        else:
+            rows.append(f"{name:<40}{_value(value)}")
+    return rows
+
+
+def _columns(sequence: dict[str, list]) -> list[str]:
+    """One line for each impact."""
+    head = "".join(f"{name.replace('_', ' '):>24}" for name in sequence)
+    body = [
+        "".join(f"{'never' if value is None else format(value, '.12g'):>24}" for value in line)
+        for line in zip(*sequence.values(), strict=True)
+    ]
+    return [head, *body]
+
+
+def lines(answer: dict[str, Any]) -> list[str]:
+    """The values; all orbits one after another, or a simulation as a table.
+
+    Examples
+    --------
+    >>> lines({"is_stable": True})
+    ['is stable                               yes']
+    """
+    nested = ("orbits", "sequence")
+    found = _rows({key: value for key, value in answer.items() if key not in nested})
+    for index, orbit in enumerate(answer.get("orbits", []), start=1):
+        found += ["", f"orbit {index}", *_rows(orbit)]
+    return found + (_columns(answer["sequence"]) if "sequence" in answer else [])

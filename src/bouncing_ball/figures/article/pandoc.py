@@ -1,0 +1,48 @@
+"""Pandoc, which knows citations and Typst; it comes inside ``pypandoc_binary``."""
+
+import re
+from pathlib import Path
+
+import pypandoc
+
+from bouncing_ball.errors import ModelError
+
+# A citation as pandoc writes it, and the place of the list of the works cited.
+_CITATION = re.compile(r"\[@[^\]]+\]")
+_LIST = '<div id="refs"></div>\n'
+
+
+def pandoc(text: str, reader: str, writer: str, *options: str) -> str:
+    """A text in another format.
+
+    Raises
+    ------
+    ModelError
+        If pandoc fails or warns.
+    """
+    options = "--wrap=none", "--fail-if-warnings", *options
+    try:
+        return pypandoc.convert_text(text, writer, format=reader, extra_args=options)
+    except RuntimeError as error:
+        raise ModelError(f"pandoc: {' '.join(str(error).split())}") from None
+
+
+def with_citations(markdown: str, folder: str | Path) -> str:
+    """Numbers in place of ``[@key; ...]``, and the list of the works where ``#refs`` stands.
+
+    Pandoc makes these from ``references.yaml`` and ``numbered.csl`` in a folder; the rest of the
+    text stays as it is.
+
+    Raises
+    ------
+    ModelError
+        If a work is not among the references.
+    """
+    citations = _CITATION.findall(markdown)
+    if not citations:
+        return markdown
+    files = (f"--bibliography={folder}/references.yaml", f"--csl={folder}/numbered.csl")
+    bare = "\n\n".join([*citations, _LIST])
+    paragraphs = pandoc(bare, "markdown-smart", "plain", "--citeproc", *files).strip().split("\n\n")
+    numbers, works = iter(paragraphs), "\n".join(paragraphs[len(citations) :])
+    return _CITATION.sub(lambda _: next(numbers), markdown).replace(_LIST, f"{works}\n")

@@ -1,0 +1,165 @@
+"""The charts of the atlas: the ϖ from which on each model is right, from the summary."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import BoundaryNorm
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from bouncing_ball.figures.canvas import WIDE, canvas, legend_below, panels
+from bouncing_ball.figures.style import COLOURS, CORRECTED, GUIDE, QUANTITIES, Look
+
+LEVELS = (3, 5, 10, 20, 50, 100, 200, 500, 1000)
+"""Bounds of the colours; the last colour is for what lies beyond."""
+_LAW_LEVELS = (20, 50, 100, 200, 500)
+_LAW: Look = {"colors": CORRECTED, "linewidths": 0.8, "linestyles": "--"}
+_LIMITS: dict[str, Look] = {
+    "restitution": {"linestyle": "-", "linewidth": 1.2},
+    "corrected": {"linestyle": (0, (4, 1.5)), "linewidth": 1.2},
+}
+# Three families, spread over those of the atlas, in three levels of grey.
+_BY_FAMILY = (COLOURS[0], COLOURS[3], COLOURS[4])
+NEAR = 1
+"""Ranges of positions next to the saddle-node that the colours of the page leave out."""
+_RIGHT, _CORRECTED, _NEITHER = "#ffffff", "#b9d7ea", "#7f7f7f"
+_SPAN = 3.0, 1e3
+# Not dotted, as the rule of thumb is.
+_BESIDE: dict[str, Look] = {
+    "restitution": {"color": "black", "linestyle": "--", "linewidth": 0.8},
+    "corrected": {"color": "black", "linestyle": "-.", "linewidth": 0.8},
+}
+
+
+def charts(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
+    """All charts by name: the page, the limits of the families, and a map for each quantity."""
+    yield "page", page(data)
+    yield "limits", limits(data)
+    for quantity in data["quantity"].values:
+        yield str(quantity), over_range(data, str(quantity))
+
+
+def page(data: xr.Dataset, release: str = "displacement") -> Figure:
+    """A panel for each quantity: for a contact (r, ϖ) the simplest model that is right.
+
+    Right for all families and all positions, but for the one range next to the
+    saddle-node; a line shows what that range needs.
+    """
+    figure, slots = panels(9.2, 4, 2)
+    tolerance = float(data.summary_tolerance)
+    one = data.sel({"release": release, "tolerance": tolerance})
+    for axes, quantity in zip(slots, data["quantity"].values, strict=False):
+        needed = one.needed.sel(quantity=quantity).max("n")
+        _draw_simplest(axes, needed.isel(position=slice(NEAR, None)).max("position"))
+        near = needed.isel(position=slice(NEAR)).max("position")
+        for model, look in _BESIDE.items():
+            axes.plot(near.restitution, near.sel(model=model).clip(*_SPAN), **look)
+        axes.set_title(QUANTITIES[str(quantity)])
+    for axes, limit in zip(slots[4:], data.limit_quantity.values, strict=False):
+        _draw_simplest(axes, one.limit_needed.sel(limit_quantity=limit).max("n"))
+        axes.set_title(QUANTITIES[str(limit)])
+    for axes in slots[:-1]:
+        axes.axhline(float(data.rule_of_thumb), **GUIDE)
+    for axes in slots[-3:-1]:
+        axes.set_xlabel("restitution coefficient $r$")
+        axes.tick_params(labelbottom=True)
+    for axes in slots[::2]:
+        axes.set_ylabel(r"frequency ratio $\varpi$")
+    _explain_page(slots[-1], data)
+    figure.suptitle(
+        f"Which model for which contact: errors below {100 * tolerance:g} %, families $n=1$ to "
+        f"{int(data.n.max())}, {release} release",
+        fontsize=10,
+    )
+    return figure
+
+
+def limits(data: xr.Dataset) -> Figure:
+    """Panels for the rules and the limits of a family: ϖ over r, line by model and colour by n."""
+    figure, slots = panels(5.0, 2, 3)
+    tolerance = float(data.summary_tolerance)
+    families = data.n.values[np.linspace(0, data.sizes["n"] - 1, 3).round().astype(int)]
+    asked = [(rule, q) for rule in data.release.values for q in data.limit_quantity.values]
+    for axes, (release, quantity) in zip(slots, asked, strict=True):
+        part = data.sel(release=release, limit_quantity=quantity)
+        r, smallest = part.restitution, float(part.limit_needed.min())
+        for n, colour in zip(families, _BY_FAMILY, strict=True):
+            one = part.sel(n=n)
+            for model, look in _LIMITS.items():
+                name = f"{model}, $n={n}$"
+                found = one.limit_needed.sel({"model": model, "tolerance": tolerance})
+                axes.plot(r, found, color=colour, label=name, **look)
+            law, name = one.limit_law_needed.clip(smallest), rf"law $|K|/\varepsilon$, $n={n}$"
+            axes.plot(r, law, color=colour, label=name, linestyle=":", linewidth=1.0)
+        axes.axhline(float(data.rule_of_thumb), **GUIDE)
+        axes.set(yscale="log", xlabel="restitution coefficient $r$")
+        axes.set_ylabel(rf"$\varpi$ for {100 * tolerance:g} %")
+        axes.label_outer()
+        axes.set_title(f"{QUANTITIES[str(quantity)]}, {release}", fontsize=8)
+    legend_below(figure, ncols=len(families))
+    figure.suptitle("limits of the families: how stiff a contact must be", fontsize=10)
+    return figure
+
+
+def over_range(data: xr.Dataset, quantity: str, n: int = 1) -> Figure:
+    """The ϖ needed over r and the position of Λ in the stable range, by rule and model.
+
+    The error law's |K|/ε is drawn over the restitution model as lines.
+    """
+    figure, slots = canvas(WIDE, 5.4, rows=2, columns=2, sharex=True, sharey=True)
+    tolerance = float(data.summary_tolerance)
+    norm = BoundaryNorm(LEVELS, 256, extend="max")
+    for row, release in zip(slots, data.release.values, strict=True):
+        for axes, model in zip(row, _BESIDE, strict=True):
+            part = data.sel(n=n, quantity=quantity, release=release, model=model)
+            edges = part.restitution_edge, part.position_edge
+            needed = part.needed.transpose("position", "restitution").clip(LEVELS[0], 1e6)
+            mesh = axes.pcolormesh(*edges, needed, cmap="Blues", norm=norm)
+            axes.set(xlabel="restitution coefficient $r$", ylabel="position in the range")
+            axes.label_outer()
+            axes.set_title(f"{model} model, {release}", fontsize=8)
+        law = data.law_coefficient.sel(n=n, quantity=quantity, release=release) / tolerance
+        middle = (data.position_edge[1:].values + data.position_edge[:-1].values) / 2
+        law = np.ma.masked_invalid(law.transpose("position", "restitution"))
+        lines = row[0].contour(data.restitution, middle, law, levels=_LAW_LEVELS, **_LAW)
+        row[0].clabel(lines, fontsize=6, fmt="%g")
+    bar = figure.colorbar(mesh, ax=slots, ticks=LEVELS, format="%g", pad=0.02, shrink=0.8)
+    bar.set_label(rf"$\varpi$ from which the error is below {100 * tolerance:g} %")
+    figure.suptitle(rf"{QUANTITIES[quantity]}: how stiff a contact must be, $n={n}$", fontsize=10)
+    name = r"error law, $|K|/\varepsilon$"
+    law_line = Line2D([], [], color=CORRECTED, linestyle="--", linewidth=0.8, label=name)
+    legend_below(figure, [law_line])
+    return figure
+
+
+def _draw_simplest(axes: Axes, needed: xr.DataArray) -> None:
+    """The regions of (r, ϖ) in which the restitution or the corrected model will do."""
+    r, (low, high) = needed.restitution.values, _SPAN
+    simple, corrected = (
+        needed.sel(model=model).clip(low, high).values for model in ("restitution", "corrected")
+    )
+    axes.fill_between(r, low, high, color=_RIGHT)
+    axes.fill_between(r, low, simple, color=_CORRECTED, linewidth=0)
+    axes.fill_between(r, low, np.minimum(simple, corrected), color=_NEITHER, linewidth=0)
+    axes.plot(r, simple, color="black", linewidth=0.8)
+    axes.set(yscale="log", ylim=_SPAN, xlim=(r.min(), r.max()))
+
+
+def _explain_page(axes: Axes, data: xr.Dataset) -> None:
+    axes.set_axis_off()
+    share = 100 * float(data.position_edge[NEAR])
+    handles: list[Any] = [
+        Patch(facecolor=_RIGHT, edgecolor="black", linewidth=0.5, label="restitution model"),
+        Patch(facecolor=_CORRECTED, label="corrected model"),
+        Patch(facecolor=_NEITHER, label="compute the contact"),
+    ]
+    for model, look in _BESIDE.items():
+        handles.append(Line2D([], [], label=f"{model} model, next to the saddle-node", **look))
+    rule = rf"rule of thumb, $\varpi={float(data.rule_of_thumb):g}$"
+    none = f"(first {share:g} % of the stable range)"
+    handles += [Line2D([], [], linestyle="none", label=none), Line2D([], [], **GUIDE, label=rule)]
+    axes.legend(handles=handles, loc="center", title="the simplest that is right")

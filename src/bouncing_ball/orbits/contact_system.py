@@ -1,0 +1,98 @@
+r"""The equations of n-T orbits whose contact follows from its start, for a continuation.
+
+Unknowns (φ, z′_i), the phase and the velocity at the impact; parameter Λ. The contact
+that starts so gives its duration and its end, so that two equations are left: velocity and
+height of the flight that follows (Eqs. 24-25). All are of order one however short
+the contact is.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Any
+
+import numpy as np
+
+from bouncing_ball.continuation.events import Event
+from bouncing_ball.orbits.branch_events import branch_events
+
+
+@dataclass(frozen=True)
+class ContactSystem:
+    """n-T orbits as a :class:`~bouncing_ball.continuation.problem.Problem`.
+
+    Parameters
+    ----------
+    n : int
+        Index of the family. It and the law's parameters may be arrays along the
+        leading axis of y.
+    law : Batch
+        The law of the impact.
+    at : callable
+        The orbits ``at(n, law, Λ, φ, z′_i)`` with contacts that start so.
+
+    Examples
+    --------
+    >>> from bouncing_ball.orbits.restitution_orbit import RestitutionOrbit
+    >>> system = ContactSystem(1, 1.0, RestitutionOrbit.at)
+    >>> defects = system.residual(np.array([np.pi / 2, -np.pi, 1.0]))
+    >>> [abs(round(float(x), 12)) for x in defects]
+    [0.0, 0.0]
+    """
+
+    n: int | np.ndarray
+    law: Any
+    at: Callable
+
+    @cached_property
+    def _known(self) -> Callable:
+        # A step along a branch asks for its residual, Jacobian and events in turn.
+        def orbit(shape: tuple[int, ...], entries: bytes) -> Any:
+            phase, impact, amplitude = np.moveaxis(np.frombuffer(entries).reshape(shape), -1, 0)
+            return self.at(self.n, self.law, amplitude, phase, impact)
+
+        return lru_cache(maxsize=4)(orbit)
+
+    def orbit(self, y: np.ndarray) -> Any:
+        """The orbits at points y = (φ, z′_i, Λ) of shape (..., 3)."""
+        return self._known(y.shape, y.tobytes())
+
+    def point(self, orbit: Any) -> np.ndarray:
+        """y of given orbits."""
+        parts = orbit.phase, orbit.impact_velocity, orbit.amplitude
+        return np.stack(np.broadcast_arrays(*parts), axis=-1)
+
+    def residual(self, y: np.ndarray) -> np.ndarray:
+        """Velocity defect and landing defect, shape (..., 2)."""
+        return self.orbit(y).residual()[..., -2:]
+
+    def jacobian(self, y: np.ndarray) -> np.ndarray:
+        """Exact Jacobian of the residual, shape (..., 2, 3)."""
+        o = self.orbit(y)
+        lam, end = o.amplitude[..., np.newaxis], o.release_phase[..., np.newaxis]
+        phase, flight = o.phase[..., np.newaxis], o.flight_time[..., np.newaxis]
+        bounce = o.bounce_velocity[..., np.newaxis]
+        # Derivatives along (φ, z′_i, Λ), the last axis.
+        d_phase, d_impact, d_lam = np.eye(3)
+        d_speed = d_impact - np.cos(phase) * d_lam + lam * np.sin(phase) * d_phase
+        by = o.contact_jacobian()
+
+        def along(row):
+            by_phase, by_speed, by_lam = (by[..., row, k, np.newaxis] for k in range(3))
+            return by_phase * d_phase + by_speed * d_speed + by_lam * d_lam
+
+        d_duration, d_displacement, d_velocity = (along(row) for row in range(3))
+        d_end, d_bounce = d_phase + d_duration, d_impact - d_duration
+        velocity = d_velocity + np.cos(end) * d_lam - lam * np.sin(end) * d_end - d_bounce
+        landing = (
+            d_displacement
+            + (np.sin(end) - np.sin(phase)) * d_lam
+            + lam * (np.cos(end) * d_end - np.cos(phase) * d_phase)
+            + flight * d_bounce
+            - (bounce - flight) * d_duration
+        )
+        return np.stack([velocity, landing], axis=-2)
+
+    def events(self) -> tuple[Event, ...]:
+        """Bifurcations, and the ends of the domain in which an orbit makes sense."""
+        return branch_events(self.orbit)

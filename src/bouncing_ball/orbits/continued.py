@@ -1,0 +1,280 @@
+"""Orbits and bifurcations of any model, by continuation of its equations.
+
+A search starts from the orbit of the corrected restitution model with the signature of the
+impact at the speed of the restitution model's orbit, and is closed by Newton's method on the
+model's own equations, for many orbits at once. Bifurcations are solutions of these
+equations extended by the stability's test function. What is not found so is looked for along
+the branch of each single model.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.contacts.signature import Instant
+from bouncing_ball.continuation.branch import Branch, ContinuationError, continue_branch
+from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane
+from bouncing_ball.continuation.events import Event, LocationError, parameter_bound, vanishing
+from bouncing_ball.continuation.step_control import StepControl
+from bouncing_ball.orbits import corrected_branch as corrected
+from bouncing_ball.orbits.orbit import check_index
+from bouncing_ball.orbits.stability import Bifurcation, Side
+
+# Speed of the orbit and its restitution depend on each other; each round gains a
+# digit or two, and a start needs three.
+_ROUNDS = 4
+# Newton steps, in so many rounds; those that are done leave after each. A first step may be
+# long next to the fold.
+_SETTINGS = NewtonSettings(max_iterations=5, longest=0.5)
+_TRIES = 5
+_EXTENDED = NewtonSettings(max_iterations=25)
+# A branch, for all orbits at one Λ: from so far above it, in not too many steps.
+_ABOVE = 1.3
+_STEPS = StepControl(initial=0.05, smallest=1e-3, largest=0.4, max_angle=0.25)
+_POINTS = 300
+_FARTHER = 4.0
+# A fold so low is one of nearly elastic contacts: no step of a branch resolves it.
+_LOWEST = 1e-4
+# Farther above the fold than this there are steps in Λ, of at most so much in ln Λ.
+_WALK, _STRIDE = 2.0, 0.2
+_HERE = "this amplitude"
+
+
+def restitution_speed(n: ArrayLike, model: Any) -> tuple[np.ndarray, Instant]:
+    """v = 2πn/(1 + r(v)), the impact speed of the restitution model's n-T orbits, and
+    the signature of the model's impact there.
+
+    Examples
+    --------
+    >>> from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
+    >>> from bouncing_ball.orbits.law_model import LawModel
+    >>> speed, _ = restitution_speed(1, LawModel(HuntCrossley(1e3, 0.0)))
+    >>> round(float(speed / np.pi), 12)
+    1.0
+    """
+    period = 2 * np.pi * np.asarray(n, dtype=float)
+    speed = period / 1.7 + np.zeros(model.shape)
+    for _ in range(_ROUNDS):
+        speed = period / (1 + model.signature(speed).restitution)
+    return speed, model.signature(speed)
+
+
+class _Search(NamedTuple):
+    """Orbits that are looked for, in a row: the models, n and the signatures to start from.
+
+    A single model is that of all; points y are rows too, with Λ as their last entry.
+    """
+
+    model: Any
+    n: np.ndarray
+    instant: Instant
+
+    @classmethod
+    def of(cls, model: Any, n: np.ndarray) -> "_Search":
+        if model.shape:
+            return cls(model, n, restitution_speed(n, model)[1])
+        index, where = np.unique(n, return_inverse=True)
+        instant = restitution_speed(index, model)[1]
+        spread = (np.broadcast_to(x, index.shape)[where] for x in instant)
+        return cls(model, n, Instant(*spread))
+
+    def take(self, rows: Any) -> "_Search":
+        instant = (np.broadcast_to(x, self.n.shape)[rows] for x in self.instant)
+        return _Search(self.model.take(rows), self.n[rows], Instant(*instant))
+
+    def start(self, amplitude: np.ndarray, psi: np.ndarray) -> np.ndarray:
+        """Points of the corrected model's orbits with instants at the phases ψ."""
+        t_c = self.instant.delay
+        orbit = self.model.orbit_of(
+            self.n, amplitude, psi - t_c, self.instant.duration, t_c - self.n * np.pi
+        )
+        return self.model.system(self.n).point(orbit)
+
+    def solved(self, guess: np.ndarray) -> np.ndarray:
+        """Solutions at the guesses' own Λ; NaN where none was found."""
+        point, y = guess.copy(), np.full_like(guess, np.nan)
+        todo = np.flatnonzero(np.all(np.isfinite(guess), axis=-1))
+        axis = np.eye(guess.shape[-1])[-1]
+        for _ in range(_TRIES):
+            if not todo.size:
+                break
+            part = self.take(todo)
+            at = plane(axis, point[todo])
+            found = newton(part.model.system(part.n), point[todo], at, _SETTINGS)
+            point[todo] = found.point
+            y[todo[found.converged]] = found.point[found.converged]
+            todo = todo[~found.converged & np.isfinite(found.step)]
+        return y
+
+    def on_side(self, y: np.ndarray, side: Side) -> np.ndarray:
+        """Whether points lie on a side of the fold."""
+        orbit = self.model.system(self.n).orbit(y)
+        test = Bifurcation.SADDLE_NODE.test(*orbit.trace_and_determinant())
+        return test > 0 if side is Side.STABLE else test < 0
+
+
+def _rows(model: Any, n: ArrayLike, *more: ArrayLike):
+    """The models and everything else broadcast and in a row, and the shape."""
+    check_index(n)
+    arrays = (n, *more, np.zeros(model.shape))
+    *arrays, _ = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in arrays))
+    shape = arrays[0].shape
+    return model.flat(shape), [x.reshape(-1) for x in arrays], shape
+
+
+def _shaped(model: Any, n: ArrayLike, y: np.ndarray, shape: tuple[int, ...]) -> Any:
+    return model.system(n).orbit(y.reshape(*shape, y.shape[-1]))
+
+
+def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Any:
+    """The n-T orbits at Λ on a side of the saddle-node; NaN where none is found."""
+    row, (index, lam), shape = _rows(model, n, amplitude)
+    search = _Search.of(row, index)
+    psi = corrected.instant_phase(index, search.instant, lam, side is Side.STABLE)
+    # Next to the fold the start may lie below it.
+    psi = np.where(np.isnan(psi), corrected.saddle_node_phase(search.instant), psi)
+    y = search.solved(search.start(lam, psi))
+    lost = np.flatnonzero(~search.on_side(y, side))
+    if lost.size:
+        y[lost] = np.nan
+        fold = _folds(search.take(lost))
+        lost = lost[lam[lost] >= fold]
+        found = y[lost]
+        _on_branches(search.take(lost), lam[lost], side, found)
+        y[lost] = found
+    return _shaped(model, n, y, shape)
+
+
+def _folds(search: _Search) -> np.ndarray:
+    """Λ of the saddle-nodes; each family of a single model once."""
+    if search.model.shape:
+        return search.model.saddle_node(search.n).amplitude
+    index, where = np.unique(search.n, return_inverse=True)
+    return search.model.saddle_node(index).amplitude[where]
+
+
+def _on_branches(search: _Search, lam: np.ndarray, side: Side, y: np.ndarray) -> None:
+    """Fill in the points at Λ on a side of the fold, next to it along the branches."""
+    for family in np.unique(search.n):
+        rows = np.flatnonzero(search.n == family)
+        # One branch for all orbits of a single model; else each has its own.
+        for part in rows[:, np.newaxis] if search.model.shape else [rows]:
+            model, n = search.take(part[0]).model, int(family)
+            level = _WALK * float(model.saddle_node(n).amplitude)
+            near, far = part[lam[part] <= level], part[lam[part] > level]
+            if near.size:
+                branch = continued(model, n, float(np.max(lam[near])), farther=1.0)
+                y[near] = np.nan if branch is None else _along(model, n, branch, lam[near], side)
+            if far.size:
+                start = model.system(n).point(orbit_at(model, n, level, side))
+                y[far] = [_walked(model, n, start, float(lam[k])) for k in far]
+
+
+def _along(model: Any, n: int, branch: Branch, lam: np.ndarray, side: Side) -> np.ndarray:
+    """The first points at Λ along a branch from its fold on; NaN where it does not reach Λ."""
+    guess = np.full((len(lam), branch.points.shape[-1]), np.nan)
+    folds = branch.named(Bifurcation.SADDLE_NODE)
+    if not folds:
+        return guess
+    at = int(np.argmin(np.linalg.norm(branch.points - folds[0], axis=1)))
+    points = branch.points[at::-1] if side is Side.STABLE else branch.points[at:]
+    for k, level in enumerate(lam):
+        over = np.flatnonzero((points[:-1, -1] < level) & (points[1:, -1] >= level))
+        if over.size:
+            left, right = points[over[0]], points[over[0] + 1]
+            guess[k] = left + (level - left[-1]) / (right[-1] - left[-1]) * (right - left)
+    return _Search.of(model, np.full(len(lam), float(n))).solved(guess)
+
+
+def _walked(model: Any, n: int, first: np.ndarray, lam: float) -> np.ndarray:
+    """From a point at one Λ to that at another: far from the fold φ goes as 1/Λ; or NaN."""
+    search = _Search.of(model, np.array([float(n)]))
+    level = first[-1]
+    count = int(np.ceil(np.log(lam / level) / _STRIDE)) if np.isfinite(level) else 0
+    before = now = first
+    for high in level * (lam / level) ** (np.arange(1, count + 1) / max(count, 1)):
+        gained = 1 / high - 1 / now[-1]
+        past = 1 / now[-1] - 1 / before[-1]
+        slope = (now - before) / past if past else np.zeros_like(now)
+        guess = np.append((now + slope * gained)[:-1], high)
+        before, now = now, search.solved(guess[np.newaxis])[0]
+        if np.any(np.isnan(now)):
+            break
+    return now
+
+
+def continued(model: Any, n: int, amplitude: float, farther: float = _FARTHER) -> Branch | None:
+    """The branch of a single model through Λ, from its stable side down to the fold and on.
+
+    None where it cannot be started or followed.
+    """
+    system, search = model.system(n), _Search.of(model, np.array([n]))
+    fold = float(np.nan_to_num(corrected.saddle_node(n, search.instant)[0]))
+    start = np.array([max(amplitude, fold) * _ABOVE])
+    y = search.solved(search.start(start, corrected.instant_phase(n, search.instant, start)))[0]
+    here = Event(_HERE, lambda y: y[..., -1] - amplitude)
+    most = max(farther * amplitude, farther, _ABOVE * float(start[0]))
+    top = parameter_bound(most, upper=True, reason=f"Λ = {most:g}")
+    bottom = parameter_bound(_LOWEST, upper=False, reason=f"Λ = {_LOWEST:g}")
+    if np.any(np.isnan(y)) or y[-1] >= most:
+        return None
+    events = (*system.events(), here, top, bottom)
+    try:
+        return continue_branch(
+            system, y, increasing=False, events=events, control=_STEPS, max_points=_POINTS
+        )
+    except (ContinuationError, LocationError):
+        return None
+
+
+def orbits_at(model: Any, n: int, amplitude: float) -> Any:
+    """The n-T orbits at one Λ on the branch of the stable side, by contact duration."""
+    check_index(n)
+    if amplitude >= float(model.saddle_node(n).amplitude):
+        branch = continued(model, int(n), float(amplitude))
+        points = branch.named(_HERE) if branch else []
+        if points:
+            found = model.system(n).orbit(np.array(points))
+            return found[np.argsort(found.contact_duration)]
+    return both_sides(model, n, amplitude)
+
+
+def both_sides(model: Any, n: int, amplitude: float) -> Any:
+    """The orbits on both sides of the fold at one Λ, by contact duration; one at the fold."""
+    system = model.system(n)
+    y = np.array([system.point(model.orbit(n, amplitude, side)) for side in Side])
+    # The larger phase, that of the stable side, first.
+    y = np.unique(y[np.all(np.isfinite(y), axis=-1)], axis=0)[::-1]
+    found = system.orbit(y)
+    return found[np.argsort(found.contact_duration, kind="stable")]
+
+
+def bifurcation(model: Any, n: ArrayLike, kind: Bifurcation) -> Any:
+    """The orbits at a bifurcation: next to the corrected model's, or the first on the branch."""
+    row, (index,), shape = _rows(model, n)
+    search = _Search.of(row, index)
+    if kind is Bifurcation.SADDLE_NODE:
+        lam = corrected.saddle_node(index, search.instant)
+        psi = corrected.saddle_node_phase(search.instant)
+    else:
+        lam, psi = corrected.period_doubling(index, search.instant)
+    guess = search.start(lam, psi)
+    y = np.full_like(guess, np.nan)
+    there = np.flatnonzero(np.all(np.isfinite(guess), axis=-1))
+    if there.size:
+        part = search.take(there)
+        system = part.model.system(part.n)
+        test = vanishing(lambda y: kind.test(*system.orbit(y).trace_and_determinant()))
+        found = newton(system, guess[there], test, _EXTENDED)
+        # A Λ of zero has no phase: the fold of an elastic contact.
+        good = found.converged & (found.point[:, -1] > _EXTENDED.tolerance)
+        y[there[good]] = found.point[good]
+    low = (lam < _LOWEST) & (kind is Bifurcation.SADDLE_NODE)
+    for k in np.flatnonzero(np.isnan(y[:, 0]) & ~low):
+        own = search.take(k).model
+        branch = continued(own, int(index[k]), float(np.nan_to_num(lam[k], nan=1.0)))
+        points = branch.named(kind) if branch else []
+        if points:
+            y[k] = points[0 if kind is Bifurcation.SADDLE_NODE else -1]
+    return _shaped(model, n, y, shape)

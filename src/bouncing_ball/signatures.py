@@ -1,0 +1,79 @@
+"""What a call takes: ranges of its parameters, and parameters handed on to another call.
+
+The command line reads both from the signatures of the calls, and the meaning of a parameter from
+the call's docstring, so that each stands once.
+"""
+
+import inspect
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple, TypeVar
+
+_Call = TypeVar("_Call", bound=Callable)
+
+
+class Range(NamedTuple):
+    """The numbers that are allowed, as an annotation; ``ends`` are the brackets.
+
+    Examples
+    --------
+    >>> print(Range(0, 1, "(]"), 0 in Range(0, 1, "(]"), 1 in Range(0, 1, "(]"))
+    a number in (0, 1] False True
+    >>> print(Range(0))
+    a finite number > 0
+    """
+
+    low: float = -math.inf
+    high: float = math.inf
+    ends: str = "()"
+
+    def __contains__(self, value: Any) -> bool:
+        above = value > self.low if self.ends[0] == "(" else value >= self.low
+        below = value < self.high if self.ends[1] == ")" else value <= self.high
+        return above and below and math.isfinite(value)
+
+    def __str__(self) -> str:
+        if math.isinf(self.high):
+            return "a finite number" + ("" if math.isinf(self.low) else f" > {self.low:g}")
+        return f"a number in {self.ends[0]}{self.low:g}, {self.high:g}{self.ends[1]}"
+
+
+def takes(other: Callable, *names: str) -> Callable[[_Call], _Call]:
+    """A call whose ``**keywords`` are parameters of another: its signature shows them.
+
+    Parameters
+    ----------
+    other : callable
+        The call to which the keywords are handed on.
+    names : str
+        Those of its parameters that are meant; all of them if none is named. A parameter of
+        the decorated call without an annotation has that of the other, and its default.
+
+    Examples
+    --------
+    >>> def area(length: float, width: float = 1.0): ...
+    >>> @takes(area)
+    ... def volume(height: float, *, length=2.0, **base): ...
+    >>> print(inspect.signature(volume))
+    (height: float, *, length: float = 2.0, width: float = 1.0)
+    """
+    others = inspect.signature(other).parameters
+
+    def with_parameters(call: _Call) -> _Call:
+        found = []
+        for name, own in inspect.signature(call).parameters.items():
+            if name in others and own.annotation is own.empty:
+                default = others[name].default if own.default is own.empty else own.default
+                own = others[name].replace(kind=own.kind, default=default)
+            found += [own] if own.kind is not own.VAR_KEYWORD else []
+        known = {own.name for own in found}
+        more = [
+            parameter.replace(kind=parameter.KEYWORD_ONLY)
+            for name, parameter in others.items()
+            if name not in known and (not names or name in names)
+        ]
+        call.__dict__["__signature__"] = inspect.Signature([*found, *more])
+        call.__dict__["handed_on"] = other
+        return call
+
+    return with_parameters

@@ -1,0 +1,252 @@
+"""The continuation of n-T orbits of the spring-damper model, as the paper does it.
+
+From the restitution orbit at a very stiff contact, along ϖ to the contact wanted, then along Λ
+to both sides.
+"""
+
+from typing import Annotated, Self
+
+import numpy as np
+from pydantic import model_validator
+
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.continuation.branch import (
+    STARTED,
+    Branch,
+    ContinuationError,
+    End,
+    Ending,
+    continue_both_ways,
+    continue_branch,
+    solve_at,
+)
+from bouncing_ball.continuation.corrector import NewtonSettings, null_vector
+from bouncing_ball.continuation.events import Event, fold, parameter_bound
+from bouncing_ball.continuation.step_control import StepControl
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.orbits.spring_damper_system import Parameter, SpringDamperSystem
+from bouncing_ball.orbits.stability import Bifurcation
+from bouncing_ball.parameters import FrequencyRatio, Parameters, number
+
+SADDLE_NODE, PERIOD_DOUBLING = Bifurcation
+_REACHED = End(Ending.EVENT, "target reached")
+
+
+class Continuation(Parameters):
+    """Steps of the continuation, and Newton's method in each."""
+
+    newton_tolerance: Annotated[
+        float,
+        number(
+            "relative length of the last Newton step; 1.0e-13 is what rounding lets it reach",
+            ge=1e-13,
+            le=1e-6,
+        ),
+    ]
+    max_newton_iterations: Annotated[
+        int, number("Newton iterations before a step is rejected", ge=5, le=50)
+    ]
+    initial_step: Annotated[float, number("first step in arclength", gt=0)]
+    smallest_step: Annotated[
+        float, number("step in arclength below which a branch is given up", ge=1e-12, le=1e-4)
+    ]
+    largest_step: Annotated[
+        float,
+        number(
+            "largest step in arclength; a longer one may pass two bifurcations", ge=0.02, le=0.5
+        ),
+    ]
+    max_angle: Annotated[
+        float, number("largest angle between neighbouring tangents", "rad", ge=0.05, le=0.5)
+    ]
+    stiff_frequency_ratio: Annotated[
+        FrequencyRatio,
+        number("ϖ at which the restitution orbit starts the continuation", ge=100, le=1e6),
+    ]
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Self:
+        if not self.smallest_step <= self.initial_step <= self.largest_step:
+            raise ValueError(
+                f"initial_step = {self.initial_step:g} must lie between smallest_step = "
+                f"{self.smallest_step:g} and largest_step = {self.largest_step:g}"
+            )
+        return self
+
+    def step_control(self) -> StepControl:
+        """Lengths of the steps."""
+        return StepControl(
+            self.initial_step, self.smallest_step, self.largest_step, max_angle=self.max_angle
+        )
+
+    def newton(self) -> NewtonSettings:
+        """When Newton's method ends."""
+        return NewtonSettings(self.newton_tolerance, self.max_newton_iterations)
+
+
+def controls(continuation: Continuation) -> tuple[StepControl, NewtonSettings]:
+    """Lengths of the steps, and when Newton's method ends."""
+    return continuation.step_control(), continuation.newton()
+
+
+def followed_from_stiff(
+    n: int,
+    contact: SpringDamper,
+    amplitude: float,
+    stiff: float,
+    control: StepControl,
+    newton: NewtonSettings,
+) -> Branch:
+    """The branch in ln ϖ at one Λ, from a very stiff contact to the one wanted.
+
+    It starts at the restitution orbit, and ends before ``contact`` where it
+    turns back to stiffer contacts or leaves the domain of the equations.
+
+    Raises
+    ------
+    ContinuationError
+        If there is no orbit near that of the restitution model.
+    """
+    towards = SpringDamperSystem(
+        n, contact.damping_ratio, Parameter.LOG_FREQUENCY_RATIO, amplitude, contact.release
+    )
+    y = solve_at(towards, towards.guess(amplitude, stiff), newton)
+    if contact.frequency_ratio >= stiff:
+        along = null_vector(towards.jacobian(y))
+        return Branch(y[np.newaxis], along[np.newaxis], (), STARTED, _REACHED)
+    target = parameter_bound(np.log(float(contact.frequency_ratio)), False, str(_REACHED))
+    determinant = fold(towards).function
+    side = np.sign(determinant(y))
+    turn = Event(
+        "turn",
+        lambda y: side * determinant(y),
+        terminal=True,
+        reason="the branch turns back to stiffer contacts",
+    )
+    ends = (event for event in towards.events() if event.terminal)
+    return continue_branch(
+        towards,
+        y,
+        increasing=False,
+        events=(*ends, turn, target),
+        control=control,
+        settings=newton,
+    )
+
+
+def _on_the_way(
+    n: int, contact: SpringDamper, amplitude: float, continuation: Continuation
+) -> np.ndarray:
+    """(φ, z′_i, ϖ τ_b) of the orbit at Λ, followed along ϖ from a very stiff contact."""
+    omega = float(contact.frequency_ratio)
+    stiff = max(continuation.stiff_frequency_ratio, omega)
+    way = followed_from_stiff(n, contact, amplitude, stiff, *controls(continuation))
+    if way.end != _REACHED:
+        raise ContinuationError(
+            f"{n}-T orbit at Λ = {amplitude:.4g} followed from ϖ = {stiff:g} ends at "
+            f"ϖ = {np.exp(way.points[-1, -1]):.4g}, before {omega:g}: {way.end}"
+        )
+    return way.points[-1, :-1]
+
+
+def _start(
+    n: int, contact: SpringDamper, restitution: float, top: float, continuation: Continuation
+) -> np.ndarray:
+    """A point of the branch along Λ of a contact, up to Λ = ``top``.
+
+    Half way between the two bifurcations of the restitution orbit, or to the
+    end of the window; other ways are tried if that one is blocked. Where all
+    are, the branch is not connected with the restitution orbit at any of these
+    Λ, and the orbit of the closed form starts it.
+
+    Raises
+    ------
+    NoOrbitError
+        If there is no orbit there either.
+    """
+    rigid = RestitutionModel(restitution)
+    node, doubling = (float(x.amplitude) for x in (rigid.saddle_node(n), rigid.period_doubling(n)))
+    ways = [node + share * (min(doubling, top) - node) for share in (0.5, 0.25, 0.9, 1.3)]
+    ways = [way for way in ways if way <= top]
+    for amplitude in ways:
+        try:
+            return np.append(_on_the_way(n, contact, amplitude, continuation), amplitude)
+        except ContinuationError:
+            continue
+    model = SpringDamperModel(contact)
+    found = model.orbit(n, np.array([*ways, (node + top) / 2, top]))
+    if not np.any(found.exists):
+        raise NoOrbitError(
+            f"neither the continuation from the restitution orbit nor the closed form finds a "
+            f"{n}-T orbit of {model.label} up to Λ = {top:g}"
+        )
+    return model.system(n).point(found[np.argmax(found.exists)])
+
+
+def branch_along_amplitude(
+    n: int,
+    restitution: float,
+    frequency_ratio: float,
+    amplitude_max: float,
+    release: Release,
+    continuation: Continuation,
+) -> tuple[SpringDamperSystem, Branch]:
+    """The whole n-T branch up to Λ = ``amplitude_max``, with its special points.
+
+    Raises
+    ------
+    NoOrbitError
+        If there is none.
+    ContinuationError
+        If it is not followed to its end.
+    """
+    contact = SpringDamper.from_restitution(restitution, frequency_ratio, release)
+    system = SpringDamperModel(contact).system(n)
+    windows = (
+        parameter_bound(0.0, False, "left the window at amplitude 0"),
+        parameter_bound(amplitude_max, True, f"left the window at amplitude {amplitude_max:g}"),
+    )
+    branch = continue_both_ways(
+        system,
+        _start(n, contact, restitution, amplitude_max, continuation),
+        events=(*system.events(), *windows),
+        control=continuation.step_control(),
+        settings=continuation.newton(),
+    )
+    for end in (branch.start, branch.end):
+        if end.kind is Ending.POINTS:
+            raise ContinuationError(
+                f"the branch of {n}-T orbits at ϖ = {frequency_ratio:g} is not "
+                f"followed to its end: {end}"
+            )
+    return system, branch
+
+
+def first_limits(branch: Branch) -> dict[str, np.ndarray]:
+    """The saddle-node and the period doubling that bound the first stable range.
+
+    The branch's last saddle-node in its order, from the unstable to the stable
+    side, and the first period doubling after it.
+
+    Raises
+    ------
+    NoOrbitError
+        If the branch has not both.
+    """
+    names = [special.name for special in branch.special]
+    nodes = [k for k, name in enumerate(names) if name == SADDLE_NODE]
+    node = nodes[-1] if nodes else len(names)
+    doublings = [k for k, name in enumerate(names) if name == PERIOD_DOUBLING and k > node]
+    if not doublings:
+        raise NoOrbitError(
+            f"the branch from {str(branch.start)!r} to {str(branch.end)!r} has no "
+            f"{PERIOD_DOUBLING if nodes else SADDLE_NODE} to bound its stable range"
+        )
+    doubling = doublings[0]
+    return {
+        SADDLE_NODE: branch.special[node].point,
+        PERIOD_DOUBLING: branch.special[doubling].point,
+    }

@@ -1,0 +1,212 @@
+"""Claims as functions, on small datasets: parameters, readings, explanations, the dataset."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from bouncing_ball.claims import parameters
+from bouncing_ball.claims.claim import Claim, explanation, formula, number, statement
+from bouncing_ball.claims.ledger import assess
+from bouncing_ball.claims.parameters import NotAsked, PaperData
+from bouncing_ball.claims.tally import tally
+from bouncing_ball.claims.verdict import above, at_most
+from bouncing_ball.errors import ModelError
+
+
+@explanation("it turns")
+def it_turns(data):
+    """It sinks
+    first.
+    """
+    return {"rise at the second": at_most(data["fig"].rise.sel(n=2), 0)}
+
+
+@number("Results", "Fig. 14", "82")
+def height_threshold(data):
+    """the threshold
+
+    Remark: read off
+    a curve
+    """
+    return data["fig"].threshold
+
+
+@statement("Results", "Fig. 14", id="rises", clear=False, explanation=it_turns)
+def rising(data):
+    """the height rises
+
+    Condition: it rises everywhere
+    """
+    return above(data["fig"].rise, 0)
+
+
+@number("Results", "Fig. 14", "82", explanation=it_turns, restates=height_threshold)
+def two_readings(data):
+    """the threshold again"""
+    return {"first": data["fig"].threshold, "second": data["fig"].threshold + 1}
+
+
+right = formula("a law", "Results", "Eq. 1", "the law")
+clear = formula("a limit", "Results", "Eq. 2", "the limit", row="Eq. 1", clear=True)
+
+
+@pytest.fixture(autouse=True)
+def papers(monkeypatch):
+    """The paper's parameters of the small dataset."""
+    needed = {"n": 1, "cases": [{"r": 0.5}], "span.max": parameters._at_least(10.0)}
+    needed["tolerances"] = parameters._all_of(0.01, 0.02)
+    needed["span.min"] = parameters._at_most(1.0)
+    monkeypatch.setattr(parameters, "PARAMETERS", {"fig": needed, "formulas": {}})
+
+
+@pytest.fixture
+def data():
+    fig = xr.Dataset(
+        {"threshold": ((), 82.18), "rise": ("n", [0.5, -0.25, 1.0])},
+        coords={"n": [1, 2, 3]},
+        attrs={
+            "n": np.int64(1),
+            "cases": '[{"r": 0.5}]',
+            "span__max": 10.0,
+            "span__min": 0.5,
+            "tolerances": np.array([0.01, 0.02, 0.05]),
+            "release": "displacement",
+        },
+    )
+    rows = xr.Dataset({"disagreement": ("formula", [1e-13]), "budget": ("formula", [1e-12])})
+    return {"fig": fig, "formulas": rows.assign_coords(formula=["Eq. 1"])}
+
+
+def row(claim: Claim, data):
+    result = assess([claim], [it_turns], data).isel(claim=0)
+    return {name: values.item() for name, values in result.data_vars.items() if not values.dims}
+
+
+def test_a_printed_number(data):
+    found = row(height_threshold, data)
+    assert found["deviation_units"] == pytest.approx(0.18)
+    assert found["deviation"] == pytest.approx(0.18 / 82)
+    assert np.isnan(found["limit"])
+    del found["deviation_units"], found["deviation"], found["limit"]
+    assert found == {
+        "section": "Results",
+        "item": "Fig. 14",
+        "kind": "number",
+        "group": "number",
+        "restates": "",
+        "statement": "the threshold",
+        "printed_text": "82",
+        "legibility": "clear",
+        "remark": "read off a curve",
+        "condition": "",
+        "decided_by": "fig",
+        "required": "82",
+        "found": 82.18,
+        "verdict": "reproduced",
+        "reason": "",
+        "printed_table": "",
+        "explained_by": "",
+        "explained": True,
+    }
+    assert height_threshold.id == "height threshold"
+
+
+def test_a_statement_and_its_explanation(data):
+    result = assess([rising], [it_turns], data)
+    found = row(rising, data)
+    assert (found["verdict"], found["found"], found["required"]) == ("contradicted", -0.25, "> 0")
+    assert (found["condition"], found["legibility"]) == ("it rises everywhere", "damaged")
+    assert (found["explained_by"], found["explained"], found["limit"]) == ("it turns", True, 0)
+    assert result.explanation_text.item() == "It sinks first."
+    assert result.explanation_holds.item()
+    assert result.explanation_checks.item() == "rise at the second = -0.25 (required ≤ 0)"
+    data["fig"]["rise"] = ("n", [0.5, 0.25, -1.0])
+    found = row(rising, data)
+    assert (found["verdict"], found["explained"]) == ("contradicted", False)
+
+
+def test_readings_that_differ_leave_a_claim_open(data):
+    found = row(two_readings, data)
+    assert (found["verdict"], found["restates"]) == ("undecidable", "height threshold")
+    assert found["reason"] == (
+        "depends on the reading: first: reproduced (82.18); second: close (83.18)"
+    )
+    assert np.isnan(found["found"]) and found["explained"]
+    data["fig"]["threshold"] += 100
+    assert row(two_readings, data)["verdict"] == "contradicted"
+
+
+def test_formulas_and_groups(data):
+    assert row(right, data)["verdict"] == "reproduced"
+    assert [claim.group for claim in (right, clear, height_threshold, rising, two_readings)] == [
+        *("restored formula", "statement", "number", "statement", "restatement")
+    ]
+    data["formulas"]["disagreement"] *= 100
+    assert row(clear, data)["verdict"] == "contradicted"
+    assert row(clear, data)["required"] == "≤ 1e-12"
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"n": 2}, "n = 2; the claim requires 1"),
+        ({"cases": '[{"r": 0.6}]'}, "cases = [{'r': 0.6}]; the claim requires [{'r': 0.5}]"),
+        ({"span__max": 9.9}, "span.max = 9.9; the claim requires at least 10.0"),
+        ({"span__max": "far"}, "span.max = far; the claim requires at least 10.0"),
+        ({"span__min": 1.5}, "span.min = 1.5; the claim requires at most 1.0"),
+        ({"tolerances": 0.01}, "tolerances = 0.01; the claim requires all of [0.01, 0.02]"),
+        ({"release": "force"}, "release = force; the claim requires displacement"),
+    ],
+)
+def test_with_other_parameters_a_claim_is_not_asked(data, change, said):
+    data["fig"] = data["fig"].assign_attrs(change)
+    found = row(rising, data)
+    assert found["reason"] == f"fig was computed with {said}"
+    assert (found["verdict"], found["explained"]) == ("not asked", True)
+    assert np.isnan([found["found"], found["limit"]]).all()
+    result = assess([rising], [it_turns], data)
+    assert not result.explanation_holds.item()
+    assert result.explanation_checks.item() == found["reason"]
+    with pytest.raises(NotAsked):
+        PaperData(data)["fig"]
+
+
+def test_the_paper_parameters_are_no_more_than_required(data):
+    data["fig"] = data["fig"].assign_attrs(span__max=1e9, other=3, n=[1])
+    del data["fig"].attrs["release"]  # only where a dataset has it
+    assert row(rising, data)["verdict"] == "contradicted"
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda data: data.pop("fig"), "no dataset fig"),
+        (lambda data: data["fig"].attrs.pop("n"), "dataset fig has no parameter n, required: 1"),
+        (lambda data: data.update(fig=data["fig"].drop_vars("rise")), "rise"),
+        (lambda data: data.update(fig=data["fig"].sel(n=[1, 3])), "not all values found in index"),
+        (lambda data: data["fig"].rise.values.fill(np.nan), "rise: 1 of 1 numbers missing"),
+    ],
+)
+def test_what_is_missing_is_an_error_in_one_line(data, change, said, one_line):
+    change(data)
+    with pytest.raises(ModelError) as error:
+        assess([rising], [it_turns], data)
+    one_line(error, said)
+    assert str(error.value).startswith(("'rises': ", "'it turns': "))
+
+
+def test_a_dataset_without_parameters_of_the_paper_decides_nothing(data):
+    with pytest.raises(ModelError, match="no dataset other"):
+        PaperData({**data, "other": data["fig"]})["other"]
+
+
+def test_the_tally(data):
+    claims = [rising, two_readings, height_threshold, right]
+    assert tally(assess(claims, [it_turns], data), 16) == (
+        "16 figures, Table 1, 3 claims; 1 restored formula: 1 reproduced; 1 number: 1 reproduced; "
+        "1 statement: 1 contradicted; 1 restatement: 1 undecidable"
+    )
+    data["fig"]["rise"] = ("n", [0.5, 0.25, -1.0])
+    assert tally(assess(claims, [it_turns], data), 16).endswith("; 2 without explanation")
+    data["fig"].attrs["n"] = 2
+    assert "1 number: 1 not asked" in tally(assess(claims, [it_turns], data), 16)

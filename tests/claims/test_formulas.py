@@ -1,0 +1,282 @@
+"""The checks of the printed formulas, checked: each row sees its own formula."""
+
+import inspect
+
+import numpy as np
+import pytest
+from scipy.integrate import quad, solve_ivp
+
+from bouncing_ball.claims import as_printed as printed
+from bouncing_ball.claims.formulas import formulas
+from bouncing_ball.claims.formulas import permanent_contact_equations as steady
+from bouncing_ball.claims.formulas.contact_equations import _measured_restitution
+from bouncing_ball.claims.formulas.disagreement import ROUNDING, largest
+from bouncing_ball.claims.formulas.flow import contact_matrix, fall_matrix, flow, state
+from bouncing_ball.claims.formulas.restitution_equations import (
+    _exact_cycle,
+    _holmes_cycle,
+    _located_doubling,
+    _stability,
+)
+from bouncing_ball.configuration.study import typed
+from bouncing_ball.contacts.spring_damper import contact_flow
+
+PARAMETERS = {
+    "samples": 16,
+    "curve_points": 40,
+    "seed": 2011,
+    "static": {"restitution": [0.85, 0.65], "frequency_ratio": [10.0, 100.0], "velocity": np.pi},
+}
+# What is wrong in the paper, and must be seen.
+WRONG = {"Eq. 8", "ϖ = Ω/ω, Ω of the table", "Eqs. 21-26 by Eqs. 12, 13, 16, 17"}
+
+
+def agreeing(data):
+    return set(data.formula.values[(data.disagreement <= data.budget).values])
+
+
+@pytest.fixture(scope="module")
+def checked():
+    return typed(formulas)(PARAMETERS)
+
+
+def test_which_formulas_are_right(checked, described):
+    data = described(checked)
+    assert set(data.formula.values) - agreeing(data) == WRONG
+    assert agreeing(data) == {
+        "Eq. 2",
+        "Eq. 3",
+        "Eq. 4",
+        "Eq. 5",
+        "Eq. 6",
+        "Eq. 7",
+        "Eq. 8, Holmes' map",
+        "Eq. 8, corrected",
+        "Eq. 9",
+        "ϖ = Ω/ω, Ω of the contact",
+        "Eqs. 12-13",
+        "Eqs. 14-15",
+        "Eq. 16",
+        "Eq. 16, r = 1",
+        "Eq. 16, r → 0",
+        "Eqs. 21-26",
+        "Eq. 27",
+        "Eq. 31",
+        "Eq. 33",
+        "Eq. 33, ϖ = 1",
+        "Eq. 33, ϖ → 0",
+        "Eq. 34",
+        "Eq. 35",
+        "Eq. 36",
+    }
+
+
+@pytest.mark.parametrize(
+    ("seed", "samples"), [(0, 8), (1, 8), (2, 8), (3, 64), (4, 200), (2011, 200)]
+)
+def test_other_samples_give_the_same_verdicts(seed, samples):
+    data = typed(formulas)(PARAMETERS | {"seed": seed, "samples": samples})
+    assert set(data.formula.values) - agreeing(data) == WRONG
+
+
+def test_the_wrong_ones_are_wrong_by_far(checked):
+    # By per cents: no matter of the budget.
+    assert np.all(checked.disagreement.sel(formula=sorted(WRONG)) > 1e-3)
+
+
+# For each printed function the rows that it decides. Eqs. 34-35 and 36 are
+# compared with roots and minima of a Λ_SD of their own.
+ROWS = {
+    "restitution_law": {"Eq. 2"},
+    "impact_velocity": {"Eq. 2", "Eq. 3"},
+    "free_flight": {"Eq. 4"},
+    "landing_defect": {"Eq. 5"},
+    "bounced_velocity": {"Eq. 5"},
+    "fixed_point": {"Eq. 6"},
+    "saddle_node": {"Eq. 7"},
+    "period_doubling": {"Eq. 8, Holmes' map"},
+    "restitution_threshold": {"Eq. 9"},
+    "contact": {"Eqs. 12-13", "Eqs. 21-26"},
+    "flight": {"Eqs. 14-15", "Eqs. 21-26"},
+    "damping_ratio": {"Eq. 16", "Eq. 16, r = 1", "Eq. 16, r → 0"},
+    "bounce_velocity": {"Eq. 27"},
+    "steady_displacement": {"Eq. 31"},
+    "permanent_contact_threshold": {"Eq. 33"},
+    "resonant_threshold": {"Eq. 33, ϖ = 1"},
+    "permanent_contact_frequency_ratio": {"Eq. 34", "Eq. 35"},
+    "permanent_contact_minimum": {"Eq. 36"},
+}
+
+
+def test_every_printed_function_is_among_them():
+    found = inspect.getmembers(printed, inspect.isfunction)
+    assert {name for name, _ in found} == set(ROWS)
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_a_changed_formula_shows_in_its_rows_and_in_no_other(name, checked, monkeypatch):
+    right = getattr(printed, name)
+
+    def wrong(*args):
+        # A ten-thousandth more: a coefficient misprinted in its fifth digit.
+        values = right(*args)
+        if name == "landing_defect":  # zero where the equation holds
+            return values + 1e-4
+        if name == "damping_ratio":  # zero at r = 1
+            return values * (1 - 1e-4) + 1e-5
+        return tuple(1.0001 * x for x in values) if isinstance(values, tuple) else 1.0001 * values
+
+    with monkeypatch.context() as patch:
+        patch.setattr(printed, name, wrong)
+        if name == "saddle_node":
+            # Eq. 8 is printed with the right side of Eq. 7.
+            patch.setattr(printed, "period_doubling", lambda n, r: np.hypot(1, right(n, r)))
+        data = typed(formulas)(PARAMETERS)
+    assert agreeing(checked) - agreeing(data) == ROWS[name]
+    # All others have the same numbers, to rounding.
+    others = sorted(set(data.formula.values) - ROWS[name] - WRONG)
+    change = np.abs(data.disagreement - checked.disagreement).sel(formula=others)
+    assert float(change.max()) <= ROUNDING
+
+
+def test_the_corrected_equation_8_agrees_where_the_printed_one_does_not(monkeypatch, checked):
+    def corrected(n, r):
+        return np.hypot(2 * (1 + r * r) / (1 + r) ** 2, printed.saddle_node(n, r))
+
+    monkeypatch.setattr(printed, "period_doubling", corrected)
+    found = agreeing(typed(formulas)(PARAMETERS))
+    assert "Eq. 8" in found and "Eq. 8, Holmes' map" not in found
+
+
+def test_the_sign_of_a_term_is_seen(monkeypatch):
+    # Eq. 12 with +2ζϖ in place of -2ζϖ in β; signs are what the text has lost.
+    right = printed.contact
+
+    def flipped(time, omega, zeta, lam, phase, a, b):
+        loss = 2 * zeta * omega
+        beta = 2 * loss / ((omega**2 - 1) ** 2 + loss**2)
+        height, velocity = right(time, omega, zeta, lam, phase, a, b)
+        angle = time + phase
+        return height + beta * lam * np.cos(angle), velocity - beta * lam * np.sin(angle)
+
+    monkeypatch.setattr(printed, "contact", flipped)
+    assert not {"Eqs. 12-13", "Eqs. 21-26"} & agreeing(typed(formulas)(PARAMETERS))
+
+
+def test_not_a_number_is_not_agreement(monkeypatch):
+    assert np.isnan(largest([1.0, np.nan], 0.0)) and np.isnan(largest(0.0, [np.nan, 1.0]))
+    monkeypatch.setattr(printed, "permanent_contact_minimum", lambda zeta: zeta * np.nan)
+    data = typed(formulas)(PARAMETERS)
+    assert np.isnan(data.disagreement.sel(formula="Eq. 36"))
+    assert "Eq. 36" not in agreeing(data)
+
+
+# The second computations themselves.
+
+
+def test_the_flow_against_the_closed_form_and_an_integrator():
+    lam, phase, omega, zeta, time = 0.8, 0.7, 3.0, 0.2, 0.9
+    start = state(lam * np.sin(phase), -2.0, phase)
+    there = flow(contact_matrix(omega, zeta, lam), time, start)
+    exact = contact_flow(time, 0.0, -2.0 - lam * np.cos(phase), phase, lam, omega, zeta)
+    angle = phase + time
+    assert there[0] == pytest.approx(float(exact.displacement) + lam * np.sin(angle), abs=1e-14)
+    assert there[1] == pytest.approx(float(exact.velocity) + lam * np.cos(angle), abs=1e-14)
+    assert there[2:] == pytest.approx([1.0, np.cos(angle), np.sin(angle)], abs=1e-14)
+
+    def rate(t, y):
+        w, dw = lam * np.sin(t + phase), lam * np.cos(t + phase)
+        return [y[1], -1 - 2 * zeta * omega * (y[1] - dw) - omega**2 * (y[0] - w)]
+
+    run = solve_ivp(rate, (0, time), start[:2], method="DOP853", rtol=1e-13, atol=1e-14)
+    assert there[:2] == pytest.approx(run.y[:, -1], abs=1e-11)
+
+
+def test_the_fall():
+    fallen = flow(fall_matrix(9.81), 2.0, state(1.0, 3.0, 0.0))
+    assert fallen[:2] == pytest.approx([1 + 6 - 9.81 * 2, 3 - 9.81 * 2], abs=1e-12)
+
+
+def test_trace_and_determinant_of_the_maps():
+    n, r, phase = 2.0, 0.6, 0.5
+    lam = n * np.pi * (1 - r) / (1 + r) / np.cos(phase)
+    push = (1 + r) * lam * np.sin(phase)
+    trace, det = _stability(_exact_cycle, phase, n * np.pi, r, lam)
+    assert trace == pytest.approx(1 + r * r - (1 + r) * push, abs=1e-8)
+    assert det == pytest.approx(r * r, abs=1e-8)
+    trace, det = _stability(_holmes_cycle, phase, n * np.pi, r, lam)
+    assert trace == pytest.approx(1 + r - 2 * push, abs=1e-8)
+    assert det == pytest.approx(r, abs=1e-8)
+
+
+def test_the_located_period_doublings():
+    n, r = np.array([1.0, 3.0]), np.array([0.85, 0.3])
+    along = n * np.pi * (1 - r) / (1 + r)
+    exact = np.hypot(2 * (1 + r * r) / (1 + r) ** 2, along)
+    assert _located_doubling(_exact_cycle, n, r) == pytest.approx(exact, rel=1e-8)
+    assert _located_doubling(_holmes_cycle, n, r) == pytest.approx(np.hypot(1, along), rel=1e-8)
+
+
+def test_the_steady_amplitude_by_fourier_integrals():
+    omega, zeta = 1.3, 0.2
+    # δ″ + 2ζϖδ′ + ϖ²δ = sin τ by Green's function of the damped oscillator.
+    damped = omega * np.sqrt(1 - zeta**2)
+
+    def delta(tau):
+        def past(s):
+            return np.exp(-zeta * omega * s) * np.sin(damped * s) / damped * np.sin(tau - s)
+
+        # e^{-ζϖs} has fallen to 1e-14 there.
+        return quad(past, 0, 32.3 / (zeta * omega), limit=400, epsabs=1e-13)[0]
+
+    amplitude = np.hypot(delta(0.0), delta(np.pi / 2))
+    found = float(steady._steady_amplitude(omega, zeta))
+    assert found == pytest.approx(amplitude, rel=1e-11)
+    # And what roots and minima are taken of.
+    assert steady._threshold(omega**-2, zeta) == pytest.approx(1 / (omega**2 * found), rel=1e-13)
+
+
+def test_the_measured_restitution_without_and_with_gravity():
+    r, omega = np.array([0.85, 0.3]), np.array([5.0, 50.0])
+    assert _measured_restitution(r, omega, 2.0, 0.0) == pytest.approx(r, abs=1e-14)
+    # Heavy and undamped: the energy comes back whatever the stiffness.
+    heavy = _measured_restitution(np.array([1.0]), np.array([5.0]), 2.0, 1.0)
+    assert heavy == pytest.approx([1.0], abs=1e-13)
+
+
+def test_the_static_error(checked):
+    error = checked.static_error
+    assert error.dims == ("restitution", "frequency_ratio")
+    # An integrator with event location, for the largest of the four.
+    r, omega = 0.65, 10.0
+    zeta = -np.log(r) / np.hypot(np.pi, np.log(r))
+
+    def rate(t, y):
+        return [y[1], -1 - 2 * zeta * omega * y[1] - omega**2 * y[0]]
+
+    def back(t, y):
+        return y[0]
+
+    back.terminal, back.direction = True, 1
+    run = solve_ivp(
+        rate, (0, 1), [0.0, -np.pi], events=back, method="DOP853", rtol=1e-12, atol=1e-14
+    )
+    found = run.y_events[0][0][1] / np.pi
+    largest_error = error.sel(restitution=0.65, frequency_ratio=10.0).item()
+    assert largest_error == pytest.approx(abs(found / r - 1), abs=1e-9)
+    assert largest_error == float(error.max())
+
+
+def test_points_of_the_curve_that_are_no_orbits():
+    # Of the first hundred some are, some are not: the others are counted one by one.
+    found = typed(formulas)(PARAMETERS)
+    assert 0 < found.curve_points_admissible < found.curve_points == PARAMETERS["curve_points"]
+
+
+def test_a_ball_that_its_weight_holds_has_no_static_error():
+    static = {"restitution": [0.1, 0.9], "frequency_ratio": [0.5, 100.0], "velocity": 0.1}
+    data = typed(formulas)(PARAMETERS | {"samples": 8, "static": static})
+    missing = np.isnan(data.static_error)
+    assert missing.sel(restitution=0.1, frequency_ratio=0.5)
+    # The stiff contact throws it off.
+    assert not missing.sel(restitution=0.9, frequency_ratio=100.0)

@@ -41,8 +41,12 @@ def draw(design: Mapping[str, Any], data: xr.Dataset, values: Sequence[tuple[str
     _title(figure, design)
     _chart(figure.add_subplot(grid[0, 0]), design, data)
     _errors(figure.add_subplot(grid[0, 1]), design)
-    _motion(figure.add_subplot(grid[1, :]), design, data)
-    _contact(figure.add_subplot(grid[2, 0]), data)
+    motion, contact = figure.add_subplot(grid[1, :]), figure.add_subplot(grid[2, 0])
+    second, metre = _curves(motion, data.time, data.ball, f"the {design['n']}-T orbit")
+    motion.plot(data.time * second, data.table * metre, color=TABLE, label="table")
+    motion.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=4)
+    _curves(contact, data.since, data.gap, "one contact: height above the table")
+    contact.axhline(0.0, color=TABLE, linewidth=0.8)
     _numbers(figure.add_subplot(grid[2, 1]), values)
     return figure
 
@@ -81,14 +85,13 @@ def _errors(axes: Axes, design: Mapping[str, Any]) -> None:
     one = next(each for each in design["orbits"] if each["n"] == design["n"])
     names = list(one["errors"])
     places = np.arange(len(names))[::-1]
-    for key, name, marker in (
-        ("errors", "restitution", "o"),
-        ("corrected_errors", "corrected", "D"),
+    for key, label, colour, marker, size in (
+        ("errors", "restitution", RESTITUTION, "o", 5),
+        ("corrected_errors", "corrected", COLOURS[3], "D", 5),
+        ("law_errors", "error law", COLOURS[2], "|", 13),
     ):
         values = np.array([one[key][each] or np.nan for each in names])
-        axes.plot(values, places, marker, color=_LOOKS[name][0], label=name, markersize=5)
-    law = np.array([one["law_errors"][each] or np.nan for each in names])
-    axes.plot(law, places, "|", color=COLOURS[2], label="error law", markersize=13)
+        axes.plot(values, places, marker, color=colour, label=label, markersize=size)
     axes.axvline(design["needed"]["tolerance"], color=TABLE, linewidth=0.8, linestyle="--")
     axes.set_xscale("log")
     axes.set_yticks(places, [each.replace("_", " ") for each in names])
@@ -106,30 +109,17 @@ def _scale(values: xr.DataArray) -> tuple[float, str]:
     return 1e9, "n"
 
 
-def _curves(axes: Axes, time: xr.DataArray, heights: xr.DataArray) -> tuple[float, float]:
-    """All models over each other, in units with a prefix; their factors."""
+def _curves(
+    axes: Axes, time: xr.DataArray, heights: xr.DataArray, title: str
+) -> tuple[float, float]:
+    """All models over each other, in units with a prefix; the factors of time and height."""
     (second, s), (metre, m) = _scale(time), _scale(heights)
-    for name in heights["model"].values:
+    for name in heights.dropna("model", how="all")["model"].values:
         colour, look = _LOOKS[str(name)]
-        curve = heights.sel(model=name)
-        if np.all(np.isnan(curve)):
-            continue
-        axes.plot(time * second, curve * metre, color=colour, label=name, **look)
+        axes.plot(time * second, heights.sel(model=name) * metre, color=colour, label=name, **look)
     axes.set(xlabel=f"time [{s}s]", ylabel=f"height [{m}m]")
+    axes.set_title(title, fontsize=9)
     return second, metre
-
-
-def _motion(axes: Axes, design: Mapping[str, Any], data: xr.Dataset) -> None:
-    second, metre = _curves(axes, data.time, data.ball)
-    axes.plot(data.time * second, data.table * metre, color=TABLE, label="table")
-    axes.set_title(f"the {design['n']}-T orbit", fontsize=9)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=4)
-
-
-def _contact(axes: Axes, data: xr.Dataset) -> None:
-    _curves(axes, data.since, data.gap)
-    axes.axhline(0.0, color=TABLE, linewidth=0.8)
-    axes.set_title("one contact: height above the table", fontsize=9)
 
 
 def _numbers(axes: Axes, values: Sequence[tuple[str, str]]) -> None:

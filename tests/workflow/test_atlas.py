@@ -71,7 +71,7 @@ def test_a_damaged_shard_is_named_and_made_again(resumed):
     _, early, said = resumed
     # The job of the last one was killed before it could say that it was done.
     damaged, whole, _ = early
-    assert f"results/atlas/shards/{damaged} is not what its job wrote" in said
+    assert f"results/atlas/shards/{damaged} is damaged: it is made again" in said
     assert f"made results/atlas/shards/{damaged}" in said
     assert f"made results/atlas/shards/{whole}" not in said
 

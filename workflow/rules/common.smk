@@ -32,7 +32,7 @@ from bouncing_ball.configuration.check import check_configuration, check_orbits
 from bouncing_ball.configuration.stages import ENTRIES, STAGES, Kind, names, studied, tables
 from bouncing_ball.errors import ModelError
 from bouncing_ball.configuration.yaml_file import read_yaml
-from bouncing_ball.pipeline.atlas import shard_names
+from bouncing_ball.pipeline.atlas import discard_damaged, shard_names
 from bouncing_ball.pipeline.pieces import check_entries, check_pieces
 from bouncing_ball.pipeline.sources import sources
 
@@ -102,4 +102,9 @@ ATLAS = {key: part for key, part in RUN["atlas"].items() if key != "summary"}
 
 
 def shard_files(wildcards):
-    return [f"results/atlas/shards/{name}.nc" for name in [*shard_names(ATLAS), "limits"]]
+    """The shards of the atlas; one that is damaged is removed, and so made again."""
+    paths = [f"results/atlas/shards/{name}.nc" for name in [*shard_names(ATLAS), "limits"]]
+    if workflow.is_main_process:
+        for path in discard_damaged(paths):
+            logger.warning(f"{path} is damaged: it is made again")
+    return paths

@@ -31,8 +31,8 @@ The layers, each importing only what lies above it in this list (and ``errors`` 
 ``configuration`` the parameters of a run, read and checked
 ``claims``        what the paper claims and prints, and the verdict on each
 ``figures``       figures, tables and the article; they compute nothing
+``provenance``    the commit, the parameters and the versions that an artifact is made from
 ``compare``       datasets, texts and pictures of two runs against each other
-``record``        provenance and the accepted record
 ``pipeline``      what the Snakefile needs of Python
 ``cli``           the command line, ``bouncing-ball``
 """

@@ -66,3 +66,17 @@ def escaped(text: str) -> str:
     return "".join(
         c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text
     )
+
+
+def printable(text: object, width: int | None = 300) -> str:
+    """Text of one line in which nothing moves a cursor; a long one is cut off.
+
+    Examples
+    --------
+    >>> printable("fig\\x1b[2J\\n\\u202e08\\udcff")
+    'fig\\\\x1b[2J\\\\n\\\\u202e08\\\\udcff'
+    >>> printable("Λ = 1 → 2, 1e-13", width=7)
+    'Λ = 1 …'
+    """
+    text = str(text)
+    return escaped(text if width is None or len(text) <= width else text[: width - 1] + "…")

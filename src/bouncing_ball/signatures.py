@@ -30,7 +30,7 @@ class Range(NamedTuple):
     def __contains__(self, value: Any) -> bool:
         above = value > self.low if self.ends[0] == "(" else value >= self.low
         below = value < self.high if self.ends[1] == ")" else value <= self.high
-        return math.isfinite(value) and above and below
+        return above and below and math.isfinite(value)
 
     def __str__(self) -> str:
         if math.isinf(self.high):

@@ -1,8 +1,10 @@
 """A small atlas: every rule, families, ranges of r and of the position, in a second."""
 
+import numpy as np
 import pytest
 
-from bouncing_ball.atlas.plan import Plan
+from bouncing_ball.atlas import shards
+from bouncing_ball.atlas.plan import AtlasParameters
 
 SMALL = {
     "n": [1, 3],
@@ -13,10 +15,32 @@ SMALL = {
     "tolerances": [0.1, 0.01, 0.001],
     "examined": [10.0, 100.0],
     "shards": 3,
+    "summary": {"tolerance": 0.01, "rule_of_thumb": 100.0},
 }
 
 
 @pytest.fixture(scope="session")
 def small():
-    """The parameters of the small atlas, some of them changed."""
-    return lambda **changed: Plan(SMALL | changed)
+    """The small atlas, some of its parameters changed."""
+    return lambda **changed: AtlasParameters(**(SMALL | changed))
+
+
+@pytest.fixture(scope="session")
+def every_node():
+    """All nodes of a row."""
+    return lambda plan, row: plan.nodes(row, np.arange(plan.nodes_per_row))
+
+
+@pytest.fixture(scope="session")
+def parts(small):
+    return [shards.shard(small(), k) for k in range(3)]
+
+
+@pytest.fixture(scope="session")
+def limits(small):
+    return shards.limit_shard(small())
+
+
+@pytest.fixture(scope="session")
+def atlas(small, parts, limits):
+    return shards.merge(small(), iter(parts), limits)

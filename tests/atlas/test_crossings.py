@@ -1,9 +1,11 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.accuracy.errors import SIMPLE
+from bouncing_ball.accuracy.quantities import OF_ORBITS
 from bouncing_ball.accuracy.thresholds import ThresholdStatus, search
 from bouncing_ball.atlas.crossings import LastCrossings
-from bouncing_ball.atlas.errors import MODELS, OF_ORBITS, orbit_errors
+from bouncing_ball.atlas.errors import orbit_errors
 from bouncing_ball.atlas.walk import walk
 
 RATIOS = np.geomspace(1.0, 1e3, 61)
@@ -93,14 +95,10 @@ def compare_with_direct_search(plan, count, seed, points):
     random, worst = np.random.default_rng(seed), 1.0
     fine = np.geomspace(plan.ratios[0], plan.ratios[-1], points)
     for _ in range(count):
-        nodes = plan.nodes(plan.rows[random.integers(len(plan.rows))])
-        k = random.integers(len(nodes.amplitude))
-        one = nodes[k : k + 1]
-        crossings = LastCrossings(plan.tolerances, (len(MODELS), len(OF_ORBITS), 1))
+        one = plan.nodes(random.choice(plan.rows), random.integers(plan.nodes_per_row, size=1))
+        crossings = LastCrossings(np.array(plan.tolerances), (len(SIMPLE), len(OF_ORBITS), 1))
         for step in walk(one, plan.ratios):
-            ratio = step.frequency_ratio
-            error = orbit_errors(step.orbit, one.instant, ratio[:, np.newaxis])
-            crossings.meet(ratio, np.moveaxis(error, 2, 0))
+            crossings.meet(step.frequency_ratio, np.moveaxis(orbit_errors(step.orbit), 2, 0))
         ours, theirs = crossings.thresholds()[..., 0], direct(one, plan.tolerances, fine)
         assert np.array_equal(np.isinf(ours), np.isinf(theirs))
         finite = np.isfinite(ours)

@@ -1,67 +1,82 @@
 import numpy as np
 import pytest
+from pydantic import ValidationError
 
-from bouncing_ball.atlas.plan import Plan
+from bouncing_ball.atlas.plan import AtlasParameters
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.errors import ModelError
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 
 
-def test_every_node_is_in_its_tile_and_within_the_stable_range(small):
+def test_every_node_is_in_its_tile_and_within_the_stable_range(small, every_node):
     plan = small()
     for row in plan.rows:
-        nodes, n = plan.nodes(row), plan.families[row.n]
-        low, high = plan.edges[row.restitution : row.restitution + 2]
+        rule, family, tile = np.unravel_index(row, plan.shape)
+        nodes = every_node(plan, row)
+        assert (nodes.release, nodes.n) == (plan.release[rule], plan.n[family])
+        low, high = plan.edges[tile : tile + 2]
         assert np.all((low < nodes.restitution) & (nodes.restitution < high))
         model = RestitutionModel(nodes.restitution)
-        bottom, top = model.saddle_node(n).amplitude, model.period_doubling(n).amplitude
+        bottom, top = (
+            find(nodes.n).amplitude for find in (model.saddle_node, model.period_doubling)
+        )
         place = (nodes.amplitude - bottom) / (top - bottom)
-        tile = np.arange(len(place)) // plan.nodes_per_tile
-        assert np.array_equal(np.floor(place * 3), tile)
+        assert np.array_equal(np.floor(place * 3), np.arange(len(place)) // plan.nodes_per_tile)
+        # Even in both directions: all midpoints of a grid, each once.
+        assert len(set(zip(nodes.restitution, place.round(9), strict=True))) == len(place) == 24
+        assert place.min() == pytest.approx(1 / 24) and place.mean() == pytest.approx(0.5)
+        assert nodes.restitution.mean() == pytest.approx((low + high) / 2)
         assert np.allclose(nodes.contact(5.0).restitution, nodes.restitution, rtol=1e-14)
 
 
 def test_ranges_that_the_force_release_does_not_reach_are_left_out(small):
     plan = small(restitution={"min": 0.05, "max": 0.95, "tiles": 18, "samples": 1})
-    lowest = {row.release: plan.edges[row.restitution] for row in reversed(plan.rows)}
-    assert plan.releases == [Release.DISPLACEMENT, Release.FORCE]
+    assert plan.release == (Release.DISPLACEMENT, Release.FORCE)
+    rule, _, tile = np.unravel_index(plan.rows, plan.shape)
     # e⁻² = 0.135 lies in the range from 0.1 to 0.15.
-    assert lowest == {0: 0.05, 1: 0.15}
+    lowest = [plan.edges[tile[rule == k].min()] for k in (0, 1)]
+    assert lowest == [0.05, 0.15] and len(plan.rows) == 2 * (18 + 16)
 
 
-def test_the_shards_share_the_rows(small):
-    for count in (1, 2, 5, 10, 1000):
-        plan = small(shards=count)
-        shards = [plan.shard(k) for k in range(plan.shards)]
-        assert [row for shard in shards for row in shard] == plan.rows
-        sizes = {len(shard) for shard in shards}
-        assert min(sizes) >= 1 and max(sizes) - min(sizes) <= 1
-
-
-def test_a_shard_that_is_not_there(small, one_line):
-    with pytest.raises(ModelError) as error:
-        small().shard(3)
-    one_line(error, "no shard 3", "0 to 2")
+@pytest.mark.parametrize("count", [1, 2, 5, 10, 1000])
+def test_the_shards_share_the_rows(small, count):
+    plan = small(shards=count)
+    found = plan.shard_rows()
+    assert np.array_equal(np.concatenate(found), plan.rows) and len(found) == min(count, 10)
+    sizes = [len(rows) for rows in found]
+    assert min(sizes) >= 1 and max(sizes) - min(sizes) <= 1
 
 
 def test_what_is_examined_is_among_the_ratios_once(small):
     # 100 is on the grid from 10 to 1000 but for rounding.
-    plan = small(
-        frequency_ratio={"min": 10.0, "max": 1000.0, "samples": 21}, examined=[100.0, 77.0]
-    )
-    assert {77.0, 100.0} <= set(plan.ratios)
+    span = {"min": 10.0, "max": 1000.0, "samples": 21}
+    plan = small(frequency_ratio=span, examined=[100.0, 77.0])
+    assert {77.0, 100.0} <= set(plan.ratios) and len(plan.ratios) == 22
     assert np.all(np.diff(np.log(plan.ratios)) > 1e-3)
-    assert len(plan.ratios) == 22
+    assert plan.resolution == pytest.approx(100 ** (1 / 20) - 1)
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"examined": [2.0, 100.0]}, "examined = 2 must be from 3 to 10000"),
+        ({"summary": {"tolerance": 0.02, "rule_of_thumb": 100.0}}, "must be one of 0.1, 0.01"),
+        ({"summary": {"tolerance": 0.01, "rule_of_thumb": 30.0}}, "must be one of 10, 100"),
+        ({"restitution": {"min": 0.9, "max": 0.5, "tiles": 3, "samples": 2}}, "min = 0.9 must be"),
+    ],
+)
+def test_what_does_not_fit_together_is_refused(small, changed, said):
+    with pytest.raises(ValidationError, match=said):
+        small(**changed)
 
 
 def test_the_sizes_that_are_promised(pytestconfig):
     folder = pytestconfig.rootpath / "config"
     section = read_yaml(folder / "config.yaml")["atlas"]
-    assert Plan(section).orbits >= 10**8
+    assert AtlasParameters(**section).orbits >= 10**8
     for key, value in read_yaml(folder / "atlas-large.yaml")["atlas"].items():
         section[key] = section[key] | value if isinstance(value, dict) else value
-    large = Plan(section)
+    large = AtlasParameters(**section)
     assert large.orbits >= 10**10
     # Ten minutes a shard, at the rate of docs/atlas.md.
-    assert large.orbits / large.shards / 1.4e6 > 600
+    assert large.orbits / len(large.shard_rows()) / 1.4e6 > 600

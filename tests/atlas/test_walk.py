@@ -3,29 +3,26 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.accuracy.errors import errors
+from bouncing_ball.accuracy.quantities import OF_LIMITS
 from bouncing_ball.atlas.limits_walk import limit_errors
 from bouncing_ball.atlas.walk import REACHED, stiff_start, walk
 from bouncing_ball.orbits import spring_damper_limits as limits
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_branch import branch_point
-from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 COMPARED = [3.0, 10.0, 100.0, 1e4]
 
 
-def compared(plan):
-    return plan.__class__({**plan.parameters, "examined": COMPARED})
-
-
 def rows(plan, count):
     random = np.random.default_rng(5)
-    return [plan.rows[k] for k in random.choice(len(plan.rows), count, replace=False)]
+    return random.choice(plan.rows, count, replace=False)
 
 
-def test_the_walk_gives_the_orbits_that_root_finding_gives(small):
-    plan = compared(small())
+def test_the_walk_gives_the_orbits_that_root_finding_gives(small, every_node):
+    plan = small(examined=COMPARED)
     for row in rows(plan, 4):
-        nodes = plan.nodes(row)
+        nodes = every_node(plan, row)
         for step in walk(nodes, plan.ratios):
             off = np.abs(step.orbit.amplitude / nodes.amplitude - 1)
             assert np.all((off <= REACHED) | np.isnan(off))
@@ -41,15 +38,15 @@ def test_the_walk_gives_the_orbits_that_root_finding_gives(small):
                 assert np.array_equal(found.is_stable(), step.stable[k])
 
 
-def test_each_ratio_of_the_plan_is_met_once(small):
+def test_each_ratio_of_the_plan_is_met_once(small, every_node):
     plan = small()
-    met = [step.frequency_ratio for step in walk(plan.nodes(plan.rows[0]), plan.ratios)]
+    met = [step.frequency_ratio for step in walk(every_node(plan, plan.rows[0]), plan.ratios)]
     assert np.array_equal(np.concatenate(met), plan.ratios[::-1])
 
 
-def test_what_the_walk_loses_is_looked_for(small, monkeypatch):
-    plan = compared(small())
-    nodes, few = plan.nodes(plan.rows[0]), plan.ratios[-3:]
+def test_what_the_walk_loses_is_looked_for(small, every_node, monkeypatch):
+    plan = small(examined=COMPARED)
+    nodes, few = every_node(plan, plan.rows[0]), plan.ratios[-3:]
     (expected,) = walk(nodes, few)
     # As if the walk reached nothing.
     monkeypatch.setattr("bouncing_ball.atlas.walk.REACHED", -1.0)
@@ -59,10 +56,10 @@ def test_what_the_walk_loses_is_looked_for(small, monkeypatch):
 
 
 @pytest.mark.parametrize("ratio", [1e5, 1e7])
-def test_the_start_is_the_limit_of_stiff_contacts(small, ratio):
+def test_the_start_is_the_limit_of_stiff_contacts(small, every_node, ratio):
     plan = small()
     for row in rows(plan, 4):
-        nodes = plan.nodes(row)
+        nodes = every_node(plan, row)
         point = branch_point(stiff_start(nodes) / ratio, nodes.contact(ratio), nodes.n)
         expected = RestitutionModel(nodes.restitution).orbit(nodes.n, nodes.amplitude)
         lift = expected.amplitude * np.sin(expected.phase)
@@ -71,19 +68,11 @@ def test_the_start_is_the_limit_of_stiff_contacts(small, ratio):
 
 
 def test_the_limits_are_those_that_root_finding_gives(small):
-    plan = compared(small())
+    plan = small(examined=COMPARED)
     for row in rows(plan, 3):
-        nodes, n = plan.bounds(row), plan.families[row.n]
-        for (ratio,), (error,) in limit_errors(nodes, plan.ratios):
-            if ratio not in COMPARED:
-                continue
-            exact, simple = (
-                SpringDamperModel(nodes.contact(ratio)),
-                RestitutionModel(nodes.restitution),
-            )
-            expected = [
-                getattr(exact, name)(n).amplitude / getattr(simple, name)(n).amplitude - 1
-                for name in ("saddle_node", "period_doubling")
-            ]
-            assert np.allclose(error[0, :2], expected, rtol=0, atol=1e-9, equal_nan=True)
-            assert np.allclose(error[0, 2], exact.permanent_contact_threshold() - 1, rtol=1e-14)
+        r = plan.restitutions(row)
+        nodes = plan.placed(row, r, np.zeros_like(r))
+        for ratio, error in limit_errors(nodes, plan.ratios):
+            if ratio in COMPARED:
+                expected = errors(nodes.contact(ratio), nodes.n, nodes.amplitude, OF_LIMITS)
+                assert np.allclose(error, expected, rtol=0, atol=1e-9, equal_nan=True)

@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from bouncing_ball.atlas import shards
-from bouncing_ball.atlas.errors import MODELS, OF_ORBITS
-from bouncing_ball.atlas.plan import Plan
+from bouncing_ball.accuracy.errors import SIMPLE
+from bouncing_ball.accuracy.quantities import OF_ORBITS
+from bouncing_ball.atlas.answers import row_answers
+from bouncing_ball.atlas.plan import AtlasParameters
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
@@ -77,12 +78,12 @@ def simulated(contact, n, lam):
 
 def check(plan, row, part, tile, ratio):
     """The errors of the worst orbits of one tile at one ϖ."""
-    k, n = list(plan.examined).index(ratio), plan.families[row.n]
-    for i, j in np.ndindex(len(MODELS), len(NAMES)):
+    rule, family, _ = np.unravel_index(row, plan.shape)
+    k, n = plan.examined.index(ratio), plan.n[family]
+    for i, j in np.ndindex(len(SIMPLE), len(NAMES)):
         stored = float(part["largest_error"][tile, i, j, k])
         r, lam = (float(part[f"worst_{x}"][tile, i, j, k]) for x in ("restitution", "amplitude"))
-        rule = plan.releases[row.release]
-        contact = SpringDamper.from_restitution(r, ratio, rule, measured=True)
+        contact = SpringDamper.from_restitution(r, ratio, plan.release[rule], measured=True)
         values, start = simulated(contact, n, lam)
         exact = Exact(contact, n)
         near = float(part["farthest"][tile])
@@ -94,25 +95,24 @@ def check(plan, row, part, tile, ratio):
         # The walk is at Λ but for the distance that it says; next to the saddle-node
         # rounding (1e-13, see test_sixty_digits) turns the phase by a thousand times that.
         allowed = 2 * float(max(found) - min(found)) + 1e-10
-        assert abs(stored - float(found[0])) < allowed, (row, tile, MODELS[i], NAMES[j])
+        assert abs(stored - float(found[0])) < allowed, (row, tile, SIMPLE[i], NAMES[j])
         assert abs(by_motion - float(found[0])) < 1e-9
 
 
 def test_the_worst_orbits_of_some_tiles(small):
     plan, random = small(), np.random.default_rng(8)
     with mp.workdps(50):
-        for row in (plan.rows[k] for k in random.choice(len(plan.rows), 3, replace=False)):
-            part = shards.row_answers(plan, row)
+        for row in random.choice(plan.rows, 3, replace=False):
+            part = row_answers(plan, row)
             check(plan, row, part, int(random.integers(3)), float(random.choice(plan.examined)))
 
 
 @pytest.mark.long
 def test_the_worst_orbits_of_a_thousand_tiles(pytestconfig):
     config = read_yaml(pytestconfig.rootpath / "config" / "config.yaml")
-    plan, random = Plan(config["atlas"]), np.random.default_rng(9)
+    plan, random = AtlasParameters(**config["atlas"]), np.random.default_rng(9)
     with mp.workdps(50):
-        for k in random.choice(len(plan.rows), 50, replace=False):
-            row = plan.rows[k]
-            part = shards.row_answers(plan, row)
+        for row in random.choice(plan.rows, 50, replace=False):
+            part = row_answers(plan, row)
             for tile in range(20):
                 check(plan, row, part, tile, float(random.choice(plan.examined)))

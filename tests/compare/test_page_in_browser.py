@@ -8,11 +8,10 @@ import json
 import re
 import shutil
 
-import numpy as np
 import pytest
 from PIL import Image
 
-from bouncing_ball.compare.report_html import to_html
+from bouncing_ball.compare.page import to_html
 
 pytestmark = pytest.mark.slow
 
@@ -53,16 +52,6 @@ function modes(page, view) {
   }
   return seen;
 }
-function filters(page) {
-  const seen = {};
-  for (const input of page.querySelectorAll("input[name=shown]")) {
-    input.click();
-    seen[input.id.split("/").pop()] = [...page.querySelectorAll("section, nav li")]
-      .filter(part => part.offsetHeight > 0).map(part => part.id).filter(name => name);
-  }
-  page.querySelector("input[name=shown]").click();
-  return seen;
-}
 addEventListener("load", () => {
   const page = document.getElementById("page").contentDocument;
   const view = document.getElementById("page").contentWindow;
@@ -79,15 +68,7 @@ addEventListener("load", () => {
     cells: [...page.querySelectorAll("td")].map(cell => cell.textContent),
     fetched: view.performance.getEntriesByType("resource").map(entry => entry.name),
     overflow: page.documentElement.scrollWidth - page.documentElement.clientWidth,
-    title: page.title,
     modes: modes(page, view),
-    filters: filters(page),
-    links: [...page.querySelectorAll("nav a")].map(link => page.getElementById(
-      decodeURIComponent(link.hash.slice(1)))?.id),
-    drifts: [...page.querySelectorAll(".drift .dots")].map(path => path.getBoundingClientRect())
-      .map(box => [box.width, box.height]),
-    ink: view.getComputedStyle(page.body).color,
-    paper: view.getComputedStyle(page.body).backgroundColor,
   };
   document.getElementById("seen").textContent = JSON.stringify(seen);
 });
@@ -126,7 +107,6 @@ def seen(page, browse):
 
 
 def test_the_browser_shows_every_picture_and_the_worst_first(seen, kept_pair):
-    assert seen["title"] == "Artifacts against the record"
     found = {image["alt"]: image for image in seen["images"]}
     assert set(found) == {
         "fig01, record and new",
@@ -151,7 +131,6 @@ def test_the_browser_shows_every_picture_and_the_worst_first(seen, kept_pair):
     tops = [part["top"] for part in seen["sections"]]
     assert tops == sorted(tops)
     assert "case = 1, frequency_ratio = 2.51189" in seen["cells"]
-    assert seen["ink"] == "rgb(26, 26, 26)" and seen["paper"] == "rgb(255, 255, 255)"
     # Nothing came from anywhere but the page itself.
     assert [name for name in seen["fetched"] if not name.startswith("data:")] == []
 
@@ -187,36 +166,5 @@ def test_side_by_side_then_one_upon_the_other(seen):
     assert modes["large"][2]["picture"] > 1.2 * modes["difference"][2]["picture"]
 
 
-def test_a_list_to_jump_by_and_only_what_moved(seen):
-    names = [part["name"] for part in seen["sections"]]
-    assert seen["links"] == names
-    moved = [part["name"] for part in seen["sections"] if part["open"]]
-    assert seen["filters"] == {"all": names, "different": moved, "moved": moved}
-    assert 0 < len(moved) < len(names)
-    # One point that moved is one dot.
-    assert len(seen["drifts"]) == 1
-
-
-def test_the_browser_would_see_a_picture_that_is_broken(page, browse, tmp_path):
-    path = tmp_path / "page.html"
-    text = (page / path.name).read_text(encoding="utf-8")
-    start = text.index("data:image/png;base64,") + len("data:image/png;base64,")
-    path.write_text(text[:start] + "AAAA" + text[start + 4 :], encoding="utf-8")
-    seen = observe(browse, tmp_path, 1200)
-    assert [image["drawn"] for image in seen["images"]].count(False) == 1
-
-
 def test_the_page_fits_a_telephone(page, browse):
     assert observe(browse, page, 360)["overflow"] == 0
-
-
-def test_the_page_is_painted(page, browse):
-    target = page / "page.png"
-    browse(page, page / "page.html", f"--screenshot={target}", "--window-size=1000,1400")
-    with Image.open(target) as picture:
-        grey = np.asarray(picture.convert("L"))
-    assert grey.shape == (1400, 1000)
-    # Dark text on white: mostly white, and ink in the upper and the lower half.
-    assert np.mean(grey == 255) > 0.7
-    for half in np.split(grey, 2):
-        assert np.count_nonzero(half < 100) > 1000

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from bouncing_ball.datasets.variables import VARIABLES, describe
+from bouncing_ball.datasets.variables import ARTIFACTS, VARIABLES, describe
 
 
 def test_every_entry_is_complete():
@@ -12,6 +12,9 @@ def test_every_entry_is_complete():
         assert name.isidentifier()
         assert variable.long_name and variable.long_name == variable.long_name.strip()
         assert variable.units in ("1", "rad")
+        # A scale is a number or a variable, and a budget a share of it.
+        assert variable.budget > 0
+        assert not isinstance(variable.scale, str) or variable.scale in VARIABLES
         assert not variable.equation or variable.equation.startswith(("Eq", "Table"))
     # Two names must not mean the same.
     pairs = [(v.long_name, v.symbol) for v in VARIABLES.values()]
@@ -21,6 +24,13 @@ def test_every_entry_is_complete():
 def test_angles_are_in_radians_and_nothing_else():
     for name, variable in VARIABLES.items():
         assert (variable.units == "rad") == name.endswith("phase"), name
+
+
+def test_the_budgets_of_artifacts_name_what_there_is():
+    for budgets in ARTIFACTS.values():
+        for name, budget in budgets.items():
+            assert name in VARIABLES or name == "*"
+            assert budget.over in ("", *VARIABLES) and budget.scale in (None, 1.0, *VARIABLES)
 
 
 def test_describe():
@@ -44,14 +54,11 @@ def test_describe():
     for name in ("stable", "special_kind", "n", "frequency_ratio"):
         assert result[name].attrs["long_name"] == VARIABLES[name].long_name
     assert result.n.attrs["units"] == result.frequency_ratio.attrs["units"] == "1"
+    # The budget is no attribute of the data.
+    assert result.n.attrs.keys() == result.phase.attrs.keys()
     # The data stay, and so does the argument.
     assert np.array_equal(result.phase, data.phase)
     assert data.phase.attrs == {}
-
-
-def test_old_attributes_do_not_survive():
-    data = xr.Dataset({"phase": ("point", [0.5], {"long_name": "wrong", "extra": 1})})
-    assert "extra" not in describe(data).phase.attrs
 
 
 def test_unknown_names_are_refused():

@@ -9,7 +9,7 @@ from bouncing_ball.figures.branches import up_to_second_saddle_node
 from bouncing_ball.figures.canvas import number
 from bouncing_ball.figures.files import save
 from bouncing_ball.figures.style import COLOURS, LINES, style
-from bouncing_ball.record.carriers import read_attributes
+from bouncing_ball.provenance.origin import read_attributes
 
 pytestmark = pytest.mark.slow
 

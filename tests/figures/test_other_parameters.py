@@ -45,3 +45,15 @@ def test_rattling_under_the_other_release(record, texts):
     for words in ("rattling begins gently", "limit of the width"):
         assert words in paper and words not in other
     assert "this rendering was made with the other release" in other
+
+
+def test_numbers_and_verdicts_follow_the_data(record, texts):
+    moved = record["fig14"].copy(deep=True)
+    moved["error_threshold"].values[:] = 77.77
+    before, after = (texts(record | {"fig14": data}) for data in (record["fig14"], moved))
+    assert "77.77" in after["article"] and "77.77" not in before["article"]
+    counted = [
+        [line.rpartition(",")[2] for line in made["claims", "to_csv"].splitlines()]
+        for made in (before, after)
+    ]
+    assert counted[0].count("reproduced") > counted[1].count("reproduced")

@@ -1,59 +1,88 @@
-"""The target ``diff``: the results of a run against a record.
+"""The targets ``diff`` and ``accept``: the results of a run against a record.
 
 The record of the repository was made on another processor, perhaps. So that the
 test is the same everywhere, the results are the record here, and are moved on
 purpose: first as another processor does it, and then further.
 """
 
-import json
+import os
 import shutil
 
+import pytest
+
 from bouncing_ball.compare.drift import span
-from bouncing_ball.compare.tolerance_file import read_tolerances
 from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
+from bouncing_ball.datasets.variables import budget_of
 
 
-def test_a_run_against_its_record(complete):
+@pytest.fixture
+def recorded(complete):
+    """A run whose record are its own results."""
     shutil.rmtree(complete.path / "figures")
     shutil.copytree(complete.path / "results" / "figures", complete.path / "figures")
     shutil.copyfile(complete.path / "results" / "paper.md", complete.path / "paper.md")
-    # Another processor: half a budget, which no text and no picture shows.
-    path = complete.path / "figures" / "fig11.nc"
+    complete.commit("A record")
+    return complete
+
+
+def drifted(tree, budgets):
+    """Move one number of the record by a multiple of its budget."""
+    path = tree.path / "figures" / "fig11.nc"
     data = read_dataset(path)
-    rules = read_tolerances(complete.path / "config" / "tolerances.yaml")
-    budget = rules.of("fig11", "threshold_amplitude").budget * span(data.threshold_amplitude)
-    data.threshold_amplitude.values[7] += budget / 2
+    size = budget_of("fig11", "threshold_amplitude").size * span(data.threshold_amplitude)
+    data.threshold_amplitude.values[7] += budgets * size
     write_dataset(data, path)
-    done = complete.run("--cores", "1", "diff")
-    lines = done.stdout.splitlines()
+
+
+def test_a_run_against_its_record(recorded):
+    drifted(recorded, 0.5)
+    lines = recorded.run("--cores", "1", "diff").stdout.splitlines()
     assert lines[-2].split()[:4] == ["fig11", "within", "budget", "50"]
     assert lines[-1].endswith("The new artifacts say what the record says.")
-    reports = complete.path / "results" / "diff"
-    assert {path.name for path in reports.iterdir()} == {"diff.json", "diff.md", "index.html"}
-    content = json.loads((reports / "diff.json").read_text(encoding="utf-8"))
-    outcomes = {found["name"]: found["outcome"] for found in content["artifacts"]}
-    assert outcomes.pop("fig11") == "within budget" and set(outcomes.values()) == {"identical"}
-    files = {part["file"] for found in content["artifacts"] for part in found["parts"]}
-    made = complete.contents("results")
-    assert files == {name for name in made if name.startswith("figures/") or name == "paper.md"}
-    before = {path.name: path.read_bytes() for path in reports.iterdir()}
+    reports = recorded.path / "results" / "diff"
+    assert {path.name for path in reports.iterdir()} == {"diff.txt", "index.html"}
+    before = recorded.contents("results/diff")
 
     # Nothing is to be made, and it compares anew: the record has changed.
-    data.threshold_amplitude.values[7] += 1e-3
-    write_dataset(data, path)
-    (complete.path / "figures" / "fig12.svg").unlink()
-    done = complete.run("--cores", "1", "diff", check=False)
+    drifted(recorded, 1e6)
+    (recorded.path / "figures" / "fig12.svg").unlink()
+    done = recorded.run("--cores", "1", "diff", check=False)
     # The record is no input: what has changed there makes nothing again.
     assert done.returncode == 1 and "made results/" not in done.stdout
     lines = done.stdout.splitlines()
     assert [line.split()[0] for line in lines[-3:-1]] == ["fig12", "fig11"]
     assert lines[-1].startswith("1 extra, 1 drifted, ")
-    said = [line for line in done.stderr.splitlines() if line.startswith("diff: ")]
-    assert said == ["diff: see results/diff/index.html, or diff.md and diff.json beside it"]
-    assert "Traceback" not in done.stderr
-    # The reports outlive the job that failed, and say what has changed.
-    content = json.loads((reports / "diff.json").read_text(encoding="utf-8"))
-    assert content["status"] == 1
-    after = {path.name: path.read_bytes() for path in reports.iterdir()}
+    last = "diff: the results differ from the record, see results/diff/index.html"
+    assert done.stderr.splitlines()[-1] == last and "Error" not in done.stderr
+    after = recorded.contents("results/diff")
     assert before.keys() == after.keys() and not any(before[n] == after[n] for n in after)
-    assert str(complete.path).encode() not in b"".join(after.values())
+    assert str(recorded.path).encode() not in b"".join(after.values())
+    # The next run is another one.
+    assert recorded.run("--cores", "1", "fig11").returncode == 0
+
+
+def test_a_record_is_accepted_or_refused_in_one_line(recorded, monkeypatch):
+    drifted(recorded, 1e6)
+    recorded.commit("A record that has moved")
+    monkeypatch.setitem(os.environ, "ONLY", "fig12")
+
+    def refused(*arguments):
+        before = recorded.contents("figures")
+        done = recorded.run("--cores", "1", "accept", *arguments, check=False)
+        assert done.returncode == 1 and "Error" not in done.stderr
+        assert recorded.contents("figures") == before
+        return done.stderr.splitlines()[-1]
+
+    said = refused("--config", "release=force")
+    assert said.startswith("accept: this run has other values than config/config.yaml: release")
+    recorded.edit("contacts/release.py")
+    assert refused().startswith("accept: the tree is not committed")
+    recorded.commit("Another module")
+    assert refused().startswith("accept: Snakemake would still run ")
+    recorded.git("reset", "--hard", "--quiet", "HEAD~1")
+    done = recorded.run("--cores", "1", "accept")
+    assert recorded.git("status", "--porcelain") == ""
+    monkeypatch.delitem(os.environ, "ONLY")
+    done = recorded.run("--cores", "1", "accept")
+    assert "copied figures/fig11.nc" in done.stdout and "git commit" in done.stdout
+    assert recorded.git("status", "--porcelain").split() == ["M", "figures/fig11.nc"]

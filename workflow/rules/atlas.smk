@@ -1,8 +1,10 @@
 # The atlas: how stiff is stiff enough, everywhere. Not part of a run. Its summary is
 # accepted by hand, see docs/atlas.md, and the article takes its numbers from there.
 
-from bouncing_ball.pipeline.atlas import shard_minutes
+from bouncing_ball.pipeline.atlas import shard_minutes, shard_names
 
+# What the shards are made from.
+ATLAS = {key: part for key, part in config["atlas"].items() if key != "summary"}
 CHARTS = ["max_height", "bounce_velocity", "phase", "apparent_restitution", "limits", "page"]
 
 
@@ -14,9 +16,10 @@ rule atlas_shard:
     output:
         data="results/atlas/shards/{shard}.nc",
     wildcard_constraints:
-        shard=r"\d+-of-\d+",
+        # Some rows of tiles; or saddle-node, period doubling and permanent contact of all.
+        shard=r"\d+-of-\d+|limits",
     params:
-        title="The atlas: the answers of some rows of tiles",
+        title="The atlas: the answers of some rows of tiles, or about the limits of all families",
         parameters=ATLAS,
     resources:
         runtime=lambda wildcards: shard_minutes(ATLAS),
@@ -29,33 +32,12 @@ rule atlas_shard:
         "../scripts/atlas_shard.py"
 
 
-rule atlas_limits:
-    message:
-        "Atlas: saddle-node, period doubling and permanent contact"
-    input:
-        source=modules("atlas.shards", "pipeline.atlas"),
-    output:
-        data="results/atlas/shards/limits.nc",
-    params:
-        title="The atlas: the answers about the limits of the families",
-        parameters=ATLAS,
-    resources:
-        runtime=30,
-        mem_mb=1000,
-    log:
-        "results/logs/atlas/shards/limits.log",
-    benchmark:
-        "results/benchmarks/atlas/shards/limits.tsv"
-    script:
-        "../scripts/atlas_limits.py"
-
-
 rule atlas_merge:
     message:
         "Atlas: one file from its shards"
     input:
-        parts=shard_files,
-        source=modules("atlas.merge", "pipeline.atlas"),
+        parts=[f"results/atlas/shards/{name}.nc" for name in [*shard_names(ATLAS), "limits"]],
+        source=modules("atlas.shards", "pipeline.atlas"),
     output:
         data="results/atlas/atlas.nc",
     params:
@@ -82,10 +64,7 @@ rule atlas_summary:
         data="results/atlas/summary.nc",
     params:
         title="The atlas in short",
-        parameters=RUN["atlas"],
-    resources:
-        runtime=10,
-        mem_mb=2000,
+        parameters=config["atlas"],
     log:
         "results/logs/atlas/summary.log",
     benchmark:
@@ -94,7 +73,7 @@ rule atlas_summary:
         "../scripts/atlas_summary.py"
 
 
-rule atlas_charts:
+rule atlas:
     message:
         "Atlas: charts and tables"
     input:
@@ -109,20 +88,9 @@ rule atlas_charts:
         charts=expand("results/atlas/{chart}.png", chart=CHARTS),
         shares="results/atlas/shares.md",
         worst="results/atlas/worst.md",
-    resources:
-        runtime=10,
-        mem_mb=2000,
     log:
         "results/logs/atlas/charts.log",
     benchmark:
         "results/benchmarks/atlas/charts.tsv"
     script:
         "../scripts/atlas_charts.py"
-
-
-rule atlas:
-    localrule: True
-    message:
-        "The atlas is up to date"
-    input:
-        rules.atlas_charts.output,

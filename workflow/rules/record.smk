@@ -1,22 +1,37 @@
-# The accepted record: figures/ and paper.md, which git holds, with accepted.csv,
-# which says why it moved. Only this target writes there:
-#     ONLY="fig08 | table1" REASON="… | …" snakemake --cores 1 accept
-# It has no output and no benchmark, so that it looks at the record each time.
+# The accepted record, figures/ and paper.md, which git holds; its log is `git log figures/`.
+# Without outputs that Snakemake knows of, so that both look at the record at each call.
 
-from bouncing_ball.record.recipe import planned
+from bouncing_ball.pipeline.conclusion import concluded
 
 
+# ONLY='fig08 table1' snakemake --cores 1 accept; without ONLY, what has moved.
 rule accept:
+    localrule: True
     message:
         "Copying the results over the record in figures/ and paper.md"
-    input:
-        artifacts=rules.all.input.artifacts,
-        paper=rules.paper.output.paper,
-        request=request,
     params:
         record=ROOT,
-        recipes=lambda wildcards: planned(workflow.dag),
+        files=lambda wildcards: sorted({str(file) for file in rules.all.input}),
     log:
         "results/logs/accept.log",
     script:
         "../scripts/accept.py"
+
+
+rule diff:
+    message:
+        "Comparing the results with the record"
+    input:
+        rules.all.input,
+    params:
+        record=ROOT,
+    log:
+        "results/logs/diff.log",
+    script:
+        "../scripts/diff.py"
+
+
+# A difference and a refusal are no failures of their jobs: one line, and exit status 1.
+onsuccess:
+    if conclusion := concluded():
+        sys.exit(conclusion)

@@ -8,12 +8,11 @@ from bouncing_ball.figures.atlas.tables import shares, worst
 from bouncing_ball.figures.files import save
 from bouncing_ball.figures.style import style
 from bouncing_ball.figures.tables.formats import to_markdown
-from bouncing_ball.pipeline.atlas import log_of
 from bouncing_ball.pipeline.job import logged, provenance, read_input
 
 with logged(snakemake), style():
     (summary,) = snakemake.input.parts
-    data = read_input(summary, log_of(summary))
+    data = read_input(summary)
     metadata = provenance(snakemake).attributes()
     folder = Path(snakemake.output.shares).parent
     for name, figure in charts(data):

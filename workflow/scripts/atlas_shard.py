@@ -1,18 +1,12 @@
-"""One shard of the atlas."""
-
-from pathlib import Path
+"""One shard of the atlas, or the limits of all its families."""
 
 from bouncing_ball.atlas.plan import Plan
-from bouncing_ball.atlas.shards import shard
+from bouncing_ball.atlas.shards import limit_shard, shard
 from bouncing_ball.datasets.netcdf import parameter_attributes
 from bouncing_ball.pipeline.job import logged, publish
-from bouncing_ball.pipeline.progress import Progress
 
-with logged(snakemake) as lines:
-    plan, name = Plan(snakemake.params.parameters), snakemake.wildcards.shard
-    index = int(name.partition("-")[0])
-    own = len(plan.shard(index)) * plan.orbits_per_row
-    folder = Path(snakemake.output.data).parents[1] / "progress"
-    dataset = shard(plan, index, Progress(folder, name, own, plan.orbits))
-    publish(snakemake, dataset, parameter_attributes(plan.parameters), compressed=True)
-    lines.append(f"{own} orbits")
+with logged(snakemake):
+    parameters, name = snakemake.params.parameters, snakemake.wildcards.shard
+    plan = Plan(**parameters)
+    dataset = limit_shard(plan) if name == "limits" else shard(plan, int(name.partition("-")[0]))
+    publish(snakemake, dataset, parameter_attributes(parameters), compressed=True)

@@ -1,15 +1,12 @@
 """The summary of the atlas."""
 
-from bouncing_ball.atlas.plan import Plan
+from bouncing_ball.atlas.plan import AtlasParameters
 from bouncing_ball.atlas.summary import summary
 from bouncing_ball.datasets.netcdf import parameter_attributes
-from bouncing_ball.pipeline.atlas import log_of
 from bouncing_ball.pipeline.job import logged, publish, read_input
 
 with logged(snakemake):
-    plan = Plan(snakemake.params.parameters)
-    asked = plan.parameters["summary"]
+    parameters = snakemake.params.parameters
     (path,) = snakemake.input.parts
-    atlas = read_input(path, log_of(path))
-    dataset = summary(plan, atlas, asked["tolerance"], asked["rule_of_thumb"])
-    publish(snakemake, dataset, parameter_attributes(plan.parameters), compressed=True)
+    dataset = summary(AtlasParameters(**parameters), read_input(path))
+    publish(snakemake, dataset, parameter_attributes(parameters), compressed=True)

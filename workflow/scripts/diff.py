@@ -1,22 +1,17 @@
 """The results against the accepted record."""
 
-import sys
 from pathlib import Path
 
-from bouncing_ball.compare.reports import compare_and_report
+from bouncing_ball.compare.report import compared
+from bouncing_ball.datasets.files import write_text
+from bouncing_ball.pipeline.conclusion import conclude
 from bouncing_ball.pipeline.job import logged
 
-reports = Path("results", "diff")
+table_file, page = Path("results/diff/diff.txt"), Path("results/diff/index.html")
 with logged(snakemake) as lines:
-    table, status = compare_and_report(
-        Path(snakemake.params.record),
-        Path("results"),
-        snakemake.input.tolerances,
-        json=reports / "diff.json",
-        markdown=reports / "diff.md",
-        html=reports / "index.html",
-    )
+    table, status = compared(Path(snakemake.params.record), Path("results"), page=page)
     lines += table.splitlines()
+    write_text(table_file, table)
     print(table, end="", flush=True)
-if status:
-    sys.exit(f"diff: see {reports / 'index.html'}, or diff.md and diff.json beside it")
+    if status:
+        conclude(f"diff: the results differ from the record, see {page}")

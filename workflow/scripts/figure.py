@@ -2,12 +2,11 @@
 
 from bouncing_ball.configuration.study import load
 from bouncing_ball.figures.files import save_all
-from bouncing_ball.figures.given import require_numbers
 from bouncing_ball.figures.style import style
 from bouncing_ball.pipeline.job import logged, provenance, read_input
 
 with logged(snakemake) as lines, style():
     draw = load(snakemake.params.drawing)
-    data = [require_numbers(read_input(path), path) for path in snakemake.input.get("data", [])]
+    data = map(read_input, snakemake.input.get("data", []))
     save_all(draw(*data), snakemake.output, provenance(snakemake).attributes())
     lines += snakemake.output

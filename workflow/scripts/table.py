@@ -4,7 +4,6 @@ from importlib import import_module
 from pathlib import Path
 
 from bouncing_ball.datasets.files import write_text
-from bouncing_ball.figures.given import require_numbers
 from bouncing_ball.figures.tables.formats import texts
 from bouncing_ball.pipeline.job import logged, read_input, withdraw
 
@@ -12,8 +11,7 @@ with logged(snakemake) as lines:
     withdraw()
     name = Path(snakemake.output[0]).stem
     rows = import_module(f"bouncing_ball.figures.tables.{name}").rows
-    path = snakemake.input.data
-    table = texts(*rows(require_numbers(read_input(path), path)))
+    table = texts(*rows(read_input(snakemake.input.data)))
     for path in snakemake.output:
         write_text(path, table[Path(path).suffix])
     lines += snakemake.output

@@ -187,6 +187,27 @@ def coefficients(
     return first_order(n, LinearSignature(contact)(), amplitude)
 
 
+def law_thresholds(
+    n: ArrayLike,
+    damping_ratio: ArrayLike,
+    amplitude: ArrayLike,
+    release: Release,
+    tolerance: float,
+) -> ByQuantity:
+    """The ϖ from which each error is within a tolerance by the law, |K|/ε or √(|K₂|/ε).
+
+    Examples
+    --------
+    >>> law = law_thresholds(1, 0.0, 1.0, Release.DISPLACEMENT, 0.01)
+    >>> [round(float(law[q]), 12) for q in ("bounce_velocity", "permanent_contact")]
+    [50.0, 10.0]
+    """
+    first = coefficients(n, damping_ratio, amplitude, release)
+    still = permanent_contact_coefficient(damping_ratio, release)
+    needed = {quantity: np.abs(k) / tolerance for quantity, k in first.items()}
+    return needed | {Quantity.PERMANENT_CONTACT: np.sqrt(np.abs(still) / tolerance)}
+
+
 def permanent_contact_coefficient(
     damping_ratio: ArrayLike, release: Release = Release.DISPLACEMENT
 ) -> np.ndarray:

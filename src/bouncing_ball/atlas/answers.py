@@ -1,68 +1,87 @@
-r"""What is kept of the errors of a tile's nodes: thresholds, extremes and counts.
+r"""What is kept of the orbits of tiles: thresholds, extremes and counts.
 
-All of it is a maximum, a minimum or a count, so that a tile may be computed in any
-pieces; only counts grow with the number of nodes, and their size does not.
+All of it is a maximum or a count, so that the tiles of a row may be computed in any
+pieces: blocks of nodes are walked one after another, and their answers combined. The memory
+does not grow with the number of nodes, and neither do the answers.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import reduce
 from typing import Any
 
 import numpy as np
 
 from bouncing_ball.accuracy.error_law import STATED
+from bouncing_ball.accuracy.errors import SIMPLE, modulus
+from bouncing_ball.accuracy.quantities import OF_ORBITS
 from bouncing_ball.atlas.crossings import LastCrossings
-from bouncing_ball.atlas.errors import MODELS, Law
+from bouncing_ball.atlas.errors import Law, orbit_errors, orbit_law
+from bouncing_ball.atlas.plan import Nodes, Plan
+from bouncing_ball.atlas.walk import TOGETHER, walk
 
+BLOCK = 8192 // TOGETHER
+"""Nodes walked at once: as many as keep the arrays in the cache, some ϖ long."""
 PER_DECADE = 10
 """Bins of the histograms of thresholds in a decade of ϖ."""
-LAW_BINS = np.array([-np.inf, -1, 0, 0.5, 0.8, 0.9, 0.95, 0.99, 1.01, 1.05, 1.1, 1.2, 1.5, 2, 5])
-"""Lower bounds of the bins of error over law."""
 
-THRESHOLD = ("model", "quantity", "tolerance")
-ERROR = ("model", "quantity", "frequency_ratio")
+_THRESHOLD = ("model", "quantity", "tolerance")
+_ERROR = ("model", "quantity", "frequency_ratio")
 _LAW = ("quantity", "frequency_ratio")
-DIMENSIONS: Mapping[str, tuple[str, ...]] = {
-    "largest_threshold": THRESHOLD,
-    "smallest_threshold": THRESHOLD,
-    "threshold_counts": (*THRESHOLD, "threshold_bin"),
-    "holding": (*THRESHOLD, "frequency_ratio"),
-    "exceeding": (*THRESHOLD, "frequency_ratio"),
-    "largest_error": ERROR,
-    "worst_restitution": ERROR,
-    "worst_amplitude": ERROR,
-    "absent": ERROR,
-    "law_counts": (*_LAW, "law_bin"),
-    "law_stated": _LAW,
-    "law_exceeding": _LAW,
+_WORST = ("largest_error", "worst_restitution", "worst_amplitude")
+KEPT: Mapping[str, tuple[tuple[str, ...], np.ufunc]] = {
+    "largest_threshold": (_THRESHOLD, np.maximum),
+    "threshold_counts": ((*_THRESHOLD, "threshold_bin"), np.add),
+    "holding": ((*_THRESHOLD, "frequency_ratio"), np.add),
+    "exceeding": ((*_THRESHOLD, "frequency_ratio"), np.add),
+    # These three go together.
+    **dict.fromkeys(_WORST, (_ERROR, np.maximum)),
+    "law_stated": (_LAW, np.add),
+    "law_exceeding": (_LAW, np.add),
+    "unstable": (("frequency_ratio",), np.add),
+    "sought": ((), np.add),
+    "farthest": ((), np.maximum),
 }
-"""The answers, by their names, with their dimensions after the tile."""
-_WORST = ("worst_restitution", "worst_amplitude")
-_COMBINE: Mapping[str, Any] = {"largest_threshold": np.maximum, "smallest_threshold": np.minimum}
+"""The answers, by their names: dimensions after the tile, and how those of some of its
+nodes and of the others are combined."""
 
 Answers = dict[str, np.ndarray]
-"""Arrays by name, the tiles along the first axis."""
+"""Arrays by name, the tiles of a row along the first axis."""
 
 
 @dataclass(frozen=True)
-class Tiled:
-    """Nodes in order of their tiles, and what is asked of their errors."""
+class Tiles:
+    """Some nodes of a row in order of its tiles."""
 
-    tile: np.ndarray
-    """Index of each node's tile, ascending without a gap from 0."""
-    restitution: np.ndarray
-    amplitude: np.ndarray
-    law: Law
-    tolerances: np.ndarray
-    ratios: np.ndarray
-    """All ϖ of the walk, increasing."""
-    examined: np.ndarray
-    """Those of them at which the errors are described."""
+    number: np.ndarray
+    """That of each node's tile, ascending."""
+    count: int
+    """Number of tiles of the row."""
 
-    @property
-    def starts(self) -> np.ndarray:
-        """Index of the first node of each tile."""
-        return np.searchsorted(self.tile, np.arange(self.tile[-1] + 1))
+    def reduce(self, combine: np.ufunc, values: np.ndarray, empty: Any) -> np.ndarray:
+        """Values along the last axis, reduced tile by tile; the tiles come first.
+
+        Examples
+        --------
+        >>> Tiles(np.array([0, 0, 2]), 3).reduce(np.add, np.array([1, 2, 4]), 0).tolist()
+        [3, 0, 4]
+        """
+        there, starts = np.unique(self.number, return_index=True)
+        found = np.full((*values.shape[:-1], self.count), empty, values.dtype)
+        found[..., there] = combine.reduceat(values, starts, axis=-1)
+        return np.moveaxis(found, -1, 0)
+
+    def total(self, which: np.ndarray) -> np.ndarray:
+        """Numbers of nodes of which something is true."""
+        return self.reduce(np.add, which.astype(np.int32), 0)
+
+    def histogram(self, index: np.ndarray, bins: int) -> np.ndarray:
+        """Counts of bin numbers along the last axis, shape (tile, ..., bin)."""
+        leading = index.shape[:-1]
+        cell = np.arange(int(np.prod(leading))).reshape(*leading, 1)
+        flat = (self.number * cell.size + cell) * bins + index
+        counts = np.bincount(flat.ravel(), minlength=self.count * cell.size * bins)
+        return counts.reshape(self.count, *leading, bins).astype(np.int32)
 
 
 def threshold_bins(ratios: np.ndarray) -> np.ndarray:
@@ -79,107 +98,85 @@ def threshold_bins(ratios: np.ndarray) -> np.ndarray:
 
 def combined(one: Answers, other: Answers) -> Answers:
     """The answers of the same tiles from two sets of their nodes, the first come first."""
-    both = {
-        name: _COMBINE.get(name, np.add)(one[name], other[name])
-        for name in DIMENSIONS
-        if name not in (*_WORST, "largest_error")
-    }
+    both = {name: combine(one[name], other[name]) for name, (_, combine) in KEPT.items()}
     worse = other["largest_error"] > one["largest_error"]
-    for name in (*_WORST, "largest_error"):
-        both[name] = np.where(worse, other[name], one[name])
-    return both
+    return both | {name: np.where(worse, other[name], one[name]) for name in _WORST}
 
 
-def answers(nodes: Tiled, errors: Iterator[tuple[np.ndarray, np.ndarray]]) -> Answers:
-    """The answers of each tile from signed errors, some ϖ after others from the largest.
+def row_answers(plan: Plan, row: int) -> Answers:
+    """The answers of the tiles of a row."""
+    starts = range(0, plan.nodes_per_row, BLOCK)
+    # Combined as they come: no two blocks are in memory.
+    return reduce(combined, (_block(plan, row, start) for start in starts))
 
-    Parameters
-    ----------
-    nodes : Tiled
-    errors : iterator of (ndarray, ndarray)
-        ϖ, decreasing, and errors of shape (ϖ, model, quantity, nodes).
-    """
-    quantities = len(nodes.law.coefficient)
-    found = LastCrossings(nodes.tolerances, (len(MODELS), quantities, len(nodes.tile)))
+
+def _block(plan: Plan, row: int, start: int) -> Answers:
+    """The answers of some nodes, with nothing in the tiles of the others."""
+    index = np.arange(start, min(start + BLOCK, plan.nodes_per_row))
+    nodes, tiles = plan.nodes(row, index), Tiles(index // plan.nodes_per_tile, plan.position.tiles)
+    law, tolerances = orbit_law(nodes), np.array(plan.tolerances)
+    crossings = LastCrossings(tolerances, (len(SIMPLE), len(OF_ORBITS), len(index)))
     described = []
-    for ratios, error in errors:
-        found.meet(ratios, error)
-        at = np.nonzero(np.isin(ratios, nodes.examined))[0]
-        described += [_described(nodes, ratios[k], error[k]) for k in at]
+    sought, off = np.zeros(len(index), np.int32), np.zeros(len(index))
+    for step in walk(nodes, plan.ratios):
+        error = orbit_errors(step.orbit)
+        crossings.meet(step.frequency_ratio, np.moveaxis(error, 2, 0))
+        sought += np.sum(step.sought, axis=0, dtype=np.int32)
+        away = np.abs(step.orbit.amplitude / nodes.amplitude - 1)
+        off = np.fmax(off, np.fmax.reduce(away, axis=0))
+        for k in np.flatnonzero(np.isin(step.frequency_ratio, plan.examined)):
+            ratio, one = step.frequency_ratio[k], error[:, :, k]
+            described.append(
+                _errors(nodes, tiles, tolerances, one)
+                | _against_law(tiles, law, ratio, one[0])
+                | {"unstable": tiles.total(~step.stable[k])}
+            )
     # ϖ came down; the answers are in order of the examined ones, which increase.
     columns = {
         name: np.stack([part[name] for part in described[::-1]], -1) for name in described[0]
     }
-    columns["law_counts"] = np.moveaxis(columns["law_counts"], -1, -2)
-    return columns | _of_thresholds(nodes, np.moveaxis(found.thresholds(), 0, 2))
+    return {
+        **columns,
+        **_thresholds(plan, tiles, np.moveaxis(crossings.thresholds(), 0, 2)),
+        "sought": tiles.reduce(np.add, sought, 0),
+        "farthest": tiles.reduce(np.maximum, off, 0.0),
+    }
 
 
-def _per_tile(nodes: Tiled, combine: np.ufunc, values: np.ndarray) -> np.ndarray:
-    """Values along the last axis, reduced tile by tile; the tiles come first."""
-    values = values.astype(np.int32) if values.dtype == bool else values
-    reduced = combine.reduceat(values, nodes.starts, axis=-1)
-    return np.moveaxis(reduced.astype(values.dtype), -1, 0)
-
-
-def _histogram(nodes: Tiled, index: np.ndarray, bins: int) -> np.ndarray:
-    """Counts of bin numbers along the last axis, shape (tile, ..., bin)."""
-    tiles, leading = int(nodes.tile[-1]) + 1, index.shape[:-1]
-    cell = np.arange(int(np.prod(leading))).reshape(*leading, 1)
-    flat = (nodes.tile * cell.size + cell) * bins + index
-    counts = np.bincount(flat.ravel(), minlength=tiles * cell.size * bins)
-    return counts.reshape(tiles, *leading, bins).astype(np.int32)
-
-
-def _of_thresholds(nodes: Tiled, threshold: np.ndarray) -> Answers:
+def _thresholds(plan: Plan, tiles: Tiles, threshold: np.ndarray) -> Answers:
     """Of thresholds, shape (model, quantity, tolerance, nodes)."""
-    bins, ratios = threshold_bins(nodes.ratios), nodes.ratios
+    bins, ratios = threshold_bins(plan.ratios), plan.ratios
     index = np.searchsorted(bins, threshold, side="right") - 1
     index = np.where(threshold <= ratios[0] * (1 + 1e-12), 0, index)
-    holding = [_per_tile(nodes, np.add, threshold <= ratio) for ratio in nodes.examined]
+    holding = [tiles.total(threshold <= ratio) for ratio in sorted(plan.examined)]
     return {
-        "largest_threshold": _per_tile(nodes, np.maximum, threshold),
-        "smallest_threshold": _per_tile(nodes, np.minimum, threshold),
-        "threshold_counts": _histogram(nodes, index, len(bins)),
+        "largest_threshold": tiles.reduce(np.maximum, threshold, -np.inf),
+        "threshold_counts": tiles.histogram(index, len(bins)),
         "holding": np.stack(holding, axis=-1),
     }
 
 
-def _described(nodes: Tiled, ratio: float, error: np.ndarray) -> Answers:
+def _errors(nodes: Nodes, tiles: Tiles, tolerances: np.ndarray, error: np.ndarray) -> Answers:
     """Of the errors at one ϖ, shape (model, quantity, nodes)."""
-    there = np.isfinite(error)
+    there, order = np.isfinite(error), np.arange(error.shape[-1])
     size = np.where(there, np.abs(error), -np.inf)
-    largest = np.maximum.reduceat(size, nodes.starts, axis=-1)
+    largest = tiles.reduce(np.maximum, size, -np.inf)
     # The first of the nodes with the largest error; none where no error is finite.
-    order = np.arange(len(nodes.tile))
-    at_worst = (size == np.take(largest, nodes.tile, axis=-1)) & there
-    first = np.minimum.reduceat(np.where(at_worst, order, len(order)), nodes.starts, axis=-1)
-    known = np.append(nodes.restitution, np.nan), np.append(nodes.amplitude, np.nan)
-    infinite = np.where(there, np.abs(error), np.inf)
-    exceeding = infinite[:, :, np.newaxis] > nodes.tolerances[:, np.newaxis]
+    at_worst = (size == np.moveaxis(largest[tiles.number], 0, -1)) & there
+    first = tiles.reduce(np.minimum, np.where(at_worst, order, len(order)), len(order))
+    exceeding = modulus(error)[:, :, np.newaxis] > tolerances[:, np.newaxis]
     return {
-        "exceeding": _per_tile(nodes, np.add, exceeding),
-        "largest_error": np.moveaxis(largest, -1, 0),
-        "worst_restitution": np.moveaxis(known[0][first], -1, 0),
-        "worst_amplitude": np.moveaxis(known[1][first], -1, 0),
-        "absent": _per_tile(nodes, np.add, ~there),
-        **_against_law(nodes, ratio, error[0]),
+        "exceeding": tiles.total(exceeding),
+        "largest_error": largest,
+        "worst_restitution": np.append(nodes.restitution, np.nan)[first],
+        "worst_amplitude": np.append(nodes.amplitude, np.nan)[first],
     }
 
 
-def _against_law(nodes: Tiled, ratio: float, error: np.ndarray) -> Answers:
-    """The restitution model's errors over what the law says, shape (quantity, nodes)."""
-    law, there = nodes.law, np.isfinite(error)
-    predicted = law.coefficient / ratio**law.order
-    with np.errstate(divide="ignore", invalid="ignore"):
-        share = error / predicted
-    # What is not there is counted in a bin of its own, which is then dropped.
-    index = np.where(np.isfinite(share), np.searchsorted(LAW_BINS, share, side="right") - 1, 0)
-    index = np.where(np.isfinite(share), index, len(LAW_BINS))
-    stated = there & (law.small / ratio < STATED) & np.isfinite(law.remainder)
+def _against_law(tiles: Tiles, law: Law, ratio: float, error: np.ndarray) -> Answers:
+    """The restitution model's errors against what the law says, shape (quantity, nodes)."""
+    stated = np.isfinite(error) & (law.small / ratio < STATED)
     with np.errstate(invalid="ignore"):
-        beyond = np.abs(error - predicted) > law.remainder * law.small / ratio**2
-    return {
-        "law_counts": _histogram(nodes, index, len(LAW_BINS) + 1)[..., :-1],
-        "law_stated": _per_tile(nodes, np.add, stated),
-        "law_exceeding": _per_tile(nodes, np.add, stated & beyond),
-    }
+        left = np.abs(error - law.coefficient / ratio)
+        beyond = left > law.remainder * law.small / ratio**2
+    return {"law_stated": tiles.total(stated), "law_exceeding": tiles.total(stated & beyond)}

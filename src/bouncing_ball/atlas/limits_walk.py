@@ -8,20 +8,18 @@ the secant method from the extrapolated t close them. Where these do not converg
 """
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 import numpy as np
 
-from bouncing_ball.accuracy.errors import relative
+from bouncing_ball.accuracy.errors import models, relative
 from bouncing_ball.accuracy.quantities import OF_LIMITS, values
 from bouncing_ball.atlas.plan import Nodes
 from bouncing_ball.atlas.walk import extrapolated, stiff_start
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits import restitution_orbit
 from bouncing_ball.orbits import spring_damper_limits as limits
-from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_branch import BranchPoint, branch_point
-from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import period_doubling_function
 
 _SECANTS = 6
@@ -32,38 +30,36 @@ CLOSED = 1e-8
 in proportion at the period doubling, over ϖ: it is closer than this."""
 
 
-def _fold(point: BranchPoint) -> np.ndarray:
-    return point.fold
+def limit_errors(nodes: Nodes, ratios: np.ndarray) -> Iterator[tuple[float, np.ndarray]]:
+    """Signed errors of saddle-node, period doubling and permanent contact.
+
+    Parameters
+    ----------
+    nodes : Nodes
+        At the saddle-nodes of the restitution model.
+    ratios : ndarray
+        ϖ, increasing.
+
+    Yields
+    ------
+    float, ndarray
+        ϖ, from the largest to the smallest, and errors of shape (model, quantity, nodes).
+    """
+    n, r, down = nodes.n, nodes.restitution, ratios[::-1]
+    flips = replace(nodes, amplitude=restitution_orbit.period_doubling(n, r))
+    tracks = (
+        _track(lambda point: point.fold, limits.saddle_node, nodes, down),
+        _track(_flip, limits.period_doubling, flips, down),
+    )
+    for ratio, *bounds in zip(down, *tracks, strict=True):
+        model, *simple = models(nodes.contact(ratio))
+        exact = [*bounds, model.permanent_contact_threshold()]
+        each = (values(model, n, nodes.amplitude, OF_LIMITS) for model in simple)
+        yield ratio, np.stack([relative(exact, one) for one in each])
 
 
 def _flip(point: BranchPoint) -> np.ndarray:
     return period_doubling_function(point.trace, point.determinant)
-
-
-def limit_errors(nodes: Nodes, ratios: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Signed errors of saddle-node, period doubling and permanent contact.
-
-    Yields
-    ------
-    ndarray, ndarray
-        ϖ, one by one from the largest to the smallest, and errors of shape
-        (1, model, quantity, nodes).
-    """
-    n, r, down = nodes.n, nodes.restitution, ratios[::-1]
-    simple = RestitutionModel(r)
-    flip = restitution_orbit.period_doubling(n, r)
-    bounds = nodes.amplitude, flip
-    kinds = (_fold, limits.saddle_node), (_flip, limits.period_doubling)
-    tracks = [
-        _track(test, direct, Nodes(nodes.release, n, r, start), down)
-        for (test, direct), start in zip(kinds, bounds, strict=True)
-    ]
-    for ratio, fold, flip in zip(down, *tracks, strict=True):
-        contact = nodes.contact(ratio)
-        exact = [fold, flip, SpringDamperModel(contact).permanent_contact_threshold()]
-        both = simple, CorrectedModel.of_contact(contact)
-        errors = [relative(exact, values(model, n, nodes.amplitude, OF_LIMITS)) for model in both]
-        yield np.array([ratio]), np.array([errors])
 
 
 def _track(

@@ -11,31 +11,32 @@ range of r. Rows are computed one by one, a *shard* is some rows in order: so it
 numbers do not depend on how many shards there are. All quantities are dimensionless.
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple, Self
+from typing import Annotated, Self
 
 import numpy as np
+from pydantic import Field, Strict, model_validator
 
+from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.contacts.signature import Instant, LinearSignature
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.errors import ModelError
 from bouncing_ball.orbits import restitution_orbit
+from bouncing_ball.parameters import (
+    Family,
+    FrequencyRatio,
+    Many,
+    Parameters,
+    Restitution,
+    Span,
+    Tolerance,
+    number,
+)
 
 # A linear contact released by its force has a higher restitution coefficient.
 _LOWEST = {Release.DISPLACEMENT: 0.0, Release.FORCE: float(np.exp(-2))}
 # Ratios closer than this are one.
 _SAME = 1e-9
-
-
-class Row(NamedTuple):
-    """Place of a row among the rules, the families and the ranges of r."""
-
-    release: int
-    n: int
-    restitution: int
 
 
 @dataclass(frozen=True)
@@ -50,149 +51,169 @@ class Nodes:
     @cached_property
     def damping_ratio(self) -> np.ndarray:
         """ζ of the contact whose free impact has the restitution coefficient r."""
-        return np.asarray(self.contact(1.0).damping_ratio)
-
-    @cached_property
-    def instant(self) -> Instant:
-        """The signature of the contacts at ϖ = 1."""
-        return LinearSignature(self.contact(1.0))()
+        return np.asarray(damping_ratio(self.restitution, self.release))
 
     def contact(self, frequency_ratio: float | np.ndarray) -> SpringDamper:
         """The contacts of the nodes at ϖ, an array of any shape that broadcasts with theirs."""
-        if "damping_ratio" in self.__dict__:
-            return SpringDamper(frequency_ratio, self.damping_ratio, self.release)
-        r = self.restitution
-        return SpringDamper.from_restitution(r, frequency_ratio, self.release, measured=True)
-
-    def __getitem__(self, key: Any) -> Self:
-        return type(self)(self.release, self.n, self.restitution[key], self.amplitude[key])
+        return SpringDamper(frequency_ratio, self.damping_ratio, self.release)
 
 
-@dataclass(frozen=True)
-class Plan:
-    """The atlas of a section ``atlas`` of the configuration."""
+class Ranges(Parameters):
+    """Equal ranges, with even nodes in each."""
 
-    parameters: Mapping[str, Any]
+    tiles: Annotated[int, number("number of equal ranges", ge=1, le=2000)]
+    samples: Annotated[int, number("even nodes in each range", ge=1, le=10000)]
 
-    @property
-    def releases(self) -> list[Release]:
-        """The release rules."""
-        return [Release.of(name) for name in self.parameters["release"]]
 
-    @property
-    def families(self) -> list[int]:
-        """The indices n."""
-        return list(self.parameters["n"])
+class RestitutionRanges(Ranges):
+    """Ranges of r."""
 
-    @property
+    min: Annotated[
+        Restitution,
+        Field(description="smallest r, of which ranges beyond a release rule's reach are left out"),
+    ]
+    max: Annotated[Restitution, Field(description="largest r, above min")]
+
+    @model_validator(mode="after")
+    def _increasing(self) -> Self:
+        if self.min >= self.max:
+            raise ValueError(f"min = {self.min:g} must be less than max = {self.max:g}")
+        return self
+
+
+class WalkedSpan(Span):
+    """The frequency ratios walked over, from the largest to the smallest."""
+
+    min: Annotated[
+        float,
+        number("smallest ϖ: a contact softer than 3 lasts a good part of the period", ge=3, le=1e6),
+    ]
+
+
+class Plan(Parameters):
+    """What the atlas is made from."""
+
+    n: Many[Family]
+    release: Many[Annotated[Release, Strict(False)]]
+    restitution: RestitutionRanges
+    position: Ranges
+    frequency_ratio: WalkedSpan
+    tolerances: Many[Tolerance]
+    examined: Annotated[
+        Many[FrequencyRatio],
+        Field(description="the ϖ within frequency_ratio at which the errors are described"),
+    ]
+    shards: Annotated[int, number("number of jobs, at most one for each row", ge=1, le=20000)]
+
+    @model_validator(mode="after")
+    def _examined_is_walked_over(self) -> Self:
+        low, high = self.frequency_ratio.min, self.frequency_ratio.max
+        for ratio in self.examined:
+            if not low <= ratio <= high:
+                raise ValueError(f"examined = {ratio:g} must be from {low:g} to {high:g}")
+        return self
+
+    @cached_property
     def edges(self) -> np.ndarray:
         """Bounds of the ranges of r, rounded to what one would type."""
-        part = self.parameters["restitution"]
-        return np.round(np.linspace(part["min"], part["max"], part["tiles"] + 1), 12)
+        part = self.restitution
+        return np.round(np.linspace(part.min, part.max, part.tiles + 1), 12)
 
-    @property
+    @cached_property
     def positions(self) -> np.ndarray:
         """Bounds of the ranges of p."""
-        return np.linspace(0.0, 1.0, self.parameters["position"]["tiles"] + 1)
-
-    @property
-    def tolerances(self) -> np.ndarray:
-        """Relative errors tolerated."""
-        return np.array(self.parameters["tolerances"], dtype=float)
-
-    @property
-    def examined(self) -> np.ndarray:
-        """The ϖ at which the errors themselves are described."""
-        return np.array(self.parameters["examined"], dtype=float)
+        return np.linspace(0.0, 1.0, self.position.tiles + 1)
 
     @cached_property
     def ratios(self) -> np.ndarray:
         """All ϖ, increasing: the grid, with those examined among it."""
-        scanned = np.geomspace(
-            *(self.parameters["frequency_ratio"][k] for k in ("min", "max", "samples"))
-        )
-        apart = np.abs(np.log(scanned[:, np.newaxis] / self.examined)) > _SAME
-        return np.sort(np.concatenate([scanned[np.all(apart, axis=1)], self.examined]))
+        grid, examined = self.frequency_ratio.grid(), np.sort(self.examined)
+        apart = np.abs(np.log(grid[:, np.newaxis] / examined)) > _SAME
+        return np.sort(np.concatenate([grid[np.all(apart, axis=1)], examined]))
 
     @property
     def resolution(self) -> float:
         """Largest step of the grid: a threshold is known to lie within one."""
         return float(np.max(self.ratios[1:] / self.ratios[:-1])) - 1
 
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Numbers of rules, of families and of ranges of r, by which rows are numbered."""
+        return len(self.release), len(self.n), self.restitution.tiles
+
     @cached_property
-    def rows(self) -> list[Row]:
-        """The rows, in order, without ranges of r that a rule does not reach."""
-        return [
-            Row(i, j, k)
-            for i, rule in enumerate(self.releases)
-            for j in range(len(self.families))
-            for k, low in enumerate(self.edges[:-1])
-            if low >= _LOWEST[rule]
-        ]
+    def rows(self) -> np.ndarray:
+        """Numbers of the rows, without those of ranges of r that a rule does not reach."""
+        reached = [self.edges[:-1] >= _LOWEST[rule] for rule in self.release]
+        return np.flatnonzero(np.broadcast_to(np.array(reached)[:, np.newaxis], self.shape))
+
+    def shard_rows(self) -> list[np.ndarray]:
+        """The rows of each shard; their numbers differ by one at most."""
+        return np.array_split(self.rows, min(self.shards, len(self.rows)))
 
     @property
     def nodes_per_tile(self) -> int:
         """Number of nodes in a tile."""
-        return self.parameters["restitution"]["samples"] * self.parameters["position"]["samples"]
-
-    @property
-    def orbits(self) -> int:
-        """Number of orbits evaluated: all nodes at all ϖ."""
-        return len(self.rows) * self.orbits_per_row
-
-    @property
-    def orbits_per_row(self) -> int:
-        """Those of a row."""
-        return self.nodes_per_row * len(self.ratios)
-
-    @property
-    def shards(self) -> int:
-        """Number of shards: as many as are asked for, at most one for each row."""
-        return min(self.parameters["shards"], len(self.rows))
-
-    def shard(self, index: int) -> list[Row]:
-        """The rows of a shard; the shards' numbers of rows differ by one at most.
-
-        Raises
-        ------
-        ModelError
-            If there is no such shard.
-        """
-        if not 0 <= index < self.shards:
-            raise ModelError(f"no shard {index}: they are 0 to {self.shards - 1}")
-        ends = len(self.rows) * np.arange(self.shards + 1) // self.shards
-        return self.rows[ends[index] : ends[index + 1]]
+        return self.restitution.samples * self.position.samples
 
     @property
     def nodes_per_row(self) -> int:
         """Number of nodes in a row."""
-        return self.parameters["position"]["tiles"] * self.nodes_per_tile
+        return self.position.tiles * self.nodes_per_tile
 
-    def nodes(self, row: Row, start: int = 0, end: int | None = None) -> Nodes:
-        """The nodes of a row from one to another, tile by tile, in each r by r."""
-        tiles, count = self.parameters["position"]["tiles"], self._count("position")
-        index = np.arange(start, self.nodes_per_row if end is None else end)
+    @property
+    def orbits(self) -> int:
+        """Number of orbits evaluated: all nodes at all ϖ."""
+        return len(self.rows) * self.nodes_per_row * len(self.ratios)
+
+    def nodes(self, row: int, index: np.ndarray) -> Nodes:
+        """Nodes of a row by their numbers, which go tile by tile, in each r by r."""
         tile, within = np.divmod(index, self.nodes_per_tile)
-        along_r, along_p = np.divmod(within, count)
-        low, high = self.edges[row.restitution : row.restitution + 2]
-        r = _midpoint(along_r, float(low), float(high), self._count("restitution"))
-        return self.placed(row, r, _midpoint(tile * count + along_p, 0.0, 1.0, tiles * count))
+        along_r, along_p = np.divmod(within, self.position.samples)
+        count = self.position.tiles * self.position.samples
+        p = _midpoint(tile * self.position.samples + along_p, 0.0, 1.0, count)
+        return self.placed(row, self.restitutions(row)[along_r], p)
 
-    def placed(self, row: Row, r: np.ndarray, p: np.ndarray) -> Nodes:
+    def restitutions(self, row: int) -> np.ndarray:
+        """The r of a row."""
+        low, high = self.edges[row % self.restitution.tiles :][:2]
+        count = self.restitution.samples
+        return _midpoint(np.arange(count), float(low), float(high), count)
+
+    def placed(self, row: int, r: np.ndarray, p: np.ndarray) -> Nodes:
         """Nodes at any r and p, for a row's rule and n."""
-        n = self.families[row.n]
+        rule, family, _ = np.unravel_index(row, self.shape)
+        n = self.n[family]
         low, high = restitution_orbit.saddle_node(n, r), restitution_orbit.period_doubling(n, r)
-        return Nodes(self.releases[row.release], n, r, low + p * (high - low))
+        return Nodes(self.release[rule], n, r, low + p * (high - low))
 
-    def bounds(self, row: Row) -> Nodes:
-        """The r of a row, for what does not depend on p; Λ is then the saddle-node's."""
-        low, high = self.edges[row.restitution : row.restitution + 2]
-        count = self._count("restitution")
-        r = _midpoint(np.arange(count), float(low), float(high), count)
-        return self.placed(row, r, np.zeros_like(r))
 
-    def _count(self, name: str) -> int:
-        return self.parameters[name]["samples"]
+class Summary(Parameters):
+    """What the summary is asked."""
+
+    tolerance: Annotated[
+        Tolerance, Field(description="one of the tolerances: that of charts and tables")
+    ]
+    rule_of_thumb: Annotated[
+        FrequencyRatio,
+        Field(description="one of the ϖ examined, from which on the paper finds its model right"),
+    ]
+
+
+class AtlasParameters(Plan):
+    """The section ``atlas`` of the configuration."""
+
+    summary: Summary
+
+    @model_validator(mode="after")
+    def _among_the_rest(self) -> Self:
+        for key, allowed in (("tolerance", self.tolerances), ("rule_of_thumb", self.examined)):
+            if getattr(self.summary, key) not in allowed:
+                listed = ", ".join(f"{value:g}" for value in allowed)
+                raise ValueError(
+                    f"summary.{key} = {getattr(self.summary, key):g} must be one of {listed}"
+                )
+        return self
 
 
 def _midpoint(index: np.ndarray, low: float, high: float, count: int) -> np.ndarray:

@@ -9,37 +9,35 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.atlas.errors import OF_LIMITS, OF_ORBITS, limit_law, orbit_law
-from bouncing_ball.atlas.plan import Plan
+from bouncing_ball.accuracy.error_law import coefficients, law_thresholds
+from bouncing_ball.accuracy.quantities import OF_LIMITS, OF_ORBITS
+from bouncing_ball.atlas.plan import AtlasParameters
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.orbits import restitution_orbit
 
 QUANTILES = (0.5, 0.9, 0.99, 1.0)
-_NEAR = 0.1
-"""What counts as on the law: error over law within this of 1."""
 
 
-def summary(plan: Plan, atlas: xr.Dataset, tolerance: float, rule_of_thumb: float) -> xr.Dataset:
-    """The summary for a tolerance and a rule "ϖ above this is enough".
-
-    Both must be among those of the plan.
-    """
+def summary(plan: AtlasParameters, atlas: xr.Dataset) -> xr.Dataset:
+    """The summary for a tolerance and a rule "ϖ above this is enough"."""
+    tolerance, rule_of_thumb = plan.summary.tolerance, plan.summary.rule_of_thumb
     one = atlas.sel({"tolerance": tolerance})
     failing = one.sel({"frequency_ratio": rule_of_thumb})
     nodes = float(plan.nodes_per_tile)
     data: dict[str, Any] = {
         "needed": one.largest_threshold.astype("f4"),
-        "limit_needed": atlas.limit_largest_threshold,
-        "holding_share": _shares(atlas, "holding"),
-        "exceeding_share": _shares(atlas, "exceeding"),
+        "limit_needed": atlas.limit_needed,
+        "holding_share": _share(atlas, "holding"),
+        "exceeding_share": _share(atlas, "exceeding"),
         "needed_quantile": _quantiles(atlas),
         "failing_share": (failing.exceeding / nodes).astype("f4"),
         "failing_restitution": _reach(plan.edges, failing.exceeding, "restitution"),
         "failing_position": _reach(plan.positions, failing.exceeding, "position"),
-        "unstable_share": _of_nodes(atlas, atlas.unstable),
-        **_law(atlas),
+        "unstable_share": _share(atlas, "unstable"),
+        "law_stated": atlas.law_stated.sum(("n", *_TILES)),
+        "law_exceeding": atlas.law_exceeding.sum(("n", *_TILES)),
         **_worst(atlas, rule_of_thumb),
-        **_drawn(plan, tolerance),
+        **_drawn(plan),
     }
     numbers = {
         "orbits": plan.orbits,
@@ -61,18 +59,10 @@ def _bare(value: Any) -> Any:
 _TILES = ("restitution", "position")
 
 
-def _nodes(atlas: xr.Dataset) -> xr.DataArray:
-    """Nodes of each rule and n."""
-    counts = atlas.threshold_counts.isel(model=0, quantity=0, tolerance=0, drop=True)
-    return counts.sum(("threshold_bin", *_TILES))
-
-
-def _of_nodes(atlas: xr.Dataset, counts: xr.DataArray) -> xr.DataArray:
-    return counts.sum(_TILES) / _nodes(atlas)
-
-
-def _shares(atlas: xr.Dataset, name: str) -> xr.DataArray:
-    return _of_nodes(atlas, atlas[name])
+def _share(atlas: xr.Dataset, name: str) -> xr.DataArray:
+    """Share of the nodes of each rule and n of which something is counted."""
+    nodes = atlas.threshold_counts.isel(model=0, quantity=0, tolerance=0, drop=True)
+    return atlas[name].sum(_TILES) / nodes.sum(("threshold_bin", *_TILES))
 
 
 def _quantiles(atlas: xr.Dataset) -> xr.DataArray:
@@ -99,17 +89,6 @@ def _reach(edges: np.ndarray, exceeding: xr.DataArray, along: str) -> xr.DataArr
     return ends.where(fails, 0.0).max(along)
 
 
-def _law(atlas: xr.Dataset) -> dict[str, xr.DataArray]:
-    """Share of nodes near the law; nodes for which it is stated, and those beyond it."""
-    counts = atlas.law_counts.sum(("n", *_TILES))
-    near = (atlas.law_bin >= 1 - _NEAR) & (atlas.law_bin < 1 + _NEAR)
-    return {
-        "law_near": counts.where(near, 0).sum("law_bin") / counts.sum("law_bin"),
-        "law_stated": atlas.law_stated.sum(("n", *_TILES)),
-        "law_exceeding": atlas.law_exceeding.sum(("n", *_TILES)),
-    }
-
-
 def _worst(atlas: xr.Dataset, ratio: float) -> dict[str, xr.DataArray]:
     """The node with the largest error at a ϖ, for each rule, n, model and quantity."""
     there = atlas.sel({"frequency_ratio": ratio})
@@ -119,28 +98,27 @@ def _worst(atlas: xr.Dataset, ratio: float) -> dict[str, xr.DataArray]:
         "worst_error": error.isel(place),
         "worst_restitution": there.worst_restitution.isel(place),
         "worst_amplitude": there.worst_amplitude.isel(place),
-        "absent_nodes": there.absent.sum(_TILES),
     }
 
 
-def _drawn(plan: Plan, tolerance: float) -> dict[str, xr.DataArray]:
+def _drawn(plan: AtlasParameters) -> dict[str, xr.DataArray]:
     """For the charts: Λ at the corners of the tiles, and the error law in their middles."""
     r, p = plan.edges, plan.positions
-    n = np.array(plan.families)[:, np.newaxis]
+    n = np.array(plan.n)[:, np.newaxis]
     # The corners lie at r = 1 too, where there is no saddle-node above Λ = 0.
     low, high = restitution_orbit.saddle_node(n, r), restitution_orbit.period_doubling(n, r)
     corners = low[..., np.newaxis] + p * (high - low)[..., np.newaxis]
-    middle_r, middle_p = np.meshgrid((r[1:] + r[:-1]) / 2, (p[1:] + p[:-1]) / 2, indexing="ij")
-    shape = len(plan.releases), len(plan.families), len(r) - 1
-    law = np.full((*shape, len(p) - 1, len(OF_ORBITS)), np.nan, "f4")
-    limit = np.full((*shape, len(OF_LIMITS)), np.nan)
+    middle_r, middle_p = (r[1:] + r[:-1]) / 2, (p[1:] + p[:-1]) / 2
+    law = np.full((*plan.shape, len(middle_p), len(OF_ORBITS)), np.nan, "f4")
+    limit = np.full((*plan.shape, len(OF_LIMITS)), np.nan)
     for row in plan.rows:
-        nodes = plan.placed(row, middle_r[row.restitution], middle_p[row.restitution])
-        law[row] = np.abs(orbit_law(nodes).coefficient).T
-        flip = restitution_orbit.period_doubling(nodes.n, nodes.restitution[:1])
-        of_limits = limit_law(nodes[:1], flip)
-        needed = (np.abs(of_limits.coefficient) / tolerance) ** (1 / of_limits.order)
-        limit[row] = needed[:, 0]
+        place = np.unravel_index(row, plan.shape)
+        nodes = plan.placed(row, np.full_like(middle_p, middle_r[place[-1]]), middle_p)
+        orbits = nodes.n, nodes.damping_ratio, nodes.amplitude, nodes.release
+        k, needed = coefficients(*orbits), law_thresholds(*orbits, plan.summary.tolerance)
+        law[place] = np.abs([k[q] for q in OF_ORBITS]).T
+        # The limits are the same for all positions.
+        limit[place] = [needed[q][0] for q in OF_LIMITS]
     dims = ("release", "n", "restitution", "position", "quantity")
     return {
         "corner_amplitude": xr.DataArray(

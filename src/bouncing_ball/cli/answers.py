@@ -4,6 +4,7 @@ Options come from the signatures: of the public calls, and of what is added to t
 """
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -30,7 +31,7 @@ Answer = dict[str, Any]
 __all__ = ["error_law", "limits", "lines", "orbit", "permanent_contact", "simulate"]
 
 
-def _described(of: Any, speed: float) -> Answer:
+def _described(of: Any, speed: Callable[[ContactLaw], float] = lambda _: math.nan) -> Answer:
     """r and ζ of a contact; of a contact law its parameters, and r and D at an impact speed."""
     match of:
         case SpringDamper():
@@ -39,14 +40,15 @@ def _described(of: Any, speed: float) -> Answer:
                 "damping_ratio": float(of.damping_ratio),
             }
         case ContactLaw():
-            impact = free_impact(of, np.float64(speed))
+            at = speed(of)
+            impact = free_impact(of, np.float64(at))
             return {
                 "law": of.name,
                 "parameters": {name: float(x) for name, x in of.parameters().items()},
                 "measured_restitution": float(impact.restitution),
                 "free_duration": float(impact.duration),
                 "frequency_ratio": math.pi / float(impact.duration),
-                "at_impact_speed": float(speed),
+                "at_impact_speed": at,
             }
         case SpringDamperModel(inner) | LinearSignature(inner):
             return _described(inner, speed)
@@ -72,7 +74,8 @@ def orbit(n=1, *, amplitude, side, index, **impact: Any) -> Answer:
     found = calls.chosen_orbit(of, n, amplitude, side, index)
     several = [_orbit(found[k]) for k in range(found.size)] if found.shape else []
     answer = {"orbits": several} if several else _orbit(found)
-    return answer | _described(of, -float(np.ravel(found.relative_impact_velocity)[0]))
+    speed = -float(np.ravel(found.relative_impact_velocity)[0])
+    return answer | _described(of, lambda _: speed)
 
 
 @takes(calls.limits)
@@ -101,13 +104,8 @@ def limits(n=1, **impact: Any) -> Answer:
             "contact_duration": float(orbit.contact_duration),
             "is_admissible": bool(orbit.is_admissible()),
         }
-    law = getattr(of, "law", None)
-    law = law.law if isinstance(law, LawSignature) else law
     # The limits have two impact speeds; a law is described at the restitution model's.
-    rigid = (
-        float(restitution_speed(n, LawModel(law))[0]) if isinstance(law, ContactLaw) else math.nan
-    )
-    return found | _described(of, rigid)
+    return found | _described(of, lambda law: float(restitution_speed(n, LawModel(law))[0]))
 
 
 @takes(calls.orbit, "n", "amplitude", "release", *calls.LOSS)
@@ -133,7 +131,7 @@ def error_law(n=1, **given: Any) -> Answer:
         "coefficients": {name: k if k is None else abs(k) for name, k in signed.items()},
         "signed": signed,
         "second_order": {"permanent_contact": second},
-        **_described(contact, math.nan),
+        **_described(contact),
     }
 
 
@@ -167,7 +165,7 @@ def permanent_contact(*, frequency_ratio: calls.FrequencyRatio, model, **given: 
         lowest = permanent_contact_minimum(zeta, contact.release)
         answer["minimum"] = float(lowest.threshold)
         answer["at_frequency_ratio"] = float(lowest.frequency_ratio)
-    return answer | _described(contact, math.nan)
+    return answer | _described(contact)
 
 
 def _columns(found: ImpactSequence) -> Answer:
@@ -193,4 +191,4 @@ def simulate(amplitude, phase, velocity, impacts, **impact: Any) -> Answer:
     found = of.simulate(amplitude, phase, velocity, impacts)
     status = Status(int(found.status)).name.lower().replace("_", " ")
     speed = -float(found.relative_velocity[0])
-    return {"status": status} | _described(of, speed) | {"sequence": _columns(found)}
+    return {"status": status} | _described(of, lambda _: speed) | {"sequence": _columns(found)}

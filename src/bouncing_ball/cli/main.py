@@ -1,12 +1,12 @@
 """Entry point of ``bouncing-ball``."""
 
-import argparse
 import inspect
 import sys
 from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
+from bouncing_ball import __version__
 from bouncing_ball.cli.options import Parser, add_options, in_options, positional
 from bouncing_ball.cli.output import fail, flush, prepare, print_lines, to_json
 from bouncing_ball.errors import NoOrbitError, ParameterError
@@ -25,20 +25,10 @@ _COMMANDS = {
     ),
     "explain": (
         "where a figure, dataset or table comes from, and the command that makes it again",
-        "record.explain",
+        "provenance.explain",
     ),
     "diff": ("whether two folders of artifacts say the same", "cli.diff"),
 }
-
-
-class _Version(argparse.Action):
-    """The version of the installed package, looked up only when it is asked for."""
-
-    def __call__(self, parser, namespace, values, option_string=None):
-        from importlib.metadata import version
-
-        print_lines([f"{parser.prog} {version('bouncing-ball')}"])
-        parser.exit()
 
 
 def _laws() -> str:
@@ -68,13 +58,7 @@ def parser(arguments: list[str]) -> Parser:
         description="Periodic orbits of a ball on a vibrating table. All quantities are "
         "dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g.",
     )
-    top.add_argument(
-        "--version",
-        action=_Version,
-        nargs=0,
-        default=argparse.SUPPRESS,
-        help="print the version and exit",
-    )
+    top.add_argument("--version", action="version", version=f"{top.prog} {__version__}")
     commands = top.add_subparsers(dest="command", parser_class=Parser)
     for name, (text, _) in _COMMANDS.items():
         sub = commands.add_parser(name, help=text, description=text)

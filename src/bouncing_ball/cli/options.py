@@ -2,7 +2,9 @@
 
 import argparse
 import inspect
+import math
 import re
+import sys
 import typing
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -26,8 +28,12 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"{self.prog}: {escaped(message)}\n")
 
-    def print_help(self, file=None) -> None:
-        print_lines(self.format_help().splitlines())
+    def _print_message(self, message: str, file: Any = None) -> None:
+        # argparse itself says nothing where the help cannot be written.
+        if file is sys.stdout:
+            print_lines(message.splitlines())
+        else:
+            super()._print_message(message, file)
 
 
 def option(name: str) -> str:
@@ -74,34 +80,28 @@ class _Assign(argparse.Action):
 
 def _assignment(text: str) -> tuple[str, float]:
     name, equals, value = text.partition("=")
-    number = _float(value)
-    if not (name and equals and number in Range()):
-        raise argparse.ArgumentTypeError(f"{text!r} is not NAME=NUMBER, as stiffness=1000")
-    return name, number
-
-
-def _float(text: str) -> float:
     try:
-        return float(text)
-    except ValueError:
-        return float("nan")
+        if not (name and equals):
+            raise argparse.ArgumentTypeError
+        return name, _within(Range())(value)
+    except argparse.ArgumentTypeError:
+        example = "NAME=NUMBER, as stiffness=1000"
+        raise argparse.ArgumentTypeError(f"{text!r} is not {example}") from None
 
 
-def _number_in(allowed: Range) -> Callable[[str], float]:
-    def parse(text: str) -> float:
-        if _float(text) not in allowed:
-            raise argparse.ArgumentTypeError(f"{text!r} is not {allowed}")
-        return float(text)
+def _within(allowed: Range, kind: type = float) -> Callable[[str], Any]:
+    """A parser of numbers in a range, for ``type=``."""
 
-    return parse
-
-
-def _count_in(allowed: Range) -> Callable[[str], int]:
-    def parse(text: str) -> int:
-        if not re.fullmatch(r"\s*\+?\d+\s*", text) or int(text) not in allowed:
-            span = f"{allowed.low:g} to {allowed.high:.0f}"
-            raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from {span}")
-        return int(text)
+    def parse(text: str) -> Any:
+        try:
+            value = kind(text)
+        except ValueError:
+            value = math.nan
+        if value not in allowed:
+            whole = f"a whole number from {allowed.low:g} to {allowed.high:.0f}"
+            what = whole if kind is int else allowed
+            raise argparse.ArgumentTypeError(f"{text!r} is not {what}")
+        return value
 
     return parse
 
@@ -117,17 +117,13 @@ def _reading(annotation: Any) -> dict[str, Any]:
         kind, how = kinds
         if not isinstance(how, Range):
             return {"type": how, "metavar": "FILE"}
-        whole = kind is int
-        return {
-            "type": _count_in(how) if whole else _number_in(how),
-            "metavar": "N" if whole else "X",
-        }
+        if kind is int:
+            return {"type": _within(how, int), "metavar": "N"}
+        return {"type": _within(how), "metavar": "X"}
     if origin is typing.Literal:
         return {"choices": kinds}
     if origin is Mapping:
         return {"type": _assignment, "action": _Assign, "metavar": "NAME=NUMBER"}
-    if annotation is bool:
-        return {"action": "store_true"}
     return {"metavar": "X"} | ({"type": annotation} if annotation in (int, str, Path) else {})
 
 

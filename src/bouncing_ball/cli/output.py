@@ -10,7 +10,7 @@ import sys
 from contextlib import suppress
 from typing import Any, NoReturn
 
-from bouncing_ball.record.reading import printable
+from bouncing_ball.errors import printable
 
 
 def prepare() -> None:

@@ -1,1 +1,1 @@
-"""Whether two folders of artifacts say the same: drifts, budgets, outcomes, reports."""
+"""Whether two folders of artifacts say the same; copying one over the accepted record."""

@@ -1,4 +1,4 @@
-"""How far numbers have moved: pure functions of arrays, one for each mode.
+"""How far numbers have moved: pure functions of arrays.
 
 A drift is dimensionless: a difference over a scale. Two values that are both
 NaN, or infinite with the same sign, have drifted by nothing; a value that is
@@ -30,20 +30,16 @@ def span(values: ArrayLike) -> float:
     return float(np.ptp(finite)) or float(np.max(np.abs(finite))) or 1.0
 
 
-def _alike(record, new):
-    """Whether both are finite, or not finite in the same way."""
-    return (
-        (np.isfinite(record) & np.isfinite(new))
-        | (record == new)
-        | (np.isnan(record) & np.isnan(new))
-    )
+def same(record: ArrayLike, new: ArrayLike) -> np.ndarray:
+    """Whether values are equal; NaN is equal to NaN.
 
-
-def _measured(distance, *pairs):
-    """The distance where all of it is finite; elsewhere 0 for what is alike, else ∞."""
-    finite = np.all([np.isfinite(part) for pair in pairs for part in pair], axis=0)
-    alike = np.all([_alike(*pair) for pair in pairs], axis=0)
-    return np.where(finite, distance, np.where(alike, 0.0, np.inf))
+    Examples
+    --------
+    >>> same([np.nan, 1.0, np.inf], [np.nan, 2.0, np.inf]).tolist()
+    [True, False, True]
+    """
+    record, new = np.asarray(record), np.asarray(new)
+    return (record == new) | ((record != record) & (new != new))
 
 
 def pointwise(record: ArrayLike, new: ArrayLike, scale: ArrayLike) -> np.ndarray:
@@ -53,15 +49,13 @@ def pointwise(record: ArrayLike, new: ArrayLike, scale: ArrayLike) -> np.ndarray
     --------
     >>> pointwise([0.0, 1.0, np.nan], [0.5, 1.0, np.nan], 2.0).tolist()
     [0.25, 0.0, 0.0]
-    >>> pointwise([1.0], [np.nan], 1.0).tolist()
-    [inf]
+    >>> pointwise([1.0, 1.0], [np.nan, 2.0], [1.0, np.nan]).tolist()
+    [inf, inf]
     """
     record, new = np.asarray(record, dtype=float), np.asarray(new, dtype=float)
     with np.errstate(invalid="ignore", divide="ignore"):
         distance = np.abs(new - record) / scale
-    # 0/0, or a scale that is not a number, is not a measure: alike or not.
-    distance = np.where(np.isnan(distance), np.where(record == new, 0.0, np.inf), distance)
-    return _measured(distance, (record, new))
+    return np.where(same(record, new), 0.0, np.where(np.isnan(distance), np.inf, distance))
 
 
 def _to_polyline(x, y, line_x, line_y) -> np.ndarray:
@@ -105,4 +99,11 @@ def curve(x: ArrayLike, y: ArrayLike, new_x: ArrayLike, new_y: ArrayLike) -> np.
     x, y, new_x, new_y = (np.asarray(part, dtype=float) for part in (x, y, new_x, new_y))
     with np.errstate(invalid="ignore", over="ignore"):
         distance = np.maximum(_to_polyline(new_x, new_y, x, y), _to_polyline(x, y, new_x, new_y))
-    return _measured(distance, (x, new_x), (y, new_y))
+    finite = np.isfinite(x) & np.isfinite(y) & np.isfinite(new_x) & np.isfinite(new_y)
+    alike = _alike(x, new_x) & _alike(y, new_y)
+    return np.where(finite, distance, np.where(alike, 0.0, np.inf))
+
+
+def _alike(record, new):
+    """Whether both are finite, or not finite in the same way."""
+    return (np.isfinite(record) & np.isfinite(new)) | same(record, new)

@@ -5,7 +5,7 @@ from enum import StrEnum
 
 
 class Outcome(StrEnum):
-    """What the comparison of one thing with its counterpart in the record says.
+    """The result for one thing and its counterpart in the record.
 
     In order: a whole is as good as its worst part.
     """
@@ -16,7 +16,7 @@ class Outcome(StrEnum):
     STRUCTURE = "changed structure"
     MISSING = "missing"
     EXTRA = "extra"
-    UNREADABLE = "unreadable"
+    UNREADABLE = "could not be compared"
 
     @property
     def rank(self) -> int:
@@ -28,6 +28,17 @@ class Outcome(StrEnum):
         """Whether the new thing still says what the record says."""
         return self.rank <= Outcome.WITHIN.rank
 
+    @property
+    def status(self) -> int:
+        """Exit status: 0 the same, 1 differs, 2 could not be compared.
+
+        Examples
+        --------
+        >>> [outcome.status for outcome in Outcome]
+        [0, 0, 1, 1, 1, 1, 2]
+        """
+        return 2 if self is Outcome.UNREADABLE else int(not self.agrees)
+
 
 def worst(outcomes: Iterable[Outcome]) -> Outcome:
     """The worst of some outcomes, ``IDENTICAL`` if there are none.
@@ -38,16 +49,3 @@ def worst(outcomes: Iterable[Outcome]) -> Outcome:
     'missing'
     """
     return max(outcomes, key=lambda outcome: outcome.rank, default=Outcome.IDENTICAL)
-
-
-def status(outcome: Outcome) -> int:
-    """Exit status: 0 the same, 1 differs, 2 could not be compared.
-
-    Examples
-    --------
-    >>> [status(outcome) for outcome in Outcome]
-    [0, 0, 1, 1, 1, 1, 2]
-    """
-    if outcome is Outcome.UNREADABLE:
-        return 2
-    return 0 if outcome.agrees else 1

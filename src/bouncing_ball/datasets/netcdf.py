@@ -80,6 +80,4 @@ def read_dataset(path: str | Path) -> xr.Dataset:
     except FileNotFoundError:
         raise DatasetError(f"no dataset {path}") from None
     except (OSError, ValueError) as error:
-        raise DatasetError(
-            f"{path} is damaged: remove it, and the next run makes it again"
-        ) from error
+        raise DatasetError(f"{path} is damaged") from error

@@ -4,9 +4,12 @@ import json
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
 from bouncing_ball.datasets.atomic import replacing
+from bouncing_ball.figures.style import RESOLUTION
 
 
 def save_all(figure: Figure, paths: Iterable[str | Path], metadata: Mapping[str, str]) -> None:
@@ -19,15 +22,21 @@ def save_all(figure: Figure, paths: Iterable[str | Path], metadata: Mapping[str,
 
 
 def save(figure: Figure, path: str | Path, metadata: Mapping[str, str]) -> None:
-    """Write a figure as PNG or SVG, whole or not at all, the same every time.
+    """Write a figure, whole or not at all, the same every time.
 
     The metadata become text chunks of a PNG; an SVG, whose vocabulary is
     limited, holds them as JSON in its description.
     """
     # Neither a time nor a version of matplotlib's own.
-    if Path(path).suffix == ".svg":
-        embedded = {"Date": None, "Creator": None, "Description": json.dumps(dict(metadata))}
-    else:
-        embedded = {"Software": None, **metadata}
+    attributes = {"Software": None, **metadata}
+    description = {"Date": None, "Creator": None, "Description": json.dumps(dict(metadata))}
     with replacing(path) as temporary:
-        figure.savefig(temporary, metadata=embedded)
+        # Not by savefig, which draws these two twice.
+        match Path(path).suffix:
+            case ".svg":
+                FigureCanvasSVG(figure).print_svg(temporary, metadata=description)
+            case ".png":
+                figure.set_dpi(RESOLUTION)
+                FigureCanvasAgg(figure).print_png(temporary, metadata=attributes)
+            case _:
+                figure.savefig(temporary, metadata=attributes)

@@ -52,7 +52,6 @@ def contact_history(data: xr.Dataset) -> Figure:
     ):
         axes.plot([instant, instant], [low, height], **GUIDE)
         axes.plot(instant, height, "o", color="black", markersize=3.5, zorder=5)
-        note(axes, name, (instant, low), (0, -2), ha="center", va="top")
         # The tangent into the impact, or out of the release, of a fixed length in τ.
         side = np.copysign(reach, velocity)
         here, far = (instant, height), (instant + side, height + side * velocity)
@@ -60,6 +59,7 @@ def contact_history(data: xr.Dataset) -> Figure:
         axes.annotate("", xy=head, xytext=tail, arrowprops=_ARROW)
         offset, ha = ((4, 1), "left") if velocity < 0 else ((-4, 1), "right")
         note(axes, symbol, far, offset, ha=ha, va="center")
+        note(axes, name, (instant, low), (0, -2), ha="center", va="top")
     top, dip = int(np.argmax(ball)), int(np.argmin(table))
     note(axes, "ball $z$", (time[top], ball[top]), (0, 5), ha="center", color=CONTACT)
     place = {"ha": "center", "va": "bottom", "color": "#5f5f5f"}

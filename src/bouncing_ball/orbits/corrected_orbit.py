@@ -41,7 +41,10 @@ class CorrectedOrbit(Orbit):
         launch = np.asarray(n) * np.pi
         hit = impact(law, amplitude, phase, -launch)
         delay, duration = hit.instant.delay, hit.instant.duration
-        return cls.of(n, law, amplitude, hit.phase - delay, duration, delay - launch)
+        found = cls.of(n, law, amplitude, hit.phase - delay, duration, delay - launch)
+        # Known already: nobody needs to find it again.
+        vars(found)["hit"] = hit
+        return found
 
     @cached_property
     def hit(self) -> Hit:

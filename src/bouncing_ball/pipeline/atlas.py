@@ -1,17 +1,11 @@
-"""What the rules and scripts of the atlas need: names, times and whole files of shards.
+"""What the rules and scripts of the atlas need: names and times of shards.
 
 Every job of every rule reads the rules; so the plan is imported when it is asked for.
 """
 
 import math
-from collections.abc import Iterable, Mapping
-from pathlib import Path
+from collections.abc import Mapping
 from typing import Any
-
-from bouncing_ball.record.job_log import is_as_written
-
-FOLDER = "results/atlas"
-LOGS = "results/logs/atlas"
 
 # Processor time of an orbit on a slow machine, with some to spare.
 _SECONDS_PER_ORBIT = 3e-6
@@ -24,12 +18,13 @@ def shard_names(parameters: Mapping[str, Any]) -> list[str]:
     Examples
     --------
     >>> from bouncing_ball.configuration.yaml_file import read_yaml
-    >>> shard_names(read_yaml("config/config.yaml")["atlas"])[:2]
+    >>> section = read_yaml("config/config.yaml")["atlas"]
+    >>> shard_names({key: part for key, part in section.items() if key != "summary"})[:2]
     ['0000-of-0020', '0001-of-0020']
     """
     from bouncing_ball.atlas.plan import Plan
 
-    count = Plan(parameters).shards
+    count = len(Plan(**parameters).shard_rows())
     return [f"{k:04d}-of-{count:04d}" for k in range(count)]
 
 
@@ -37,27 +32,6 @@ def shard_minutes(parameters: Mapping[str, Any]) -> int:
     """Minutes that a cluster should give to a shard."""
     from bouncing_ball.atlas.plan import Plan
 
-    plan = Plan(parameters)
-    seconds = plan.orbits / plan.shards * _SECONDS_PER_ORBIT
+    plan = Plan(**parameters)
+    seconds = plan.orbits / len(plan.shard_rows()) * _SECONDS_PER_ORBIT
     return _LEAST_MINUTES + math.ceil(seconds / 60)
-
-
-def log_of(path: str) -> str:
-    """The log of the job that makes a file of the atlas.
-
-    Examples
-    --------
-    >>> log_of("results/atlas/shards/limits.nc")
-    'results/logs/atlas/shards/limits.log'
-    """
-    return str(Path(LOGS, Path(path).relative_to(FOLDER)).with_suffix(".log"))
-
-
-def discard_damaged(paths: Iterable[str]) -> list[str]:
-    """Remove files that are not what their jobs wrote; which they were."""
-    damaged = [
-        path for path in paths if Path(path).is_file() and not is_as_written(path, log_of(path))
-    ]
-    for path in damaged:
-        Path(path).unlink()
-    return damaged

@@ -16,7 +16,6 @@ from typing import Any
 import xarray as xr
 
 from bouncing_ball.configuration.study import load, typed
-from bouncing_ball.datasets.emptiness import statement
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.datasets.netcdf import (
     CONVENTIONS,
@@ -25,10 +24,7 @@ from bouncing_ball.datasets.netcdf import (
     read_dataset,
     write_dataset,
 )
-from bouncing_ball.record.carriers import CARRIERS
-from bouncing_ball.record.job_log import is_as_written, log_lines
-from bouncing_ball.record.provenance import PREFIX, Provenance
-from bouncing_ball.record.recipe import Recipe, Run, gather
+from bouncing_ball.provenance.origin import PREFIX, Provenance, gather
 
 REFERENCE = (
     "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient "
@@ -37,8 +33,6 @@ REFERENCE = (
 
 HISTORY = "computed from the equations; the attributes provenance_* say by what and from what"
 
-LOGS = "results/logs/stages"
-"""Logs of the jobs that make datasets."""
 ARTICLE = ("results/paper.md", "results/tally.txt")
 """What is made from all datasets and tables."""
 
@@ -63,11 +57,7 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
     log = Path(snakemake.log[0])
     try:
         yield lines
-        # What a job wrote is known by its checksum, so that a file changed by hand is
-        # seen, and what from by its own words or, for a text or a table, by the log's.
         outputs = list(snakemake.output)
-        silent = outputs and not any(Path(path).suffix in CARRIERS for path in outputs)
-        lines += log_lines(outputs, provenance(snakemake) if silent else None)
         write_text(log, "".join(f"{line}\n" for line in lines))
         if outputs:
             print("made", *outputs, flush=True)
@@ -97,19 +87,19 @@ def withdraw() -> None:
         Path(path).unlink(missing_ok=True)
 
 
-def read_input(path: str, log: str | Path = "") -> xr.Dataset:
-    """A dataset that another job has made for this one, and whose log is that of a stage or given.
+def read_input(path: str) -> xr.Dataset:
+    """A dataset that another job has made for this one.
 
     Raises
     ------
     DatasetError
-        If it is not what its job wrote, or is that of another artifact.
+        If it is damaged, or is that of another artifact; with the command that makes it again.
     """
     again = f"make it again, snakemake --cores 2 --force {path}"
-    log = Path(log or Path(LOGS, f"{Path(path).stem}.log"))
-    if not is_as_written(path, log):
-        raise DatasetError(f"{path} is not what its job wrote, which {log} says: {again}")
-    dataset = read_dataset(path)
+    try:
+        dataset = read_dataset(path)
+    except DatasetError as error:
+        raise DatasetError(f"{error}: {again}") from error
     target = dataset.attrs.get(PREFIX + "target")
     if target != path:
         raise DatasetError(f"{path} is the dataset of {target}: {again}")
@@ -117,34 +107,33 @@ def read_input(path: str, log: str | Path = "") -> xr.Dataset:
 
 
 def provenance(snakemake: Any) -> Provenance:
-    """The provenance of what the job writes, its inputs' parameters included.
+    """The provenance of what the job writes.
 
     Gathered as a file is written: as a parameter of the job, a commit would run
     everything again.
     """
-    # The scripts are in workflow/scripts of the repository, the run may be anywhere;
-    # Snakemake runs a copy, to which it gives the script's name.
-    scripts = Path(snakemake.scriptdir).resolve()
-    script = scripts / Path(str(sys.modules["__main__"].__file__)).name
-    recipe = Recipe.of(snakemake, script)
-    return gather(recipe, Run.of(scripts.parents[1], snakemake.config))
+    # The scripts are in workflow/scripts of the repository, the run may be anywhere.
+    repository = Path(snakemake.scriptdir).resolve().parents[1]
+    modules = set(snakemake.input.get("source", []))
+    inputs = [str(path) for path in snakemake.input if path not in modules]
+    return gather(str(snakemake.output[0]), inputs, repository, snakemake.config)
 
 
 def make_dataset(snakemake: Any) -> None:
     """Run the study of the job and write its dataset.
 
     The parameters and the settings of the run become global attributes, unless
-    the study says itself what is worth recording, and so do the provenance and
-    what the study found nothing for.
+    the study says itself what is worth recording, and so does the provenance.
     """
     with logged(snakemake) as lines:
         withdraw()
         job = snakemake.params
         data = {Path(path).stem: read_input(path) for path in snakemake.input.data}
-        inputs = [part for part in (data, job.parameters) if part]
-        dataset = typed(load(job.study))(*inputs, *job.settings.values())
-        parameters = dataset.attrs or parameter_attributes(job.parameters | job.settings)
-        publish(snakemake, dataset, {**parameters, **statement(dataset)})
+        given, settings = {"data": data} if data else {}, dict(job.arguments)
+        dataset = typed(load(job.study))(**given, **settings)
+        named = settings.pop("parameters", {}) | settings
+        parameters = dataset.attrs or parameter_attributes(named)
+        publish(snakemake, dataset, parameters)
         sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())
         lines.append(f"{snakemake.output.data}: {sizes}")
         if "end_reason" in dataset:

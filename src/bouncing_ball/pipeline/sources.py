@@ -66,7 +66,7 @@ def sources(*modules: str) -> list[str]:
     Examples
     --------
     >>> [Path(file).name for file in sources("bouncing_ball.contacts.damping")]
-    ['__init__.py', 'errors.py', '__init__.py', 'damping.py', 'release.py']
+    ['__init__.py', '__init__.py', 'damping.py', 'release.py', 'errors.py']
     """
     for module in modules:
         if module_file(module) is None:

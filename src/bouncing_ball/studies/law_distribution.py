@@ -5,9 +5,9 @@ many are off it by more than the remainder that it states. The numbers are a
 sample's: too long for every run, so that the pipeline makes them on request.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from bouncing_ball.accuracy.errors import errors
 from bouncing_ball.accuracy.quantities import OF_IMPACTS
 from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
+from bouncing_ball.parameters import Span
 from bouncing_ball.studies.random_orbits import random_orbits
 
 BATCH = 5000
@@ -57,13 +58,11 @@ class LawErrors(NamedTuple):
     """δ of each orbit."""
 
 
-def law_errors(
-    size: int, seed: int | Sequence[int], span: Mapping[str, Any], release: str
-) -> LawErrors:
+def law_errors(size: int, seed: int | Sequence[int], span: Span, release: Release) -> LawErrors:
     """Errors of random orbits of the whole stable range, ϖ even in its logarithm."""
     n, zeta, lam, rng = random_orbits(size, seed, release)
-    omega = np.exp(rng.uniform(np.log(span["min"]), np.log(span["max"]), size))
-    contact = SpringDamper(omega, zeta, Release.of(release))
+    omega = np.exp(rng.uniform(np.log(span.min), np.log(span.max), size))
+    contact = SpringDamper(omega, zeta, release)
     instant = LinearSignature(contact)()
     small = error_law.small_parameter(n, instant, lam)
     law = np.array([*error_law.first_order(n, instant, lam).values()])
@@ -73,14 +72,14 @@ def law_errors(
     return LawErrors(omega, restitution, corrected, law, remainder, small)
 
 
-def sample(size: int, seed: int, span: Mapping[str, Any], release: str) -> LawErrors:
+def sample(size: int, seed: int, span: Span, release: Release) -> LawErrors:
     """The errors of ``size`` random orbits, drawn in batches."""
     counts = [min(BATCH, size - start) for start in range(0, size, BATCH)]
     parts = [law_errors(count, (seed, k), span, release) for k, count in enumerate(counts)]
     return LawErrors(*(np.concatenate(part, axis=-1) for part in zip(*parts, strict=True)))
 
 
-def summary(drawn: LawErrors, release: str) -> Iterator[list[str]]:
+def summary(drawn: LawErrors, release: Release) -> Iterator[list[str]]:
     """One row for each quantity and range of ϖ, the whole range first."""
     ranges = [(DECADES[0], DECADES[-1]), *pairwise(DECADES)]
     for k, quantity in enumerate(OF_IMPACTS):

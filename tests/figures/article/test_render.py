@@ -121,18 +121,11 @@ def test_other_parameters_are_reported_once():
     assert shown.explanations() == []
 
 
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("Fig. 3", {"Fig. 3"}),
-        ("Eqs. 30-31", {"Eq. 30", "Eq. 31"}),
-        ("Figs. 8 and 9, Table 1", {"Fig. 8", "Fig. 9", "Table 1"}),
-        ("Figs. 11-13 and 15", {"Fig. 11", "Fig. 12", "Fig. 13", "Fig. 15"}),
-        ("text", set()),
-    ],
-)
-def test_places(text, expected):
-    assert places(text) == expected
+def test_places():
+    text = "Figs. 11-13 and 15, Eqs. 30-31, Table 1"
+    figures = {"Fig. 11", "Fig. 12", "Fig. 13", "Fig. 15"}
+    assert places(text) == figures | {"Eq. 30", "Eq. 31", "Table 1"}
+    assert places("text") == set()
 
 
 def test_numbers_match_to_rounding_only():

@@ -63,38 +63,10 @@ def test_no_number_is_typed_into_an_explanation():
         assert typed_numbers(explanation.text) == [], explanation.id
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "the threshold is 9.81",
-        "found at ϖ = 82",
-        "about 1 % of it",
-        "two of 16 figures",
-        r"at $\varpi = 9.81$",
-        r"$$\Lambda = 1.0383$$",
-        "in 2011",
-        "Fig. 3 shows 5 curves",
-    ],
-)
-def test_a_typed_number_is_seen(text):
-    assert typed_numbers(text)
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "the 1-T orbit of Fig. 8 (Eqs. 21–26)",
-        "Figs. 5–7, 10, 12–14 and Table 1",
-        r"$z = -\tfrac{1}{2} T^2$",
-        r"$$u = 1 + r^2 && \text{release, Eq. 23}$$",
-        "{{ at('fig14', 'error_threshold', 2) }}",
-        "run `snakemake --cores 2`",
-    ],
-)
-def test_what_may_be_typed_is_let_through(text):
-    assert typed_numbers(text) == []
-
-
-def test_a_literal_in_an_expression_is_seen():
+def test_a_typed_number_is_seen():
+    for text in ("the threshold is 9.81", r"at $\varpi = 9.81$", "Fig. 3 shows 5 curves"):
+        assert typed_numbers(text)
+    for text in ("the 1-T orbit of Fig. 8 (Eqs. 21–26)", r"$z = -\tfrac{1}{2} T^2$", "a [@b2011]"):
+        assert typed_numbers(text) == []
     assert literals("{{ decimal(9.81, 2) }}") == ["9.81"]
     assert literals('{{ at("fig14", "x", 2, n=1) }}') == []

@@ -14,8 +14,6 @@ from bouncing_ball.figures.atlas.charts import charts
 from bouncing_ball.figures.atlas.tables import shares, worst
 from bouncing_ball.figures.style import style
 from bouncing_ball.figures.tables.formats import to_markdown
-from bouncing_ball.record.carriers import read_attributes
-from bouncing_ball.record.provenance import digest, file_digest
 
 ROOT = Path(__file__).resolve().parents[3]
 SUMMARY, CHARTS = ROOT / "config" / "atlas.nc", ROOT / "docs" / "atlas"
@@ -31,12 +29,6 @@ def test_the_summary_is_that_of_the_configuration(data):
     for name, value in section.items():
         assert np.array_equal(data.attrs[name], value), name
     assert int(data.orbits) >= 10**8
-
-
-@pytest.mark.parametrize("name", [path.name for path in sorted(CHARTS.glob("*.png"))])
-def test_a_chart_is_drawn_from_the_summary(name):
-    said = json.loads(read_attributes(CHARTS / name)["provenance_inputs"])
-    assert said == {"parts": digest([file_digest(SUMMARY)])}
 
 
 def test_the_tables_are_those_of_the_summary(data):

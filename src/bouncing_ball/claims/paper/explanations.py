@@ -227,7 +227,7 @@ def limit_of_which_quantity(data):
 
 @explanation("no reading fits")
 def no_reading_fits(data):
-    """No reading of the equations that was tried gives the printed digits of the softer contacts,
+    """No reading of the equations that was tried gives all printed digits of the softer contacts,
     and some of the printed saddle-nodes lie below every orbit that the equations have.
     """
     readings = data["forensics"]

@@ -6,13 +6,11 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike
 
-from bouncing_ball.datasets.rounding import levels
 from bouncing_ball.datasets.selection import index_of
 from bouncing_ball.errors import ModelError
 
-FORMATS = ("decimal", "distinct", "largest", "listed", "pairs", "percent", "short")
+FORMATS = ("decimal", "largest", "listed", "pairs", "percent", "short")
 """What templates know of this module."""
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -97,17 +95,6 @@ def pairs(left: Iterable[float], right: Iterable[float]) -> list[str]:
     ['(0.85, 1)', '(0.65, 1.2)']
     """
     return [f"({short(a)}, {short(b)})" for a, b in zip(left, right, strict=True)]
-
-
-def distinct(values: ArrayLike) -> int:
-    """How many values differ by more than rounding.
-
-    Examples
-    --------
-    >>> distinct([1.0, 1.0 + 1e-12, 2.0])
-    2
-    """
-    return int(levels(values).max()) + 1
 
 
 def value_at(data: Mapping[str, xr.Dataset], dataset: str, variable: str, **where: Any) -> float:

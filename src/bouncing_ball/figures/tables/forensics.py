@@ -13,15 +13,14 @@ def _number(value: float) -> str:
 def rows(data: xr.Dataset) -> tuple[Sequence[str], list[list[str]]]:
     """One row for each reading, the closest first; differences in last digits.
 
-    A dash is where a reading has no orbit. Readings marked as chosen take the
-    best value of a range and come after the others.
+    A dash is where a reading has no orbit.
     """
     compared = [str(name) for name in data.rows.values[:2]]
     header = ["rank", "reading"]
     for name in compared:
         header += [f"largest, {name}", f"rms, {name}"]
     header += [f"reproduced, {name}" for name in compared]
-    header += ["printed below every orbit", "chosen"]
+    header += ["printed below every orbit"]
     body = []
     for reading in data.reading.values:
         at = data.sel(reading=reading)
@@ -32,6 +31,6 @@ def rows(data: xr.Dataset) -> tuple[Sequence[str], list[list[str]]]:
         for name in compared:
             part = at.sel(rows=name)
             line.append(f"{int(part.reproduced)} of {int(part.entries)}")
-        line += [str(int(at.unreachable)), "yes" if at.chosen_in_range else "no"]
+        line.append(str(int(at.unreachable)))
         body.append(line)
     return header, body

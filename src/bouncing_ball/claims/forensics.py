@@ -1,0 +1,230 @@
+"""Table 1 under eight readings of what the authors may have computed.
+
+Six are the models of this package with another damping, release or rounding, and Eqs. 7
+and 8. Two alter an equation: a contact without gravity, and a period doubling whose
+linearised flight ignores the table's displacement, as Holmes' map does.
+"""
+
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.claims import as_printed
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.spring_damper import SpringDamper, responses
+from bouncing_ball.datasets.rounding import levels
+from bouncing_ball.datasets.variables import describe
+from bouncing_ball.orbits.spring_damper_branch import branch_point
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.studies.printed_table1 import AXES, LAST_DIGIT, RESTITUTION, printed_table
+
+PRINTED_DAMPING = 0.052
+"""ζ as the paper rounds it, beside the one of Eq. 16."""
+
+# Samples of a branch along ε, up to so far from ε = 0 against the scale of the fold, 1/ϖ.
+_SAMPLES, _REACH = 2001, 12.0
+
+# An orbit of the contacts whose contact lasts (θ₀ + ε)/ϖ_d, by ε.
+OrbitAt = Callable[[np.ndarray, SpringDamper, np.ndarray], SpringDamperOrbit]
+Monodromy = Callable[[SpringDamperOrbit], np.ndarray]
+
+
+class Reading(NamedTuple):
+    """Both ends of each range, shape (ϖ, n, 2), under an assumption."""
+
+    name: str
+    description: str
+    ends: np.ndarray
+    truncated: bool = False
+
+
+class WeightlessOrbit(SpringDamperOrbit):
+    """n-T orbits whose contact knows no gravity; the flight does."""
+
+    @classmethod
+    def at(cls, excess: np.ndarray, contact: SpringDamper, n: np.ndarray) -> "WeightlessOrbit":
+        """The orbit at ε, from Eqs. 23-25 without the response to gravity.
+
+        At a fixed duration D they are linear in u = δ′ at the start, Λ cos φ and Λ sin φ.
+        """
+        duration = (contact.free_angle + excess) / contact.damped_frequency
+        flight = 2 * np.pi * n - duration
+        push, _, table = responses(duration, contact.frequency_ratio, contact.damping_ratio)
+        (p, p_rate), (q, q_rate) = (
+            (part(table.value), part(table.rate)) for part in (np.imag, np.real)
+        )
+        cos, sin = np.cos(duration), np.sin(duration)
+        rows = np.broadcast_arrays(
+            *(push.value, p, q),
+            *(push.rate - 1, p_rate + cos - 1, q_rate - sin),
+            *(flight, flight + sin, cos - 1),
+        )
+        right = np.broadcast_arrays(0.0, flight, -flight * flight / 2)
+        matrix = np.stack(rows, axis=-1).reshape(*rows[0].shape, 3, 3)
+        solved = np.linalg.solve(matrix, np.stack(right, axis=-1)[..., np.newaxis])
+        u, x, y = np.moveaxis(solved[..., 0], -1, 0)
+        return cls(n, contact, np.hypot(x, y), np.arctan2(y, x), duration, u + x)
+
+    def _contact_flow(self, time: np.ndarray):
+        flow = super()._contact_flow(time)
+        omega, zeta = self.contact.frequency_ratio, self.contact.damping_ratio
+        gravity = responses(time, omega, zeta).gravity
+        lifted = 1 - 2 * zeta * omega * gravity.rate - omega * omega * gravity.value
+        jacobian = flow.jacobian.copy()
+        jacobian[..., 0, 0] += gravity.rate
+        jacobian[..., 1, 0] += lifted
+        displacement, velocity = flow.displacement + gravity.value, flow.velocity + gravity.rate
+        return type(flow)(displacement, velocity, flow.acceleration + lifted, jacobian)
+
+
+def high_bounce_monodromy(orbit: SpringDamperOrbit) -> np.ndarray:
+    """Monodromy of an orbit with Holmes' linearised flight, which ends where it began.
+
+    ``z′_b T - T²/2 = 0`` in place of Eq. 25, so that ``dT = -T dz′_b/z′_i``.
+    """
+    d_duration, _, d_velocity = np.moveaxis(orbit.contact_jacobian()[..., :2], -2, 0)
+    d_release = d_duration + np.array([1.0, 0.0])
+    sine = orbit.amplitude * np.sin(orbit.release_phase)
+    d_bounce = d_velocity - sine[..., np.newaxis] * d_release
+    d_flight = -(orbit.flight_time / orbit.impact_velocity)[..., np.newaxis] * d_bounce
+    d_landing = d_release + d_flight
+    table = (orbit.amplitude * np.sin(orbit.phase))[..., np.newaxis]
+    return np.stack([d_landing, d_bounce - d_flight + table * d_landing], axis=-2)
+
+
+def branch_orbit(excess: np.ndarray, contact: SpringDamper, n: np.ndarray) -> SpringDamperOrbit:
+    """The orbit of the explicit branch at ε."""
+    return SpringDamperOrbit.from_branch(branch_point(excess, contact, n), contact, n)
+
+
+@np.errstate(divide="ignore", invalid="ignore")  # where the ball grazes
+def altered_ends(
+    contact: SpringDamper, n: int, orbit_at: OrbitAt, monodromy: Monodromy
+) -> list[float]:
+    """Λ at the saddle-node and the period doubling of a branch that no model has.
+
+    The saddle-node is the minimum of Λ, whatever the linearisation says: no orbit has a
+    smaller Λ. The period doubling is the root of 1 + tr + det next to it, on the side of
+    the short contacts.
+    """
+    from scipy.optimize import brentq, minimize_scalar
+
+    family, omega = np.array(n), float(contact.frequency_ratio)
+
+    def amplitude(excess):
+        return orbit_at(np.asarray(excess), contact, family).amplitude
+
+    def doubling(excess):
+        (a, b), (c, d) = np.moveaxis(
+            monodromy(orbit_at(np.asarray(excess), contact, family)), (-2, -1), (0, 1)
+        )
+        return 1 + a + d + a * d - b * c
+
+    grid = np.linspace(-1, 1, _SAMPLES) * np.minimum(_REACH / omega, 0.9 * contact.free_angle)
+    lowest = int(np.nanargmin(amplitude(grid)))
+    node = minimize_scalar(
+        amplitude, bracket=grid[lowest - 1 : lowest + 2], options={"xtol": 1e-12}
+    )
+    side = grid[:lowest]
+    unstable = np.flatnonzero(doubling(side) < 0)
+    root = brentq(doubling, side[unstable[-1]], node.x, xtol=1e-15 / omega)
+    return [float(node.fun), float(amplitude(root))]
+
+
+def readings() -> Iterator[Reading]:
+    """The eight readings."""
+    ratios, families = (np.array(AXES[key], dtype=float) for key in ("frequency_ratio", "n"))
+    omega, n = np.meshgrid(ratios, families, indexing="ij")
+    zeta = float(damping_ratio(RESTITUTION))
+
+    def of_model(damping: float = zeta, release: Release = Release.DISPLACEMENT) -> np.ndarray:
+        model = SpringDamperModel(SpringDamper(omega, damping, release))
+        return np.stack([x(n).amplitude for x in (model.saddle_node, model.period_doubling)], -1)
+
+    def altered(orbit_at: OrbitAt, monodromy: Monodromy) -> np.ndarray:
+        return np.array(
+            [
+                [altered_ends(SpringDamper(x, zeta), k, orbit_at, monodromy) for k in AXES["n"]]
+                for x in AXES["frequency_ratio"]
+            ]
+        )
+
+    plain, first_order = of_model(), -np.log(RESTITUTION) / np.pi
+    ends = (as_printed.saddle_node(n, RESTITUTION), as_printed.period_doubling(n, RESTITUTION))
+    yield Reading("equations as they stand", "Eqs. 11-26, the linearised return map", plain)
+    yield Reading("digits cut off", "digits beyond the last printed one are cut off", plain, True)
+    yield Reading(
+        "damping as printed", f"ζ = {PRINTED_DAMPING}, as printed", of_model(PRINTED_DAMPING)
+    )
+    yield Reading("damping to first order", "ζ = -ln r/π", of_model(first_order))
+    yield Reading(
+        "force release",
+        "the contact ends where its force vanishes",
+        of_model(release=Release.FORCE),
+    )
+    yield Reading(
+        "no gravity in contact",
+        "gravity is left out of the contact, Eq. 11",
+        altered(WeightlessOrbit.at, WeightlessOrbit.monodromy),
+    )
+    yield Reading(
+        "high-bounce stability",
+        "the orbit is exact, but the linearised flight ignores the table's displacement",
+        altered(branch_orbit, high_bounce_monodromy),
+    )
+    yield Reading(
+        "all rows from Eqs. 7-8",
+        "every row is the restitution model's: what the stiffness changes",
+        np.stack(ends, axis=-1),
+    )
+
+
+def forensics() -> xr.Dataset:
+    """Table 1 under every reading, the closest to the softer rows first.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``computed`` and ``difference`` (in last digits) over (reading, frequency_ratio,
+        n, bound); over (reading, rows) the largest and the rms difference and how many
+        entries are reproduced; ``unreachable``, the saddle-nodes that are printed below
+        the fold by more than the digits can hide, where no orbit exists.
+    """
+    found = list(readings())
+    printed = printed_table()
+    names, cut = [reading.name for reading in found], np.array([x.truncated for x in found])
+    axes = {"reading": names, **printed.coords}
+    exact = xr.DataArray([reading.ends for reading in found], axes, ("reading", *printed.dims))
+    truncated = xr.DataArray(cut, {"reading": names})
+    computed = xr.where(truncated, np.floor(exact / LAST_DIGIT) * LAST_DIGIT, exact)
+    difference = ((computed - printed) / LAST_DIGIT).transpose("reading", *printed.dims)
+    below = (exact - printed).sel(bound="saddle-node", drop=True) / LAST_DIGIT
+    ratio = printed.frequency_ratio
+    groups = {"all rows": ratio > 0, "softer rows": ratio < ratio.max()}
+    groups |= {f"ϖ = {float(value):g}": ratio == value for value in ratio}
+    rows = xr.Variable("rows", list(groups))
+    over = list(printed.dims)
+    parts = xr.concat([difference.where(group) for group in groups.values()], rows)
+    data = xr.Dataset(
+        {
+            "computed": computed.transpose(*difference.dims),
+            "printed": printed,
+            "difference": difference,
+            "largest_difference": abs(parts).max(over).transpose("reading", "rows"),
+            "rms_difference": np.sqrt((parts**2).mean(over)).transpose("reading", "rows"),
+            "reproduced": (abs(parts) <= 0.5).sum(over).transpose("reading", "rows"),
+            "entries": parts.isel(reading=0, drop=True).count(over),
+            "unreachable": (below > xr.where(truncated, 1.0, 0.5)).sum(["frequency_ratio", "n"]),
+            "description": ("reading", [reading.description for reading in found]),
+        }
+    )
+    distances = (data.rms_difference.sel(rows=name).values for name in ("all rows", "softer rows"))
+    order = np.lexsort([levels(values) for values in distances])
+    ranked = data.isel(reading=order).assign(rank=("reading", 1 + np.arange(len(found))))
+    return describe(ranked).assign_attrs(
+        last_digit=LAST_DIGIT, restitution=RESTITUTION, printed_damping_ratio=PRINTED_DAMPING
+    )

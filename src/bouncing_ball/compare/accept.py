@@ -1,0 +1,102 @@
+"""Copying results over the accepted record, ``figures/`` and ``paper.md``, which git holds.
+
+The log of the record is that of git, ``git log figures/``.
+"""
+
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Collection, Mapping
+from pathlib import Path
+from typing import Any
+
+from bouncing_ball.compare.folders import Artifact, compare_folders
+from bouncing_ball.compare.outcome import Outcome
+from bouncing_ball.compare.terminal import to_terminal
+from bouncing_ball.configuration.yaml_file import read_yaml
+from bouncing_ball.datasets.atomic import replacing
+from bouncing_ball.errors import ModelError
+from bouncing_ball.provenance.origin import CONFIGURATION, changes
+from bouncing_ball.provenance.revision import revision
+
+
+class RefusedError(ModelError):
+    """Results that must not become the record, with the reason why."""
+
+
+def jobs_left(repository: Path, files: Collection[str]) -> int:
+    """How many jobs Snakemake would still run for these files, by its own rerun triggers."""
+    command = [sys.executable, "-m", "snakemake", "--snakefile", str(repository / "Snakefile")]
+    options = ["--dry-run", "--nolock", "--cores", "1"]
+    done = subprocess.run([*command, *options, *files], capture_output=True, text=True)
+    if done.returncode:
+        raise RefusedError(f"a dry run fails: {done.stderr.strip().splitlines()[-1]}")
+    total = re.search(r"^total +(\d+)$", done.stdout + done.stderr, re.MULTILINE)
+    return int(total[1]) if total else 0
+
+
+def _copied(artifact: Artifact, record: Path, results: Path) -> list[str]:
+    """Copy what an artifact has in the results, remove what it has no more; one line for each."""
+    said = []
+    for part in artifact.parts:
+        old, new = record / part.file, results / part.file
+        if part.outcome is Outcome.MISSING:
+            old.unlink()
+            said.append(f"removed {part.file}")
+        elif not old.is_file() or old.read_bytes() != new.read_bytes():
+            with replacing(old) as temporary:
+                shutil.copyfile(new, temporary)
+            said.append(f"copied {part.file}")
+    return said
+
+
+def accept(
+    record: Path,
+    results: Path,
+    files: Collection[str],
+    config: Mapping[str, Any],
+    only: Collection[str],
+) -> list[str]:
+    """Copy artifacts over the record: those named, or what has moved beyond its budget.
+
+    Parameters
+    ----------
+    record, results : Path
+        The checkout, and the folder that the run wrote.
+    files : collection of str
+        What a whole run makes.
+    config : mapping
+        The configuration of this run.
+    only : collection of str
+        Names of artifacts.
+
+    Returns
+    -------
+    list of str
+        What was copied and removed, and what to commit.
+
+    Raises
+    ------
+    RefusedError
+        If the tree is not committed, the configuration is not the committed one, or the
+        results are not those of this commit. Nothing is changed then.
+    """
+    if revision(record).dirty != "no":
+        raise RefusedError("the tree is not committed: commit first, then accept what it makes")
+    if changed := changes(config, read_yaml(record / CONFIGURATION)):
+        raise RefusedError(f"this run has other values than {CONFIGURATION}: {', '.join(changed)}")
+    if left := jobs_left(record, files):
+        raise RefusedError(f"Snakemake would still run {left} jobs: run it, and look at the diff")
+    if foreign := sorted({*map(str, results.glob("figures/[!.]*"))} - {*files}):
+        raise RefusedError(f"{foreign[0]} is not made by this workflow: remove it")
+    comparison = compare_folders(record, results)
+    print(to_terminal(comparison), end="", flush=True)
+    artifacts = {artifact.name: artifact for artifact in comparison.artifacts}
+    if unknown := sorted(set(only) - artifacts.keys()):
+        raise RefusedError(f"unknown artifact {unknown[0]}")
+    moved = [name for name, artifact in artifacts.items() if not artifact.outcome.agrees]
+    said = [line for name in only or moved for line in _copied(artifacts[name], record, results)]
+    if not said:
+        return ["Nothing to accept: the record says what the results say."]
+    return [*said, "Now commit the record, and say why: git add figures paper.md && git commit"]

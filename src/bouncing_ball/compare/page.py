@@ -1,0 +1,76 @@
+"""One page with record and new side by side, which needs neither a network nor a script."""
+
+import base64
+import re
+from difflib import SequenceMatcher
+from typing import Any
+from urllib.parse import quote
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from bouncing_ball.compare.folders import Comparison
+from bouncing_ball.compare.terminal import excerpts, remarks, sentence, share_text
+from bouncing_ball.errors import printable
+
+# Characters of a line; a longer one is shown from where it begins to differ.
+_LONGEST = 200
+
+
+def _plain(value: Any) -> Any:
+    """The value of an expression of the page; text that is not markup yet, on one line."""
+    is_text = isinstance(value, str) and not hasattr(value, "__html__")
+    return printable(value, None) if is_text else value
+
+
+_Words = list[tuple[bool, str]]
+
+
+def marked(record: str | None, new: str | None) -> tuple[_Words, _Words]:
+    """Two texts in words, each with whether it is the same on both sides.
+
+    Examples
+    --------
+    >>> for side in marked("r, 0.25, ball", "r, 0.27, table"):
+    ...     print(side)
+    [(True, 'r, '), (False, '0.25'), (True, ', '), (False, 'ball')]
+    [(True, 'r, '), (False, '0.27'), (True, ', '), (False, 'table')]
+    """
+    sides = excerpts(record, new, _LONGEST)
+    old, now = (re.findall(r"[^\s,;|&]+|[\s,;|&]+", text) for text in sides)
+    found: tuple[_Words, _Words] = ([], [])
+    for kind, a, b, c, d in SequenceMatcher(None, old, now, autojunk=False).get_opcodes():
+        found[0].append((kind == "equal", "".join(old[a:b])))
+        found[1].append((kind == "equal", "".join(now[c:d])))
+    return found
+
+
+def to_html(comparison: Comparison) -> str:
+    """The page: artifacts worst first; record, new and difference of each picture.
+
+    All pictures are part of the page; one that is the same on both sides is
+    there once. What the buttons do is style, and no script.
+
+    Examples
+    --------
+    >>> "<h1>Artifacts against the record</h1>" in to_html(Comparison(()))
+    True
+    """
+    environment = Environment(
+        loader=PackageLoader("bouncing_ball.compare", "."),
+        autoescape=True,
+        finalize=_plain,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    return environment.get_template("page.html.j2").render(
+        comparison=comparison,
+        sentence=sentence(comparison),
+        marked=marked,
+        # Half of a surrogate pair has no code to be quoted.
+        anchor=lambda name: quote(printable(name, None)),
+        remarks=remarks,
+        share=share_text,
+        base64=lambda content: base64.b64encode(content).decode("ascii"),
+    )

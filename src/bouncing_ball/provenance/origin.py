@@ -1,0 +1,158 @@
+"""What an artifact is made from, as the artifact itself carries it.
+
+A dataset carries its provenance in netCDF attributes, a PNG file in its text, an
+SVG file in its description; a table or a page has that of its dataset. There is
+neither a time nor a machine in it, so that two runs of one commit give the same bytes.
+"""
+
+import json
+import os
+import platform
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, fields
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Self
+
+from bouncing_ball.configuration.yaml_file import read_yaml
+from bouncing_ball.errors import ModelError
+from bouncing_ball.provenance.revision import revision
+
+PREFIX = "provenance_"
+"""How the names of the attributes begin."""
+LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib")
+CONFIGURATION = "config/config.yaml"
+CARRIERS = (".nc", ".png", ".svg")
+"""Suffixes of the files that carry their provenance."""
+
+_DESCRIPTION = "{http://purl.org/dc/elements/1.1/}description"
+
+
+class ProvenanceError(ModelError):
+    """A file that does not say, or not readably, what it is made from."""
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """What an artifact is made from."""
+
+    commit: str
+    """Full hash of the commit, or unknown."""
+    dirty: str
+    """Whether the tree had changes that the commit has not: yes, no or unknown."""
+    configuration: str
+    """JSON: what the run's configuration changes in config/config.yaml, nested alike."""
+    target: str
+    """What to ask Snakemake for to have the artifact made again."""
+    inputs: str
+    """JSON: the files that the artifact is made from."""
+    versions: str
+    """JSON: for Python and each library, its version."""
+
+    def attributes(self) -> dict[str, str]:
+        """The provenance as attributes of a dataset, or metadata of a picture."""
+        return {PREFIX + name: value for name, value in asdict(self).items()}
+
+    @classmethod
+    def of(cls, attributes: Mapping[str, Any]) -> Self:
+        """The provenance among the attributes of an artifact.
+
+        Raises
+        ------
+        ProvenanceError
+            If a part of it is missing.
+        """
+        names = {field.name: PREFIX + field.name for field in fields(cls)}
+        for name in names.values():
+            if name not in attributes:
+                raise ProvenanceError(f"no attribute {name}")
+        return cls(**{field: str(attributes[name]) for field, name in names.items()})
+
+
+def changes(config: Mapping[str, Any], written: Mapping[str, Any]) -> dict[str, Any]:
+    """What a configuration changes in the written one, nested alike.
+
+    Examples
+    --------
+    >>> written = {"release": "force", "fig11": {"restitution": 0.85, "points": 11}}
+    >>> changes({"release": "force", "fig11": {"restitution": 0.7, "points": 11}}, written)
+    {'fig11': {'restitution': 0.7}}
+    """
+    found = {}
+    for key, value in config.items():
+        before = written.get(key)
+        if isinstance(value, Mapping) and isinstance(before, Mapping):
+            if inside := changes(value, before):
+                found[key] = inside
+        elif key not in written or value != before:
+            found[key] = value
+    return found
+
+
+# To find one all of a package's description is parsed.
+_version = cache(version)
+
+
+def versions() -> dict[str, str]:
+    """Versions of Python and of the libraries that decide about the artifacts."""
+    return {"python": platform.python_version(), **{name: _version(name) for name in LIBRARIES}}
+
+
+def gather(
+    target: str, inputs: Iterable[str], repository: Path, config: Mapping[str, Any]
+) -> Provenance:
+    """The provenance of what a job writes now, in a checkout and with a configuration."""
+    now = revision(repository)
+    # A run may be anywhere; files of the checkout are named from its top.
+    named = [os.path.relpath(path, repository) if ".." in path else path for path in inputs]
+    return Provenance(
+        commit=now.commit,
+        dirty=now.dirty,
+        configuration=json.dumps(
+            changes(config, read_yaml(repository / CONFIGURATION)), sort_keys=True
+        ),
+        target=target,
+        inputs=json.dumps(sorted(set(named))),
+        versions=json.dumps(versions()),
+    )
+
+
+def read_attributes(path: Path) -> dict[str, Any]:
+    """Attributes of a dataset, metadata of a picture.
+
+    Raises
+    ------
+    ProvenanceError
+        If the file is of another kind, cannot be read, or is damaged.
+    """
+    if path.suffix not in CARRIERS:
+        raise ProvenanceError(f"{path} is not one of {', '.join(CARRIERS)}")
+    try:
+        return attributes_in(path, path.suffix)
+    except FileNotFoundError:
+        raise ProvenanceError(f"{path} cannot be read: no such file") from None
+    # The libraries raise errors of many types on a damaged file.
+    except Exception:
+        raise ProvenanceError(f"{path} cannot be read: damaged, or not ours") from None
+
+
+def attributes_in(file: Any, suffix: str) -> dict[str, Any]:
+    """Attributes of a dataset, by its path, or metadata of a picture, also of an open file."""
+    # Imported here: each takes a while, and one of them is needed.
+    match suffix:
+        case ".nc":
+            from netCDF4 import Dataset
+
+            with Dataset(file) as dataset:
+                return {name: dataset.getncattr(name) for name in dataset.ncattrs()}
+        case ".png":
+            from PIL import Image
+
+            with Image.open(file, formats=["PNG"]) as picture:
+                return {str(name): value for name, value in picture.info.items()}
+        case _:
+            from xml.etree import ElementTree
+
+            found = ElementTree.parse(file).find(f".//{_DESCRIPTION}")
+            return {} if found is None else dict(json.loads(found.text or "{}"))

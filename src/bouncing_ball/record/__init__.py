@@ -1,1 +1,0 @@
-"""Provenance of artifacts, the accepted record and the comparison with it."""

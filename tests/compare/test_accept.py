@@ -1,0 +1,108 @@
+"""What may replace the accepted record, and what is copied."""
+
+import subprocess
+
+import pytest
+
+from bouncing_ball.compare import accept as module
+from bouncing_ball.compare.accept import RefusedError, accept
+from bouncing_ball.datasets.netcdf import write_dataset
+from bouncing_ball.provenance.revision import UNKNOWN, Revision
+
+FILES = ("fig05.nc", "fig05.png", "fig05.svg", "fig08.nc", "table1.csv", "table1.md")
+
+
+@pytest.fixture
+def run(pair, monkeypatch):
+    """``run(*names)``: accept in a committed checkout, for which Snakemake has nothing to do."""
+    monkeypatch.setattr(module, "revision", lambda _: Revision("1f0e", "no"))
+    monkeypatch.setattr(module, "jobs_left", lambda *_: 0)
+    (pair.record / "config").mkdir()
+    (pair.record / "config" / "config.yaml").write_text("release: force\n", encoding="utf-8")
+    made = [str(path) for path in pair.new.glob("figures/*")]
+
+    def accepted(*names, config=None):
+        return accept(pair.record, pair.new, made, config or {"release": "force"}, names)
+
+    return accepted
+
+
+def contents(pair):
+    return {path: path.read_bytes() for path in sorted(pair.record.rglob("*")) if path.is_file()}
+
+
+def drift(pair, by=1e-3):
+    data = pair.dataset("fig05")
+    data.phase.values[1, 40] += by
+    pair.write("fig05", data)
+
+
+def test_what_has_moved_is_copied_and_the_rest_is_not(pair, run):
+    drift(pair)
+    data = pair.dataset("fig08")
+    write_dataset(data.assign_attrs(provenance_commit="2a2a"), pair.new / "figures/fig08.nc")
+    (pair.new / "figures" / "fig09.svg").unlink()
+    before = contents(pair)
+    assert run() == [
+        "removed figures/fig09.svg",
+        "copied figures/fig05.nc",
+        "Now commit the record, and say why: git add figures paper.md && git commit",
+    ]
+    after = contents(pair)
+    assert not (pair.record / "figures" / "fig09.svg").exists()
+    assert {path.name for path in after if after[path] != before[path]} == {"fig05.nc"}
+    assert pair.compare().outcome.agrees
+    assert run() == ["Nothing to accept: the record says what the results say."]
+
+
+def test_what_is_named_is_copied_and_nothing_else(pair, run, one_line):
+    drift(pair)
+    pair.rewrite("paper.md", "reproduced", "contradicted")
+    data = pair.dataset("fig08")
+    write_dataset(data.assign_attrs(provenance_commit="2a2a"), pair.new / "figures/fig08.nc")
+    assert run("fig08", "paper")[:-1] == ["copied figures/fig08.nc", "copied paper.md"]
+    assert not pair.artifact("fig05").outcome.agrees
+    before = contents(pair)
+    with pytest.raises(RefusedError) as error:
+        run("fig05", "fig99")
+    one_line(error, "unknown artifact fig99")
+    assert contents(pair) == before
+
+
+@pytest.mark.parametrize("state", [UNKNOWN, Revision("1f0e", "yes")])
+def test_a_tree_that_is_not_committed(pair, run, monkeypatch, one_line, state):
+    drift(pair)
+    monkeypatch.setattr(module, "revision", lambda _: state)
+    before = contents(pair)
+    with pytest.raises(RefusedError) as error:
+        run()
+    one_line(error, "the tree is not committed")
+    assert contents(pair) == before
+
+
+def test_another_configuration_jobs_left_and_a_stray_file(pair, run, monkeypatch, one_line):
+    drift(pair)
+    before = contents(pair)
+    with pytest.raises(RefusedError) as error:
+        run(config={"release": "displacement"})
+    one_line(error, "this run has other values than config/config.yaml: release")
+    stray = pair.new / "figures" / "fig17.png"
+    stray.touch()
+    with pytest.raises(RefusedError) as error:
+        run()
+    one_line(error, "fig17.png is not made by this workflow: remove it")
+    monkeypatch.setattr(module, "jobs_left", lambda *_: 3)
+    with pytest.raises(RefusedError) as error:
+        run()
+    one_line(error, "Snakemake would still run 3 jobs")
+    assert contents(pair) == before
+
+
+def test_a_dry_run_that_fails_is_no_licence(monkeypatch, tmp_path, one_line):
+    def failing(*_, **__):
+        return subprocess.CompletedProcess([], 1, "", "many\nwords\n")
+
+    monkeypatch.setattr(module.subprocess, "run", failing)
+    with pytest.raises(RefusedError) as error:
+        module.jobs_left(tmp_path, [])
+    one_line(error, "a dry run fails: words")

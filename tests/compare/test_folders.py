@@ -1,0 +1,242 @@
+"""Texts, pictures and whole folders, falsified in ways that people meet, and the reports."""
+
+import io
+import os
+import shutil
+
+import numpy as np
+import pytest
+from PIL import Image, ImageDraw
+from PIL.PngImagePlugin import PngInfo
+
+from bouncing_ball.cli.main import main
+from bouncing_ball.compare import files
+from bouncing_ball.compare.folders import compare_folders
+from bouncing_ball.compare.outcome import Outcome
+from bouncing_ball.compare.page import to_html
+from bouncing_ball.compare.pictures import BUDGET, compare_pictures, read_picture
+from bouncing_ball.compare.terminal import to_terminal
+from bouncing_ball.compare.texts import compare_texts
+
+
+def test_equal_folders_are_identical(pair):
+    comparison = pair.compare()
+    assert {found.outcome for found in comparison.artifacts} == {Outcome.IDENTICAL}
+    assert comparison.outcome.status == 0
+    # Every file of both sides was compared.
+    compared = {part.file for found in comparison.artifacts for part in found.parts}
+    paths = (path for path in pair.record.rglob("*") if path.is_file())
+    assert compared == {path.relative_to(pair.record).as_posix() for path in paths}
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new"),
+    [
+        ("paper.md", "reproduced", "contradicted"),
+        ("paper.md", "0.85", "0.86"),
+        ("figures/table1.csv", "saddle-node", "saddle node"),
+        ("figures/table1.md", "0.255", "0.254"),
+        ("figures/table1.tex", "1.038", "1.039"),
+        ("figures/fig05.svg", "<!-- $", "<!-- 2$"),
+    ],
+)
+def test_a_falsified_word_or_number(pair, file, old, new):
+    pair.rewrite(file, old, new)
+    part = pair.part(file)
+    assert part.outcome is Outcome.DRIFTED and part.note == "1 lines changed"
+    assert old.strip("<!- $") in part.lines[0].record and pair.compare().outcome.status == 1
+
+
+def test_a_last_digit_moves_only_with_its_data(pair):
+    pair.rewrite("figures/table1.md", "1.03830", "1.03831")
+    assert pair.part("figures/table1.md").outcome is Outcome.DRIFTED
+    data = pair.dataset("table1")
+    data.computed.values[0, 0, 0] *= 1 + 2.0**-45
+    pair.write("table1", data)
+    assert pair.part("figures/table1.md").outcome is Outcome.WITHIN
+    assert pair.artifact("table1").outcome is Outcome.WITHIN
+    pair.rewrite("figures/table1.md", "1.03831", "1.03833")
+    assert pair.artifact("table1").outcome is Outcome.DRIFTED
+
+
+def test_lines_that_are_new_or_gone():
+    record, new = "a 1\nb 2\nc 3", "a 1\nnew\nb 2.5\nc 3"
+    found = compare_texts(record, new, None)
+    assert [(line.record, line.new) for line in found] == [(None, "new"), ("b 2", "b 2.5")]
+    found = compare_texts(new, record, None)
+    assert [(line.place, line.record, line.new) for line in found] == [
+        ("line 2", "new", None),
+        ("line 3", "b 2.5", "b 2"),
+    ]
+
+
+def png(picture: Image.Image, **text: str) -> bytes:
+    file, info = io.BytesIO(), PngInfo()
+    for key, value in text.items():
+        info.add_text(key, value)
+    picture.save(file, "PNG", pnginfo=info)
+    return file.getvalue()
+
+
+def test_a_changed_label_and_a_swapped_picture(pair):
+    figures = pair.new / "figures"
+    shutil.copyfile(figures / "fig08.png", figures / "fig09.png")
+    found = pair.part("figures/fig09.png")
+    assert found.outcome is Outcome.DRIFTED and found.share > 1 and found.decides
+    assert all(read_picture(picture).size for picture in found.pictures)
+    # A glyph drawn in place of another, in a drawing.
+    pair.rewrite("figures/fig05.svg", 'Regular-14"/>', 'Regular-15"/>')
+    assert pair.part("figures/fig05.svg").lines[0].new == "STIXGeneral-Regular-15"
+    # And one in a picture of full size.
+    white = Image.new("RGB", (1200, 900), "white")
+    one, two = white.copy(), white.copy()
+    ImageDraw.Draw(one).text((500, 400), "0.5", fill="black", font_size=30)
+    ImageDraw.Draw(two).text((500, 400), "0.6", fill="black", font_size=30)
+    seen = compare_pictures(read_picture(png(one)), read_picture(png(two)))
+    assert seen.outcome is Outcome.DRIFTED and "pixels changed" in seen.note
+
+
+def test_pictures_by_their_pixels():
+    grey = np.full((40, 50, 3), 100, dtype=np.int16)
+    assert compare_pictures(grey, grey).outcome is Outcome.IDENTICAL
+    for moved, outcome in ((1, Outcome.WITHIN), (2, Outcome.DRIFTED)):
+        found = compare_pictures(grey, grey + moved)
+        assert (found.outcome, found.share) == (outcome, moved / BUDGET)
+    found = compare_pictures(grey, grey[:, :-1])
+    assert (found.outcome, found.note) == (Outcome.STRUCTURE, "size in pixels: 50 × 40 → 49 × 40")
+
+
+def test_a_picture_by_another_matplotlib_is_only_reported(pair):
+    path = pair.new / "figures" / "fig08.png"
+    with Image.open(path) as picture:
+        text = {key: value for key, value in picture.text.items()}
+        turned = picture.transpose(Image.Transpose.ROTATE_180)
+    for version, outcome in (("0.1", Outcome.WITHIN), (None, Outcome.DRIFTED)):
+        if version:
+            text["provenance_versions"] = f'{{"matplotlib": "{version}"}}'
+        else:
+            del text["provenance_versions"]
+        path.write_bytes(png(turned, **text))
+        assert pair.artifact("fig08").outcome is outcome
+    path.write_bytes(png(turned, **text | {"provenance_versions": '{"matplotlib": "0.1"}'}))
+    shown = to_terminal(pair.compare())
+    assert "(reported only)" in shown and "not judged: 1." in shown
+
+
+def test_missing_and_extra(pair):
+    (pair.new / "figures" / "fig08.png").unlink()
+    (pair.record / "figures" / "fig05.svg").unlink()
+    (pair.new / "paper.md").unlink()
+    outcomes = {found.name: str(found.outcome) for found in pair.compare().artifacts}
+    assert outcomes.pop("fig08") == outcomes.pop("paper") == "missing"
+    assert outcomes.pop("fig05") == "extra" and set(outcomes.values()) == {"identical"}
+
+
+def linked(path):
+    path.rename(path.with_name("elsewhere"))
+    path.symlink_to("elsewhere")
+
+
+def damaged(path):
+    content = path.read_bytes()
+    path.write_bytes(content[: len(content) // 2])
+
+
+def a_pipe(path):
+    path.unlink()
+    os.mkfifo(path)
+
+
+@pytest.mark.parametrize(
+    "name", ["fig05.nc", "fig05.png", "fig05.svg", "table1.csv", "../paper.md"]
+)
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [(linked, "a link"), (a_pipe, "not a regular file"), (damaged, ""), (None, "larger than")],
+)
+@pytest.mark.parametrize("side", ["record", "new"])
+def test_what_cannot_be_read_could_not_be_compared(pair, monkeypatch, name, change, why, side):
+    path = (getattr(pair, side) / "figures" / name).resolve()
+    if change:
+        change(path)
+    else:
+        monkeypatch.setattr(files, "MAX_BYTES", 10)
+    file = "paper.md" if path.name == "paper.md" else f"figures/{path.name}"
+    part = pair.part(file)
+    if change is damaged and path.suffix not in (".nc", ".png"):
+        # Half a text is a text.
+        assert part.outcome is Outcome.DRIFTED
+        return
+    assert part.outcome is Outcome.UNREADABLE and why in part.note and "\n" not in part.note
+    comparison = pair.compare()
+    assert comparison.outcome.status == 2
+    if change:
+        # The others are compared all the same.
+        others = {found.outcome for found in comparison.artifacts[1:]}
+        assert others <= {Outcome.IDENTICAL, Outcome.EXTRA, Outcome.MISSING}
+
+
+def test_links_in_a_downloaded_folder(pair, one_line):
+    for path, link in ((pair.new / "figures", "a link"),):
+        shutil.move(path, pair.new / "elsewhere")
+        path.symlink_to(pair.new / "elsewhere")
+        with pytest.raises(ValueError, match=link) as error:
+            pair.compare()
+        one_line(error, "links are not followed")
+
+
+def test_a_bomb_is_not_unpacked(pair):
+    path = pair.new / "figures" / "fig05.png"
+    path.write_bytes(png(Image.new("1", (40_000, 40_000))))
+    assert pair.part("figures/fig05.png").note == "too large a picture"
+
+
+def test_nothing_is_printed_raw(pair, capsys):
+    name = "fig\x1b[2J\n.md"
+    (pair.new / "figures" / name).write_text("\x1b]0;\x07", encoding="utf-8")
+    (pair.new / "paper.md").write_text("\x1b[2J\u202e\n", encoding="utf-8")
+    page = pair.new / "page.html"
+    with pytest.raises(SystemExit) as exit_:
+        main(["diff", str(pair.record), str(pair.new), "--html", str(page)])
+    out, err = capsys.readouterr()
+    assert exit_.value.code == 1 and err == ""
+    for text in (out, page.read_text(encoding="utf-8")):
+        assert text.replace("\n", "").isprintable() and "\\x1b[2J" in text
+    assert "<script" not in page.read_text(encoding="utf-8")
+
+
+def test_folders_that_cannot_be_compared(pair, tmp_path, capsys):
+    for arguments, said in (
+        ((pair.record, tmp_path / "none"), "no folder"),
+        ((tmp_path, pair.new), "nothing to compare in"),
+        ((pair.record, pair.new, "fig99"), "unknown artifact fig99; known: fig01, fig05"),
+    ):
+        with pytest.raises(SystemExit) as exit_:
+            main(["diff", *map(str, arguments)])
+        out, err = capsys.readouterr()
+        assert (exit_.value.code, out, err.count("\n")) == (2, "", 1)
+        assert said in err
+
+
+def test_the_table_and_the_page(pair):
+    data = pair.dataset("fig05")
+    data.phase.values[1, 40] += 1e-3
+    pair.write("fig05", data)
+    pair.rewrite("paper.md", "reproduced", "contradicted")
+    comparison = pair.compare()
+    lines = to_terminal(comparison).splitlines()
+    assert lines[0].split() == ["artifact", "outcome", "of", "budget", "what"]
+    assert (
+        lines[1].startswith("fig05 ") and "phase at case = 1, frequency_ratio = 2.51189" in lines[1]
+    )
+    assert lines[2].startswith("paper ") and "reproduced" in lines[3] and "contradicted" in lines[3]
+    assert lines[-1] == "2 drifted, 5 identical. The new artifacts differ from the record."
+    page = to_html(comparison)
+    for text in (
+        "case = 1, frequency_ratio = 2.51189",
+        "<mark>contradicted</mark>",
+        "side by side",
+    ):
+        assert text in page
+    assert page.index('id="fig05"') < page.index('id="paper"') < page.index('id="fig01"')
+    assert compare_folders(pair.record, pair.new, ["fig08"]).outcome is Outcome.IDENTICAL

@@ -1,0 +1,179 @@
+"""``bouncing-ball explain``: what a file is made from, and how to make it again."""
+
+import json
+import shutil
+import subprocess
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import xarray as xr
+from matplotlib.figure import Figure
+
+import bouncing_ball
+from bouncing_ball.cli.main import main
+from bouncing_ball.datasets.netcdf import write_dataset
+from bouncing_ball.figures.files import save
+from bouncing_ball.provenance import explain as module
+from bouncing_ball.provenance.origin import Provenance, gather, read_attributes, versions
+from bouncing_ball.provenance.revision import Revision
+
+ROOT = Path(bouncing_ball.__file__).resolve().parents[2]
+COMMIT, OTHER = "a" * 40, "b" * 40
+MADE = Provenance(COMMIT, "no", "{}", "", json.dumps(["config/x.yaml"]), json.dumps(versions()))
+
+
+def made(target, **changed):
+    return replace(MADE, target=target, **changed).attributes()
+
+
+@pytest.fixture
+def results(tmp_path, monkeypatch):
+    """A folder with a dataset, its figure, its table and the paper."""
+    monkeypatch.setattr(module, "revision", lambda _: Revision(COMMIT, "no"))
+    monkeypatch.chdir(tmp_path)
+    figures = tmp_path / "results" / "figures"
+    attributes = {"title": "stage", "references": "paper", "restitution": 0.85, "n": [1, 2]}
+    data = xr.Dataset(attrs=attributes | made("results/figures/fig08.nc"))
+    write_dataset(data, figures / "fig08.nc")
+    for kind in ("png", "svg"):
+        save(Figure(), figures / f"fig08.{kind}", made("results/figures/fig08.png"))
+    (figures / "fig08.csv").write_text("r\n0.85\n", encoding="utf-8")
+    (tmp_path / "results" / "paper.md").write_text("# Text\n", encoding="utf-8")
+    return tmp_path / "results"
+
+
+def asked(capsys, file):
+    main(["explain", str(file), "--json"])
+    out, err = capsys.readouterr()
+    assert err == "" and out.count("\n") == 1
+    return json.loads(out)
+
+
+def test_a_picture(results, capsys):
+    answer = asked(capsys, "results/figures/fig08.png")
+    name = {"file": "results/figures/fig08.png"}
+    assert answer == asked(capsys, "results/figures/fig08.svg") | name
+    assert answer["commit"] == COMMIT and answer["checked_out"] is True
+    assert answer["dirty"] == "no" and answer["inputs"] == ["config/x.yaml"]
+    assert answer["parameters"] == {"restitution": 0.85, "n": [1, 2]}
+    running = {name: {"made_with": x, "running": x} for name, x in versions().items()}
+    assert answer["versions"] == running
+    make = "snakemake --cores 2 --force results/figures/fig08.png"
+    assert answer["make_again"] == [make]
+    main(["explain", "results/figures/fig08.png"])
+    shown = dict(line.split(maxsplit=1) for line in capsys.readouterr().out.splitlines())
+    assert shown["commit"] == f"{COMMIT} (checked out)" and shown["tree"] == "clean"
+    assert shown["make"].endswith(make)
+
+
+@pytest.mark.parametrize("file", ["figures/fig08.nc", "figures/fig08.csv", "paper.md"])
+def test_other_artifacts(results, capsys, file):
+    answer = asked(capsys, results / file)
+    assert answer["commit"] == COMMIT
+    assert answer["make_again"] == [f"snakemake --cores 2 --force results/{file}"]
+
+
+def test_the_paper_of_several_commits(results, capsys):
+    other = xr.Dataset(attrs=made("results/figures/fig09.nc", commit=OTHER))
+    write_dataset(other, results / "figures" / "fig09.nc")
+    answer = asked(capsys, results / "paper.md")
+    assert answer["commit"] == "several"
+    assert answer["make_again"] == ["snakemake --cores 2 --force results/paper.md"]
+
+
+def test_another_commit_dirt_and_other_versions(results, capsys, monkeypatch):
+    path = results / "figures" / "fig08.png"
+    target = "results/figures/fig08.png; date"
+    changed = {"commit": OTHER, "dirty": "yes", "versions": '{"python": "3.99.0"}'}
+    save(Figure(), path, made(target, **changed))
+    answer = asked(capsys, path)
+    assert answer["checked_out"] is False
+    # Its dataset beside it is of another commit.
+    assert answer["parameters"] == {}
+    make = f"snakemake --cores 2 --force '{target}'"
+    assert answer["make_again"] == [f"git checkout {OTHER}", "make setup", make]
+    main(["explain", str(path)])
+    out = capsys.readouterr().out
+    assert f"{OTHER} (not checked out)" in out and "3.99.0, now " in out
+    assert "dirty: the commit alone does not give this file" in out
+    monkeypatch.setattr(module, "checkout", lambda *starts: None)
+    assert asked(capsys, path)["checked_out"] is None
+
+
+def test_another_configuration_is_named_and_written_again(results, capsys):
+    changed = {"figures": {"fig11": {"restitution": 0.7, "tolerance": 1e-12}}, "release": "it's"}
+    path = results / "figures" / "fig11.png"
+    target = "results/figures/fig11.png"
+    save(Figure(), path, made(target, configuration=json.dumps(changed)))
+    answer = asked(capsys, path)
+    assert answer["configuration"] == {
+        "figures.fig11.restitution": 0.7, "figures.fig11.tolerance": 1e-12, "release": "it's"
+    }  # fmt: skip
+    write, make = answer["make_again"]
+    subprocess.run(["sh", "-c", write], check=True)
+    written = results / "configuration.json"
+    assert json.loads(written.read_text(encoding="utf-8")) == changed
+    assert make == f"snakemake --cores 2 --force {target} --configfile results/configuration.json"
+    main(["explain", str(path)])
+    assert "  figures.fig11.restitution     0.7\n" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("file", "said"),
+    [
+        ("nothing.png", "cannot be read: no such file"),
+        ("results", "cannot be read: a folder"),
+        ("foreign.png", "carries no provenance: no attribute provenance_commit"),
+        ("notes.md", "is not an artifact of this workflow: there is no notes.nc next to it"),
+        ("paper.md", "is not an artifact of this workflow: there is no figures/*.nc next to it"),
+        ("cut.nc", "cannot be read: damaged, or not ours"),
+        ("cut.png", "cannot be read: damaged, or not ours"),
+        ("cut.svg", "cannot be read: damaged, or not ours"),
+    ],
+)
+def test_a_file_that_is_not_ours_exits_2_with_one_line(results, capsys, file, said):
+    Figure().savefig("foreign.png")
+    for name in ("notes.md", "paper.md", "cut.nc", "cut.png", "cut.svg"):
+        Path(name).write_bytes(b"text")
+    with pytest.raises(SystemExit) as exit_:
+        main(["explain", file])
+    lines = capsys.readouterr().err.splitlines()
+    assert exit_.value.code == 2 and len(lines) == 1
+    assert lines[0].startswith(f"bouncing-ball: {file} ") and said in lines[0]
+
+
+def test_a_malformed_attribute_and_a_name_with_controls(results, capsys):
+    path = results / "figures" / "a\x1b[2J\nb.nc"
+    write_dataset(xr.Dataset(attrs=made("x") | {"c": "\x1b[2J\nforged"}), path)
+    main(["explain", str(path)])
+    out = capsys.readouterr().out
+    assert all(line.isprintable() for line in out.splitlines()) and "\\x1b[2J\\nforged" in out
+    write_dataset(xr.Dataset(attrs=made("x", inputs="\x1b[2J")), path)
+    with pytest.raises(SystemExit):
+        main(["explain", str(path)])
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1 and said[:-1].isprintable()
+    assert "is not what this workflow writes" in said
+
+
+def test_the_accepted_record_can_be_explained(results, capsys):
+    shutil.copytree(ROOT / "figures", results.parent / "figures")
+    for file in sorted((results.parent / "figures").glob("fig1*")):
+        answer = asked(capsys, file)
+        assert set(answer["commit"]) <= set("0123456789abcdef") and answer["make_again"]
+
+
+def test_what_a_job_gathers(tmp_path, monkeypatch):
+    (tmp_path / "config").mkdir()
+    (tmp_path / "config" / "config.yaml").write_text("n: 1\nr: 0.85\n", encoding="utf-8")
+    monkeypatch.setattr(
+        "bouncing_ball.provenance.origin.revision", lambda _: Revision(COMMIT, "yes")
+    )
+    inputs = ["results/b.nc", "results/a.nc", "results/b.nc"]
+    found = gather("results/c.nc", inputs, tmp_path, {"n": 2, "r": 0.85})
+    assert (found.commit, found.dirty, found.target) == (COMMIT, "yes", "results/c.nc")
+    assert json.loads(found.inputs) == ["results/a.nc", "results/b.nc"]
+    assert json.loads(found.configuration) == {"n": 2}
+    write_dataset(xr.Dataset(attrs=found.attributes()), tmp_path / "c.nc")
+    assert Provenance.of(read_attributes(tmp_path / "c.nc")) == found

@@ -1,0 +1,51 @@
+# The replication article, every number from a dataset, and the tally of the claims.
+
+ARTICLE = os.path.relpath(Path(ROOT, "workflow/report/paper"))
+
+
+rule paper:
+    message:
+        "Writing results/paper.md"
+    input:
+        templates=sorted(map(str, Path(ARTICLE).glob("*.md.j2"))),
+        error_law="config/error_law.csv",
+        atlas="config/atlas.nc",
+        references=[f"{ARTICLE}/references.yaml", f"{ARTICLE}/numbered.csl"],
+        data=datasets(STUDIES),
+        tables=expand("results/figures/{table}.md", table=TABLES),
+        source=modules(
+            *("figures.article.render", "figures.atlas.tables", "figures.tables.error_law"),
+            *("claims.tally", "datasets.files", "datasets.netcdf"),
+        ),
+    output:
+        paper="results/paper.md",
+        tally="results/tally.txt",
+    params:
+        figures=sum(name.startswith("fig") for name in DRAWINGS),
+    log:
+        "results/logs/paper.log",
+    benchmark:
+        "results/benchmarks/paper.tsv"
+    script:
+        "../scripts/paper.py"
+
+
+# Not part of a run: Typst is needed for nothing else.
+rule paper_pdf:
+    name:
+        "paper.pdf"
+    message:
+        "Setting results/paper.pdf"
+    input:
+        paper=rules.paper.output.paper,
+        template=f"{ARTICLE}/article.typ",
+        figures=expand("results/figures/{figure}.svg", figure=DRAWINGS),
+        source=modules("figures.article.pdf", "datasets.atomic"),
+    output:
+        pdf="results/paper.pdf",
+    log:
+        "results/logs/paper_pdf.log",
+    benchmark:
+        "results/benchmarks/paper_pdf.tsv"
+    script:
+        "../scripts/paper_pdf.py"

@@ -98,7 +98,7 @@ newest: setup-newest clean
 	$(MAKE) --keep-going all diff test VENV=$(NEWEST) SETUP=
 
 config-docs: setup
-	$(BIN)/python -m bouncing_ball.configuration.documentation
+	$(BIN)/snakemake --cores 1 config_docs $(QUIETLY)
 
 # For maintainers; needs uv.
 lock:

@@ -466,7 +466,7 @@ def _worst(comparisons: list[Disagreements], kind: str) -> tuple[float, int, str
     return (largest if count else np.nan), count, where
 
 
-def cross_check(datasets: Mapping[str, xr.Dataset], settings: Continuation) -> xr.Dataset:
+def cross_check(data: Mapping[str, xr.Dataset], continuation: Continuation) -> xr.Dataset:
     """Largest disagreement of every kind for every figure and table that shows an orbit.
 
     Raises
@@ -477,8 +477,8 @@ def cross_check(datasets: Mapping[str, xr.Dataset], settings: Continuation) -> x
     kinds = list(BUDGETS)
     largest: dict[str, list[float]] = {}
     count: dict[str, list[int]] = {}
-    for name, data in datasets.items():
-        comparisons = list(compare(data, settings))
+    for name, dataset in data.items():
+        comparisons = list(compare(dataset, continuation))
         if not any(one.values.size for one in comparisons):
             continue
         worst = [_worst(comparisons, kind) for kind in kinds]

@@ -8,7 +8,6 @@ ENTRY = """    Stage(
         "extensions.ext_heights",
         "n restitution amplitude:amplitudes frequency_ratio:span",
         ("release",),
-        cross_checked=True,
     ),
 )
 

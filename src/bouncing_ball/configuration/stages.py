@@ -407,8 +407,7 @@ _AUDIT = (
         "witness",
         Kind.TABLE,
         "Continuation, formula and simulation for every orbit shown",
-        "claims.cross_check.cross_check",
-        "continuation",
+        "claims.witness.witness",
         reads=tuple(stage.name for stage in _MODELS if stage.cross_checked),
     ),
     Stage(

@@ -67,15 +67,15 @@ test-cluster: $(SETUP)
 test-long: $(SETUP)
 	$(PYTEST) -m long --durations 20
 
-# The results against the accepted record; reports in results/diff/.
+# The results against the accepted record; the page is results/diff/index.html.
 diff: $(SETUP)
 	$(BIN)/snakemake --cores 2 diff $(QUIETLY)
 
-# make accept REASON='why it moved' ONLY='fig08 table1'
-export REASON
+# make accept ONLY='fig08 table1' copies these artifacts over the record; without ONLY,
+# what has moved beyond its budget.
 export ONLY
 accept: $(SETUP)
-	$(BIN)/snakemake --cores 1 accept
+	$(BIN)/snakemake --cores 1 accept $(QUIETLY)
 
 report: all
 	$(BIN)/snakemake --report results/report.html
@@ -98,7 +98,7 @@ newest: setup-newest clean
 	$(MAKE) --keep-going all diff test VENV=$(NEWEST) SETUP=
 
 config-docs: setup
-	$(BIN)/python -m bouncing_ball.configuration.documentation
+	$(BIN)/snakemake --cores 1 config_docs $(QUIETLY)
 
 # For maintainers; needs uv.
 lock:

@@ -1,6 +1,6 @@
-# Carbonelli, Perret-Liaudet, Rigaud and Feki (2011), from the equations to the
-# figures. `snakemake --cores 2` makes everything, `snakemake --cores 2 fig08`
-# one figure, `snakemake --cores 1 accept` copies the results over the record.
+# Carbonelli, Perret-Liaudet, Rigaud and Feki (2011), from the equations to the figures.
+# `snakemake --cores 2` makes everything, `snakemake --cores 2 fig08` one figure,
+# `snakemake --cores 1 accept` copies the results over the record.
 
 from snakemake.utils import min_version
 
@@ -11,23 +11,31 @@ configfile: "config/config.yaml"
 
 
 include: "workflow/rules/common.smk"
-# Parameters in, datasets out.
-include: "workflow/rules/stages.smk"
+# The stages of the paper: parameters in, datasets out.
+include: "workflow/rules/restitution_model.smk"
+include: "workflow/rules/apparent_restitution.smk"
+include: "workflow/rules/time_histories.smk"
+include: "workflow/rules/continuation.smk"
+include: "workflow/rules/permanent_contact.smk"
+include: "workflow/rules/error_thresholds.smk"
+include: "workflow/rules/beyond_the_paper.smk"
+include: "workflow/rules/claims.smk"
+include: "workflow/rules/check.smk"
 # Datasets in, figures, tables and text out.
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/tables.smk"
-include: "workflow/rules/explorer.smk"
-include: "workflow/rules/paper.smk"
+include: "workflow/rules/article.smk"
 # Each artifact by its name, with its dataset.
 include: "workflow/rules/artifacts.smk"
 
 
 rule all:
     default_target: True
+    localrule: True
     message:
         "All figures, tables and the paper are up to date"
     input:
-        artifacts=files(STAGES),
+        artifacts=files(ARTIFACTS),
         paper=rules.paper.output,
     log:
         "results/logs/all.log",
@@ -35,13 +43,7 @@ rule all:
         "tee {log} < results/tally.txt"
 
 
-localrules:
-    all,
-
-
 # The accepted record in git, and the results against it.
 include: "workflow/rules/record.smk"
-# The error law, on more orbits than a run can take.
-include: "workflow/rules/error_law.smk"
-# The atlas of thresholds, on more orbits still.
+# How stiff is stiff enough, on more orbits than a run can take.
 include: "workflow/rules/atlas.smk"

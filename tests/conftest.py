@@ -4,6 +4,7 @@ The references use nothing of the package: a matrix exponential, the paper's
 own solution of the contact, Brent's method, and free flight.
 """
 
+import ast
 import math
 import os
 import shutil
@@ -17,10 +18,8 @@ from hypothesis import HealthCheck, settings
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
-from bouncing_ball.configuration.stages import studied
-from bouncing_ball.configuration.study import load, typed
 from bouncing_ball.configuration.yaml_file import read_yaml
-from bouncing_ball.datasets.netcdf import parameter_attributes, read_dataset
+from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.datasets.variables import VARIABLES
 from bouncing_ball.studies.continuation import Continuation
 
@@ -124,17 +123,22 @@ def reference():
 
 
 @pytest.fixture(scope="session")
-def record_and_new():
-    """The accepted datasets by name; those of stages new since then computed."""
-    data = {path.stem: read_dataset(path) for path in sorted((ROOT / "figures").glob("*.nc"))}
-    run = read_yaml(ROOT / "config" / "config.yaml")
-    for stage in studied():
-        if stage.name not in data and not stage.reads:
-            parameters = stage.parameters(run)
-            made = typed(load(stage.study))(parameters, *stage.settings(run).values())
-            named = parameter_attributes({**parameters, **stage.settings(run)})
-            data[stage.name] = made.assign_attrs(named)
-    return data
+def recorded():
+    """The accepted datasets by name."""
+    return {path.stem: read_dataset(path) for path in sorted((ROOT / "figures").glob("*.nc"))}
+
+
+@pytest.fixture(scope="session")
+def stages():
+    """The study of each artifact, as the rules name it: ``NAME = {study: {artifact: title}}``."""
+    found = {}
+    for path in sorted((ROOT / "workflow" / "rules").glob("*.smk")):
+        head, rule, _ = path.read_text(encoding="utf-8").partition("\nuse rule study as ")
+        for node in ast.parse(head).body if rule else ():
+            if isinstance(node, ast.Assign) and isinstance(node.value, ast.Dict):
+                for study, titles in ast.literal_eval(node.value).items():
+                    found |= dict.fromkeys(titles, study)
+    return found
 
 
 @pytest.fixture(scope="session")

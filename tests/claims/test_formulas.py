@@ -18,6 +18,7 @@ from bouncing_ball.claims.formulas.restitution_equations import (
     _located_doubling,
     _stability,
 )
+from bouncing_ball.configuration.study import typed
 from bouncing_ball.contacts.spring_damper import contact_flow
 
 PARAMETERS = {
@@ -36,7 +37,7 @@ def agreeing(data):
 
 @pytest.fixture(scope="module")
 def checked():
-    return formulas(PARAMETERS)
+    return typed(formulas)(PARAMETERS)
 
 
 def test_which_formulas_are_right(checked, described):
@@ -74,7 +75,7 @@ def test_which_formulas_are_right(checked, described):
     ("seed", "samples"), [(0, 8), (1, 8), (2, 8), (3, 64), (4, 200), (2011, 200)]
 )
 def test_other_samples_give_the_same_verdicts(seed, samples):
-    data = formulas(PARAMETERS | {"seed": seed, "samples": samples})
+    data = typed(formulas)(PARAMETERS | {"seed": seed, "samples": samples})
     assert set(data.formula.values) - agreeing(data) == WRONG
 
 
@@ -130,7 +131,7 @@ def test_a_changed_formula_shows_in_its_rows_and_in_no_other(name, checked, monk
         if name == "saddle_node":
             # Eq. 8 is printed with the right side of Eq. 7.
             patch.setattr(printed, "period_doubling", lambda n, r: np.hypot(1, right(n, r)))
-        data = formulas(PARAMETERS)
+        data = typed(formulas)(PARAMETERS)
     assert agreeing(checked) - agreeing(data) == ROWS[name]
     # All others have the same numbers, to rounding.
     others = sorted(set(data.formula.values) - ROWS[name] - WRONG)
@@ -143,7 +144,7 @@ def test_the_corrected_equation_8_agrees_where_the_printed_one_does_not(monkeypa
         return np.hypot(2 * (1 + r * r) / (1 + r) ** 2, printed.saddle_node(n, r))
 
     monkeypatch.setattr(printed, "period_doubling", corrected)
-    found = agreeing(formulas(PARAMETERS))
+    found = agreeing(typed(formulas)(PARAMETERS))
     assert "Eq. 8" in found and "Eq. 8, Holmes' map" not in found
 
 
@@ -159,13 +160,13 @@ def test_the_sign_of_a_term_is_seen(monkeypatch):
         return height + beta * lam * np.cos(angle), velocity - beta * lam * np.sin(angle)
 
     monkeypatch.setattr(printed, "contact", flipped)
-    assert not {"Eqs. 12-13", "Eqs. 21-26"} & agreeing(formulas(PARAMETERS))
+    assert not {"Eqs. 12-13", "Eqs. 21-26"} & agreeing(typed(formulas)(PARAMETERS))
 
 
 def test_not_a_number_is_not_agreement(monkeypatch):
     assert np.isnan(largest([1.0, np.nan], 0.0)) and np.isnan(largest(0.0, [np.nan, 1.0]))
     monkeypatch.setattr(printed, "permanent_contact_minimum", lambda zeta: zeta * np.nan)
-    data = formulas(PARAMETERS)
+    data = typed(formulas)(PARAMETERS)
     assert np.isnan(data.disagreement.sel(formula="Eq. 36"))
     assert "Eq. 36" not in agreeing(data)
 
@@ -268,13 +269,13 @@ def test_the_static_error(checked):
 
 def test_points_of_the_curve_that_are_no_orbits():
     # Of the first hundred some are, some are not: the others are counted one by one.
-    found = formulas(PARAMETERS)
+    found = typed(formulas)(PARAMETERS)
     assert 0 < found.curve_points_admissible < found.curve_points == PARAMETERS["curve_points"]
 
 
 def test_a_ball_that_its_weight_holds_has_no_static_error():
     static = {"restitution": [0.1, 0.9], "frequency_ratio": [0.5, 100.0], "velocity": 0.1}
-    data = formulas(PARAMETERS | {"samples": 8, "static": static})
+    data = typed(formulas)(PARAMETERS | {"samples": 8, "static": static})
     missing = np.isnan(data.static_error)
     assert missing.sel(restitution=0.1, frequency_ratio=0.5)
     # The stiff contact throws it off.

@@ -15,7 +15,6 @@ from bouncing_ball.claims.witness import (
     restitution_orbits,
     witness,
 )
-from bouncing_ball.configuration.stages import STAGES
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import ModelError
 from bouncing_ball.figures.tables.witness import rows
@@ -25,17 +24,17 @@ from bouncing_ball.studies.orbit_branches import Domains, orbit_branches
 
 
 @pytest.fixture(scope="module")
-def result(record_and_new, described):
-    return described(witness({name: record_and_new[name] for name in SHOWN}))
+def result(recorded, described):
+    return described(witness({name: recorded[name] for name in SHOWN}))
 
 
-def test_all_routes_agree_on_all_that_is_shown(result, record_and_new):
-    assert result.artifact.values.tolist() == list(SHOWN) == list(STAGES["witness"].reads)
+def test_all_routes_agree_on_all_that_is_shown(result, recorded):
+    assert result.artifact.values.tolist() == list(SHOWN)
     compared = result.orbits > 0
     assert (np.isnan(result.disagreement) == ~compared).all()
     assert (result.disagreement <= result.budget).where(compared, True).all()
     # Nothing that an earlier run compared is left out.
-    accepted = record_and_new["witness"].orbits
+    accepted = recorded["witness"].orbits
     assert (result.orbits == accepted.sel(artifact=result.artifact)).all()
     assert (result.orbits.sel(comparison=FORMULA) > 0).all()
     # All points of three branches, and their bifurcations.
@@ -62,8 +61,8 @@ def test_all_routes_agree_on_all_that_is_shown(result, record_and_new):
         ("ext_release", "bifurcation_amplitude"),
     ],
 )
-def test_a_number_that_is_off_is_seen(record_and_new, name, variable, one_line):
-    data = record_and_new[name].copy(deep=True)
+def test_a_number_that_is_off_is_seen(recorded, name, variable, one_line):
+    data = recorded[name].copy(deep=True)
     values = data[variable].values
     values *= 1 + 1e-9
     with pytest.raises(CrossCheckError) as error:
@@ -81,13 +80,13 @@ def test_a_number_that_is_off_is_seen(record_and_new, name, variable, one_line):
         ("table1", {"restitution": 0.8501}),
     ],
 )
-def test_other_parameters_than_those_of_the_orbits_are_seen(record_and_new, name, change):
+def test_other_parameters_than_those_of_the_orbits_are_seen(recorded, name, change):
     with pytest.raises(CrossCheckError, match=f"{name}: {FORMULA} disagree"):
-        witness({name: record_and_new[name].assign_attrs(change)})
+        witness({name: recorded[name].assign_attrs(change)})
 
 
-def test_one_orbit_that_is_not_a_number_is_seen(record_and_new):
-    data = record_and_new["fig05"].copy(deep=True)
+def test_one_orbit_that_is_not_a_number_is_seen(recorded):
+    data = recorded["fig05"].copy(deep=True)
     data.phase.values[2, 7] = np.nan
     with pytest.raises(CrossCheckError, match="disagree by inf"):
         witness({"fig05": data})
@@ -101,13 +100,11 @@ def test_one_orbit_that_is_not_a_number_is_seen(record_and_new):
         ("cycle", lambda c: c._replace(relative_velocity=c.relative_velocity * (1 + 2e-11)), HOLDS),
     ],
 )
-def test_each_comparison_with_the_simulation_can_fail(
-    record_and_new, monkeypatch, part, change, kind
-):
+def test_each_comparison_with_the_simulation_can_fail(recorded, monkeypatch, part, change, kind):
     original = getattr(SpringDamperOrbit, part)
     monkeypatch.setattr(SpringDamperOrbit, part, lambda self, *x: change(original(self, *x)))
     with pytest.raises(CrossCheckError, match=kind):
-        witness({"fig08": record_and_new["fig08"]})
+        witness({"fig08": recorded["fig08"]})
 
 
 @pytest.mark.parametrize(
@@ -121,15 +118,15 @@ def test_each_comparison_with_the_simulation_can_fail(
     ],
 )
 def test_a_renamed_variable_is_no_reason_to_compare_nothing(
-    record_and_new, name, variable, needed_by, one_line
+    recorded, name, variable, needed_by, one_line
 ):
     with pytest.raises(CrossCheckError) as error:
-        witness({name: record_and_new[name].rename({variable: "renamed"})})
+        witness({name: recorded[name].rename({variable: "renamed"})})
     one_line(error, f"{name}: {needed_by} needs ")
 
 
-def test_an_empty_comparison_fails(record_and_new, one_line):
-    data = record_and_new["fig05"]
+def test_an_empty_comparison_fails(recorded, one_line):
+    data = recorded["fig05"]
     empty = data.assign(contact_duration=data.contact_duration * np.nan)
     with pytest.raises(CrossCheckError) as error:
         witness({"fig05": empty})
@@ -167,12 +164,12 @@ def _bump(values):
 
 
 @pytest.mark.parametrize("name", ["fig03", "fig05", "fig08", "fig09", "fig15"])
-def test_the_simulation_leaves_out_only_what_is_no_orbit_of_the_ball(record_and_new, name):
+def test_the_simulation_leaves_out_only_what_is_no_orbit_of_the_ball(recorded, name):
     """From samples of each path: no earlier release, no earlier landing."""
     for find in (contact_orbits, restitution_orbits):
         if find not in SHOWN[name]:
             continue
-        shown = next(find(record_and_new[name]))
+        shown = next(find(recorded[name]))
         orbit = shown.orbit
         longest = np.max(np.abs(orbit.clock * orbit.contact_duration), initial=0.0)
         share = np.linspace(0, 1, int(64 * (4 + longest / np.pi + 2 * np.max(orbit.n))))

@@ -1,5 +1,7 @@
 """What a call of the command line says, as it succeeds or fails."""
 
+import contextlib
+import io
 import json
 
 import pytest
@@ -7,20 +9,38 @@ import pytest
 from bouncing_ball.cli.main import main
 
 
-@pytest.fixture
-def said(capsys):
+@pytest.fixture(scope="session")
+def outcome():
+    """Exit status, output and errors of a call."""
+
+    def outcome(*arguments):
+        status = 0
+        with (
+            contextlib.redirect_stdout(io.StringIO()) as out,
+            contextlib.redirect_stderr(io.StringIO()) as err,
+        ):
+            try:
+                main(list(arguments))
+            except SystemExit as exit_:
+                status = exit_.code
+        return status, out.getvalue(), err.getvalue()
+
+    return outcome
+
+
+@pytest.fixture(scope="session")
+def said(outcome):
     """The output of a call that succeeds."""
 
     def said(*arguments):
-        main(list(arguments))
-        out, err = capsys.readouterr()
-        assert err == ""
+        status, out, err = outcome(*arguments)
+        assert (status, err) == (0, "")
         return out
 
     return said
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def ask(said):
     """The JSON answer of a call that succeeds, on one line."""
 
@@ -32,15 +52,13 @@ def ask(said):
     return ask
 
 
-@pytest.fixture
-def refused(capsys):
+@pytest.fixture(scope="session")
+def refused(outcome):
     """Exit status and the one line on standard error of a call that fails."""
 
     def refused(*arguments):
-        with pytest.raises(SystemExit) as exit_:
-            main(list(arguments))
-        out, err = capsys.readouterr()
-        assert out == "" and err.count("\n") == 1
-        return exit_.value.code, err.rstrip("\n")
+        status, out, err = outcome(*arguments)
+        assert status != 0 and out == "" and err.count("\n") == 1
+        return status, err.rstrip("\n")
 
     return refused

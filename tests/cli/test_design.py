@@ -1,43 +1,53 @@
-"""``bouncing-ball design``: keys, texts, exit statuses."""
+"""``bouncing-ball design``: keys, texts, exit statuses, and the page to print."""
 
-import subprocess
-import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+from PIL import Image
 
-TABLE = ("--frequency", "50 Hz", "--acceleration", "0.8 g")
-CASE = ("design", "--mass", "20 g", *TABLE, "--restitution", "0.85")
+from bouncing_ball import design
+from bouncing_ball.calculator.page_data import page
+from bouncing_ball.cli.design import answer
+from bouncing_ball.figures.design_page import draw
+
+CASE = ("design", "--mass", "20 g", "--frequency", "50 Hz", "--acceleration", "0.8 g",
+        "--restitution", "0.85")  # fmt: skip
 STIFF = ("--stiffness", "1e7 N/m")
+UNIT = {"mass": 1.0, "angular_frequency": 1.0, "gravity": 1.0, "acceleration": 1.0,
+        "restitution": 0.65, "n": 1}  # fmt: skip
 
 
-def test_json_has_the_keys(ask):
-    found = ask(*CASE, *STIFF)
-    assert list(found)[:4] == ["frequency_ratio", "damping_ratio", "amplitude", "contact_time"]
-    assert {"orbits", "verdict", "reason", "corrected", "time_step", "needed"} <= set(found)
-    for one in found["orbits"]:
-        assert {"n", "exists", "is_stable", "errors", "corrected_errors"} <= set(one)
-        assert set(one["errors"]) == set(one["corrected_errors"])
-    assert found["orbits"][0]["n"] == 1 and found["orbits"][0]["errors"]["max_height"] > 0.01
-    assert isinstance(found["verdict"], str)
+@pytest.fixture(scope="module")
+def found():
+    return design(**UNIT, stiffness=36.0)
 
 
-def test_what_is_infinite_is_null(ask):
-    # The saddle-node of an elastic ball is at Λ = 0: nothing to be relative to.
+@pytest.fixture(scope="module")
+def data(found):
+    return page(found)
+
+
+def test_json_is_the_answer_of_the_call(ask):
+    found = design(
+        mass="20 g", frequency="50 Hz", acceleration="0.8 g", restitution=0.85, stiffness="1e7 N/m"
+    )
+    assert ask(*CASE, *STIFF) == answer(found)
+    # The saddle-node of an elastic ball is at Λ = 0, and an infinite error is null.
     case = "design --mass 1 --frequency 1 --acceleration 5 --restitution 1 --stiffness 1e5 --n 1"
-    found = ask(*case.split())
-    assert found["orbits"][0]["errors"]["saddle_node"] is None
+    assert ask(*case.split())["orbits"][0]["errors"]["saddle_node"] is None
 
 
 def test_the_text_begins_with_the_verdict_of_the_readme(said):
-    lines = said(*CASE, *STIFF).splitlines()
-    assert lines[0].startswith("The restitution model is not good enough: the greatest height")
-    assert lines[1].startswith("Reason: the contact's frequency ratio ϖ = 71.18 is below")
-    text = "\n".join(lines)
-    words = ("contact time", "peak force", "force over weight", "largest time step", "3-T orbit")
-    assert all(word in text for word in words)
+    text = said(*CASE, *STIFF)
+    lines = text.splitlines()
     readme = (Path(__file__).parents[2] / "README.md").read_text("utf-8")
     assert lines[0] in readme and lines[1] in readme
+    words = ("contact time", "peak force", "force over weight", "largest time step", "3-T orbit")
+    assert all(word in text for word in words)
+    # It does not depend on n.
+    assert text.count("threshold of permanent contact") == 1
+    assert lines[-1].split()[-6:] == ["0.02", "%"] * 3
 
 
 def test_choosing(said):
@@ -51,7 +61,6 @@ def test_choosing(said):
     ("arguments", "status", "says"),
     [
         (("--frequency", "20 ms"), 2, "it needs a frequency"),
-        (("--stiffness", "-5 N/m"), 2, "not positive"),
         (("--stiffness", "-5N/m"), 2, "stiffness = -5 N/m is not positive"),
         (("--stiffness", "-1e6"), 2, "stiffness = -1e+06 N/m is not positive"),
         (("--damping", "3 N s/m"), 2, "contradict"),
@@ -61,18 +70,59 @@ def test_choosing(said):
         (("--quantity", "colour"), 2, "one of max_height"),
         (("--plot", "page.jpg"), 2, "'page.jpg' does not end in .pdf or .png or .svg"),
         (("--plot", "page.png/"), 2, "'page.png/' does not end in .pdf or .png or .svg"),
+        (("--plot", "/dev/null/page.png"), 2, "/dev/null/page.png cannot be written"),
     ],
 )
-def test_mistakes_are_one_line(refused, arguments, status, says):
+def test_mistakes_are_one_line(refused, monkeypatch, data, arguments, status, says):
+    monkeypatch.setattr("bouncing_ball.calculator.page_data.page", lambda found: data)
     code, line = refused(*CASE, *STIFF, *arguments)
     assert code == status and says in line
 
 
-def test_only_units_need_pint():
-    code = (
-        "import sys; from bouncing_ball.cli.main import main; "
-        "main('design --mass 1 --frequency 1 --acceleration 5 --stiffness 1e6 --restitution 0.9 "
-        "--n 1 --json'.split()); sys.exit('pint' in sys.modules)"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
-    assert done.returncode == 0 and done.stdout
+def test_the_chart_goes_through_the_published_threshold(data):
+    at = data.needed.interp(restitution=0.65).sel(simple="restitution")
+    # 82.177, on a line between points at which the curve is nearly straight.
+    assert float(at) == pytest.approx(82.177, rel=0.02)
+    assert data.needed.notnull().all()
+    # It begins where the family does.
+    first = float(data.restitution[0])
+    assert first == pytest.approx((np.pi - 1) / (np.pi + 1), rel=1e-12)
+
+
+def test_the_motion_is_the_orbit_in_its_units(found, data):
+    one = found.orbits[0]
+    height = float(data.ball.sel(model="spring-damper").max())
+    assert height == pytest.approx(one.max_height, rel=1e-5)
+    gap = data.gap.sel(model="spring-damper")
+    assert float(-gap.min()) == pytest.approx(one.greatest_compression, rel=1e-5)
+    # The ball touches at zero and leaves at the contact's end.
+    inside = data.since[np.flatnonzero(gap < 0)]
+    step = float(data.since[1] - data.since[0])
+    ends = [float(inside[0]), float(inside[-1])]
+    assert ends == pytest.approx([0.0, one.contact_duration], abs=step)
+    assert float(data.gap.sel(model="restitution").min()) >= -1e-12
+
+
+def test_the_page_shows_the_case(found, data):
+    figure = draw(answer(found), data, [("stiffness", "36 N/m")])
+    star = next(line for line in figure.axes[0].lines if line.get_label() == "this contact")
+    assert star.get_xydata().tolist() == [[0.65, found.frequency_ratio]]
+    texts = " ".join(text.get_text().replace("\n", " ") for text in figure.texts)
+    assert found.verdict in texts and found.reason in texts
+
+
+def test_a_page_for_an_orbit_that_one_model_lacks(monkeypatch):
+    lonely = design(**UNIT | {"restitution": 0.85, "acceleration": 0.247}, stiffness=100.0)
+    monkeypatch.setattr("bouncing_ball.calculator.page_data._CHART", 2)
+    shown = page(lonely)
+    assert shown.ball.sel(model="restitution").isnull().all()
+    assert draw(answer(lonely), shown, []).axes
+
+
+def test_the_command_writes_the_page_and_answers_as_without(tmp_path, said, monkeypatch, data):
+    monkeypatch.setattr("bouncing_ball.calculator.page_data.page", lambda found: data)
+    assert said(*CASE, *STIFF, "--plot", str(tmp_path / "page.png")) == said(*CASE, *STIFF)
+    with Image.open(tmp_path / "page.png") as picture:
+        # A4 upright, with ink in it.
+        assert picture.height / picture.width == pytest.approx(2**0.5, abs=0.01)
+        assert np.mean(np.asarray(picture.convert("L")) < 128) > 0.005

@@ -52,16 +52,6 @@ function modes(page, view) {
   }
   return seen;
 }
-function filters(page) {
-  const seen = {};
-  for (const input of page.querySelectorAll("input[name=shown]")) {
-    input.click();
-    seen[input.id.split("/").pop()] = [...page.querySelectorAll("section, nav li")]
-      .filter(part => part.offsetHeight > 0).map(part => part.id).filter(name => name);
-  }
-  page.querySelector("input[name=shown]").click();
-  return seen;
-}
 addEventListener("load", () => {
   const page = document.getElementById("page").contentDocument;
   const view = document.getElementById("page").contentWindow;
@@ -78,11 +68,7 @@ addEventListener("load", () => {
     cells: [...page.querySelectorAll("td")].map(cell => cell.textContent),
     fetched: view.performance.getEntriesByType("resource").map(entry => entry.name),
     overflow: page.documentElement.scrollWidth - page.documentElement.clientWidth,
-    title: page.title,
     modes: modes(page, view),
-    filters: filters(page),
-    links: [...page.querySelectorAll("nav a")].map(link => page.getElementById(
-      decodeURIComponent(link.hash.slice(1)))?.id),
   };
   document.getElementById("seen").textContent = JSON.stringify(seen);
 });
@@ -121,7 +107,6 @@ def seen(page, browse):
 
 
 def test_the_browser_shows_every_picture_and_the_worst_first(seen, kept_pair):
-    assert seen["title"] == "Artifacts against the record"
     found = {image["alt"]: image for image in seen["images"]}
     assert set(found) == {
         "fig01, record and new",
@@ -179,14 +164,6 @@ def test_side_by_side_then_one_upon_the_other(seen):
     assert after["width"] == pytest.approx(before["width"] / 2, abs=1)
     assert modes["large"][2]["wide"] == 1200
     assert modes["large"][2]["picture"] > 1.2 * modes["difference"][2]["picture"]
-
-
-def test_a_list_to_jump_by_and_only_what_moved(seen):
-    names = [part["name"] for part in seen["sections"]]
-    assert seen["links"] == names
-    moved = [part["name"] for part in seen["sections"] if part["open"]]
-    assert seen["filters"] == {"all": names, "different": moved, "moved": moved}
-    assert 0 < len(moved) < len(names)
 
 
 def test_the_page_fits_a_telephone(page, browse):

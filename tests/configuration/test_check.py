@@ -5,14 +5,19 @@ from pathlib import Path
 
 import pytest
 
-from bouncing_ball.configuration.check import ConfigurationError, check_configuration, check_orbits
-from bouncing_ball.configuration.yaml_file import read_yaml
+from bouncing_ball.atlas.plan import AtlasParameters
+from bouncing_ball.configuration.check import check, configuration_model
+from bouncing_ball.configuration.documentation import configuration_page, configuration_schema
+from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
 
-CONFIG, SCHEMA = (
-    read_yaml(Path(__file__).resolve().parents[2] / "config" / name)
-    for name in ("config.yaml", "schema.yaml")
-)
+FOLDER = Path(__file__).resolve().parents[2] / "config"
+CONFIG = read_yaml(FOLDER / "config.yaml")
 REMOVED = object()
+
+
+@pytest.fixture(scope="module")
+def model(stages):
+    return configuration_model(stages, CONFIG, atlas=AtlasParameters)
 
 
 def changed(keys, value):
@@ -27,93 +32,116 @@ def changed(keys, value):
     return config
 
 
-def test_the_shipped_configuration_is_accepted():
-    check_configuration(CONFIG, SCHEMA)
+def test_the_shipped_configuration_is_accepted(model):
+    check(model, CONFIG, release="displacement")
 
 
-def test_a_kind_that_is_not_described(one_line):
-    kinds = {key: value for key, value in SCHEMA["$defs"].items() if key != "periods"}
-    with pytest.raises(ConfigurationError) as error:
-        check_configuration(CONFIG, {**SCHEMA, "$defs": kinds})
-    one_line(error, "fig02: its parameter periods has the kind periods, which config/schema.yaml")
-
-
-FIG08, FIG05 = ("figures", "fig08"), ("figures", "fig05")
+FIG05, FIG08 = ("figures", "fig05"), ("figures", "fig08")
+SPAN = (*FIG05, "frequency_ratio")
 
 
 @pytest.mark.parametrize(
     ("keys", "value", "message"),
     [
-        ((*FIG08, "restitution"), 1.2, "figures.fig08.restitution = 1.2 must be at most 0.999"),
-        ((*FIG08, "restitution"), 0, "figures.fig08.restitution = 0 must be at least 0.05"),
-        ((*FIG08, "n"), 0, "figures.fig08.n = 0 must be at least 1"),
-        ((*FIG08, "n"), 1.5, "figures.fig08.n = 1.5 must be a whole number"),
-        ((*FIG08, "n"), 1.0, "figures.fig08.n = 1.0 must be a whole number"),
+        # A type, a key, a limit.
+        ((*FIG08, "n"), 1.0, "figures.fig08.n = 1.0 must be a whole number (index n of the"),
         ((*FIG08, "n"), True, "figures.fig08.n = True must be a whole number"),
-        ((*FIG08, "n"), REMOVED, "missing key figures.fig08.n"),
-        ((*FIG08, "m"), 1, "unknown key figures.fig08.m = 1; allowed here: n, restitution"),
-        ((*FIG08, "frequency_ratio"), [], "figures.fig08.frequency_ratio = [] must have at least"),
+        ((*FIG08, "n"), 0, "figures.fig08.n = 0 must be at least 1"),
+        ((*FIG08, "n"), 21, "figures.fig08.n = 21 must be at most 20"),
+        ((*FIG08, "restitution"), REMOVED, "missing key figures.fig08.restitution: restitution"),
+        ((*FIG08, "resitution"), 1, "figures.fig08.resitution = 1, did you mean restitution?"),
+        (("figure",), {}, "unknown key figure = {}, did you mean figures? Allowed here: "),
+        (FIG08, 3, "figures.fig08 = 3 must be a mapping of the keys n, restitution, "),
+        (FIG08, REMOVED, "fig08 has no parameters: a key fig08 in one of figures, tables"),
         (
-            (*FIG08, "frequency_ratio", 1),
-            -10,
-            "fig08.frequency_ratio[1] = -10 must be at least 0.1",
+            (*FIG08, "restitution"),
+            1.2,
+            "must be at most 0.999 (restitution coefficient r; at r = 1",
         ),
-        ((*FIG08, "frequency_ratio", 1), 0, "fig08.frequency_ratio[1] = 0 must be at least 0.1"),
-        ((*FIG08, "frequency_ratio"), [2, 2], "fig08.frequency_ratio = [2, 2] must not repeat"),
-        (
-            (*FIG05, "cases"),
-            [{"restitution": 0.65, "amplitude": 1.0}] * 2,
-            "'restitution':... must not repeat an item (list of (restitution, amplitude)",
-        ),
+        ((*FIG08, "restitution"), 0.04, "figures.fig08.restitution = 0.04 must be at least 0.05"),
+        (("figures", "fig11", "restitution"), 0.0433, "= 0.0433 must be greater than 0.0433"),
+        ((*FIG08, "frequency_ratio", 1), 0.09, "frequency_ratio[1] = 0.09 must be at least 0.1"),
         ((*FIG08, "frequency_ratio", 0), "1e4", "'1e4' must be a number (powers of ten are"),
-        ((*FIG05, "cases", 0, "restitution"), 1.2, "restitution = 1.2 must be at most 1"),
-        ((*FIG08, "points"), 3, "figures.fig08.points = 3 must be at least 11"),
-        (FIG08, 3, "figures.fig08 = 3 must be a mapping"),
-        (FIG08, REMOVED, "missing key figures.fig08"),
-        (("figure",), {}, "unknown key figure = {}; allowed here: release"),
-        (("release",), "tension", "release = 'tension' must be one of displacement, force"),
+        (
+            (*FIG08, "frequency_ratio"),
+            [],
+            "figures.fig08.frequency_ratio = [] must have at least 1",
+        ),
+        ((*FIG08, "frequency_ratio"), [2, 2], "fig08.frequency_ratio = [2, 2] must not repeat"),
+        ((*FIG08, "frequency_ratio"), 2.0, "fig08.frequency_ratio = 2.0 must be a list"),
+        ((*FIG08, "points"), 10, "figures.fig08.points = 10 must be at least 11"),
         (("figures", "fig14", "tolerance"), 1, "fig14.tolerance = 1 must be less than 1"),
-        ((*FIG05, "cases"), [], "figures.fig05.cases = [] must have at least 1 item"),
+        (("figures", "fig14", "tolerance"), 0.0, "fig14.tolerance = 0.0 must be greater than 0"),
+        (("figures", "fig10", "amplitude"), {"min": 1, "max": 2, "samples": 3}, "must be a list"),
         ((*FIG05, "cases", 2, "amplitude"), float("nan"), "amplitude = nan must be a finite"),
         ((*FIG05, "cases", 2, "amplitude"), float("inf"), "amplitude = inf must be a finite"),
-        ((*FIG05, "cases", 3, "amplitude"), 1.0, "= 1.0 must be at least 2.57039, the saddle-node"),
-        ((*FIG05, "frequency_ratio", "max"), 0.5, ".min = 1.0 must be less than max = 0.5"),
-        (("figures", "fig12", "amplitude"), 0.5, "= 0.5 must be at least 0.666398, the saddle"),
-        (("figures", "fig08", "amplitude_max"), 0.2, "= 0.2 must be at least 0.254724, the sad"),
-        (("tables", "table1", "amplitude_max"), 1.3, "at least 1.39016, the period doubling"),
-        (("tables", "table1", "restitution"), 1.0, "restitution = 1.0 must be at most 0.999"),
-        (("tables", "table1", "printed"), [], "unknown key tables.table1.printed = []; allowed"),
-        (("tables", "table1", "n"), [], "tables.table1.n = [] must have at least 1 item"),
-        (("studies", "formulas", "samples"), 7, "studies.formulas.samples = 7 must be at least 8"),
-        (("tables", "thresholds", "quantities"), ["height"], "'height' must be one of max_height"),
-        (("figures", "fig11", "restitution"), 0.04, "= 0.04 must be greater than 0.0433"),
-        (("continuation", "initial_step"), 0.5, "must lie between smallest_step"),
+        ((*FIG05, "cases"), CONFIG["figures"]["fig05"]["cases"][:1] * 2, "must not repeat an item"),
+        ((*SPAN, "samples"), 1, "figures.fig05.frequency_ratio.samples = 1 must be at least 2"),
+        (("release",), "tension", "release = 'tension' must be 'displacement' or 'force'"),
+        (("tables", "thresholds", "quantities"), ["height"], "'height' must be 'max_height', "),
+        # What fits together.
+        ((*SPAN, "max"), 1.0, "fig05.frequency_ratio: min = 1 must be less than max = 1"),
+        (("continuation", "initial_step"), 0.3, "continuation: initial_step = 0.3 must lie"),
+        (("continuation", "smallest_step"), 1e-4, ""),
+        (("atlas", "restitution", "max"), 0.05, "restitution: min = 0.05 must be less than max"),
+        (("atlas", "examined", 0), 2.0, "atlas: examined = 2 must be from 3 to 100000"),
+        (("atlas", "summary", "tolerance"), 0.3, "summary.tolerance = 0.3 must be one of"),
+        # What the physics forbids.
+        ((*FIG05, "cases", 3, "amplitude"), 1.0, "cases[3] = "),
+        ((*FIG05, "cases", 3, "amplitude"), 2.57, "must be at least 2.57039, the saddle-node of"),
+        ((*FIG05, "cases", 3, "amplitude"), 2.5704, ""),
+        (("figures", "fig12", "amplitude"), 0.6663, "= 0.6663 must be at least 0.666398, the sadd"),
+        (("figures", "fig10", "amplitude", 2), 0.5, "must be at least 0.509447, the saddle-node"),
+        ((*FIG08, "amplitude_max"), 0.25, "= 0.25 must be at least 0.254724, the saddle-node"),
+        # Of several families the highest decides how far branches must reach, ...
+        (("figures", "fig03", "amplitude_max"), 1.27, "= 1.27 must be at least 1.27362, the sadd"),
+        (("tables", "table1", "amplitude_max"), 1.39, "at least 1.39016, the period doubling"),
+        # ... and the lowest what can be shown at one Λ.
+        (("extensions", "ext_basins", "amplitude", 0), 0.3, ""),
+        (("extensions", "ext_basins", "amplitude", 0), 0.25, "at least 0.254724, the saddle-node"),
+        (("figures", "fig07", "frequency_ratio"), 0.3, "frequency_ratio: no 1-T orbit at Λ = 1"),
+        (("figures", "fig12", "frequency_ratio", 1), 0.3, "frequency_ratio[1]: no 1-T orbit"),
     ],
 )
-def test_a_mistake_is_named_in_one_line(keys, value, message):
-    with pytest.raises(ConfigurationError) as caught:
-        check_configuration(changed(keys, value), SCHEMA)
-    assert message in str(caught.value)
-    assert "\n" not in str(caught.value)
+def test_a_mistake_is_named_in_one_line(stages, keys, value, message):
+    config = changed(keys, value)
+    try:
+        model = configuration_model(stages, config, atlas=AtlasParameters)
+        check(model, config, release="displacement")
+        said = ""
+    except ConfigurationError as error:
+        said = str(error)
+    assert message in said and "\n" not in said
+    assert bool(message) == bool(said), said
 
 
-@pytest.mark.parametrize(
-    ("figure", "parameters", "said"),
-    [
-        ("fig07", {"frequency_ratio": 0.3}, "no 1-T orbit at Λ = 1 for ϖ = 0.3"),
-        ("fig12", {"frequency_ratio": [5.0, 0.3]}, "figures.fig12.frequency_ratio = 0.3: no 1-T"),
-        (
-            "fig07",
-            {"n": 2, "restitution": 0.3, "amplitude": 50.0, "frequency_ratio": 0.8},
-            "is inadmissible: another impact",
-        ),
-    ],
-)
-def test_a_time_history_without_an_orbit_is_refused(figure, parameters, said):
+def test_a_time_history_of_no_motion_is_refused(model, one_line):
     config = copy.deepcopy(CONFIG)
-    config["figures"][figure] |= parameters
-    check_configuration(config, SCHEMA)
-    with pytest.raises(ConfigurationError) as caught:
-        check_orbits(config)
-    assert said in str(caught.value) and "\n" not in str(caught.value)
-    check_orbits(CONFIG)
+    soft = {"n": 2, "restitution": 0.3, "amplitude": 50.0, "frequency_ratio": 0.8}
+    config["figures"]["fig07"] |= soft
+    with pytest.raises(ConfigurationError) as error:
+        check(model, config, release="displacement")
+    one_line(error, "figures.fig07.frequency_ratio: ", "is inadmissible: another impact")
+
+
+def test_a_study_that_is_not_there(one_line):
+    for study in ("studies.nothing.here", "studies.orbit_branches.nothing"):
+        with pytest.raises(ConfigurationError) as error:
+            configuration_model({"fig08": study}, CONFIG)
+        one_line(error, study, "nothing")
+
+
+def test_nothing_raw_in_a_refusal(model, one_line):
+    with pytest.raises(ConfigurationError) as error:
+        check(model, CONFIG | {"n\x1b[31m\n\u202e": 1})
+    assert str(error.value).isprintable()
+    one_line(error, r"n\x1b[31m\n\u202e")
+
+
+def test_the_documentation_is_that_of_the_types(model):
+    made = {
+        "README.md": configuration_page(model, CONFIG),
+        "schema.json": configuration_schema(model),
+    }
+    for name, text in made.items():
+        assert (FOLDER / name).read_text(encoding="utf-8") == text, "run `make config-docs`"

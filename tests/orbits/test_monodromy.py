@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.orbits import restitution_orbit as restitution_orbits
+from bouncing_ball.orbits.restitution_orbit import RestitutionOrbit
+from bouncing_ball.orbits.restitution_orbit import phase as restitution_phase
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import orbit_at
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
@@ -40,8 +41,8 @@ def test_determinant_is_the_contraction_of_the_contact(n, r, log_omega, release,
 @pytest.mark.parametrize(("n", "r", "lam"), [(1, 0.85, 0.9), (3, 0.5, 3.5)])
 def test_stiff_limit_is_the_restitution_map(n, r, lam):
     zeta = float(damping_ratio(r))
-    phase = restitution_orbits.phase(n, r, lam)
-    expected = np.array(restitution_orbits.trace_and_determinant(r, lam, phase))
+    phase = restitution_phase(n, r, lam)
+    expected = np.array(RestitutionOrbit.of(n, r, lam, phase).trace_and_determinant())
     errors = []
     for omega in (1e4, 1e5):
         orbit = orbit_at(SpringDamper(omega, zeta), n, lam)

@@ -130,3 +130,23 @@ def test_max_height_of_a_ball_released_downwards():
     z, _ = orbit.contact_path(np.linspace(0, float(orbit.contact_duration), 20001))
     # Sampled to (1e-4)²: far below the difference of 0.4.
     assert float(orbit.max_height) == pytest.approx(z.max(), abs=1e-6)
+
+
+def test_distance_is_the_largest_difference():
+    contact = SpringDamper(10.0, 0.05)
+    point = branch_point(0.02, contact, 1)
+    base = {
+        "n": 1,
+        "law": contact,
+        "amplitude": point.amplitude,
+        "phase": point.phase + 2 * np.pi,  # the same table
+        "contact_duration": point.contact_duration,
+        "impact_velocity": point.u + point.x,
+    }
+    orbit = SpringDamperOrbit.from_branch(point, contact, 1)
+    assert float(SpringDamperOrbit(**base).distance(orbit)) < 1e-14
+    sizes = {"amplitude": 1, "phase": 1, "contact_duration": 10, "impact_velocity": 1}
+    for name, size in sizes.items():
+        moved = base | {name: base[name] + 1e-3}
+        found = SpringDamperOrbit(**moved).distance(orbit)
+        assert float(found) == pytest.approx(size * 1e-3, rel=1e-9)

@@ -108,12 +108,12 @@ def test_a_stage_that_fails_leaves_no_article(made, one_line):
         output=SimpleNamespace(data=FIG08),
         input=SimpleNamespace(data=[]),
         params=SimpleNamespace(
-            study="studies.parameters.grid", parameters={"min": 1.0}, settings={}, title=""
+            study="studies.nothing.here", arguments={"parameters": {}}, title=""
         ),
     )
     with pytest.raises(SystemExit) as exit_:
         make_dataset(job)
-    one_line(exit_, "stage/fig08: KeyError: 'max'")
+    one_line(exit_, "stage/fig08: studies.nothing.here: No module named")
     assert not Path("results/paper.md").exists() and not Path("results/tally.txt").exists()
     # Nothing to remove is no mistake.
     withdraw()

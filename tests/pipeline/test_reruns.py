@@ -1,4 +1,4 @@
-"""What a change makes again, as far as entries of stages and imports decide it.
+"""What a change makes again, as far as parameters and imports decide it.
 
 That Snakemake follows them is tested in tests/workflow/test_reruns.py.
 """
@@ -11,67 +11,34 @@ from pathlib import Path
 
 import pytest
 
-from bouncing_ball.configuration.stages import studied
+from bouncing_ball.configuration.study import arguments
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.pipeline.sources import imports, sources
 
 ROOT = Path(__file__).resolve().parents[2]
-CONFIG = ROOT / "config"
-RUN = read_yaml(CONFIG / "config.yaml")
-# What rests on the orbits shown.
-CLAIMS, WITNESS = {"claims"}, {"witness", "claims"}
-
-
-def given(run):
-    """What each stage is given."""
-    return {stage.name: (stage.parameters(run), stage.settings(run)) for stage in studied()}
-
-
-def with_followers(names):
-    """The stages and all that read their datasets, or those made from these."""
-    found = set(names)
-    for stage in studied():  # each after those that it reads
-        if found & set(stage.reads):
-            found.add(stage.name)
-    return found
+CONFIG = read_yaml(ROOT / "config" / "config.yaml")
 
 
 @pytest.mark.parametrize(
     ("keys", "value", "expected"),
     [
-        (("figures", "fig08", "points"), 101, {"fig08", *WITNESS}),
-        (("extensions", "ext_release", "restitution"), 0.9, {"ext_release", *WITNESS}),
-        (("figures", "fig16", "tolerance"), 0.02, {"fig16", *CLAIMS}),
-        # Decides two claims by its damping alone.
-        (("figures", "fig11", "restitution"), 0.7, {"fig11", *CLAIMS}),
-        # Decides none.
-        (("figures", "fig12", "amplitude"), 1.1, {"fig12", *WITNESS}),
-        (("studies", "formulas", "seed"), 1, {"formulas", *CLAIMS}),
-        (("tables", "table1", "amplitude_max"), 1.6, {"table1", *WITNESS}),
+        (("figures", "fig08", "points"), 101, {"fig08"}),
+        (("studies", "formulas", "seed"), 1, {"formulas"}),
         (
             ("continuation", "max_angle"),
             0.1,
-            {"fig08", "fig09", "fig15", "table1", *WITNESS},
+            {"fig08", "fig09", "fig15", "table1"},
         ),
     ],
 )
-def test_a_changed_parameter(keys, value, expected):
-    run = copy.deepcopy(RUN)
-    section = run
+def test_a_changed_parameter(stages, keys, value, expected):
+    config = copy.deepcopy(CONFIG)
+    section = config
     for key in keys[:-1]:
         section = section[key]
     section[keys[-1]] = value
-    before, after = given(RUN), given(run)
-    assert with_followers(name for name in after if after[name] != before[name]) == expected
-
-
-def users(file):
-    """The stages whose study imports a module, itself or by way of others."""
-    return {
-        stage.name
-        for stage in studied()
-        if any(path.endswith(f"/{file}") for path in sources(f"bouncing_ball.{stage.module}"))
-    }
+    given = [{x: arguments(stages[x], x, run) for x in stages} for run in (CONFIG, config)]
+    assert {name for name in stages if given[0][name] != given[1][name]} == expected
 
 
 @pytest.mark.parametrize(
@@ -81,12 +48,17 @@ def users(file):
         ("claims/verdict.py", {"claims"}),
         ("claims/tally.py", set()),
         ("figures/style.py", set()),
-        ("configuration/stages.py", set()),
-        ("claims/as_printed.py", {"formulas", "forensics", "claims"}),
+        ("configuration/check.py", set()),
     ],
 )
-def test_a_changed_module(file, expected):
-    assert users(file) == expected
+def test_a_changed_module(stages, file, expected):
+    users = {
+        name
+        for name, study in stages.items()
+        for path in sources(f"bouncing_ball.{study.rpartition('.')[0]}")
+        if path.endswith(f"/{file}")
+    }
+    assert users == expected
 
 
 def test_the_modules_of_a_stage_are_those_it_imports():
@@ -111,9 +83,3 @@ def test_no_import_statement_is_missed():
                 named |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
         own = {name for name in named if name.split(".")[0] == "bouncing_ball"}
         assert imports(path) == own, path
-
-
-def test_a_line_of_a_text_is_no_import_statement(tmp_path):
-    path = tmp_path / "module.py"
-    path.write_text('"""Values\nfrom bouncing_ball as it is.\n"""\n', encoding="utf-8")
-    assert imports(path) == set()

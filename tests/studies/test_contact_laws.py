@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.configuration.study import typed
 from bouncing_ball.contacts.collocation import contacts
 from bouncing_ball.contacts.laws.linear import Linear
 from bouncing_ball.orbits.restitution_model import RestitutionModel
@@ -27,7 +28,7 @@ TRIED = {
 def errors():
     span = {"min": np.pi / 0.1, "max": np.pi / 0.03, "samples": 2}
     one = {"n": 1, "restitution": 0.65, "amplitude": 1.0, "tolerance": 0.01}
-    return law_errors(one | {"frequency_ratio": span})
+    return typed(law_errors)(one | {"frequency_ratio": span})
 
 
 def law_at_rigid_speed(name, duration):

@@ -7,10 +7,10 @@ from scipy.optimize import brentq, fsolve
 
 from bouncing_ball.accuracy.quantities import Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
+from bouncing_ball.configuration.study import typed
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.orbits.spring_damper_limits import orbit_at
 from bouncing_ball.studies.error_thresholds import (
     error_thresholds,
@@ -76,7 +76,7 @@ def integrated_height(omega, r, lam):
 def test_one_percent_height_of_the_paper(described):
     # Eq. 37, Figure 14: n = 1, r = 0.65, Λ = 1; printed "≈ 82".
     data = described(
-        height_error(
+        typed(height_error)(
             {
                 "n": 1,
                 "restitution": 0.65,
@@ -105,7 +105,7 @@ def test_one_percent_height_of_the_paper(described):
 def test_one_percent_permanent_contact(described):
     # Eq. 38, Figure 16; printed "≈ 6".
     data = described(
-        permanent_contact_error(
+        typed(permanent_contact_error)(
             {
                 "restitution": 0.65,
                 "frequency_ratio": {"min": 0.5, "max": 100.0, "samples": 101},
@@ -122,7 +122,7 @@ def test_one_percent_permanent_contact(described):
 
 
 def test_all_quantities(described):
-    data = described(error_thresholds(PARAMETERS, "displacement"))
+    data = described(typed(error_thresholds)(PARAMETERS, "displacement"))
     assert data.relative_error.dims == ("quantity", "frequency_ratio")
     assert data.error_threshold.dims == ("quantity", "tolerance")
     assert data["quantity"].values.tolist() == PARAMETERS["quantities"]
@@ -138,8 +138,8 @@ def test_all_quantities(described):
 
 
 def test_force_release():
-    paper = error_thresholds(PARAMETERS, "displacement")
-    dry = error_thresholds(PARAMETERS, "force")
+    paper = typed(error_thresholds)(PARAMETERS, "displacement")
+    dry = typed(error_thresholds)(PARAMETERS, "force")
     # A contact released at zero force keeps more velocity than Eq. 16 says: r_a
     # never comes within 1 % of r.
     at = {"quantity": "apparent_restitution"}
@@ -148,12 +148,3 @@ def test_force_release():
     contact = SpringDamper(1e4, float(damping_ratio(0.65)), Release.FORCE)
     expected = float(orbit_at(contact, 1, 1.0).apparent_restitution) / 0.65 - 1
     assert float(dry.relative_error.sel(at)[-1]) == pytest.approx(expected, rel=1e-9)
-
-
-def test_errors(one_line):
-    with pytest.raises(NoOrbitError) as error:
-        error_thresholds(PARAMETERS | {"amplitude": 0.3}, "displacement")
-    one_line(error, "no 1-T orbit at Λ = 0.3")
-    with pytest.raises(ModelError) as error:
-        error_thresholds(PARAMETERS | {"restitution": 1.5}, "displacement")
-    one_line(error, "r = 1.5")

@@ -8,18 +8,20 @@ import pytest
 
 from bouncing_ball.accuracy.error_law import REMAINDER, STATED
 from bouncing_ball.accuracy.quantities import OF_IMPACTS
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.parameters import Span
 from bouncing_ball.studies import law_distribution as distribution
 
 RECORD = Path(__file__).resolve().parents[2] / "config" / "error_law.csv"
 ROWS = list(csv.DictReader(RECORD.read_text(encoding="utf-8").splitlines()))
-SPAN = {"min": distribution.DECADES[0], "max": distribution.DECADES[-1]}
+SPAN = Span(min=distribution.DECADES[0], max=distribution.DECADES[-1], samples=2)
 # Another seed than the record's.
 SIZE, SEED = 1500, 20240
 # Of some 700 comparisons none is this many standard deviations off by chance.
 FAR = 5
 
 
-@pytest.fixture(scope="module", params=["displacement", "force"])
+@pytest.fixture(scope="module", params=list(Release))
 def drawn(request):
     return request.param, distribution.sample(SIZE, SEED, SPAN, request.param)
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.configuration.study import typed
 from bouncing_ball.studies.long_contacts import MOTIONS, basins, stable_windows
 
 WINDOWS = {"restitution": [0.85, 0.65], "frequency_ratio": {"min": 1.2, "max": 10.0, "samples": 11}}
@@ -18,7 +19,7 @@ BASINS = {
 
 
 def test_windows_over_both_parameters(described):
-    found = described(stable_windows(WINDOWS, "displacement"))
+    found = described(typed(stable_windows)(WINDOWS, "displacement"))
     assert found.window_amplitude.dims == ("restitution", "frequency_ratio")
     assert (found.window_amplitude > found.threshold_amplitude).all()
     # Each row is that of its own r: the ends by another program, at ϖ = 1.2 and 10.
@@ -30,12 +31,12 @@ def test_windows_over_both_parameters(described):
 
 
 def test_limits_are_those_of_the_papers_release():
-    found = stable_windows(WINDOWS | {"restitution": [0.85]}, "force")
+    found = typed(stable_windows)(WINDOWS | {"restitution": [0.85]}, "force")
     assert np.isnan(found.stiff_window).all() and np.isnan(found.joining_ratio).all()
 
 
 def test_basins_of_one_contact(described):
-    found = described(basins(BASINS, "displacement"))
+    found = described(typed(basins)(BASINS, "displacement"))
     shares = found.basin_share.values
     assert shares.sum(axis=1) == pytest.approx([1, 1, 1], abs=1e-15)
     permanent, short, long, longer, other = shares.T
@@ -58,11 +59,11 @@ def test_basins_of_one_contact(described):
 
 def test_basins_with_the_other_release(described):
     small = BASINS | {"starts": 10, "amplitude": [0.9]}
-    assert described(basins(small, "force")).basin_share.sum().item() == pytest.approx(1)
+    assert described(typed(basins)(small, "force")).basin_share.sum().item() == pytest.approx(1)
 
 
 def test_balls_that_rise_when_they_are_given_up_have_no_period():
     parameters = {"n": [1, 10], "restitution": 0.5707358288321754, "starts": 119, "impacts": 10}
     parameters |= {"frequency_ratio": 24.11573489959817, "amplitude": [8.614520580887136]}
-    found = basins({**parameters, "velocity_max": 0.12824839560054857}, "force")
+    found = typed(basins)({**parameters, "velocity_max": 0.12824839560054857}, "force")
     assert found.other_period.values.tolist() == [0]

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.accuracy.error_law import STATED
+from bouncing_ball.configuration.study import typed
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.studies import model_errors as study
 from bouncing_ball.studies.random_orbits import random_orbits
@@ -15,7 +16,9 @@ RELEASES = list(Release)
 
 def test_the_table_of_the_error_law(described):
     data = described(
-        study.error_law_table({**ORBIT, "tolerance": 0.01, "frequency_ratio": SPAN}, "displacement")
+        typed(study.error_law_table)(
+            {**ORBIT, "tolerance": 0.01, "frequency_ratio": SPAN}, "displacement"
+        )
     )
     exact = data.error_threshold.sel(model="restitution")
     # The thresholds of the replication's own table.
@@ -34,7 +37,9 @@ def test_the_table_of_the_error_law(described):
 @pytest.mark.parametrize("release", RELEASES)
 def test_orders_of_random_orbits(described, release):
     random = {"seed": 3, "samples": 200, "stiff_frequency_ratio": 1000.0, "law_samples": 300}
-    data = described(study.orders({**ORBIT, "frequency_ratio": SPAN, "random": random}, release))
+    data = described(
+        typed(study.orders)({**ORBIT, "frequency_ratio": SPAN, "random": random}, release)
+    )
     for model, order in (("restitution", 1), ("corrected", 2)):
         found = data.order.sel(model=model)
         # The apparent restitution's first order is small next to its second.
@@ -48,7 +53,7 @@ def test_orders_of_random_orbits(described, release):
 
 def test_where_each_model_is_right(described):
     data = described(
-        study.validity(
+        typed(study.validity)(
             {
                 "n": [1, 2],
                 "restitution": [0.5, 0.8],
@@ -70,7 +75,7 @@ def test_where_each_model_is_right(described):
 @pytest.mark.parametrize("release", RELEASES)
 def test_the_flights_meet_at_the_centroid_of_the_force(described, release):
     data = described(
-        study.meeting_flights({**ORBIT, "frequency_ratio": 4.0, "samples": 4001}, release)
+        typed(study.meeting_flights)({**ORBIT, "frequency_ratio": 4.0, "samples": 4001}, release)
     )
     force, time = data.contact_force.values, data.time.values
     centroid = np.sum(force * time) / np.sum(force)
@@ -82,7 +87,7 @@ def test_the_flights_meet_at_the_centroid_of_the_force(described, release):
 
 
 def test_random_orbits_are_in_the_stable_range():
-    n, zeta, lam, _ = random_orbits(500, 1, "force")
+    n, zeta, lam, _ = random_orbits(500, 1, Release.FORCE)
     contact = SpringDamper(1.0, zeta, Release.FORCE)
     assert np.all((contact.restitution > 0.14) & (contact.restitution < 0.99))
     assert np.all((n >= 1) & (n <= 5)) and np.all(lam > 0)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from bouncing_ball.configuration.study import typed
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.studies.reference_orbits import reference_orbits
@@ -10,7 +11,7 @@ GIVEN = {"frequency_ratio": {"min": 1.0, "max": 1e4, "samples": 40}, "seed": 31}
 
 
 def test_they_satisfy_the_equations_of_the_contact():
-    data = reference_orbits(GIVEN)
+    data = typed(reference_orbits)(GIVEN)
     for rule in ("displacement", "force"):
         part = data.sel(release=rule)
         contact = SpringDamper.from_restitution(
@@ -31,4 +32,4 @@ def test_they_satisfy_the_equations_of_the_contact():
 
 
 def test_the_same_seed_gives_the_same_orbits():
-    assert reference_orbits(GIVEN).identical(reference_orbits(GIVEN))
+    assert typed(reference_orbits)(GIVEN).identical(typed(reference_orbits)(GIVEN))

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.configuration.study import typed
 from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
 from bouncing_ball.contacts.oscillator import impulse_response
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
@@ -27,7 +28,7 @@ PARAMETERS = {
 
 @pytest.mark.slow
 def test_values_are_those_of_the_orbits():
-    data = release_rules(PARAMETERS)
+    data = typed(release_rules)(PARAMETERS)
     contact = SpringDamper(1e3, float(damping_ratio(0.85)), Release.FORCE)
     expected = branch_point(saddle_node(contact, 2), contact, 2).amplitude
     cell = data.bifurcation_amplitude.sel(release="force", n=2, bound="saddle-node")

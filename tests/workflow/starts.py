@@ -17,8 +17,8 @@ from snakemake.cli import main as snakemake
 
 # What Snakemake and the package import as they run.
 USED = (
-    "jsonschema",
     "nbformat",
+    "pydantic",
     "scipy.optimize.elementwise",
     "smart_open",
     "snakemake.report.html_reporter",

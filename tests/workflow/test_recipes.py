@@ -1,17 +1,14 @@
-"""The recipes of CONTRIBUTING, each tried on a fresh clone."""
+"""The recipes of CONTRIBUTING, each tried on a fresh clone with exactly the files that it names."""
 
-ENTRY = """    Stage(
-        "ext_heights",
-        Kind.EXTENSION,
-        "Greatest height along the frequency ratio",
-        "studies.frequency_sweeps.frequency_sweep",
-        "extensions.ext_heights",
-        "n restitution amplitude:amplitudes frequency_ratio:span",
-        ("release",),
-    ),
-)
+BEYOND = "workflow/rules/beyond_the_paper.smk"
+CONFIG = "config/config.yaml"
+DRAWINGS = "src/bouncing_ball/figures/__init__.py"
+FIGURE = "src/bouncing_ball/figures/heights.py"
 
-_EXPLORER"""
+ENTRY = """BEYOND_THE_PAPER = {
+    "studies.frequency_sweeps.frequency_sweep": {
+        "ext_heights": "Greatest height along the frequency ratio",
+    },"""
 PARAMETERS = """  ext_heights:
     n: 1
     restitution: 0.85
@@ -34,10 +31,6 @@ def heights(data: xr.Dataset) -> Figure:
     axes.set(xlabel="frequency ratio", ylabel="greatest height")
     return figure
 '''
-STAGES = "src/bouncing_ball/configuration/stages.py"
-CONFIG = "config/config.yaml"
-FIGURE = "src/bouncing_ball/figures/heights.py"
-DRAWINGS = "src/bouncing_ball/figures/__init__.py"
 
 
 def said(tree, *arguments):
@@ -49,16 +42,13 @@ def said(tree, *arguments):
 
 
 def test_a_figure_with_its_own_parameters(fresh):
-    # Four files, and until the last is there the missing piece is named.
-    fresh.rewrite(STAGES, ")\n\n_EXPLORER", ENTRY)
-    assert said(fresh) == "configuration: missing key extensions.ext_heights"
+    fresh.rewrite(BEYOND, "BEYOND_THE_PAPER = {", ENTRY)
+    assert said(fresh).startswith("configuration: ext_heights has no parameters: a key ext_heights")
     fresh.rewrite(CONFIG, "studies:\n  formulas:", PARAMETERS)
-    assert said(fresh) == f"stages: ext_heights: no drawing in DRAWINGS of {DRAWINGS}"
     fresh.rewrite(DRAWINGS, "DRAWINGS = {", 'DRAWINGS = {\n    "ext_heights": "heights.heights",')
-    assert said(fresh).startswith(f"stages: ext_heights: no module {FIGURE}")
     (fresh.path / FIGURE).write_text(DRAWING, encoding="utf-8")
     changed = fresh.git("status", "--porcelain").splitlines()
-    assert {line.split()[-1] for line in changed} == {STAGES, CONFIG, FIGURE, DRAWINGS}
+    assert {line.split()[-1] for line in changed} == {BEYOND, CONFIG, FIGURE, DRAWINGS}
     fresh.run("--cores", "1", "ext_heights")
     kinds = {path.suffix for path in (fresh.path / "results/figures").glob("ext_heights.*")}
     assert kinds == {".nc", ".png", ".svg"}
@@ -67,56 +57,51 @@ def test_a_figure_with_its_own_parameters(fresh):
 STUDY = '''"""A number from the curve of another stage."""
 
 from collections.abc import Mapping
-from typing import Any
 
 import xarray as xr
 
+from bouncing_ball.parameters import Family, Parameters
 
-def lowest(data: Mapping[str, xr.Dataset], parameters: Mapping[str, Any]) -> xr.Dataset:
+
+class Lowest(Parameters):
+    """How many thresholds are looked at."""
+
+    n: Family
+
+
+def lowest(data: Mapping[str, xr.Dataset], parameters: Lowest) -> xr.Dataset:
     """The lowest of the first ``n`` thresholds."""
-    curve = data["fig11"].threshold_amplitude[: parameters["n"]]
+    curve = data["fig11"].threshold_amplitude[: parameters.n]
     return xr.Dataset({"threshold_amplitude": curve.min()})
 '''
 
 
 def test_a_stage_on_the_dataset_of_another(fresh):
     (fresh.path / "src/bouncing_ball/studies/lowest.py").write_text(STUDY, encoding="utf-8")
-    entry = """_AUDIT = (
-    Stage(
-        "lowest",
-        Kind.DATASET,
-        "Lowest threshold of permanent contact",
-        "studies.lowest.lowest",
-        "studies.lowest",
-        "n",
-        reads=("fig11",),
-    ),"""
-    fresh.rewrite(STAGES, "_AUDIT = (", entry)
-    fresh.rewrite(CONFIG, "studies:\n  formulas:", "studies:\n  lowest: { n: 11 }\n  formulas:")
+    entry = """READS["lowest"] = ["fig11"]
+BEYOND_THE_PAPER = {
+    "studies.lowest.lowest": {"lowest": "Lowest threshold of permanent contact"},"""
+    fresh.rewrite(BEYOND, "BEYOND_THE_PAPER = {", entry)
+    fresh.rewrite(CONFIG, "studies:\n  formulas:", "studies:\n  lowest: { n: 110 }\n  formulas:")
+    assert said(fresh).startswith("configuration: studies.lowest.n = 110 must be at most 20")
+    fresh.rewrite(CONFIG, "lowest: { n: 110 }", "lowest: { n: 11 }")
     fresh.run("--cores", "1", "lowest")
     made = {path.name for path in (fresh.path / "results/figures").iterdir()}
     assert made == {"fig11.nc", "lowest.nc"}
 
 
-KIND = """  load:
-    description: weight of the ball against that of the paper, from 1 to 10
-    type: number
-    minimum: 1
-    maximum: 10
-
-properties:
-  release:"""
-
-
 def test_a_parameter(fresh):
-    fresh.rewrite("config/schema.yaml", "\nproperties:\n  release:", KIND)
     fresh.rewrite(
-        STAGES,
-        '"restitution:damped_restitution frequency_ratio:span",',
-        '"restitution:damped_restitution frequency_ratio:span load",',
+        "src/bouncing_ball/studies/permanent_contact_curve.py",
+        "    frequency_ratio: Span\n",
+        "    frequency_ratio: Span\n    load: Tolerance\n",
     )
-    assert said(fresh) == "configuration: missing key figures.fig11.load"
-    fresh.rewrite(CONFIG, "fig11: # permanent-contact threshold", "fig11:\n    load: 0.5")
-    assert said(fresh).startswith("configuration: figures.fig11.load = 0.5 must be at least 1")
-    fresh.rewrite(CONFIG, "load: 0.5", "load: 2.0")
-    assert any(job.startswith("fig11: ") for job in fresh.planned("fig11"))
+    fresh.rewrite(
+        "src/bouncing_ball/studies/permanent_contact_curve.py",
+        "import Parameters, Span, ThresholdRestitution",
+        "import Parameters, Span, ThresholdRestitution, Tolerance",
+    )
+    fresh.rewrite(CONFIG, "fig11: # permanent-contact threshold", "fig11:\n    load: 2.0")
+    assert said(fresh).startswith("configuration: figures.fig11.load = 2.0 must be less than 1")
+    fresh.rewrite(CONFIG, "load: 2.0", "load: 0.5")
+    assert said(fresh).startswith("configuration: missing key figures.fig16.load")

@@ -4,51 +4,35 @@ Which stages a parameter or a module decides is tested in tests/pipeline/test_re
 here, that Snakemake runs these, and what is made from them.
 """
 
-from bouncing_ball.configuration.stages import STAGES
-
-PAPER = "Writing results/paper.md"
-
-
-def made(*names):
-    """Messages of the stages that make these datasets."""
-    return {f"{name}: {STAGES[name].title}" for name in names}
-
-
-CLAIMS = {*made("claims"), "Setting claims", PAPER}
+CLAIMS = {"claims", "Setting claims", "Writing results/paper.md"}
 # Every orbit shown is followed by the comparison of the three routes.
-WITNESS = {*made("witness"), "Setting witness"}
+WITNESS = {"witness", "Setting witness"}
 
 
 def test_a_parameter_and_what_is_made_with_it(complete):
     complete.configure("figures", "fig12", "amplitude", value=1.1)
-    assert complete.planned() == {*made("fig12"), "Drawing fig12", *WITNESS, *CLAIMS}
+    assert complete.planned() == {"fig12", "Drawing fig12", *WITNESS, *CLAIMS}
 
 
 def test_what_only_shows_runs_no_science_again(complete):
-    # Another entry is no reason to run those that are there.
-    for file in ("figures/long_contacts.py", "figures/tables/table1.py", "configuration/stages.py"):
+    for file in ("figures/long_contacts.py", "figures/tables/table1.py", "configuration/check.py"):
         complete.edit(file)
     drawn = {"Drawing ext_rattling", "Drawing ext_basins"}
-    assert complete.planned() == {*drawn, "Setting table1", PAPER}
+    assert complete.planned() == {*drawn, "Setting table1", "Writing results/paper.md"}
 
 
 def test_a_module_runs_the_stages_that_import_it(complete):
     complete.edit("claims/verdict.py")
     complete.edit("claims/forensics.py")
-    assert complete.planned() == {*made("forensics"), "Setting forensics", *CLAIMS}
+    assert complete.planned() == {"forensics", "Setting forensics", *CLAIMS}
 
 
 def test_a_printed_number_of_table_1_runs_the_table_too(complete):
     complete.rewrite("src/bouncing_ball/studies/printed_table1.py", '"1.032"', '"1.033"')
-    assert complete.planned() == {
-        *made("table1", "forensics"),
-        "Setting table1",
-        "Setting forensics",
-        *WITNESS,
-        *CLAIMS,
-    }
+    remade = {"table1", "forensics", "Setting table1", "Setting forensics"}
+    assert complete.planned() == {*remade, *WITNESS, *CLAIMS}
 
 
 def test_a_dataset_that_is_missing_is_made_again(complete):
     (complete.path / "results/figures/fig08.nc").unlink()
-    assert made("fig08") <= complete.planned("fig08")
+    assert "fig08" in complete.planned("fig08")

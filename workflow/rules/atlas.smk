@@ -1,9 +1,20 @@
 # The atlas: how stiff is stiff enough, everywhere. Not part of a run. Its summary is
 # accepted by hand, see docs/atlas.md, and the article takes its numbers from there.
 
-from bouncing_ball.pipeline.atlas import shard_minutes
+from bouncing_ball.pipeline.atlas import discard_damaged, shard_minutes, shard_names
 
+# What the shards are made from.
+ATLAS = {key: part for key, part in config["atlas"].items() if key != "summary"}
 CHARTS = ["max_height", "bounce_velocity", "phase", "apparent_restitution", "limits", "page"]
+
+
+def shard_files(wildcards):
+    """The shards; one that is damaged is removed, and so made again."""
+    paths = [f"results/atlas/shards/{name}.nc" for name in [*shard_names(ATLAS), "limits"]]
+    if workflow.is_main_process:
+        for path in discard_damaged(paths):
+            logger.warning(f"{path} is damaged: it is made again")
+    return paths
 
 
 rule atlas_shard:
@@ -62,10 +73,7 @@ rule atlas_summary:
         data="results/atlas/summary.nc",
     params:
         title="The atlas in short",
-        parameters=RUN["atlas"],
-    resources:
-        runtime=10,
-        mem_mb=2000,
+        parameters=config["atlas"],
     log:
         "results/logs/atlas/summary.log",
     benchmark:
@@ -74,7 +82,7 @@ rule atlas_summary:
         "../scripts/atlas_summary.py"
 
 
-rule atlas_charts:
+rule atlas:
     message:
         "Atlas: charts and tables"
     input:
@@ -89,20 +97,9 @@ rule atlas_charts:
         charts=expand("results/atlas/{chart}.png", chart=CHARTS),
         shares="results/atlas/shares.md",
         worst="results/atlas/worst.md",
-    resources:
-        runtime=10,
-        mem_mb=2000,
     log:
         "results/logs/atlas/charts.log",
     benchmark:
         "results/benchmarks/atlas/charts.tsv"
     script:
         "../scripts/atlas_charts.py"
-
-
-rule atlas:
-    localrule: True
-    message:
-        "The atlas is up to date"
-    input:
-        rules.atlas_charts.output,

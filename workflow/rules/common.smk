@@ -1,4 +1,4 @@
-# Check the configuration before anything runs; names shared by the rules.
+# Names shared by the rules, and the study from which each stage of the paper is made.
 
 import gc
 import os
@@ -28,64 +28,26 @@ if package is None or Path(package.origin).resolve().parent != HERE:
         f"bouncing_ball is imported from {found}, not from {HERE}: use this checkout's .venv (make setup)"
     )
 
-from bouncing_ball.configuration.check import check_configuration, check_orbits
-from bouncing_ball.configuration.stages import ENTRIES, STAGES, Kind, names, studied, tables
-from bouncing_ball.errors import ModelError
-from bouncing_ball.configuration.yaml_file import read_yaml
-from bouncing_ball.pipeline.atlas import shard_names
-from bouncing_ball.pipeline.pieces import check_entries, check_pieces
+from bouncing_ball.configuration.study import arguments
 from bouncing_ball.pipeline.sources import sources
 
 # Two lines before every job, which say nothing of it.
 logger.addFilter(lambda record: not str(record.msg).startswith(("Select jobs", "Execute ")))
 
-FIGURES = names(Kind.FIGURE, Kind.EXTENSION)
-TABLES = tables()
-DATASETS = [stage.name for stage in studied()]
-
-where = "stages"
-try:
-    check_entries(ENTRIES)
-    # Snakemake has read these files already, and taken the last of equal keys.
-    for where in map(os.path.relpath, workflow.configfiles):
-        read_yaml(where)
-    where = "configuration"
-    check_configuration(config, read_yaml(Path(ROOT, "config/schema.yaml")))
-    if workflow.is_main_process:  # jobs need not look again
-        check_orbits(config)
-    # All that parameters and settings of the stages are taken from.
-    RUN = config
-    where = "stages"
-    if workflow.is_main_process:
-        check_pieces(STAGES, RUN)
-except ModelError as error:
-    sys.exit(f"{where}: {error}")
+# Study and title of each artifact, and the artifacts whose datasets its study reads.
+STUDIES, TITLES, READS = {}, {}, {}
 
 
-def stage_of(wildcards):
-    return STAGES[wildcards.artifact]
+def stages(table):
+    """Enter the artifacts of a stage, `{study: {artifact: title}}`; a pattern of their names."""
+    for study, titles in table.items():
+        STUDIES.update(dict.fromkeys(titles, study))
+        TITLES.update(titles)
+    return "|".join(name for titles in table.values() for name in titles)
 
 
 def datasets(artifacts):
     return [f"results/figures/{name}.nc" for name in artifacts]
-
-
-def files(artifacts):
-    """All that is published of artifacts: the dataset, and what is made from it."""
-    return [
-        f"results/figures/{name}.{kind}"
-        for name in artifacts
-        for kind in [
-            *(["nc"] if STAGES[name].study else []),
-            *(["png", "svg"] if name in FIGURES else []),
-            *(["csv", "md", "tex"] if name in TABLES else []),
-            *(["html"] if STAGES[name].kind is Kind.PAGE else []),
-        ]
-    ]
-
-
-def captioned(name):
-    return Path(ROOT, f"workflow/report/{name}.rst").is_file()
 
 
 def modules(*names):
@@ -97,9 +59,27 @@ def modules(*names):
     return [os.path.relpath(file) for file in files]
 
 
-# What the shards of the atlas are made from.
-ATLAS = {key: part for key, part in RUN["atlas"].items() if key != "summary"}
-
-
-def shard_files(wildcards):
-    return [f"results/atlas/shards/{name}.nc" for name in [*shard_names(ATLAS), "limits"]]
+# Parameters in, a dataset out. The stages of the paper are this rule for their own artifacts;
+# itself it makes none.
+rule study:
+    message:
+        "{wildcards.artifact}: {params.title}"
+    input:
+        data=lambda wildcards: datasets(READS.get(wildcards.artifact, [])),
+        source=lambda wildcards: modules(STUDIES[wildcards.artifact].rpartition(".")[0]),
+    output:
+        data="results/figures/{artifact}.nc",
+    wildcard_constraints:
+        artifact="(?!)",
+    params:
+        study=lambda wildcards: STUDIES[wildcards.artifact],
+        title=lambda wildcards: TITLES[wildcards.artifact],
+        arguments=lambda wildcards: arguments(
+            STUDIES[wildcards.artifact], wildcards.artifact, config
+        ),
+    log:
+        "results/logs/stages/{artifact}.log",
+    benchmark:
+        "results/benchmarks/stages/{artifact}.tsv"
+    script:
+        "../scripts/study.py"

@@ -1,8 +1,15 @@
-# Datasets in, figures out.
+# Datasets in, figures out: each figure from the dataset of its name. The schematics, Figures 1
+# and 4, have none.
 
 from bouncing_ball.figures import DRAWINGS
 
-for name in FIGURES:
+
+def caption(name):
+    own = Path(ROOT, f"workflow/report/{name}.rst").is_file()
+    return f"../report/{name if own else 'figure'}.rst"
+
+
+for name, drawing in DRAWINGS.items():
 
     rule:
         name:
@@ -10,19 +17,20 @@ for name in FIGURES:
         message:
             f"Drawing {name}"
         input:
-            data=datasets([name] if STAGES[name].study else []),
+            data=datasets([name] if name in STUDIES else []),
             source=modules(
-                f"figures.{DRAWINGS[name]}".rpartition(".")[0],
+                f"figures.{drawing}".rpartition(".")[0],
                 "figures.files",
                 "datasets.netcdf",
             ),
+            settings=os.path.relpath(Path(ROOT, "src/bouncing_ball/figures/matplotlibrc")),
         params:
-            drawing=f"figures.{DRAWINGS[name]}",
+            drawing=f"figures.{drawing}",
         output:
             png=report(
                 f"results/figures/{name}.png",
-                caption=f"../report/{name if captioned(name) else 'figure'}.rst",
-                category="Figures" if STAGES[name].kind is Kind.FIGURE else "Beyond the paper",
+                caption=caption(name),
+                category="Figures" if name.startswith("fig") else "Beyond the paper",
                 labels={"figure": name},
             ),
             svg=f"results/figures/{name}.svg",
@@ -32,3 +40,25 @@ for name in FIGURES:
             f"results/benchmarks/figures/{name}.tsv"
         script:
             "../scripts/figure.py"
+
+
+# The page to explore the models, with the orbits that it checks itself against.
+rule draw_explorer:
+    message:
+        "Writing results/figures/explorer.html"
+    input:
+        data="results/figures/explorer.nc",
+        texts=sorted(
+            os.path.relpath(path)
+            for path in Path(ROOT, "src/bouncing_ball/figures/explorer").iterdir()
+            if path.suffix in (".js", ".css", ".j2")
+        ),
+        source=modules("figures.explorer.document", "datasets.netcdf", "datasets.files"),
+    output:
+        html="results/figures/explorer.html",
+    log:
+        "results/logs/explorer.log",
+    benchmark:
+        "results/benchmarks/explorer.tsv"
+    script:
+        "../scripts/explorer.py"

@@ -1,27 +1,32 @@
-# Datasets in, tables out: CSV, Markdown and LaTeX.
+# Datasets in, tables out: CSV, Markdown and LaTeX, each table from the dataset of its name.
 
-for name in TABLES:
+TABLES = [
+    *("table1", "thresholds"),
+    *("ext_error_law", "ext_validity", "ext_laws", "ext_hertz"),
+    *("formulas", "forensics", "witness", "claims"),
+]
 
-    rule:
-        name:
-            f"set_{name}"
-        message:
-            f"Setting {name}"
-        input:
-            data=f"results/figures/{name}.nc",
-            source=modules(
-                f"figures.tables.{name}",
-                "figures.tables.formats",
-                "datasets.netcdf",
-                "datasets.files",
-            ),
-        output:
-            csv=f"results/figures/{name}.csv",
-            md=f"results/figures/{name}.md",
-            tex=f"results/figures/{name}.tex",
-        log:
-            f"results/logs/tables/{name}.log",
-        benchmark:
-            f"results/benchmarks/tables/{name}.tsv"
-        script:
-            "../scripts/table.py"
+
+rule set_table:
+    message:
+        "Setting {wildcards.table}"
+    input:
+        data="results/figures/{table}.nc",
+        source=lambda wildcards: modules(
+            f"figures.tables.{wildcards.table}",
+            "figures.tables.formats",
+            "datasets.netcdf",
+            "datasets.files",
+        ),
+    output:
+        csv="results/figures/{table}.csv",
+        md="results/figures/{table}.md",
+        tex="results/figures/{table}.tex",
+    wildcard_constraints:
+        table="|".join(TABLES),
+    log:
+        "results/logs/tables/{table}.log",
+    benchmark:
+        "results/benchmarks/tables/{table}.tsv"
+    script:
+        "../scripts/table.py"

@@ -120,7 +120,7 @@ such as 50 Hz; a period has its own parameter, period
 
 
 def _finite(given: str, value: Any) -> float:
-    if isinstance(value, bool) or not math.isfinite(value):
+    if not math.isfinite(value):
         raise ModelError(f"{given} is not a finite number")
     return float(value)
 

@@ -86,7 +86,7 @@ def high_bounce_monodromy(orbit: SpringDamperOrbit) -> np.ndarray:
 
     ``z′_b T - T²/2 = 0`` in place of Eq. 25, so that ``dT = -T dz′_b/z′_i``.
     """
-    d_duration, _, d_velocity = np.moveaxis(orbit.contact_jacobian(), -2, 0)
+    d_duration, _, d_velocity = np.moveaxis(orbit.contact_jacobian()[..., :2], -2, 0)
     d_release = d_duration + np.array([1.0, 0.0])
     sine = orbit.amplitude * np.sin(orbit.release_phase)
     d_bounce = d_velocity - sine[..., np.newaxis] * d_release

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.continuation.corrector import Condition, NewtonSettings, newton, plane
 from bouncing_ball.continuation.events import vanishing
@@ -146,8 +147,7 @@ def along_frequency_ratio(data: xr.Dataset) -> Iterator[Shown]:
         for kind in Bifurcation:
             part = data.sel(release=rule, bound=kind)
             lam, omega, n = _row(part, "bifurcation_amplitude", "frequency_ratio", "n")
-            law = SpringDamper(omega, float(data.damping_ratio), str(rule))
-            model = SpringDamperModel(law)
+            model = SpringDamperModel(SpringDamper(omega, float(data.damping_ratio), Release(rule)))
             orbit = model.orbit_of(n, lam, np.full_like(lam, np.nan))
             yield Shown(model, orbit, Route.FORMULA, kind)
 
@@ -222,12 +222,13 @@ def limits_against_formula(shown: Shown) -> np.ndarray:
     The distance from the formula's branch, and along it the test function over its slope.
     """
     orbit, model, system = shown.orbit, shown.model, shown.model.system(shown.orbit.n)
+    test = _TESTS[Bifurcation(str(shown.bifurcation))]
     start = model.nearest(orbit)
     y = system.point(start)
     step = _WIDTH / np.maximum(start.clock, 1.0)
     along = step[:, np.newaxis] * _tangents(system, y)
     low, middle, high = (
-        _TESTS[Bifurcation(shown.bifurcation)](*model.nearest(at).trace_and_determinant())
+        test(*model.nearest(at).trace_and_determinant())
         for at in (system.orbit(y - along), start, system.orbit(y + along))
     )
     off = np.abs(2 * middle / (high - low)) * step

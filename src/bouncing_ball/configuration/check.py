@@ -1,142 +1,163 @@
 """Check of the configuration, with one line per mistake.
 
-The schema says what each key may be; :func:`check_configuration` adds what a
-schema cannot say: that numbers are finite, ranges are not empty, and that the
-restitution orbits which a figure needs exist (Eq. 7).
+The type of each section is that of the ``parameters`` of the study which takes it. So what is
+allowed, and why, stands beside the study.
 """
 
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Mapping, Sequence
+from difflib import get_close_matches
 from typing import Any
 
-from bouncing_ball.configuration.conformity import check_schema, dotted
-from bouncing_ball.configuration.schema import configuration_schema
-from bouncing_ball.configuration.stages import STAGES
+from pydantic import BaseModel, ValidationError, create_model
+
+from bouncing_ball.configuration.study import SECTIONS, section, taken
 from bouncing_ball.configuration.yaml_file import ConfigurationError
+from bouncing_ball.parameters import Parameters
 
 
-def _spans(value: Any, path: tuple = ()) -> Iterator[tuple[tuple, Mapping]]:
-    if isinstance(value, Mapping):
-        if {"min", "max"} <= set(value):
-            yield path, value
-        for key, part in value.items():
-            yield from _spans(part, (*path, key))
+class _Sections(Parameters, strict=False):
+    """The whole configuration, whose release rule is written as a text."""
 
 
-def _check_consistency(config: Mapping[str, Any]) -> None:
-    steps = config["continuation"]
-    if not steps["smallest_step"] <= steps["initial_step"] <= steps["largest_step"]:
-        raise ConfigurationError(
-            f"continuation.initial_step = {steps['initial_step']} must lie between "
-            f"smallest_step = {steps['smallest_step']} and largest_step = {steps['largest_step']}"
-        )
-    for path, span in _spans(config):
-        if span["min"] >= span["max"]:
-            raise ConfigurationError(
-                f"{dotted(path)}.min = {span['min']} must be less than max = {span['max']}"
-            )
-    _check_atlas(config["atlas"])
+def configuration_model(
+    studies: Mapping[str, str], config: Mapping[str, Any], **others: type[Parameters]
+) -> type[BaseModel]:
+    """The type of the whole configuration.
 
-
-def _check_atlas(atlas: Mapping[str, Any]) -> None:
-    """The ϖ examined are within the range scanned; the summary's numbers are among the rest."""
-    span = atlas["frequency_ratio"]
-    for value in atlas["examined"]:
-        if not span["min"] <= value <= span["max"]:
-            raise ConfigurationError(
-                f"atlas.examined = {value} must be from frequency_ratio.min = {span['min']} "
-                f"to max = {span['max']}"
-            )
-    for key, allowed in (("tolerance", "tolerances"), ("rule_of_thumb", "examined")):
-        if atlas["summary"][key] not in atlas[allowed]:
-            listed = ", ".join(f"{value:g}" for value in atlas[allowed])
-            raise ConfigurationError(
-                f"atlas.summary.{key} = {atlas['summary'][key]} must be one of {allowed}: {listed}"
-            )
-
-
-def _needs(value: Any, path: tuple = ()) -> Iterator[tuple[tuple, float, list[int], float]]:
-    """Path and value of every Λ at which, or up to which, an orbit is needed, with n and r."""
-    if not isinstance(value, Mapping):
-        return
-    families = value.get("n", [])
-    families = families if isinstance(families, list) else [families]
-    for index, case in enumerate(value.get("cases", [])):
-        yield (*path, "cases", index, "amplitude"), case["amplitude"], families, case["restitution"]
-    for label in ("amplitude", "amplitude_max"):
-        found = value.get(label, [])
-        listed = isinstance(found, list)
-        for index, one in enumerate(found if listed else [found]):
-            key = (*path, label, index) if listed else (*path, label)
-            # What is shown at several Λ shows the orbits that there are.
-            yield key, one, [min(families)] if listed else families, value["restitution"]
-    for key, part in value.items():
-        yield from _needs(part, (*path, key))
-
-
-def _check_existence(config: Mapping[str, Any]) -> None:
-    # Imported here: numpy is not needed to refuse a mistyped key.
-    from bouncing_ball.orbits.restitution_orbit import period_doubling, saddle_node
-    from bouncing_ball.orbits.stability import Bifurcation
-
-    for path, value, families, r in _needs(config):
-        key = dotted(path)
-        # The branch of the highest family starts last.
-        n = max(families)
-        if key.startswith("tables.table1"):
-            lowest = 1.1 * float(period_doubling(n, r))
-            what = "period doubling, with a tenth to spare,"
-        else:
-            lowest, what = float(saddle_node(n, r)), Bifurcation.SADDLE_NODE
-        if value < lowest:
-            raise ConfigurationError(
-                f"{key} = {value} must be at least {lowest:.6g}, the {what} of the "
-                f"{n}-T restitution orbit at r = {r} (Eqs. 7-8)"
-            )
-
-
-def check_orbits(config: Mapping[str, Any]) -> None:
-    """Raise unless the orbits whose motion is drawn are orbits of the ball.
-
-    A sweep has a gap where there is no orbit; a time history needs one.
+    Parameters
+    ----------
+    studies : mapping
+        The study of each artifact.
+    config : mapping
+        The configuration, which says in which section an artifact is.
+    **others : type
+        Of sections that no study takes.
 
     Raises
     ------
     ConfigurationError
-        One line that names the figure and says what is missing.
+        If a study is missing, or the parameters of an artifact.
     """
-    # Imported here: to refuse a mistyped key needs no scipy.
-    from bouncing_ball.contacts.spring_damper import SpringDamper
-    from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
-
-    for stage in STAGES.values():
-        if not stage.one_motion:
-            continue
-        part = stage.parameters(config)
-        ratios = part["frequency_ratio"]
-        for ratio in ratios if isinstance(ratios, list) else [ratios]:
-            contact = SpringDamper.from_restitution(part["restitution"], ratio, config["release"])
-            try:
-                SpringDamperModel(contact).require_admissible(part["n"], part["amplitude"])
-            except ValueError as error:
-                raise ConfigurationError(
-                    f"{stage.section}.frequency_ratio = {ratio}: {error}"
-                ) from None
+    places: dict[str, dict[str, Any]] = {name: {} for name in SECTIONS}
+    keys: dict[str, Any] = {}
+    for artifact, study in studies.items():
+        for name, kind in taken(study).items():
+            if name == "parameters":
+                where, key = section(artifact, config)
+                places[where][key] = (kind, ...)
+            else:
+                keys[name] = (kind, ...)
+    for name, fields in places.items():
+        fields = _in_order(fields, config.get(name))
+        keys[name] = (create_model(name, __base__=Parameters, **fields), ...)
+    keys |= {name: (kind, ...) for name, kind in others.items()}
+    return create_model("Configuration", __base__=_Sections, **_in_order(keys, config))
 
 
-def check_configuration(config: Mapping[str, Any], kinds: Mapping[str, Any]) -> None:
-    """Raise on the first mistake in a configuration.
+def _in_order(fields: Mapping[str, Any], given: Any) -> dict[str, Any]:
+    """Fields in the order in which the configuration has them, missing ones last."""
+    return {name: fields[name] for name in [*(given or ()), *fields] if name in fields}
 
-    Parameters
-    ----------
-    config : mapping
-    kinds : mapping
-        The content of ``config/schema.yaml``.
+
+def check(model: type[BaseModel], config: Mapping[str, Any], **context: Any) -> None:
+    """Raise on the first mistake.
 
     Raises
     ------
     ConfigurationError
         One line that names the key, the value and what is allowed.
+
+    Examples
+    --------
+    >>> from bouncing_ball.parameters import Span
+    >>> check(Span, {"min": 1.0, "max": 2.0, "sample": 3})
+    Traceback (most recent call last):
+    ...
+    bouncing_ball.configuration.yaml_file.ConfigurationError: unknown key sample = 3, did you mean \
+samples? Allowed here: min, max, samples
     """
-    check_schema(config, configuration_schema(kinds))
-    _check_consistency(config)
-    _check_existence(config)
+    try:
+        model.model_validate(config, context=context)
+    except ValidationError as error:
+        # A mistyped key is missing as well: what is unknown says more.
+        first = min(error.errors(), key=lambda each: each["type"] != "extra_forbidden")
+        raise ConfigurationError(_sentence(model, first)) from None
+
+
+def place(path: Sequence[str | int]) -> str:
+    """A place of the configuration in words.
+
+    Examples
+    --------
+    >>> place(("figures", "fig08", "frequency_ratio", 0))
+    'figures.fig08.frequency_ratio[0]'
+    """
+    text = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path)
+    return text.removeprefix(".")
+
+
+def resolved(schema: Mapping[str, Any], root: Mapping[str, Any]) -> dict[str, Any]:
+    """A JSON schema with what it refers to filled in; its own entries win.
+
+    Examples
+    --------
+    >>> root = {"$defs": {"Span": {"type": "object", "description": "a grid"}}}
+    >>> resolved({"$ref": "#/$defs/Span", "description": "two grids"}, root)
+    {'type': 'object', 'description': 'two grids'}
+    """
+    reference = schema.get("$ref", "").removeprefix("#/$defs/")
+    own = {key: part for key, part in schema.items() if key != "$ref"}
+    return {**(root["$defs"][reference] if reference else {}), **own}
+
+
+_MUST = {
+    "greater_than": "must be greater than {gt:g}",
+    "greater_than_equal": "must be at least {ge:g}",
+    "less_than": "must be less than {lt:g}",
+    "less_than_equal": "must be at most {le:g}",
+    "finite_number": "must be a finite number",
+    "too_short": "must have at least {min_length} items",
+    "float_type": "must be a number",
+    "int_type": "must be a whole number",
+    "tuple_type": "must be a list",
+    "enum": "must be {expected}",
+    "literal_error": "must be {expected}",
+}
+
+
+def _sentence(model: type[BaseModel], error: Any) -> str:
+    """What is wrong, where, what is allowed, and why."""
+    where = error["loc"]
+    root = model.model_json_schema()
+    schema = parent = resolved(root, root)
+    for part in where:
+        parent = schema
+        inner = schema.get("items", {}) if isinstance(part, int) else schema["properties"].get(part)
+        schema = resolved(inner or {}, root)
+    kind, value, name = error["type"], error["input"], place(where)
+    if kind == "extra_forbidden":
+        known = list(parent["properties"])
+        close = get_close_matches(str(where[-1]), known, n=1)
+        meant = f", did you mean {close[0]}?" if close else "."
+        allowed = f"{meant} Allowed here: {', '.join(known)}"
+        return f"unknown key {name} = {_shown(value)}{allowed}"
+    if kind == "missing":
+        return f"missing key {name}: {schema.get('description', schema.get('title'))}"
+    context = error.get("ctx", {})
+    if kind == "value_error":
+        text = str(context["error"])
+        return f"{name} = {_shown(value)} {text}" if text.startswith("must") else f"{name}: {text}"
+    if kind.startswith("model"):
+        must = f"must be a mapping of the keys {', '.join(schema.get('properties', {}))}"
+    else:
+        must = _MUST[kind].format(**context) if kind in _MUST else error["msg"]
+    notes = [schema["description"]] if "description" in schema else []
+    if isinstance(value, str) and re.fullmatch(r"[-+]?\d+\.?\d*[eE][-+]?\d+", value):
+        notes.insert(0, "powers of ten are written 1.0e+4, with point and sign")
+    return f"{name} = {_shown(value)} {must}" + (f" ({'; '.join(notes)})" if notes else "")
+
+
+def _shown(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."

@@ -72,6 +72,8 @@ def _search(kind: type[ContactLaw], restitution: float) -> float:
     def surplus(group):
         return np.log(_free(kind, group)[0] / restitution)
 
+    # A law that does not say how it is scaled is not taken for one that is damped too strongly.
+    kind.of_scales(_FIRST, 1.0, 1.0)
     left, right, above = 0.0, _FIRST, -np.log(restitution)
     try:
         for _ in range(_DOUBLINGS):

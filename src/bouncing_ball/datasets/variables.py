@@ -265,12 +265,10 @@ VARIABLES: dict[str, Variable] = {
     "share": Variable("share of nodes"),
     "holding_share": Variable("share of nodes whose error is tolerated from this ϖ on"),
     "exceeding_share": Variable("share of nodes whose error exceeds the tolerance at this ϖ"),
-    "failing_share": Variable("share of a tile's nodes on which the rule of thumb fails"),
     "failing_restitution": Variable("r below which all nodes lie on which it fails", "r"),
     "failing_position": Variable("position below which all nodes lie on which it fails"),
     "unstable_share": Variable("share of nodes whose exact orbit is not stable"),
     "worst_error": Variable("largest relative error where the rule of thumb begins"),
-    "corner_amplitude": Variable("amplitude at the corners of the tiles", "Λ"),
     "restitution_edge": Variable("ends of the ranges of r", "r"),
     "position_edge": Variable("ends of the ranges of positions"),
     "law_coefficient": Variable("modulus of the error law's K in the middle of the tile", "|K|"),
@@ -296,72 +294,6 @@ VARIABLES: dict[str, Variable] = {
     # evidence for statements in words
     "curve": Variable("curve of a figure"),
     "figure": Variable("figure"),
-    "apparent_restitution_error": Variable(
-        "largest |r_a - r| among stiff contacts", equation="Eq. 17", budget=1e-11
-    ),
-    "apparent_restitution_difference": Variable("largest |r_a - r|/r", equation="Eq. 17"),
-    "apparent_restitution_rebound": Variable(
-        "largest growth of |r_a - r| above its value at a softer contact",
-        equation="Eq. 17",
-        budget=1e-11,
-    ),
-    "apparent_restitution_dip": Variable("largest r - r_a", equation="Eq. 17", budget=1e-11),
-    "apparent_restitution_spread": Variable(
-        "largest spread of r_a over Λ", equation="Eq. 17", budget=1e-12
-    ),
-    "apparent_restitution_order": Variable(
-        "smallest rise of r_a from one Λ of Fig. 6 to the next larger one, where they differ most",
-        equation="Eq. 17",
-        scale=1.0,
-    ),
-    "apparent_restitution_law_error": Variable(
-        "largest error of 1 - Λ sin φ as the limit of nπϖ(r - r_a)/[ζ(1 + r)²] on Fig. 6",
-        budget=1e-10,
-        scale=1.0,
-    ),
-    "short_of_lift": Variable("smallest 1 - Λ sin φ of Fig. 6, with φ of Eq. 6", budget=1e-11),
-    "bounce_velocity_error_soft": Variable("smallest |z′_b - nπ|/(nπ) at the softest contact"),
-    "bounce_velocity_departure": Variable(
-        "ϖ above which z′_b is nπ within the tolerance", "ϖ", budget=1e-11
-    ),
-    "bounce_velocity_spread_end": Variable(
-        "ϖ above which the spread of z′_b/(nπ) over Λ is within the tolerance", "ϖ", budget=1e-11
-    ),
-    "bounce_velocity_rise": Variable("smallest rise of z′_b from contact to contact", budget=1e-9),
-    "contact_duration_rise": Variable("largest rise of τ_b from contact to contact"),
-    "max_height_rise": Variable("smallest rise of max z from contact to contact", budget=1e-9),
-    "phase_error": Variable("|φ - φ_CR|/φ_CR at the stiffest contact", budget=1e-11),
-    "release_phase_error": Variable("|φ + τ_b - φ_CR|/φ_CR at the stiffest contact", budget=1e-11),
-    "motion_kinds": Variable("kinds of motion found: periodic, subharmonic, chaotic"),
-    "stiffest_error": Variable("relative error at the stiffest contact scanned", budget=1e-9),
-    "softest_error": Variable("relative error at the softest contact scanned"),
-    "stability_exceptions": Variable(
-        "orbits that are not stable exactly between saddle-node and period doubling"
-    ),
-    "inadmissible_orbits": Variable("orbits drawn that do not have one impact per period"),
-    "contact_duration_stiffest": Variable("longest contact of the stiffest branch", "τ_b"),
-    "range_error": Variable("relative error of the ends of the stability range", budget=1e-12),
-    "computed_softening": Variable(
-        "change of an end of the range with the next softer ϖ", "Λ", budget=1e-12
-    ),
-    "printed_softening": Variable(
-        "change of a printed end of the range with the next softer ϖ", "Λ", equation="Table 1"
-    ),
-    "computed_widening": Variable(
-        "change of the width of the range with the next softer ϖ", "Λ", budget=1e-12
-    ),
-    "computed_stiff_difference": Variable(
-        "difference of the stiffest row from the restitution model", "Λ", budget=1e-11
-    ),
-    "printed_stiff_difference": Variable(
-        "difference of the printed stiffest row from the restitution model",
-        "Λ",
-        equation="Table 1",
-        budget=1e-11,
-    ),
-    "soft_range_shift": Variable(
-        "relative shift of the ends of the softest row from the restitution model"
-    ),
     "period_doubling_turn": Variable(
         "frequency ratio at which the period doubling is lowest", "ϖ", budget=1e-5
     ),
@@ -370,36 +302,23 @@ VARIABLES: dict[str, Variable] = {
     "stiff_orbit_error": Variable(
         "largest relative error of an orbit among stiff contacts", budget=1e-12
     ),
-    "release_pull": Variable("largest pull of a contact at release, in weights of the ball"),
-    "release_rule_move": Variable(
-        "largest move of an end of the stability range with the other rule of release",
-        "Λ",
-        budget=1e-11,
+    "apparent_restitution_law_error": Variable(
+        "largest error of 1 - Λ sin φ as the limit of nπϖ(r - r_a)/[ζ(1 + r)²] on Fig. 6",
+        budget=1e-10,
+        scale=1.0,
     ),
-    "durations_at_one_amplitude": Variable(
-        "contact durations that share some Λ, on the branch with the fewest"
-    ),
-    "existence_domains": Variable("figures among Figs. 8-10 that show existence domains"),
-    "lowest_amplitude": Variable("smallest saddle-node of both models in Fig. 15", "Λ"),
+    "short_of_lift": Variable("smallest 1 - Λ sin φ of Fig. 6, with φ of Eq. 6", budget=1e-11),
+    "inadmissible_orbits": Variable("orbits drawn that do not have one impact per period"),
+    "range_error": Variable("relative error of the ends of the stability range", budget=1e-12),
     "printed_slight_move": Variable(
         "largest relative move of a printed end from the stiffest row to the next",
         equation="Table 1",
     ),
-    "contact_duration_fold": Variable("contact at the saddle-node of the softest branch", "τ_b"),
     "period_doubling_lowest": Variable(
         "ϖ at which the period doubling is lowest", "ϖ", budget=1e-5
     ),
-    "period_doubling_drop": Variable(
-        "how far the period doubling sinks below that of the stiffest contact", "Λ", budget=1e-11
-    ),
     "permanent_contact_error": Variable(
         "relative error of Λ_CR at the printed threshold", equation="Eq. 38"
-    ),
-    "permanent_contact_inverse": Variable(
-        "relative difference of the threshold found from Eq. 34",
-        equation="Eq. 34",
-        budget=1e-9,
-        scale=1.0,
     ),
     # claims: the paper against the replication
     "claim": Variable("claim of the paper"),

@@ -2,15 +2,18 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import matplotlib
 
+SETTINGS = Path(__file__).with_name("matplotlibrc")
+RESOLUTION = 300
+"""Of pixels, in dots per inch."""
+
 # The hues of Okabe and Ito, which colour-blind readers can distinguish, darkened to a
 # contrast of at least 3:1 with white, in an order in which neighbours differ in
 # greyscale too (grey levels 0, 87, 132, 85, 130).
-RESOLUTION = 300
-"""Of pixels, in dots per inch."""
 COLOURS = ("#000000", "#0072B2", "#C77C00", "#AA3A00", "#3F96CC")
 RESTITUTION = "#000000"
 CONTACT = "#0072B2"
@@ -59,37 +62,10 @@ QUANTITIES = {
 }
 """The quantities compared between the models, as a title names them."""
 
-_SETTINGS: dict[Any, Any] = {
-    "font.family": "STIXGeneral",
-    "mathtext.fontset": "stix",
-    "font.size": 9,
-    "axes.labelsize": 9,
-    "axes.titlesize": 9,
-    "figure.titlesize": 9,
-    "axes.linewidth": 0.6,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "xtick.labelsize": 8,
-    "ytick.labelsize": 8,
-    "xtick.major.width": 0.6,
-    "ytick.major.width": 0.6,
-    "xtick.minor.width": 0.4,
-    "ytick.minor.width": 0.4,
-    "legend.fontsize": 8,
-    "legend.title_fontsize": 8,
-    "legend.frameon": False,
-    "legend.handlelength": 2.2,
-    "lines.linewidth": 1.3,
-    "savefig.dpi": RESOLUTION,
-    # Fixed salt and text as paths: identifiers and fonts do not depend on the
-    # run or on the machine.
-    "svg.hashsalt": "bouncing-ball",
-    "svg.fonttype": "path",
-}
-
 
 @contextmanager
 def style() -> Iterator[None]:
-    """Matplotlib settings for drawing and saving a figure."""
-    with matplotlib.rc_context(_SETTINGS):
+    """The settings of ``matplotlibrc`` beside this module, to draw and save a figure."""
+    settings = matplotlib.rc_params_from_file(SETTINGS, use_default_template=False)
+    with matplotlib.rc_context(settings):
         yield

@@ -129,9 +129,10 @@ def make_dataset(snakemake: Any) -> None:
         withdraw()
         job = snakemake.params
         data = {Path(path).stem: read_input(path) for path in snakemake.input.data}
-        inputs = [part for part in (data, job.parameters) if part]
-        dataset = typed(load(job.study))(*inputs, *job.settings.values())
-        parameters = dataset.attrs or parameter_attributes(job.parameters | job.settings)
+        given, settings = {"data": data} if data else {}, dict(job.arguments)
+        dataset = typed(load(job.study))(**given, **settings)
+        named = settings.pop("parameters", {}) | settings
+        parameters = dataset.attrs or parameter_attributes(named)
         publish(snakemake, dataset, parameters)
         sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())
         lines.append(f"{snakemake.output.data}: {sizes}")

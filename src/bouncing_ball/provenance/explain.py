@@ -21,8 +21,6 @@ from bouncing_ball.provenance.origin import (
 )
 from bouncing_ball.provenance.revision import UNKNOWN, checkout, revision
 
-_KINDS = {".nc": "dataset", ".png": "picture", ".svg": "picture"}
-_KINDS |= {".csv": "table", ".tex": "table", ".html": "page"}
 _SEVERAL = "several"
 # Ignored by git, so that it does not mark the next run as dirty.
 _CHANGED = "results/configuration.json"
@@ -124,8 +122,7 @@ def explain(file: Path, /) -> dict[str, Any]:
     ProvenanceError
         If the file is not one of this workflow, or carries no provenance.
     """
-    carriers = _carriers(file)
-    made = _common([_provenance(carrier) for carrier in carriers])
+    made = _common([_provenance(carrier) for carrier in _carriers(file)])
     repository = checkout(Path.cwd(), Path(bouncing_ball.__file__).resolve())
     now = revision(repository) if repository else UNKNOWN
     checked_out = None if "unknown" in (made.commit, now.commit) else made.commit == now.commit
@@ -135,8 +132,6 @@ def explain(file: Path, /) -> dict[str, Any]:
     running = versions()
     return {
         "file": str(file),
-        "artifact": f"{Path(target).stem}, a {_KINDS.get(file.suffix, 'text')}",
-        "read_from": str(carriers[0]) if len(carriers) == 1 else f"{len(carriers)} datasets",
         "commit": made.commit,
         "checked_out": checked_out,
         "dirty": made.dirty,
@@ -158,8 +153,6 @@ def lines(answer: Mapping[str, Any]) -> list[str]:
     changed = answer["configuration"]
     rows = [
         ("file", answer["file"]),
-        ("artifact", answer["artifact"]),
-        ("read from", answer["read_from"]),
         ("commit", answer["commit"] + here[answer["checked_out"]]),
         ("tree", tree.get(answer["dirty"], answer["dirty"])),
         ("configuration", "config/config.yaml" + (" with other values:" if changed else "")),

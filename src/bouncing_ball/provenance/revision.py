@@ -19,26 +19,6 @@ class Revision(NamedTuple):
 UNKNOWN = Revision("unknown", "unknown")
 
 
-def parse_status(text: str) -> Revision:
-    """The revision from ``git status --porcelain=v2 --branch``.
-
-    Examples
-    --------
-    >>> parse_status("# branch.oid 1f0e\\n# branch.head main\\n")
-    Revision(commit='1f0e', dirty='no')
-    >>> parse_status("# branch.oid 1f0e\\n? src/new.py\\n").dirty
-    'yes'
-    >>> parse_status("# branch.oid (initial)\\n? Snakefile\\n")
-    Revision(commit='unknown', dirty='unknown')
-    """
-    lines = text.splitlines()
-    commits = [line.split()[-1] for line in lines if line.startswith("# branch.oid ")]
-    if not commits or commits[0] == "(initial)":
-        return UNKNOWN
-    changed = any(not line.startswith("#") for line in lines)
-    return Revision(commits[0], "yes" if changed else "no")
-
-
 def _git(folder: Path, *arguments: str) -> str | None:
     """The output of git, or None if it fails or is not there."""
     # A hook tells git by GIT_… which repository it works in, and that need not be this one.
@@ -63,14 +43,13 @@ def revision(folder: Path) -> Revision:
     Untracked files count, unless git ignores them; the accepted record does not.
     Unknown without git, or in a folder that is not the top of its own repository.
     """
-    if (_git(folder, "rev-parse", "--show-cdup") or "inside").strip():
+    head = _git(folder, "rev-parse", "--show-cdup", "HEAD")
+    excluded = [f":(exclude){name}" for name in RECORD]
+    status = _git(folder, "status", "--porcelain", "--untracked-files=normal", "--", ".", *excluded)
+    # The way up to the top comes first, and there it is empty.
+    if head is None or status is None or not head.startswith("\n"):
         return UNKNOWN
-    status = _git(
-        folder,
-        *("status", "--porcelain=v2", "--branch", "--untracked-files=normal", "--", "."),
-        *(f":(exclude){name}" for name in RECORD),
-    )
-    return UNKNOWN if status is None else parse_status(status)
+    return Revision(head.strip(), "yes" if status else "no")
 
 
 def checkout(*starts: Path) -> Path | None:

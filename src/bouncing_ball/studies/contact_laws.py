@@ -6,7 +6,6 @@ Hertz contact does not have, is π/D: that of the elastic linear contact of the
 same duration. Errors are relative to the exact orbit on the contact, as in Eqs. 37-38.
 """
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -31,7 +30,16 @@ from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Side
-from bouncing_ball.studies.parameters import grid
+from bouncing_ball.parameters import (
+    Family,
+    FrequencyRatio,
+    LawRestitution,
+    Many,
+    Parameters,
+    Span,
+    Tolerance,
+)
+from bouncing_ball.studies.parameters import BranchEnd, OrbitAmplitude, Points
 
 HERTZ = ("hunt-crossley", "tsuji", "kuwabara-kono")
 LINEAR = {"linear": Release.DISPLACEMENT, "linear, force release": Release.FORCE}
@@ -39,6 +47,32 @@ NAMES = (*LINEAR, *HERTZ)
 QUANTITIES = ("max_height", "bounce_velocity", "phase", "saddle_node", "period_doubling")
 BOUNDS = ("saddle_node", "period_doubling")
 SIMPLE = ("restitution", "corrected")
+
+
+class OneOrbit(Parameters):
+    """One orbit on contacts of several durations; ϖ stands for π over the duration."""
+
+    n: Family
+    restitution: LawRestitution
+    amplitude: OrbitAmplitude
+    frequency_ratio: Span
+
+
+class LawErrors(OneOrbit):
+    """The error tolerated of its greatest height."""
+
+    tolerance: Tolerance
+
+
+class FiguresOfLaws(Parameters):
+    """Families whose branches are followed, and the orbit whose greatest height is shown."""
+
+    n: Many[Family]
+    restitution: LawRestitution
+    frequency_ratio: Many[FrequencyRatio]
+    amplitude_max: BranchEnd
+    points: Points
+    heights: OneOrbit
 
 
 def linear_contact(restitution: float, duration: ArrayLike, release: Release) -> SpringDamper:
@@ -61,16 +95,16 @@ def exact_model(name: str, restitution: float, duration: float, speed: float) ->
     return LawModel(law_of_impact(LAWS[name], restitution, duration, speed))
 
 
-def exact_models(name: str, parameters: Mapping[str, Any], duration: np.ndarray) -> ImpactModel:
+def exact_models(name: str, parameters: OneOrbit, duration: np.ndarray) -> ImpactModel:
     """The exact models of contacts with r and D at their own orbits' speeds."""
-    r, n, lam = (parameters[key] for key in ("restitution", "n", "amplitude"))
+    r, n, lam = parameters.restitution, parameters.n, parameters.amplitude
     if name in LINEAR:
         return SpringDamperModel(linear_contact(r, duration, LINEAR[name]))
     return LawModel(law_at_orbit(LAWS[name], r, duration, n, lam))
 
 
 def stiff_enough(
-    name: str, parameters: Mapping[str, Any], ratios: np.ndarray
+    name: str, parameters: OneOrbit, ratios: np.ndarray
 ) -> tuple[slice, ImpactModel | None]:
     """The contacts, from some π/D on, that all have their orbit, and their models.
 
@@ -104,9 +138,9 @@ def _values(model: ImpactModel, n: int, amplitude: float) -> np.ndarray:
     return np.array(np.broadcast_arrays(*columns), dtype=float)
 
 
-def _errors(name: str, parameters: Mapping[str, Any], ratios: np.ndarray) -> np.ndarray:
+def _errors(name: str, parameters: OneOrbit, ratios: np.ndarray) -> np.ndarray:
     """Relative errors of both simple models, (model, quantity, ratio)."""
-    r, n, lam = (parameters[key] for key in ("restitution", "n", "amplitude"))
+    r, n, lam = parameters.restitution, parameters.n, parameters.amplitude
     errors = np.full((len(SIMPLE), len(QUANTITIES), len(ratios)), np.nan)
     part, models = stiff_enough(name, parameters, ratios)
     if models is None:
@@ -119,10 +153,10 @@ def _errors(name: str, parameters: Mapping[str, Any], ratios: np.ndarray) -> np.
     return errors
 
 
-def _height_threshold(name: str, parameters: Mapping[str, Any], ratios, errors) -> float:
+def _height_threshold(name: str, parameters: LawErrors, ratios, errors) -> float:
     """ϖ from which the restitution model's greatest height is right; NaN outside the range."""
-    tolerance = parameters["tolerance"]
-    r, n, lam = (parameters[key] for key in ("restitution", "n", "amplitude"))
+    tolerance = parameters.tolerance
+    r, n, lam = parameters.restitution, parameters.n, parameters.amplitude
     rigid = float(RestitutionModel(r).require_orbit(n, lam).max_height)
     above = np.flatnonzero(errors > tolerance)
     if not above.size or above[-1] == len(ratios) - 1:
@@ -136,9 +170,9 @@ def _height_threshold(name: str, parameters: Mapping[str, Any], ratios, errors) 
     return float(np.exp(brentq(surplus, *ends, xtol=1e-12, rtol=1e-12)))
 
 
-def law_errors(parameters: Mapping[str, Any]) -> xr.Dataset:
+def law_errors(parameters: LawErrors) -> xr.Dataset:
     """Errors of the restitution model and of the corrected one on all laws, along π/D."""
-    ratios = grid(parameters["frequency_ratio"])
+    ratios = parameters.frequency_ratio.grid()
     errors = np.array([_errors(name, parameters, ratios) for name in NAMES])
     threshold = [
         _height_threshold(name, parameters, ratios, errors[k, 0, 0]) for k, name in enumerate(NAMES)
@@ -181,13 +215,12 @@ def _held(name: str, restitution: float, ratio: float) -> float:
         return np.nan
 
 
-def figures_of_laws(parameters: Mapping[str, Any]) -> xr.Dataset:
+def figures_of_laws(parameters: FiguresOfLaws) -> xr.Dataset:
     """Table 1 and Figs. 8, 14 and 16 on contacts of the same r and duration."""
-    heights = parameters["heights"]
-    r, n, lam = (heights[key] for key in ("restitution", "n", "amplitude"))
-    lossy, families = parameters["restitution"], parameters["n"]
-    shown, top, points = (parameters[key] for key in ("frequency_ratio", "amplitude_max", "points"))
-    ratios = grid(heights["frequency_ratio"])
+    heights, lossy, families = parameters.heights, parameters.restitution, parameters.n
+    r, n, lam = heights.restitution, heights.n, heights.amplitude
+    shown, top, points = parameters.frequency_ratio, parameters.amplitude_max, parameters.points
+    ratios = heights.frequency_ratio.grid()
     names = ("linear", *HERTZ)
 
     def model(name, index, ratio):

@@ -6,11 +6,12 @@ permanent contact). The threshold for a tolerance is the ϖ above which the
 error stays below it, within the range scanned.
 """
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Sequence
+from typing import Annotated
 
 import numpy as np
 import xarray as xr
+from pydantic import Strict
 
 from bouncing_ball.accuracy.quantities import Quantity
 from bouncing_ball.accuracy.thresholds import model_thresholds
@@ -20,27 +21,66 @@ from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import describe, described
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
-from bouncing_ball.studies.parameters import grid
+from bouncing_ball.parameters import Family, Many, Parameters, Restitution, Span, Tolerance
+from bouncing_ball.studies.parameters import OrbitAmplitude
 from bouncing_ball.studies.permanent_contact_curve import PermanentContact, permanent_contact
 
 
-def error_thresholds(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
-    """Errors along ϖ and thresholds, for every quantity and tolerance.
+class ErrorThresholds(Parameters):
+    """One orbit, the quantities compared on it and the errors tolerated."""
+
+    n: Family
+    restitution: Restitution
+    amplitude: OrbitAmplitude
+    quantities: Many[Annotated[Quantity, Strict(False)]]
+    tolerances: Many[Tolerance]
+    frequency_ratio: Span
+
+
+class HeightError(Parameters):
+    """One orbit, and the error tolerated of its greatest height."""
+
+    n: Family
+    restitution: Restitution
+    amplitude: OrbitAmplitude
+    frequency_ratio: Span
+    tolerance: Tolerance
+
+
+class PermanentContactError(PermanentContact):
+    """The error tolerated of the threshold of permanent contact."""
+
+    tolerance: Tolerance
+
+
+def error_thresholds(parameters: ErrorThresholds, release: Release) -> xr.Dataset:
+    """Errors along ϖ, shape (quantity, ϖ), and thresholds in ϖ, shape (quantity, tolerance).
 
     Raises
     ------
     NoOrbitError
         If the restitution model has no orbit at Λ to compare with.
     """
-    n, r, lam = parameters["n"], parameters["restitution"], parameters["amplitude"]
-    ratios, simple = grid(parameters["frequency_ratio"]), RestitutionModel(r)
-    tolerances = np.array(parameters["tolerances"], dtype=float)
-    quantities = [Quantity(name) for name in parameters["quantities"]]
+    orbit = parameters.n, parameters.restitution, parameters.amplitude
+    ratios, quantities = parameters.frequency_ratio.grid(), parameters.quantities
+    return _thresholds(*orbit, ratios, quantities, parameters.tolerances, release)
 
+
+def _thresholds(
+    n: int,
+    r: float,
+    lam: float,
+    ratios: np.ndarray,
+    quantities: Sequence[Quantity],
+    tolerances: Sequence[float],
+    release: Release,
+) -> xr.Dataset:
     def exact(ratio: np.ndarray) -> SpringDamperModel:
         return SpringDamperModel(SpringDamper.from_restitution(r, ratio, release))
 
-    error, found = model_thresholds(exact, simple, n, lam, ratios, tolerances, quantities)
+    error, found = model_thresholds(
+        exact, RestitutionModel(r), n, lam, ratios, tolerances, quantities
+    )
     dims = ("quantity", "tolerance")
     return described(
         {
@@ -51,23 +91,23 @@ def error_thresholds(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
         coords={
             "quantity": [str(q) for q in quantities],
             "frequency_ratio": ratios,
-            "tolerance": tolerances,
+            "tolerance": np.array(tolerances),
         },
     )
 
 
-def height_error(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
-    """Greatest height along ϖ in both models, and ϖ_h for ``tolerance`` (Fig. 14)."""
-    n, r, lam = parameters["n"], parameters["restitution"], parameters["amplitude"]
-    dataset = error_thresholds(
-        {
-            **parameters,
-            "quantities": [Quantity.MAX_HEIGHT],
-            "tolerances": [parameters["tolerance"]],
-        },
-        release,
-    )
-    contact = SpringDamper.from_restitution(r, dataset.frequency_ratio.values, release)
+def height_error(parameters: HeightError, release: Release) -> xr.Dataset:
+    """Greatest height along ϖ in both models, and ϖ_h for the tolerance (Eq. 37, Fig. 14).
+
+    Raises
+    ------
+    NoOrbitError
+        If the restitution model has no orbit at Λ to compare with.
+    """
+    n, r, lam = parameters.n, parameters.restitution, parameters.amplitude
+    ratios, tolerances = parameters.frequency_ratio.grid(), [parameters.tolerance]
+    dataset = _thresholds(n, r, lam, ratios, [Quantity.MAX_HEIGHT], tolerances, release)
+    contact = SpringDamper.from_restitution(r, ratios, release)
     orbit = SpringDamperModel(contact).orbit(n, lam)
     for name in ("max_height", "phase", "contact_duration", "impact_velocity"):
         dataset[name] = ("frequency_ratio", getattr(orbit, name))
@@ -76,20 +116,10 @@ def height_error(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     return describe(dataset)
 
 
-def permanent_contact_error(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
-    """Permanent contact along ϖ in both models, and ϖ_PC for ``tolerance`` (Fig. 16)."""
-    still = PermanentContact(
-        restitution=parameters["restitution"], frequency_ratio=parameters["frequency_ratio"]
-    )
-    dataset = error_thresholds(
-        {
-            **parameters,
-            # The threshold of permanent contact knows neither orbit nor amplitude.
-            "n": 1,
-            "amplitude": RESTITUTION_THRESHOLD,
-            "quantities": [Quantity.PERMANENT_CONTACT],
-            "tolerances": [parameters["tolerance"]],
-        },
-        release,
-    )
-    return describe(dataset.merge(permanent_contact(still, Release(release))))
+def permanent_contact_error(parameters: PermanentContactError, release: Release) -> xr.Dataset:
+    """Permanent contact along ϖ in both models, and ϖ_PC for the tolerance (Eq. 38, Fig. 16)."""
+    r, ratios = parameters.restitution, parameters.frequency_ratio.grid()
+    # The threshold of permanent contact knows neither orbit nor amplitude.
+    nowhere, asked = (1, r, RESTITUTION_THRESHOLD), [Quantity.PERMANENT_CONTACT]
+    dataset = _thresholds(*nowhere, ratios, asked, [parameters.tolerance], release)
+    return describe(dataset.merge(permanent_contact(parameters, release)))

@@ -5,18 +5,18 @@ many are off it by more than the remainder that it states. The numbers are a
 sample's: too long for every run, so that the pipeline makes them on request.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.accuracy import error_law
-from bouncing_ball.accuracy.error_law import REMAINDER, STATED
+from bouncing_ball.accuracy.error_law import REMAINDER, STATED, remainder
 from bouncing_ball.accuracy.errors import errors
 from bouncing_ball.accuracy.quantities import OF_IMPACTS
 from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
+from bouncing_ball.parameters import Span
 from bouncing_ball.studies.random_orbits import random_orbits
 
 BATCH = 5000
@@ -57,30 +57,25 @@ class LawErrors(NamedTuple):
     """δ of each orbit."""
 
 
-def law_errors(
-    size: int, seed: int | Sequence[int], span: Mapping[str, Any], release: str
-) -> LawErrors:
+def law_errors(size: int, seed: int | Sequence[int], span: Span, release: Release) -> LawErrors:
     """Errors of random orbits of the whole stable range, ϖ even in its logarithm."""
     n, zeta, lam, rng = random_orbits(size, seed, release)
-    omega = np.exp(rng.uniform(np.log(span["min"]), np.log(span["max"]), size))
-    contact = SpringDamper(omega, zeta, Release.of(release))
+    omega = np.exp(rng.uniform(np.log(span.min), np.log(span.max), size))
+    contact = SpringDamper(omega, zeta, release)
     instant = LinearSignature(contact)()
-    small = error_law.small_parameter(n, instant, lam)
-    law = np.array([*error_law.first_order(n, instant, lam).values()])
-    size = np.array([*error_law.scale(n, instant, lam).values()])
     restitution, corrected = errors(contact, n, lam)
-    remainder = np.abs(restitution - law) / (size * small)
-    return LawErrors(omega, restitution, corrected, law, remainder, small)
+    left = remainder(n, instant, lam, restitution)
+    return LawErrors(omega, restitution, corrected, left.law, left.factor, left.small)
 
 
-def sample(size: int, seed: int, span: Mapping[str, Any], release: str) -> LawErrors:
+def sample(size: int, seed: int, span: Span, release: Release) -> LawErrors:
     """The errors of ``size`` random orbits, drawn in batches."""
     counts = [min(BATCH, size - start) for start in range(0, size, BATCH)]
     parts = [law_errors(count, (seed, k), span, release) for k, count in enumerate(counts)]
     return LawErrors(*(np.concatenate(part, axis=-1) for part in zip(*parts, strict=True)))
 
 
-def summary(drawn: LawErrors, release: str) -> Iterator[list[str]]:
+def summary(drawn: LawErrors, release: Release) -> Iterator[list[str]]:
     """One row for each quantity and range of ϖ, the whole range first."""
     ranges = [(DECADES[0], DECADES[-1]), *pairwise(DECADES)]
     for k, quantity in enumerate(OF_IMPACTS):
@@ -93,8 +88,8 @@ def summary(drawn: LawErrors, release: str) -> Iterator[list[str]]:
 def _cells(drawn: LawErrors, k: int, there: np.ndarray) -> list[str]:
     """Counts, quantiles and shares of one quantity of the orbits chosen."""
     error, law = drawn.restitution[k, there], drawn.law[k, there]
-    remainder, stated = drawn.remainder[k, there], drawn.small_parameter[there] < STATED
-    beyond = remainder > REMAINDER[OF_IMPACTS[k]]
+    left, stated = drawn.remainder[k, there], drawn.small_parameter[there] < STATED
+    beyond = left > REMAINDER[OF_IMPACTS[k]]
     corrected = drawn.corrected[k, there]
     # Without an orbit of its own the corrected model is not nearer.
     nearer = np.abs(np.where(np.isfinite(corrected), corrected, np.inf)) < np.abs(error)
@@ -103,7 +98,7 @@ def _cells(drawn: LawErrors, k: int, there: np.ndarray) -> list[str]:
     shares = (np.mean(np.abs(ratio - 1) < 0.1), np.mean(nearer))
     return [
         *(str(int(count)) for count in counts),
-        f"{remainder[stated].max(initial=0.0):.2f}",
+        f"{left[stated].max(initial=0.0):.2f}",
         *(f"{value:.4g}" for value in np.quantile(ratio, _SHARES)),
         *(f"{share:.4f}" for share in shares),
     ]

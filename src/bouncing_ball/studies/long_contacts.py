@@ -1,7 +1,7 @@
 """The 1-T orbits into which permanent contact continues: their windows and their basins."""
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Sequence
+from typing import Annotated
 
 import numpy as np
 import xarray as xr
@@ -14,7 +14,46 @@ from bouncing_ball.orbits.basins import ELSEWHERE, PERMANENT, Destinations, dest
 from bouncing_ball.orbits.long_contact import joining_ratio, stable_window, stiff_limit
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
-from bouncing_ball.studies.parameters import grid
+from bouncing_ball.parameters import (
+    Family,
+    FrequencyRatio,
+    LossyRestitution,
+    Many,
+    OwnRestitution,
+    Parameters,
+    Span,
+    number,
+)
+from bouncing_ball.studies.parameters import OrbitAmplitude
+
+
+class Windows(Parameters):
+    """Contacts whose stable windows are looked for, of several r and along ϖ."""
+
+    restitution: Many[OwnRestitution]
+    frequency_ratio: Span
+
+
+class Basins(Parameters):
+    """Starts on one contact at several amplitudes."""
+
+    n: Many[Family]
+    restitution: LossyRestitution
+    frequency_ratio: FrequencyRatio
+    amplitude: Many[OrbitAmplitude]
+    velocity_max: Annotated[
+        float, number("largest relative speed of impact at the start", ge=0.1, le=100)
+    ]
+    starts: Annotated[int, number("starts along each axis, at middles of cells", ge=10, le=1000)]
+    impacts: Annotated[
+        int,
+        number(
+            "impacts after which a ball is given up, before rounding decides where it goes",
+            ge=10,
+            le=200,
+        ),
+    ]
+
 
 # Contacts between which the families part, for all r from 0.3 on.
 _PARTING = (1.9, 4.0)
@@ -32,26 +71,24 @@ MOTIONS = (
 _ASKED, _LONGEST, _CLOSE = 100, 16, 1e-6
 
 
-def stable_windows(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
-    """Where the stable window of each contact begins and ends, over r and ϖ.
+def stable_windows(parameters: Windows, release: Release) -> xr.Dataset:
+    """Where the stable window of each contact begins and ends in Λ, shape (r, ϖ).
 
-    From ``restitution`` (a list) and ``frequency_ratio`` (a span). With it the
+    NaN where there is no window. With it the
     limit of stiff contacts, and the ϖ below which the orbits with a short and
     a long contact are one family; both are NaN for another release than the
     displacement's.
     """
-    restitution = np.array(parameters["restitution"])
-    ratio = grid(parameters["frequency_ratio"])
+    restitution = np.array(parameters.restitution)
+    ratio = parameters.frequency_ratio.grid()
     shape = len(restitution), len(ratio)
     zeta = damping_ratio(restitution)
     # All contacts at once: many small steps cost more than large ones.
-    law = SpringDamper(np.tile(ratio, shape[0]), np.repeat(zeta, shape[1]), Release(release))
+    law = SpringDamper(np.tile(ratio, shape[0]), np.repeat(zeta, shape[1]), release)
     window = stable_window(law)
-    paper = Release(release) is Release.DISPLACEMENT
+    paper = release is Release.DISPLACEMENT
     limits = [
-        (stiff_limit(z), joining_ratio(z, Release(release), *_PARTING))
-        if paper
-        else (np.nan, np.nan)
+        (stiff_limit(z), joining_ratio(z, release, *_PARTING)) if paper else (np.nan, np.nan)
         for z in map(float, zeta)
     ]
     stiff, joining = np.array(limits).T
@@ -72,7 +109,7 @@ def stable_windows(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     )
 
 
-def _stable_orbits(model: SpringDamperModel, families: list[int], amplitude: float):
+def _stable_orbits(model: SpringDamperModel, families: Sequence[int], amplitude: float):
     """The stable orbits at one Λ, each alone."""
     for n in families:
         found = model.orbits(n, amplitude)
@@ -103,27 +140,25 @@ def _shared_period(model: SpringDamperModel, amplitude: float, ends: Destination
     return most if most > 1 and counts.max() > asked.size / 2 else 0
 
 
-def basins(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
+def basins(parameters: Basins, release: Release) -> xr.Dataset:
     """Where balls end that start with an impact at (φ, δ′), for one contact and several Λ.
 
-    From ``restitution``, ``frequency_ratio``, ``amplitude`` (a list), ``n``, the
-    families looked for, ``velocity_max``, the largest -δ′, ``starts`` along
-    each axis, at the middles of equal cells, and ``impacts``, after which a ball is
-    given up: by then rounding does not yet decide where a wandering ball goes.
+    Index among :data:`MOTIONS`, shape (case, start_speed, start_phase), with the shares of the
+    starts, shape (case, motion), and the places (φ, -δ′) of the 1-T orbits.
     """
-    r, ratio = parameters["restitution"], parameters["frequency_ratio"]
+    r, ratio = parameters.restitution, parameters.frequency_ratio
     model = SpringDamperModel(SpringDamper.from_restitution(r, ratio, release))
-    count, amplitudes = parameters["starts"], parameters["amplitude"]
+    count, amplitudes = parameters.starts, parameters.amplitude
     middle = (np.arange(count) + 0.5) / count
-    phase, speed = 2 * np.pi * middle - np.pi, parameters["velocity_max"] * middle
+    phase, speed = 2 * np.pi * middle - np.pi, parameters.velocity_max * middle
     shape = (len(amplitudes), count, count)
     ends = np.empty(shape, dtype=np.int8)
     periods = np.zeros(len(amplitudes), dtype=int)
     places = np.full((2, len(amplitudes), len(MOTIONS)), np.nan)
     start, velocity = (np.ravel(x) for x in np.meshgrid(phase, -speed))
     for k, lam in enumerate(amplitudes):
-        orbits = list(_stable_orbits(model, parameters["n"], lam))
-        found = destinations(model, lam, orbits, start, velocity, parameters["impacts"])
+        orbits = list(_stable_orbits(model, parameters.n, lam))
+        found = destinations(model, lam, orbits, start, velocity, parameters.impacts)
         kinds = np.array([*map(_motion, orbits), *(0, 0)], dtype=np.int8)
         kinds[ELSEWHERE], kinds[PERMANENT] = len(MOTIONS) - 1, 0
         ends[k] = kinds[found.orbit].reshape(count, count)

@@ -6,11 +6,11 @@ of the corrected one. The law of the first order is that of
 :mod:`bouncing_ball.accuracy.error_law`.
 """
 
-from collections.abc import Mapping
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 import xarray as xr
+from pydantic import Field
 
 from bouncing_ball.accuracy import error_law
 from bouncing_ball.accuracy.errors import SIMPLE, errors
@@ -21,9 +21,84 @@ from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.parameters import (
+    Family,
+    LossyRestitution,
+    Many,
+    OwnRestitution,
+    Parameters,
+    Restitution,
+    Samples,
+    Seed,
+    Span,
+    Tolerance,
+    number,
+)
 from bouncing_ball.studies.law_distribution import law_errors
-from bouncing_ball.studies.parameters import grid
+from bouncing_ball.studies.parameters import MotionRatio, OrbitAmplitude
 from bouncing_ball.studies.random_orbits import random_orbits
+
+
+class ErrorLaw(Parameters):
+    """One orbit, and the error tolerated."""
+
+    n: Family
+    restitution: LossyRestitution
+    amplitude: OrbitAmplitude
+    tolerance: Tolerance
+    frequency_ratio: Span
+
+
+class Sample(Parameters):
+    """Random orbits of the whole stable range."""
+
+    seed: Seed
+    samples: Annotated[Samples, Field(description="random orbits whose orders are measured")]
+    stiff_frequency_ratio: Annotated[
+        float,
+        number(
+            "ϖ of the softer of two contacts for the order, the other having twice as much; below "
+            "100 further orders show, beyond 10⁴ rounding",
+            ge=100,
+            le=1e4,
+        ),
+    ]
+    law_samples: Annotated[Samples, Field(description="random orbits on which the law is tried")]
+
+
+class Orders(Parameters):
+    """One orbit along ϖ, and random ones."""
+
+    n: Family
+    restitution: LossyRestitution
+    amplitude: OrbitAmplitude
+    frequency_ratio: Span
+    random: Sample
+
+
+class Validity(Parameters):
+    """Orbits over n, Λ/Λ_SN and r, and the error tolerated."""
+
+    n: Many[Family]
+    restitution: Many[OwnRestitution]
+    amplitude_ratio: Many[
+        Annotated[
+            float, number("amplitude over that of the saddle-node, above 1", ge=1.001, le=100)
+        ]
+    ]
+    tolerance: Tolerance
+    frequency_ratio: Span
+
+
+class Meeting(Parameters):
+    """One contact of one orbit."""
+
+    n: Family
+    restitution: Restitution
+    amplitude: OrbitAmplitude
+    frequency_ratio: MotionRatio
+    samples: Samples
+
 
 _STIFF = 500.0
 """ϖ at which the second order is all of the corrected model's error, and rounding none of it."""
@@ -39,12 +114,12 @@ def _second_order(zeta: float, rule: Release, n, amplitude) -> np.ndarray:
     return 2 * twice - once
 
 
-def error_law_table(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
-    """K, and the frequency ratio for a tolerance: exact, by the law, corrected."""
-    n, lam, tolerance = (parameters[k] for k in ("n", "amplitude", "tolerance"))
-    ratios, rule = grid(parameters["frequency_ratio"]), Release.of(release)
+def error_law_table(parameters: ErrorLaw, release: Release) -> xr.Dataset:
+    """K, and the ϖ for a tolerance: exact, by the law, corrected; shape (model, quantity)."""
+    n, lam, tolerance = parameters.n, parameters.amplitude, parameters.tolerance
+    ratios, rule = parameters.frequency_ratio.grid(), release
     # ζ of Eq. 16; the restitution model has the r that this contact really has.
-    one = SpringDamper.from_restitution(parameters["restitution"], 1.0, rule)
+    one = SpringDamper.from_restitution(parameters.restitution, 1.0, rule)
     zeta = float(one.damping_ratio)
 
     found = search(zeta, rule, n, lam, ratios, tolerance, tuple(Quantity))
@@ -66,20 +141,20 @@ def error_law_table(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     )
 
 
-def orders(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
-    """Errors along ϖ for one orbit, and the orders of convergence of random ones."""
-    ratios, rule = grid(parameters["frequency_ratio"]), Release.of(release)
-    one = SpringDamper.from_restitution(parameters["restitution"], ratios, rule)
-    curves = np.abs(errors(one, parameters["n"], parameters["amplitude"]))
-    sample = parameters["random"]
-    n, zeta, lam, _ = random_orbits(sample["samples"], sample["seed"], release, (0.2, 0.95))
-    stiff = sample["stiff_frequency_ratio"]
+def orders(parameters: Orders, release: Release) -> xr.Dataset:
+    """Errors along ϖ for one orbit, shape (model, quantity, ϖ), and the orders of random ones."""
+    ratios, rule = parameters.frequency_ratio.grid(), release
+    one = SpringDamper.from_restitution(parameters.restitution, ratios, rule)
+    curves = np.abs(errors(one, parameters.n, parameters.amplitude))
+    sample = parameters.random
+    n, zeta, lam, _ = random_orbits(sample.samples, sample.seed, release, (0.2, 0.95))
+    stiff = sample.stiff_frequency_ratio
     pair = [
         np.abs(errors(SpringDamper(np.full(lam.shape, k * stiff), zeta, rule), n, lam))
         for k in (1.0, 2.0)
     ]
-    span = parameters["frequency_ratio"]
-    law = law_errors(sample["law_samples"], sample["seed"] + 1, span, release)
+    span = parameters.frequency_ratio
+    law = law_errors(sample.law_samples, sample.seed + 1, span, release)
     return described(
         {
             "relative_error": (("model", "quantity", "frequency_ratio"), curves),
@@ -92,26 +167,28 @@ def orders(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
             "model": list(SIMPLE),
             "quantity": list(OF_IMPACTS),
             "frequency_ratio": ratios,
-            "sample": np.arange(sample["samples"]),
-            "law_sample": np.arange(sample["law_samples"]),
+            "sample": np.arange(sample.samples),
+            "law_sample": np.arange(sample.law_samples),
         },
     )
 
 
-def validity(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
-    """The ϖ from which each simple model is right, over r, n and Λ/Λ_SN.
+def validity(parameters: Validity, release: Release) -> xr.Dataset:
+    """The ϖ from which each simple model is right, over n, Λ/Λ_SN and r.
 
-    Beside it, where the restitution model's error passes through zero by accident.
+    Shape (model, quantity, n, Λ/Λ_SN, r); NaN where the restitution model has no stable orbit,
+    or the error is too large at the largest ϖ. Beside it, where the restitution model's error
+    passes through zero by accident.
     """
-    ratios, rule = grid(parameters["frequency_ratio"]), Release.of(release)
-    axes = [np.array(parameters[k]) for k in ("n", "amplitude_ratio", "restitution")]
+    ratios, rule = parameters.frequency_ratio.grid(), release
+    axes = [np.array(getattr(parameters, k)) for k in ("n", "amplitude_ratio", "restitution")]
     n, places, r = np.meshgrid(*axes, indexing="ij")
     model = RestitutionModel(r)
     lam = places * model.saddle_node(n).amplitude
     # Outside the stable range of the restitution model there is nothing to be right about.
     there = lam <= model.period_doubling(n).amplitude
     zeta = np.asarray(SpringDamper.from_restitution(r, 1.0, rule, measured=True).damping_ratio)
-    found = search(zeta[there], rule, n[there], lam[there], ratios, parameters["tolerance"])
+    found = search(zeta[there], rule, n[there], lam[there], ratios, parameters.tolerance)
     threshold = np.full((len(SIMPLE), len(OF_IMPACTS), *r.shape), np.nan)
     zero = np.full(threshold.shape[1:], np.nan)
     always = found.status == ThresholdStatus.ALWAYS_WITHIN
@@ -133,14 +210,20 @@ def validity(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
     )
 
 
-def meeting_flights(parameters: Mapping[str, Any], release: str) -> xr.Dataset:
-    """One contact, and the flights before and after it, continued into it."""
+def meeting_flights(parameters: Meeting, release: Release) -> xr.Dataset:
+    """One contact, and the flights before and after it, continued into it; shape (time,).
+
+    Raises
+    ------
+    NoOrbitError
+        If the orbit does not exist.
+    """
     contact = SpringDamper.from_restitution(
-        parameters["restitution"], parameters["frequency_ratio"], Release.of(release)
+        parameters.restitution, parameters.frequency_ratio, release
     )
-    orbit = SpringDamperModel(contact).require_orbit(parameters["n"], parameters["amplitude"])
+    orbit = SpringDamperModel(contact).require_orbit(parameters.n, parameters.amplitude)
     end = float(orbit.contact_duration)
-    time = np.linspace(-0.6 * end, 1.6 * end, parameters["samples"])
+    time = np.linspace(-0.6 * end, 1.6 * end, parameters.samples)
     start = orbit.contact_path(np.zeros(()))
     before = start[0] + (start[1] - time / 2) * time
     after, _ = orbit.flight_path(time)

@@ -7,7 +7,6 @@ a contact ``amplitude``.
 from collections.abc import Iterable
 from typing import Annotated
 
-import numpy as np
 from pydantic import AfterValidator, Field, ValidationInfo
 
 from bouncing_ball.contacts.spring_damper import SpringDamper
@@ -102,8 +101,3 @@ Points = Annotated[
         ge=11, le=20001, description="points along each branch; fewer than 11 do not show its shape"
     ),
 ]
-
-
-def grid(span):
-    """For the atlas, until it takes a :class:`~bouncing_ball.parameters.Span`."""
-    return np.geomspace(span["min"], span["max"], span["samples"])

@@ -3,9 +3,6 @@
 The page of the explorer computes them again in the reader's browser.
 """
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 import xarray as xr
 
@@ -14,7 +11,7 @@ from bouncing_ball.contacts.damping import restitution_coefficient
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper, contact_force
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.studies.parameters import grid
+from bouncing_ball.parameters import Parameters, Seed, Span
 from bouncing_ball.studies.random_orbits import random_orbits
 
 # Of the restitution model's stable range: from next to its saddle-node to beyond
@@ -22,14 +19,23 @@ from bouncing_ball.studies.random_orbits import random_orbits
 _PLACES = (0.02, 1.2)
 
 
-def reference_orbits(parameters: Mapping[str, Any]) -> xr.Dataset:
-    """One orbit for each ϖ of a grid under each release rule; n, r and Λ are drawn.
+class References(Parameters):
+    """Contacts for each of which an orbit is drawn at random."""
+
+    frequency_ratio: Span
+    seed: Seed
+
+
+def reference_orbits(parameters: References) -> xr.Dataset:
+    """One orbit for each ϖ of a grid under each release rule, shape (release, sample).
+
+    n, r and Λ are drawn at random.
 
     r is that of Eq. 16; ``ball`` and ``contact_force`` are in the middle of the contact.
     NaN where there is no orbit or no bifurcation.
     """
-    omega = grid(parameters["frequency_ratio"])
-    parts = [_under(rule, omega, parameters["seed"] + k) for k, rule in enumerate(Release)]
+    omega = parameters.frequency_ratio.grid()
+    parts = [_under(rule, omega, parameters.seed + k) for k, rule in enumerate(Release)]
     return describe(
         xr.concat(parts, dim="release").assign_coords(release=[str(rule) for rule in Release])
     )

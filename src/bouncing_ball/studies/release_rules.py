@@ -8,11 +8,11 @@ ends where its force vanishes. Three things are compared along ϖ:
 * the same with the restitution coefficient that the force release really has.
 """
 
-from collections.abc import Mapping
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 import xarray as xr
+from pydantic import Strict
 from scipy.optimize.elementwise import find_minimum
 
 from bouncing_ball.accuracy.quantities import Quantity
@@ -23,7 +23,29 @@ from bouncing_ball.datasets.variables import describe
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Bifurcation
-from bouncing_ball.studies.parameters import grid
+from bouncing_ball.parameters import Family, LossyRestitution, Many, Parameters, Span, Tolerance
+from bouncing_ball.studies.parameters import OrbitAmplitude
+
+
+class RuleThresholds(Parameters):
+    """One orbit, the quantities compared on it, and the error tolerated."""
+
+    n: Family
+    restitution: LossyRestitution
+    amplitude: OrbitAmplitude
+    tolerance: Tolerance
+    quantities: Many[Annotated[Quantity, Strict(False)]]
+    frequency_ratio: Span
+
+
+class ReleaseRules(Parameters):
+    """Families whose bifurcations are followed along ϖ, and an orbit for the thresholds."""
+
+    n: Many[Family]
+    restitution: LossyRestitution
+    frequency_ratio: Span
+    thresholds: RuleThresholds
+
 
 READINGS = (
     (Release.DISPLACEMENT, "displacement release, r of Eq. 16"),
@@ -48,10 +70,10 @@ def _lowest_doubling(
     return float(np.exp(find_minimum(doubling, bracket).x))
 
 
-def _bifurcations(parameters: Mapping[str, Any]) -> xr.Dataset:
+def _bifurcations(parameters: ReleaseRules) -> xr.Dataset:
     """Both bifurcations along ϖ under each rule, and the ϖ of the lowest period doubling."""
-    families, ratios = np.array(parameters["n"]), grid(parameters["frequency_ratio"])
-    zeta = float(damping_ratio(parameters["restitution"]))
+    families, ratios = np.array(parameters.n), parameters.frequency_ratio.grid()
+    zeta = float(damping_ratio(parameters.restitution))
     rules = list(Release)
     amplitudes = np.empty((len(rules), len(families), len(ratios), 2))
     turns = np.empty((len(rules), len(families)))
@@ -77,11 +99,11 @@ def _bifurcations(parameters: Mapping[str, Any]) -> xr.Dataset:
     )
 
 
-def _thresholds(wanted: Mapping[str, Any]) -> xr.Dataset:
+def _thresholds(wanted: RuleThresholds) -> xr.Dataset:
     """The ϖ above which each quantity is within the tolerance, reading by reading."""
-    n, lam, r = wanted["n"], wanted["amplitude"], wanted["restitution"]
-    quantities = [Quantity(name) for name in wanted["quantities"]]
-    scan, loss = grid(wanted["frequency_ratio"]), float(damping_ratio(r))
+    n, lam, r = wanted.n, wanted.amplitude, wanted.restitution
+    quantities = wanted.quantities
+    scan, loss = wanted.frequency_ratio.grid(), float(damping_ratio(r))
     own = float(restitution_coefficient(loss, Release.FORCE))
     found = []
     for rule, reading in READINGS:
@@ -90,7 +112,7 @@ def _thresholds(wanted: Mapping[str, Any]) -> xr.Dataset:
             return SpringDamperModel(SpringDamper(ratio, loss, rule))
 
         simple = RestitutionModel(own if reading.endswith("own r") else r)
-        _, one = model_thresholds(exact, simple, n, lam, scan, [wanted["tolerance"]], quantities)
+        _, one = model_thresholds(exact, simple, n, lam, scan, [wanted.tolerance], quantities)
         found.append(one)
     dims = ("reading", "quantity")
     return xr.Dataset(
@@ -106,7 +128,11 @@ def _thresholds(wanted: Mapping[str, Any]) -> xr.Dataset:
     )
 
 
-def release_rules(parameters: Mapping[str, Any]) -> xr.Dataset:
-    """Bifurcations and thresholds under both rules, from ``n``, ``restitution``,
-    ``frequency_ratio``, and ``thresholds`` with its own parameters."""
-    return describe(_bifurcations(parameters).merge(_thresholds(parameters["thresholds"])))
+def release_rules(parameters: ReleaseRules) -> xr.Dataset:
+    """Bifurcations and thresholds under both rules.
+
+    Λ of the bifurcations, shape (release, n, ϖ, bound), the ϖ at which each period doubling is
+    lowest, and the ϖ from which each quantity is right, shape (reading, quantity); NaN where there
+    is none.
+    """
+    return describe(_bifurcations(parameters).merge(_thresholds(parameters.thresholds)))

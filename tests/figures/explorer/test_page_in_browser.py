@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.cli.main import main
+from bouncing_ball.configuration.study import typed
 from bouncing_ball.figures.explorer.document import BOUND, sources, to_html
 from bouncing_ball.studies.reference_orbits import reference_orbits
 
@@ -71,7 +72,7 @@ def mutated():
 def seen(browse, tmp_path_factory):
     """All that is asked of the browser, in one run."""
     folder = tmp_path_factory.mktemp("explorer")
-    data = reference_orbits(REFERENCES).assign_attrs(provenance_commit="c0ffee" * 6 + "c0ff")
+    data = typed(reference_orbits)(REFERENCES).assign_attrs(provenance_commit="c0ffee" * 6 + "c0ff")
     right = to_html(data)
     mutants = list(mutated())
     wrong = to_html(data, sources() | {"model.js": mutants[0]})

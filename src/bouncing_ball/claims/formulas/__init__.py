@@ -6,13 +6,14 @@ parameters and what rounding accounts for. The formulas are those of
 them.
 """
 
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable
+from typing import Annotated
 
 import numpy as np
 import xarray as xr
 
 from bouncing_ball.claims.formulas.contact_equations import (
+    Static,
     damping_checks,
     motion_checks,
     orbit_checks,
@@ -23,6 +24,7 @@ from bouncing_ball.claims.formulas.disagreement import Check
 from bouncing_ball.claims.formulas.permanent_contact_equations import permanent_contact_checks
 from bouncing_ball.claims.formulas.restitution_equations import restitution_checks
 from bouncing_ball.datasets.variables import described
+from bouncing_ball.parameters import Parameters, Seed, number
 
 # In the order of the paper.
 _PARTS: tuple[Callable[..., dict[str, Check]], ...] = (
@@ -34,21 +36,22 @@ _PARTS: tuple[Callable[..., dict[str, Check]], ...] = (
 )
 
 
-def formulas(parameters: Mapping[str, Any]) -> xr.Dataset:
-    """Disagreement of every printed formula, over ``samples`` random parameters.
+class Formulas(Parameters):
+    """The random parameters on which the formulas are tried, and an impact on a table at rest."""
 
-    Parameters
-    ----------
-    parameters : mapping
-        ``samples``, ``seed``, ``curve_points``, and ``static`` with the
-        ``restitution``, ``frequency_ratio`` and ``velocity`` of an impact on a
-        table at rest.
-    """
-    rng = np.random.default_rng(parameters["seed"])
+    samples: Annotated[int, number("random parameters for each formula", ge=8, le=1000)]
+    curve_points: Annotated[int, number("random points of the explicit curve", ge=8, le=100_000)]
+    seed: Seed
+    static: Static
+
+
+def formulas(parameters: Formulas) -> xr.Dataset:
+    """Disagreement of every printed formula, over ``samples`` random parameters, (formula,)."""
+    rng = np.random.default_rng(parameters.seed)
     checks: dict[str, Check] = {}
     for part in _PARTS:
-        checks |= part(rng, parameters["samples"])
-    points = parameters["curve_points"]
+        checks |= part(rng, parameters.samples)
+    points = parameters.curve_points
     admissible = points_with_one_impact(rng, points)
     disagreement, budget, comparison = zip(*checks.values(), strict=True)
     return described(
@@ -56,7 +59,7 @@ def formulas(parameters: Mapping[str, Any]) -> xr.Dataset:
             "disagreement": ("formula", np.array(disagreement)),
             "budget": ("formula", np.array(budget)),
             "compared_with": ("formula", np.array(comparison)),
-            "static_error": static_error(parameters["static"]),
+            "static_error": static_error(parameters.static),
             "curve_points": ((), points),
             "curve_points_admissible": ((), admissible),
         },

@@ -4,8 +4,7 @@ The printed solutions are checked against the matrix exponential, the orbits
 against the event-driven simulation.
 """
 
-from collections.abc import Mapping
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 import xarray as xr
@@ -20,6 +19,7 @@ from bouncing_ball.motion.contacts import contact_cycle
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import orbit_at, saddle_node
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.parameters import FrequencyRatio, LossyRestitution, Many, Parameters, number
 
 # The faintest rebound that a double can hold.
 _FAINT = float(np.finfo(float).tiny)
@@ -185,14 +185,22 @@ def damping_checks(rng, samples) -> dict[str, Check]:
     }
 
 
-def static_error(static: Mapping[str, Any]) -> xr.DataArray:
+class Static(Parameters):
+    """Impacts of a heavy ball on a table at rest."""
+
+    restitution: Many[LossyRestitution]
+    frequency_ratio: Many[FrequencyRatio]
+    velocity: Annotated[float, number("velocity at impact", gt=0)]
+
+
+def static_error(static: Static) -> xr.DataArray:
     """|r_static - r|/r of a heavy ball on a table at rest, over r and ϖ.
 
     NaN where the contact is so soft, or the impact so weak, that the weight
     holds the ball for more than half as long again as without.
     """
-    r, ratio = (np.array(static[key], dtype=float) for key in ("restitution", "frequency_ratio"))
+    r, ratio = np.array(static.restitution), np.array(static.frequency_ratio)
     rows, columns = (x.ravel() for x in np.meshgrid(r, ratio, indexing="ij"))
-    heavy = _measured_restitution(rows, columns, static["velocity"], 1.0)
+    heavy = _measured_restitution(rows, columns, static.velocity, 1.0)
     error = np.abs(heavy / rows - 1).reshape(r.size, ratio.size)
     return xr.DataArray(error, {"restitution": r, "frequency_ratio": ratio})

@@ -1,31 +1,27 @@
 # The replication article, every number from a dataset, and the tally of the claims.
 
-ARTICLE = Path(ROOT, "workflow/report/paper")
+ARTICLE = os.path.relpath(Path(ROOT, "workflow/report/paper"))
 
 
 rule paper:
     message:
         "Writing results/paper.md"
     input:
-        templates=sorted(os.path.relpath(path) for path in ARTICLE.glob("*.md.j2")),
+        templates=sorted(map(str, Path(ARTICLE).glob("*.md.j2"))),
         error_law="config/error_law.csv",
         atlas="config/atlas.nc",
-        references=[os.path.relpath(ARTICLE / name) for name in ("references.yaml", "numbered.csl")],
-        data=datasets(DATASETS),
+        references=[f"{ARTICLE}/references.yaml", f"{ARTICLE}/numbered.csl"],
+        data=datasets(STUDIES),
         tables=expand("results/figures/{table}.md", table=TABLES),
         source=modules(
-            "figures.article.render",
-            "figures.atlas.tables",
-            "figures.tables.error_law",
-            "claims.tally",
-            "datasets.files",
-            "datasets.netcdf",
+            *("figures.article.render", "figures.atlas.tables", "figures.tables.error_law"),
+            *("claims.tally", "datasets.files", "datasets.netcdf"),
         ),
     output:
         paper="results/paper.md",
         tally="results/tally.txt",
     params:
-        figures=len(names(Kind.FIGURE)),
+        figures=sum(name.startswith("fig") for name in DRAWINGS),
     log:
         "results/logs/paper.log",
     benchmark:
@@ -42,8 +38,8 @@ rule paper_pdf:
         "Setting results/paper.pdf"
     input:
         paper=rules.paper.output.paper,
-        template=os.path.relpath(ARTICLE / "article.typ"),
-        figures=expand("results/figures/{figure}.svg", figure=FIGURES),
+        template=f"{ARTICLE}/article.typ",
+        figures=expand("results/figures/{figure}.svg", figure=DRAWINGS),
         source=modules("figures.article.pdf", "datasets.atomic"),
     output:
         pdf="results/paper.pdf",

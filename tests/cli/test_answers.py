@@ -1,0 +1,279 @@
+"""What the subcommands answer: the numbers of the models, and one line for each mistake."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import bouncing_ball
+from bouncing_ball.cli.main import main
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.laws import LAWS
+from bouncing_ball.contacts.laws.contact_law import ContactLaw
+from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
+from bouncing_ball.contacts.laws.tsuji import tsuji_damping
+from bouncing_ball.orbits.law_model import LawModel
+from bouncing_ball.orbits.orbit import OBSERVABLES
+
+ORBIT = ("orbit", "--n", "1", "--restitution", "0.85", "--amplitude", "1.0")
+FORCE = ("--frequency-ratio", "10", "--release", "force")
+COMPLIANT = ("--restitution", "0.85", "--amplitude", "0.9", "--frequency-ratio", "2")
+HERTZ = ("--law", "hunt-crossley", "--set", "stiffness=1000", "--set", "damping=0.08")
+FREE = ("--law", "tsuji", "--restitution", "0.65", "--duration", "0.1")
+FIELDS = [*OBSERVABLES[1:], "multipliers", "is_stable", "is_admissible", "residual"]
+
+
+@pytest.mark.parametrize("side", ["stable", "unstable"])
+@pytest.mark.parametrize(
+    ("options", "given", "more"),
+    [
+        ((), {}, []),
+        (FORCE[:2], {"frequency_ratio": 10.0}, ["measured_restitution", "damping_ratio"]),
+        (
+            (*FORCE, "--model", "corrected"),
+            {"frequency_ratio": 10.0, "release": "force", "model": "corrected"},
+            ["measured_restitution", "damping_ratio"],
+        ),
+    ],
+)
+def test_an_orbit_in_full_precision(ask, side, options, given, more):
+    answer = ask(*ORBIT, *options, "--side", side)
+    assert list(answer) == [*FIELDS, *more]
+    orbit = bouncing_ball.orbit(1, 1.0, restitution=0.85, side=side, **given)
+    assert [answer[name] for name in OBSERVABLES[1:]] == [
+        float(getattr(orbit, name)) for name in OBSERVABLES[1:]
+    ]
+    multipliers = orbit.multipliers()
+    assert [complex(*pair) for pair in answer["multipliers"]] == multipliers.tolist()
+    assert answer["is_stable"] is (side == "stable") is bool(np.all(np.abs(multipliers) < 1))
+    # The formulas solve the models' equations to rounding.
+    assert answer["is_admissible"] is True and answer["residual"] < 1e-13
+
+
+def test_three_ways_to_say_how_much_is_lost(ask):
+    zeta = repr(float(damping_ratio(0.85)))
+    call = ("orbit", "--amplitude", "1", *FORCE)
+    by_eq_16 = ask(*call, "--restitution", "0.85")
+    assert ask(*call, "--damping-ratio", zeta) == by_eq_16
+    # The force release has a higher r than that of Eq. 16.
+    assert by_eq_16["measured_restitution"] > 0.85
+    own = ask(*call, "--measured-restitution", "0.85")
+    assert own["measured_restitution"] == pytest.approx(0.85, rel=1e-14)
+    assert own["damping_ratio"] > by_eq_16["damping_ratio"]
+    # Without a contact there is one r only.
+    bare = ("orbit", "--amplitude", "1")
+    assert ask(*bare, "--measured-restitution", "0.7") == ask(*bare, "--restitution", "0.7")
+
+
+def test_every_orbit_can_be_reached(ask, refused, said):
+    call = ("orbit", *COMPLIANT)
+    found = ask(*call, "--side", "all")["orbits"]
+    assert [orbit["is_stable"] for orbit in found] == [True, False, True]
+    third = ask(*call, "--index", "3")
+    assert {name: third[name] for name in FIELDS} == found[2]
+    status, line = refused(*call, "--index", "4")
+    assert status == 1 and "has 3 1-T orbits at Λ = 0.9" in line
+    assert "orbit 3" in said(*call, "--side", "all")
+
+
+def test_limits(ask, refused):
+    for options, more in (((), {}), (("--frequency-ratio", "10"), {"frequency_ratio": 10.0})):
+        answer = ask("limits", "--n", "2", "--restitution", "0.85", *options)
+        expected = bouncing_ball.limits(2, restitution=0.85, **more)
+        for name, orbit in expected._asdict().items():
+            assert answer[name] == {
+                "amplitude": float(orbit.amplitude),
+                "phase": float(orbit.phase),
+                "contact_duration": float(orbit.contact_duration),
+                "is_admissible": bool(orbit.is_admissible()),
+            }
+    # The branch of so compliant a contact has no saddle-node; a closed form knows that.
+    status, line = refused("limits", "--frequency-ratio", "0.7071", "--damping-ratio", "0.2155")
+    assert status == 1 and "the branch of 1-T orbits" in line and "has no saddle node" in line
+    same = ("--law", "linear", "--set", "frequency-ratio=0.7071", "--set", "damping-ratio=0.2155")
+    status, line = refused("limits", *same)
+    assert status == 1 and "no saddle node was found on the branch of 1-T orbits" in line
+
+
+def test_permanent_contact(ask, refused):
+    call = ("permanent-contact", "--restitution", "0.65", "--frequency-ratio")
+    answer = ask(*call, "6")
+    zeta, x = float(damping_ratio(0.65)), 1 / 36
+    square = (1 - x) ** 2 + 4 * zeta**2 * x
+    assert answer["threshold"] == pytest.approx(math.sqrt(square), rel=1e-15)
+    assert answer["minimum"] == pytest.approx(2 * zeta * math.sqrt(1 - zeta**2), rel=1e-15)
+    force = ask(*call, "6", "--release", "force")
+    expected = math.sqrt(square / (1 + 4 * zeta**2 * x))
+    assert force["threshold"] == pytest.approx(expected, rel=1e-15)
+    # There is a minimum below ζ = 1/√2.
+    for damping, exists in (("0.707", True), ("0.708", False)):
+        call = ("permanent-contact", "--damping-ratio", damping, "--frequency-ratio", "1e8")
+        assert (ask(*call)["minimum"] is not None) is exists
+    for model, says in (("corrected", "no corrected form"), ("restitution", "is Λ = 1 for")):
+        status, line = refused(*call, "--model", model)
+        assert status == 2 and says in line
+
+
+def test_the_error_law_is_about_the_contacts_own_r(ask):
+    contact = ("--damping-ratio", "0.2", "--release", "force", "--amplitude", "1.5")
+    found = ask("error-law", *contact)
+    exact = ask("orbit", "--frequency-ratio", "1e4", *contact)
+    r = repr(found["measured_restitution"])
+    plain = ask("orbit", "--restitution", r, "--amplitude", "1.5")
+    for name in ("max_height", "bounce_velocity", "phase", "apparent_restitution"):
+        error = 1e4 * (exact[name] / plain[name] - 1)
+        # The next order is about 1/ϖ of it, more for the apparent restitution.
+        assert error == pytest.approx(found["signed"][name], rel=2e-2)
+        assert found["coefficients"][name] == abs(found["signed"][name])
+    # Nothing to be relative to at r = 1.
+    found = ask("error-law", "--restitution", "1", "--amplitude", "0.8")
+    assert found["coefficients"]["saddle_node"] is None
+    assert found["second_order"]["permanent_contact"] == 1.0
+
+
+def test_a_simulation(ask, said):
+    orbit = ask(*ORBIT, *FORCE[:2])
+    start = ("--phase", repr(orbit["phase"]), "--velocity", repr(orbit["impact_velocity"]))
+    answer = ask("simulate", *ORBIT[3:], *FORCE[:2], *start, "--impacts", "30")
+    assert answer["status"] == "bouncing" and len(answer["sequence"]["time"]) == 30
+    # Rounding stays rounding on a stable orbit.
+    assert np.ptp(answer["sequence"]["impact_velocity"]) < 1e-12
+    call = ("simulate", "--restitution", "0.5", "--amplitude", "0.5", *FORCE[:2])
+    answer = ask(*call, "--velocity", "-1")
+    assert answer["status"] == "permanent contact"
+    assert answer["sequence"]["contact_duration"][-1] is None
+    assert said(*call, "--velocity", "-1").splitlines()[-1].split().count("never") == 2
+
+
+def test_an_orbit_on_a_contact_law(ask):
+    answer = ask("orbit", *HERTZ, "--amplitude", "1")
+    assert set(FIELDS) <= set(answer)
+    orbit = LawModel(HuntCrossley(1000.0, 0.08)).orbit(1, 1.0)
+    assert answer["max_height"] == float(orbit.max_height)
+    assert answer["parameters"] == {"stiffness": 1000.0, "damping": 0.08}
+    assert answer["frequency_ratio"] == pytest.approx(math.pi / answer["free_duration"])
+    corrected = ask("orbit", *HERTZ, "--amplitude", "1", "--model", "corrected")
+    assert corrected["max_height"] == pytest.approx(answer["max_height"], rel=1e-3)
+
+
+def test_a_law_by_its_free_impact_at_the_orbits_own_speed(ask):
+    answer = ask("orbit", *FREE, "--amplitude", "1")
+    assert answer["measured_restitution"] == pytest.approx(0.65, rel=1e-12)
+    assert answer["free_duration"] == pytest.approx(0.1, rel=1e-12)
+    assert answer["parameters"]["damping"] == pytest.approx(float(tsuji_damping(0.65)), rel=1e-12)
+    limits = ask("limits", *FREE)
+    assert limits["at_impact_speed"] == pytest.approx(2 * math.pi / 1.65, rel=1e-12)
+    assert limits["free_duration"] == pytest.approx(0.1, rel=1e-12)
+    # The first impact, of a speed Λ cos φ - z′.
+    run = ask("simulate", *FREE, "--amplitude", "1", "--impacts", "3", "--velocity", "-2")
+    assert run["at_impact_speed"] == 3.0
+    assert run["free_duration"] == pytest.approx(0.1, rel=1e-12)
+
+
+class _OfItsParameters(HuntCrossley):
+    """A law that does not say how it is scaled."""
+
+    name = "rubber"
+    of_scales = classmethod(ContactLaw.of_scales.__func__)
+
+
+def test_a_law_that_is_known_by_its_parameters_only(refused, monkeypatch):
+    monkeypatch.setitem(LAWS, "rubber", _OfItsParameters)
+    call = ("--law", "rubber", "--restitution", "0.95", "--duration", "0.3", "--amplitude", "1")
+    status, line = refused("orbit", *call)
+    assert status == 2
+    assert line.endswith("rubber is given by its parameters, not by restitution and duration")
+
+
+def test_a_missing_orbit_exits_1_with_the_reason(refused, capsys):
+    call = ("orbit", "--restitution", "0.85", "--amplitude", "0.1")
+    assert refused(*call) == (
+        1,
+        "bouncing-ball: no 1-T orbit at Λ = 0.1 for r = 0.85: below the saddle-node "
+        "at Λ = 0.254724",
+    )
+    with pytest.raises(SystemExit) as exit_:
+        main([*call, "--json"])
+    assert exit_.value.code == 1
+    assert "below the saddle-node" in json.loads(capsys.readouterr().out)["error"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ("", "a command is missing, one of orbit, limits"),
+        ("orbit --amplitude 1", "--restitution --damping-ratio --measured-restitution is required"),
+        ("orbit --restitution 0.85", "required: --amplitude"),
+        ("orbit --restitution 1.2 --amplitude 1", "'1.2' is not a number in (0, 1]"),
+        ("orbit --restitution nan --amplitude 1", "'nan' is not a number in (0, 1]"),
+        ("orbit --restitution 0 --amplitude 1", "'0' is not a number in (0, 1]"),
+        ("orbit --restitution 0.5 --amplitude inf", "'inf' is not a number in (0, 1e+08]"),
+        ("@ --frequency-ratio 0", "'0' is not a number in [1e-08, 1e+08]"),
+        ("permanent-contact --restitution 0.5", "required: --frequency-ratio"),
+        ("orbit --damping-ratio 1 --amplitude 1", "'1' is not a number in [0, 1)"),
+        ("orbit --damping-ratio 0.1 --amplitude 1", "--damping-ratio needs --frequency-ratio"),
+        ("@ --damping-ratio 0.1", "--damping-ratio: not allowed with argument --restitution"),
+        ("@ --n 0", "'0' is not a whole number from 1 to 1000"),
+        ("@ --n 1.5", "'1.5' is not a whole number"),
+        ("simulate --restitution 1 --amplitude 1 --impacts 100001", "from 1 to 100000"),
+        ("simulate --restitution 1 --amplitude 1 --phase inf", "'inf' is not a finite number"),
+        ("@ --model spring-damper", "--model spring-damper needs --frequency-ratio"),
+        ("@ --model restitution --frequency-ratio 3", "--frequency-ratio has no meaning"),
+        ("@ --release force", "--release has no meaning for --model restitution"),
+        ("@ --side all --index 2", "not allowed with argument --side"),
+        ("@ --side left", "invalid choice: 'left'"),
+        ("@ --tension 1", "unrecognized arguments: --tension 1"),
+        (
+            "orbit --measured-restitution 0.1 --amplitude 9 --frequency-ratio 10 --release force",
+            "r = 0.1 is not in (e⁻², 1]",
+        ),
+        (
+            "simulate --restitution 0.5 --amplitude 1 --frequency-ratio 5 --velocity 9",
+            "rises from the table",
+        ),
+        ("law tsuji --restitution 0.65", "needs --set stiffness=NUMBER, --set damping=NUMBER, or"),
+        ("law rubber", "unknown contact law 'rubber': one of hunt-crossley, tsuji"),
+        ("law tsuji --set stiffness", "'stiffness' is not NAME=NUMBER"),
+        ("law tsuji --set stiffness=inf", "is not NAME=NUMBER"),
+        ("law tsuji --set stiffness=1", "tsuji needs --set damping=NUMBER as well"),
+        ("law tsuji --set color=1", "unknown parameter 'color' of tsuji: its parameters are"),
+        ("law tsuji --set color=1 --restitution 0.5", "--restitution does not go with --set"),
+        ("law tsuji --frequency-ratio 5", "--frequency-ratio does not go with --law"),
+        ("law tsuji --model spring-damper", "--model spring-damper has no --law"),
+        ("free --release force", "--release goes with --law linear and --set only"),
+        ("free --speed 1e300", "v = 1e+300 has no stiffness within the range"),
+        ("@ --duration 1", "--duration needs --law"),
+        (
+            "law tsuji --set stiffness=9 --set damping=1 --release force",
+            "the release is part of tsuji: --release is for the linear law",
+        ),
+        ("law tsuji --set stiffness=9 --set damping=2.3", "C = 2.3 is not below √5"),
+    ],
+)
+def test_a_mistake_exits_2_with_one_line(refused, arguments, said):
+    words = arguments.split()
+    start = {"@": ORBIT, "law": ("orbit", "--amplitude", "1", "--law")}
+    start["free"] = ("orbit", "--amplitude", "1", *FREE)
+    status, line = refused(*start.get(words[0], words[:1]) if words else (), *words[1:])
+    assert status == 2
+    assert said in line
+
+
+@given(
+    ratio=st.sampled_from([None, 1e-8, 0.7, 1.0, 3.0, 1e8]),
+    release=st.sampled_from(["displacement", "force"]),
+    r=st.sampled_from([1.0, 0.5, 1e-300]),
+    amplitude=st.sampled_from([1e8, 1.0, 1e-300]) | st.floats(1e-300, 1e8),
+    n=st.sampled_from([1, 1000]),
+    side=st.sampled_from(["stable", "unstable"]),
+)
+def test_no_traceback_and_no_warning_ever(outcome, ratio, release, r, amplitude, n, side):
+    # Warnings are errors in this suite.
+    contact = [] if ratio is None else ["--frequency-ratio", str(ratio), "--release", release]
+    call = ["orbit", "--restitution", str(r), "--amplitude", str(amplitude), "--n", str(n)]
+    status, out, err = outcome(*call, *contact, "--side", side, "--json")
+    assert status in (0, 1) and len(err.splitlines()) == status
+    assert ("error" in json.loads(out)) is (status == 1)

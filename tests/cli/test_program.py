@@ -1,0 +1,95 @@
+"""The installed program: its help, its outputs, and streams that take no output."""
+
+import inspect
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import bouncing_ball
+from bouncing_ball.cli.options import meanings
+from bouncing_ball.contacts.laws import LAWS
+from bouncing_ball.orbits import calls
+
+ROOT = Path(__file__).resolve().parents[2]
+PROGRAM = Path(sys.executable).with_name("bouncing-ball")
+ORBIT = ("orbit", "--restitution", "0.85", "--amplitude", "1")
+
+
+def program(*arguments, **options):
+    return subprocess.run([PROGRAM, *arguments], stderr=subprocess.PIPE, check=False, **options)
+
+
+def test_the_help_says_what_the_docstrings_of_the_calls_say(said):
+    shown = "".join(said("orbit", "--help").split()).replace("-", "")
+    texts = meanings(calls.orbit)
+    for name in inspect.signature(calls.orbit).parameters:
+        assert "".join(texts[name].split()).replace("-", "") in shown
+    for law in LAWS.values():
+        parameters = ",".join(law.parameter_names()).replace("_", "")
+        listed = f"{law.name}{law.formula}({parameters})".replace(" ", "").replace("-", "")
+        assert listed in shown
+    assert "(default: -3.142)" in said("simulate", "--help")
+    assert said("--version") == f"bouncing-ball {bouncing_ball.__version__}\n"
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "latin-1"])
+@pytest.mark.parametrize(
+    ("arguments", "status"), [(["orbit", "--help"], 0), ([*ORBIT[:-1], "0.1", "--json"], 1)]
+)
+def test_any_encoding_of_the_output(encoding, arguments, status):
+    environment = os.environ | {"PYTHONIOENCODING": encoding}
+    done = program(*arguments, stdout=subprocess.PIPE, env=environment)
+    assert done.returncode == status
+    assert b"Traceback" not in done.stderr and done.stderr.count(b"\n") <= 1
+    assert "--json" not in arguments or json.loads(done.stdout.decode(encoding))
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["--version"], [*ORBIT, "--json"]])
+def test_a_full_device(arguments):
+    with Path("/dev/full").open("wb") as full:
+        done = program(*arguments, stdout=full, text=True)
+    assert done.returncode == 2
+    assert done.stderr == "bouncing-ball: the output cannot be written: No space left on device\n"
+
+
+def test_without_a_subcommand_no_numpy_is_imported():
+    code = (
+        "import sys\n"
+        "from bouncing_ball.cli.main import main\n"
+        "for arguments in (['--help'], ['bounce'], []):\n"
+        "    try:\n"
+        "        main(arguments)\n"
+        "    except SystemExit:\n"
+        "        assert 'numpy' not in sys.modules\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0 and "usage" in done.stdout
+
+
+def test_only_units_need_pint():
+    code = (
+        "import sys; from bouncing_ball.cli.main import main; "
+        "main('design --mass 1 --frequency 1 --acceleration 5 --stiffness 1e6 --restitution 0.9 "
+        "--n 1 --json'.split()); sys.exit('pint' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
+    assert done.returncode == 0 and done.stdout
+
+
+def test_diff_for_nobody_who_reads(tmp_path):
+    # Python on this end, and on the other nobody: the status is the diff's all the same.
+    for side in ("record", "results"):
+        (tmp_path / side).mkdir()
+        (tmp_path / side / "paper.md").write_text(side if side == "record" else "", "utf-8")
+    shutil.copytree(ROOT / "config", tmp_path / "record" / "config")
+    reader, writer = os.pipe()
+    os.close(reader)
+    done = program("diff", "record", "results", cwd=tmp_path, stdout=writer, text=True)
+    os.close(writer)
+    # The texts differ.
+    assert (done.returncode, done.stderr) == (1, "")

@@ -1,11 +1,10 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.accuracy.errors import SIMPLE
+from bouncing_ball.accuracy.errors import SIMPLE, orbit_errors
 from bouncing_ball.accuracy.quantities import OF_ORBITS
 from bouncing_ball.accuracy.thresholds import ThresholdStatus, search
 from bouncing_ball.atlas.crossings import LastCrossings
-from bouncing_ball.atlas.errors import orbit_errors
 from bouncing_ball.atlas.walk import walk
 
 RATIOS = np.geomspace(1.0, 1e3, 61)

@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.accuracy.errors import modulus
+from bouncing_ball.accuracy.errors import modulus, orbit_errors
 from bouncing_ball.accuracy.thresholds import ThresholdStatus, search
 from bouncing_ball.atlas import answers, shards
 from bouncing_ball.atlas.answers import PER_DECADE, threshold_bins
-from bouncing_ball.atlas.errors import orbit_errors
 from bouncing_ball.atlas.walk import walk
 from bouncing_ball.errors import ModelError
 

@@ -8,7 +8,9 @@ from hypothesis import strategies as st
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper, responses
 from bouncing_ball.errors import ModelError
-from bouncing_ball.orbits.spring_damper_branch import branch_point
+from bouncing_ball.orbits.spring_damper_branch import branch_point, nearest_excess
+from bouncing_ball.orbits.spring_damper_limits import saddle_node
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.spring_damper_system import Parameter, SpringDamperSystem
 from bouncing_ball.orbits.stability import trace_and_determinant
@@ -159,15 +161,6 @@ def test_a_contact_of_several_periods_opens_in_every_one(omega, zeta):
         assert np.all(flow.displacement.max(axis=1) > 0)
 
 
-def test_elastic_contact_of_half_a_period():
-    # ζ = 0, ε = 0: the velocity is reversed whatever the forces, if these
-    # vanish over the contact: Λ sin φ → 1 balances gravity.
-    point = branch_point(0.0, SpringDamper(1e6, 0.0), 1)
-    assert float(point.amplitude) == pytest.approx(1.0, abs=1e-5)
-    assert float(point.phase) == pytest.approx(np.pi / 2, abs=1e-5)
-    assert float(point.u) == pytest.approx(-np.pi, abs=1e-5)
-
-
 @given(log_ratios, dampings, families, releases, st.floats(-0.9, 1.0))
 def test_trace_and_determinant_are_those_of_the_linearised_flow(log_omega, zeta, n, release, share):
     # Worked out from the formula here, from the flow's Jacobian there.
@@ -197,18 +190,31 @@ def test_long_arrays_are_the_same_as_single_points():
             assert float(field[k]) == pytest.approx(float(value), rel=1e-12, abs=1e-14)
 
 
-def test_broadcasting_over_contacts_and_families():
-    contact = SpringDamper(np.array([[2.0], [10.0]]), 0.1)
-    point = branch_point(0.1, contact, np.array([1, 2, 3]))
-    assert point.amplitude.shape == (2, 3)
-    single = branch_point(0.1, SpringDamper(10.0, 0.1), 3)
-    for name in single._fields:
-        whole = np.broadcast_to(getattr(point, name), (2, 3))[1, 2]
-        assert float(whole) == pytest.approx(float(getattr(single, name)), rel=1e-13)
-
-
 @pytest.mark.parametrize("zeta", [1.0, 1.5])
 def test_overdamped_contacts_are_refused(zeta, one_line):
     with pytest.raises(ModelError) as error:
         branch_point(0.0, SpringDamper(10.0, zeta), 1)
     one_line(error, f"ζ = {zeta}", "not below 1")
+
+
+# The nearest point of the branch.
+
+
+@pytest.mark.parametrize("release", list(Release))
+@pytest.mark.parametrize("omega", [2.0, 10.0, 1e4])
+def test_points_of_the_branch_are_their_own_nearest(omega, release):
+    contact = SpringDamper(omega, 0.05, release)
+    excess = float(saddle_node(contact, 2)) + np.linspace(-1, 1, 11) / omega
+    orbit = SpringDamperOrbit.on_branch(excess, contact, 2)
+    # Also at the fold.
+    assert SpringDamperModel(contact).nearest(orbit).distance(orbit).max() < 1e-12
+
+
+def test_a_point_beside_the_branch():
+    contact = SpringDamper(10.0, 0.05)
+    point = branch_point(0.02, contact, 1)
+    # One step normal to the curve in the plane (Λ cos φ, Λ sin φ).
+    normal = np.array([-point.d_y, point.d_x]) / np.hypot(point.d_x, point.d_y)
+    x, y = point.x + 1e-4 * normal[0], point.y + 1e-4 * normal[1]
+    assert float(nearest_excess(contact, 1, x, y, np.array(0.021))) == pytest.approx(0.02, abs=1e-4)
+    assert float(nearest_excess(contact, 1, x, y, np.array(0.02))) == pytest.approx(0.02, abs=1e-9)

@@ -1,11 +1,20 @@
 # The atlas: how stiff is stiff enough, everywhere. Not part of a run. Its summary is
 # accepted by hand, see docs/atlas.md, and the article takes its numbers from there.
 
-from bouncing_ball.pipeline.atlas import shard_minutes, shard_names
+from bouncing_ball.pipeline.atlas import discard_damaged, shard_minutes, shard_names
 
 # What the shards are made from.
 ATLAS = {key: part for key, part in config["atlas"].items() if key != "summary"}
 CHARTS = ["max_height", "bounce_velocity", "phase", "apparent_restitution", "limits", "page"]
+
+
+def shard_files(wildcards):
+    """The shards; one that is damaged is removed, and so made again."""
+    paths = [f"results/atlas/shards/{name}.nc" for name in [*shard_names(ATLAS), "limits"]]
+    if workflow.is_main_process:
+        for path in discard_damaged(paths):
+            logger.warning(f"{path} is damaged: it is made again")
+    return paths
 
 
 rule atlas_shard:
@@ -36,7 +45,7 @@ rule atlas_merge:
     message:
         "Atlas: one file from its shards"
     input:
-        parts=[f"results/atlas/shards/{name}.nc" for name in [*shard_names(ATLAS), "limits"]],
+        parts=shard_files,
         source=modules("atlas.shards", "pipeline.atlas"),
     output:
         data="results/atlas/atlas.nc",

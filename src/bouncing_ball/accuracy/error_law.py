@@ -43,6 +43,9 @@ next to the saddle-node, within Λ - Λ_SN ~ 1/ϖ, for grazing and slow impacts,
 for small r.
 """
 
+from collections.abc import Iterable
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -165,6 +168,47 @@ def scale(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> ByQuantity:
             Quantity.SADDLE_NODE: node,
             Quantity.PERIOD_DOUBLING: node + delay / half,
         }
+
+
+class Remainder(NamedTuple):
+    """Errors against the law, which states ``factor`` ≤ M where it is ``stated``."""
+
+    law: np.ndarray
+    """What the law says, shape (quantity, ...)."""
+    factor: np.ndarray
+    """|error - law|/(S δ) of each quantity; NaN without an error."""
+    small: np.ndarray
+    """δ."""
+    stated: np.ndarray
+    """Where there is an error and δ is below :data:`STATED`."""
+    exceeded: np.ndarray
+    """Where the factor is above M all the same."""
+
+
+def remainder(
+    n: ArrayLike,
+    instant: Instant,
+    amplitude: ArrayLike,
+    error: np.ndarray,
+    quantities: Iterable[Quantity] = OF_IMPACTS,
+) -> Remainder:
+    """What errors of the restitution model leave of the law, shape (quantity, ...).
+
+    Examples
+    --------
+    >>> instant, error = Instant(0.05, 0.5, 0.1, 0.1), np.array([-0.016, np.nan])
+    >>> left = remainder(1, instant, 1.3, error, OF_IMPACTS[1:3])
+    >>> float(left.law[0].round(5)), left.stated.tolist(), left.exceeded.tolist()
+    (-0.01592, [True, False], [False, False])
+    """
+    asked = tuple(quantities)
+    first, size = (f(n, instant, amplitude) for f in (first_order, scale))
+    law = np.stack([first[q] for q in asked])
+    small = small_parameter(n, instant, amplitude)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        factor = np.abs(error - law) / (np.stack([size[q] for q in asked]) * small)
+    bound = np.reshape([REMAINDER[q] for q in asked], (-1,) + (1,) * (law.ndim - 1))
+    return Remainder(law, factor, small, np.isfinite(error) & (small < STATED), factor > bound)
 
 
 def coefficients(

@@ -9,12 +9,17 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.accuracy.quantities import OF_IMPACTS, values
+from bouncing_ball.accuracy.quantities import OF_IMPACTS, OF_ORBITS, values
+from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.orbits import corrected_branch
 from bouncing_ball.orbits.corrected_model import CorrectedModel
+from bouncing_ball.orbits.corrected_orbit import CorrectedOrbit
 from bouncing_ball.orbits.model import ImpactModel
+from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 
 SIMPLE = ("restitution", "corrected")
 """The models that are compared with the exact one."""
@@ -96,3 +101,31 @@ def errors(
     exact, *simple = (values(model, n, amplitude, asked) for model in models(contact))
     found = [[relative(*pair) for pair in zip(exact, each, strict=True)] for each in simple]
     return np.stack([[np.broadcast_to(error, shape) for error in each] for each in found])
+
+
+def orbit_errors(orbit: SpringDamperOrbit) -> np.ndarray:
+    """Errors of the quantities of exact orbits, shape (model, quantity, ...); NaN without orbit.
+
+    As :func:`errors` at the Λ at which the orbits are, without a search for the corrected
+    one: the signature of a linear contact is the same at every speed.
+
+    Examples
+    --------
+    >>> from bouncing_ball.contacts.spring_damper import SpringDamper
+    >>> from bouncing_ball.orbits.spring_damper_limits import orbit_at
+    >>> orbit_errors(orbit_at(SpringDamper(100.0, 0.1), 1, 1.0)).round(4)[:, 0].tolist()
+    [-0.0083, -0.0]
+    """
+    n, lam, signature = orbit.n, orbit.amplitude, LinearSignature(orbit.contact)
+    psi = corrected_branch.instant_phase(n, signature(), lam)
+    # Below its own saddle-node, or without exact orbit, a model has no orbit at all.
+    simple: tuple[Orbit, Orbit] = (
+        RestitutionModel(orbit.contact.restitution).orbit(n, lam),
+        CorrectedOrbit.at(n, signature, lam, psi),
+    )
+    found = np.empty((len(simple), len(OF_ORBITS), *np.shape(lam)))
+    for j, quantity in enumerate(OF_ORBITS):
+        exact = getattr(orbit, quantity)
+        for i, model in enumerate(simple):
+            found[i, j] = relative(exact, getattr(model, quantity))
+    return found

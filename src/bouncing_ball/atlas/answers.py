@@ -12,13 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.accuracy.error_law import STATED
-from bouncing_ball.accuracy.errors import SIMPLE, modulus
+from bouncing_ball.accuracy.error_law import remainder
+from bouncing_ball.accuracy.errors import SIMPLE, modulus, orbit_errors
 from bouncing_ball.accuracy.quantities import OF_ORBITS
 from bouncing_ball.atlas.crossings import LastCrossings
-from bouncing_ball.atlas.errors import Law, orbit_errors, orbit_law
 from bouncing_ball.atlas.plan import Nodes, Plan
 from bouncing_ball.atlas.walk import TOGETHER, walk
+from bouncing_ball.contacts.signature import LinearSignature
 
 BLOCK = 8192 // TOGETHER
 """Nodes walked at once: as many as keep the arrays in the cache, some ϖ long."""
@@ -114,7 +114,7 @@ def _block(plan: Plan, row: int, start: int) -> Answers:
     """The answers of some nodes, with nothing in the tiles of the others."""
     index = np.arange(start, min(start + BLOCK, plan.nodes_per_row))
     nodes, tiles = plan.nodes(row, index), Tiles(index // plan.nodes_per_tile, plan.position.tiles)
-    law, tolerances = orbit_law(nodes), np.array(plan.tolerances)
+    tolerances = np.array(plan.tolerances)
     crossings = LastCrossings(tolerances, (len(SIMPLE), len(OF_ORBITS), len(index)))
     described = []
     sought, off = np.zeros(len(index), np.int32), np.zeros(len(index))
@@ -125,11 +125,15 @@ def _block(plan: Plan, row: int, start: int) -> Answers:
         away = np.abs(step.orbit.amplitude / nodes.amplitude - 1)
         off = np.fmax(off, np.fmax.reduce(away, axis=0))
         for k in np.flatnonzero(np.isin(step.frequency_ratio, plan.examined)):
-            ratio, one = step.frequency_ratio[k], error[:, :, k]
+            one, signature = error[:, :, k], LinearSignature(nodes.contact(step.frequency_ratio[k]))
+            left = remainder(nodes.n, signature(), nodes.amplitude, one[0], OF_ORBITS)
             described.append(
                 _errors(nodes, tiles, tolerances, one)
-                | _against_law(tiles, law, ratio, one[0])
-                | {"unstable": tiles.total(~step.stable[k])}
+                | {
+                    "law_stated": tiles.total(left.stated),
+                    "law_exceeding": tiles.total(left.stated & left.exceeded),
+                    "unstable": tiles.total(~step.stable[k]),
+                }
             )
     # ϖ came down; the answers are in order of the examined ones, which increase.
     columns = {
@@ -171,12 +175,3 @@ def _errors(nodes: Nodes, tiles: Tiles, tolerances: np.ndarray, error: np.ndarra
         "worst_restitution": np.append(nodes.restitution, np.nan)[first],
         "worst_amplitude": np.append(nodes.amplitude, np.nan)[first],
     }
-
-
-def _against_law(tiles: Tiles, law: Law, ratio: float, error: np.ndarray) -> Answers:
-    """The restitution model's errors against what the law says, shape (quantity, nodes)."""
-    stated = np.isfinite(error) & (law.small / ratio < STATED)
-    with np.errstate(invalid="ignore"):
-        left = np.abs(error - law.coefficient / ratio)
-        beyond = left > law.remainder * law.small / ratio**2
-    return {"law_stated": tiles.total(stated), "law_exceeding": tiles.total(stated & beyond)}

@@ -4,8 +4,6 @@ The frequency ratio needed for one tolerance over r, Λ and n; the shares of nod
 which a rule of thumb holds; the worst orbits; and how the error law fares.
 """
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
 
@@ -13,50 +11,42 @@ from bouncing_ball.accuracy.error_law import coefficients, law_thresholds
 from bouncing_ball.accuracy.quantities import OF_LIMITS, OF_ORBITS
 from bouncing_ball.atlas.plan import AtlasParameters
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.orbits import restitution_orbit
 
 QUANTILES = (0.5, 0.9, 0.99, 1.0)
+_TILES = ("restitution", "position")
 
 
 def summary(plan: AtlasParameters, atlas: xr.Dataset) -> xr.Dataset:
     """The summary for a tolerance and a rule "ϖ above this is enough"."""
-    tolerance, rule_of_thumb = plan.summary.tolerance, plan.summary.rule_of_thumb
-    one = atlas.sel({"tolerance": tolerance})
-    failing = one.sel({"frequency_ratio": rule_of_thumb})
-    nodes = float(plan.nodes_per_tile)
-    data: dict[str, Any] = {
-        "needed": one.largest_threshold.astype("f4"),
+    tolerance, rule = plan.summary.tolerance, plan.summary.rule_of_thumb
+    there = atlas.sel({"frequency_ratio": rule}, drop=True)
+    failing = there.exceeding.sel({"tolerance": tolerance}, drop=True)
+    worst = there.largest_error.fillna(-np.inf).argmax(_TILES)
+    data = {
+        "needed": atlas.largest_threshold.sel({"tolerance": tolerance}, drop=True).astype("f4"),
         "limit_needed": atlas.limit_needed,
         "holding_share": _share(atlas, "holding"),
         "exceeding_share": _share(atlas, "exceeding"),
         "needed_quantile": _quantiles(atlas),
-        "failing_share": (failing.exceeding / nodes).astype("f4"),
-        "failing_restitution": _reach(plan.edges, failing.exceeding, "restitution"),
-        "failing_position": _reach(plan.positions, failing.exceeding, "position"),
+        "failing_restitution": _reach(plan.edges, failing, "restitution"),
+        "failing_position": _reach(plan.positions, failing, "position"),
         "unstable_share": _share(atlas, "unstable"),
         "law_stated": atlas.law_stated.sum(("n", *_TILES)),
         "law_exceeding": atlas.law_exceeding.sum(("n", *_TILES)),
-        **_worst(atlas, rule_of_thumb),
-        **_drawn(plan),
-    }
-    numbers = {
+        # The node with the largest error, for each rule, n, model and quantity.
+        "worst_error": there.largest_error.isel(worst, drop=True),
+        "worst_restitution": there.worst_restitution.isel(worst, drop=True),
+        "worst_amplitude": there.worst_amplitude.isel(worst, drop=True),
+        **_law(plan),
         "orbits": plan.orbits,
         "sought_orbits": int(atlas.sought.sum()),
         "farthest": float(atlas.farthest.max()),
         "resolution": plan.resolution,
         "summary_tolerance": tolerance,
-        "rule_of_thumb": rule_of_thumb,
+        "rule_of_thumb": rule,
     }
-    found = xr.Dataset({name: _bare(value) for name, value in (data | numbers).items()})
-    return describe(found)
-
-
-def _bare(value: Any) -> Any:
-    """A variable without the coordinates that were picked from."""
-    return value.reset_coords(drop=True) if isinstance(value, xr.DataArray) else value
-
-
-_TILES = ("restitution", "position")
+    edges = {"restitution_edge": plan.edges, "position_edge": plan.positions}
+    return describe(xr.Dataset(data, edges))
 
 
 def _share(atlas: xr.Dataset, name: str) -> xr.DataArray:
@@ -68,17 +58,13 @@ def _share(atlas: xr.Dataset, name: str) -> xr.DataArray:
 def _quantiles(atlas: xr.Dataset) -> xr.DataArray:
     """ϖ from which a share of the nodes is right: the upper end of a bin, or the largest of all."""
     counts = atlas.threshold_counts.sum(_TILES)
-    share = (counts.cumsum("threshold_bin") / counts.sum("threshold_bin")).values
-    bins = np.append(atlas.threshold_bin.values[1:], np.inf)
-    dims = tuple(d for d in counts.dims if d != "threshold_bin")
-    largest = atlas.largest_threshold.max(_TILES).transpose(*dims).values
-    ends = [bins[np.argmax(share >= q, axis=-1)] for q in QUANTILES[:-1]]
-    found = [*(np.minimum(end, largest) for end in ends), largest]
-    return xr.DataArray(
-        np.stack(found, -1),
-        {d: counts[d] for d in dims} | {"share": list(QUANTILES)},
-        (*dims, "share"),
-    )
+    share = counts.cumsum("threshold_bin") / counts.sum("threshold_bin")
+    ends = xr.DataArray(np.append(atlas.threshold_bin[1:], np.inf), dims="threshold_bin")
+    largest = atlas.largest_threshold.max(_TILES)
+    places = [(share >= q).argmax("threshold_bin") for q in QUANTILES[:-1]]
+    found = [np.minimum(ends.isel(threshold_bin=place), largest) for place in places]
+    shares = xr.DataArray(list(QUANTILES), dims="share", name="share")
+    return xr.concat([*found, largest], shares).transpose(..., "share")
 
 
 def _reach(edges: np.ndarray, exceeding: xr.DataArray, along: str) -> xr.DataArray:
@@ -89,26 +75,9 @@ def _reach(edges: np.ndarray, exceeding: xr.DataArray, along: str) -> xr.DataArr
     return ends.where(fails, 0.0).max(along)
 
 
-def _worst(atlas: xr.Dataset, ratio: float) -> dict[str, xr.DataArray]:
-    """The node with the largest error at a ϖ, for each rule, n, model and quantity."""
-    there = atlas.sel({"frequency_ratio": ratio})
-    error = there.largest_error.fillna(-np.inf)
-    place = error.argmax(_TILES)
-    return {
-        "worst_error": error.isel(place),
-        "worst_restitution": there.worst_restitution.isel(place),
-        "worst_amplitude": there.worst_amplitude.isel(place),
-    }
-
-
-def _drawn(plan: AtlasParameters) -> dict[str, xr.DataArray]:
-    """For the charts: Λ at the corners of the tiles, and the error law in their middles."""
-    r, p = plan.edges, plan.positions
-    n = np.array(plan.n)[:, np.newaxis]
-    # The corners lie at r = 1 too, where there is no saddle-node above Λ = 0.
-    low, high = restitution_orbit.saddle_node(n, r), restitution_orbit.period_doubling(n, r)
-    corners = low[..., np.newaxis] + p * (high - low)[..., np.newaxis]
-    middle_r, middle_p = (r[1:] + r[:-1]) / 2, (p[1:] + p[:-1]) / 2
+def _law(plan: AtlasParameters) -> dict[str, xr.Variable]:
+    """For the charts: the error law in the middles of the tiles."""
+    middle_r, middle_p = ((edges[1:] + edges[:-1]) / 2 for edges in (plan.edges, plan.positions))
     law = np.full((*plan.shape, len(middle_p), len(OF_ORBITS)), np.nan, "f4")
     limit = np.full((*plan.shape, len(OF_LIMITS)), np.nan)
     for row in plan.rows:
@@ -119,13 +88,8 @@ def _drawn(plan: AtlasParameters) -> dict[str, xr.DataArray]:
         law[place] = np.abs([k[q] for q in OF_ORBITS]).T
         # The limits are the same for all positions.
         limit[place] = [needed[q][0] for q in OF_LIMITS]
-    dims = ("release", "n", "restitution", "position", "quantity")
+    dims = ("release", "n", "restitution")
     return {
-        "corner_amplitude": xr.DataArray(
-            corners.astype("f4"), dims=("n", "restitution_edge", "position_edge")
-        ),
-        "restitution_edge": xr.DataArray(r, dims="restitution_edge"),
-        "position_edge": xr.DataArray(p, dims="position_edge"),
-        "limit_law_needed": xr.DataArray(limit, dims=(*dims[:3], "limit_quantity")),
-        "law_coefficient": xr.DataArray(law, dims=dims),
+        "law_coefficient": xr.Variable((*dims, "position", "quantity"), law),
+        "limit_law_needed": xr.Variable((*dims, "limit_quantity"), limit),
     }

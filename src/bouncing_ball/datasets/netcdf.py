@@ -79,5 +79,6 @@ def read_dataset(path: str | Path) -> xr.Dataset:
             return dataset.load()
     except FileNotFoundError:
         raise DatasetError(f"no dataset {path}") from None
-    except (OSError, ValueError) as error:
+    # What the libraries raise depends on where the damage is.
+    except (OSError, ValueError, RuntimeError, AttributeError) as error:
         raise DatasetError(f"{path} is damaged") from error

@@ -7,6 +7,7 @@ equations extended by the stability's test function. What is not found so is loo
 the branch of each single model.
 """
 
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -36,8 +37,8 @@ _POINTS = 300
 _FARTHER = 4.0
 # A fold so low is one of nearly elastic contacts: no step of a branch resolves it.
 _LOWEST = 1e-4
-# Farther above the fold than this there are steps in Λ, of at most so much in ln Λ.
-_WALK, _STRIDE = 2.0, 0.2
+# Longest step, in parts of a large Λ.
+_STRIDE = 0.05
 _HERE = "this amplitude"
 
 
@@ -135,73 +136,23 @@ def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Any:
     # Next to the fold the start may lie below it.
     psi = np.where(np.isnan(psi), corrected.saddle_node_phase(search.instant), psi)
     y = search.solved(search.start(lam, psi))
-    lost = np.flatnonzero(~search.on_side(y, side))
-    if lost.size:
-        y[lost] = np.nan
-        fold = _folds(search.take(lost))
-        lost = lost[lam[lost] >= fold]
-        found = y[lost]
-        _on_branches(search.take(lost), lam[lost], side, found)
-        y[lost] = found
+    for k in np.flatnonzero(~search.on_side(y, side)):
+        y[k] = _on_branch(row.take(k), int(index[k]), float(lam[k]), side)
     return _shaped(model, n, y, shape)
 
 
-def _folds(search: _Search) -> np.ndarray:
-    """Λ of the saddle-nodes; each family of a single model once."""
-    if search.model.shape:
-        return search.model.saddle_node(search.n).amplitude
-    index, where = np.unique(search.n, return_inverse=True)
-    return search.model.saddle_node(index).amplitude[where]
-
-
-def _on_branches(search: _Search, lam: np.ndarray, side: Side, y: np.ndarray) -> None:
-    """Fill in the points at Λ on a side of the fold, next to it along the branches."""
-    for family in np.unique(search.n):
-        rows = np.flatnonzero(search.n == family)
-        # One branch for all orbits of a single model; else each has its own.
-        for part in rows[:, np.newaxis] if search.model.shape else [rows]:
-            model, n = search.take(part[0]).model, int(family)
-            level = _WALK * float(model.saddle_node(n).amplitude)
-            near, far = part[lam[part] <= level], part[lam[part] > level]
-            if near.size:
-                branch = continued(model, n, float(np.max(lam[near])), farther=1.0)
-                y[near] = np.nan if branch is None else _along(model, n, branch, lam[near], side)
-            if far.size:
-                start = model.system(n).point(orbit_at(model, n, level, side))
-                y[far] = [_walked(model, n, start, float(lam[k])) for k in far]
-
-
-def _along(model: Any, n: int, branch: Branch, lam: np.ndarray, side: Side) -> np.ndarray:
-    """The first points at Λ along a branch from its fold on; NaN where it does not reach Λ."""
-    guess = np.full((len(lam), branch.points.shape[-1]), np.nan)
-    folds = branch.named(Bifurcation.SADDLE_NODE)
-    if not folds:
-        return guess
-    at = int(np.argmin(np.linalg.norm(branch.points - folds[0], axis=1)))
-    points = branch.points[at::-1] if side is Side.STABLE else branch.points[at:]
-    for k, level in enumerate(lam):
-        over = np.flatnonzero((points[:-1, -1] < level) & (points[1:, -1] >= level))
-        if over.size:
-            left, right = points[over[0]], points[over[0] + 1]
-            guess[k] = left + (level - left[-1]) / (right[-1] - left[-1]) * (right - left)
-    return _Search.of(model, np.full(len(lam), float(n))).solved(guess)
-
-
-def _walked(model: Any, n: int, first: np.ndarray, lam: float) -> np.ndarray:
-    """From a point at one Λ to that at another: far from the fold φ goes as 1/Λ; or NaN."""
-    search = _Search.of(model, np.array([float(n)]))
-    level = first[-1]
-    count = int(np.ceil(np.log(lam / level) / _STRIDE)) if np.isfinite(level) else 0
-    before = now = first
-    for high in level * (lam / level) ** (np.arange(1, count + 1) / max(count, 1)):
-        gained = 1 / high - 1 / now[-1]
-        past = 1 / now[-1] - 1 / before[-1]
-        slope = (now - before) / past if past else np.zeros_like(now)
-        guess = np.append((now + slope * gained)[:-1], high)
-        before, now = now, search.solved(guess[np.newaxis])[0]
-        if np.any(np.isnan(now)):
-            break
-    return now
+def _on_branch(model: Any, n: int, amplitude: float, side: Side) -> np.ndarray | float:
+    """The point at Λ on a side of the fold that is next to it along the branch, or NaN."""
+    if not amplitude >= float(model.saddle_node(n).amplitude):
+        return np.nan
+    branch = continued(model, n, amplitude, farther=_ABOVE)
+    names = [special.name for special in branch.special] if branch else []
+    if branch is None or Bifurcation.SADDLE_NODE not in names:
+        return np.nan
+    # The branch runs from the stable side over the fold.
+    fold = names.index(Bifurcation.SADDLE_NODE)
+    beside = branch.special[:fold][::-1] if side is Side.STABLE else branch.special[fold:]
+    return next((special.point for special in beside if special.name == _HERE), np.nan)
 
 
 def continued(model: Any, n: int, amplitude: float, farther: float = _FARTHER) -> Branch | None:
@@ -213,16 +164,20 @@ def continued(model: Any, n: int, amplitude: float, farther: float = _FARTHER) -
     fold = float(np.nan_to_num(corrected.saddle_node(n, search.instant)[0]))
     start = np.array([max(amplitude, fold) * _ABOVE])
     y = search.solved(search.start(start, corrected.instant_phase(n, search.instant, start)))[0]
-    here = Event(_HERE, lambda y: y[..., -1] - amplitude)
     most = max(farther * amplitude, farther, _ABOVE * float(start[0]))
-    top = parameter_bound(most, upper=True, reason=f"Λ = {most:g}")
-    bottom = parameter_bound(_LOWEST, upper=False, reason=f"Λ = {_LOWEST:g}")
-    if np.any(np.isnan(y)) or y[-1] >= most:
+    events = (
+        *system.events(),
+        Event(_HERE, lambda y: y[..., -1] - amplitude),
+        parameter_bound(most, upper=True, reason=f"Λ = {most:g}"),
+        parameter_bound(_LOWEST, upper=False, reason=f"Λ = {_LOWEST:g}"),
+    )
+    if np.any(np.isnan(y)):
         return None
-    events = (*system.events(), here, top, bottom)
+    # Far above the fold Λ is most of the arclength.
+    control = replace(_STEPS, largest=max(_STEPS.largest, _STRIDE * amplitude))
     try:
         return continue_branch(
-            system, y, increasing=False, events=events, control=_STEPS, max_points=_POINTS
+            system, y, increasing=False, events=events, control=control, max_points=_POINTS
         )
     except (ContinuationError, LocationError):
         return None

@@ -68,41 +68,29 @@ class LawOrbit(Orbit):
         """Greatest absolute height over the cycle, in flight or in contact."""
         return highest(self)
 
-    def _in_contact(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        return path(self.law, self.contact, -self.relative_impact_velocity, time)
-
-    def contact_path(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Absolute position and velocity at times 0 ≤ τ ≤ τ_b in contact."""
-        depth, rate = self._in_contact(time)
-        angle = self.phase + time
-        return (self.amplitude * np.sin(angle) - depth, self.amplitude * np.cos(angle) - rate)
+    def contact_motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """δ and δ′ at times 0 ≤ τ ≤ τ_b in contact."""
+        depth, rate = path(self.law, self.contact, -self.relative_impact_velocity, time)
+        return -depth, -rate
 
     def contact_acceleration(self, time: np.ndarray) -> np.ndarray:
         """Absolute acceleration in contact, f - 1."""
-        depth, rate = self._in_contact(time)
-        return self.law.force(np.maximum(depth, np.finfo(float).tiny), rate) - 1
+        displacement, velocity = self.contact_motion(time)
+        return self.law.force(np.maximum(-displacement, np.finfo(float).tiny), -velocity) - 1
 
     def residual(self) -> np.ndarray:
         """Duration, velocity and landing defects, shape (..., 3).
 
         The first is π times the relative error of the duration.
         """
-        found, lam, end = self.contact, self.amplitude, self.release_phase
-        released = lam * np.cos(end) - found.rate
-        return np.stack(
-            [
-                (found.duration - self.contact_duration) * self.clock,
-                released - self.bounce_velocity,
-                lam * (np.sin(end) - np.sin(self.phase))
-                - found.penetration
-                + (self.bounce_velocity - self.flight_time / 2) * self.flight_time,
-            ],
-            axis=-1,
-        )
+        found = self.contact
+        late = (found.duration - self.contact_duration) * self.clock
+        return np.stack([late, *self.flight_defects(-found.penetration, -found.rate)], axis=-1)
 
     def holding(self, time: np.ndarray) -> np.ndarray:
         """Minus the grip of the law."""
-        return -self.law.grip(*self._in_contact(time))
+        displacement, velocity = self.contact_motion(time)
+        return -self.law.grip(-displacement, -velocity)
 
     def contact_jacobian(self) -> np.ndarray:
         """Jacobian of (τ_b, δ_b, δ′_b) in (τ, δ′, Λ) at the impact, shape (..., 3, 3)."""

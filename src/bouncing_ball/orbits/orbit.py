@@ -111,10 +111,15 @@ class Orbit(Batch, ABC):
         """δ_b at release."""
         return np.zeros_like(self.contact_duration)
 
+    def contact_motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """δ and δ′ at times 0 ≤ τ ≤ τ_b in contact."""
+        return np.zeros_like(time), np.zeros_like(time)
+
     def contact_path(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Absolute position and velocity at times 0 ≤ τ ≤ τ_b in contact."""
-        angle = self.phase + time
-        return self.amplitude * np.sin(angle), self.amplitude * np.cos(angle)
+        angle, (displacement, velocity) = self.phase + time, self.contact_motion(time)
+        lift, pace = self.amplitude * np.sin(angle), self.amplitude * np.cos(angle)
+        return displacement + lift, velocity + pace
 
     def holding(self, time: np.ndarray) -> np.ndarray:
         """What a contact holds the ball by: negative until it vanishes at the release."""
@@ -148,6 +153,15 @@ class Orbit(Batch, ABC):
         """From impacts (φ, δ′) with these orbits' parameters to the next, simulated."""
 
     # What follows from the flight.
+
+    def flight_defects(
+        self, displacement: ArrayLike, velocity: ArrayLike
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Velocity and landing defects (Eqs. 24-25) of contacts that end with (δ_b, δ′_b)."""
+        lam, end, bounce = self.amplitude, self.release_phase, self.bounce_velocity
+        rise = lam * (np.sin(end) - np.sin(self.phase)) + displacement
+        fall = (bounce - self.flight_time / 2) * self.flight_time
+        return velocity + lam * np.cos(end) - bounce, rise + fall
 
     @property
     def exists(self) -> np.ndarray:

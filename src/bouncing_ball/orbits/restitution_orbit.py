@@ -23,7 +23,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.restitution_law import RestitutionLaw, rebound
-from bouncing_ball.contacts.restitution_map import bounce, landing_gap
 from bouncing_ball.errors import NoOrbitError, require
 from bouncing_ball.motion.restitution import section_cycle
 from bouncing_ball.motion.sequence import Cycle
@@ -162,27 +161,6 @@ def branch(
     return np.hypot(level, lift), np.arctan2(lift, level)
 
 
-def trace_and_determinant(
-    restitution: ArrayLike,
-    amplitude: ArrayLike,
-    phase: ArrayLike,
-    impact_map: ImpactMap = ImpactMap.EXACT,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Trace and determinant of the linearised map at an n-T orbit.
-
-    Examples
-    --------
-    >>> trace, det = trace_and_determinant(0.5, 1.0, 0.0)
-    >>> float(trace), float(det)
-    (1.25, 0.25)
-    """
-    r = np.asarray(restitution, dtype=float)
-    lift = np.asarray(amplitude, dtype=float) * np.sin(phase)
-    if impact_map is ImpactMap.HOLMES:
-        return 1 + r - 2 * (1 + r) * lift, r + 0 * lift
-    return 1 + r * r - (1 + r) ** 2 * lift, r * r + 0 * lift
-
-
 def max_height(n: ArrayLike, amplitude: ArrayLike, phase: ArrayLike) -> np.ndarray:
     """Greatest absolute height of the ball, Λ sin φ + (nπ)²/2.
 
@@ -228,10 +206,8 @@ class RestitutionOrbit(Orbit):
 
     def residual(self) -> np.ndarray:
         """Velocity and landing defects of the exact map (Eq. 5), shape (..., 2)."""
-        time, launch = self.flight_time, self.bounce_velocity
-        after = bounce(time, self.phase, launch, self.amplitude, self.restitution)
-        gap = landing_gap(time, self.phase, launch, self.amplitude)
-        return np.stack(np.broadcast_arrays(after - launch, gap), axis=-1)
+        after = -self.restitution * self.relative_impact_velocity
+        return np.stack(np.broadcast_arrays(*self.flight_defects(0.0, after)), axis=-1)
 
     def contact_jacobian(self) -> np.ndarray:
         """Of an instant at the table's level: only δ′_b = -r δ′ varies, with δ′."""

@@ -273,3 +273,25 @@ def _trace(omega, zeta, sine, flight, orbit, end, responses_at_end, push):
         landing_phase = release_phase + hang
         columns.append((landing_phase, thrown - hang + y * landing_phase))
     return columns[0][0] + columns[1][1]
+
+
+# Gauss-Newton from a start that is right to rounding of D converges at once.
+_ITERATIONS = 4
+
+
+def nearest_excess(
+    contact: SpringDamper, n: ArrayLike, x: ArrayLike, y: ArrayLike, excess: np.ndarray
+) -> np.ndarray:
+    """ε of the point of the branch that is nearest to a given one in (X, Y, ε).
+
+    Comparing at equal Λ would divide by zero at a fold. At a stiff contact D has too
+    few digits to compare at equal D, as X and Y change ϖ times as fast; elsewhere both
+    may nearly stand still. The nearest point is well conditioned everywhere.
+    """
+    own = excess
+    for _ in range(_ITERATIONS):
+        point = branch_point(excess, contact, n)
+        along = (x - point.x) * point.d_x + (y - point.y) * point.d_y
+        square = point.d_x * point.d_x + point.d_y * point.d_y
+        excess = excess + (along + own - excess) / (square + 1)
+    return excess

@@ -16,8 +16,7 @@ from bouncing_ball.motion.sequence import ImpactSequence
 from bouncing_ball.orbits import spring_damper_limits as limits
 from bouncing_ball.orbits.model import Absence, ImpactModel, Route
 from bouncing_ball.orbits.orbit import Orbit
-from bouncing_ball.orbits.projection import nearest_excess
-from bouncing_ball.orbits.spring_damper_branch import branch_point
+from bouncing_ball.orbits.spring_damper_branch import nearest_excess
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.spring_damper_system import Parameter, SpringDamperSystem
 from bouncing_ball.orbits.stability import Side
@@ -94,22 +93,23 @@ class SpringDamperModel(ImpactModel):
         >>> SpringDamperModel(SpringDamper(10.0, 0.0)).saddle_node([1, 2]).amplitude.tolist()
         [0.0, 0.0]
         """
-        found = self._on_branch(limits.saddle_node(self.contact, n), n)
+        excess = limits.saddle_node(self.contact, n)
+        found = SpringDamperOrbit.on_branch(excess, self.contact, n)
         rounding = _UNITS * np.spacing(np.abs(found.impact_velocity))
         lam = np.where(found.amplitude <= rounding, 0.0, found.amplitude)
         return replace(found, amplitude=lam)
 
     def period_doubling(self, n: ArrayLike) -> SpringDamperOrbit:
         """The orbits at the period doubling nearest to it; NaN where there is none."""
-        return self._on_branch(limits.period_doubling(self.contact, n), n)
-
-    def _on_branch(self, excess: np.ndarray, n) -> SpringDamperOrbit:
-        return SpringDamperOrbit.from_branch(branch_point(excess, self.contact, n), self.contact, n)
+        excess = limits.period_doubling(self.contact, n)
+        return SpringDamperOrbit.on_branch(excess, self.contact, n)
 
     def nearest(self, orbit: SpringDamperOrbit) -> SpringDamperOrbit:
-        """The orbits of the closed form nearest to given ones in (Λ cos φ, Λ sin φ)."""
-        point = branch_point(nearest_excess(orbit), orbit.contact, orbit.n)
-        return SpringDamperOrbit.from_branch(point, orbit.contact, orbit.n)
+        """The orbits of the closed form nearest to given ones in (Λ cos φ, Λ sin φ, ε)."""
+        contact, n = orbit.contact, orbit.n
+        duration = orbit.contact_duration * contact.damped_frequency - contact.free_angle
+        x, y = orbit.amplitude * np.cos(orbit.phase), orbit.amplitude * np.sin(orbit.phase)
+        return SpringDamperOrbit.on_branch(nearest_excess(contact, n, x, y, duration), contact, n)
 
     def system(self, n: int | np.ndarray) -> SpringDamperSystem:
         """The paper's equations, continued in Λ."""

@@ -13,7 +13,7 @@ from bouncing_ball.motion.contacts import contact_cycle
 from bouncing_ball.motion.sequence import Cycle
 from bouncing_ball.orbits.highest import highest
 from bouncing_ball.orbits.orbit import Orbit
-from bouncing_ball.orbits.spring_damper_branch import BranchPoint
+from bouncing_ball.orbits.spring_damper_branch import BranchPoint, branch_point
 
 # Near the undamped resonance the simulation has no steady part to work with;
 # the orbit is then sampled. Same measure as the simulation's own limit.
@@ -33,11 +33,16 @@ class SpringDamperOrbit(Orbit):
     """
 
     @classmethod
-    def from_branch(cls, point: BranchPoint, contact: SpringDamper, n: int | np.ndarray) -> Self:
+    def from_branch(cls, point: BranchPoint, contact: SpringDamper, n: ArrayLike) -> Self:
         """The orbit at a point of the closed-form branch."""
         return cls(
             n, contact, point.amplitude, point.phase, point.contact_duration, point.u + point.x
         )
+
+    @classmethod
+    def on_branch(cls, excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> Self:
+        """The orbits with excess angles ε of the contact; NaN where ε is."""
+        return cls.from_branch(branch_point(excess, contact, n), contact, n)
 
     @property
     def contact(self) -> SpringDamper:
@@ -68,33 +73,20 @@ class SpringDamperOrbit(Orbit):
         table = self.amplitude * np.sin(self.phase + time)
         return self._contact_flow(time).acceleration - table
 
-    def contact_path(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Absolute position and velocity at times 0 ≤ τ ≤ τ_b in contact."""
+    def contact_motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """δ and δ′ at times 0 ≤ τ ≤ τ_b in contact."""
         flow = self._contact_flow(time)
-        angle = self.phase + time
-        return (
-            flow.displacement + self.amplitude * np.sin(angle),
-            flow.velocity + self.amplitude * np.cos(angle),
-        )
+        return flow.displacement, flow.velocity
 
     def residual(self) -> np.ndarray:
         """Release, velocity and landing defects (Eqs. 23-25), shape (..., 3).
 
         The first is ϖ (δ_b + κ δ′_b), of the order of a velocity as the second.
         """
-        flow = self._contact_flow(self.contact_duration)
-        lam, end, flight = self.amplitude, self.release_phase, self.flight_time
-        omega, sine = self.contact.frequency_ratio, self.contact.release_sine
-        return np.stack(
-            [
-                omega * flow.displacement + 2 * sine * flow.velocity,
-                flow.velocity + lam * np.cos(end) - self.bounce_velocity,
-                flow.displacement
-                + lam * (np.sin(end) - np.sin(self.phase))
-                + (self.bounce_velocity - flight / 2) * flight,
-            ],
-            axis=-1,
-        )
+        flow, contact = self._contact_flow(self.contact_duration), self.contact
+        release = contact.frequency_ratio * flow.displacement
+        release = release + 2 * contact.release_sine * flow.velocity
+        return np.stack([release, *self.flight_defects(flow.displacement, flow.velocity)], axis=-1)
 
     def contact_jacobian(self) -> np.ndarray:
         """Jacobian of (τ_b, δ_b, δ′_b) in (τ, δ′, Λ) at the impact, shape (..., 3, 3).
@@ -122,8 +114,8 @@ class SpringDamperOrbit(Orbit):
 
     def holding(self, time: np.ndarray) -> np.ndarray:
         """δ + κ δ′ in contact."""
-        flow = self._contact_flow(time)
-        return flow.displacement + self.contact.lag * flow.velocity
+        displacement, velocity = self.contact_motion(time)
+        return displacement + self.contact.lag * velocity
 
     def can_be_simulated(self) -> np.ndarray:
         """Whether each contact is away from the undamped resonance."""
@@ -143,13 +135,12 @@ class SpringDamperOrbit(Orbit):
         >>> bool(model.orbit(1, 2.3, "unstable").is_admissible())
         False
         """
-        shape = self.shape
-        if not shape:
+        if not self.shape:
             return self.ravel().is_admissible()[0]
-        resonant = ~self.can_be_simulated()
-        admissible = np.zeros(shape, dtype=bool)
-        admissible[~resonant] = super(SpringDamperOrbit, self[~resonant]).is_admissible()
-        for index in zip(*np.nonzero(resonant), strict=True):
+        simulated = self.can_be_simulated()
+        admissible = np.zeros(self.shape, dtype=bool)
+        admissible[simulated] = super(SpringDamperOrbit, self[simulated]).is_admissible()
+        for index in zip(*np.nonzero(~simulated), strict=True):
             admissible[index] = self[index]._sampled()
         return admissible
 

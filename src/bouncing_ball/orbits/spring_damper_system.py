@@ -80,59 +80,39 @@ class SpringDamperSystem:
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """Exact Jacobian of the residual, shape (..., 3, 4)."""
-        o = self.orbit(y)
+        o, by_amplitude = self.orbit(y), self.parameter is Parameter.AMPLITUDE
+        lam, omega, flight = o.amplitude, o.contact.frequency_ratio, o.flight_time
         flow = o.contact.flow(
             o.contact_duration, 0.0, o.relative_impact_velocity, o.phase, o.amplitude
         )
-        sine = o.contact.release_sine
-        lam, omega, end = o.amplitude, o.contact.frequency_ratio, o.phase + o.contact_duration
-        by_amplitude = self.parameter is Parameter.AMPLITUDE
-        zero, one = np.zeros_like(lam), np.ones_like(lam)
-
-        # Derivatives with respect to (φ, z′_i, ϖ τ_b, p), along the last axis.
-        def row(*entries):
-            return np.stack(entries, axis=-1)
-
-        d_time = row(zero, zero, 1 / omega, zero if by_amplitude else -o.contact_duration)
-        d_lam = row(zero, zero, zero, one if by_amplitude else zero)
-        d_omega = row(zero, zero, zero, zero if by_amplitude else omega)
-        d_phase = row(one, zero, zero, zero)
-        d_impact = row(zero, one, zero, zero)
-
-        def scaled(factor, vector):
-            return factor[..., np.newaxis] * vector
-
-        d_relative = (
-            d_impact - scaled(np.cos(o.phase), d_lam) + scaled(lam * np.sin(o.phase), d_phase)
-        )
-
-        def chain(k):
-            j = flow.jacobian[..., k, :]
-            return (
-                scaled(j[..., 0], d_time)
-                + scaled(j[..., 2], d_relative)
-                + scaled(j[..., 3], d_phase)
-                + scaled(j[..., 4], d_lam)
-                + scaled(j[..., 5], d_omega)
-            )
-
-        d_displacement, d_velocity = chain(0), chain(1)
-        d_end, d_flight = d_phase + d_time, -d_time
-        d_bounce = d_impact + d_flight
-        release = scaled(omega, d_displacement) + scaled(flow.displacement, d_omega)
-        release = release + scaled(2 * sine, d_velocity)
-        velocity = (
-            d_velocity + scaled(np.cos(end), d_lam) - scaled(lam * np.sin(end), d_end) - d_bounce
-        )
-        landing = (
-            d_displacement
-            + scaled(np.sin(end) - np.sin(o.phase), d_lam)
-            + scaled(lam * np.cos(end), d_end)
-            - scaled(lam * np.cos(o.phase), d_phase)
-            + scaled(o.flight_time, d_bounce)
-            + scaled(o.bounce_velocity - o.flight_time, d_flight)
-        )
-        return np.stack([release, velocity, landing], axis=-2)
+        end, d = o.release_phase, flow.jacobian[..., :6]
+        lift, pace = lam * np.sin(end), lam * np.cos(end)
+        # Derivatives of the residual with respect to (τ, δ, δ′, φ, Λ, ϖ) of the flow ...
+        by_flow = np.empty((*y.shape[:-1], 3, 6))
+        scale, sine = (np.asarray(x)[..., np.newaxis] for x in (omega, o.contact.release_sine))
+        by_flow[..., 0, :] = scale * d[..., 0, :] + 2 * sine * d[..., 1, :]
+        by_flow[..., 0, 5] += flow.displacement
+        by_flow[..., 1, :], by_flow[..., 2, :] = d[..., 1, :], d[..., 0, :]
+        by_flow[..., 1, 0] += 1 - lift
+        by_flow[..., 1, 3] -= lift
+        by_flow[..., 1, 4] += np.cos(end)
+        by_flow[..., 2, 0] += pace - o.bounce_velocity
+        by_flow[..., 2, 3] += pace - lam * np.cos(o.phase)
+        by_flow[..., 2, 4] += np.sin(end) - np.sin(o.phase)
+        # ... and of these with respect to (φ, z′_i, ϖ τ_b, p).
+        inner = np.zeros((*y.shape[:-1], 6, 4))
+        inner[..., 0, 2] = 1 / omega
+        inner[..., 2, 0], inner[..., 2, 1] = lam * np.sin(o.phase), 1
+        inner[..., 3, 0] = 1
+        if by_amplitude:
+            inner[..., 2, 3], inner[..., 4, 3] = -np.cos(o.phase), 1
+        else:
+            inner[..., 0, 3], inner[..., 5, 3] = -o.contact_duration, omega
+        jacobian = by_flow @ inner
+        # The velocity of the flight, z′_i + 2πn - τ_b.
+        jacobian[..., 1, 1] -= 1
+        jacobian[..., 2, 1] += flight
+        return jacobian
 
     def guess(self, amplitude: float, frequency_ratio: float) -> np.ndarray:
         """The stable restitution orbit with a free contact: y to start from.

@@ -1,10 +1,11 @@
-"""What the rules and scripts of the atlas need: names and times of shards.
+"""What the rules of the atlas need: names and times of shards, and which are damaged.
 
 Every job of every rule reads the rules; so the plan is imported when it is asked for.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 # Processor time of an orbit on a slow machine, with some to spare.
@@ -35,3 +36,15 @@ def shard_minutes(parameters: Mapping[str, Any]) -> int:
     plan = Plan(**parameters)
     seconds = plan.orbits / len(plan.shard_rows()) * _SECONDS_PER_ORBIT
     return _LEAST_MINUTES + math.ceil(seconds / 60)
+
+
+def discard_damaged(paths: Iterable[str]) -> Iterator[str]:
+    """Remove the files of those there that cannot be read whole; which they were."""
+    from bouncing_ball.datasets.netcdf import DatasetError, read_dataset
+
+    for path in filter(Path.is_file, map(Path, paths)):
+        try:
+            read_dataset(path)
+        except DatasetError:
+            path.unlink()
+            yield str(path)

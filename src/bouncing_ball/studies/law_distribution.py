@@ -11,8 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.accuracy import error_law
-from bouncing_ball.accuracy.error_law import REMAINDER, STATED
+from bouncing_ball.accuracy.error_law import REMAINDER, STATED, remainder
 from bouncing_ball.accuracy.errors import errors
 from bouncing_ball.accuracy.quantities import OF_IMPACTS
 from bouncing_ball.contacts.signature import LinearSignature
@@ -64,12 +63,9 @@ def law_errors(size: int, seed: int | Sequence[int], span: Span, release: Releas
     omega = np.exp(rng.uniform(np.log(span.min), np.log(span.max), size))
     contact = SpringDamper(omega, zeta, release)
     instant = LinearSignature(contact)()
-    small = error_law.small_parameter(n, instant, lam)
-    law = np.array([*error_law.first_order(n, instant, lam).values()])
-    size = np.array([*error_law.scale(n, instant, lam).values()])
     restitution, corrected = errors(contact, n, lam)
-    remainder = np.abs(restitution - law) / (size * small)
-    return LawErrors(omega, restitution, corrected, law, remainder, small)
+    left = remainder(n, instant, lam, restitution)
+    return LawErrors(omega, restitution, corrected, left.law, left.factor, left.small)
 
 
 def sample(size: int, seed: int, span: Span, release: Release) -> LawErrors:
@@ -92,8 +88,8 @@ def summary(drawn: LawErrors, release: Release) -> Iterator[list[str]]:
 def _cells(drawn: LawErrors, k: int, there: np.ndarray) -> list[str]:
     """Counts, quantiles and shares of one quantity of the orbits chosen."""
     error, law = drawn.restitution[k, there], drawn.law[k, there]
-    remainder, stated = drawn.remainder[k, there], drawn.small_parameter[there] < STATED
-    beyond = remainder > REMAINDER[OF_IMPACTS[k]]
+    left, stated = drawn.remainder[k, there], drawn.small_parameter[there] < STATED
+    beyond = left > REMAINDER[OF_IMPACTS[k]]
     corrected = drawn.corrected[k, there]
     # Without an orbit of its own the corrected model is not nearer.
     nearer = np.abs(np.where(np.isfinite(corrected), corrected, np.inf)) < np.abs(error)
@@ -102,7 +98,7 @@ def _cells(drawn: LawErrors, k: int, there: np.ndarray) -> list[str]:
     shares = (np.mean(np.abs(ratio - 1) < 0.1), np.mean(nearer))
     return [
         *(str(int(count)) for count in counts),
-        f"{remainder[stated].max(initial=0.0):.2f}",
+        f"{left[stated].max(initial=0.0):.2f}",
         *(f"{value:.4g}" for value in np.quantile(ratio, _SHARES)),
         *(f"{share:.4f}" for share in shares),
     ]

@@ -9,7 +9,8 @@ import xarray as xr
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
-from bouncing_ball.compare.folders import Artifact, Comparison, Part, compare_folders
+from bouncing_ball.compare.folders import Artifact, Comparison, compare_folders
+from bouncing_ball.compare.parts import Part
 from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -1,7 +1,8 @@
 """The short table for a terminal, and for the summary of a forge's job."""
 
-from bouncing_ball.compare.folders import Artifact, Comparison, Part
+from bouncing_ball.compare.folders import Artifact, Comparison
 from bouncing_ball.compare.outcome import Outcome
+from bouncing_ball.compare.parts import Part
 from bouncing_ball.errors import printable
 
 _SENTENCES = (

@@ -13,9 +13,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from bouncing_ball.figures.canvas import WIDE, canvas, legend_below, number, parameters
-from bouncing_ball.figures.style import COLOURS, END, LINES, MARKS, RESTITUTION
+from bouncing_ball.figures.style import COLOURS, END, LINES, MARKS, RESTITUTION, Look
 
 _KEYS = "#5f5f5f"
+_AMPLITUDE = r"amplitude $\Lambda$"
 _TABLE_PHASE = r"phase of the table over $\pi$"
 
 
@@ -28,15 +29,11 @@ def restitution_families(data: xr.Dataset) -> Figure:
         _draw_branch(axes, family, family.phase, RESTITUTION)
         _draw_named_points(axes, family.sel(impact_map="exact"))
         names.append(_upper_end(family.amplitude, family.phase, f"$n={n}$"))
-    axes.set(
-        xlabel=r"amplitude $\Lambda$",
-        ylabel=r"phase $\varphi/\pi$",
-        xlim=(0, data.attrs["amplitude_max"]),
-        ylim=(-0.52, 0.52),
-        title=parameters(data, "restitution"),
-    )
+    title = parameters(data, "restitution")
+    axes.set(ylabel=r"phase $\varphi/\pi$", ylim=(-0.52, 0.52), title=title)
+    axes.set(xlabel=_AMPLITUDE, xlim=(0, data.attrs["amplitude_max"]))
     _label_ends(axes, names, 0.055)
-    _explain(figure, bool(data.admissible.all()), colour="black", ncols=4, columnspacing=1.2)
+    _explain(figure, bool(data.admissible.all()), colour="black", ncols=4)
     return figure
 
 
@@ -54,12 +51,8 @@ def domains(data: xr.Dataset) -> Figure:
         for symbol, phase in ((r"\varphi", curve.phase), (r"\varphi+\tau_b", curve.release_phase)):
             name = rf"$\varpi={ratio}$: ${symbol}$"
             names.append((float(curve.amplitude[-1]), float(phase[-1]) / np.pi, name))
-    axes.set(
-        xlabel=r"amplitude $\Lambda$",
-        ylabel=_TABLE_PHASE,
-        xlim=(0, data.attrs["amplitude_max"]),
-        title=parameters(data, "n", "restitution"),
-    )
+    axes.set(ylabel=_TABLE_PHASE, title=parameters(data, "n", "restitution"))
+    axes.set(xlabel=_AMPLITUDE, xlim=(0, data.attrs["amplitude_max"]))
     _label_ends(axes, names, 0.05)
     admissible = all(curve.admissible.all() for curve in curves)
     _explain(figure, admissible, ended=any(len(_ends(curve)) for curve in curves))
@@ -76,14 +69,10 @@ def both_domains(data: xr.Dataset) -> Figure:
     curve = data.squeeze("frequency_ratio")
     _draw_spring_damper(axes, curve, COLOURS[1], COLOURS[2])
     # The contact may have no such branch.
-    lowest = curve.amplitude.fillna(data.saddle_node_amplitude).min()
-    ratio = number(float(curve.frequency_ratio))
-    axes.set(
-        xlabel=r"amplitude $\Lambda$",
-        ylabel=_TABLE_PHASE,
-        xlim=(0.9 * float(lowest), data.attrs["amplitude_max"]),
-        title=rf"{parameters(data, 'n', 'restitution')}, $\varpi={ratio}$",
-    )
+    lowest = float(curve.amplitude.fillna(data.saddle_node_amplitude).min())
+    title = parameters(data, "n", "restitution", "frequency_ratio")
+    axes.set(ylabel=_TABLE_PHASE, title=title)
+    axes.set(xlabel=_AMPLITUDE, xlim=(0.9 * lowest, data.attrs["amplitude_max"]))
     names = [
         _upper_end(curve.amplitude, curve.release_phase, r"spring-damper, $\varphi+\tau_b$"),
         _upper_end(rigid.amplitude, rigid.phase, r"restitution, $\varphi$"),
@@ -191,37 +180,19 @@ def _label_ends(axes: Axes, ends: list[tuple[float, float, str]], gap: float) ->
     low, high = axes.get_ylim()
     places = _apart(np.array([y for _, y, _ in found]), gap * (high - low))
     line = {"arrowstyle": "-", "color": _KEYS, "linewidth": 0.5, "shrinkB": 1}
+    look: Look = {"va": "center", "fontsize": 8, "annotation_clip": False, "arrowprops": line}
+    right = axes.get_yaxis_transform()
     for (x, y, name), place in zip(found, places, strict=True):
-        axes.annotate(
-            name,
-            (x, y),
-            xytext=(1.045, place),
-            textcoords=axes.get_yaxis_transform(),
-            va="center",
-            fontsize=8,
-            annotation_clip=False,
-            arrowprops=line,
-        )
+        axes.annotate(name, (x, y), xytext=(1.045, place), textcoords=right, **look)
 
 
 def _explain(
-    figure: Figure,
-    admissible: bool,
-    *,
-    ended: bool = False,
-    colour: str = _KEYS,
-    ncols: int = 0,
-    columnspacing: float = 1.2,
+    figure: Figure, admissible: bool, *, ended: bool = False, colour: str = _KEYS, **options: Any
 ) -> None:
     """The legend of lines and marks; of inadmissible orbits and of ends if there are any."""
     looks = {**LINES, **MARKS, "end of branch": END}
     labels = ["stable", "unstable", "saddle-node", "period doubling"]
     labels += ["inadmissible", "grazing"] * (not admissible) + ["end of branch"] * ended
     handles = [Line2D([], [], color=colour, label=name, **looks[name]) for name in labels]
-    legend_below(
-        figure,
-        handles,
-        ncols=ncols or len(handles),
-        columnspacing=columnspacing,
-        handletextpad=0.5,
-    )
+    spacing: Look = {"ncols": len(handles), "columnspacing": 1.2, "handletextpad": 0.5}
+    legend_below(figure, handles, **spacing | options)

@@ -8,8 +8,17 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import EngFormatter
 
-from bouncing_ball.figures.style import COLOURS, CONTACT, QUANTITIES, RESTITUTION, TABLE, Look
+from bouncing_ball.figures.style import (
+    COLOURS,
+    CONTACT,
+    CORRECTED,
+    QUANTITIES,
+    RESTITUTION,
+    TABLE,
+    Look,
+)
 
 # A4 upright, in inches.
 _PAGE = 8.27, 11.69
@@ -17,7 +26,7 @@ _LOOKS: dict[str, tuple[str, Look]] = {
     "spring-damper": (CONTACT, {"linewidth": 2.2, "alpha": 0.75}),
     "hertz": (CONTACT, {"linewidth": 2.2, "alpha": 0.75}),
     "restitution": (RESTITUTION, {"linewidth": 1.0}),
-    "corrected": (COLOURS[3], {"linewidth": 1.2, "linestyle": (0, (4, 2))}),
+    "corrected": (CORRECTED, {"linewidth": 1.2, "linestyle": (0, (4, 2))}),
 }
 
 
@@ -35,7 +44,7 @@ def draw(design: Mapping[str, Any], data: xr.Dataset, values: Sequence[tuple[str
     """
     figure = Figure(figsize=_PAGE)
     grid = figure.add_gridspec(
-        3, 2, left=0.1, right=0.95, top=0.86, bottom=0.06, hspace=0.34, wspace=0.42,
+        3, 2, left=0.12, right=0.95, top=0.86, bottom=0.06, hspace=0.34, wspace=0.42,
         height_ratios=(1.0, 1.05, 1.05),
     )  # fmt: skip
     _title(figure, design)
@@ -59,9 +68,8 @@ def _chart(axes: Axes, design: Mapping[str, Any], data: xr.Dataset) -> None:
     """From which ϖ on each simple model is right, over r; the case is the star."""
     for name in data["simple"].values:
         colour, look = _LOOKS[str(name)]
-        axes.plot(
-            data["restitution"], data.needed.sel(simple=name), color=colour, label=name, **look
-        )
+        needed = data.needed.sel(simple=name)
+        axes.plot(data["restitution"], needed, color=colour, label=name, **look)
     ours = design["corrected"]["restitution"], design["frequency_ratio"]
     axes.plot(*ours, "*", color=CONTACT, markersize=13, label="this contact", clip_on=False)
     axes.set_yscale("log")
@@ -69,8 +77,7 @@ def _chart(axes: Axes, design: Mapping[str, Any], data: xr.Dataset) -> None:
     axes.set(xlabel="restitution coefficient $r$", ylabel=r"frequency ratio $\varpi$")
     axes.set_title(
         f"right to {100 * need['tolerance']:g} % above the line:\n{QUANTITIES[need['quantity']]}, "
-        rf"$n={design['n']}$, $\Lambda={design['amplitude']:.3g}$",
-        fontsize=9,
+        rf"$n={design['n']}$, $\Lambda={design['amplitude']:.3g}$"
     )
     axes.grid(visible=True, axis="y", linewidth=0.3)
     axes.legend(loc="best")
@@ -81,55 +88,43 @@ def _errors(axes: Axes, design: Mapping[str, Any]) -> None:
     one = next(each for each in design["orbits"] if each["n"] == design["n"])
     names = list(one["errors"])
     places = np.arange(len(names))[::-1]
-    for key, name, marker in (
-        ("errors", "restitution", "o"),
-        ("corrected_errors", "corrected", "D"),
+    for key, name, marker, colour, size in (
+        ("errors", "restitution", "o", RESTITUTION, 5),
+        ("corrected_errors", "corrected", "D", CORRECTED, 5),
+        ("law_errors", "error law", "|", COLOURS[2], 13),
     ):
-        values = np.array([one[key][each] or np.nan for each in names])
-        axes.plot(values, places, marker, color=_LOOKS[name][0], label=name, markersize=5)
-    law = np.array([one["law_errors"][each] or np.nan for each in names])
-    axes.plot(law, places, "|", color=COLOURS[2], label="error law", markersize=13)
+        values = [one[key][each] or np.nan for each in names]
+        axes.plot(values, places, marker, color=colour, label=name, markersize=size)
     axes.axvline(design["needed"]["tolerance"], color=TABLE, linewidth=0.8, linestyle="--")
     axes.set_xscale("log")
     axes.set_yticks(places, [each.replace("_", " ") for each in names])
-    axes.set_title(f"relative error, {design['n']}-T orbit (dashed: tolerance)", fontsize=9)
+    axes.set_title(f"relative error, {design['n']}-T orbit (dashed: tolerance)")
     axes.grid(visible=True, axis="x", linewidth=0.3)
     axes.legend(loc="upper center", bbox_to_anchor=(0.35, -0.1), ncols=3, columnspacing=1.0)
 
 
-def _scale(values: xr.DataArray) -> tuple[float, str]:
-    """Factor and prefix that keep the largest value between 1 and 1000."""
-    size = float(np.nanmax(np.abs(values)))
-    for factor, prefix in ((1.0, ""), (1e3, "m"), (1e6, "µ")):
-        if size * factor >= 1:
-            return factor, prefix
-    return 1e9, "n"
-
-
-def _curves(axes: Axes, time: xr.DataArray, heights: xr.DataArray) -> tuple[float, float]:
-    """All models over each other, in units with a prefix; their factors."""
-    (second, s), (metre, m) = _scale(time), _scale(heights)
+def _curves(axes: Axes, time: xr.DataArray, heights: xr.DataArray) -> None:
+    """All models over each other, in seconds and metres with a prefix."""
     for name in heights["model"].values:
         colour, look = _LOOKS[str(name)]
-        curve = heights.sel(model=name)
-        if np.all(np.isnan(curve)):
-            continue
-        axes.plot(time * second, curve * metre, color=colour, label=name, **look)
-    axes.set(xlabel=f"time [{s}s]", ylabel=f"height [{m}m]")
-    return second, metre
+        if heights.sel(model=name).notnull().any():
+            axes.plot(time, heights.sel(model=name), color=colour, label=name, **look)
+    axes.xaxis.set_major_formatter(EngFormatter("s"))
+    axes.yaxis.set_major_formatter(EngFormatter("m"))
+    axes.set(xlabel="time", ylabel="height")
 
 
 def _motion(axes: Axes, design: Mapping[str, Any], data: xr.Dataset) -> None:
-    second, metre = _curves(axes, data.time, data.ball)
-    axes.plot(data.time * second, data.table * metre, color=TABLE, label="table")
-    axes.set_title(f"the {design['n']}-T orbit", fontsize=9)
+    _curves(axes, data.time, data.ball)
+    axes.plot(data.time, data.table, color=TABLE, label="table")
+    axes.set_title(f"the {design['n']}-T orbit")
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=4)
 
 
 def _contact(axes: Axes, data: xr.Dataset) -> None:
     _curves(axes, data.since, data.gap)
     axes.axhline(0.0, color=TABLE, linewidth=0.8)
-    axes.set_title("one contact: height above the table", fontsize=9)
+    axes.set_title("one contact: height above the table")
 
 
 def _numbers(axes: Axes, values: Sequence[tuple[str, str]]) -> None:

@@ -129,7 +129,7 @@ def read_attributes(path: Path) -> dict[str, Any]:
     if path.suffix not in CARRIERS:
         raise ProvenanceError(f"{path} is not one of {', '.join(CARRIERS)}")
     try:
-        return attributes_in(path, path.suffix)
+        return _attributes(path)
     except FileNotFoundError:
         raise ProvenanceError(f"{path} cannot be read: no such file") from None
     # The libraries raise errors of many types on a damaged file.
@@ -137,10 +137,9 @@ def read_attributes(path: Path) -> dict[str, Any]:
         raise ProvenanceError(f"{path} cannot be read: damaged, or not ours") from None
 
 
-def attributes_in(file: Any, suffix: str) -> dict[str, Any]:
-    """Attributes of a dataset, by its path, or metadata of a picture, also of an open file."""
+def _attributes(file: Path) -> dict[str, Any]:
     # Imported here: each takes a while, and one of them is needed.
-    match suffix:
+    match file.suffix:
         case ".nc":
             from netCDF4 import Dataset
 

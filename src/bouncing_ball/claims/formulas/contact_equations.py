@@ -15,7 +15,7 @@ from bouncing_ball.claims.formulas.disagreement import ROUNDING, Check, largest
 from bouncing_ball.claims.formulas.flow import contact_matrix, fall_matrix, flow, matrix, state
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.angles import reduce_angle
-from bouncing_ball.motion.contacts import contact_cycle
+from bouncing_ball.motion.contact import contact_cycle
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import orbit_at, saddle_node
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit

@@ -11,7 +11,8 @@ from bouncing_ball.claims import as_printed as printed
 from bouncing_ball.claims.formulas.disagreement import ROUNDING, Check, largest
 from bouncing_ball.claims.formulas.flow import fall_matrix, flow, state
 from bouncing_ball.motion.angles import reduce_angle
-from bouncing_ball.motion.restitution import impact_cycle, lift_off_phase
+from bouncing_ball.motion.rest import lift_off_phase
+from bouncing_ball.motion.restitution import impact_cycle
 
 # Central differences over 1e-5 leave h² f‴/6 and rounding/h, both about 1e-10,
 # in the trace; at the bifurcation they enter divided by its slope along φ.

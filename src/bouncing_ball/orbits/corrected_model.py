@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.contacts.signature import Instant, LinearSignature, Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.motion.corrected_impacts import simulate
+from bouncing_ball.motion.corrected import simulate
 from bouncing_ball.motion.sequence import ImpactSequence
 from bouncing_ball.orbits import corrected_branch as formulas
 from bouncing_ball.orbits.continued import both_sides

@@ -17,7 +17,7 @@ from bouncing_ball.contacts.corrected_map import (
     start_jacobian,
 )
 from bouncing_ball.contacts.signature import Instant, Signature
-from bouncing_ball.motion.corrected_impacts import corrected_cycle
+from bouncing_ball.motion.corrected import corrected_cycle
 from bouncing_ball.motion.sequence import Cycle
 from bouncing_ball.orbits import corrected_branch as formulas
 from bouncing_ball.orbits.orbit import Orbit

@@ -8,13 +8,13 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.law_permanent_contact import permanent_contact
 from bouncing_ball.contacts.law_signature import free_impact
-from bouncing_ball.contacts.laws.contact_law import ContactLaw
 from bouncing_ball.contacts.signature import Instant
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.motion.law_impacts import simulate
+from bouncing_ball.motion.contact import simulate
 from bouncing_ball.motion.sequence import ImpactSequence
 from bouncing_ball.orbits.law_orbit import LawOrbit
 from bouncing_ball.orbits.model import ImpactModel

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.collocation import Contacts, contacts, path
-from bouncing_ball.contacts.laws.contact_law import ContactLaw
-from bouncing_ball.motion.law_impacts import law_cycle
+from bouncing_ball.contacts.contact_law import ContactLaw
+from bouncing_ball.motion.contact import contact_cycle
 from bouncing_ball.motion.sequence import Cycle
 from bouncing_ball.orbits.highest import highest
 from bouncing_ball.orbits.orbit import Orbit
@@ -70,7 +70,8 @@ class LawOrbit(Orbit):
 
     def contact_motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ at times 0 ≤ τ ≤ τ_b in contact."""
-        depth, rate = path(self.law, self.contact, -self.relative_impact_velocity, time)
+        speed = -self.relative_impact_velocity
+        depth, rate = path(self.law, self.contact, time, speed, self.phase, self.amplitude)
         return -depth, -rate
 
     def contact_acceleration(self, time: np.ndarray) -> np.ndarray:
@@ -103,4 +104,4 @@ class LawOrbit(Orbit):
 
     def cycle(self, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
         """From impacts (φ, δ′) to the next, simulated."""
-        return law_cycle(self.law, self.amplitude, phase, relative_velocity)
+        return contact_cycle(self.law, self.amplitude, phase, relative_velocity)

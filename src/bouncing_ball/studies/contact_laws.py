@@ -18,7 +18,6 @@ from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.law_permanent_contact import permanent_contact
 from bouncing_ball.contacts.law_signature import LawSignature
 from bouncing_ball.contacts.laws import LAWS
-from bouncing_ball.contacts.laws.linear import Linear
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import described
@@ -205,8 +204,7 @@ def _held(name: str, restitution: float, ratio: float) -> float:
     """Threshold of permanent contact; NaN where no contact that just touches was found."""
     speed = rigid_speed(1, restitution)
     if name in LINEAR:
-        contact = linear_contact(restitution, np.pi / ratio, LINEAR[name])
-        law: Any = Linear(contact.frequency_ratio, contact.damping_ratio, contact.release)
+        law: Any = linear_contact(restitution, np.pi / ratio, LINEAR[name])
     else:
         law = law_of_impact(LAWS[name], restitution, np.pi / ratio, speed)
     try:

@@ -130,13 +130,14 @@ def recorded():
 
 @pytest.fixture(scope="session")
 def stages():
-    """The study of each artifact, as the rules name it: ``NAME = {artifact: study}``."""
+    """The study of each artifact, as the rules name it: ``NAME = {study: {artifact: title}}``."""
     found = {}
     for path in sorted((ROOT / "workflow" / "rules").glob("*.smk")):
         head, rule, _ = path.read_text(encoding="utf-8").partition("\nuse rule study as ")
         for node in ast.parse(head).body if rule else ():
             if isinstance(node, ast.Assign) and isinstance(node.value, ast.Dict):
-                found |= ast.literal_eval(node.value)
+                for study, titles in ast.literal_eval(node.value).items():
+                    found |= dict.fromkeys(titles, study)
     return found
 
 

@@ -6,7 +6,9 @@ DRAWINGS = "src/bouncing_ball/figures/__init__.py"
 FIGURE = "src/bouncing_ball/figures/heights.py"
 
 ENTRY = """BEYOND_THE_PAPER = {
-    "ext_heights": "studies.frequency_sweeps.frequency_sweep","""
+    "studies.frequency_sweeps.frequency_sweep": {
+        "ext_heights": "Greatest height along the frequency ratio",
+    },"""
 PARAMETERS = """  ext_heights:
     n: 1
     restitution: 0.85
@@ -78,7 +80,7 @@ def test_a_stage_on_the_dataset_of_another(fresh):
     (fresh.path / "src/bouncing_ball/studies/lowest.py").write_text(STUDY, encoding="utf-8")
     entry = """READS["lowest"] = ["fig11"]
 BEYOND_THE_PAPER = {
-    "lowest": "studies.lowest.lowest","""
+    "studies.lowest.lowest": {"lowest": "Lowest threshold of permanent contact"},"""
     fresh.rewrite(BEYOND, "BEYOND_THE_PAPER = {", entry)
     fresh.rewrite(CONFIG, "studies:\n  formulas:", "studies:\n  lowest: { n: 110 }\n  formulas:")
     assert said(fresh).startswith("configuration: studies.lowest.n = 110 must be at most 20")

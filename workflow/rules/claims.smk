@@ -4,10 +4,18 @@ from bouncing_ball.claims.ledger import READS as READS_OF_CLAIMS
 from bouncing_ball.claims.witness import SHOWN
 
 CLAIMS = {
-    "formulas": "claims.formulas.formulas",
-    "forensics": "claims.forensics.forensics",
-    "witness": "claims.witness.witness",
-    "claims": "claims.ledger.ledger",
+    "claims.formulas.formulas": {
+        "formulas": "The printed formulas against a second computation",
+    },
+    "claims.forensics.forensics": {
+        "forensics": "Table 1 under readings of what the authors may have done",
+    },
+    "claims.witness.witness": {
+        "witness": "Continuation, formula and simulation for every orbit shown",
+    },
+    "claims.ledger.ledger": {
+        "claims": "Verdicts on the paper's claims",
+    },
 }
 # What shows orbits or bifurcations, which other routes must confirm.
 READS["witness"] = list(SHOWN)
@@ -17,4 +25,4 @@ READS["claims"] = READS_OF_CLAIMS
 
 use rule study as audit with:
     wildcard_constraints:
-        artifact=stage(CLAIMS),
+        artifact=stages(CLAIMS),

@@ -1,11 +1,15 @@
 # Error thresholds: the frequency ratio from which the restitution model is right.
 
 ERROR_THRESHOLDS = {
-    "fig14": "studies.error_thresholds.height_error",
-    "thresholds": "studies.error_thresholds.error_thresholds",
+    "studies.error_thresholds.height_error": {
+        "fig14": "Figure 14: greatest height of both models, and the threshold of the error",
+    },
+    "studies.error_thresholds.error_thresholds": {
+        "thresholds": "Frequency ratio from which the error of the restitution model is tolerable",
+    },
 }
 
 
 use rule study as error_thresholds with:
     wildcard_constraints:
-        artifact=stage(ERROR_THRESHOLDS),
+        artifact=stages(ERROR_THRESHOLDS),

@@ -27,7 +27,7 @@ CONFIG = read_yaml(ROOT / "config" / "config.yaml")
         (
             ("continuation", "max_angle"),
             0.1,
-            {"fig08", "fig09", "fig15", "table1", "witness"},
+            {"fig08", "fig09", "fig15", "table1"},
         ),
     ],
 )

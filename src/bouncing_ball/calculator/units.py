@@ -25,32 +25,31 @@ _UNIT = re.compile(r"(?:[^\W\d]|[ ·*/%°²³¹⁻]|\^-?\d(?![\d^])|_0|1(?= */))
 
 
 class UnitKind(NamedTuple):
-    """What a parameter is: its SI unit, its name in words, an example."""
+    """What a parameter is: its SI unit, and an example."""
 
     unit: str
-    words: str
     example: str
 
 
 KINDS = {
-    "mass": UnitKind("kg", "a mass", "20 g"),
-    "frequency": UnitKind("Hz", "a frequency", "50 Hz"),
-    "angular_frequency": UnitKind("rad/s", "an angular frequency", "314 rad/s"),
-    "period": UnitKind("s", "a time", "20 ms"),
-    "amplitude": UnitKind("m", "a length", "0.1 mm"),
-    "acceleration": UnitKind("m/s^2", "an acceleration", "2 g"),
-    "gravity": UnitKind("m/s^2", "an acceleration", "9.81 m/s^2"),
-    "stiffness": UnitKind("N/m", "a stiffness", "1e6 N/m"),
-    "damping": UnitKind("N*s/m", "a damping", "10 N s/m"),
-    "damping_ratio": UnitKind("", "a number", "0.05"),
-    "restitution": UnitKind("", "a number", "0.85"),
-    "measured_restitution": UnitKind("", "a number", "0.85"),
-    "contact_time": UnitKind("s", "a time", "50 us"),
-    "drop_height": UnitKind("m", "a length", "1 m"),
-    "rebound_height": UnitKind("m", "a length", "70 cm"),
-    "reduced_modulus": UnitKind("Pa", "a pressure", "115 GPa"),
-    "radius": UnitKind("m", "a length", "5 mm"),
-    "tolerance": UnitKind("", "a number", "1 %"),
+    "mass": UnitKind("kg", "20 g"),
+    "frequency": UnitKind("Hz", "50 Hz"),
+    "angular_frequency": UnitKind("rad/s", "314 rad/s"),
+    "period": UnitKind("s", "20 ms"),
+    "amplitude": UnitKind("m", "0.1 mm"),
+    "acceleration": UnitKind("m/s^2", "2 g"),
+    "gravity": UnitKind("m/s^2", "9.81 m/s^2"),
+    "stiffness": UnitKind("N/m", "1e6 N/m"),
+    "damping": UnitKind("N*s/m", "10 N s/m"),
+    "damping_ratio": UnitKind("", "0.05"),
+    "restitution": UnitKind("", "0.85"),
+    "measured_restitution": UnitKind("", "0.85"),
+    "contact_time": UnitKind("s", "50 us"),
+    "drop_height": UnitKind("m", "1 m"),
+    "rebound_height": UnitKind("m", "70 cm"),
+    "reduced_modulus": UnitKind("Pa", "115 GPa"),
+    "radius": UnitKind("m", "5 mm"),
+    "tolerance": UnitKind("", "1 %"),
 }
 """The parameters that are quantities, by the names of the calculator."""
 
@@ -59,7 +58,8 @@ _CYCLES = {"hertz", "kilohertz", "megahertz", "millihertz", "counts_per_second"}
 _GRAVITY = {"g", "gn", "g_n", "g0", "g_0"}
 _DIMENSIONS = {
     "kg": "a mass",
-    "1/s": "a frequency",
+    "Hz": "a frequency",
+    "rad/s": "an angular frequency",
     "s": "a time",
     "m": "a length",
     "m/s": "a speed",
@@ -107,45 +107,33 @@ def number(name: str, value: Any) -> float:
     bouncing_ball.errors.ModelError: frequency = 20 ms is a time: it needs a frequency, \
 such as 50 Hz; a period has its own parameter, period
     """
-    if hasattr(value, "magnitude") and hasattr(value, "units"):
-        magnitude, unit = value.magnitude, str(value.units).replace("dimensionless", "")
-    else:
-        magnitude, unit = _split(name, value)
-    given = f"{name} = {textwrap.shorten(str(value), 60, placeholder='…')}"
-    if not unit:
-        return _finite(given, magnitude)
-    factor = _factor(name, given, unit)
+    short = textwrap.shorten(str(value), 60, placeholder="…")
+    given, unit = f"{name} = {short}", ""
+    if isinstance(value, str):
+        found = _TEXT.fullmatch(value.strip())
+        if found is None:
+            example = KINDS[name].example
+            raise ModelError(
+                f"{name} = {short!r} does not begin with a number: write it as {example!r}"
+            )
+        value, unit = found.groups()
+    elif hasattr(value, "magnitude") and hasattr(value, "units"):
+        value, unit = value.magnitude, str(value.units).replace("dimensionless", "")
+    try:
+        plain = float(value)
+    except (TypeError, ValueError):
+        raise ModelError(f"{name} = {value!r} is neither a number nor a text") from None
     # To the last digit but one: the digits that a user wrote are kept.
-    return _finite(given, float(f"{float(magnitude) * factor:.15g}"))
-
-
-def _finite(given: str, value: Any) -> float:
-    if not math.isfinite(value):
+    found_value = float(f"{plain * _factor(name, given, unit):.15g}") if unit else plain
+    if not math.isfinite(found_value):
         raise ModelError(f"{given} is not a finite number")
-    return float(value)
-
-
-def _split(name: str, value: Any) -> tuple[float, str]:
-    """Number and unit of a text; a number has none."""
-    if not isinstance(value, str):
-        try:
-            return float(value), ""
-        except (TypeError, ValueError):
-            raise ModelError(f"{name} = {value!r} is neither a number nor a text") from None
-    found = _TEXT.fullmatch(value.strip())
-    example = KINDS[name].example
-    if found is None:
-        shown = textwrap.shorten(value, 60, placeholder="…")
-        raise ModelError(
-            f"{name} = {shown!r} does not begin with a number: write it as {example!r}"
-        )
-    return float(found[1]), found[2]
+    return found_value
 
 
 def _factor(name: str, given: str, unit: str) -> float:
     """What one unit is in SI units."""
     kind, registry = KINDS[name], _registry()
-    if kind.words == "an acceleration" and unit in _GRAVITY:
+    if kind.unit == "m/s^2" and unit in _GRAVITY:
         unit = "standard_gravity"
     try:
         if not _UNIT.fullmatch(unit.replace("**", "^")):
@@ -184,7 +172,7 @@ def _other_kind(name: str, given: str, one: Any) -> str:
     found = [words for unit, words in _DIMENSIONS.items() if one.is_compatible_with(unit)]
     what = found[0] if found else f"of dimension {one.dimensionality}"
     kind = KINDS[name]
-    text = f"{given} is {what}: it needs {kind.words}, such as {kind.example}"
+    text = f"{given} is {what}: it needs {_DIMENSIONS[kind.unit]}, such as {kind.example}"
     if name == "damping_ratio" and what == "a damping":
         return f"{text}; a damping has its own parameter, damping"
     own = {"a time": "period", "a frequency": "frequency", "an acceleration": "acceleration"}

@@ -1,6 +1,5 @@
 """Entry point of ``bouncing-ball``."""
 
-import inspect
 import sys
 from collections.abc import Callable
 from importlib import import_module
@@ -43,7 +42,7 @@ def _laws() -> str:
 
 
 def _module(command: str) -> Any:
-    """The module of a subcommand: its call, and ``lines`` for what the call answers."""
+    """The module of a subcommand: its call, and ``lines`` that make its answer readable."""
     return import_module(f"bouncing_ball.{_COMMANDS[command][1]}")
 
 
@@ -65,7 +64,7 @@ def parser(arguments: list[str]) -> Parser:
         if name in arguments:
             names = add_options(sub, _call(name))
             sub.epilog = _laws() if "law" in names else None
-            if "json" not in names:
+            if hasattr(_module(name), "lines"):
                 sub.add_argument("--json", action="store_true", help="one JSON object")
     return top
 
@@ -91,8 +90,7 @@ def main(arguments: list[str] | None = None) -> None:
 def _run(command: str, given: dict[str, Any]) -> None:
     import numpy as np
 
-    call = _call(command)
-    as_json = "json" not in inspect.signature(call).parameters and given.pop("json")
+    call, as_json = _call(command), given.pop("json", False)
     arguments = [given.pop(name) for name in positional(call)]
     try:
         with np.errstate(all="ignore"):

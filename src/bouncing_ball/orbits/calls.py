@@ -11,9 +11,9 @@ from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 
+from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.law_choice import law_named, law_of_impact
 from bouncing_ball.contacts.law_signature import LawSignature
-from bouncing_ball.contacts.laws.contact_law import ContactLaw
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError
@@ -108,79 +108,71 @@ def model(
     >>> model(0.85)
     RestitutionModel(restitution=0.85)
     """
-    given = {name: value for name, value in locals().items() if value is not None}
-    return _model(given, None)
+    return _model(locals(), None)
+
+
+def _refuse(given: Mapping[str, Any], names: tuple[str, ...], why: str) -> None:
+    """Raise :class:`ParameterError` with the first of these parameters that is given."""
+    for name in names:
+        if name in given:
+            raise ParameterError(f"{{{name}}} {why}")
 
 
 def _model(given: Mapping[str, Any], law_at: LawAt | None) -> ImpactModel:
     """The model of the parameters that are not None."""
     given = {name: value for name, value in given.items() if value is not None}
-    kind, losses = given.get("model"), [name for name in LOSS if name in given]
+    losses = [name for name in LOSS if name in given]
     if len(losses) > 1:
         raise ParameterError(f"argument {{{losses[1]}}}: not allowed with argument {{{losses[0]}}}")
+    kind = given.get("model") or ("spring-damper" if "frequency_ratio" in given else "restitution")
     if "law" in given:
         law = _law(given, law_at)
         return CorrectedModel(LawSignature(law)) if kind == "corrected" else LawModel(law)
-    for name in ("parameters", "duration", "speed"):
-        if name in given:
-            raise ParameterError(f"{{{name}}} needs {{law}}")
+    _refuse(given, ("parameters", "duration", "speed"), "needs {law}")
     if not losses:
         names = " ".join(f"{{{name}}}" for name in LOSS)
         raise ParameterError(f"one of the arguments {names} is required")
-    if kind is None:
-        kind = "spring-damper" if "frequency_ratio" in given else "restitution"
-    if kind != "restitution":
-        if "frequency_ratio" not in given:
-            raise ParameterError(f"{{model}} {kind} needs {{frequency_ratio}}")
-        return _contact_model(kind, given, losses[0])
-    if losses[0] == "damping_ratio":
-        raise ParameterError(
-            "{damping_ratio} needs {frequency_ratio}; {model} restitution takes {restitution}"
-        )
-    for name in ("frequency_ratio", "release"):
-        if name in given:
-            text = "has no meaning for {model} restitution, which has no contact"
-            raise ParameterError(f"{{{name}}} {text}")
-    return RestitutionModel(given[losses[0]])
-
-
-def _contact_model(kind: str, given: Mapping[str, Any], loss: str) -> ImpactModel:
-    ratio, rule = given["frequency_ratio"], Release.of(given.get("release", Release.DISPLACEMENT))
-    if loss == "damping_ratio":
-        contact = SpringDamper(ratio, given[loss], rule)
-    else:
-        measured = loss == "measured_restitution"
-        contact = SpringDamper.from_restitution(given[loss], ratio, rule, measured=measured)
+    if kind == "restitution":
+        instead = "needs {frequency_ratio}; {model} restitution takes {restitution}"
+        _refuse(given, ("damping_ratio",), instead)
+        meaning = "has no meaning for {model} restitution, which has no contact"
+        _refuse(given, ("frequency_ratio", "release"), meaning)
+        return RestitutionModel(given[losses[0]])
+    if "frequency_ratio" not in given:
+        raise ParameterError(f"{{model}} {kind} needs {{frequency_ratio}}")
+    contact = _contact(given, losses[0])
     if kind == "corrected":
         return CorrectedModel.of_contact(contact)
     return SpringDamperModel(contact)
 
 
+def _contact(given: Mapping[str, Any], loss: str) -> SpringDamper:
+    ratio, rule = given["frequency_ratio"], Release.of(given.get("release", Release.DISPLACEMENT))
+    if loss == "damping_ratio":
+        return SpringDamper(ratio, given[loss], rule)
+    measured = loss == "measured_restitution"
+    return SpringDamper.from_restitution(given[loss], ratio, rule, measured=measured)
+
+
 def _law(given: Mapping[str, Any], law_at: LawAt | None) -> ContactLaw:
     """The contact law, by its parameters or by its free impact."""
-    name = given["law"]
+    name, r, duration = given["law"], given.get("restitution"), given.get("duration")
     if given.get("model") in ("restitution", "spring-damper"):
-        text = "has no {law}: corrected, or none, for the law itself"
-        raise ParameterError(f"{{model}} {given['model']} {text}")
-    for other in ("frequency_ratio", "damping_ratio", "measured_restitution"):
-        if other in given:
-            text = "{parameters}, or {restitution} and {duration}"
-            raise ParameterError(f"{{{other}}} does not go with {{law}} {name}: {text}")
+        why = f"{given['model']} has no {{law}}: corrected, or none, for the law itself"
+        _refuse(given, ("model",), why)
+    instead = "{parameters}, or {restitution} and {duration}"
+    linear = ("frequency_ratio", "damping_ratio", "measured_restitution")
+    _refuse(given, linear, f"does not go with {{law}} {name}: {instead}")
     kind = law_named(name)
-    needs = ", ".join(
-        f"{{parameters}} {x.replace('_', '-')}=NUMBER" for x in kind.parameter_names()
-    )
+    known = (x.replace("_", "-") for x in kind.parameter_names())
+    needs = ", ".join(f"{{parameters}} {x}=NUMBER" for x in known)
     if "parameters" in given:
-        for other in ("restitution", "duration", "speed"):
-            if other in given:
-                text = f"does not go with {{parameters}}: {needs} are all of {name}"
-                raise ParameterError(f"{{{other}}} {text}")
-        return _law_of_parameters(kind, given["parameters"], given.get("release"))
-    if "restitution" not in given or "duration" not in given:
+        why = f"does not go with {{parameters}}: {needs} are all of {name}"
+        _refuse(given, ("restitution", "duration", "speed"), why)
+        return _law_of_parameters(kind, given)
+    if r is None or duration is None:
         raise ParameterError(f"{{law}} {name} needs {needs}, or {{restitution}} and {{duration}}")
-    if "release" in given:
-        raise ParameterError("{release} goes with {law} linear and {parameters} only")
-    r, duration = given["restitution"], given["duration"]
+    _refuse(given, ("release",), "goes with {law} linear and {parameters} only")
     if "speed" in given:
         return law_of_impact(kind, r, duration, given["speed"])
     if law_at is None:
@@ -188,10 +180,8 @@ def _law(given: Mapping[str, Any], law_at: LawAt | None) -> ContactLaw:
     return law_at(kind, r, duration)
 
 
-def _law_of_parameters(
-    kind: type[ContactLaw], parameters: Mapping[str, float], release: str | None
-) -> ContactLaw:
-    named = {name.replace("-", "_"): value for name, value in parameters.items()}
+def _law_of_parameters(kind: type[ContactLaw], given: Mapping[str, Any]) -> ContactLaw:
+    named = {name.replace("-", "_"): value for name, value in given["parameters"].items()}
     known = kind.parameter_names()
     for name in named:
         if name not in known:
@@ -201,12 +191,13 @@ def _law_of_parameters(
     for name in known:
         if name not in named:
             raise ParameterError(f"{kind.name} needs {{parameters}} {name}=NUMBER as well")
-    if release is not None and not kind.chooses_release():
-        raise ParameterError(
-            f"the release is part of {kind.name}: {{release}} is for the linear law"
-        )
-    rule: Any = {} if release is None else {"release": Release.of(release)}
-    return kind(**named, **rule)
+    if "release" not in given:
+        return kind(**named)
+    if not kind.chooses_release():
+        text = f"the release is part of {kind.name}: {{release}} is for the linear law"
+        raise ParameterError(text)
+    named["release"] = Release.of(given["release"])
+    return kind(**named)
 
 
 def model_of_orbit(n: int, amplitude: float, side: str = "stable", **impact: Any) -> ImpactModel:

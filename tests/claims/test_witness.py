@@ -1,0 +1,192 @@
+"""The cross-check: what the accepted datasets show agrees, and what is wrong is seen."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.claims.witness import (
+    BUDGETS,
+    CLOSES,
+    FORMULA,
+    HOLDS,
+    LEAVES,
+    SHOWN,
+    CrossCheckError,
+    contact_orbits,
+    restitution_orbits,
+    witness,
+)
+from bouncing_ball.datasets.variables import describe
+from bouncing_ball.errors import ModelError
+from bouncing_ball.figures.tables.witness import rows
+from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.studies.continuation import Continuation
+from bouncing_ball.studies.orbit_branches import Domains, orbit_branches
+
+
+@pytest.fixture(scope="module")
+def result(recorded, described):
+    return described(witness({name: recorded[name] for name in SHOWN}))
+
+
+def test_all_routes_agree_on_all_that_is_shown(result, recorded):
+    assert result.artifact.values.tolist() == list(SHOWN)
+    compared = result.orbits > 0
+    assert (np.isnan(result.disagreement) == ~compared).all()
+    assert (result.disagreement <= result.budget).where(compared, True).all()
+    # Nothing that an earlier run compared is left out.
+    accepted = recorded["witness"].orbits
+    assert (result.orbits == accepted.sel(artifact=result.artifact)).all()
+    assert (result.orbits.sel(comparison=FORMULA) > 0).all()
+    # All points of three branches, and their bifurcations.
+    assert result.orbits.sel(artifact="fig08", comparison=FORMULA).item() == 1803 + 9
+
+
+@pytest.mark.parametrize(
+    ("name", "variable"),
+    [
+        ("fig02", "phase"),
+        ("fig03", "phase"),
+        ("fig03", "saddle_node_amplitude"),
+        ("fig03", "period_doubling_phase"),
+        ("fig05", "phase"),
+        ("fig05", "contact_duration"),
+        ("fig06", "impact_velocity"),
+        ("fig08", "amplitude"),
+        ("fig09", "special_amplitude"),
+        ("fig09", "special_phase"),
+        ("fig15", "restitution_phase"),
+        ("fig15", "restitution_amplitude"),
+        ("fig15", "phase"),
+        ("table1", "computed"),
+        ("ext_release", "bifurcation_amplitude"),
+    ],
+)
+def test_a_number_that_is_off_is_seen(recorded, name, variable, one_line):
+    data = recorded[name].copy(deep=True)
+    values = data[variable].values
+    values *= 1 + 1e-9
+    with pytest.raises(CrossCheckError) as error:
+        witness({name: data})
+    one_line(error, f"{name}: ", " disagree by ", "-T family at Λ = ")
+
+
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [
+        ("fig08", {"restitution": 0.8501}),
+        ("fig08", {"release": "force"}),
+        ("fig08", {"n": 2}),
+        ("fig02", {"restitution": 0.8501}),
+        ("table1", {"restitution": 0.8501}),
+    ],
+)
+def test_other_parameters_than_those_of_the_orbits_are_seen(recorded, name, change):
+    with pytest.raises(CrossCheckError, match=f"{name}: {FORMULA} disagree"):
+        witness({name: recorded[name].assign_attrs(change)})
+
+
+def test_one_orbit_that_is_not_a_number_is_seen(recorded):
+    data = recorded["fig05"].copy(deep=True)
+    data.phase.values[2, 7] = np.nan
+    with pytest.raises(CrossCheckError, match="disagree by inf"):
+        witness({"fig05": data})
+
+
+@pytest.mark.parametrize(
+    ("part", "change", "kind"),
+    [
+        ("monodromy", lambda m: m * (1 + 1e-3), LEAVES),
+        ("cycle", lambda c: c._replace(time=c.time + 1e-7), CLOSES),
+        ("cycle", lambda c: c._replace(relative_velocity=c.relative_velocity * (1 + 2e-11)), HOLDS),
+    ],
+)
+def test_each_comparison_with_the_simulation_can_fail(recorded, monkeypatch, part, change, kind):
+    original = getattr(SpringDamperOrbit, part)
+    monkeypatch.setattr(SpringDamperOrbit, part, lambda self, *x: change(original(self, *x)))
+    with pytest.raises(CrossCheckError, match=kind):
+        witness({"fig08": recorded["fig08"]})
+
+
+@pytest.mark.parametrize(
+    ("name", "variable", "needed_by"),
+    [
+        ("fig05", "contact_duration", "contact_orbits"),
+        ("fig15", "contact_duration", "contact_orbits"),
+        ("fig15", "restitution_phase", "restitution_orbits"),
+        ("fig03", "amplitude", "restitution_orbits"),
+        ("table1", "special_phase", "located"),
+    ],
+)
+def test_a_renamed_variable_is_no_reason_to_compare_nothing(
+    recorded, name, variable, needed_by, one_line
+):
+    with pytest.raises(CrossCheckError) as error:
+        witness({name: recorded[name].rename({variable: "renamed"})})
+    one_line(error, f"{name}: {needed_by} needs ")
+
+
+def test_an_empty_comparison_fails(recorded, one_line):
+    data = recorded["fig05"]
+    empty = data.assign(contact_duration=data.contact_duration * np.nan)
+    with pytest.raises(CrossCheckError) as error:
+        witness({"fig05": empty})
+    one_line(error, "fig05: contact_orbits compares nothing")
+    with pytest.raises(ModelError, match="no datasets"):
+        witness({})
+    with pytest.raises(CrossCheckError, match="does not say what it shows"):
+        witness({"fig99": data})
+
+
+@pytest.mark.parametrize("release", ["displacement", "force"])
+def test_both_rules_of_release(release, continuation_settings):
+    parameters = {
+        "n": 1,
+        "restitution": 0.85,
+        "frequency_ratio": [10.0, 2.0],
+        "amplitude_max": 1.5,
+        "points": 41,
+    }
+    settings = Continuation(**dict(continuation_settings))
+    data = orbit_branches(Domains(**parameters), release, settings)
+    data.attrs = parameters | {"release": release}
+    result = witness({"fig08": describe(data)})
+    assert (result.disagreement <= result.budget).all()
+    assert result.orbits.sel(artifact="fig08", comparison=FORMULA).item() == 82 + 7
+    assert (result.orbits > 0).all()
+
+
+def _bump(values):
+    """Largest interior maximum of samples along the first axis, by parabolas."""
+    before, middle, after = values[:-2], values[1:-1], values[2:]
+    bend = before - 2 * middle + after
+    top = middle - np.where(bend < 0, (after - before) ** 2 / (8 * np.minimum(bend, -1e-300)), 0)
+    return np.max(np.where((middle >= before) & (middle >= after), top, -np.inf), axis=0)
+
+
+@pytest.mark.parametrize("name", ["fig03", "fig05", "fig08", "fig09", "fig15"])
+def test_the_simulation_leaves_out_only_what_is_no_orbit_of_the_ball(recorded, name):
+    """From samples of each path: no earlier release, no earlier landing."""
+    for find in (contact_orbits, restitution_orbits):
+        if find not in SHOWN[name]:
+            continue
+        shown = next(find(recorded[name]))
+        orbit = shown.orbit
+        longest = np.max(np.abs(orbit.clock * orbit.contact_duration), initial=0.0)
+        share = np.linspace(0, 1, int(64 * (4 + longest / np.pi + 2 * np.max(orbit.n))))
+        share = share[:, np.newaxis]
+        held = orbit.holding(share * orbit.contact_duration)
+        time = orbit.contact_duration + share * orbit.flight_time
+        gap = orbit.flight_path(time)[0] - orbit.amplitude * np.sin(orbit.phase + time)
+        free = (orbit.relative_impact_velocity < 0) & (orbit.relative_bounce_velocity > 0)
+        free &= ~(_bump(held) > 0) & ~(_bump(-gap) > 0)
+        assert not (free & ~shown.admissible).any()
+
+
+def test_the_table_says_the_bounds_and_the_counts(result):
+    header, body = rows(result)
+    assert header == ["artifact", *BUDGETS]
+    assert body[0][1:] == ["1e-11", "1e-10", "1e-09", "1e-05"]
+    (line,) = [line for line in body if line[0] == "fig08"]
+    assert line[1:] == ["≤ 1e-11 (1812)", "≤ 1e-10 (1803)", "≤ 1e-09 (764)", "≤ 1e-05 (1013)"]
+    (line,) = [line for line in body if line[0] == "table1"]
+    assert line[1:] == ["≤ 1e-11 (18)", "–", "–", "–"]

@@ -9,7 +9,7 @@ CONTINUATION = {
     "studies.orbit_branches.both_domains": {
         "fig15": "Figure 15: existence and stability domains of both models",
     },
-    "studies.orbit_branches.stability_ranges": {
+    "studies.stability_ranges.stability_ranges": {
         "table1": "Table 1: stability ranges over the amplitude",
     },
 }

@@ -35,7 +35,7 @@ rule all:
     message:
         "All figures, tables and the paper are up to date"
     input:
-        artifacts=files(ARTIFACTS),
+        artifacts=map(files, ARTIFACTS),
         paper=rules.paper.output,
     log:
         "results/logs/all.log",

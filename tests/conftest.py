@@ -130,14 +130,13 @@ def recorded():
 
 @pytest.fixture(scope="session")
 def stages():
-    """The study of each artifact, as the rules name it: ``NAME = {study: {artifact: title}}``."""
+    """The study of each artifact, as the rules name it: ``NAME = {artifact: study}``."""
     found = {}
     for path in sorted((ROOT / "workflow" / "rules").glob("*.smk")):
         head, rule, _ = path.read_text(encoding="utf-8").partition("\nuse rule study as ")
         for node in ast.parse(head).body if rule else ():
             if isinstance(node, ast.Assign) and isinstance(node.value, ast.Dict):
-                for study, titles in ast.literal_eval(node.value).items():
-                    found |= dict.fromkeys(titles, study)
+                found |= ast.literal_eval(node.value)
     return found
 
 

@@ -32,7 +32,7 @@ ALLOWED = {
     "calculator": ({"contacts", "orbits", "accuracy"}, {"numpy", "xarray", "pint"}),
     "atlas": ({"datasets", "contacts", "orbits", "accuracy"}, {"numpy", "xarray", "pydantic"}),
     # Studies are imported by name when they are run.
-    "configuration": (set(), {"yaml", "pydantic", BY_NAME}),
+    "configuration": ({"atlas"}, {"yaml", "pydantic", BY_NAME}),
     "claims": (
         {"datasets", "contacts", "continuation", "motion", "orbits", "studies", "configuration"},
         {"numpy", "scipy", "xarray"},

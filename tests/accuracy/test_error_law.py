@@ -5,10 +5,10 @@ import pytest
 
 from bouncing_ball.accuracy.error_law import (
     REMAINDER,
-    STATED,
     coefficients,
     first_order,
     permanent_contact_coefficient,
+    remainder,
     scale,
     small_parameter,
 )
@@ -86,15 +86,17 @@ def test_the_remainder_where_the_law_is_stated_to_hold(release):
     size, low = 2000, 0.05 if release is Release.DISPLACEMENT else 0.14
     n, zeta, lam, rng = sample(31, size, release, (low, 0.98))
     contact = SpringDamper(10 ** rng.uniform(0, 4, size), zeta, release)
-    instant = LinearSignature(contact)()
-    small = small_parameter(n, instant, lam)
-    stated = small < STATED
-    assert stated.mean() > 0.5
-    off = np.abs(errors(contact, n, lam)[0] - array(first_order(n, instant, lam)))
-    factor = (off / (array(scale(n, instant, lam)) * small))[:, stated].max(axis=1)
-    assert np.all(factor < array(REMAINDER)), dict(zip(REMAINDER, factor, strict=True))
-    # The bounds are those of docs/error-law.md, no looser.
+    instant, error = LinearSignature(contact)(), errors(contact, n, lam)[0]
+    left = remainder(n, instant, lam, error)
+    np.testing.assert_array_equal(left.stated, np.isfinite(error) & (left.small < 0.3))
+    assert left.stated.mean() > 0.5 and not np.any(left.stated & left.exceeded)
+    size = array(scale(n, instant, lam)) * small_parameter(n, instant, lam)
+    off = np.abs(error - array(first_order(n, instant, lam))) / size
+    np.testing.assert_allclose(left.factor, off, rtol=1e-12)
+    # The bounds are those of docs/error-law.md; an error of twice the law is beyond them.
     assert array(REMAINDER).tolist() == [2, 2, 4, 2, 2, 2]
+    far = left.law + 1.001 * array(REMAINDER)[:, np.newaxis] * size
+    assert np.all(remainder(n, instant, lam, far).exceeded[np.isfinite(size)])
 
 
 @pytest.mark.parametrize("release", RELEASES)

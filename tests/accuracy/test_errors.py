@@ -5,7 +5,14 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from bouncing_ball.accuracy.errors import SIMPLE, errors, models, modulus, relative_errors
+from bouncing_ball.accuracy.errors import (
+    SIMPLE,
+    errors,
+    models,
+    modulus,
+    orbit_errors,
+    relative_errors,
+)
 from bouncing_ball.accuracy.quantities import OF_IMPACTS, OF_LIMITS, OF_ORBITS, Quantity, values
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.orbits.restitution_model import RestitutionModel
@@ -50,6 +57,8 @@ def test_errors_are_those_of_the_models_one_by_one(release):
         for k, model in enumerate(simple):
             one = relative_errors(exact, model, n[j], lam[j], Quantity)
             np.testing.assert_allclose(found[k, :, i, j], one, rtol=1e-9, atol=1e-13)
+    known = orbit_errors(models(contact)[0].orbit(n, lam))
+    np.testing.assert_allclose(known, found[:, :4], rtol=1e-9, atol=1e-13)
 
 
 def test_what_is_missing_is_not_right():

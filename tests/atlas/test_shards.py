@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from bouncing_ball.accuracy.errors import modulus, orbit_errors
-from bouncing_ball.accuracy.thresholds import ThresholdStatus, search
 from bouncing_ball.atlas import answers, shards
-from bouncing_ball.atlas.answers import PER_DECADE, threshold_bins
+from bouncing_ball.atlas.crossings import LastCrossings
+from bouncing_ball.atlas.limits_walk import limit_errors
 from bouncing_ball.atlas.walk import walk
 from bouncing_ball.errors import ModelError
 
@@ -97,28 +97,13 @@ def test_the_law_is_kept_where_it_is_stated(atlas):
     assert int(atlas.law_stated.sum()) > 500 and int(atlas.law_exceeding.sum()) == 0
 
 
-def test_bins_are_even_in_the_logarithm():
-    bins = threshold_bins(np.array([3.0, 1e5]))
-    assert bins[0] == 0 and bins[-1] == np.inf and bins[-2] == pytest.approx(1e5)
-    assert np.allclose(np.diff(np.log10(bins[1:-1])), 1 / PER_DECADE)
-    assert bins[1] <= 3.0 < bins[2]
-
-
-def test_the_limits_are_those_of_a_search(small, limits):
-    plan, fine = small(), np.geomspace(3.0, 1e4, 241)
-    for place in (0, len(plan.rows) - 1):
-        row = plan.rows[place]
-        r = plan.restitutions(row)
-        nodes = plan.placed(row, r, np.zeros_like(r))
-        names = limits.limit_quantity.values.tolist()
-        for k, tolerance in enumerate(plan.tolerances):
-            arguments = nodes.damping_ratio, nodes.release, nodes.n, nodes.amplitude, fine
-            found = search(*arguments, tolerance, names)
-            expected = np.where(found.status == ThresholdStatus.ALWAYS_WITHIN, 3.0, found.threshold)
-            expected = np.where(np.isnan(expected), np.inf, expected).max(axis=-1)
-            ours = limits.limit_needed.values[place, :, :, k]
-            assert np.array_equal(np.isinf(ours), np.isinf(expected))
-            finite = np.isfinite(ours)
-            step = 1 + plan.resolution
-            assert np.all(ours[finite] < expected[finite] * step)
-            assert np.all(expected[finite] < ours[finite] * step)
+def test_the_limits_of_a_row_are_the_largest_of_its_r(small, limits):
+    plan, found = small(), []
+    row = plan.rows[-1]
+    for r in plan.restitutions(row):
+        one = plan.placed(row, np.array([r]), np.zeros(1))
+        crossings = LastCrossings(np.array(plan.tolerances), (2, 3, 1))
+        for ratio, error in limit_errors(one, plan.ratios):
+            crossings.meet(np.array([ratio]), error[np.newaxis])
+        found.append(np.moveaxis(crossings.thresholds()[..., 0], 0, -1))
+    np.testing.assert_allclose(limits.limit_needed[-1], np.max(found, axis=0), rtol=1e-9)

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 import bouncing_ball
 from bouncing_ball.cli.main import main
+from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.laws import LAWS
-from bouncing_ball.contacts.laws.contact_law import ContactLaw
 from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
 from bouncing_ball.contacts.laws.tsuji import tsuji_damping
 from bouncing_ball.orbits.law_model import LawModel

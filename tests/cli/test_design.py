@@ -1,5 +1,7 @@
 """``bouncing-ball design``: keys, texts, exit statuses, and the page to print."""
 
+import json
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +10,6 @@ from PIL import Image
 
 from bouncing_ball import design
 from bouncing_ball.calculator.page_data import page
-from bouncing_ball.cli.design import answer
 from bouncing_ball.figures.design_page import draw
 
 CASE = ("design", "--mass", "20 g", "--frequency", "50 Hz", "--acceleration", "0.8 g",
@@ -32,7 +33,7 @@ def test_json_is_the_answer_of_the_call(ask):
     found = design(
         mass="20 g", frequency="50 Hz", acceleration="0.8 g", restitution=0.85, stiffness="1e7 N/m"
     )
-    assert ask(*CASE, *STIFF) == answer(found)
+    assert ask(*CASE, *STIFF) == json.loads(json.dumps(asdict(found)))
     # The saddle-node of an elastic ball is at Λ = 0, and an infinite error is null.
     case = "design --mass 1 --frequency 1 --acceleration 5 --restitution 1 --stiffness 1e5 --n 1"
     assert ask(*case.split())["orbits"][0]["errors"]["saddle_node"] is None
@@ -60,14 +61,11 @@ def test_choosing(said):
 @pytest.mark.parametrize(
     ("arguments", "status", "says"),
     [
-        (("--frequency", "20 ms"), 2, "it needs a frequency"),
         (("--stiffness", "-5N/m"), 2, "stiffness = -5 N/m is not positive"),
         (("--stiffness", "-1e6"), 2, "stiffness = -1e+06 N/m is not positive"),
-        (("--damping", "3 N s/m"), 2, "contradict"),
         (("--acceleration", "0.1 g"), 1, "no n-T orbit in any model"),
         (("--n", "0"), 2, "whole number"),
         (("--release", "glue"), 2, "invalid choice"),
-        (("--quantity", "colour"), 2, "one of max_height"),
         (("--plot", "page.jpg"), 2, "'page.jpg' does not end in .pdf or .png or .svg"),
         (("--plot", "page.png/"), 2, "'page.png/' does not end in .pdf or .png or .svg"),
         (("--plot", "/dev/null/page.png"), 2, "/dev/null/page.png cannot be written"),
@@ -104,7 +102,7 @@ def test_the_motion_is_the_orbit_in_its_units(found, data):
 
 
 def test_the_page_shows_the_case(found, data):
-    figure = draw(answer(found), data, [("stiffness", "36 N/m")])
+    figure = draw(asdict(found), data, [("stiffness", "36 N/m")])
     star = next(line for line in figure.axes[0].lines if line.get_label() == "this contact")
     assert star.get_xydata().tolist() == [[0.65, found.frequency_ratio]]
     texts = " ".join(text.get_text().replace("\n", " ") for text in figure.texts)
@@ -116,7 +114,7 @@ def test_a_page_for_an_orbit_that_one_model_lacks(monkeypatch):
     monkeypatch.setattr("bouncing_ball.calculator.page_data._CHART", 2)
     shown = page(lonely)
     assert shown.ball.sel(model="restitution").isnull().all()
-    assert draw(answer(lonely), shown, []).axes
+    assert draw(asdict(lonely), shown, []).axes
 
 
 def test_the_command_writes_the_page_and_answers_as_without(tmp_path, said, monkeypatch, data):

@@ -5,7 +5,6 @@ from pathlib import Path
 
 import pytest
 
-from bouncing_ball.atlas.plan import AtlasParameters
 from bouncing_ball.configuration.check import check, configuration_model
 from bouncing_ball.configuration.documentation import configuration_page, configuration_schema
 from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
@@ -17,7 +16,7 @@ REMOVED = object()
 
 @pytest.fixture(scope="module")
 def model(stages):
-    return configuration_model(stages, CONFIG, atlas=AtlasParameters)
+    return configuration_model(stages, CONFIG)
 
 
 def changed(keys, value):
@@ -106,7 +105,7 @@ SPAN = (*FIG05, "frequency_ratio")
 def test_a_mistake_is_named_in_one_line(stages, keys, value, message):
     config = changed(keys, value)
     try:
-        model = configuration_model(stages, config, atlas=AtlasParameters)
+        model = configuration_model(stages, config)
         check(model, config, release="displacement")
         said = ""
     except ConfigurationError as error:

@@ -8,19 +8,8 @@ from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.law_permanent_contact import permanent_contact
 from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
-from bouncing_ball.contacts.laws.linear import Linear
 from bouncing_ball.contacts.laws.tsuji import Tsuji
-from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
-from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import ModelError
-
-
-@pytest.mark.parametrize("release", list(Release))
-@pytest.mark.parametrize("omega", [1.0, 2.0, 10.0])
-def test_the_linear_law_has_the_closed_form(omega, release):
-    found = permanent_contact(Linear(omega, 0.136, release))
-    exact = permanent_contact_threshold(omega, 0.136, release)
-    assert found.amplitude == pytest.approx(float(exact), rel=1e-12)
 
 
 @pytest.mark.parametrize("kind", [HuntCrossley, Tsuji, KuwabaraKono])

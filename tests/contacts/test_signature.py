@@ -8,7 +8,7 @@ from bouncing_ball.contacts.oscillator import exponential_response, impulse_resp
 from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper, contact_flow, contact_force
 from bouncing_ball.errors import ModelError
-from bouncing_ball.motion.contacts import simulate
+from bouncing_ball.motion.contact import simulate
 
 RELEASES = list(Release)
 EPS = np.finfo(float).eps

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.contacts.restitution_map import bounce, exact_map_jacobian, landing_gap
 from bouncing_ball.continuation.branch import (
     STARTED,
     Branch,
@@ -16,8 +15,6 @@ from bouncing_ball.continuation.branch import (
 from bouncing_ball.continuation.corrector import NewtonSettings
 from bouncing_ball.continuation.events import Event, LocationError, fold, parameter_bound
 from bouncing_ball.continuation.step_control import StepControl
-from bouncing_ball.orbits import restitution_orbit as exact_orbits
-from bouncing_ball.orbits.stability import period_doubling_function, trace_and_determinant
 
 # Newton's last step is below 1e-12 and converges quadratically, so points are
 # exact to a few roundings; the brief's 1e-12 has a wide margin.
@@ -78,24 +75,6 @@ def test_steps_obey_the_control():
     assert branch.tangents == pytest.approx(normal, abs=EXACT)
 
 
-def test_a_turn_of_the_tangent_shortens_the_step():
-    control = StepControl(initial=1.0, largest=1.0, max_angle=0.05)
-    branch = continue_branch(
-        CIRCLE, np.array([1.0, 0.0]), increasing=True, control=control, max_points=5
-    )
-    angle = np.diff(np.arctan2(branch.points[:, 1], branch.points[:, 0]))
-    assert np.all(angle <= 0.05 * (1 + 1e-12))
-
-
-def test_decreasing_starts_the_other_way():
-    branch = continue_branch(CIRCLE, np.array([1.0, 0.0]), increasing=False, max_points=10)
-    assert np.all(np.diff(branch.points[:, 1]) < 0)
-    # With the same first step, and tangents of length one.
-    first = np.linalg.norm(branch.points[1] - branch.points[0])
-    assert first == pytest.approx(StepControl().initial, rel=1e-3)
-    assert np.linalg.norm(branch.tangents, axis=1) == pytest.approx(np.ones(10), abs=EXACT)
-
-
 def test_both_folds_of_a_cubic():
     # p = x - x³ has its extrema at x = ±1/√3.
     events = [
@@ -144,14 +123,6 @@ def test_straight_line_leaves_its_window():
     # Straight and linear: the step grows to the largest and stays.
     steps = np.diff(branch.arclength)
     assert steps.max() == pytest.approx(StepControl().largest, rel=EXACT)
-
-
-def test_terminal_event_without_a_reason_gives_its_name():
-    event = Event("far", lambda y: 1.0 - y[..., 0], terminal=True)
-    branch = continue_branch(LINE, np.array([0.0, 0.0]), increasing=True, events=[event])
-    assert str(branch.end) == "far"
-    assert branch.points[-1] == pytest.approx(np.array([1.0, 0.5]), abs=EXACT)
-    assert [s.name for s in branch.special] == ["far"]
 
 
 def test_events_of_one_step_come_in_order_and_none_after_the_end():
@@ -252,22 +223,18 @@ def test_no_start(one_line):
         continue_branch(CIRCLE, np.array([1.0, 2.0]), increasing=True)
 
 
+def test_a_start_beyond_a_terminal_event(one_line):
+    for bound, upper in ((0.5, True), (0.7, False)):
+        events = [parameter_bound(bound, upper, "the window")]
+        with pytest.raises(ContinuationError) as error:
+            continue_branch(CIRCLE, np.array([0.8, 0.6]), increasing=True, events=events)
+        one_line(error, "the start [0.8 0.6] lies beyond the end of the branch: the window")
+
+
 def test_start_is_corrected_at_its_own_parameter():
     assert solve_at(CIRCLE, np.array([0.9, 0.6])) == pytest.approx([0.8, 0.6], abs=EXACT)
     branch = continue_branch(CIRCLE, np.array([0.9, 0.6]), increasing=True, max_points=3)
     assert branch.points[0] == pytest.approx(np.array([0.8, 0.6]), abs=EXACT)
-
-
-def test_reversed_and_named():
-    events = [fold(CUBIC), parameter_bound(-1.0, False, "end")]
-    branch = continue_branch(CUBIC, np.array([0.0, 0.0]), increasing=True, events=events)
-    back = branch.reversed()
-    assert np.array_equal(back.points, branch.points[::-1])
-    assert np.array_equal(back.tangents, -branch.tangents[::-1])
-    assert [s.name for s in back.special] == ["parameter bound", "fold"]
-    assert (str(back.start), str(back.end)) == ("end", "starting point")
-    assert back.arclength[-1] == pytest.approx(branch.arclength[-1], rel=1e-14)
-    assert branch.named("nothing") == []
 
 
 def circle_arc(control):
@@ -300,13 +267,6 @@ def test_resampled_points_do_not_depend_on_the_step_control():
         assert angle == pytest.approx(expected, abs=1e-10)
 
 
-def test_resampled_points_of_a_straight_line_are_equally_spaced():
-    events = [parameter_bound(1.0, True, "window")]
-    branch = continue_branch(LINE, np.array([0.0, 0.0]), increasing=True, events=events)
-    points = resample(LINE, branch, 11)
-    assert points[:, 1] == pytest.approx(np.linspace(0, 1, 11), abs=EXACT)
-
-
 def test_resampling_with_too_long_steps(one_line):
     # Between two far points of a fast wave Newton runs out of iterations.
     wave = Scalar(
@@ -318,71 +278,3 @@ def test_resampling_with_too_long_steps(one_line):
     with pytest.raises(ContinuationError) as error:
         resample(wave, branch, 5, NewtonSettings(max_iterations=3))
     one_line(error, "resampling to 5 points failed with residual")
-
-
-def test_resampling_a_branch_of_one_point():
-    # A branch whose first step fails has one point only.
-    alone = Branch(np.array([[1.0, 0.0]]), np.array([[0.0, 1.0]]), (), STARTED, STARTED)
-    try:
-        points = resample(CIRCLE, alone, 3)
-    except ContinuationError as error:
-        assert "nan" not in str(error)
-    else:
-        assert points == pytest.approx(np.broadcast_to([1.0, 0.0], (3, 2)), abs=EXACT)
-
-
-class ImpactMap:
-    """Fixed points of the exact map: y = (φ, v, Λ)."""
-
-    def __init__(self, n, r):
-        self.n, self.r = n, r
-
-    def residual(self, y):
-        phase, v, lam = np.moveaxis(y, -1, 0)
-        s = 2 * np.pi * self.n
-        return np.stack(
-            [landing_gap(s, phase, v, lam) / s, bounce(s, phase, v, lam, self.r) - v], axis=-1
-        )
-
-    def jacobian(self, y):
-        phase, _, lam = np.moveaxis(y, -1, 0)
-        rise, zero = (1 + self.r) * np.cos(phase), np.zeros_like(lam)
-        rows = [
-            [zero, zero + 1, zero],
-            [-(1 + self.r) * lam * np.sin(phase), zero - 1 - self.r, rise],
-        ]
-        return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
-
-    def flip(self, y):
-        s = 2 * np.pi * self.n
-        jacobian = exact_map_jacobian(s, y[..., 0], y[..., 1], y[..., 2], self.r)
-        return period_doubling_function(*trace_and_determinant(jacobian))
-
-
-@pytest.mark.parametrize(("n", "r"), [(1, 0.85), (2, 0.5), (5, 0.65)])
-def test_restitution_map_as_a_problem(n, r):
-    problem = ImpactMap(n, r)
-    node, doubling = exact_orbits.saddle_node(n, r), exact_orbits.period_doubling(n, r)
-    start = np.array([0.3, n * np.pi, node / np.cos(0.3)])
-    top = 2 * float(doubling)
-    branch = continue_both_ways(
-        problem,
-        start,
-        events=[
-            fold(problem),
-            Event("period doubling", problem.flip),
-            parameter_bound(top, True, "window"),
-        ],
-        control=StepControl(largest=0.1),
-    )
-    scale = 1 + n * np.pi
-    [found] = branch.named("fold")
-    assert found == pytest.approx(np.array([0.0, n * np.pi, node]), abs=EXACT * scale)
-    [found] = branch.named("period doubling")
-    phase = float(exact_orbits.phase(n, r, doubling))
-    assert found == pytest.approx(np.array([phase, n * np.pi, doubling]), abs=EXACT * scale)
-    assert (str(branch.start), str(branch.end)) == ("window", "window")
-    assert branch.points[[0, -1], 2] == pytest.approx([top, top], abs=EXACT * scale)
-    # Λ cos φ is the same all along.
-    along = branch.points[:, 2] * np.cos(branch.points[:, 0])
-    assert along == pytest.approx(np.full(len(along), node), abs=EXACT * scale)

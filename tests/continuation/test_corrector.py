@@ -112,27 +112,6 @@ def test_running_out_of_iterations():
     assert found.step > 1e-3
 
 
-@pytest.mark.parametrize("count", [1, 5])
-def test_every_iteration_is_used(count):
-    class Counting(Circle):
-        calls = 0
-
-        def residual(self, y):
-            self.calls += 1
-            return super().residual(y)
-
-    problem, guess = Counting(), np.array([1.0, 2.0])
-    condition = plane(np.array([0.0, 1.0]), guess)
-    newton(problem, guess, condition, NewtonSettings(max_iterations=count))
-    assert problem.calls == count
-
-
-def test_does_not_change_the_guess():
-    guess = np.array([1.0, 0.6])
-    newton(Circle(), guess, plane(np.array([1.0, -2.0]), np.zeros(2)), NewtonSettings())
-    assert guess.tolist() == [1.0, 0.6]
-
-
 def test_tangent_is_the_unit_null_vector_on_the_given_side():
     rng = np.random.default_rng(3)
     for size in (1, 2, 5):
@@ -154,9 +133,3 @@ def test_null_vector_points_up_in_the_parameter():
         assert vector[-1] > 0
         assert np.linalg.norm(vector) == pytest.approx(1.0, abs=4 * EPS)
         assert jacobian @ vector == pytest.approx(np.zeros(size), abs=1e-12)
-
-
-def test_plane_broadcasts_its_normal():
-    value, gradient = plane(np.array([1.0, 2.0]), np.zeros(2))(np.ones((4, 2)))
-    assert value.tolist() == [3.0] * 4
-    assert gradient.tolist() == [[1.0, 2.0]] * 4

@@ -330,3 +330,26 @@ def test_what_is_refused(name):
         with pytest.raises(NoOrbitError, match=r"Λ = 0\.001 .*below the saddle-node"):
             model.require_orbit(1, 1e-3)
     assert model.permanent_contact_threshold() > 0
+
+
+@pytest.mark.parametrize("n", [1, 3])
+def test_a_restitution_law_by_hand(n):
+    # With v = w⁴ the speed of the orbits, v + r v = 2πn, is w⁴ + c^¼ w³ = 2πn, for v > c.
+    model, c = OWN["MODEL"], 0.7**0.25
+    w = max(np.roots([1, c, 0, 0, -2 * np.pi * n]).real)
+    level, r = w**4 - np.pi * n, c / w
+    # d(r v)/dv = 3r/4, and 1 + tr + det = 0 at Λ sin φ = 2(1 + ¾r²)/((1 + r)(1 + ¾r)).
+    lift = 2 * (1 + 0.75 * r * r) / ((1 + r) * (1 + 0.75 * r))
+    assert float(model.saddle_node(n).amplitude) == pytest.approx(level, rel=1e-12)
+    assert float(model.period_doubling(n).amplitude) == pytest.approx(np.hypot(level, lift))
+    orbit = model.orbit(n, level + 0.5)
+    assert float(orbit.phase) == pytest.approx(np.arccos(level / (level + 0.5)), rel=1e-12)
+    assert float(orbit.apparent_restitution) == pytest.approx(r, rel=1e-12)
+
+
+def test_each_impact_of_a_simulation_has_its_own_restitution():
+    found = OWN["MODEL"].simulate(0.4, np.array([0.0, 1.0]), np.array([-3.0, -5.0]), 30)
+    speed = -found.relative_velocity
+    expected = np.minimum(1.0, (0.7 / speed) ** 0.25)
+    np.testing.assert_allclose(found.apparent_restitution, expected, rtol=1e-12)
+    assert np.ptp(expected) > 0.1

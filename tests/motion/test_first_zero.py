@@ -5,7 +5,7 @@ import pytest
 
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper, contact_flow
 from bouncing_ball.motion.angles import table
-from bouncing_ball.motion.contacts import contact_cycle, simulate
+from bouncing_ball.motion.contact import contact_cycle, simulate
 from bouncing_ball.motion.landing import Flight, land
 
 # A gap function is known to about four units in the last place of its terms,

@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 from bouncing_ball.contacts.restitution_map import exact_map_jacobian
 from bouncing_ball.errors import ModelError
 from bouncing_ball.motion.history import history
-from bouncing_ball.motion.restitution import impact_cycle, lift_off_phase, simulate
+from bouncing_ball.motion.rest import lift_off_phase
+from bouncing_ball.motion.restitution import impact_cycle, simulate
 from bouncing_ball.motion.sequence import Status
 from bouncing_ball.orbits import restitution_orbit as orbits
 

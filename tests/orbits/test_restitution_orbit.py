@@ -132,14 +132,6 @@ def test_whole_branch(n, r, top):
     )
 
 
-def test_branches_of_several_families():
-    amplitude, angle = branch(np.array([1, 2, 3]), 0.85, 2.0, 7)
-    assert amplitude.shape == angle.shape == (3, 7)
-    single = branch(2, 0.85, 2.0, 7)
-    assert amplitude[1] == pytest.approx(single[0], rel=4 * EPS)
-    assert angle[1] == pytest.approx(single[1], abs=4 * EPS)
-
-
 def test_no_branch_below_the_saddle_node(one_line):
     with pytest.raises(NoOrbitError) as error:
         branch(2, 0.85, 0.5, 7)
@@ -173,10 +165,3 @@ def test_no_orbit_below_the_saddle_node(lam, one_line):
         phase(1, 0.85, lam)
     # Of several Λ the first one without an orbit is named.
     one_line(error, f"no 1-T orbit at Λ = {np.ravel(lam)[-1]:g}", "saddle-node at Λ = 0.254724")
-
-
-def test_no_orbit_of_one_of_several_families(one_line):
-    # The saddle-nodes are an array then.
-    with pytest.raises(NoOrbitError) as error:
-        phase(np.array([1, 3]), 0.85, 0.5)
-    one_line(error, "0.5", "saddle-node")

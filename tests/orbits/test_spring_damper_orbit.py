@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from bouncing_ball.contacts.damping import damping_ratio
-from bouncing_ball.contacts.spring_damper import Release, SpringDamper, contact_force
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import orbit_at
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
@@ -75,50 +75,6 @@ def test_one_cycle_by_numerical_integration(case):
     assert at_2[0] == pytest.approx(table(0)[0], abs=1e-8)
     # Its greatest height, from the integrated flight's own parabola.
     assert at_b[0] + at_b[1] ** 2 / 2 == pytest.approx(float(orbit.max_height), abs=1e-8)
-
-
-@pytest.mark.parametrize("case", CASES)
-def test_paths_join(case):
-    n, _, omega, lam, release = case
-    orbit = build(case)
-    zeta, phase = orbit.contact.damping_ratio, orbit.phase
-    # Lengths of up to (nπ)²/2 = 44, with the roundings of the closed form.
-    close = {"abs": 2e-12}
-    z, v = orbit.contact_path(np.array([0.0, float(orbit.contact_duration)]))
-    assert z[0] == pytest.approx(lam * np.sin(phase), **close)
-    assert v == pytest.approx([orbit.impact_velocity, orbit.bounce_velocity], **close)
-    z2, v2 = orbit.flight_path(np.array([float(orbit.contact_duration), 2 * np.pi * n]))
-    assert z2 == pytest.approx([z[1], z[0]], **close)
-    assert v2 == pytest.approx([orbit.bounce_velocity, orbit.impact_velocity], **close)
-    assert float(orbit.flight_time + orbit.contact_duration) == pytest.approx(
-        2 * np.pi * n, **close
-    )
-    # The release rule, whichever it is.
-    lift = z[1] - lam * np.sin(phase + orbit.contact_duration)
-    if release is Release.DISPLACEMENT:
-        assert lift == pytest.approx(0.0, **close)
-        assert contact_force(0.0, orbit.relative_bounce_velocity, omega, zeta) <= 0
-    else:
-        pull = contact_force(lift, orbit.relative_bounce_velocity, omega, zeta)
-        assert float(pull) == pytest.approx(0.0, abs=2e-12 * omega**2)
-        assert lift < 0
-
-
-def test_relative_velocities_and_apparent_restitution():
-    orbit = SpringDamperOrbit(2, SpringDamper(10.0, 0.1), 1.5, 0.4, 0.3, -6.0)
-    # By hand: bounce velocity -6 + 4π - 0.3.
-    assert orbit.bounce_velocity == pytest.approx(4 * np.pi - 6.3, rel=1e-15)
-    before, after = -6.0 - 1.5 * np.cos(0.4), 4 * np.pi - 6.3 - 1.5 * np.cos(0.7)
-    assert orbit.relative_impact_velocity == pytest.approx(before, rel=1e-15)
-    assert orbit.relative_bounce_velocity == pytest.approx(after, rel=1e-15)
-    assert orbit.apparent_restitution == pytest.approx(-after / before, rel=1e-15)
-
-
-def test_elastic_contacts_at_rest_return_all():
-    # r = 1 at the fold, Λ → 0: table at rest, r_a = 1 and ½v² = height.
-    contact = SpringDamper(30.0, 0.0)
-    orbit = SpringDamperOrbit.from_branch(branch_point(1e-9, contact, 1), contact, 1)
-    assert float(orbit.apparent_restitution) == pytest.approx(1.0, abs=1e-8)
 
 
 def test_max_height_of_a_ball_released_downwards():

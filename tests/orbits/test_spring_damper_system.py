@@ -16,7 +16,6 @@ from bouncing_ball.continuation.branch import (
 )
 from bouncing_ball.continuation.events import fold, parameter_bound
 from bouncing_ball.continuation.step_control import StepControl
-from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import orbit_at, period_doubling, saddle_node
 from bouncing_ball.orbits.spring_damper_system import Parameter, SpringDamperSystem
@@ -87,15 +86,6 @@ def test_jacobian_against_differences(values):
     assert np.all(np.abs(computed - np.array(columns).T) <= 1e-9 * size)
 
 
-def test_broadcasting():
-    system = SpringDamperSystem(1, 0.05, Parameter.AMPLITUDE, 10.0)
-    y = np.array([0.5, -3.0, 3.2, 1.0]) + np.linspace(0, 0.1, 6).reshape(2, 3, 1)
-    assert system.residual(y).shape == (2, 3, 3)
-    assert system.jacobian(y).shape == (2, 3, 3, 4)
-    assert system.residual(y)[1, 2] == pytest.approx(system.residual(y[1, 2]), abs=1e-14)
-    assert system.jacobian(y)[1, 2] == pytest.approx(system.jacobian(y[1, 2]), abs=1e-13)
-
-
 @pytest.mark.parametrize("release", list(Release))
 @pytest.mark.parametrize("omega", [2.0, 10.0, 1e4])
 @pytest.mark.parametrize("n", [1, 2, 3])
@@ -157,43 +147,6 @@ def test_continuation_along_the_frequency_ratio(n, r, lam, release):
     )
 
 
-def test_orbit_reads_both_parametrisations():
-    along = SpringDamperSystem(2, 0.1, Parameter.AMPLITUDE, 8.0, Release.FORCE)
-    orbit = along.orbit(np.array([0.3, -6.0, 3.2, 1.4]))
-    assert (orbit.n, orbit.contact.release) == (2, Release.FORCE)
-    assert [float(x) for x in (orbit.phase, orbit.impact_velocity, orbit.amplitude)] == [
-        0.3,
-        -6.0,
-        1.4,
-    ]
-    assert float(orbit.contact.frequency_ratio) == 8.0
-    assert float(orbit.contact_duration) == 0.4
-    across = SpringDamperSystem(2, 0.1, Parameter.LOG_FREQUENCY_RATIO, 1.4)
-    orbit = across.orbit(np.array([0.3, -6.0, 3.2, np.log(8.0)]))
-    assert float(orbit.amplitude) == 1.4
-    assert float(orbit.contact.frequency_ratio) == pytest.approx(8.0, rel=1e-15)
-    assert float(orbit.contact_duration) == pytest.approx(0.4, rel=1e-15)
-
-
-def test_guess_is_first_order_in_the_contact_time():
-    system = SpringDamperSystem(1, 0.05, Parameter.LOG_FREQUENCY_RATIO, 0.7)
-    distances = []
-    for omega in (1e3, 1e4):
-        guess = system.guess(0.7, omega)
-        distances.append(np.linalg.norm(solve_at(system, guess) - guess))
-    assert distances[1] / distances[0] == pytest.approx(0.1, abs=2e-3)
-
-
-def test_guess_where_there_is_no_orbit(one_line):
-    system = SpringDamperSystem(1, float(damping_ratio(0.85)), Parameter.AMPLITUDE, 1e4)
-    with pytest.raises(NoOrbitError) as error:
-        system.guess(0.2, 1e4)
-    one_line(error, "no 1-T orbit at Λ = 0.2", "saddle-node at Λ = 0.254724")
-    with pytest.raises(ModelError) as error:
-        SpringDamperSystem(1, 1.0, Parameter.AMPLITUDE, 1e4).guess(0.5, 1e4)
-    one_line(error, "ζ = 1.0", "[0, 1)")
-
-
 def test_guess_of_a_strongly_damped_contact_released_at_zero_force():
     # r = 0.3, half way between the bifurcations of the restitution orbit: the
     # study starts from here for every contact.
@@ -253,22 +206,6 @@ def test_flight_lost():
         for up in (True, False)
     }
     assert FLIGHT_LOST in reasons
-
-
-def test_terminal_events_are_positive_on_an_orbit():
-    system = SpringDamperSystem(1, 0.05, Parameter.AMPLITUDE, 10.0)
-    orbit = orbit_at(SpringDamper(10.0, 0.05), 1, 0.9)
-    y = np.array([orbit.phase, orbit.impact_velocity, 10.0 * orbit.contact_duration, 0.9])
-    events = {event.name: event for event in system.events()}
-    assert list(events) == [
-        "saddle-node",
-        "period doubling",
-        "contact lost",
-        "release lost",
-        "flight lost",
-    ]
-    assert [event.terminal for event in events.values()] == [False, False, True, True, True]
-    assert all(float(event.function(y)) > 0 for event in events.values())
 
 
 def test_the_branch_ends_where_the_ball_is_no_longer_thrown_off():

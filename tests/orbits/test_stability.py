@@ -72,9 +72,3 @@ def test_marginal_orbits_are_not_stable():
     for trace, det in ((0.5, 1.0), (2.0, 1.0), (1.5, 0.5), (-1.5, 0.5), (0.0, -1.0)):
         assert not bool(is_stable(trace, det))
     assert not bool(is_stable(np.nan, np.nan))
-
-
-def test_broadcasting():
-    assert multipliers(np.zeros((3, 4)), 0.5).shape == (3, 4, 2)
-    trace, det = trace_and_determinant(np.zeros((5, 2, 2)))
-    assert trace.shape == det.shape == (5,)

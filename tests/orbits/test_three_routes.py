@@ -6,7 +6,7 @@ import pytest
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane
-from bouncing_ball.motion.contacts import contact_cycle
+from bouncing_ball.motion.contact import contact_cycle
 from bouncing_ball.orbits import restitution_orbit as restitution
 from bouncing_ball.orbits.model import Absence
 from bouncing_ball.orbits.spring_damper_limits import orbit_at

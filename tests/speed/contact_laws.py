@@ -17,8 +17,7 @@ from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.laws import LAWS
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.motion import contacts
-from bouncing_ball.motion.law_impacts import simulate
+from bouncing_ball.motion.contact import simulate
 from bouncing_ball.orbits.law_model import LawModel
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
 
@@ -55,7 +54,7 @@ def simulations(repetitions: int) -> None:
         said = []
         for name in HERTZ:
             law = law_of_impact(LAWS[name], r, duration, rigid_speed(1, r))
-            runs = partial(contacts.simulate, linear, *start), partial(simulate, law, *start)
+            runs = partial(simulate, linear, *start), partial(simulate, law, *start)
             pairs = [tuple(map(per_impact, runs)) for _ in range(repetitions)]
             said.append(f"{name} {median(b / a for a, b in pairs):.1f}")
         cost = median(a for a, _ in pairs)

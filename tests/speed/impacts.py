@@ -14,7 +14,7 @@ import numpy as np
 
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.motion import contacts as spring_damper
+from bouncing_ball.motion import contact as spring_damper
 from bouncing_ball.motion import restitution
 
 CASES = [

@@ -5,7 +5,6 @@ import pytest
 
 from bouncing_ball.configuration.study import typed
 from bouncing_ball.contacts.collocation import contacts
-from bouncing_ball.contacts.laws.linear import Linear
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
 from bouncing_ball.studies.contact_laws import LINEAR, NAMES, exact_model, law_errors
@@ -37,7 +36,7 @@ def law_at_rigid_speed(name, duration):
     if name not in LINEAR:
         return model, model.law
     contact = model.contact
-    return model, Linear(contact.frequency_ratio, contact.damping_ratio, contact.release)
+    return model, contact
 
 
 def height_by_one_impact(law):

@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bouncing_ball.accuracy.error_law import REMAINDER, STATED
 from bouncing_ball.accuracy.quantities import OF_IMPACTS
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.parameters import Span
@@ -59,11 +58,3 @@ def test_a_fresh_sample_has_the_recorded_quantiles(drawn):
             assert above - spread <= share <= below + spread, (row["quantity"], low, high, key)
             compared += 1
     assert compared > 200
-
-
-def test_no_orbit_exceeds_the_stated_remainder(drawn):
-    _, errors = drawn
-    stated = np.isfinite(errors.remainder) & (errors.small_parameter < STATED)
-    assert stated.sum(axis=-1).min() > SIZE / 3
-    bound = np.array([*REMAINDER.values()])[:, np.newaxis]
-    assert not np.any((errors.remainder > bound) & stated)

@@ -6,9 +6,7 @@ DRAWINGS = "src/bouncing_ball/figures/__init__.py"
 FIGURE = "src/bouncing_ball/figures/heights.py"
 
 ENTRY = """BEYOND_THE_PAPER = {
-    "studies.frequency_sweeps.frequency_sweep": {
-        "ext_heights": "Greatest height along the frequency ratio",
-    },"""
+    "ext_heights": "studies.frequency_sweeps.frequency_sweep","""
 PARAMETERS = """  ext_heights:
     n: 1
     restitution: 0.85
@@ -80,7 +78,7 @@ def test_a_stage_on_the_dataset_of_another(fresh):
     (fresh.path / "src/bouncing_ball/studies/lowest.py").write_text(STUDY, encoding="utf-8")
     entry = """READS["lowest"] = ["fig11"]
 BEYOND_THE_PAPER = {
-    "studies.lowest.lowest": {"lowest": "Lowest threshold of permanent contact"},"""
+    "lowest": "studies.lowest.lowest","""
     fresh.rewrite(BEYOND, "BEYOND_THE_PAPER = {", entry)
     fresh.rewrite(CONFIG, "studies:\n  formulas:", "studies:\n  lowest: { n: 110 }\n  formulas:")
     assert said(fresh).startswith("configuration: studies.lowest.n = 110 must be at most 20")

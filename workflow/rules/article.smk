@@ -11,17 +11,15 @@ rule paper:
         error_law="config/error_law.csv",
         atlas="config/atlas.nc",
         references=[f"{ARTICLE}/references.yaml", f"{ARTICLE}/numbered.csl"],
-        data=datasets(STUDIES),
+        data=expand("results/figures/{name}.nc", name=STUDIES),
         tables=expand("results/figures/{table}.md", table=TABLES),
         source=modules(
             *("figures.article.render", "figures.atlas.tables", "figures.tables.error_law"),
-            *("claims.tally", "datasets.files", "datasets.netcdf"),
+            "claims.tally",
         ),
     output:
         paper="results/paper.md",
         tally="results/tally.txt",
-    params:
-        figures=sum(name.startswith("fig") for name in DRAWINGS),
     log:
         "results/logs/paper.log",
     benchmark:

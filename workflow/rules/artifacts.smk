@@ -2,20 +2,10 @@
 # Snakemake would not miss beside a figure that is there.
 
 
-def files(artifacts):
-    kinds = {
-        "nc": STUDIES,
-        "png": DRAWINGS,
-        "svg": DRAWINGS,
-        **dict.fromkeys(["csv", "md", "tex"], TABLES),
-        "html": ["explorer"],
-    }
-    return [
-        f"results/figures/{name}.{kind}"
-        for name in artifacts
-        for kind, names in kinds.items()
-        if name in names
-    ]
+def files(name):
+    kinds = ["nc"] * (name in STUDIES) + ["png", "svg"] * (name in DRAWINGS)
+    kinds += ["csv", "md", "tex"] * (name in TABLES) + ["html"] * (name == "explorer")
+    return [f"results/figures/{name}.{kind}" for kind in kinds]
 
 
 ARTIFACTS = sorted({*STUDIES, *DRAWINGS})
@@ -29,4 +19,4 @@ for name in ARTIFACTS:
         message:
             f"{name} is up to date"
         input:
-            files([name]),
+            files(name),

@@ -52,9 +52,6 @@ rule atlas_merge:
     params:
         title="The atlas: how stiff a contact must be",
         parameters=ATLAS,
-    resources:
-        runtime=60,
-        mem_mb=4000,
     log:
         "results/logs/atlas/atlas.log",
     benchmark:
@@ -63,43 +60,23 @@ rule atlas_merge:
         "../scripts/atlas_merge.py"
 
 
-rule atlas_summary:
-    message:
-        "Atlas: its summary"
-    input:
-        parts=[rules.atlas_merge.output.data],
-        source=modules("atlas.summary", "pipeline.atlas"),
-    output:
-        data="results/atlas/summary.nc",
-    params:
-        title="The atlas in short",
-        parameters=config["atlas"],
-    log:
-        "results/logs/atlas/summary.log",
-    benchmark:
-        "results/benchmarks/atlas/summary.tsv"
-    script:
-        "../scripts/atlas_summary.py"
-
-
 rule atlas:
     message:
-        "Atlas: charts and tables"
+        "Atlas: its summary, with charts and tables"
     input:
-        parts=[rules.atlas_summary.output.data],
-        source=modules(
-            "figures.atlas.charts",
-            "figures.atlas.tables",
-            "figures.tables.formats",
-            "pipeline.atlas",
-        ),
+        parts=[rules.atlas_merge.output.data],
+        source=modules("atlas.summary", "figures.atlas.charts", "figures.atlas.tables"),
     output:
+        data="results/atlas/summary.nc",
         charts=expand("results/atlas/{chart}.png", chart=CHARTS),
         shares="results/atlas/shares.md",
         worst="results/atlas/worst.md",
+    params:
+        title="The atlas in short",
+        parameters=config["atlas"],
     log:
         "results/logs/atlas/charts.log",
     benchmark:
         "results/benchmarks/atlas/charts.tsv"
     script:
-        "../scripts/atlas_charts.py"
+        "../scripts/atlas.py"

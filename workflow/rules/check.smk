@@ -1,19 +1,13 @@
 # The configuration is checked before anything runs, against the studies of all stages.
 
-from bouncing_ball.atlas.plan import AtlasParameters
-from bouncing_ball.configuration.check import check, configuration_model
-from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
+from bouncing_ball.configuration.check import check_configuration
 
-try:
-    # Snakemake has read these files already, and taken the last of equal keys.
-    for where in map(os.path.relpath, workflow.configfiles):
-        read_yaml(where)
-    where = "configuration"
-    if workflow.is_main_process:  # jobs need not look again
-        CONFIGURATION = configuration_model(STUDIES, config, atlas=AtlasParameters)
-        check(CONFIGURATION, config, release=config.get("release"))
-except ConfigurationError as error:
-    sys.exit(f"{where}: {error}")
+# Jobs need not look again.
+if workflow.is_main_process:
+    try:
+        check_configuration(map(os.path.relpath, workflow.configfiles), config, STUDIES)
+    except ConfigurationError as error:
+        sys.exit(error)
 
 
 rule config_docs:
@@ -22,7 +16,6 @@ rule config_docs:
         "Writing config/README.md and config/schema.json"
     params:
         studies=STUDIES,
-        folder=Path(ROOT, "config"),
     log:
         "results/logs/config_docs.log",
     script:

@@ -20,41 +20,34 @@ if shlex.quote(sys.executable) != sys.executable:
 # The repository, whichever Snakefile was called.
 ROOT = os.path.abspath(Path(str(workflow.current_basedir), "..", ".."))
 # Not the code of another checkout, whose environment this may be.
-HERE = Path(ROOT, "src", "bouncing_ball").resolve()
-package = find_spec("bouncing_ball")
-if package is None or Path(package.origin).resolve().parent != HERE:
-    found = Path(package.origin).parent if package else "nowhere"
+HERE = Path(ROOT, "src", "bouncing_ball")
+found = Path(getattr(find_spec("bouncing_ball"), "origin", "nowhere/at/all")).parent
+if found.resolve() != HERE.resolve():
     sys.exit(
         f"bouncing_ball is imported from {found}, not from {HERE}: use this checkout's .venv (make setup)"
     )
 
 from bouncing_ball.configuration.study import arguments
+from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
 from bouncing_ball.pipeline.sources import sources
 
 # Two lines before every job, which say nothing of it.
 logger.addFilter(lambda record: not str(record.msg).startswith(("Select jobs", "Execute ")))
 
-# Study and title of each artifact, and the artifacts whose datasets its study reads.
-STUDIES, TITLES, READS = {}, {}, {}
+# The study of each artifact, and the artifacts whose datasets it reads.
+STUDIES, READS = {}, {}
+TITLES = read_yaml(Path(ROOT, "workflow/report/titles.yaml"))
 
 
-def stages(table):
-    """Enter the artifacts of a stage, `{study: {artifact: title}}`; a pattern of their names."""
-    for study, titles in table.items():
-        STUDIES.update(dict.fromkeys(titles, study))
-        TITLES.update(titles)
-    return "|".join(name for titles in table.values() for name in titles)
+# Enter the artifacts of a stage, `{artifact: study}`; a pattern of their names.
+def stage(studies):
+    STUDIES.update(studies)
+    return "|".join(studies)
 
 
-def datasets(artifacts):
-    return [f"results/figures/{name}.nc" for name in artifacts]
-
-
+# Source files that a job uses: those modules and all that they import. Relative paths, so
+# that a folder may be moved without running all again.
 def modules(*names):
-    """Source files that a job uses: those modules and all that they import.
-
-    Relative paths, so that a folder may be moved without running all again.
-    """
     files = sources("bouncing_ball.pipeline.job", *(f"bouncing_ball.{name}" for name in names))
     return [os.path.relpath(file) for file in files]
 
@@ -65,7 +58,7 @@ rule study:
     message:
         "{wildcards.artifact}: {params.title}"
     input:
-        data=lambda wildcards: datasets(READS.get(wildcards.artifact, [])),
+        data=lambda w: expand("results/figures/{x}.nc", x=READS.get(w.artifact, [])),
         source=lambda wildcards: modules(STUDIES[wildcards.artifact].rpartition(".")[0]),
     output:
         data="results/figures/{artifact}.nc",
@@ -73,10 +66,8 @@ rule study:
         artifact="(?!)",
     params:
         study=lambda wildcards: STUDIES[wildcards.artifact],
-        title=lambda wildcards: TITLES[wildcards.artifact],
-        arguments=lambda wildcards: arguments(
-            STUDIES[wildcards.artifact], wildcards.artifact, config
-        ),
+        title=lambda wildcards: TITLES.get(wildcards.artifact, wildcards.artifact),
+        arguments=lambda w: arguments(STUDIES[w.artifact], w.artifact, config),
     log:
         "results/logs/stages/{artifact}.log",
     benchmark:

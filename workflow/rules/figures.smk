@@ -3,11 +3,7 @@
 
 from bouncing_ball.figures import DRAWINGS
 
-
-def caption(name):
-    own = Path(ROOT, f"workflow/report/{name}.rst").is_file()
-    return f"../report/{name if own else 'figure'}.rst"
-
+CAPTIONS = [path.stem for path in Path(ROOT, "workflow/report").glob("*.rst")]
 
 for name, drawing in DRAWINGS.items():
 
@@ -17,19 +13,15 @@ for name, drawing in DRAWINGS.items():
         message:
             f"Drawing {name}"
         input:
-            data=datasets([name] if name in STUDIES else []),
-            source=modules(
-                f"figures.{drawing}".rpartition(".")[0],
-                "figures.files",
-                "datasets.netcdf",
-            ),
+            data=[f"results/figures/{name}.nc"] if name in STUDIES else [],
+            source=modules(f"figures.{drawing}".rpartition(".")[0], "figures.files"),
             settings=os.path.relpath(Path(ROOT, "src/bouncing_ball/figures/matplotlibrc")),
         params:
             drawing=f"figures.{drawing}",
         output:
             png=report(
                 f"results/figures/{name}.png",
-                caption=caption(name),
+                caption=f"../report/{name if name in CAPTIONS else 'figure'}.rst",
                 category="Figures" if name.startswith("fig") else "Beyond the paper",
                 labels={"figure": name},
             ),
@@ -42,18 +34,19 @@ for name, drawing in DRAWINGS.items():
             "../scripts/figure.py"
 
 
+EXPLORER = os.path.relpath(HERE / "figures/explorer")
+
+
 # The page to explore the models, with the orbits that it checks itself against.
 rule draw_explorer:
     message:
         "Writing results/figures/explorer.html"
     input:
         data="results/figures/explorer.nc",
-        texts=sorted(
-            os.path.relpath(path)
-            for path in Path(ROOT, "src/bouncing_ball/figures/explorer").iterdir()
-            if path.suffix in (".js", ".css", ".j2")
+        texts=expand(
+            f"{EXPLORER}/{{name}}", name=["model.js", "page.js", "page.css", "page.html.j2"]
         ),
-        source=modules("figures.explorer.document", "datasets.netcdf", "datasets.files"),
+        source=modules("figures.explorer.document"),
     output:
         html="results/figures/explorer.html",
     log:

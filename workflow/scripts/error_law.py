@@ -3,13 +3,14 @@
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.figures.tables.formats import to_csv
-from bouncing_ball.parameters import Span
 from bouncing_ball.pipeline.job import logged
 from bouncing_ball.studies.law_distribution import HEADER, sample, summary
+from bouncing_ball.studies.model_errors import Orders
 
 with logged(snakemake) as lines:
-    given, rows = snakemake.params, []
+    given, rows = Orders(**snakemake.params.orders), []
     for release in Release:
-        rows += summary(sample(given.size, given.seed, Span(**given.span), release), release)
+        drawn = sample(snakemake.params.size, given.random.seed, given.frequency_ratio, release)
+        rows += summary(drawn, release)
         lines.append(release)
     write_text(snakemake.output.summary, to_csv(HEADER, rows))

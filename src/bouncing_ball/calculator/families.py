@@ -113,29 +113,29 @@ def _loads(case: Case, orbit: Orbit) -> tuple[float, float]:
     return depth, greatest(lambda time: state(time)[1], duration)
 
 
-def first_order(instant: Instant, n: int, amplitude: float) -> tuple[Errors, bool]:
-    """Moduli of the first-order errors, and whether the law is stated there.
+def by_error_law(
+    instant: Instant, contact: SpringDamper | None, n: int, amplitude: float
+) -> tuple[Errors, bool]:
+    """Moduli of the restitution model's errors by the error law, and whether it holds there.
 
-    Permanent contact has none: its error is of the second order.
-    """
-    absent: Errors = dict.fromkeys(map(str, Quantity))
-    if not RestitutionModel(instant.restitution).orbit(n, amplitude).exists:
-        return absent, False
-    first = error_law.first_order(n, instant, amplitude)
-    errors = absent | {str(name): finite(abs(value)) for name, value in first.items()}
-    return errors, bool(error_law.small_parameter(n, instant, amplitude) < error_law.STATED)
-
-
-def permanent_law(contact: SpringDamper) -> float:
-    """|K₂|/ϖ², the error of the restitution model's permanent contact.
+    Without a linear contact that of the permanent contact, |K₂|/ϖ², is not known.
 
     Examples
     --------
-    >>> permanent_law(SpringDamper(10.0, 0.0))
+    >>> contact = SpringDamper(10.0, 0.0)
+    >>> from bouncing_ball.contacts.signature import LinearSignature
+    >>> by_error_law(LinearSignature(contact)(), contact, 1, 1.0)[0]["permanent_contact"]
     0.01
     """
-    second = error_law.permanent_contact_coefficient(contact.damping_ratio, contact.release)
-    return abs(float(second)) / float(contact.frequency_ratio) ** 2
+    errors: Errors = dict.fromkeys(map(str, Quantity))
+    if contact is not None:
+        second = error_law.permanent_contact_coefficient(contact.damping_ratio, contact.release)
+        errors[Quantity.PERMANENT_CONTACT] = finite(abs(second) / contact.frequency_ratio**2)
+    if not RestitutionModel(instant.restitution).orbit(n, amplitude).exists:
+        return errors, False
+    for name, value in error_law.first_order(n, instant, amplitude).items():
+        errors[str(name)] = finite(abs(value))
+    return errors, bool(error_law.small_parameter(n, instant, amplitude) < error_law.STATED)
 
 
 class _InModel(NamedTuple):
@@ -219,9 +219,8 @@ def _family(case: Case, n: int, k: Any, found: Mapping[str, _InModel]) -> Family
     exact, restitution, corrected = found.values()
     there, orbit = next(iter(standing.values())), exact.orbit[k]
     depth, force = _loads(case, orbit)
-    law_errors, holds = first_order(case.instant(n), n, lam)
-    if case.law is None:
-        law_errors[Quantity.PERMANENT_CONTACT] = permanent_law(case.contact)
+    linear = case.contact if case.law is None else None
+    law_errors, holds = by_error_law(case.instant(n), linear, n, lam)
     return Family(
         n=n,
         exists=there.exists,

@@ -6,7 +6,7 @@ import numpy as np
 
 from bouncing_ball.accuracy.quantities import OF_ORBITS, Quantity
 from bouncing_ball.accuracy.thresholds import search
-from bouncing_ball.calculator.families import finite, first_order, permanent_law
+from bouncing_ball.calculator.families import by_error_law, finite
 from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits.restitution_model import RestitutionModel
@@ -56,12 +56,11 @@ def needed(
     if quantity in OF_ORBITS and not simple.orbit(n, amplitude).exists:
         return Needed(quantity, tolerance, None, None, None, NO_ORBIT, NO_ORBIT)
     found = search(zeta, rule, n, amplitude, RATIOS, tolerance, (quantity,))
-    # The error law's K is the error at ϖ = 1.
+    # The error law's K is the error at ϖ = 1, of second order for the permanent contact.
     unit = SpringDamper(1.0, zeta, rule)
-    if quantity == Quantity.PERMANENT_CONTACT:
-        by_law: float | None = (permanent_law(unit) / tolerance) ** 0.5
-    else:
-        coefficient = first_order(LinearSignature(unit)(), n, amplitude)[0][quantity]
-        by_law = None if coefficient is None else coefficient / tolerance
+    coefficient = by_error_law(LinearSignature(unit)(), unit, n, amplitude)[0][quantity]
+    by_law = None if coefficient is None else coefficient / tolerance
+    if by_law is not None and quantity == Quantity.PERMANENT_CONTACT:
+        by_law = by_law**0.5
     ratio, corrected = map(finite, found.threshold[:, 0, 0])
     return Needed(quantity, tolerance, ratio, by_law, corrected, *map(str, found.status[:, 0, 0]))

@@ -19,8 +19,9 @@ from bouncing_ball.claims.flow import contact_matrix, fall_matrix, flow, matrix,
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.motion.angles import reduce_angle
-from bouncing_ball.motion.contacts import contact_cycle
-from bouncing_ball.motion.restitution import impact_cycle, lift_off_phase
+from bouncing_ball.motion.contact import contact_cycle
+from bouncing_ball.motion.rest import lift_off_phase
+from bouncing_ball.motion.restitution import impact_cycle
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import orbit_at, saddle_node
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit

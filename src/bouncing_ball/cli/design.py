@@ -1,8 +1,7 @@
 """``bouncing-ball design``: the calculator's answer, as JSON or to read."""
 
 import argparse
-import math
-from dataclasses import fields, is_dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -46,7 +45,7 @@ def design(*, plot: Annotated[Path | None, drawing] = None, **given: Any) -> Ans
     found = calculator.design(**given)
     if plot is not None:
         _draw(found, plot)
-    return answer(found)
+    return asdict(found)
 
 
 def _draw(found: Design, path: Path) -> None:
@@ -55,7 +54,7 @@ def _draw(found: Design, path: Path) -> None:
     from bouncing_ball.figures.files import save
     from bouncing_ball.figures.style import style
 
-    said = answer(found)
+    said = asdict(found)
     judged = next(one for one in said["orbits"] if one["n"] == said["n"])
     with style():
         figure = draw(said, page(found), _contact_values(said) + _orbit_values(judged))
@@ -63,19 +62,6 @@ def _draw(found: Design, path: Path) -> None:
             save(figure, path, {"Title": "bouncing-ball design"})
         except OSError as error:
             raise ModelError(f"{path} cannot be written: {error.strerror}") from None
-
-
-def answer(value: Any) -> Any:
-    """A dataclass, and all in it, as plain values; what is not finite is null."""
-    if is_dataclass(value) and not isinstance(value, type):
-        return {f.name: answer(getattr(value, f.name)) for f in fields(value)}
-    if isinstance(value, dict):
-        return {str(key): answer(each) for key, each in value.items()}
-    if isinstance(value, list | tuple):
-        return [answer(each) for each in value]
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    return str(value) if isinstance(value, str) else value
 
 
 def _row(name: str, *columns: str) -> str:

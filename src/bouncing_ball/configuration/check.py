@@ -5,14 +5,15 @@ allowed, and why, stands beside the study.
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any
 
 from pydantic import BaseModel, ValidationError, create_model
 
+from bouncing_ball.atlas.plan import AtlasParameters
 from bouncing_ball.configuration.study import SECTIONS, section, taken
-from bouncing_ball.configuration.yaml_file import ConfigurationError
+from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
 from bouncing_ball.parameters import Parameters
 
 
@@ -20,9 +21,7 @@ class _Sections(Parameters, strict=False):
     """The whole configuration, whose release rule is written as a text."""
 
 
-def configuration_model(
-    studies: Mapping[str, str], config: Mapping[str, Any], **others: type[Parameters]
-) -> type[BaseModel]:
+def configuration_model(studies: Mapping[str, str], config: Mapping[str, Any]) -> type[BaseModel]:
     """The type of the whole configuration.
 
     Parameters
@@ -31,8 +30,6 @@ def configuration_model(
         The study of each artifact.
     config : mapping
         The configuration, which says in which section an artifact is.
-    **others : type
-        Of sections that no study takes.
 
     Raises
     ------
@@ -40,7 +37,7 @@ def configuration_model(
         If a study is missing, or the parameters of an artifact.
     """
     places: dict[str, dict[str, Any]] = {name: {} for name in SECTIONS}
-    keys: dict[str, Any] = {}
+    keys: dict[str, Any] = {"atlas": (AtlasParameters, ...)}
     for artifact, study in studies.items():
         for name, kind in taken(study).items():
             if name == "parameters":
@@ -51,13 +48,35 @@ def configuration_model(
     for name, fields in places.items():
         fields = _in_order(fields, config.get(name))
         keys[name] = (create_model(name, __base__=Parameters, **fields), ...)
-    keys |= {name: (kind, ...) for name, kind in others.items()}
     return create_model("Configuration", __base__=_Sections, **_in_order(keys, config))
 
 
 def _in_order(fields: Mapping[str, Any], given: Any) -> dict[str, Any]:
     """Fields in the order in which the configuration has them, missing ones last."""
     return {name: fields[name] for name in [*(given or ()), *fields] if name in fields}
+
+
+def check_configuration(
+    files: Iterable[str], config: Mapping[str, Any], studies: Mapping[str, str]
+) -> None:
+    """Raise on the first mistake in the files of a run, or in what it has read of them.
+
+    Raises
+    ------
+    ConfigurationError
+        One line that names the file, or the key.
+    """
+    for where in files:
+        try:
+            # Snakemake has read it already, and taken the last of equal keys.
+            read_yaml(where)
+        except ConfigurationError as error:
+            raise ConfigurationError(f"{where}: {error}") from None
+    try:
+        model = configuration_model(studies, config)
+        check(model, config, release=config.get("release"))
+    except ConfigurationError as error:
+        raise ConfigurationError(f"configuration: {error}") from None
 
 
 def check(model: type[BaseModel], config: Mapping[str, Any], **context: Any) -> None:

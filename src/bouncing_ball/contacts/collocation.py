@@ -1,49 +1,84 @@
-r"""One contact of any law under load, by collocation with spectral accuracy.
+r"""One contact of any law, from its start to its release: Gauss collocation by panels.
 
-The unknowns are the acceleration at the nodes of :mod:`bouncing_ball.contacts.quadrature`,
-as ``B = D p″``, the duration D, and the end of the contact, p′_e and e = p_e/D ::
+A law with m roots is smooth in ``q = p^{1/m}`` and p′, and so is the motion in a time s of its
+own, also at the ends of the contact where p = 0 ::
 
-    B = D [1 - Λ sin(φ + D S) - f(p, p′)]
-    p′_e = v + gain B,    e = v + lift B,    grip(D e, p′_e) = 0
+    dq/ds = p′,    dp′/ds = F = λ [a - f(p, p′)],    dt/ds = λ = m q^{m-1}
 
-They are solved for by Newton's method with the exact Jacobian, for many contacts at
-once; the matrix of the last step also gives the derivatives of the end in the start.
+with the load ``a = w - Λ sin(φ + t)``. The contact is cut into panels. Over each, the values of
+p′ at Gauss' 16 nodes are found by Picard's iteration, for many contacts at once; a sweep
+is three products with one small matrix. The length of the panel that reaches the
+release is found in the same sweeps, by Newton's method.
 
-The nodes are doubled until a contact has converged: Newton's steps have fallen to
-rounding, the last Legendre coefficients of B are below 10⁻⁷ of the largest, and
-doubling has moved the end by less than 10⁻⁴. D and p′_e are then right to better
-than 10⁻¹², as their error falls twice as fast as the coefficients. What does not
-converge with the most nodes is NaN: no contact.
+A panel is good if the sweeps have converged, if the last Legendre coefficients of what
+is integrated are small, and if the ball is held at all nodes; else it is tried again, shorter.
+The error of a panel's end falls twice as fast as these coefficients (Gauss), so that D, p
+and p′ are right to better than 10⁻¹² of their scales. What is not certified: that the
+grip has not vanished and come back between two nodes, a small part of an oscillation;
+and no contact is proved to last for ever.
+
+The derivatives of the end are those of the collocation's own equations, one linear system
+for each panel.
 """
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.first_guess import Guess, Start, first_guess
-from bouncing_ball.contacts.laws.contact_law import ContactLaw
-from bouncing_ball.contacts.quadrature import Scheme, node_of, scheme, share, share_rate
+from bouncing_ball.contacts.contact_law import ContactLaw
+from bouncing_ball.contacts.contact_scales import scales
+from bouncing_ball.contacts.quadrature import scheme
+from bouncing_ball.contacts.release import Release
 
-# Numbers of nodes, and contacts at a time: their matrices fit into the cache.
-_LEVELS = (20, 40, 80, 160)
-_BLOCK = 64
-# Newton steps on each level; the first only has to come near, from a guess.
-_ITERATIONS = 12
-_NEAR, _THERE = 1e-6, 1e-11
-# Last Legendre coefficients over the largest, and how far doubling may move the end.
-_SPECTRUM, _MOVED = 1e-7, 1e-4
-_TAIL = 3
-_TINY = 1e-300
+_NODES = 16
+# Sweeps at most, and the last change of p′ in parts of V at which they stop, and at which the
+# panel is good enough: the next change would be a hundredth of it.
+_SWEEPS, _SETTLED, _ENOUGH = 22, 3e-13, 1e-12
+# What may be left of the grip, or of the time, relative to its change over the panel: it is
+# added to first order. And the sweep from which on the panel's end is looked at.
+_REACHED, _LOOK = 1e-9, 2
+# Last Legendre coefficients of what is integrated, over V or P/V; and the change in a
+# sweep early on, which tells how many there will be.
+_SPECTRUM, _TAIL = 1e-5, 2
+_EARLY, _CHANGE = 5, 1e-3
+# Length of the first panel in parts of P^{1/m}/V.
+_FIRST = 0.8
+# Bounds of the change from one length to the next, and of that of a refused panel.
+_SHORTER, _LONGER, _SAFETY, _AGAIN = 0.3, 1.3, 0.9, 0.6
+# Contacts worked on at once: their nodes fit into the cache.
+_BLOCK = 1024
+# Panels of one contact at most: a dozen oscillations of an orbit's, some hundreds in a
+# simulation.
+_PANELS, MOST_PANELS = 120, 2000
+# A ball at rest on the table, in parts of V: its q is slow, and its time is not.
+_AT_REST = 1e-9
+# The end of the contact is taken where less than this part of it is left.
+_END = 1e-12
+
+
+class Start(NamedTuple):
+    """Starts of contact, one-dimensional: p, p′, the table's phase φ, Λ, and the ball's
+    weight w (1, or 0 for a free impact)."""
+
+    depth: np.ndarray
+    rate: np.ndarray
+    phase: np.ndarray
+    amplitude: np.ndarray
+    weight: np.ndarray
+
+    def take(self, which) -> "Start":
+        """Some of the contacts."""
+        return Start(*(x[which] for x in self))
 
 
 class Contacts(NamedTuple):
-    """Contacts, in a row. NaN where none was found.
+    """Contacts by their ends. NaN where none was found.
 
     ``jacobian`` has the derivatives of the end (D, p_e, p′_e) in the start (φ, v), Λ and
     the weight, shape (..., 3, 4). ``contraction`` is by what the contact multiplies areas
     of the phase plane, exp(-∫ ∂f/∂p′ dt), and the step of the force at the release.
-    ``spectrum`` has the Legendre coefficients of B.
     """
 
     duration: np.ndarray
@@ -51,185 +86,307 @@ class Contacts(NamedTuple):
     rate: np.ndarray
     jacobian: np.ndarray
     contraction: np.ndarray
-    spectrum: np.ndarray
 
 
-class _State(NamedTuple):
-    """Unknowns at a level, and the motion p = D h, p′ = u that they stand for."""
+class _Rule(NamedTuple):
+    """Gauss' nodes in (0, 1), the integrals up to them and up to 1, the last Legendre
+    coefficients, and the value at 1."""
 
+    node: np.ndarray
+    integral: np.ndarray
+    tail: np.ndarray
+    end: np.ndarray
+
+
+@lru_cache(maxsize=1)
+def _rule() -> _Rule:
+    s = scheme(_NODES, 1)
+    inner = s.rate + np.outer(~s.early, s.gain)
+    return _Rule(
+        s.node[:, np.newaxis], np.vstack([inner, s.gain]), s.spectrum[-_TAIL:], s.spectrum.sum(0)
+    )
+
+
+class _Motion(NamedTuple):
+    """Balls in contact: q, p′, t and F, the length of the next panel, and the scales P and V."""
+
+    root: np.ndarray
+    rate: np.ndarray
+    time: np.ndarray
     push: np.ndarray
-    duration: np.ndarray
-    end_rate: np.ndarray
-    end_depth: np.ndarray
-    u: np.ndarray
-    h: np.ndarray
+    step: np.ndarray
+    length: np.ndarray
+    speed: np.ndarray
 
 
-def _state(s: Scheme, start: Start, z: np.ndarray) -> _State:
-    n = len(s.node)
-    push, (duration, rate, depth) = z[:, :n], (z[:, n + k, np.newaxis] for k in range(3))
-    v = start.speed[:, np.newaxis]
-    u = np.where(s.early, v, rate) + push @ s.rate.T
-    h = np.where(s.early, v * s.share, depth - rate * s.rest) + push @ s.path.T
-    return _State(push, duration, rate, depth, u, h)
+class _Panel(NamedTuple):
+    """A panel: q, p′ and t at its nodes and its end, F at the nodes and at the end, its length,
+    that of the next, whether it is good, and whether it ends the contact."""
+
+    root: np.ndarray
+    rate: np.ndarray
+    time: np.ndarray
+    push: np.ndarray
+    final: np.ndarray
+    step: np.ndarray
+    following: np.ndarray
+    good: np.ndarray
+    last: np.ndarray
+
+    def take(self, which) -> "_Panel":
+        return _Panel(*(x[..., which] for x in self))
 
 
-def _equations(s: Scheme, law: ContactLaw, start: Start, z: np.ndarray):
-    """Residual (…, n + 3), its Jacobian, and minus its derivatives in φ, v, Λ and weight."""
-    n, state = len(s.node), _state(s, start, z)
-    duration, row, column = state.duration, law.columns(), start.columns()
-    # An iterate may go below the table's level; a solution does not.
-    p = np.maximum(duration * state.h, _TINY)
-    by_p, by_u = row.slopes(p, state.u)
-    angle = column.phase + duration * s.share
-    sine, cosine = np.sin(angle), column.amplitude * np.cos(angle)
-    total = column.weight - column.amplitude * sine - row.force(p, state.u)
-    end, rate = state.duration[:, 0] * state.end_depth[:, 0], state.end_rate[:, 0]
-    by_end = law.grip_slopes(end, rate)
-
-    residual = np.empty_like(z)
-    residual[:, :n] = state.push - duration * total
-    residual[:, n] = rate - start.speed - state.push @ s.gain
-    residual[:, n + 1] = z[:, n + 2] - start.speed - state.push @ s.lift
-    residual[:, n + 2] = law.grip(end, rate) / z[:, n]
-
-    jacobian = np.zeros((len(z), n + 3, n + 3))
-    inner = jacobian[:, :n, :n]
-    np.multiply((duration * duration * by_p)[:, :, np.newaxis], s.path, out=inner)
-    inner += (duration * by_u)[:, :, np.newaxis] * s.rate
-    inner[:, np.arange(n), np.arange(n)] += 1
-    late = ~s.early
-    deep = duration * by_p
-    jacobian[:, :n, n] = deep * state.h - total + duration * cosine * s.share
-    jacobian[:, :n, n + 1] = late * duration * (by_u - deep * s.rest)
-    jacobian[:, :n, n + 2] = late * duration * deep
-    jacobian[:, n, :n], jacobian[:, n, n + 1] = -s.gain, 1
-    jacobian[:, n + 1, :n], jacobian[:, n + 1, n + 2] = -s.lift, 1
-    jacobian[:, n + 2, n] = (by_end.by_penetration * z[:, n + 2] - residual[:, n + 2]) / z[:, n]
-    jacobian[:, n + 2, n + 1] = by_end.by_rate / z[:, n]
-    jacobian[:, n + 2, n + 2] = by_end.by_penetration
-
-    right = np.zeros((len(z), n + 3, 5))
-    right[:, :, 0] = residual
-    right[:, :n, 1] = -duration * cosine
-    right[:, :n, 2] = -(s.early * duration) * (deep * s.share + by_u)
-    right[:, n : n + 2, 2] = 1
-    right[:, :n, 3] = -duration * sine
-    right[:, :n, 4] = duration
-    return jacobian, right
+def _lever(law: ContactLaw, root):
+    """λ = dp/dq, by products, which cost less than a power."""
+    lever = law.root * np.ones_like(root)
+    for _ in range(law.root - 1):
+        lever *= root
+    return lever
 
 
-def _newton(s: Scheme, law: ContactLaw, start: Start, z: np.ndarray, enough: float):
-    """Solutions, derivatives of the unknowns, and which have converged."""
-    n = len(s.node)
-    slopes = np.full((*z.shape, 4), np.nan)
-    done = np.zeros(len(z), dtype=bool)
-    active = np.arange(len(z))
-    for _ in range(_ITERATIONS):
-        matrix, right = _equations(s, law.take(active), start.take(active), z[active])
-        solvable = np.all(np.isfinite(right), axis=(1, 2)) & np.all(
-            np.isfinite(matrix), axis=(1, 2)
-        )
-        matrix[~solvable] = np.eye(n + 3)
-        try:
-            found = np.linalg.solve(matrix, right)
-        except np.linalg.LinAlgError:
+def _load(start: Start, time):
+    """a = w - Λ sin(φ + t), by the tangent of the half angle, which costs less than a sine."""
+    tangent = np.tan((start.phase + time) / 2)
+    return start.weight - 2 * start.amplitude * tangent / (1 + tangent * tangent)
+
+
+def _grip(law: ContactLaw, root, rate):
+    """What vanishes at the release: the grip, or q where that is a power of q."""
+    if law.release is Release.DISPLACEMENT:
+        return root
+    grip = law.grip(root**law.root, rate)
+    return grip if law.lag is None else np.where(law.lag == 0, root, grip)
+
+
+def _grip_slopes(law: ContactLaw, root, rate):
+    """Its derivatives by q and p′."""
+    one = np.ones_like(root)
+    if law.release is Release.DISPLACEMENT:
+        return one, 0 * one
+    by = law.grip_slopes(root**law.root, rate)
+    by_root = by.by_penetration * _lever(law, root)
+    return by_root if law.lag is None else np.where(law.lag == 0, one, by_root), by.by_rate
+
+
+def _left(law: ContactLaw, root, rate, time, until):
+    """What vanishes at the end of the contact."""
+    return _grip(law, root, rate) if until is None else until - time
+
+
+def _falls(law: ContactLaw, now: _Motion, root, rate, final, step, until):
+    """Its derivative in s, and its unit."""
+    if until is not None:
+        return -_lever(law, root), 1e-4 * now.length / now.speed
+    by_root, by_rate = _grip_slopes(law, root, rate)
+    falls = by_root * rate + by_rate * final
+    return falls, np.abs(falls) * step
+
+
+def _panel(law: ContactLaw, start: Start, now: _Motion, until: np.ndarray | None) -> _Panel:
+    """The next panel of each ball, to the release, or to a time, if that comes first."""
+    node, integral, tail, end = _rule()
+    rate = now.rate + node * (now.step * now.push)
+    last, longer, more = np.zeros(now.step.size, dtype=bool), now.step, np.zeros(now.step.size)
+    reached = ~last
+    for sweep in range(_SWEEPS):
+        step = longer
+        q = now.root + step * (integral @ rate)
+        lever = _lever(law, q[:-1])
+        t = now.time + step * (integral @ lever)
+        push = lever * (_load(start, t[:-1]) - law.force(q[:-1] * lever / law.root, rate))
+        new = now.rate + step * (integral @ push)
+        before, rate = rate, new[:-1]
+        if sweep < _LOOK:
+            continue
+        left = _left(law, q[-1], new[-1], t[-1], until)
+        last |= left <= 0
+        if last.any():
+            falls, unit = _falls(law, now, q[-1], new[-1], end @ push, step, until)
+            more = np.where(falls < 0, -left / falls, -step)
+            more = np.where(last, np.maximum(np.minimum(more, step / 2), -step / 2), 0.0)
+            reached = ~last | (np.abs(left) <= _REACHED * unit)
+            longer = step + more
+        if sweep < _EARLY:
+            continue
+        change = np.abs(rate - before).max(axis=0) / now.speed
+        if sweep == _EARLY:
+            early = change
+        if (reached & (change <= _SETTLED)).all():
             break
-        step = np.where(solvable[:, np.newaxis], found[:, :, 0], np.nan)
-        # A contact may get shorter or longer by half of itself at once.
-        size = np.abs(step[:, n]) / z[active, n]
-        step *= np.minimum(1.0, 0.5 / np.maximum(size, _TINY))[:, np.newaxis]
-        z[active] -= step
-        slopes[active] = found[:, :, 1:]
-        speed = np.abs(start.speed[active]) + np.abs(z[active, n + 1])
-        size = np.maximum(size, np.abs(step[:, n + 1]) / speed)
-        done[active] = size <= enough
-        active = active[(size > enough) & np.isfinite(size)]
-        if not active.size:
-            break
-    return z, slopes, done
+    # What is still left, to first order.
+    q[-1] += new[-1] * more
+    t[-1] += _lever(law, q[-1]) * more
+    final = end @ push
+    new[-1] += final * more
+    by_rate, by_time = (np.abs(tail @ x).max(axis=0) for x in (push, lever))
+    error = np.maximum(by_rate / now.speed, by_time * now.speed / now.length) * step
+    held = ((q[:-1] > 0) & (_grip(law, q[:-1], rate) > 0)).all(axis=0)
+    good = reached & held & (change <= _ENOUGH) & (error <= _SPECTRUM)
+    slower = np.minimum(
+        (error / _SPECTRUM) ** (-1 / _NODES), (early / _CHANGE) ** (-1 / (2 * _EARLY))
+    )
+    factor = np.where(np.isnan(slower), _SHORTER, np.clip(_SAFETY * slower, _SHORTER, _LONGER))
+    following = np.where(good, step * factor, now.step * np.minimum(factor, _AGAIN))
+    return _Panel(q, new, t, push, final, step, following, good, last)
 
 
-def _from_guess(s: Scheme, start: Start, guess: Guess) -> np.ndarray:
-    """Unknowns on a level, from the accelerations of a rough path."""
-    duration = guess.duration[:, np.newaxis]
-    time = duration * s.share
-    passed = np.sum(guess.time[:, :, np.newaxis] <= time, axis=0)
-    before = np.clip(passed - 1, 0, len(guess.time) - 2)
+def _derivatives(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray):
+    """The derivatives of (q, p′, t) at the end of panels by (φ, v, Λ, w), shape (..., 3, 4),
+    from those at the start; and ∫ ∂F/∂p′ ds.
 
-    def at(table, index):
-        return np.take_along_axis(table, index.T, axis=0).T
+    They solve the collocation's equations, linearised at the nodes ::
 
-    left, width = at(guess.time, before), at(guess.time, before + 1) - at(guess.time, before)
-    part = np.clip(np.where(width > 0, (time - left) / np.where(width > 0, width, 1), 0), 0, 2)
-    first, second = at(guess.acceleration, before), at(guess.acceleration, before + 1)
-    push = duration * (first + part * (second - first))
-    return _unknowns(s, start, push, guess.duration)
+        δF = F_q δq + F_u δp′ + F_t (δφ + δt) + F_Λ δΛ + F_w δw
+    """
+    node, integral, _, _ = _rule()
+    m, q, rate = law.root, panel.root[:-1].T, panel.rate[:-1].T
+    angle = start.phase[:, np.newaxis] + panel.time[:-1].T
+    lever, bend = _lever(law, q), m * (m - 1) * q ** max(m - 2, 0)
+    slopes = law.columns().slopes(q**m, rate)
 
+    def column(rows):
+        return rows[:, :, np.newaxis]
 
-def _unknowns(s: Scheme, start: Start, push, duration) -> np.ndarray:
-    ends = duration, start.speed + push @ s.gain, start.speed + push @ s.lift
-    return np.concatenate([push, np.stack(ends, axis=1)], axis=1)
-
-
-def _refined(old: Scheme, new: Scheme, z: np.ndarray) -> np.ndarray:
-    """Unknowns on a finer level, the polynomial interpolated."""
-    n = len(old.node)
-    values = np.polynomial.legendre.legvander(2 * new.node - 1, n - 1)
-    push = z[:, :n] @ old.spectrum.T @ values.T
-    return np.concatenate([push, z[:, n:]], axis=1)
-
-
-def _solve(law: ContactLaw, start: Start) -> Contacts:
-    """The contacts of one block."""
-    size = len(start.speed)
-    out = np.full((size, 4), np.nan)
-    jacobian = np.full((size, 3, 4), np.nan)
-    spectrum = np.zeros((size, _LEVELS[-1]))
-    guess = first_guess(law, start)
-    left = np.flatnonzero(np.isfinite(guess.duration))
-    old = scheme(_LEVELS[0], law.root)
-    part = Guess(guess.time[:, left], guess.acceleration[:, left], guess.duration[left])
-    z = _from_guess(old, start.take(left), part)
-    z, _, _ = _newton(old, law.take(left), start.take(left), z, _NEAR)
-    for count in _LEVELS[1:]:
-        if not left.size:
-            break
-        new, before = scheme(count, law.root), z[:, -3:].copy()
-        z = _refined(old, new, z)
-        z, slopes, done = _newton(new, law.take(left), start.take(left), z, _THERE)
-        legendre = z[:, :count] @ new.spectrum.T
-        heights = np.abs(legendre)
-        tail = np.max(heights[:, -_TAIL:], axis=1) <= _SPECTRUM * np.max(heights, axis=1)
-        duration, rate, depth = z[:, -3], z[:, -2], z[:, -1]
-        moved = np.abs(before[:, :2] / z[:, -3:-1] - 1).max(axis=1) <= _MOVED
-        held, contraction = _checked(new, law.take(left), start.take(left), z)
-        good = done & tail & moved & (duration > 0) & (rate <= 0) & held
-        here = left[good]
-        out[here] = np.stack([duration, duration * depth, rate, contraction], axis=1)[good]
-        d_duration, d_rate, d_depth = (slopes[good, count + k] for k in range(3))
-        d_end = d_duration * depth[good, np.newaxis] + d_depth * duration[good, np.newaxis]
-        jacobian[here] = np.stack([d_duration, d_end, d_rate], axis=1)
-        spectrum[here, :count] = legendre[good]
-        again = ~good & np.all(np.isfinite(z), axis=1)
-        left, z, old = left[again], z[again], new
-    duration, depth, rate, contraction = out.T
-    return Contacts(duration, depth, rate, jacobian, contraction, spectrum)
+    by_root = column(bend * panel.push.T / lever - lever * lever * slopes.by_penetration)
+    by_rate = column(-lever * slopes.by_rate)
+    by_time = column(-lever * start.amplitude[:, np.newaxis] * np.cos(angle))
+    step = panel.step[:, np.newaxis, np.newaxis]
+    whole = step * integral
+    once, weight = whole[:, :-1], whole[:, -1:]
+    # δp′ = δp′₀ + once δF, δq = δq₀ + once δp′, δt = δt₀ + bent δq
+    twice, bent = step * (once @ integral[:-1]), once * bend[:, np.newaxis]
+    root0, rate0, time0 = (by[:, np.newaxis, k] for k in range(3))
+    root = root0 + step * node * rate0
+    known = by_root * root + by_rate * rate0 + by_time * (time0 + bent @ root)
+    known[:, :, 0] += by_time[:, :, 0]
+    known[:, :, 2] -= lever * np.sin(angle)
+    known[:, :, 3] += lever
+    matrix = np.eye(_NODES) - by_root * twice - by_rate * once - by_time * (bent @ twice)
+    pushed = np.linalg.solve(matrix, known)
+    root, rate = root + twice @ pushed, rate0 + once @ pushed
+    ends = root0 + weight @ rate, rate0 + weight @ pushed, time0 + weight @ (column(bend) * root)
+    return np.concatenate(ends, axis=1), (weight @ by_rate)[:, 0, 0]
 
 
-def _checked(s: Scheme, law: ContactLaw, start: Start, z: np.ndarray):
-    """Whether the ball is in the table, and held, at all nodes; and the contraction."""
-    state, row = _state(s, start, z), law.columns()
-    p = state.duration * state.h
-    held = np.all((p > 0) & (row.grip(p, state.u) > 0), axis=1)
-    damping = row.slopes(np.maximum(p, _TINY), state.u).by_rate * state.duration
-    shrunk = np.exp(-(damping @ s.gain))
+def _at_release(law: ContactLaw, panel: _Panel, by: np.ndarray, strain: np.ndarray):
+    """The derivatives of (D, p_e, p′_e), and the contraction, of panels that end in releases."""
+    depth, rate, final = panel.root[-1] ** law.root, panel.rate[-1], panel.final
+    lever = _lever(law, panel.root[-1])
+    by_root, by_rate = _grip_slopes(law, panel.root[-1], rate)
+    falls = by_root * rate + by_rate * final
     # The grip vanishes at another rate where the force makes a step there.
-    depth, rate = z[:, -3] * z[:, -1], z[:, -2]
-    load, by_end = start.load(z[:, -3]), law.grip_slopes(depth, rate)
-    free = by_end.by_penetration * rate + by_end.by_rate * load
-    step = by_end.by_rate * law.force(np.maximum(depth, _TINY), rate)
-    return held, shrunk * np.where(step == 0, 1.0, free / (free - step))
+    step = np.where(by_rate == 0, 0.0, by_rate * lever * law.force(depth, rate))
+    by_root, by_rate, whole, lever, rate, final = (
+        x[:, np.newaxis] for x in (by_root, by_rate, falls, lever, rate, final)
+    )
+    later = -(by_root * by[:, 0] + by_rate * by[:, 1]) / whole
+    ends = by[:, 2] + lever * later, lever * (by[:, 0] + rate * later), by[:, 1] + final * later
+    return np.stack(ends, axis=1), np.exp(strain) * falls / (falls + step)
+
+
+def _begin(law: ContactLaw, start: Start) -> np.ndarray:
+    """The rows of :class:`_Motion` at the start."""
+    scale = scales(law, np.abs(start.rate), start.weight + np.abs(start.amplitude))
+    rest = _AT_REST * scale.speed
+    rate = np.where((start.depth == 0) & (start.rate < rest), rest, start.rate)
+    step = _FIRST * scale.length ** (1 / law.root) / scale.speed
+    root = start.depth ** (1 / law.root)
+    zero = np.zeros_like(rate)
+    return np.stack([root, rate, zero, zero, step, scale.length, scale.speed])
+
+
+def march(
+    law: ContactLaw,
+    start: Start,
+    panels: int = _PANELS,
+    until: np.ndarray | None = None,
+    *,
+    differentiate: bool = False,
+) -> Contacts:
+    """Contacts in a row, from states on the table or in it.
+
+    Parameters
+    ----------
+    law : ContactLaw
+        One law, or one for each contact.
+    start : Start
+        p ≥ 0 and p′; from p = 0 the ball goes down, or is laid on the table.
+    panels : int
+        How many are tried for each contact; an oscillation takes about eight.
+    until : array, optional
+        Times within the contacts at which p and p′ are wanted, in place of the release.
+    differentiate : bool
+        Whether the derivatives are wanted, of contacts that start at p = 0; else they are NaN.
+
+    Examples
+    --------
+    A quarter of an oscillation, down to the depth v/ϖ:
+
+    >>> from bouncing_ball.contacts.spring_damper import SpringDamper
+    >>> zero = np.zeros(1)
+    >>> start = Start(zero, np.full(1, np.pi), zero, zero, zero)
+    >>> march(SpringDamper(np.pi, 0.0), start, until=np.full(1, 0.5)).penetration.round(12).tolist()
+    [1.0]
+    """
+    size = start.rate.size
+    by, strain = np.zeros((size, 3, 4)), np.zeros(size)
+    by[:, 1, 1] = 1.0
+    jacobian, contraction = np.full((size, 3, 4), np.nan), np.full(size, np.nan)
+    done = np.zeros(size, dtype=bool)
+    with np.errstate(all="ignore"):
+        active = np.flatnonzero(np.isfinite(start).all(axis=0))
+        state = np.full((len(_Motion._fields), size), np.nan)
+        state[:, active] = _begin(law.take(active), start.take(active))
+        for _ in range(panels if active.size else 0):
+            for here in np.array_split(active, -(-active.size // _BLOCK)):
+                limit = None if until is None else until[here]
+                some, own = law.take(here), start.take(here)
+                panel = _panel(some, own, _Motion(*state[:, here]), limit)
+                state[4, here] = panel.following
+                good = np.flatnonzero(panel.good)
+                some, own, here, panel = (
+                    some.take(good),
+                    own.take(good),
+                    here[good],
+                    panel.take(good),
+                )
+                ends = panel.root[-1], panel.rate[-1], panel.time[-1], panel.final
+                state[:4, here] = ends
+                done[here] = panel.last
+                if differentiate and here.size:
+                    by[here], more = _derivatives(some, own, panel, by[here])
+                    strain[here] += more
+                    end = np.flatnonzero(panel.last)
+                    jacobian[here[end]], contraction[here[end]] = _at_release(
+                        some.take(end), panel.take(end), by[here[end]], strain[here[end]]
+                    )
+            active = active[~done[active]]
+            if not active.size:
+                break
+    root, rate, time = (np.where(done, x, np.nan) for x in state[:3])
+    depth = np.maximum(root, 0.0) ** law.root
+    if until is None and law.release is Release.DISPLACEMENT:
+        depth *= 0
+    return Contacts(time, depth, rate, jacobian, contraction)
+
+
+def states(law: ContactLaw, start: Start, end, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """p and p′ at times within contacts in a row, of which the end (D, p_e, p′_e) is known."""
+    inside = np.flatnonzero((time > 0) & (time < (1 - _END) * end[0]))
+    found = march(law.take(inside), start.take(inside), MOST_PANELS, time[inside])
+    depth = np.where(time > 0, end[1], start.depth)
+    rate = np.where(time > 0, end[2], start.rate)
+    depth[inside], rate[inside] = found.penetration, found.rate
+    return depth, rate
+
+
+def _row(law: ContactLaw, *columns: ArrayLike):
+    """Everything broadcast and in a row, with the law of each, and the shape."""
+    columns = (*(np.asarray(x, dtype=float) for x in columns), np.zeros(law.shape))
+    arrays = np.broadcast_arrays(*columns)
+    shape = arrays[0].shape
+    return law.flat(shape), [x.reshape(-1) for x in arrays[:-1]], shape
 
 
 def contacts(
@@ -253,8 +410,8 @@ def contacts(
     Returns
     -------
     Contacts
-        With the broadcast shape of the arguments. NaN where v ≤ 0, where the ball is
-        not released within a dozen oscillations, and where nothing has converged.
+        With the broadcast shape of the arguments. NaN where v ≤ 0, and where the ball is
+        not released within a dozen oscillations.
 
     Examples
     --------
@@ -265,60 +422,42 @@ def contacts(
     >>> round(float(free.rate), 12)
     -1.5
     """
-    arrays = np.broadcast_arrays(
-        *(np.asarray(x, dtype=float) for x in (speed, phase, amplitude, weight)),
-        np.zeros(law.shape),
-    )[:4]
-    shape = arrays[0].shape
-    start, laws = Start(*(x.reshape(-1) for x in arrays)), law.flat(shape)
-    size = start.speed.size
-    out = np.full((size, 4), np.nan)
-    jacobian, spectrum = np.full((size, 3, 4), np.nan), np.zeros((size, _LEVELS[-1]))
-    possible = np.flatnonzero((start.speed > 0) & np.all(np.isfinite(start), axis=0))
-    with np.errstate(all="ignore"):
-        for first in range(0, possible.size, _BLOCK):
-            which = possible[first : first + _BLOCK]
-            found = _solve(laws.take(which), start.take(which))
-            out[which] = np.stack([*found[:3], found.contraction], axis=1)
-            jacobian[which], spectrum[which] = found.jacobian, found.spectrum
-    duration, depth, rate, contraction = (x.reshape(shape) for x in out.T)
-    jacobian = jacobian.reshape(*shape, 3, 4)
-    return Contacts(
-        duration, depth, rate, jacobian, contraction, spectrum.reshape(*shape, _LEVELS[-1])
-    )
+    laws, (v, *others), shape = _row(law, speed, phase, amplitude, weight)
+    start = Start(0 * v, np.where(v > 0, v, np.nan), *others)
+    found = march(laws, start, differentiate=True)
+    return Contacts(*(x.reshape((*shape, *x.shape[1:])) for x in found))
 
 
-def path(law: ContactLaw, found: Contacts, speed: ArrayLike, time: ArrayLike):
+def path(
+    law: ContactLaw,
+    found: Contacts,
+    time: ArrayLike,
+    speed: ArrayLike,
+    phase: ArrayLike = 0.0,
+    amplitude: ArrayLike = 0.0,
+    weight: ArrayLike = 1.0,
+) -> tuple[np.ndarray, np.ndarray]:
     """p and p′ a time after the start of contacts, with 0 ≤ time ≤ D.
 
     Parameters
     ----------
     law : ContactLaw
     found : Contacts
-        What :func:`contacts` returned for these speeds.
-    speed, time : array_like
-        v, and the time, whose shape may have more axes in front.
+        What :func:`contacts` returned for these starts.
+    time : array_like
+        Its shape may have more axes in front.
+    speed, phase, amplitude, weight : array_like
+        The starts.
 
     Examples
     --------
-    >>> from bouncing_ball.contacts.laws.linear import Linear
-    >>> law = Linear(np.pi, 0.0)
-    >>> depth, rate = path(law, contacts(law, np.pi, weight=0.0), np.pi, 0.5)
-    >>> round(float(depth), 13), abs(round(float(rate), 12))
+    >>> from bouncing_ball.contacts.spring_damper import SpringDamper
+    >>> law = SpringDamper(np.pi, 0.0)
+    >>> depth, rate = path(law, contacts(law, np.pi, weight=0.0), 0.5, np.pi, weight=0.0)
+    >>> round(float(depth), 12), abs(round(float(rate), 12))
     (1.0, 0.0)
     """
-    time, speed, duration = np.broadcast_arrays(
-        np.asarray(time, dtype=float), np.asarray(speed, dtype=float), found.duration
-    )
-    used = np.flatnonzero(np.any(found.spectrum.reshape(-1, _LEVELS[-1]) != 0, axis=0))
-    count = int(used[-1]) + 1 if used.size else 1
-    coefficients = np.moveaxis(found.spectrum[..., :count], -1, 0)[..., np.newaxis]
-    x = node_of(np.clip(time / duration, 0.0, 1.0), law.root)[..., np.newaxis]
-    points, weights = np.polynomial.legendre.leggauss(count // 2 + 2 * law.root)
-    inner = x * (points + 1) / 2
-    push = np.polynomial.legendre.legval(2 * inner - 1, coefficients, tensor=False)
-    push = push * (x * weights / 2) * share_rate(inner, law.root)
-    here = share(x, law.root)
-    rate = speed + np.sum(push, axis=-1)
-    depth = speed * here[..., 0] + np.sum(push * (here - share(inner, law.root)), axis=-1)
-    return duration * depth, rate
+    laws, (t, *columns), shape = _row(law, time, *found[:3], speed, phase, amplitude, weight)
+    start = Start(np.zeros_like(t), *columns[3:])
+    depth, rate = states(laws, start, columns[:3], t)
+    return depth.reshape(shape), rate.reshape(shape)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.contacts.laws.contact_law import ContactLaw
+from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.errors import ModelError
 
 # Newton's method for ln p: one step for a power law, a few for a sum of powers.
@@ -55,8 +55,8 @@ def scales(law: ContactLaw, speed: np.ndarray, load: np.ndarray) -> Scales:
 
     Examples
     --------
-    >>> from bouncing_ball.contacts.laws.linear import Linear
-    >>> length, speed = scales(Linear(10.0, 0.0), np.array([2.0]), np.array([0.0]))
+    >>> from bouncing_ball.contacts.spring_damper import SpringDamper
+    >>> length, speed = scales(SpringDamper(10.0, 0.0), np.array([2.0]), np.array([0.0]))
     >>> round(float(length[0]), 3), float(speed[0])
     (0.2, 2.0)
     """

@@ -18,8 +18,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.contact_scales import depth
-from bouncing_ball.contacts.laws.contact_law import ContactLaw
 from bouncing_ball.contacts.quadrature import Scheme, scheme
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import ModelError
@@ -138,8 +138,8 @@ def permanent_contact(law: ContactLaw) -> Threshold:
     --------
     Λ_SD = √13/4 for ϖ = 2 and ζ = 1/2:
 
-    >>> from bouncing_ball.contacts.laws.linear import Linear
-    >>> float(round(permanent_contact(Linear(2.0, 0.5)).amplitude / np.sqrt(13), 12))
+    >>> from bouncing_ball.contacts.spring_damper import SpringDamper
+    >>> float(round(permanent_contact(SpringDamper(2.0, 0.5)).amplitude / np.sqrt(13), 12))
     0.25
     """
     coarse: np.ndarray | None = None

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.collocation import contacts
-from bouncing_ball.contacts.laws.contact_law import ContactLaw
+from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.signature import Instant, Signature
 from bouncing_ball.errors import ModelError
 

@@ -92,23 +92,3 @@ def scheme(count: int, root: int) -> Scheme:
     rest = s[::-1]
     lift = gain * rest
     return Scheme(root, x, s, rest, rate, path, gain, lift, spectrum, np.arange(count) < half)
-
-
-# Bisections of S(x) = s: to the spacing of floating-point numbers.
-_BISECTIONS = 54
-
-
-def node_of(part: np.ndarray, root: int) -> np.ndarray:
-    """x at which a part s of the contact has passed, S(x) = s.
-
-    Examples
-    --------
-    >>> node_of(np.array([0.0, 0.5]), 3).round(12).tolist()
-    [0.0, 0.5]
-    """
-    low, high = np.zeros_like(part), np.ones_like(part)
-    for _ in range(_BISECTIONS):
-        middle = (low + high) / 2
-        before = share(middle, root) < part
-        low, high = np.where(before, middle, low), np.where(before, high, middle)
-    return low

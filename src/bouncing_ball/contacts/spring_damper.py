@@ -20,12 +20,12 @@ All quantities are dimensionless: time Ωt, length Ω²y/g.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.batch import Batch
+from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
 from bouncing_ball.contacts.oscillator import Response, exponential_response, impulse_response
 from bouncing_ball.contacts.release import Release
@@ -190,8 +190,10 @@ def contact_force(
 
 
 @dataclass(frozen=True, repr=False)
-class SpringDamper(Batch):
-    """A spring-damper contact: ϖ, ζ and the rule that ends it.
+class SpringDamper(ContactLaw):
+    """The paper's contact: ϖ, ζ and the rule that ends it, with f = ϖ² p + 2ζϖ p′.
+
+    The contact law whose motion is known in closed form.
 
     Parameters
     ----------
@@ -216,9 +218,29 @@ class SpringDamper(Batch):
     damping_ratio: float | np.ndarray
     release: Release = Release.DISPLACEMENT
 
+    name: ClassVar[str] = "linear"
+    formula: ClassVar[str] = "W² p + 2 Z W p′"
+    root: ClassVar[int] = 1
+
     def __post_init__(self):
         check_contact(self.frequency_ratio, self.damping_ratio)
         object.__setattr__(self, "release", Release.of(self.release))
+
+    def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """ϖ² p + 2ζϖ p′."""
+        omega = self.frequency_ratio
+        return omega * (omega * penetration + 2 * self.damping_ratio * rate)
+
+    @classmethod
+    def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
+        """ϖ = v/P and ζ = group."""
+        omega = np.asarray(speed, dtype=float) / np.asarray(length, dtype=float)
+        return cls(omega, np.asarray(group, dtype=float) + 0 * omega)
+
+    @classmethod
+    def group_of(cls, restitution: float) -> float:
+        """ζ of a restitution coefficient, with the displacement release."""
+        return float(damping_ratio(restitution))
 
     @classmethod
     def from_restitution(

@@ -72,13 +72,8 @@ class Branch:
 
     def reversed(self) -> "Branch":
         """The same branch run through the other way."""
-        return Branch(
-            self.points[::-1],
-            -self.tangents[::-1],
-            self.special[::-1],
-            self.end,
-            self.start,
-        )
+        points, tangents, special = self.points[::-1], -self.tangents[::-1], self.special[::-1]
+        return Branch(points, tangents, special, start=self.end, end=self.start)
 
     def named(self, name: str) -> list[np.ndarray]:
         """The points of all located events of one name."""
@@ -107,14 +102,14 @@ def solve_at(
 
 
 class _Step(NamedTuple):
-    """A corrected point one step along the branch."""
+    """A corrected point one step along the branch, and its end if that is one."""
 
     point: np.ndarray
     direction: np.ndarray
     values: list[float]
-    iterations: int
-    angle: float
-    located: list[tuple[Event, SpecialPoint]]
+    special: list[SpecialPoint]
+    next_length: float
+    end: End | None = None
 
 
 class _Rejected(Exception):
@@ -140,8 +135,8 @@ class _Walk:
     def values(self, point: np.ndarray) -> list[float]:
         return [float(event.function(point)) for event in self.events]
 
-    def step(self, y: np.ndarray, direction: np.ndarray, values: list[float], length: float):
-        """Predict, correct, and locate the events on the way.
+    def step(self, y: np.ndarray, along: np.ndarray, values: list[float], length: float) -> _Step:
+        """Predict, correct, and locate the events on the way, up to a terminal one.
 
         Raises
         ------
@@ -149,22 +144,28 @@ class _Walk:
             If the corrector fails, the tangent turns by too much, or an event
             cannot be located.
         """
-        predicted = y + length * direction
-        found = newton(self.problem, predicted, plane(direction, predicted), self.settings)
+        predicted, limit = y + length * along, self.control.max_angle
+        found = newton(self.problem, predicted, plane(along, predicted), self.settings)
         small = f"step too small ({length:.1e})"
         if not found.converged:
             failed = f"{small}: the corrector fails with residual {found.residual:.1e}"
             raise _Rejected(Ending.STEP, failed)
-        turned = tangent(self.problem.jacobian(found.point), direction)
-        angle = float(np.arccos(np.clip(turned @ direction, -1.0, 1.0)))
-        if not angle <= self.control.max_angle:
-            limit = self.control.max_angle
+        direction = tangent(self.problem.jacobian(found.point), along)
+        angle = float(np.arccos(np.clip(direction @ along, -1.0, 1.0)))
+        if not angle <= limit:
             turns = f"{small}: the tangent turns by more than {limit} rad"
             raise _Rejected(Ending.STEP, turns)
         after = self.values(found.point)
         located = self._locate(y, found.point, values, after, length)
-        located.sort(key=lambda pair: float((pair[1].point - y) @ direction))
-        return _Step(found.point, turned, after, found.iterations, angle, located)
+        located.sort(key=lambda pair: float((pair[1].point - y) @ along))
+        special = [point for _, point in located]
+        for k, (event, point) in enumerate(located):
+            if event.terminal:
+                at_end = tangent(self.problem.jacobian(point.point), along)
+                end = End(Ending.EVENT, event.reason or event.name)
+                return _Step(point.point, at_end, after, special[: k + 1], length, end)
+        longer = self.control.after_success(length, found.iterations, angle)
+        return _Step(found.point, direction, after, special, longer)
 
     def _locate(self, y, point, before, after, length) -> list[tuple[Event, SpecialPoint]]:
         """The events whose test functions change sign between two points."""
@@ -224,7 +225,12 @@ def continue_branch(
     y = solve_at(problem, np.asarray(start, dtype=float), settings)
     direction = null_vector(problem.jacobian(y)) * (1.0 if increasing else -1.0)
     values = walk.values(y)
-    _require_inside(y, events, values)
+    for event, value in zip(events, values, strict=True):
+        if event.terminal and value < 0:
+            raise ContinuationError(
+                f"the start {np.array2string(y, precision=4)} lies beyond the end of the branch: "
+                f"{event.reason or event.name}"
+            )
     points, tangents, special = [y], [direction], []
     length, end = control.initial, End(Ending.POINTS, f"reached the limit of {max_points} points")
     while len(points) < max_points:
@@ -239,30 +245,14 @@ def continue_branch(
                 raise rejected.cause from None
             end = rejected.end
             break
-        last = next((k for k, (event, _) in enumerate(step.located) if event.terminal), None)
-        passed = step.located if last is None else step.located[: last + 1]
-        special += [point for _, point in passed]
-        if last is not None:
-            event, located = passed[-1]
-            points.append(located.point)
-            tangents.append(tangent(problem.jacobian(located.point), direction))
-            end = End(Ending.EVENT, event.reason or event.name)
-            break
-        y, direction, values = step.point, step.direction, step.values
+        y, direction, values, passed, length, last = step
         points.append(y)
         tangents.append(direction)
-        length = control.after_success(length, step.iterations, step.angle)
+        special += passed
+        if last:
+            end = last
+            break
     return Branch(np.array(points), np.array(tangents), tuple(special), STARTED, end)
-
-
-def _require_inside(y: np.ndarray, events: Sequence[Event], values: list[float]) -> None:
-    """Raise :class:`ContinuationError` beyond a terminal event."""
-    for event, value in zip(events, values, strict=True):
-        if event.terminal and value < 0:
-            raise ContinuationError(
-                f"the start {np.array2string(y, precision=4)} lies beyond the end of the branch: "
-                f"{event.reason or event.name}"
-            )
 
 
 def continue_both_ways(problem: Problem, start: np.ndarray, **options) -> Branch:
@@ -273,13 +263,9 @@ def continue_both_ways(problem: Problem, start: np.ndarray, **options) -> Branch
     """
     back = continue_branch(problem, start, increasing=False, **options).reversed()
     ahead = continue_branch(problem, start, increasing=True, **options)
-    return Branch(
-        np.concatenate([back.points, ahead.points[1:]]),
-        np.concatenate([back.tangents, ahead.tangents[1:]]),
-        back.special + ahead.special,
-        back.start,
-        ahead.end,
-    )
+    points = np.concatenate([back.points, ahead.points[1:]])
+    tangents = np.concatenate([back.tangents, ahead.tangents[1:]])
+    return Branch(points, tangents, back.special + ahead.special, back.start, ahead.end)
 
 
 # Rounds of equalising the chords between resampled points; each gains two to

@@ -5,11 +5,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.laws.contact_law import ContactLaw
-from bouncing_ball.contacts.spring_damper import contact_flow
-from bouncing_ball.motion.contact_path import contact_path
+from bouncing_ball.contacts.collocation import Start, states
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.landing import Flight
-from bouncing_ball.motion.law_motion import Touch
 from bouncing_ball.motion.sequence import ImpactSequence, Status
 
 
@@ -84,25 +82,22 @@ def _in_contact(sequence: ImpactSequence, index, touching, row, since):
     """δ and δ′ at the times of contact, and 0 else."""
     out = np.zeros((2, *since.shape))
     law: Any = sequence.contact
+    if law is None:
+        return out
     lam, impact, stay = float(sequence.amplitude[index]), row[touching], since[touching]
+    law = law[index] if law.shape else law
 
     def of(table):
-        return table[(slice(None), *index)]
+        return table[(slice(None), *index)][impact]
 
-    phase, start, rate = map(
-        of, (sequence.phase, sequence.displacement, sequence.relative_velocity)
-    )
-    if isinstance(law, ContactLaw):
-        own, duration = law[index] if law.shape else law, of(sequence.contact_duration)
-        touch = Touch(-start, -rate, phase, lam)
-        depth, entry = contact_path(own, touch, duration, impact, stay)
-        out[:, touching] = -depth, -entry
-    elif law is not None:
-        omega, zeta = (
-            np.asarray(x)[index] if np.ndim(x) else x
-            for x in (law.frequency_ratio, law.damping_ratio)
-        )
-        at = start[impact], rate[impact], phase[impact]
-        flow = contact_flow(stay, *at, lam, omega, zeta)
+    at = of(sequence.displacement), of(sequence.relative_velocity), of(sequence.phase)
+    if isinstance(law, SpringDamper):
+        flow = law.flow(stay, *at, lam)
         out[:, touching] = flow.displacement, flow.velocity
+    elif stay.size:
+        one = np.ones_like(stay)
+        start = Start(-at[0], -at[1], at[2], lam * one, one)
+        ends = (sequence.release_displacement, sequence.relative_release_velocity)
+        end = of(sequence.contact_duration), *(-of(x) for x in ends)
+        out[:, touching] = -np.array(states(law, start, end, stay))
     return out

@@ -34,7 +34,7 @@ class Flight:
     def __init__(self, displacement, velocity, x, y, amplitude):
         self.displacement, self.velocity = displacement, velocity
         self.x, self.y, self.amplitude = x, y, amplitude
-        self.thrown = velocity + x
+        self.thrown, self.gravity = velocity + x, 1 + amplitude
         over = self.thrown * self.thrown + 2 * (displacement + (y - amplitude))
         root = np.sqrt(np.maximum(over, 0.0))
         # z > Λ between these two times; the second is the first or less if never.
@@ -66,12 +66,32 @@ class Flight:
     def skip(self, time: np.ndarray, steps: int = 0) -> np.ndarray:
         return np.where((time >= self.above) & (time < self.below), self.below, time)
 
+    def room(self) -> np.ndarray:
+        """v² + 2(1 + Λ)δ_b: positive if the ball certainly comes above the table's level."""
+        return self.velocity * self.velocity + 2 * self.gravity * self.displacement
+
     def sure(self) -> np.ndarray:
         """A time by which the ball has not landed: the flight of a ball that is
         thrown with v from δ_b against the strongest relative gravity, 1 + Λ."""
-        gravity = 1 + self.amplitude
-        inside = self.velocity * self.velocity + 2 * gravity * self.displacement
-        return (self.velocity + np.sqrt(np.maximum(inside, 0.0))) / gravity
+        return (self.velocity + np.sqrt(np.maximum(self.room(), 0.0))) / self.gravity
+
+
+class Rise:
+    """The motion δ of a ball that was let go below the table's level, while it rises."""
+
+    def __init__(self, flight: Flight):
+        self.flight = flight
+
+    def __call__(self, time: np.ndarray) -> State:
+        displacement, rate, second, third = self.flight.gap(time)
+        lam = self.flight.amplitude
+        return State(displacement, rate, second, third, 1 + lam, lam, lam, rate <= 0)
+
+    def take(self, which: np.ndarray) -> "Rise":
+        return Rise(self.flight.take(which))
+
+    def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
+        return time
 
 
 def land(flight: Flight, start: np.ndarray) -> Zero:

@@ -22,6 +22,7 @@ from bouncing_ball.motion.angles import reduce_angle, table
 from bouncing_ball.motion.ensembles import BLOCK, flatten, pick
 from bouncing_ball.motion.follow import Columns, follow, next_impact
 from bouncing_ball.motion.landing import Flight, land
+from bouncing_ball.motion.rest import lift_off, pressed
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence, Status
 from bouncing_ball.motion.starts import check_amplitude
 
@@ -42,7 +43,8 @@ class _Impact(NamedTuple):
 
 class _Rebound(NamedTuple):
     """What follows impacts: table phase, δ = 0 and δ′ when the ball leaves, the time
-    until then, the :class:`Status`, the table's Λ cos and Λ sin, the time of settling."""
+    until then, the :class:`Status`, the table's Λ cos and Λ sin, a time of flight without
+    landing, the time of settling."""
 
     phase: np.ndarray
     displacement: np.ndarray
@@ -51,6 +53,7 @@ class _Rebound(NamedTuple):
     status: np.ndarray
     x: np.ndarray
     y: np.ndarray
+    flown: np.ndarray
     settling: np.ndarray
 
     def take(self, which: Any) -> "_Rebound":
@@ -66,18 +69,6 @@ class ImpactCycle(NamedTuple):
     phase: np.ndarray
     velocity: np.ndarray
     time: np.ndarray
-
-
-def lift_off_phase(amplitude: ArrayLike) -> np.ndarray:
-    """Phase arcsin(1/Λ) at which a ball at rest leaves the table; NaN for Λ ≤ 1.
-
-    Examples
-    --------
-    >>> bool(np.isclose(lift_off_phase(2.0), np.pi / 6))
-    True
-    """
-    lam = np.asarray(amplitude, dtype=float)
-    return np.where(lam > 1, np.arcsin(1 / np.maximum(lam, 1.0)), np.nan)
 
 
 class _Instants(NamedTuple):
@@ -111,48 +102,34 @@ class _Instants(NamedTuple):
         phase, velocity, amplitude = impact.phase, impact.after, self.amplitude
         x, y = table(phase, amplitude)
         none = np.zeros_like(phase)
-        gravity = 1 - y
-        pressed = (gravity > 0) | ((gravity == 0) & (x <= 0))
+        gravity, down = 1 - y, pressed(x, y)
         # Where the ball is not pressed, or r = 1, T₀ is not used.
         loss = gravity * (1 - self.at(-impact.velocity))
-        usable = pressed & (loss > 0)
+        usable = down & (loss > 0)
         total = np.where(usable, 2 * velocity, 0.0) / np.where(usable, loss, 1.0)
         limit = np.maximum(_CHATTER * gravity / np.maximum(amplitude, 1.0), _INSTANT)
         short = usable & (total <= limit)
-        sticks = short | (pressed & (velocity == 0))
+        sticks = short | (down & (velocity == 0))
         status = np.zeros(phase.shape, dtype=np.int8)
+        flown = np.zeros_like(phase)
         if not sticks.any():
-            return _Rebound(phase, none, velocity, none, status, x, y, none)
+            return _Rebound(phase, none, velocity, none, status, x, y, flown, none)
         correction = np.where(short, x * total, 0.0) / np.where(short, 3 * gravity, 1.0)
         settling = np.where(sticks, total * (1 + correction), 0.0)
         lifts = np.broadcast_to(amplitude > 1, phase.shape)
-        lift = np.where(lifts, np.arcsin(1 / np.maximum(amplitude, 1.0)), 0.0)
-        wait = np.mod(reduce_angle(lift - (phase + settling)), 2 * np.pi)
-        # Rounding must not turn a lift-off that is due now into one a turn later.
-        wait = np.where(wait > 2 * np.pi - 1e-9, 0.0, wait)
-        duration = np.where(sticks, np.where(lifts, settling + wait, np.inf), 0.0)
         status[sticks & ~lifts] = Status.PERMANENT_CONTACT
-        # At lift-off Λ sin τ = 1 exactly.
-        away = np.sqrt(np.maximum((amplitude - 1) * (amplitude + 1), 0.0))
-        return _Rebound(
-            np.where(sticks, lift, phase),
-            none,
-            np.where(sticks, np.where(lifts, 0.0, np.nan), velocity),
-            duration,
-            status,
-            np.where(sticks, away, x),
-            np.where(sticks, 1.0, y),
-            settling,
-        )
+        rest = lift_off(phase + settling, amplitude)
+        duration = np.where(sticks, np.where(lifts, settling + rest.wait, np.inf), 0.0)
+        velocity = np.where(sticks, np.where(lifts, 0.0, np.nan), velocity)
+        pairs = ((rest.phase, phase), (rest.x, x), (rest.y, y), (rest.flown, flown))
+        phase, x, y, flown = (np.where(sticks, a, b) for a, b in pairs)
+        return _Rebound(phase, none, velocity, duration, status, x, y, flown, settling)
 
     def fly(self, rebound: _Rebound) -> tuple[_Impact, np.ndarray]:
         flight = Flight(
             rebound.displacement, rebound.velocity, rebound.x, rebound.y, self.amplitude
         )
-        # From rest, with Λ sin τ ≥ 1: δ ≥ Λ cos τ s³/6 - Λ s⁴/24.
-        rest = (rebound.velocity == 0) & (rebound.y >= 1)
-        start = np.where(rest, 4 * rebound.x / np.maximum(self.amplitude, 1.0), 0.0)
-        landing = land(flight, np.maximum(start, flight.sure()))
+        landing = land(flight, np.maximum(rebound.flown, flight.sure()))
         phase, before = reduce_angle(rebound.phase + landing.time), -landing.rate
         impact = _Impact(phase, np.zeros_like(phase), before, -self.at(landing.rate) * before)
         return impact, rebound.duration + landing.time

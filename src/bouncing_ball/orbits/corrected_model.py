@@ -9,12 +9,11 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.contacts.signature import Instant, LinearSignature, Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.motion.corrected_impacts import simulate
+from bouncing_ball.motion.corrected import simulate
 from bouncing_ball.motion.sequence import ImpactSequence
 from bouncing_ball.orbits import corrected_branch as formulas
 from bouncing_ball.orbits.continued import both_sides
-from bouncing_ball.orbits.corrected_orbit import CorrectedOrbit
-from bouncing_ball.orbits.corrected_system import CorrectedSystem
+from bouncing_ball.orbits.corrected_orbit import CorrectedOrbit, CorrectedSystem
 from bouncing_ball.orbits.model import ImpactModel, Route
 from bouncing_ball.orbits.orbit import Orbit, check_index
 from bouncing_ball.orbits.stability import Side

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.signature import Instant, LinearSignature
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.motion.contacts import simulate
+from bouncing_ball.motion.contact import simulate
 from bouncing_ball.motion.sequence import ImpactSequence
 from bouncing_ball.orbits import spring_damper_limits as limits
 from bouncing_ball.orbits.model import Absence, ImpactModel, Route

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.motion.contacts import contact_cycle
+from bouncing_ball.motion.contact import contact_cycle
 from bouncing_ball.motion.sequence import Cycle
 from bouncing_ball.orbits.highest import highest
 from bouncing_ball.orbits.orbit import Orbit

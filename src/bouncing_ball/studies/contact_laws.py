@@ -3,7 +3,7 @@ r"""The paper's comparison on the contacts that engineers use (beyond the paper)
 All laws have the same restitution coefficient r and the same duration D of the
 free impact, at the impact speed of the orbit in question. What stands for ϖ, which a
 Hertz contact does not have, is π/D: that of the elastic linear contact of the
-same duration. Errors are relative to the exact orbit on the contact, as in Eqs. 37-38.
+same duration. Errors are relative to the value of the exact orbit on the contact.
 """
 
 from typing import Any
@@ -11,14 +11,15 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
+from bouncing_ball.accuracy.errors import SIMPLE, relative
+from bouncing_ball.accuracy.quantities import Quantity, values
+from bouncing_ball.accuracy.thresholds import thresholds
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.law_permanent_contact import permanent_contact
 from bouncing_ball.contacts.law_signature import LawSignature
 from bouncing_ball.contacts.laws import LAWS
-from bouncing_ball.contacts.laws.linear import Linear
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import described
@@ -44,9 +45,8 @@ from bouncing_ball.studies.parameters import BranchEnd, OrbitAmplitude, Points
 HERTZ = ("hunt-crossley", "tsuji", "kuwabara-kono")
 LINEAR = {"linear": Release.DISPLACEMENT, "linear, force release": Release.FORCE}
 NAMES = (*LINEAR, *HERTZ)
-QUANTITIES = ("max_height", "bounce_velocity", "phase", "saddle_node", "period_doubling")
-BOUNDS = ("saddle_node", "period_doubling")
-SIMPLE = ("restitution", "corrected")
+BOUNDS = (Quantity.SADDLE_NODE, Quantity.PERIOD_DOUBLING)
+QUANTITIES = (Quantity.MAX_HEIGHT, Quantity.BOUNCE_VELOCITY, Quantity.PHASE, *BOUNDS)
 
 
 class OneOrbit(Parameters):
@@ -133,44 +133,36 @@ def corrected_model(exact: Any) -> CorrectedModel:
     return CorrectedModel(LawSignature(exact.law))
 
 
-def _values(model: ImpactModel, n: int, amplitude: float) -> np.ndarray:
-    """The quantities compared, (quantity, ...)."""
-    orbit = model.orbit(n, amplitude)
-    bounds = (getattr(model, name)(n).amplitude for name in BOUNDS)
-    columns = (orbit.max_height, orbit.bounce_velocity, orbit.phase, *bounds)
-    return np.array(np.broadcast_arrays(*columns), dtype=float)
-
-
 def _errors(name: str, parameters: OneOrbit, ratios: np.ndarray) -> np.ndarray:
     """Relative errors of both simple models, (model, quantity, ratio)."""
-    r, n, lam = parameters.restitution, parameters.n, parameters.amplitude
+    orbit = parameters.n, parameters.amplitude, QUANTITIES
     errors = np.full((len(SIMPLE), len(QUANTITIES), len(ratios)), np.nan)
     part, models = stiff_enough(name, parameters, ratios)
     if models is None:
         return errors
     exact: Any = models
-    wanted = _values(exact, n, lam)
-    rigid = _values(RestitutionModel(r), n, lam)[:, np.newaxis]
-    each = [_values(corrected_model(exact[k]), n, lam) for k in range(len(exact))]
-    errors[..., part] = np.abs(np.array([rigid / wanted, np.stack(each, axis=-1) / wanted]) - 1)
+    wanted = values(exact, *orbit)
+    rigid = values(RestitutionModel(parameters.restitution), *orbit)[:, np.newaxis]
+    each = [values(corrected_model(exact[k]), *orbit) for k in range(len(exact))]
+    errors[..., part] = np.abs([relative(x, wanted) for x in (rigid, np.stack(each, axis=-1))])
     return errors
 
 
-def _height_threshold(name: str, parameters: LawErrors, ratios, errors) -> float:
+def _height_threshold(
+    name: str, parameters: LawErrors, ratios: np.ndarray, errors: np.ndarray
+) -> float:
     """ϖ from which the restitution model's greatest height is right; NaN outside the range."""
-    tolerance = parameters.tolerance
-    r, n, lam = parameters.restitution, parameters.n, parameters.amplitude
-    rigid = float(RestitutionModel(r).require_orbit(n, lam).max_height)
-    above = np.flatnonzero(errors > tolerance)
-    if not above.size or above[-1] == len(ratios) - 1:
-        return np.nan
+    n, lam = parameters.n, parameters.amplitude
+    rigid = RestitutionModel(parameters.restitution).require_orbit(n, lam).max_height
 
-    def surplus(log):
-        exact = exact_models(name, parameters, np.pi / np.exp(log))
-        return np.log(abs(rigid / float(exact.orbit(n, lam).max_height) - 1) / tolerance)
+    def error(ratio: np.ndarray, _: np.ndarray) -> np.ndarray:
+        try:
+            exact = exact_models(name, parameters, np.pi / ratio)
+        except (ModelError, NoOrbitError):
+            return np.full(ratio.shape, np.nan)
+        return relative(rigid, exact.orbit(n, lam).max_height)
 
-    ends = np.log(ratios[above[-1] : above[-1] + 2])
-    return float(np.exp(brentq(surplus, *ends, xtol=1e-12, rtol=1e-12)))
+    return float(thresholds(error, ratios, errors[np.newaxis], [parameters.tolerance]).ratio[0, 0])
 
 
 def law_errors(parameters: LawErrors) -> xr.Dataset:
@@ -222,8 +214,7 @@ def _held(name: str, restitution: float, ratio: float) -> float:
     """Threshold of permanent contact; NaN where no contact that just touches was found."""
     speed = rigid_speed(1, restitution)
     if name in LINEAR:
-        contact = linear_contact(restitution, np.pi / ratio, LINEAR[name])
-        law: Any = Linear(contact.frequency_ratio, contact.damping_ratio, contact.release)
+        law: Any = linear_contact(restitution, np.pi / ratio, LINEAR[name])
     else:
         law = law_of_impact(LAWS[name], restitution, np.pi / ratio, speed)
     try:

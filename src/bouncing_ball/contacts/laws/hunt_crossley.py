@@ -20,7 +20,7 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.laws.contact_law import (
+from bouncing_ball.contacts.contact_law import (
     ContactLaw,
     Slopes,
     check_damping,

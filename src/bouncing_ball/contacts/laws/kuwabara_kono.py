@@ -22,7 +22,7 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.laws.contact_law import (
+from bouncing_ball.contacts.contact_law import (
     ContactLaw,
     Slopes,
     check_damping,
@@ -67,13 +67,10 @@ class KuwabaraKono(ContactLaw):
         slope, drag = self.stiffness * np.sqrt(penetration), self.damping * rate
         return Slopes(slope * (1.5 + 0.5 * drag / penetration), slope * self.damping)
 
-    def grip(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """p + C p′, of the sign of the force."""
-        return penetration + self.damping * rate
-
-    def grip_slopes(self, penetration: np.ndarray, rate: np.ndarray) -> Slopes:
-        """1 and C."""
-        return Slopes(np.ones_like(penetration + rate), self.damping + 0 * rate)
+    @property
+    def lag(self) -> float | np.ndarray:
+        """C: the force vanishes with p + C p′."""
+        return self.damping
 
     @classmethod
     def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:

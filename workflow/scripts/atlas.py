@@ -1,18 +1,23 @@
-"""The charts and tables of the atlas, from its summary."""
+"""The summary of the atlas, and its charts and tables."""
 
 from pathlib import Path
 
+from bouncing_ball.atlas.plan import AtlasParameters
+from bouncing_ball.atlas.summary import summary
 from bouncing_ball.datasets.files import write_text
+from bouncing_ball.datasets.netcdf import parameter_attributes
 from bouncing_ball.figures.atlas.charts import charts
 from bouncing_ball.figures.atlas.tables import shares, worst
 from bouncing_ball.figures.files import save
 from bouncing_ball.figures.style import style
 from bouncing_ball.figures.tables.formats import to_markdown
-from bouncing_ball.pipeline.job import logged, provenance, read_input
+from bouncing_ball.pipeline.job import logged, provenance, publish, read_input
 
 with logged(snakemake), style():
-    (summary,) = snakemake.input.parts
-    data = read_input(summary)
+    parameters = snakemake.params.parameters
+    (path,) = snakemake.input.parts
+    data = summary(AtlasParameters(**parameters), read_input(path))
+    publish(snakemake, data, parameter_attributes(parameters), compressed=True)
     metadata = provenance(snakemake).attributes()
     folder = Path(snakemake.output.shares).parent
     for name, figure in charts(data):

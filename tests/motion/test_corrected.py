@@ -9,8 +9,9 @@ from bouncing_ball.contacts.corrected_map import impact, instant_jacobian, meeti
 from bouncing_ball.contacts.signature import Instant, LinearSignature, Signature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError
-from bouncing_ball.motion import contacts, restitution
-from bouncing_ball.motion.corrected_impacts import corrected_cycle, simulate
+from bouncing_ball.motion import contact as contacts
+from bouncing_ball.motion import restitution
+from bouncing_ball.motion.corrected import corrected_cycle, simulate
 from bouncing_ball.motion.sequence import Status
 
 RELEASES = list(Release)

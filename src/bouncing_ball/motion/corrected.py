@@ -25,9 +25,10 @@ from bouncing_ball.contacts.corrected_map import Hit, impact, meeting, start_of
 from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.motion.angles import reduce_angle, table
 from bouncing_ball.motion.ensembles import BLOCK, flatten, pick
-from bouncing_ball.motion.first_zero import State, first_zero
+from bouncing_ball.motion.first_zero import first_zero
 from bouncing_ball.motion.follow import BELOW, Columns, follow, next_impact
-from bouncing_ball.motion.landing import Flight, land
+from bouncing_ball.motion.landing import Flight, Rise, land
+from bouncing_ball.motion.rest import lift_off
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence, Status
 from bouncing_ball.motion.starts import approach, check_amplitude, check_impact
 
@@ -62,58 +63,17 @@ class _Departure(NamedTuple):
         return _Departure(*(x.take(which) for x in fields))
 
 
-class Rise:
-    """The motion δ of a ball that was let go below the table's level, while it rises."""
-
-    def __init__(self, flight: Flight):
-        self.flight = flight
-
-    def __call__(self, time: np.ndarray) -> State:
-        displacement, rate, second, third = self.flight.gap(time)
-        lam = self.flight.amplitude
-        return State(displacement, rate, second, third, 1 + lam, lam, lam, rate <= 0)
-
-    def take(self, which: np.ndarray) -> "Rise":
-        return Rise(self.flight.take(which))
-
-    def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
-        return time
-
-
 def _leaves(flight: Flight) -> tuple[np.ndarray, np.ndarray]:
     """Whether balls come above the table, and a time by which they have not landed."""
-    rising = flight.velocity > 0
-    start = flight.sure()
-    gravity = 1 + flight.amplitude
-    inside = flight.velocity * flight.velocity + 2 * gravity * flight.displacement
-    unsure = np.flatnonzero(rising & (inside <= 0))
+    rising, start = flight.velocity > 0, flight.sure()
+    unsure = np.flatnonzero(rising & (flight.room() <= 0))
     if unsure.size:
         part = flight.take(unsure)
         rise = first_zero(Rise(part), np.zeros(unsure.size))
-        up = ~(rise.ended | rise.undecided) & (rise.rate > 0)
-        rising[unsure] = up
+        rising[unsure] = ~(rise.ended | rise.undecided) & (rise.rate > 0)
         # From the table's level on, against the strongest relative gravity.
-        start[unsure] = rise.time + 2 * rise.rate / pick(gravity, unsure)
+        start[unsure] = rise.time + 2 * rise.rate / part.gravity
     return rising, start
-
-
-def _from_rest(phase, amplitude):
-    """When a ball that stays leaves, and a time of flight by which it has not landed.
-
-    From rest at Λ sin τ = y ≥ 1 with x = Λ cos τ, ``δ ≥ (y - 1) s²/2 + x s³/6 - Λ s⁴/24``.
-    """
-    x, y = table(phase, amplitude)
-    pressed = (y < 1) | ((y == 1) & (x <= 0))
-    top = np.maximum(amplitude, 1.0)
-    lift = np.arcsin(1 / top)
-    wait = np.where(pressed, np.mod(reduce_angle(lift - phase), 2 * np.pi), 0.0)
-    # Rounding must not turn a lift-off that is due now into one a turn later.
-    wait = np.where(wait > 2 * np.pi - 1e-9, 0.0, wait)
-    away = np.sqrt(np.maximum((amplitude - 1) * (amplitude + 1), 0.0))
-    x, y = np.where(pressed, away, x), np.where(pressed, 1.0, y)
-    excess = y - 1
-    steep = np.minimum(excess / np.maximum(np.abs(x), 1e-300), np.sqrt(3 * excess / top))
-    return wait, x, y, np.maximum(steep, 4 * x / top)
 
 
 def _descend(phase, relative, law: Signature, amplitude):
@@ -174,16 +134,17 @@ class _Corrected(NamedTuple):
         status = np.zeros(end.shape, dtype=np.int8)
         if leaves.all():
             return _Departure(end, displacement, velocity, duration, status, start, flight)
-        wait, x_rest, y_rest, start_rest = _from_rest(end, amplitude)
-        displacement, velocity = (np.where(leaves, x, 0.0) for x in (displacement, velocity))
-        x, y = np.where(leaves, x, x_rest), np.where(leaves, y, y_rest)
-        flight = Flight(displacement, velocity, x, y, amplitude)
+        rest = lift_off(end, amplitude)
         forever = ~leaves & (amplitude <= 1)
         status[forever] = Status.PERMANENT_CONTACT
-        displacement, velocity = (np.where(forever, np.nan, x) for x in (displacement, velocity))
-        duration = duration + np.where(leaves, 0.0, np.where(forever, np.inf, wait))
-        end = end + np.where(leaves | forever, 0.0, wait)
-        start = np.where(leaves, start, start_rest)
+        wait = np.where(forever, np.inf, rest.wait)
+        still = np.where(forever, np.nan, 0.0)
+        pairs = ((displacement, still), (velocity, still), (x, rest.x), (y, rest.y))
+        pairs += ((start, rest.flown), (end, rest.phase), (duration, duration + wait))
+        displacement, velocity, x, y, start, end, duration = (
+            np.where(leaves, a, b) for a, b in pairs
+        )
+        flight = Flight(displacement, velocity, x, y, amplitude)
         return _Departure(end, displacement, velocity, duration, status, start, flight)
 
     def fly(self, departure: _Departure) -> tuple[_Impact, np.ndarray]:
@@ -208,7 +169,7 @@ def _prepare(signature: Signature, amplitude, phase, relative):
 def simulate(
     signature: Signature, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
 ) -> ImpactSequence:
-    """As :func:`bouncing_ball.motion.contacts.simulate`, with contacts that are instants.
+    """As :func:`bouncing_ball.motion.contact.simulate`, with contacts that are instants.
 
     Parameters
     ----------

@@ -68,11 +68,15 @@ class ContactLaw(Batch, ABC):
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """f(p, p′) for p > 0: force over the weight, positive when it pushes."""
 
+    @property
+    def lag(self) -> Any:
+        """κ of a contact that ends where p + κ p′ = 0; None where the force itself is needed."""
+        return 0.0 if self.release is Release.DISPLACEMENT else None
+
     def grip(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """Positive in contact, and zero where the ball is released."""
-        if self.release is Release.DISPLACEMENT:
-            return penetration + 0 * rate
-        return self.force(penetration, rate)
+        lag = self.lag
+        return self.force(penetration, rate) if lag is None else penetration + lag * rate
 
     def slopes(self, penetration: np.ndarray, rate: np.ndarray) -> Slopes:
         """Derivatives of the force."""
@@ -80,7 +84,9 @@ class ContactLaw(Batch, ABC):
 
     def grip_slopes(self, penetration: np.ndarray, rate: np.ndarray) -> Slopes:
         """Derivatives of the grip."""
-        return slopes_of(self.grip, penetration, rate)
+        if self.lag is None:
+            return self.slopes(penetration, rate)
+        return Slopes(np.ones_like(rate), self.lag + 0 * rate)
 
     @classmethod
     def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:

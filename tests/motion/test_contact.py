@@ -9,7 +9,7 @@ from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError
-from bouncing_ball.motion.contacts import contact_cycle, simulate
+from bouncing_ball.motion.contact import contact_cycle, simulate
 from bouncing_ball.motion.history import history
 from bouncing_ball.motion.sequence import Status
 from bouncing_ball.orbits.spring_damper_limits import Side, orbit_at

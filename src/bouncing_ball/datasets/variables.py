@@ -290,8 +290,7 @@ VARIABLES: dict[str, Variable] = {
     ),
     "curve_points": Variable("random points of the explicit curve"),
     "curve_points_admissible": Variable("those of them with one impact per period"),
-    # evidence for statements in words
-    "curve": Variable("curve of a figure"),
+    # numbers printed with the claims
     "period_doubling_turn": Variable(
         "frequency ratio at which the period doubling is lowest", "ϖ", budget=1e-5
     ),
@@ -330,7 +329,7 @@ VARIABLES: dict[str, Variable] = {
     "legibility": Variable("how legible the claim is in the text at hand"),
     "remark": Variable("how the claim was read"),
     "condition": Variable("condition that decides a statement in words"),
-    "decided_by": Variable("dataset, variable and bound that decide"),
+    "decided_by": Variable("datasets that decide"),
     "required": Variable("the number as printed, or the bound to be met"),
     "limit": Variable("the bound to be met, as a number", budget=IGNORED),
     "found": Variable("the number found", budget=IGNORED),

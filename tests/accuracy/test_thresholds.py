@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.accuracy.errors import SIMPLE, errors, modulus
-from bouncing_ball.accuracy.quantities import OF_IMPACTS, Quantity
+from bouncing_ball.accuracy.errors import errors, modulus
+from bouncing_ball.accuracy.quantities import Quantity
 from bouncing_ball.accuracy.thresholds import (
     ThresholdStatus,
     last_crossing,
@@ -111,6 +111,9 @@ def test_the_thresholds_of_contacts_are_those_of_a_fine_scan(release):
         assert found.status[index] == (FOUND if outside.size else ALWAYS)
         seen.add(found.status[index])
         if found.status[index] == FOUND:
+            error = errors(SpringDamper(found.threshold[index], zeta, release), n, lam, Quantity)
+            # A difference of numbers of order 1.
+            assert abs(float(error[index])) == pytest.approx(tolerance, abs=1e-12)
             low, high = fine[outside[-1]], fine[outside[-1] + 1]
             assert low * (1 - 1e-12) <= found.threshold[index] <= high * (1 + 1e-12)
         else:
@@ -121,16 +124,3 @@ def test_the_thresholds_of_contacts_are_those_of_a_fine_scan(release):
             zero = found.zero[index[1:]]
             assert (low <= zero <= high) if turns.size else np.isnan(zero)
     assert seen == {FOUND, ALWAYS}
-
-
-def test_at_its_threshold_an_error_is_the_tolerance_and_at_its_zero_nothing():
-    zeta, lam = 0.136, 1.0
-    found = search(zeta, Release.DISPLACEMENT, 1, lam, RATIOS, 0.01)
-    assert np.isfinite(found.threshold).sum() > 6 and np.isfinite(found.zero).any()
-    for i, j in np.ndindex(len(SIMPLE), len(OF_IMPACTS)):
-        error = errors(SpringDamper(found.threshold[i, j], zeta), 1, lam)[i, j]
-        if np.isfinite(found.threshold[i, j, 0]):
-            # The error is a difference of numbers of order 1.
-            assert abs(float(error[0])) == pytest.approx(0.01, abs=1e-12)
-    for j in np.flatnonzero(np.isfinite(found.zero[:, 0])):
-        assert abs(errors(SpringDamper(found.zero[j], zeta), 1, lam)[0, j]) < 1e-12

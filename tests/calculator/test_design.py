@@ -120,6 +120,9 @@ def test_permanent_contact(release):
     assert found.permanent_contact.margin == pytest.approx(1 - expected / 0.9, rel=1e-13)
     assert found.permanent_contact.margin < 0
     assert found.orbits[0].errors["permanent_contact"] == pytest.approx(1 - expected, rel=1e-13)
+    second = 1.0 if release is Release.FORCE else 1 - 2 * zeta**2
+    law = found.orbits[0].law_errors["permanent_contact"]
+    assert law == pytest.approx(second / 36, rel=1e-13)
 
 
 def test_permanent_contact_needs_what_the_paper_computes():

@@ -75,24 +75,6 @@ def test_steps_obey_the_control():
     assert branch.tangents == pytest.approx(normal, abs=EXACT)
 
 
-def test_a_turn_of_the_tangent_shortens_the_step():
-    control = StepControl(initial=1.0, largest=1.0, max_angle=0.05)
-    branch = continue_branch(
-        CIRCLE, np.array([1.0, 0.0]), increasing=True, control=control, max_points=5
-    )
-    angle = np.diff(np.arctan2(branch.points[:, 1], branch.points[:, 0]))
-    assert np.all(angle <= 0.05 * (1 + 1e-12))
-
-
-def test_decreasing_starts_the_other_way():
-    branch = continue_branch(CIRCLE, np.array([1.0, 0.0]), increasing=False, max_points=10)
-    assert np.all(np.diff(branch.points[:, 1]) < 0)
-    # With the same first step, and tangents of length one.
-    first = np.linalg.norm(branch.points[1] - branch.points[0])
-    assert first == pytest.approx(StepControl().initial, rel=1e-3)
-    assert np.linalg.norm(branch.tangents, axis=1) == pytest.approx(np.ones(10), abs=EXACT)
-
-
 def test_both_folds_of_a_cubic():
     # p = x - x³ has its extrema at x = ±1/√3.
     events = [
@@ -241,6 +223,14 @@ def test_no_start(one_line):
         continue_branch(CIRCLE, np.array([1.0, 2.0]), increasing=True)
 
 
+def test_a_start_beyond_a_terminal_event(one_line):
+    for bound, upper in ((0.5, True), (0.7, False)):
+        events = [parameter_bound(bound, upper, "the window")]
+        with pytest.raises(ContinuationError) as error:
+            continue_branch(CIRCLE, np.array([0.8, 0.6]), increasing=True, events=events)
+        one_line(error, "the start [0.8 0.6] lies beyond the end of the branch: the window")
+
+
 def test_start_is_corrected_at_its_own_parameter():
     assert solve_at(CIRCLE, np.array([0.9, 0.6])) == pytest.approx([0.8, 0.6], abs=EXACT)
     branch = continue_branch(CIRCLE, np.array([0.9, 0.6]), increasing=True, max_points=3)
@@ -288,14 +278,3 @@ def test_resampling_with_too_long_steps(one_line):
     with pytest.raises(ContinuationError) as error:
         resample(wave, branch, 5, NewtonSettings(max_iterations=3))
     one_line(error, "resampling to 5 points failed with residual")
-
-
-def test_resampling_a_branch_of_one_point():
-    # A branch whose first step fails has one point only.
-    alone = Branch(np.array([[1.0, 0.0]]), np.array([[0.0, 1.0]]), (), STARTED, STARTED)
-    try:
-        points = resample(CIRCLE, alone, 3)
-    except ContinuationError as error:
-        assert "nan" not in str(error)
-    else:
-        assert points == pytest.approx(np.broadcast_to([1.0, 0.0], (3, 2)), abs=EXACT)

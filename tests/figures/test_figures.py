@@ -6,7 +6,6 @@ import pytest
 from bouncing_ball.configuration.study import load
 from bouncing_ball.figures import DRAWINGS
 from bouncing_ball.figures.branches import up_to_second_saddle_node
-from bouncing_ball.figures.canvas import number
 from bouncing_ball.figures.files import save
 from bouncing_ball.figures.style import COLOURS, LINES, style
 from bouncing_ball.provenance.origin import read_attributes
@@ -160,11 +159,6 @@ def test_files_are_the_same_every_time(record, tmp_path, kind):
     assert contents[0] == contents[1] and len(contents[0]) > 5000
 
 
-def test_numbers_in_labels():
-    shown = [number(x) for x in (1.0, 0.1, 1e4, 2.5e5)]
-    assert shown == ["1", "0.1", "10^{4}", r"2.5\times 10^{5}"]
-
-
 def test_basins_are_drawn_where_they_are(record):
     data = record["ext_basins"]
     for case, axes in enumerate(drawn("ext_basins", data).axes):
@@ -173,17 +167,3 @@ def test_basins_are_drawn_where_they_are(record):
         assert (image.origin, image.get_extent()) == ("lower", [-1.0, 1.0, 0.0, 8.0])
         colours = image.cmap(image.norm(np.arange(data.sizes["motion"])))
         assert len(np.unique(colours, axis=0)) == data.sizes["motion"]
-
-
-def test_windows_are_drawn_from_the_threshold_to_their_ends(record):
-    data = record["ext_rattling"]
-    left, right = drawn("ext_rattling", data).axes
-    first = data.isel(restitution=0)
-    marked = {line.get_label(): line.get_xydata() for line in left.lines}
-    for kind in ("saddle-node", "period doubling", "grazing in contact"):
-        for ratio, amplitude in marked[kind]:
-            place = first.sel(frequency_ratio=ratio)
-            assert (place.window_end, place.window_amplitude) == (kind, amplitude)
-    assert marked[r"$\Lambda_{SD}$"][:, 1].tolist() == first.threshold_amplitude.values.tolist()
-    limits = {float(line.get_ydata()[0]) for line in right.lines if line.get_marker() == 5}
-    assert limits == set(data.stiff_window.values.tolist())

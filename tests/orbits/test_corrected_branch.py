@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.contacts.damping import restitution_coefficient
 from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.orbits import corrected_branch, restitution_orbit, stability
+from bouncing_ball.orbits import corrected_branch, stability
 from bouncing_ball.orbits import spring_damper_limits as limits
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 
@@ -42,17 +41,6 @@ def test_multipliers_at_the_bifurcations(release):
     np.testing.assert_allclose(corrected_branch.instant_phase(n, instant, lam), psi, atol=1e-12)
     trace, det = corrected_branch.trace_and_determinant(n, instant, lam, psi)
     assert np.all(np.abs(stability.period_doubling_function(trace, det)) < 1e-12)
-
-
-def test_the_restitution_model_is_the_limit_of_a_stiff_contact():
-    n = np.array([1, 2, 3])
-    instant = LinearSignature(SpringDamper(1e12, 0.1359))()
-    r = restitution_coefficient(0.1359)
-    fold, doubling = restitution_orbit.saddle_node(n, r), restitution_orbit.period_doubling(n, r)
-    np.testing.assert_allclose(corrected_branch.saddle_node(n, instant), fold, rtol=1e-11)
-    np.testing.assert_allclose(
-        corrected_branch.period_doubling(n, instant)[0], doubling, rtol=1e-11
-    )
 
 
 @pytest.mark.parametrize("release", RELEASES)

@@ -31,14 +31,3 @@ def test_changes_are_found_to_the_last_digit():
     assert found[:2] == pytest.approx(np.array(expected), abs=4e-16)
     # Each is the last admissible point on its side.
     assert admissible(found).all()
-
-
-def test_no_change_no_point():
-    points = np.array([[1.0, 0.0], [np.cos(0.1), np.sin(0.1)]])
-    for always in (True, False):
-        assert (
-            grazing_points(
-                Circle(), lambda y, a=always: np.full(y.shape[:-1], a), points, NewtonSettings()
-            )
-            == []
-        )

@@ -255,20 +255,6 @@ def test_without_a_fold():
     assert not stable(orbit_at(contact, 1, 4.0))
 
 
-def test_period_doubling_without_a_fold():
-    # At ϖ = 1 the 1-T branch of r = 0.85 has no fold either. It is stable at
-    # Λ = 1.2 and has a multiplier below -1 at 1.4: there is a period doubling
-    # between, and NaN is for a side that has none.
-    contact = SpringDamper(1.0, float(damping_ratio(0.85)))
-    assert np.isnan(saddle_node(contact, 1))
-    assert stable(orbit_at(contact, 1, 1.2)) and not stable(orbit_at(contact, 1, 1.4))
-    excess = period_doubling(contact, 1)
-    assert np.isfinite(excess)
-    orbit = SpringDamperOrbit.from_branch(branch_point(excess, contact, 1), contact, 1)
-    assert float(orbit.amplitude) == pytest.approx(1.29751875, abs=1e-8)
-    assert abs(float(period_doubling_function(*stability(orbit)))) < 1e-10
-
-
 @pytest.mark.parametrize(
     ("n", "r", "omega"), [(3, 0.9999700944704891, 6586.302158952978), (1, 0.99999, np.e)]
 )
@@ -279,14 +265,6 @@ def test_saddle_node_of_a_nearly_elastic_contact_released_at_zero_force(n, r, om
     point = branch_point(saddle_node(contact, n), contact, n)
     assert float(point.amplitude) < 1e-3
     assert abs(float(saddle_node_function(point.trace, point.determinant))) < 1e-9
-
-
-@pytest.mark.parametrize("omega", [0.18, 0.32, 0.45])
-def test_a_very_soft_contact_has_no_fold_after_the_cycles_end(omega):
-    # ϖ_d < 1/2: half a period of contact is longer than the cycle 2π.
-    contact = SpringDamper(omega, float(damping_ratio(0.6)))
-    duration = float(branch_point(saddle_node(contact, 1), contact, 1).contact_duration)
-    assert np.isnan(duration) or duration < 2 * np.pi
 
 
 @pytest.mark.parametrize("omega", [0.18, 0.32])

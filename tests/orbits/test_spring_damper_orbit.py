@@ -77,16 +77,6 @@ def test_one_cycle_by_numerical_integration(case):
     assert at_b[0] + at_b[1] ** 2 / 2 == pytest.approx(float(orbit.max_height), abs=1e-8)
 
 
-def test_relative_velocities_and_apparent_restitution():
-    orbit = SpringDamperOrbit(2, SpringDamper(10.0, 0.1), 1.5, 0.4, 0.3, -6.0)
-    # By hand: bounce velocity -6 + 4π - 0.3.
-    assert orbit.bounce_velocity == pytest.approx(4 * np.pi - 6.3, rel=1e-15)
-    before, after = -6.0 - 1.5 * np.cos(0.4), 4 * np.pi - 6.3 - 1.5 * np.cos(0.7)
-    assert orbit.relative_impact_velocity == pytest.approx(before, rel=1e-15)
-    assert orbit.relative_bounce_velocity == pytest.approx(after, rel=1e-15)
-    assert orbit.apparent_restitution == pytest.approx(-after / before, rel=1e-15)
-
-
 def test_max_height_of_a_ball_released_downwards():
     # A stable orbit of a soft contact: the ball turns round before release, so
     # its greatest height lies in the contact.

@@ -20,12 +20,8 @@ from bouncing_ball.studies.continuation import (
     controls,
     first_limits,
 )
-from bouncing_ball.studies.orbit_branches import (
-    Ranges,
-    both_domains,
-    orbit_branches,
-    stability_ranges,
-)
+from bouncing_ball.studies.orbit_branches import both_domains, orbit_branches
+from bouncing_ball.studies.stability_ranges import Ranges, stability_ranges
 
 # As the configuration gives them.
 both_domains, orbit_branches, stability_ranges = map(

@@ -85,7 +85,8 @@ def test_a_job_runs_what_exists_and_keeps_it_even_on_failure(job):
     assert targets or ".ci/run" in commands
     last = max(k for k, text in enumerate(commands) if text.startswith(("make ", ".ci/run")))
     kept = [step for step in steps[last + 1 :] if "upload-artifact" in step.get("uses", "")]
-    assert kept and all(step["if"] == "${{ always() }}" for step in kept)
+    # The long tests leave nothing to look at.
+    assert bool(kept) == (job != "long") and all(step["if"] == "${{ always() }}" for step in kept)
 
 
 def test_a_folder_hides_no_target():

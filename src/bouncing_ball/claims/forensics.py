@@ -137,8 +137,7 @@ def altered_ends(
 
 def readings() -> Iterator[Reading]:
     """The eight readings."""
-    ratios, families = (np.array(AXES[key], dtype=float) for key in ("frequency_ratio", "n"))
-    omega, n = np.meshgrid(ratios, families, indexing="ij")
+    omega, n = np.meshgrid(AXES["frequency_ratio"], AXES["n"], indexing="ij")
     zeta = float(damping_ratio(RESTITUTION))
 
     def of_model(damping: float = zeta, release: Release = Release.DISPLACEMENT) -> np.ndarray:
@@ -146,41 +145,26 @@ def readings() -> Iterator[Reading]:
         return np.stack([x(n).amplitude for x in (model.saddle_node, model.period_doubling)], -1)
 
     def altered(orbit_at: OrbitAt, monodromy: Monodromy) -> np.ndarray:
-        return np.array(
-            [
-                [altered_ends(SpringDamper(x, zeta), k, orbit_at, monodromy) for k in AXES["n"]]
-                for x in AXES["frequency_ratio"]
-            ]
-        )
+        places = zip(omega.ravel(), n.ravel(), strict=True)
+        ends = [altered_ends(SpringDamper(x, zeta), k, orbit_at, monodromy) for x, k in places]
+        return np.reshape(ends, (*n.shape, 2))
 
     plain, first_order = of_model(), -np.log(RESTITUTION) / np.pi
-    ends = (as_printed.saddle_node(n, RESTITUTION), as_printed.period_doubling(n, RESTITUTION))
     yield Reading("equations as they stand", "Eqs. 11-26, the linearised return map", plain)
     yield Reading("digits cut off", "digits beyond the last printed one are cut off", plain, True)
-    yield Reading(
-        "damping as printed", f"ζ = {PRINTED_DAMPING}, as printed", of_model(PRINTED_DAMPING)
-    )
+    printed = of_model(PRINTED_DAMPING)
+    yield Reading("damping as printed", f"ζ = {PRINTED_DAMPING}, as printed", printed)
     yield Reading("damping to first order", "ζ = -ln r/π", of_model(first_order))
-    yield Reading(
-        "force release",
-        "the contact ends where its force vanishes",
-        of_model(release=Release.FORCE),
-    )
-    yield Reading(
-        "no gravity in contact",
-        "gravity is left out of the contact, Eq. 11",
-        altered(WeightlessOrbit.at, WeightlessOrbit.monodromy),
-    )
-    yield Reading(
-        "high-bounce stability",
-        "the orbit is exact, but the linearised flight ignores the table's displacement",
-        altered(branch_orbit, high_bounce_monodromy),
-    )
-    yield Reading(
-        "all rows from Eqs. 7-8",
-        "every row is the restitution model's: what the stiffness changes",
-        np.stack(ends, axis=-1),
-    )
+    forced = of_model(release=Release.FORCE)
+    yield Reading("force release", "the contact ends where its force vanishes", forced)
+    weightless = altered(WeightlessOrbit.at, WeightlessOrbit.monodromy)
+    yield Reading("no gravity in contact", "Eq. 11 without gravity", weightless)
+    high = "the orbit is exact, but the linearised flight ignores the table's displacement"
+    holmes = altered(branch_orbit, high_bounce_monodromy)
+    yield Reading("high-bounce stability", high, holmes)
+    ends = [end(n, RESTITUTION) for end in (as_printed.saddle_node, as_printed.period_doubling)]
+    rigid = "every row is the restitution model's: what the stiffness changes"
+    yield Reading("all rows from Eqs. 7-8", rigid, np.stack(ends, axis=-1))
 
 
 def forensics() -> xr.Dataset:

@@ -18,7 +18,7 @@ from bouncing_ball.continuation.events import vanishing
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.errors import ModelError
 from bouncing_ball.motion.angles import reduce_angle
-from bouncing_ball.orbits.model import ImpactModel, Route, System
+from bouncing_ball.orbits.model import ImpactModel, Route
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
@@ -27,6 +27,7 @@ from bouncing_ball.orbits.stability import (
     period_doubling_function,
     saddle_node_function,
 )
+from bouncing_ball.orbits.system import OrbitSystem
 
 # Periods over which the simulation must hold a stable orbit.
 HELD_PERIODS = 50
@@ -172,14 +173,14 @@ def _size(orbit: Orbit) -> np.ndarray:
     return np.maximum(orbit.amplitude, orbit.n)
 
 
-def _tangents(system: System, y: np.ndarray) -> np.ndarray:
+def _tangents(system: OrbitSystem, y: np.ndarray) -> np.ndarray:
     """Unit tangents of the branches through y; any where y is not a number."""
     jacobian = system.jacobian(y)
     known = np.where(np.isfinite(jacobian), jacobian, 0.0)
     return np.linalg.svd(known)[2][..., -1, :]
 
 
-def _solved(system: System, y: np.ndarray, condition: Condition) -> Any:
+def _solved(system: OrbitSystem, y: np.ndarray, condition: Condition) -> Any:
     """The orbits to which Newton's method moves the points y; NaN where it fails."""
     with np.errstate(all="ignore"):
         found = newton(system, y, condition, _NEWTON)

@@ -187,7 +187,6 @@ VARIABLES: dict[str, Variable] = {
     "reading": Variable("what is assumed, one reading of the paper each"),
     "bifurcation_amplitude": Variable("excitation amplitude of the bifurcation", "Λ"),
     "force_restitution": Variable("restitution coefficient of the force release", "r_F"),
-    "bifurcation_phase": Variable("phase at the bifurcation", "φ", "rad"),
     # other contact laws
     "law": Variable("law of the contact"),
     "duration_ratio": Variable(
@@ -291,9 +290,7 @@ VARIABLES: dict[str, Variable] = {
     ),
     "curve_points": Variable("random points of the explicit curve"),
     "curve_points_admissible": Variable("those of them with one impact per period"),
-    # evidence for statements in words
-    "curve": Variable("curve of a figure"),
-    "figure": Variable("figure"),
+    # numbers printed with the claims
     "period_doubling_turn": Variable(
         "frequency ratio at which the period doubling is lowest", "ϖ", budget=1e-5
     ),
@@ -332,7 +329,7 @@ VARIABLES: dict[str, Variable] = {
     "legibility": Variable("how legible the claim is in the text at hand"),
     "remark": Variable("how the claim was read"),
     "condition": Variable("condition that decides a statement in words"),
-    "decided_by": Variable("dataset, variable and bound that decide"),
+    "decided_by": Variable("datasets that decide"),
     "required": Variable("the number as printed, or the bound to be met"),
     "limit": Variable("the bound to be met, as a number", budget=IGNORED),
     "found": Variable("the number found", budget=IGNORED),
@@ -365,10 +362,6 @@ VARIABLES: dict[str, Variable] = {
     "reproduced": Variable("number of entries within half a unit of the last digit"),
     "entries": Variable("number of entries compared"),
     "unreachable": Variable("number of saddle-nodes printed below every computed orbit"),
-    "chosen_in_range": Variable("whether the reading allows a range, its best value taken"),
-    "step_needed": Variable(
-        "arclength step from which a continued point may round to it", "h", budget=1e-5
-    ),
 }
 
 
@@ -410,8 +403,6 @@ ARTIFACTS: dict[str, dict[str, Budget]] = {
     "ext_validity": {"error_threshold": Budget(1e-9)},
     # The second order of a stiff contact is a small difference of large values.
     "ext_orders": {"relative_error": Budget(1e-11)},
-    # Near the saddle-node the phase depends on Λ by a root.
-    "ext_fig15": {"phase": Budget(1e-12)},
     # Collocated orbits, each right to some 1e-13.
     "ext_hertz": dict.fromkeys(("bifurcation_amplitude", "phase"), Budget(1e-12)),
     # Saddle-nodes are found as minima here, and some readings are ill-conditioned.

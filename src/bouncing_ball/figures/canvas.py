@@ -52,8 +52,8 @@ def number(value: float) -> str:
 
     Examples
     --------
-    >>> number(0.85), number(10000.0), number(2.0)
-    ('0.85', '10^{4}', '2')
+    >>> number(0.85), number(10000.0), number(250000.0)
+    ('0.85', '10^{4}', '2.5\\\\times 10^{5}')
     """
     if value >= 1e4:
         mantissa, exponent = f"{value:e}".split("e")

@@ -108,12 +108,6 @@ class _Search(NamedTuple):
             todo = todo[~found.converged & np.isfinite(found.step)]
         return y
 
-    def on_side(self, y: np.ndarray, side: Side) -> np.ndarray:
-        """Whether points lie on a side of the fold."""
-        orbit = self.model.system(self.n).orbit(y)
-        test = Bifurcation.SADDLE_NODE.test(*orbit.trace_and_determinant())
-        return test > 0 if side is Side.STABLE else test < 0
-
 
 def _rows(model: Any, n: ArrayLike, *more: ArrayLike):
     """The models and everything else broadcast and in a row, and the shape."""
@@ -136,7 +130,12 @@ def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Any:
     # Next to the fold the start may lie below it.
     psi = np.where(np.isnan(psi), corrected.saddle_node_phase(search.instant), psi)
     y = search.solved(search.start(lam, psi))
-    for k in np.flatnonzero(~search.on_side(y, side)):
+    found = _shaped(model, n, y, shape)
+    test = Bifurcation.SADDLE_NODE.test(*found.trace_and_determinant())
+    on_side = test > 0 if side is Side.STABLE else test < 0
+    if np.all(on_side):
+        return found
+    for k in np.flatnonzero(~np.broadcast_to(on_side, shape)):
         y[k] = _on_branch(row.take(k), int(index[k]), float(lam[k]), side)
     return _shaped(model, n, y, shape)
 

@@ -13,8 +13,7 @@ from bouncing_ball.motion.corrected import simulate
 from bouncing_ball.motion.sequence import ImpactSequence
 from bouncing_ball.orbits import corrected_branch as formulas
 from bouncing_ball.orbits.continued import both_sides
-from bouncing_ball.orbits.corrected_orbit import CorrectedOrbit
-from bouncing_ball.orbits.corrected_system import CorrectedSystem
+from bouncing_ball.orbits.corrected_orbit import CorrectedOrbit, CorrectedSystem
 from bouncing_ball.orbits.model import ImpactModel, Route
 from bouncing_ball.orbits.orbit import Orbit, check_index
 from bouncing_ball.orbits.stability import Side

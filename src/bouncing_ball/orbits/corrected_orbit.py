@@ -3,6 +3,7 @@
 All quantities are dimensionless.
 """
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Self
 
@@ -21,6 +22,7 @@ from bouncing_ball.motion.corrected import corrected_cycle
 from bouncing_ball.motion.sequence import Cycle
 from bouncing_ball.orbits import corrected_branch as formulas
 from bouncing_ball.orbits.orbit import Orbit
+from bouncing_ball.orbits.system import OrbitSystem
 
 
 class CorrectedOrbit(Orbit):
@@ -105,3 +107,57 @@ class CorrectedOrbit(Orbit):
     def cycle(self, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
         """From starts of contact (φ, δ′) to the next, simulated."""
         return corrected_cycle(self.law, self.amplitude, phase, relative_velocity)
+
+
+@dataclass(frozen=True)
+class CorrectedSystem(OrbitSystem):
+    """The equations of these orbits: velocity after the instant, and nπ.
+
+    Unknowns (ψ, w), the phase of the instant and the velocity after it; parameter Λ.
+    They have the form of :mod:`bouncing_ball.orbits.corrected_branch`;
+    continued, they check both the continuation and the formula.
+
+    Parameters
+    ----------
+    n : int
+        Index of the family.
+    law : Signature
+
+    Examples
+    --------
+    >>> from bouncing_ball.contacts.signature import LinearSignature
+    >>> from bouncing_ball.contacts.spring_damper import SpringDamper
+    >>> system = CorrectedSystem(1, LinearSignature(SpringDamper(5.0, 0.0)))
+    >>> [abs(round(float(x), 12)) for x in system.residual(np.array([np.pi / 2, np.pi, 1.0]))]
+    [0.0, 0.0]
+    """
+
+    n: int | np.ndarray
+    law: Signature
+
+    def orbit(self, y: np.ndarray) -> CorrectedOrbit:
+        """The orbits at points y of shape (..., 3)."""
+        psi, after, amplitude = (y[..., k] for k in range(3))
+        arrival = after - 2 * np.pi * self.n
+        instant = impact(self.law, amplitude, psi, arrival).instant
+        start, phase = arrival + instant.delay, psi - instant.delay
+        duration = instant.duration + 0 * psi
+        return CorrectedOrbit(self.n, self.law, amplitude, phase, duration, start)
+
+    def coordinates(self, orbit: CorrectedOrbit) -> tuple[np.ndarray, ...]:
+        """(ψ, w, Λ)."""
+        return orbit.hit.phase, orbit.bounce_velocity + orbit.after, orbit.amplitude
+
+    def jacobian(self, y: np.ndarray) -> np.ndarray:
+        """Exact Jacobian of the residual, shape (..., 2, 3)."""
+        psi, amplitude = y[..., 0], y[..., 2]
+        sine, cosine = np.sin(psi), np.cos(psi)
+        hit = impact(self.law, amplitude, psi, y[..., 1] - 2 * np.pi * self.n)
+        here, _ = hit.instant.tangent(hit.speed, 1 - amplitude * sine)
+        r, load = here.restitution, here.load
+        out = np.zeros((*y.shape[:-1], 2, 3))
+        out[..., 0, 0] = -amplitude * ((1 + r) * sine + load * cosine)
+        out[..., 0, 1] = -r - 1
+        out[..., 0, 2] = (1 + r) * cosine - load * sine
+        out[..., 1, 1] = 1
+        return out

@@ -157,25 +157,33 @@ def stable_window(contact: SpringDamper) -> Window:
     return Window(amplitude, flight, end)
 
 
-def joined(contact: SpringDamper) -> bool:
-    """Whether all orbits from the saddle-node to Λ_SD are admissible, of one contact.
+def joined(contact: SpringDamper) -> np.ndarray:
+    """Whether all orbits from the saddle-node to Λ_SD are admissible, for each contact, (m,).
 
     Then the unstable side of the branch with a short contact leads to the orbits
     with a long one. False where the branch has no saddle-node.
     """
-    node = branch_point(limits.saddle_node(contact, 1), contact, 1).contact_duration
-    if not np.isfinite(node):
-        return False
-    times = np.linspace(2 * np.pi - float(node) - _TO_SIDE, _SHORT / _SOFT, _JOINT_SAMPLES)
-    return bool(orbit_with_flight(contact, times).is_admissible().all())
+    ratio, zeta = np.broadcast_arrays(
+        *np.atleast_1d(contact.frequency_ratio, contact.damping_ratio)
+    )
+    each = SpringDamper(ratio, zeta, contact.release)
+    node = branch_point(limits.saddle_node(each, 1), each, 1).contact_duration
+    found = np.isfinite(node)
+    if found.any():
+        longest = 2 * np.pi - node[found] - _TO_SIDE
+        times = np.linspace(longest, _SHORT / _SOFT, _JOINT_SAMPLES)
+        found[found] = orbit_with_flight(each[found], times).is_admissible().all(axis=0)
+    return found
 
 
-def joining_ratio(damping_ratio: float, release: Release, low: float, high: float) -> float:
+def joining_ratio(
+    damping_ratio: ArrayLike, release: Release, low: float, high: float
+) -> np.ndarray:
     """The ϖ above which the families with a short and a long contact are apart.
 
     Parameters
     ----------
-    damping_ratio : float
+    damping_ratio : array_like
         ζ.
     release : Release
     low, high : float
@@ -183,18 +191,21 @@ def joining_ratio(damping_ratio: float, release: Release, low: float, high: floa
 
     Returns
     -------
-    float
-        NaN unless they are joined at ``low`` and apart at ``high``.
+    ndarray
+        For each ζ; NaN unless they are joined at ``low`` and apart at ``high``.
     """
+    zeta = np.atleast_1d(np.asarray(damping_ratio, dtype=float))
 
-    def together(ratio):
-        return joined(SpringDamper(ratio, damping_ratio, release))
+    def together(ratio: np.ndarray) -> np.ndarray:
+        return joined(SpringDamper(ratio, zeta, release))
 
-    if not together(low) or together(high):
-        return math.nan
-    while low < (middle := (low + high) / 2) < high and high - low > _CLOSE:
-        low, high = (middle, high) if together(middle) else (low, middle)
-    return low
+    below, above = np.full(zeta.shape, low), np.full(zeta.shape, high)
+    parting = together(below) & ~together(above)
+    while parting.any() and above[0] - below[0] > _CLOSE:
+        middle = (below + above) / 2
+        here = together(middle)
+        below, above = np.where(here, middle, below), np.where(here, above, middle)
+    return np.where(parting, below, np.nan).reshape(np.shape(damping_ratio))
 
 
 def _highest_after_landing(excess: float, zeta: float) -> float:

@@ -1,4 +1,4 @@
-"""What every model of the impact offers, and every n-T orbit.
+"""What every model of the impact offers.
 
 Callers ask; none of them tests which model it has::
 
@@ -9,10 +9,9 @@ Callers ask; none of them tests which model it has::
     model.simulate(0.9, phase=0.0, velocity=-3.0, impacts=100).phase
 
 A new model is a subclass of :class:`ImpactModel`, with its orbits as a
-subclass of :class:`Orbit`: what follows from the flight alone is written here
-once. Models and orbits are arrays: all fields broadcast, and both are indexed,
-``orbit[3]``. Time runs from the start of contact, τ_i = 0; the contact ends
-at τ_b = D, the next one starts at τ_2 = 2πn. Everything is dimensionless.
+subclass of :class:`Orbit`: what follows from the flight alone, and by continuation, is
+written once. Models and orbits are arrays: all fields broadcast, and both are indexed,
+``orbit[3]``. Everything is dimensionless.
 """
 
 from __future__ import annotations
@@ -20,20 +19,19 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import fields
 from enum import StrEnum
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.batch import Batch
 from bouncing_ball.contacts.signature import Instant
-from bouncing_ball.continuation.events import Event
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence
 from bouncing_ball.orbits import continued
-from bouncing_ball.orbits.contact_system import ContactSystem
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.stability import Bifurcation, Side
+from bouncing_ball.orbits.system import ContactSystem, OrbitSystem
 
 
 class Route(StrEnum):
@@ -55,28 +53,6 @@ class Absence(StrEnum):
     NO_OTHER_SIDE = "the branch has no saddle-node, and so no other side"
     NOT_REACHED = "this side of the branch does not reach this Λ"
     NOT_FOUND = "none was found, and there may be one"
-
-
-class System(Protocol):
-    """A model's equations as a :class:`~bouncing_ball.continuation.problem.Problem`.
-
-    y holds the unknowns and, last, the continuation parameter.
-    """
-
-    def residual(self, y: np.ndarray) -> np.ndarray:
-        """Defects, shape (..., N)."""
-
-    def jacobian(self, y: np.ndarray) -> np.ndarray:
-        """Exact Jacobian of the residual, shape (..., N, N + 1)."""
-
-    def orbit(self, y: np.ndarray) -> Any:
-        """The orbits at points y, with all their observables."""
-
-    def point(self, orbit: Any) -> np.ndarray:
-        """y of given orbits."""
-
-    def events(self) -> tuple[Event, ...]:
-        """Bifurcations, and the ends of the domain in which an orbit makes sense."""
 
 
 class ImpactModel(Batch, ABC):
@@ -115,7 +91,7 @@ class ImpactModel(Batch, ABC):
 
     # What follows.
 
-    def system(self, n: int | np.ndarray) -> System:
+    def system(self, n: int | np.ndarray) -> OrbitSystem:
         """The equations of the orbits, continued in Λ (route CONTINUATION)."""
         orbits: Any = self.orbit_type
         return ContactSystem(n, self._law, orbits.at)

@@ -58,7 +58,7 @@ def saddle_node(n: ArrayLike, restitution: ArrayLike) -> np.ndarray:
     return np.asarray(n) * np.pi * (1 - r) / (1 + r)
 
 
-def rigid_speed(n: int, restitution: float) -> float:
+def rigid_speed(n: ArrayLike, restitution: ArrayLike) -> np.ndarray:
     """Impact speed 2πn/(1 + r) of the n-T orbits, at every Λ.
 
     Examples
@@ -66,7 +66,7 @@ def rigid_speed(n: int, restitution: float) -> float:
     >>> bool(rigid_speed(2, 1.0) == 2 * np.pi)
     True
     """
-    return 2 * np.pi * n / (1 + restitution)
+    return 2 * np.pi * np.asarray(n) / (1 + np.asarray(restitution, dtype=float))
 
 
 def period_doubling_lift(

@@ -18,8 +18,8 @@ from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.continuation.events import Event
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
-from bouncing_ball.orbits.branch_events import branch_events
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.orbits.system import OrbitSystem
 
 
 class Parameter(StrEnum):
@@ -30,7 +30,7 @@ class Parameter(StrEnum):
 
 
 @dataclass(frozen=True)
-class SpringDamperSystem:
+class SpringDamperSystem(OrbitSystem):
     """n-T orbits as a :class:`~bouncing_ball.continuation.problem.Problem`.
 
     Parameters
@@ -66,17 +66,12 @@ class SpringDamperSystem:
         contact = SpringDamper(omega, zeta, self.release)
         return SpringDamperOrbit(self.n, contact, amplitude, phase, angle / omega, impact)
 
-    def point(self, orbit: SpringDamperOrbit) -> np.ndarray:
-        """y of given orbits."""
+    def coordinates(self, orbit: SpringDamperOrbit) -> tuple[np.ndarray, ...]:
+        """(φ, z′_i, ϖ τ_b, p)."""
         omega = np.asarray(orbit.contact.frequency_ratio)
         by_amplitude = self.parameter is Parameter.AMPLITUDE
         parameter = orbit.amplitude if by_amplitude else np.log(omega)
-        parts = orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration, parameter
-        return np.stack(np.broadcast_arrays(*parts), axis=-1)
-
-    def residual(self, y: np.ndarray) -> np.ndarray:
-        """Release, velocity and landing defects, shape (..., 3)."""
-        return self.orbit(y).residual()
+        return orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration, parameter
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """Exact Jacobian of the residual, shape (..., 3, 4)."""
@@ -128,7 +123,7 @@ class SpringDamperSystem:
 
     def events(self) -> tuple[Event, ...]:
         """Those of every contact, and the loss of a release that leaves the table."""
-        *bifurcations, contact, flight = branch_events(self.orbit)
+        *bifurcations, contact, flight = super().events()
         release = Event(
             "release lost",
             lambda y: self.orbit(y).relative_bounce_velocity,

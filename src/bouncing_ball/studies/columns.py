@@ -12,6 +12,8 @@ OBSERVED = (
     "bounce_velocity",
     "apparent_restitution",
 )
+PLACE = ("amplitude", "phase", "contact_duration")
+"""What is published of special orbits."""
 
 
 def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:

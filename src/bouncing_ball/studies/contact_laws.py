@@ -3,7 +3,7 @@ r"""The paper's comparison on the contacts that engineers use (beyond the paper)
 All laws have the same restitution coefficient r and the same duration D of the
 free impact, at the impact speed of the orbit in question. What stands for ϖ, which a
 Hertz contact does not have, is π/D: that of the elastic linear contact of the
-same duration. Errors are relative to the exact orbit on the contact, as in Eqs. 37-38.
+same duration. Errors are relative to the value of the exact orbit on the contact.
 """
 
 from typing import Any
@@ -11,8 +11,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
+from bouncing_ball.accuracy.errors import SIMPLE, relative
+from bouncing_ball.accuracy.quantities import Quantity, values
+from bouncing_ball.accuracy.thresholds import thresholds
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.law_permanent_contact import permanent_contact
@@ -43,9 +45,8 @@ from bouncing_ball.studies.parameters import BranchEnd, OrbitAmplitude, Points
 HERTZ = ("hunt-crossley", "tsuji", "kuwabara-kono")
 LINEAR = {"linear": Release.DISPLACEMENT, "linear, force release": Release.FORCE}
 NAMES = (*LINEAR, *HERTZ)
-QUANTITIES = ("max_height", "bounce_velocity", "phase", "saddle_node", "period_doubling")
-BOUNDS = ("saddle_node", "period_doubling")
-SIMPLE = ("restitution", "corrected")
+BOUNDS = (Quantity.SADDLE_NODE, Quantity.PERIOD_DOUBLING)
+QUANTITIES = (Quantity.MAX_HEIGHT, Quantity.BOUNCE_VELOCITY, Quantity.PHASE, *BOUNDS)
 
 
 class OneOrbit(Parameters):
@@ -87,8 +88,11 @@ def linear_contact(restitution: float, duration: ArrayLike, release: Release) ->
     return SpringDamper(omega, unit.damping_ratio, release)
 
 
-def exact_model(name: str, restitution: float, duration: float, speed: float) -> ImpactModel:
-    """The exact model of the contact with r and D at a speed."""
+def exact_model(
+    name: str, restitution: float, duration: ArrayLike, speed: ArrayLike
+) -> ImpactModel:
+    """The exact models of contacts with r and D at their speeds, arrays of one shape."""
+    duration, speed = np.broadcast_arrays(duration, speed)
     if name in LINEAR:
         return SpringDamperModel(linear_contact(restitution, duration, LINEAR[name]))
     return LawModel(law_of_impact(LAWS[name], restitution, duration, speed))
@@ -129,48 +133,44 @@ def corrected_model(exact: Any) -> CorrectedModel:
     return CorrectedModel(LawSignature(exact.law))
 
 
-def _values(model: ImpactModel, n: int, amplitude: float) -> np.ndarray:
-    """The quantities compared, (quantity, ...)."""
-    orbit = model.orbit(n, amplitude)
-    bounds = (getattr(model, name)(n).amplitude for name in BOUNDS)
-    columns = (orbit.max_height, orbit.bounce_velocity, orbit.phase, *bounds)
-    return np.array(np.broadcast_arrays(*columns), dtype=float)
-
-
 def _errors(name: str, parameters: OneOrbit, ratios: np.ndarray) -> np.ndarray:
     """Relative errors of both simple models, (model, quantity, ratio)."""
-    r, n, lam = parameters.restitution, parameters.n, parameters.amplitude
+    orbit = parameters.n, parameters.amplitude, QUANTITIES
     errors = np.full((len(SIMPLE), len(QUANTITIES), len(ratios)), np.nan)
     part, models = stiff_enough(name, parameters, ratios)
     if models is None:
         return errors
     exact: Any = models
-    wanted = _values(exact, n, lam)
-    rigid = _values(RestitutionModel(r), n, lam)[:, np.newaxis]
-    each = [_values(corrected_model(exact[k]), n, lam) for k in range(len(exact))]
-    errors[..., part] = np.abs(np.array([rigid / wanted, np.stack(each, axis=-1) / wanted]) - 1)
+    wanted = values(exact, *orbit)
+    rigid = values(RestitutionModel(parameters.restitution), *orbit)[:, np.newaxis]
+    each = [values(corrected_model(exact[k]), *orbit) for k in range(len(exact))]
+    errors[..., part] = np.abs([relative(x, wanted) for x in (rigid, np.stack(each, axis=-1))])
     return errors
 
 
-def _height_threshold(name: str, parameters: LawErrors, ratios, errors) -> float:
+def _height_threshold(
+    name: str, parameters: LawErrors, ratios: np.ndarray, errors: np.ndarray
+) -> float:
     """ϖ from which the restitution model's greatest height is right; NaN outside the range."""
-    tolerance = parameters.tolerance
-    r, n, lam = parameters.restitution, parameters.n, parameters.amplitude
-    rigid = float(RestitutionModel(r).require_orbit(n, lam).max_height)
-    above = np.flatnonzero(errors > tolerance)
-    if not above.size or above[-1] == len(ratios) - 1:
-        return np.nan
+    n, lam = parameters.n, parameters.amplitude
+    rigid = RestitutionModel(parameters.restitution).require_orbit(n, lam).max_height
 
-    def surplus(log):
-        exact = exact_models(name, parameters, np.pi / np.exp(log))
-        return np.log(abs(rigid / float(exact.orbit(n, lam).max_height) - 1) / tolerance)
+    def error(ratio: np.ndarray, _: np.ndarray) -> np.ndarray:
+        try:
+            exact = exact_models(name, parameters, np.pi / ratio)
+        except (ModelError, NoOrbitError):
+            return np.full(ratio.shape, np.nan)
+        return relative(rigid, exact.orbit(n, lam).max_height)
 
-    ends = np.log(ratios[above[-1] : above[-1] + 2])
-    return float(np.exp(brentq(surplus, *ends, xtol=1e-12, rtol=1e-12)))
+    return float(thresholds(error, ratios, errors[np.newaxis], [parameters.tolerance]).ratio[0, 0])
 
 
 def law_errors(parameters: LawErrors) -> xr.Dataset:
-    """Errors of the restitution model and of the corrected one on all laws, along π/D."""
+    """Errors of the restitution model and of the corrected one on all laws, along π/D.
+
+    Moduli, shape (law, model, quantity, π/D), and the π/D from which the greatest height of the
+    restitution model is right, shape (law,); NaN where there is none.
+    """
     ratios = parameters.frequency_ratio.grid()
     errors = np.array([_errors(name, parameters, ratios) for name in NAMES])
     threshold = [
@@ -190,14 +190,24 @@ def law_errors(parameters: LawErrors) -> xr.Dataset:
     )
 
 
-def _domain(model: ImpactModel, n: int, top: float, points: int):
-    """Λ and φ along a branch, from the unstable side over the fold to the stable one."""
-    fold = model.saddle_node(n)
-    share = np.linspace(0.0, 1.0, points)[1:] ** 2
-    lam = float(fold.amplitude) + share * (top - float(fold.amplitude))
-    left, right = (model.orbit(n, lam, side) for side in (Side.UNSTABLE, Side.STABLE))
-    amplitude = np.concatenate([lam[::-1], [float(fold.amplitude)], lam])
-    return amplitude, np.concatenate([left.phase[::-1], [float(fold.phase)], right.phase])
+def _bounds(name: str, r: float, ratios: np.ndarray, n: np.ndarray) -> np.ndarray:
+    """Λ of both bifurcations, shape (bound, ratio, n)."""
+    model = exact_model(name, r, np.pi / ratios[:, np.newaxis], rigid_speed(n, r))
+    families = np.broadcast_to(n, (len(ratios), len(n)))
+    return np.array([getattr(model, bound)(families).amplitude for bound in BOUNDS])
+
+
+def _domains(
+    name: str, r: float, ratios: np.ndarray, n: int, top: float, points: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Λ and φ along branches from the unstable side over the fold, shape (ratio, point)."""
+    speed = rigid_speed(n, r)
+    fold = exact_model(name, r, np.pi / ratios, speed).saddle_node(n)
+    lowest, turn = fold.amplitude[:, np.newaxis], fold.phase[:, np.newaxis]
+    lam = lowest + np.linspace(0.0, 1.0, points)[1:] ** 2 * (top - lowest)
+    model = exact_model(name, r, np.pi / ratios[:, np.newaxis], speed)
+    left, right = (model.orbit(n, lam, side).phase for side in (Side.UNSTABLE, Side.STABLE))
+    return np.hstack([lam[:, ::-1], lowest, lam]), np.hstack([left[:, ::-1], turn, right])
 
 
 def _held(name: str, restitution: float, ratio: float) -> float:
@@ -214,29 +224,22 @@ def _held(name: str, restitution: float, ratio: float) -> float:
 
 
 def figures_of_laws(parameters: FiguresOfLaws) -> xr.Dataset:
-    """Table 1 and Figs. 8, 14 and 16 on contacts of the same r and duration."""
-    heights, lossy, families = parameters.heights, parameters.restitution, parameters.n
+    """Table 1 and Figs. 8, 14 and 16 on contacts of the same r and duration.
+
+    Λ of the bifurcations, shape (law, bound, π/D, n); Λ and φ along branches, shape
+    (law, π/D, point); greatest height and threshold of permanent contact, shape (law, π/D), NaN
+    where a contact has no such orbit.
+    """
+    heights, lossy, families = parameters.heights, parameters.restitution, np.array(parameters.n)
     r, n, lam = heights.restitution, heights.n, heights.amplitude
-    shown, top, points = parameters.frequency_ratio, parameters.amplitude_max, parameters.points
+    shown, top = np.array(parameters.frequency_ratio), parameters.amplitude_max
+    points = parameters.points
     ratios = heights.frequency_ratio.grid()
     names = ("linear", *HERTZ)
 
-    def model(name, index, ratio):
-        return exact_model(name, lossy, np.pi / ratio, rigid_speed(index, lossy))
-
-    bounds = [
-        [
-            [[float(getattr(model(name, k, x), b)(k).amplitude) for k in families] for x in shown]
-            for b in BOUNDS
-        ]
-        for name in names
-    ]
-    branches = np.array(
-        [
-            [_domain(model(name, families[0], x), families[0], top, points) for x in shown]
-            for name in names
-        ]
-    )
+    bounds = [_bounds(name, lossy, shown, families) for name in names]
+    branches = [_domains(name, lossy, shown, int(families[0]), top, points) for name in names]
+    amplitude, phase = map(np.array, zip(*branches, strict=True))
     height = np.full((len(names), len(ratios)), np.nan)
     for k, name in enumerate(names):
         part, models = stiff_enough(name, heights, ratios)
@@ -246,8 +249,8 @@ def figures_of_laws(parameters: FiguresOfLaws) -> xr.Dataset:
     return described(
         {
             "bifurcation_amplitude": (("law", "bound", "shown_ratio", "n"), np.array(bounds)),
-            "amplitude": (("law", "shown_ratio", "point"), branches[:, :, 0]),
-            "phase": (("law", "shown_ratio", "point"), branches[:, :, 1]),
+            "amplitude": (("law", "shown_ratio", "point"), amplitude),
+            "phase": (("law", "shown_ratio", "point"), phase),
             "max_height": (("law", "duration_ratio"), height),
             "restitution_max_height": ((), float(RestitutionModel(r).orbit(n, lam).max_height)),
             "threshold_amplitude": (("law", "duration_ratio"), np.array(held)),
@@ -255,9 +258,9 @@ def figures_of_laws(parameters: FiguresOfLaws) -> xr.Dataset:
         coords={
             "law": list(names),
             "bound": list(BOUNDS),
-            "shown_ratio": np.array(shown, dtype=float),
-            "n": list(families),
+            "shown_ratio": shown,
+            "n": families,
             "duration_ratio": ratios,
-            "point": np.arange(branches.shape[-1]),
+            "point": np.arange(phase.shape[-1]),
         },
     )

@@ -25,6 +25,7 @@ from bouncing_ball.continuation.corrector import NewtonSettings, null_vector
 from bouncing_ball.continuation.events import Event, fold, parameter_bound
 from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_system import Parameter, SpringDamperSystem
@@ -250,3 +251,8 @@ def first_limits(branch: Branch) -> dict[str, np.ndarray]:
         SADDLE_NODE: branch.special[node].point,
         PERIOD_DOUBLING: branch.special[doubling].point,
     }
+
+
+def missing(n: int, count: int) -> Orbit:
+    """Orbits that do not exist."""
+    return SpringDamperModel(SpringDamper(1.0, 0.0)).system(n).orbit(np.full((count, 4), np.nan))

@@ -86,12 +86,10 @@ def stable_windows(parameters: Windows, release: Release) -> xr.Dataset:
     # All contacts at once: many small steps cost more than large ones.
     law = SpringDamper(np.tile(ratio, shape[0]), np.repeat(zeta, shape[1]), release)
     window = stable_window(law)
-    paper = release is Release.DISPLACEMENT
-    limits = [
-        (stiff_limit(z), joining_ratio(z, release, *_PARTING)) if paper else (np.nan, np.nan)
-        for z in map(float, zeta)
-    ]
-    stiff, joining = np.array(limits).T
+    stiff, joining = np.full((2, *zeta.shape), np.nan)
+    if release is Release.DISPLACEMENT:
+        stiff = np.array([stiff_limit(z) for z in zeta])
+        joining = joining_ratio(zeta, release, *_PARTING)
     along = ("restitution", "frequency_ratio")
     return described(
         {

@@ -1,4 +1,4 @@
-"""Existence and stability of n-T orbits by continuation (Figs. 8, 9, 15; Table 1)."""
+"""Existence and stability of n-T orbits by continuation (Figs. 8, 9 and 15)."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -7,7 +7,6 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.continuation.branch import ContinuationError, resample
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import NoOrbitError
@@ -15,18 +14,16 @@ from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.grazing import grazing_points
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.parameters import Family, FrequencyRatio, LossyRestitution, Many, Parameters
-from bouncing_ball.studies.columns import OBSERVED, columns
+from bouncing_ball.studies.columns import OBSERVED, PLACE, columns
 from bouncing_ball.studies.continuation import (
     PERIOD_DOUBLING,
     SADDLE_NODE,
     Continuation,
     branch_along_amplitude,
-    first_limits,
+    missing,
 )
-from bouncing_ball.studies.parameters import BranchEnd, Points, RangeEnd
-from bouncing_ball.studies.printed_table1 import printed_table
+from bouncing_ball.studies.parameters import BranchEnd, Points
 
 GRAZING = "grazing"
 
@@ -51,19 +48,6 @@ class BothDomains(Parameters):
     points: Points
 
 
-class Ranges(Parameters):
-    """Several families on several contacts, whose stable ranges are looked for along Λ."""
-
-    n: Many[Family]
-    restitution: LossyRestitution
-    frequency_ratio: Many[FrequencyRatio]
-    amplitude_max: RangeEnd
-
-
-# What is published of special orbits.
-_PLACE = ("amplitude", "phase", "contact_duration")
-
-
 class _Row(NamedTuple):
     """One branch: columns along it, its special points, and why it ends."""
 
@@ -86,7 +70,7 @@ def _along(orbit: Orbit) -> dict[str, np.ndarray]:
 
 def _places(orbit: Orbit) -> dict[str, np.ndarray]:
     """Where special orbits are."""
-    return {**{name: getattr(orbit, name) for name in _PLACE}, "residual": orbit.defect()}
+    return {**{name: getattr(orbit, name) for name in PLACE}, "residual": orbit.defect()}
 
 
 def _row(
@@ -100,7 +84,7 @@ def _row(
         )
         y = resample(system, branch, count, newton)
     except (NoOrbitError, ContinuationError) as error:
-        none = _missing(n, count)
+        none = missing(n, count)
         return _Row(_along(none), [], _places(none[:0]), [str(error)] * 2)
     chosen = [s for s in branch.special if s.name in (SADDLE_NODE, PERIOD_DOUBLING)]
     grazing = grazing_points(system, lambda z: system.orbit(z).is_admissible(), y, newton)
@@ -111,11 +95,6 @@ def _row(
         _places(system.orbit(points)),
         [str(branch.start), str(branch.end)],
     )
-
-
-def _missing(n: int, count: int) -> Orbit:
-    """Orbits that do not exist."""
-    return SpringDamperModel(SpringDamper(1.0, 0.0)).system(n).orbit(np.full((count, 4), np.nan))
 
 
 def _ragged(rows, fill=np.nan):
@@ -183,64 +162,3 @@ def both_domains(
             period_doubling_phase=((), float(doubling.phase)),
         )
     )
-
-
-def _limits(
-    n: int, ratio: float, parameters: Ranges, release: Release, continuation: Continuation
-) -> tuple[Orbit, str]:
-    """The orbits at both ends of the stable range, or NaN and why there is none."""
-    r, top = parameters.restitution, parameters.amplitude_max
-    try:
-        system, branch = branch_along_amplitude(n, r, ratio, top, release, continuation)
-        ends = first_limits(branch)
-    except (NoOrbitError, ContinuationError) as error:
-        return _missing(n, 2), str(error)
-    return system.orbit(np.array([ends[SADDLE_NODE], ends[PERIOD_DOUBLING]])), ""
-
-
-def stability_ranges(
-    parameters: Ranges,
-    release: Release,
-    continuation: Continuation,
-) -> xr.Dataset:
-    """Ranges of Λ in which the n-T orbits are stable, computed and printed (Table 1).
-
-    Shape (ϖ, n, bound), the bounds a saddle-node and a period doubling.
-
-    Where an orbit has no such range the entry is NaN, and ``absence`` says why.
-    """
-    families, ratios, r = parameters.n, parameters.frequency_ratio, parameters.restitution
-    found = [
-        [_limits(n, ratio, parameters, release, continuation) for n in families] for ratio in ratios
-    ]
-    rigid = RestitutionModel(r).saddle_node(np.array(families)).amplitude
-    maps = list(restitution_orbits.ImpactMap)
-    doublings = [restitution_orbits.period_doubling(np.array(families), r, kind) for kind in maps]
-    dims = ("frequency_ratio", "n", "bound")
-    columns = {
-        name: np.array([[getattr(orbit, name) for orbit, _ in row] for row in found])
-        for name in _PLACE
-    }
-    reasons = np.array([[reason for _, reason in row] for row in found])
-    dataset = xr.Dataset(
-        {
-            "computed": (dims, columns["amplitude"]),
-            "special_phase": (dims, columns["phase"]),
-            "special_contact_duration": (dims, columns["contact_duration"]),
-            # NaN where the paper has no entry.
-            "printed": printed_table().reindex(frequency_ratio=list(ratios), n=list(families)),
-            "restitution_range": (
-                ("impact_map", "n", "bound"),
-                np.array([np.stack([rigid, doubling], axis=-1) for doubling in doublings]),
-            ),
-        },
-        coords={
-            "frequency_ratio": np.array(ratios),
-            "n": np.array(families),
-            "bound": [SADDLE_NODE, PERIOD_DOUBLING],
-            "impact_map": [str(kind) for kind in maps],
-        },
-    )
-    if np.any(reasons != ""):
-        dataset["absence"] = (dims[:2], reasons)
-    return describe(dataset)

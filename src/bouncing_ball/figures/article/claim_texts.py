@@ -53,16 +53,11 @@ class Claims:
         ``group`` is what they are counted as: ``independent`` for all but
         restatements, ``all``, or one group.
         """
-        wanted = {
-            "all": lambda claim: True,
-            "independent": lambda claim: claim.group != "restatement",
-        }.get(group, lambda claim: claim.group == group)
         return sum(
-            1
-            for claim in self._claims
-            if wanted(claim)
+            group in ("all", claim.group, _counted_as(claim))
             and verdict in ("", claim.verdict)
             and table in ("", claim.printed_table)
+            for claim in self._claims
         )
 
     def all(self, verdict: str) -> list[ClaimRow]:
@@ -79,22 +74,20 @@ class Claims:
 
     def explanations(self) -> list[dict[str, object]]:
         """Explanations of the claims that are asked and not reproduced, with those claims."""
-        found = []
-        data = self._data
-        for index, name in enumerate(data.explanation.values):
+        names = ("explanation", "explanation_text", "explanation_holds", "explanation_checks")
+        columns = [self._data[name].values.tolist() for name in names]
+        found: list[dict[str, object]] = []
+        for name, text, holds, checks in zip(*columns, strict=True):
             about = [
                 claim
                 for claim in self._claims
                 if claim.explained_by == name and claim.verdict not in ("reproduced", "not asked")
             ]
             if about:
-                found.append(
-                    {
-                        "name": str(name),
-                        "text": str(data.explanation_text.values[index]).strip(),
-                        "holds": bool(data.explanation_holds.values[index]),
-                        "checks": str(data.explanation_checks.values[index]),
-                        "claims": about,
-                    }
-                )
+                said = {"name": name, "text": text.strip(), "holds": holds, "checks": checks}
+                found.append(said | {"claims": about})
         return found
+
+
+def _counted_as(claim: ClaimRow) -> str:
+    return "restatement" if claim.group == "restatement" else "independent"

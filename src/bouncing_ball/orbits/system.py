@@ -1,11 +1,12 @@
-r"""The equations of n-T orbits whose contact follows from its start, for a continuation.
+r"""The equations of n-T orbits, for a continuation.
 
-Unknowns (φ, z′_i), the phase and the velocity at the impact; parameter Λ. The contact
-that starts so gives its duration and its end, so that two equations are left: velocity and
-height of the flight that follows (Eqs. 24-25). All are of order one however short
-the contact is.
+Where a contact follows from its start the unknowns are (φ, z′_i), the phase and the velocity
+at the impact, and the parameter is Λ. The contact that starts so gives its duration and its
+end, so that two equations are left: velocity and height of the flight that follows
+(Eqs. 24-25). All are of order one however short the contact is.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -14,12 +15,66 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball.continuation.events import Event
-from bouncing_ball.orbits.branch_events import branch_events
+from bouncing_ball.orbits.stability import Bifurcation
+
+# Impact velocity and flight time vanish together where an orbit merges with
+# permanent contact. The equations are singular there, and rounding enters
+# divided by both: stop where 1e-12 is left.
+_MARGIN = 1e-4
+
+
+class OrbitSystem(ABC):
+    """A model's equations as a :class:`~bouncing_ball.continuation.problem.Problem`.
+
+    y holds the unknowns and, last, the continuation parameter, along its last axis.
+    """
+
+    @abstractmethod
+    def orbit(self, y: np.ndarray) -> Any:
+        """The orbits at points y, with all their observables."""
+
+    @abstractmethod
+    def coordinates(self, orbit: Any) -> tuple[np.ndarray, ...]:
+        """The entries of y of given orbits."""
+
+    @abstractmethod
+    def jacobian(self, y: np.ndarray) -> np.ndarray:
+        """Exact Jacobian of the residual, shape (..., N, N + 1)."""
+
+    def residual(self, y: np.ndarray) -> np.ndarray:
+        """Defects, shape (..., N)."""
+        return self.orbit(y).residual()
+
+    def point(self, orbit: Any) -> np.ndarray:
+        """y of given orbits."""
+        return np.stack(np.broadcast_arrays(*self.coordinates(orbit)), axis=-1)
+
+    def events(self) -> tuple[Event, ...]:
+        """Bifurcations, and the ends of the domain in which an orbit makes sense."""
+
+        def bifurcation(kind: Bifurcation) -> Event:
+            return Event(kind, lambda y: kind.test(*self.orbit(y).trace_and_determinant()))
+
+        return (
+            *map(bifurcation, Bifurcation),
+            Event(
+                "contact lost",
+                lambda y: -self.orbit(y).relative_impact_velocity - _MARGIN,
+                terminal=True,
+                reason="contact lost: the ball no longer closes in on the table at impact",
+            ),
+            Event(
+                "flight lost",
+                lambda y: self.orbit(y).flight_time - _MARGIN,
+                terminal=True,
+                reason="flight lost: the contact fills the whole cycle",
+            ),
+        )
 
 
 @dataclass(frozen=True)
-class ContactSystem:
-    """n-T orbits as a :class:`~bouncing_ball.continuation.problem.Problem`.
+class ContactSystem(OrbitSystem):
+    """Those of orbits whose contact follows from its start; y = (φ, z′_i, Λ).
 
     Parameters
     ----------
@@ -57,14 +112,13 @@ class ContactSystem:
         """The orbits at points y = (φ, z′_i, Λ) of shape (..., 3)."""
         return self._known(y.shape, y.tobytes())
 
-    def point(self, orbit: Any) -> np.ndarray:
-        """y of given orbits."""
-        parts = orbit.phase, orbit.impact_velocity, orbit.amplitude
-        return np.stack(np.broadcast_arrays(*parts), axis=-1)
+    def coordinates(self, orbit: Any) -> tuple[np.ndarray, ...]:
+        """(φ, z′_i, Λ)."""
+        return orbit.phase, orbit.impact_velocity, orbit.amplitude
 
     def residual(self, y: np.ndarray) -> np.ndarray:
         """Velocity defect and landing defect, shape (..., 2)."""
-        return self.orbit(y).residual()[..., -2:]
+        return super().residual(y)[..., -2:]
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """Exact Jacobian of the residual, shape (..., 2, 3)."""
@@ -92,7 +146,3 @@ class ContactSystem:
             - (bounce - flight) * d_duration
         )
         return np.stack([velocity, landing], axis=-2)
-
-    def events(self) -> tuple[Event, ...]:
-        """Bifurcations, and the ends of the domain in which an orbit makes sense."""
-        return branch_events(self.orbit)

@@ -1,0 +1,421 @@
+"""Every formula of the paper that can be wrong, against a second computation.
+
+Each row of the dataset gives the largest disagreement over a sample of parameters and
+what rounding accounts for. The formulas are those of :mod:`bouncing_ball.claims.as_printed`;
+what they are compared with uses none of them: the restitution model is compared with
+simulated cycles and their finite differences, the contact with the matrix exponential of
+its equation of motion, the orbits with the event-driven simulation.
+"""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+import xarray as xr
+from scipy.linalg import expm
+from scipy.optimize.elementwise import find_minimum, find_root
+
+from bouncing_ball.claims import as_printed as printed
+from bouncing_ball.claims.flow import contact_matrix, fall_matrix, flow, matrix, state
+from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.datasets.variables import described
+from bouncing_ball.motion.angles import reduce_angle
+from bouncing_ball.motion.contact import contact_cycle
+from bouncing_ball.motion.rest import lift_off_phase
+from bouncing_ball.motion.restitution import impact_cycle
+from bouncing_ball.orbits.spring_damper_branch import branch_point
+from bouncing_ball.orbits.spring_damper_limits import orbit_at, saddle_node
+from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.parameters import Parameters, Seed, number
+
+# Flow, roots and minima are right to rounding, 1e-16, amplified by the terms
+# that cancel in them: 10⁴ covers the samples.
+ROUNDING = 1e-12
+# Central differences over 1e-5 leave h² f‴/6 and rounding/h, both about 1e-10,
+# in the trace; at the bifurcation they enter divided by its slope along φ.
+DIFFERENCES = 1e-8
+_STEP = 1e-5
+# The faintest rebound that a double can hold.
+_FAINT = float(np.finfo(float).tiny)
+# A contact so soft that Λ_SD ϖ² is 1 but for ϖ².
+_SOFT = 1e-4
+# The equations in metres and seconds.
+_GRAVITY = 9.81
+# Eq. 16 on a table at rest: r and ϖ, with the impact velocity of the 1-T orbit.
+STATIC = {"restitution": [0.85, 0.65], "frequency_ratio": [10.0, 100.0]}
+
+_CYCLE = "simulated flight and impact"
+_FLOW, _FALL = "matrix exponential of Eq. 11", "matrix exponential of the free fall"
+_ORBITS, _PERIOD = "orbits that repeat in the simulation", "period of the flow"
+
+
+class Check(NamedTuple):
+    """One formula: with what it is compared, the disagreement, and what rounding allows."""
+
+    comparison: str
+    disagreement: float
+    budget: float = ROUNDING
+
+
+Checks = dict[str, Check]
+
+
+def largest(*defects) -> float:
+    """The largest absolute entry of all arrays; NaN if one is NaN.
+
+    Examples
+    --------
+    >>> largest([0.5, -2.0], 1.0)
+    2.0
+    """
+    return float(np.max([np.max(np.abs(x)) for x in defects]))
+
+
+# Eqs. 1-9: the restitution model.
+
+
+def exact_cycle(phase, velocity, r, lam):
+    """One simulated cycle, (φ, v) after the next impact."""
+    cycle = impact_cycle(r, lam, phase, velocity)
+    return cycle.phase, cycle.velocity
+
+
+def holmes_cycle(phase, velocity, r, lam):
+    """The high-bounce map: the flight as if it ended where it began."""
+    landed = phase + 2 * velocity
+    return landed, r * velocity + (1 + r) * lam * np.cos(landed)
+
+
+def stability(cycle, phase, velocity, r, lam):
+    """Trace and determinant of one cycle by central differences."""
+    columns = []
+    for d_phase, d_velocity in ((_STEP, 0.0), (0.0, _STEP)):
+        high = cycle(phase + d_phase, velocity + d_velocity, r, lam)
+        low = cycle(phase - d_phase, velocity - d_velocity, r, lam)
+        columns.append([(h - b) / (2 * _STEP) for h, b in zip(high, low, strict=True)])
+    (tt, vt), (tv, vv) = columns
+    return tt + vv, tt * vv - tv * vt
+
+
+def located_doubling(cycle, n, r):
+    """Λ of the period doubling of a map, along its fixed points.
+
+    Both maps have them at v = nπ and Λ cos φ = nπ(1 - r)/(1 + r), so that along
+    them Λ = nπ(1 - r)/(1 + r)/cos φ.
+    """
+    along = n * np.pi * (1 - r) / (1 + r)
+
+    def flip(phase, n, r, along):
+        trace, det = stability(cycle, phase, n * np.pi, r, along / np.cos(phase))
+        return 1 + trace + det
+
+    # From next to the saddle-node, where the function is positive, far to the right.
+    bracket = (np.full_like(r, 1e-3), np.full_like(r, np.pi / 2 - 1e-3))
+    return along / np.cos(find_root(flip, bracket, args=(n, r, along)).x)
+
+
+def restitution_model(rng, samples) -> Checks:
+    """Eqs. 1 to 9: impacts from random states, and orbits with their stability."""
+    r, lam = rng.uniform(0.1, 0.95, samples), rng.uniform(0.1, 3, samples)
+    phase = rng.uniform(-np.pi, np.pi, samples)
+    velocity = lam + rng.uniform(0.5, 6, samples)
+    cycle = impact_cycle(r, lam, phase, velocity)
+    bounced = printed.bounced_velocity(phase, velocity, cycle.time, lam, r)
+    defect = printed.landing_defect(phase, velocity, cycle.time, lam)
+    # Eqs. 2 and 3 in metres and seconds.
+    speed, landing = _GRAVITY / 40.0, (phase + cycle.time) / 40.0
+    start, thrown = phase / 40.0, velocity * speed
+    before = printed.impact_velocity(landing, start, thrown, _GRAVITY)
+    after = printed.restitution_law(before, lam * speed * np.cos(40.0 * landing), r)
+    fallen = flow(fall_matrix(_GRAVITY), landing - start, state(0.0, thrown, 0.0))
+
+    n = rng.integers(1, 6, samples).astype(float)
+    fold = printed.saddle_node(n, r)
+    # Orbits above the fold, wherever that is printed.
+    above = n * np.pi * (1 - r) / (1 + r) * rng.uniform(1.01, 3, samples)
+    phi, launch = printed.fixed_point(n, r, above)
+    back = impact_cycle(r, above, phi, launch)
+    # The orbit at which both sides of the fold meet, φ = 0, exists at this Λ only.
+    met = impact_cycle(r, fold, 0.0 * r, n * np.pi)
+    trace, det = stability(exact_cycle, 0.0 * r, n * np.pi, r, fold)
+    doubling = printed.period_doubling(n, r)
+    exact, holmes = (located_doubling(cycle, n, r) for cycle in (exact_cycle, holmes_cycle))
+    corrected = np.hypot(2 * (1 + r * r) / (1 + r) ** 2, n * np.pi * (1 - r) / (1 + r))
+    # A ball at rest on tables a little below and above the threshold.
+    edge = printed.restitution_threshold() + np.array([-1, 1]) * ROUNDING
+    stays = np.isnan(lift_off_phase(edge)).tolist() == [True, False]
+
+    metres, flip = ", in metres and seconds", "multiplier at -1 of "
+    folded = "one simulated cycle, and a Floquet multiplier at 1"
+    return {
+        "Eq. 2": Check(_CYCLE + metres, largest(after / speed - cycle.velocity)),
+        "Eq. 3": Check(_FALL + metres, largest((before - fallen[:, 1]) / speed)),
+        "Eq. 4": Check(_FALL + metres, free_flight(rng, samples)),
+        "Eq. 5": Check(_CYCLE, largest(defect, bounced - cycle.velocity)),
+        "Eq. 6": Check(
+            "one simulated cycle", largest(reduce_angle(back.phase - phi), back.velocity - launch)
+        ),
+        "Eq. 7": Check(
+            folded, largest(1 - trace + det, met.phase, met.velocity - n * np.pi), DIFFERENCES
+        ),
+        "Eq. 8": Check(flip + "the map of Eq. 5", largest(doubling / exact - 1), DIFFERENCES),
+        "Eq. 8, Holmes' map": Check(
+            flip + "Holmes' map", largest(doubling / holmes - 1), DIFFERENCES
+        ),
+        "Eq. 8, corrected": Check(
+            flip + "the map of Eq. 5", largest(corrected / exact - 1), DIFFERENCES
+        ),
+        "Eq. 9": Check("lift-off of a ball at rest", 0.0 if stays else 1.0),
+    }
+
+
+def free_flight(rng, samples) -> float:
+    """Eq. 1 in metres and seconds, by its differential equation, against Eq. 4."""
+    height, velocity = rng.uniform(-1, 1, samples), rng.uniform(-6, 6, samples)
+    start, flown = rng.uniform(-np.pi, np.pi, samples), rng.uniform(0.5, 6, samples)
+    big_omega = rng.uniform(20, 60, samples)
+    length, speed = _GRAVITY / big_omega**2, _GRAVITY / big_omega
+    begin = state(height * length, velocity * speed, 0.0)
+    there = flow(fall_matrix(_GRAVITY), flown / big_omega, begin)
+    z, rate = printed.free_flight(start + flown, start, height, velocity)
+    return largest(z - there[:, 0] / length, rate - there[:, 1] / speed)
+
+
+# Eqs. 10-17 and 21-27: the contact, its damping and its orbits.
+
+
+def printed_contact(time, omega, zeta, lam, phase, impact):
+    """Eqs. 12-13 from an impact; A and B are linear in it (Eqs. 21-22)."""
+    zero, rate = printed.contact(0.0, omega, zeta, lam, phase, 0.0, 0.0)
+    a = lam * np.sin(phase) - zero
+    b = (impact - rate + zeta * omega * a) / (omega * np.sqrt(1 - zeta**2))
+    return printed.contact(time, omega, zeta, lam, phase, a, b)
+
+
+def contact_and_flight(rng, samples) -> Checks:
+    """The definition of ϖ and Eqs. 12 to 15."""
+    omega, zeta = np.exp(rng.uniform(0.2, 3, samples)), rng.uniform(0, 0.6, samples)
+    lam, phase = rng.uniform(0.1, 2, samples), rng.uniform(-np.pi, np.pi, samples)
+    impact = -rng.uniform(1, 6, samples)
+    time = np.pi / omega * rng.uniform(0.2, 1, samples)
+    start = state(lam * np.sin(phase), impact, phase)
+    there = flow(contact_matrix(omega, zeta, lam), time, start)
+    height, velocity = printed_contact(time, omega, zeta, lam, phase, impact)
+
+    # Eq. 10 in metres and seconds: k/m = ω², c/m = 2ζω, gravity g, table a sin Ωt.
+    big_omega = rng.uniform(20, 60, samples)
+    natural = omega * big_omega
+    length, speed = _GRAVITY / big_omega**2, _GRAVITY / big_omega
+    physical = matrix(natural**2, 2 * zeta * natural, _GRAVITY, lam * length, big_omega)
+    at_impact = state(lam * np.sin(phase) * length, impact * speed, phase)
+    fallen = flow(physical, time / big_omega, at_impact)[:, 0] / length
+
+    def scaled(ratio):
+        """Eq. 11 with a frequency ratio, against Eq. 10."""
+        return largest(
+            (flow(contact_matrix(ratio, zeta, lam), time, start)[:, 0] - fallen) / impact
+        )
+
+    release, thrown = time, rng.uniform(1, 6, samples)
+    since = rng.uniform(0.5, 6, samples)
+    flown = flow(fall_matrix(), since, state(lam * np.sin(release + phase), thrown, 0.0))
+    flight = printed.flight(release + since, release, thrown, lam, phase)
+    units = "Eq. 10 in physical units; "
+    in_contact = (height - there[:, 0]) / impact, (velocity - there[:, 1]) / impact
+    return {
+        "ϖ = Ω/ω, Ω of the table": Check(f"{units}one of two readings", scaled(1 / omega)),
+        "ϖ = Ω/ω, Ω of the contact": Check(f"{units}the other reading", scaled(omega)),
+        "Eqs. 12-13": Check(_FLOW, largest(*in_contact)),
+        "Eqs. 14-15": Check(_FALL, largest(flight[0] - flown[:, 0], flight[1] - flown[:, 1])),
+    }
+
+
+def measured_restitution(r, frequency_ratio, velocity, gravity):
+    """-δ′ at release over δ′ at impact on a table at rest, by root finding.
+
+    NaN where the ball has not come off after one and a half weightless contacts.
+    """
+    zeta = printed.damping_ratio(r)
+    m = contact_matrix(frequency_ratio, zeta, 0.0, gravity)
+    start = state(0.0, -np.asarray(velocity, dtype=float) + 0 * r, 0.0)
+
+    def displacement(time, row):
+        # The rows whose roots are still looked for.
+        rows = row.astype(int)
+        return flow(m[rows], time, start[rows])[:, 0]
+
+    half = np.pi / (frequency_ratio * np.sqrt(1 - zeta**2))
+    # The first return to δ = 0; gravity prolongs the contact.
+    found = find_root(displacement, (half / 2, 1.5 * half), args=(np.arange(float(r.size)),))
+    end = np.where(found.success, found.x, 0.0)
+    return np.where(found.success, flow(m, end, start)[:, 1] / velocity, np.nan)
+
+
+def damping(rng, samples) -> Checks:
+    """Eq. 16 and its limits."""
+    r, omega = rng.uniform(0.1, 0.99, samples), np.exp(rng.uniform(0, 5, samples))
+    weightless = largest(measured_restitution(r, omega, 1.0, 0.0) - r)
+    # For r → 0, 1 - ζ tends to π²/(2 ln² r), slowly; twice that leaves room.
+    faint = largest(1 - printed.damping_ratio(_FAINT))
+    return {
+        "Eq. 16": Check("simulated impact, table at rest, no gravity", weightless),
+        "Eq. 16, r = 1": Check("no damping", largest(printed.damping_ratio(1.0))),
+        "Eq. 16, r → 0": Check("critical damping", faint, np.pi**2 / np.log(_FAINT) ** 2),
+    }
+
+
+def static_error() -> xr.DataArray:
+    """|r_static - r|/r of a heavy ball on a table at rest, over r and ϖ; NaN where it is held."""
+    r, ratio = (np.array(STATIC[key]) for key in ("restitution", "frequency_ratio"))
+    rows, columns = (x.ravel() for x in np.meshgrid(r, ratio, indexing="ij"))
+    heavy = measured_restitution(rows, columns, np.pi, 1.0)
+    return xr.DataArray(np.abs(heavy / rows - 1).reshape(r.size, ratio.size), STATIC)
+
+
+def contact_orbits(rng, samples) -> Checks:
+    """Eqs. 21 to 27 on orbits that repeat in the simulation."""
+    omega, zeta = np.exp(rng.uniform(1, 5, samples)), rng.uniform(0.01, 0.3, samples)
+    n = rng.integers(1, 4, samples)
+    contact = SpringDamper(omega, zeta)
+    fold = branch_point(saddle_node(contact, n), contact, n).amplitude
+    lam = fold + rng.uniform(0.05, 0.5, samples)
+    orbit = orbit_at(contact, n, lam)
+    phase, impact, end = orbit.phase, orbit.impact_velocity, orbit.contact_duration
+    u, period = orbit.relative_impact_velocity, 2 * np.pi * n
+    again = contact_cycle(contact, lam, phase, u)
+    start = state(lam * np.sin(phase), impact, phase)
+    released = flow(contact_matrix(omega, zeta, lam), end, start)[:, 1]
+    thrown = printed.bounce_velocity(impact, n, end)
+    at_release = printed_contact(end, omega, zeta, lam, phase, impact)
+    # Eq. 24 gives z′_b; Eqs. 21-22 give A and B, and Eqs. 23-26 are left.
+    at_impact = printed.flight(period, end, at_release[1], lam, phase)
+    table = lam * np.sin(phase + end), lam * np.sin(period + phase)
+    fulfilled = largest(
+        reduce_angle(again.phase - phase),
+        again.relative_velocity - u,
+        at_release[0] - table[0],
+        at_release[1] - released,
+        at_impact[0] - table[1],
+        at_impact[1] - impact,
+    )
+    # Eqs. 16 and 17 give numbers, no motion: the contact would last to the next impact.
+    held = printed_contact(period, omega, zeta, lam, phase, impact)
+    return {
+        "Eqs. 21-26": Check(_ORBITS, fulfilled),
+        "Eqs. 21-26 by Eqs. 12, 13, 16, 17": Check(
+            _ORBITS, largest(held[0] - table[1], held[1] - impact)
+        ),
+        "Eq. 27": Check(_FLOW, largest(thrown - released)),
+    }
+
+
+def points_with_one_impact(rng, points: int) -> int:
+    """How many of so many random points of the explicit curve are orbits of the ball.
+
+    The curve asks that a contact ends after D and that the ball is back after a
+    flight, not that it touched the table in between, or left it.
+    """
+    omega, zeta = np.exp(rng.uniform(0, 5, points)), rng.uniform(0.01, 0.3, points)
+    n = rng.integers(1, 6, points)
+    contact = SpringDamper(omega, zeta)
+    # From half a free contact to two, or to the whole cycle.
+    longest = np.minimum(2.0, 2 * np.pi * n * contact.damped_frequency / np.pi)
+    duration = np.pi / contact.damped_frequency * rng.uniform(0.5, longest)
+    excess = duration * contact.damped_frequency - contact.free_angle
+    orbit = SpringDamperOrbit.from_branch(branch_point(excess, contact, n), contact, n)
+    return int(np.sum(orbit.is_admissible()))
+
+
+# Eqs. 29-36: permanent contact.
+
+
+def steady_amplitude(frequency_ratio, damping_ratio):
+    """Amplitude of δ for Λ = 1: the orbit of period 2π of the flow."""
+    m = contact_matrix(frequency_ratio, damping_ratio, 1.0, gravity=0.0)
+    period = expm(m * 2 * np.pi)
+    drive = period[..., :2, 3]  # from cos 0 = 1
+    orbit = np.linalg.solve(np.eye(2) - period[..., :2, :2], drive[..., np.newaxis])[..., 0]
+    start = state(orbit[..., 0], orbit[..., 1], 0.0)
+    # δ = z - sin τ at τ = 0 and π/2, a quarter apart.
+    return np.hypot(start[..., 0], flow(m, np.pi / 2, start)[..., 0] - 1)
+
+
+def _threshold(x, zeta):
+    """Λ_SD at x = 1/ϖ²: √[(1 - x)² + 4ζ²x], for roots and minima of Eq. 33."""
+    return np.hypot(1 - x, 2 * zeta * np.sqrt(x))
+
+
+def _steady_motion(rng, samples, omega, zeta) -> float:
+    """Eq. 31 against the flow from one of its own states."""
+    lam, begin = rng.uniform(0.1, 2, samples), rng.uniform(-np.pi, np.pi, samples)
+
+    def steady(time):
+        return printed.steady_displacement(time, omega, zeta, lam)
+
+    # z = δ + w; the velocity of the printed solution a quarter of a cycle away.
+    rate = steady(begin + np.pi / 2) + 1 / omega**2 + lam * np.cos(begin)
+    later = rng.uniform(0.5, 6, samples)
+    start = state(steady(begin) + lam * np.sin(begin), rate, begin)
+    there = flow(contact_matrix(omega, zeta, lam), later, start)
+    return largest(there[:, 0] - lam * np.sin(begin + later) - steady(begin + later))
+
+
+def permanent_contact(rng, samples) -> Checks:
+    """Eqs. 29 to 36."""
+    omega, zeta = np.exp(rng.uniform(-0.5, 2, samples)), rng.uniform(0.02, 0.5, samples)
+    steady = _steady_motion(rng, samples, omega, zeta)
+    threshold = 1 / (omega**2 * steady_amplitude(omega, zeta))
+    at_any = printed.permanent_contact_threshold(omega, zeta) / threshold - 1
+    resonant = printed.resonant_threshold(zeta) * steady_amplitude(1.0, zeta) - 1
+    # Λ_SD grows as 1/ϖ², with a next term of relative order ϖ².
+    soft = 1 / steady_amplitude(_SOFT, zeta) - 1
+    lowest = find_minimum(
+        _threshold, (0 * zeta + 1e-3, 1 - 2 * zeta**2, 0 * zeta + 10), args=(zeta,)
+    )
+    # Λ between the minimum and 1, where both frequency ratios exist.
+    bottom, place = lowest.f_x, lowest.x
+    level = bottom + (1 - bottom) * rng.uniform(0.1, 0.9, samples)
+
+    def inverse(sign, low, high):
+        """The printed ϖ against the one at which the threshold has the level."""
+        found = find_root(lambda x, y, z: _threshold(x, z) - y, (low, high), args=(level, zeta))
+        ratio = printed.permanent_contact_frequency_ratio(level, zeta, sign)
+        return Check("roots of Λ_SD", largest(ratio * np.sqrt(found.x) - 1))
+
+    minimum = printed.permanent_contact_minimum(zeta) / bottom - 1
+    return {
+        "Eq. 31": Check(_FLOW, steady),
+        "Eq. 33": Check(_PERIOD, largest(at_any)),
+        "Eq. 33, ϖ = 1": Check(_PERIOD, largest(resonant)),
+        "Eq. 33, ϖ → 0": Check(_PERIOD, largest(soft), 2 * _SOFT**2),
+        "Eq. 34": inverse(1, 0 * place + 1e-8, place),
+        "Eq. 35": inverse(-1, place, 0 * place + 1e4),
+        "Eq. 36": Check("minimum of Λ_SD", largest(minimum)),
+    }
+
+
+class Formulas(Parameters):
+    """The random parameters on which the formulas are tried."""
+
+    samples: Annotated[int, number("random parameters for each formula", ge=8, le=1000)]
+    curve_points: Annotated[int, number("random points of the explicit curve", ge=8, le=100_000)]
+    seed: Seed
+
+
+def formulas(parameters: Formulas) -> xr.Dataset:
+    """Disagreement of every printed formula, over ``samples`` random parameters, (formula,)."""
+    rng = np.random.default_rng(parameters.seed)
+    checks: Checks = {}
+    for part in (restitution_model, contact_and_flight, damping, contact_orbits, permanent_contact):
+        checks |= part(rng, parameters.samples)
+    comparison, disagreement, budget = zip(*checks.values(), strict=True)
+    return described(
+        {
+            "disagreement": ("formula", np.array(disagreement)),
+            "budget": ("formula", np.array(budget)),
+            "compared_with": ("formula", np.array(comparison)),
+            "static_error": static_error(),
+            "curve_points": ((), parameters.curve_points),
+            "curve_points_admissible": ((), points_with_one_impact(rng, parameters.curve_points)),
+        },
+        coords={"formula": list(checks)},
+    )

@@ -41,7 +41,7 @@ _SWEEPS, _SETTLED, _ENOUGH = 22, 3e-13, 1e-12
 _REACHED, _LOOK = 1e-12, 2
 # Last Legendre coefficients of what is integrated, over V or P/V; and the change in a
 # sweep early on, which tells how many there will be.
-_SPECTRUM, _TAIL = 1e-5, 2
+_SPECTRUM, _TAIL = 1e-6, 2
 _EARLY, _CHANGE = 5, 1e-3
 # Length of the first panel in parts of P^{1/m}/V.
 _FIRST = 0.8

@@ -6,7 +6,7 @@ import xarray as xr
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.figures.article.places import places
-from bouncing_ball.figures.tables.claims import found_text
+from bouncing_ball.figures.tables.rows import found_text
 
 # One claim: the dataset's variables over ``claim`` by name, its ``id``, and
 # ``found`` as in the table of claims.

@@ -43,7 +43,5 @@ rule paper_pdf:
         pdf="results/paper.pdf",
     log:
         "results/logs/paper_pdf.log",
-    benchmark:
-        "results/benchmarks/paper_pdf.tsv"
     script:
         "../scripts/paper_pdf.py"

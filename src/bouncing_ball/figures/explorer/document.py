@@ -15,6 +15,8 @@ import numpy as np
 import xarray as xr
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from bouncing_ball.datasets.selection import each
+
 BOUND = 1e-11
 """Difference from Python above which the badge is red: a hundred times the largest seen."""
 STATE = ("release", "restitution", "frequency_ratio", "n", "amplitude")
@@ -32,18 +34,13 @@ def references(data: xr.Dataset) -> str:
     """The reference orbits as JSON, one in a line; what does not exist is null."""
     names = [str(name) for name in data.data_vars if name not in STATE]
     rows = []
-    for rule in data["release"].values:
-        part = data.sel(release=rule)
-        for k in range(data.sizes["sample"]):
-            one = part.isel(sample=k)
-            n = int(one["n"])
-            numbers = [float(one[name]) for name in ("restitution", "frequency_ratio")]
-            values = [float(one[name]) for name in names]
-            row = {
-                "state": [str(rule), *numbers, n, float(one["amplitude"])],
-                "values": [value if np.isfinite(value) else None for value in values],
-            }
-            rows.append(json.dumps(row, allow_nan=False))
+    for one in each(data, "release", "sample"):
+        values = [float(one[name]) for name in names]
+        row = {
+            "state": [one[name].item() for name in STATE],
+            "values": [value if np.isfinite(value) else None for value in values],
+        }
+        rows.append(json.dumps(row, allow_nan=False))
     commit = str(data.attrs.get("provenance_commit", "unknown"))
     head = f'{{"commit": {json.dumps(commit)}, "names": {json.dumps(names)}, "orbits": ['
     return "\n".join([head, ",\n".join(rows), "]}"])

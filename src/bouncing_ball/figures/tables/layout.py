@@ -1,9 +1,8 @@
 """Tables from datasets: parts of a dataset as rows, descriptions of a cell as columns."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
 from bouncing_ball.figures.tables.formats import Table, number, words
@@ -14,26 +13,13 @@ Columns = dict[str, Column]
 """Columns by their headings."""
 
 
-def each(data: xr.Dataset, *dims: str) -> Iterator[xr.Dataset]:
-    """The dataset at each place along some dimensions, the last one running fastest.
-
-    Examples
-    --------
-    >>> data = xr.Dataset(coords={"n": [1, 2], "bound": ["from", "to"]})
-    >>> [part.n.item() for part in each(data, "n", "bound")]
-    [1, 1, 2, 2]
-    """
-    for place in np.ndindex(*(data.sizes[dim] for dim in dims)):
-        yield data.isel(dict(zip(dims, place, strict=True)))
-
-
 def table(parts: Iterable[xr.Dataset], columns: Columns) -> Table:
     """Header and rows.
 
     Examples
     --------
-    >>> data = xr.Dataset({"x": ("n", [0.5, np.nan])}, {"n": [1, 2]})
-    >>> table(each(data, "n"), {"n": text("n"), "x": value("x", ".2f")})
+    >>> data = [xr.Dataset({"n": n, "x": x}) for n, x in ((1, 0.5), (2, float("nan")))]
+    >>> table(data, {"n": text("n"), "x": value("x", ".2f")})
     (['n', 'x'], [['1', '0.50'], ['2', '–']])
     """
     return list(columns), [[column(part) for column in columns.values()] for part in parts]

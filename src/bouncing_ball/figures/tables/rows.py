@@ -10,8 +10,9 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.datasets.rounding import compared_text
+from bouncing_ball.datasets.selection import each
 from bouncing_ball.figures.tables.formats import Table, number, to_markdown, words
-from bouncing_ball.figures.tables.layout import Columns, at, each, quantity, table, text, value
+from bouncing_ball.figures.tables.layout import Columns, at, quantity, table, text, value
 
 _SHOWN = ("orbits", "stated", "exceed", "exceed elsewhere", "largest M", "5 %", "50 %", "95 %")
 

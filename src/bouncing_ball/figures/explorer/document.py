@@ -8,7 +8,6 @@ nothing else: the page can ask for nothing, from nowhere.
 import base64
 import hashlib
 import json
-from collections.abc import Mapping
 from importlib.resources import files
 
 import numpy as np
@@ -21,13 +20,6 @@ BOUND = 1e-11
 """Difference from Python above which the badge is red: a hundred times the largest seen."""
 STATE = ("release", "restitution", "frequency_ratio", "n", "amplitude")
 """Parameters of a reference orbit, in the order of its ``state``."""
-SOURCES = ("model.js", "page.js", "page.css")
-
-
-def sources() -> dict[str, str]:
-    """The scripts and the style by name."""
-    folder = files(__package__)
-    return {name: folder.joinpath(name).read_text(encoding="utf-8") for name in SOURCES}
 
 
 def references(data: xr.Dataset) -> str:
@@ -52,19 +44,13 @@ def _allowed(text: str) -> str:
     return f"'sha256-{digest}'"
 
 
-def to_html(data: xr.Dataset, texts: Mapping[str, str] | None = None) -> str:
-    """The page.
-
-    Parameters
-    ----------
-    data : Dataset
-        The reference orbits (:mod:`bouncing_ball.studies.reference_orbits`).
-    texts : mapping, optional
-        The scripts and the style, if not those beside this module.
-    """
-    texts = sources() if texts is None else texts
-    script = f"\n{texts['model.js']}\n{texts['page.js']}"
-    style = f"\n{texts['page.css']}"
+def to_html(data: xr.Dataset) -> str:
+    """The page with reference orbits (:mod:`bouncing_ball.studies.reference_orbits`)."""
+    model, page, look = (
+        files(__package__).joinpath(name).read_text(encoding="utf-8")
+        for name in ("model.js", "page.js", "page.css")
+    )
+    script, style = f"\n{model}\n{page}", f"\n{look}"
     environment = Environment(
         loader=PackageLoader(str(__package__), "."), undefined=StrictUndefined, autoescape=False
     )

@@ -6,6 +6,7 @@ from scipy.special import beta
 
 from bouncing_ball.contacts.collocation import contacts, path
 from bouncing_ball.contacts.contact_law import ContactLaw
+from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji, tsuji_damping
@@ -60,9 +61,12 @@ class _Pulling(ContactLaw):
         return -penetration
 
 
-def test_a_force_that_does_not_stop_the_ball_is_refused():
+def test_what_a_law_cannot_do_is_said():
     with pytest.raises(ModelError, match="pulling does not stop the ball"):
         contacts(_Pulling(), 1.0)
+    for r in (0.95, 1.0):
+        with pytest.raises(ModelError, match="pulling is given by its parameters, not by rest"):
+            law_of_impact(_Pulling, r, 0.3, 1.0)
 
 
 @pytest.mark.parametrize("root", [1, 2, 4])

@@ -74,9 +74,9 @@ def orbits(repetitions: int) -> None:
 
 
 def branch(law) -> None:
-    """Both bifurcations by continuation, none from a table."""
-    found = LawModel(law)._branch(1, law, 1.1)
-    assert found.named("saddle-node") and found.named("period doubling")
+    """Both bifurcations of a law that has not been asked before."""
+    model = LawModel(law)
+    assert model.saddle_node(1).amplitude < model.period_doubling(1).amplitude
 
 
 if __name__ == "__main__":

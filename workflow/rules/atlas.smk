@@ -8,12 +8,11 @@ ATLAS = {key: part for key, part in config["atlas"].items() if key != "summary"}
 CHARTS = ["max_height", "bounce_velocity", "phase", "apparent_restitution", "limits", "page"]
 
 
+# The shards; one that is damaged is removed, and so made again.
 def shard_files(wildcards):
-    """The shards; one that is damaged is removed, and so made again."""
     paths = [f"results/atlas/shards/{name}.nc" for name in [*shard_names(ATLAS), "limits"]]
     if workflow.is_main_process:
-        for path in discard_damaged(paths):
-            logger.warning(f"{path} is damaged: it is made again")
+        discard_damaged(paths, logger.warning)
     return paths
 
 

@@ -11,7 +11,6 @@ if workflow.is_main_process:
 
 
 rule config_docs:
-    localrule: True
     message:
         "Writing config/README.md and config/schema.json"
     params:

@@ -1,7 +1,6 @@
 # The paper under audit: its formulas, Table 1, every orbit by three routes, and its claims.
 
-from bouncing_ball.claims.ledger import READS as READS_OF_CLAIMS
-from bouncing_ball.claims.witness import SHOWN
+from bouncing_ball.claims import ledger, witness
 
 CLAIMS = {
     "formulas": "claims.formulas.formulas",
@@ -9,10 +8,8 @@ CLAIMS = {
     "witness": "claims.witness.witness",
     "claims": "claims.ledger.ledger",
 }
-# What shows orbits or bifurcations, which other routes must confirm.
-READS["witness"] = list(SHOWN)
-# What decides the claims.
-READS["claims"] = READS_OF_CLAIMS
+# What shows orbits or bifurcations, which other routes must confirm; and what decides the claims.
+READS |= {"witness": list(witness.SHOWN), "claims": ledger.READS}
 
 
 use rule study as audit with:

@@ -38,10 +38,10 @@ _NODES = 16
 _SWEEPS, _SETTLED, _ENOUGH = 22, 3e-13, 1e-12
 # What may be left of the grip, or of the time, relative to its change over the panel: it is
 # added to first order. And the sweep from which on the panel's end is looked at.
-_REACHED, _LOOK = 1e-9, 2
+_REACHED, _LOOK = 1e-12, 2
 # Last Legendre coefficients of what is integrated, over V or P/V; and the change in a
 # sweep early on, which tells how many there will be.
-_SPECTRUM, _TAIL = 1e-5, 2
+_SPECTRUM, _TAIL = 1e-6, 2
 _EARLY, _CHANGE = 5, 1e-3
 # Length of the first panel in parts of P^{1/m}/V.
 _FIRST = 0.8
@@ -187,9 +187,12 @@ def _panel(law: ContactLaw, start: Start, now: _Motion, until: np.ndarray | None
     """The next panel of each ball, to the release, or to a time, if that comes first."""
     node, integral, tail, end = _rule()
     rate = now.rate + node * (now.step * now.push)
-    last, longer, more = np.zeros(now.step.size, dtype=bool), now.step, np.zeros(now.step.size)
-    reached = ~last
+    last, more = np.zeros(now.step.size, dtype=bool), np.zeros(now.step.size)
+    step = longer = now.step
+    reached, push = ~last, more
     for sweep in range(_SWEEPS):
+        # The nodes move with the end.
+        rate = rate + node * ((longer - step) * push) if longer is not step else rate
         step = longer
         q = now.root + step * (integral @ rate)
         lever = _lever(law, q[:-1])

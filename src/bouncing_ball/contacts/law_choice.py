@@ -75,6 +75,8 @@ def _search(kind: type[ContactLaw], restitution: float) -> float:
     # A law that does not say how it is scaled is not taken for one that is damped too strongly.
     kind.of_scales(_FIRST, 1.0, 1.0)
     left, right, above = 0.0, _FIRST, -np.log(restitution)
+    # A law that cannot be given by its impact says so itself.
+    kind.of_scales(right, 1.0, 1.0)
     try:
         for _ in range(_DOUBLINGS):
             below = surplus(right)

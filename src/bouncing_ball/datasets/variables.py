@@ -187,7 +187,6 @@ VARIABLES: dict[str, Variable] = {
     "reading": Variable("what is assumed, one reading of the paper each"),
     "bifurcation_amplitude": Variable("excitation amplitude of the bifurcation", "Λ"),
     "force_restitution": Variable("restitution coefficient of the force release", "r_F"),
-    "bifurcation_phase": Variable("phase at the bifurcation", "φ", "rad"),
     # other contact laws
     "law": Variable("law of the contact"),
     "duration_ratio": Variable(
@@ -404,8 +403,6 @@ ARTIFACTS: dict[str, dict[str, Budget]] = {
     "ext_validity": {"error_threshold": Budget(1e-9)},
     # The second order of a stiff contact is a small difference of large values.
     "ext_orders": {"relative_error": Budget(1e-11)},
-    # Near the saddle-node the phase depends on Λ by a root.
-    "ext_fig15": {"phase": Budget(1e-12)},
     # Collocated orbits, each right to some 1e-13.
     "ext_hertz": dict.fromkeys(("bifurcation_amplitude", "phase"), Budget(1e-12)),
     # Saddle-nodes are found as minima here, and some readings are ill-conditioned.

@@ -88,7 +88,7 @@ def orbit_with_flight(contact: SpringDamper, flight_time: ArrayLike) -> SpringDa
     angle = (2 * np.pi - np.asarray(flight_time)) * contact.frequency_ratio
     zeta, sine = contact.damping_ratio, contact.release_sine
     excess = angle * np.sqrt((1 - zeta) * (1 + zeta)) - 2 * np.arccos(sine)
-    return SpringDamperOrbit.from_branch(branch_point(excess, contact, 1), contact, 1)
+    return SpringDamperOrbit.on_branch(excess, contact, 1)
 
 
 def _usual(contact: SpringDamper, flight_time: np.ndarray) -> np.ndarray:

@@ -67,8 +67,6 @@ class ImpactModel(Batch, ABC):
     name: ClassVar[str]
     routes: ClassVar[frozenset[Route]] = frozenset({Route.CONTINUATION, Route.SIMULATION})
     orbit_type: ClassVar[type[Orbit]]
-    softens: ClassVar[bool] = False
-    """Whether its orbits are followed along ϖ, from those of the restitution model."""
 
     @property
     @abstractmethod

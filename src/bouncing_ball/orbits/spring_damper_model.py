@@ -47,7 +47,6 @@ class SpringDamperModel(ImpactModel):
     name: ClassVar[str] = "spring-damper"
     orbit_type: ClassVar[type[Orbit]] = SpringDamperOrbit
     routes: ClassVar[frozenset[Route]] = frozenset(Route)
-    softens: ClassVar[bool] = True
 
     @property
     def label(self) -> str:

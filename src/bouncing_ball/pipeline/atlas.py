@@ -4,7 +4,7 @@ Every job of every rule reads the rules; so the plan is imported when it is aske
 """
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -38,8 +38,8 @@ def shard_minutes(parameters: Mapping[str, Any]) -> int:
     return _LEAST_MINUTES + math.ceil(seconds / 60)
 
 
-def discard_damaged(paths: Iterable[str]) -> Iterator[str]:
-    """Remove the files of those there that cannot be read whole; which they were."""
+def discard_damaged(paths: Iterable[str], say: Callable[[str], None]) -> None:
+    """Remove the files of those there that cannot be read whole, and say which."""
     from bouncing_ball.datasets.netcdf import DatasetError, read_dataset
 
     for path in filter(Path.is_file, map(Path, paths)):
@@ -47,4 +47,4 @@ def discard_damaged(paths: Iterable[str]) -> Iterator[str]:
             read_dataset(path)
         except DatasetError:
             path.unlink()
-            yield str(path)
+            say(f"{path} is damaged: it is made again")

@@ -40,7 +40,7 @@ from bouncing_ball.parameters import (
     Span,
     Tolerance,
 )
-from bouncing_ball.studies.parameters import BranchEnd, OrbitAmplitude, Points
+from bouncing_ball.studies.parameters import BranchEnd, OrbitParameters, Points
 
 HERTZ = ("hunt-crossley", "tsuji", "kuwabara-kono")
 LINEAR = {"linear": Release.DISPLACEMENT, "linear, force release": Release.FORCE}
@@ -49,12 +49,10 @@ BOUNDS = (Quantity.SADDLE_NODE, Quantity.PERIOD_DOUBLING)
 QUANTITIES = (Quantity.MAX_HEIGHT, Quantity.BOUNCE_VELOCITY, Quantity.PHASE, *BOUNDS)
 
 
-class OneOrbit(Parameters):
+class OneOrbit(OrbitParameters):
     """One orbit on contacts of several durations; ϖ stands for π over the duration."""
 
-    n: Family
     restitution: LawRestitution
-    amplitude: OrbitAmplitude
     frequency_ratio: Span
 
 

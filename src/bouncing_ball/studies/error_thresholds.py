@@ -21,28 +21,22 @@ from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import describe, described
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
-from bouncing_ball.parameters import Family, Many, Parameters, Restitution, Span, Tolerance
-from bouncing_ball.studies.parameters import OrbitAmplitude
+from bouncing_ball.parameters import Many, Span, Tolerance
+from bouncing_ball.studies.parameters import OrbitParameters
 from bouncing_ball.studies.permanent_contact_curve import PermanentContact, permanent_contact
 
 
-class ErrorThresholds(Parameters):
+class ErrorThresholds(OrbitParameters):
     """One orbit, the quantities compared on it and the errors tolerated."""
 
-    n: Family
-    restitution: Restitution
-    amplitude: OrbitAmplitude
     quantities: Many[Annotated[Quantity, Strict(False)]]
     tolerances: Many[Tolerance]
     frequency_ratio: Span
 
 
-class HeightError(Parameters):
+class HeightError(OrbitParameters):
     """One orbit, and the error tolerated of its greatest height."""
 
-    n: Family
-    restitution: Restitution
-    amplitude: OrbitAmplitude
     frequency_ratio: Span
     tolerance: Tolerance
 

@@ -27,7 +27,6 @@ from bouncing_ball.parameters import (
     Many,
     OwnRestitution,
     Parameters,
-    Restitution,
     Samples,
     Seed,
     Span,
@@ -35,16 +34,14 @@ from bouncing_ball.parameters import (
     number,
 )
 from bouncing_ball.studies.law_distribution import law_errors
-from bouncing_ball.studies.parameters import MotionRatio, OrbitAmplitude
+from bouncing_ball.studies.parameters import MotionRatio, OrbitParameters
 from bouncing_ball.studies.random_orbits import random_orbits
 
 
-class ErrorLaw(Parameters):
+class ErrorLaw(OrbitParameters):
     """One orbit, and the error tolerated."""
 
-    n: Family
     restitution: LossyRestitution
-    amplitude: OrbitAmplitude
     tolerance: Tolerance
     frequency_ratio: Span
 
@@ -66,12 +63,10 @@ class Sample(Parameters):
     law_samples: Annotated[Samples, Field(description="random orbits on which the law is tried")]
 
 
-class Orders(Parameters):
+class Orders(OrbitParameters):
     """One orbit along ϖ, and random ones."""
 
-    n: Family
     restitution: LossyRestitution
-    amplitude: OrbitAmplitude
     frequency_ratio: Span
     random: Sample
 
@@ -90,12 +85,9 @@ class Validity(Parameters):
     frequency_ratio: Span
 
 
-class Meeting(Parameters):
+class Meeting(OrbitParameters):
     """One contact of one orbit."""
 
-    n: Family
-    restitution: Restitution
-    amplitude: OrbitAmplitude
     frequency_ratio: MotionRatio
     samples: Samples
 

@@ -13,7 +13,14 @@ from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits.restitution_orbit import period_doubling, saddle_node
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
-from bouncing_ball.parameters import Amplitude, AmplitudeMax, FrequencyRatio
+from bouncing_ball.parameters import (
+    Amplitude,
+    AmplitudeMax,
+    Family,
+    FrequencyRatio,
+    Parameters,
+    Restitution,
+)
 
 
 def _known(info: ValidationInfo, *names: str) -> bool:
@@ -89,6 +96,16 @@ def _has_a_motion(ratio: float, info: ValidationInfo) -> float:
 
 OrbitAmplitude = Annotated[Amplitude, AfterValidator(_has_an_orbit)]
 """Λ at which the family, or the lowest of several, has an orbit."""
+
+
+class OrbitParameters(Parameters):
+    """One orbit that the restitution model has too."""
+
+    n: Family
+    restitution: Restitution
+    amplitude: OrbitAmplitude
+
+
 BranchEnd = Annotated[AmplitudeMax, AfterValidator(_has_all_orbits)]
 """Λ up to which branches are followed, above where the highest family begins."""
 RangeEnd = Annotated[AmplitudeMax, AfterValidator(_has_all_ranges)]

@@ -24,15 +24,13 @@ from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.parameters import Family, LossyRestitution, Many, Parameters, Span, Tolerance
-from bouncing_ball.studies.parameters import OrbitAmplitude
+from bouncing_ball.studies.parameters import OrbitParameters
 
 
-class RuleThresholds(Parameters):
+class RuleThresholds(OrbitParameters):
     """One orbit, the quantities compared on it, and the error tolerated."""
 
-    n: Family
     restitution: LossyRestitution
-    amplitude: OrbitAmplitude
     tolerance: Tolerance
     quantities: Many[Annotated[Quantity, Strict(False)]]
     frequency_ratio: Span

@@ -10,7 +10,7 @@ from bouncing_ball.orbits import restitution_orbit as orbits
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import ImpactMap, RestitutionOrbit
 from bouncing_ball.parameters import Family, Many, Parameters, Restitution, Samples, number
-from bouncing_ball.studies.parameters import BranchEnd, OrbitAmplitude, Points
+from bouncing_ball.studies.parameters import BranchEnd, OrbitParameters, Points
 
 
 class RestitutionDomains(Parameters):
@@ -22,12 +22,9 @@ class RestitutionDomains(Parameters):
     points: Points
 
 
-class RestitutionHistory(Parameters):
+class RestitutionHistory(OrbitParameters):
     """One orbit of the restitution model over time."""
 
-    n: Family
-    restitution: Restitution
-    amplitude: OrbitAmplitude
     periods: Annotated[int, number("periods of the orbit shown", ge=1, le=20)]
     samples: Samples
 

@@ -9,29 +9,23 @@ from bouncing_ball.datasets.variables import described
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
-from bouncing_ball.parameters import Family, Many, Parameters, Restitution, Samples
-from bouncing_ball.studies.parameters import MotionRatio, OrbitAmplitude
+from bouncing_ball.parameters import Many, Samples
+from bouncing_ball.studies.parameters import MotionRatio, OrbitParameters
 
 # What is published of each orbit.
 _STATE = ("phase", "contact_duration", "impact_velocity", "bounce_velocity")
 
 
-class ContactHistory(Parameters):
+class ContactHistory(OrbitParameters):
     """One cycle of one orbit."""
 
-    n: Family
-    restitution: Restitution
-    amplitude: OrbitAmplitude
     frequency_ratio: MotionRatio
     samples: Samples
 
 
-class Histories(Parameters):
+class Histories(OrbitParameters):
     """One cycle on several contacts."""
 
-    n: Family
-    restitution: Restitution
-    amplitude: OrbitAmplitude
     frequency_ratio: Many[MotionRatio]
     samples: Samples
 

@@ -14,7 +14,7 @@ from bouncing_ball.claims.forensics import (
 )
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.figures.tables.forensics import rows
+from bouncing_ball.figures.tables.rows import forensics as rows
 from bouncing_ball.orbits import restitution_orbit
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit

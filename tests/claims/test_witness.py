@@ -17,7 +17,7 @@ from bouncing_ball.claims.witness import (
 )
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import ModelError
-from bouncing_ball.figures.tables.witness import rows
+from bouncing_ball.figures.tables.rows import witness as rows
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.studies.continuation import Continuation
 from bouncing_ball.studies.orbit_branches import Domains, orbit_branches

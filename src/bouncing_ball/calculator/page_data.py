@@ -7,8 +7,8 @@ import xarray as xr
 
 from bouncing_ball.accuracy.errors import SIMPLE
 from bouncing_ball.accuracy.thresholds import ThresholdStatus, search
-from bouncing_ball.calculator.design import Design
 from bouncing_ball.calculator.needed import RATIOS
+from bouncing_ball.calculator.results import Design
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.orbits.orbit import Orbit

@@ -200,38 +200,6 @@ def _law_of_parameters(kind: type[ContactLaw], given: Mapping[str, Any]) -> Cont
     return kind(**named)
 
 
-def model_of_orbit(n: int, amplitude: float, side: str = "stable", **impact: Any) -> ImpactModel:
-    """The model; a law that is given by r and D has them at the impact speed of this orbit."""
-    own = Side.UNSTABLE if side == "unstable" else Side.STABLE
-    return _model(impact, lambda kind, r, d: law_at_orbit(kind, r, d, n, amplitude, own))
-
-
-def chosen_orbit(
-    of: ImpactModel, n: int, amplitude: float, side: str = "stable", index: int | None = None
-) -> Orbit:
-    """The orbit of a model on a side, or all of its orbits at Λ, or one of all by its number.
-
-    Raises
-    ------
-    NoOrbitError
-        If there is none, with the reason.
-    """
-    if side != "all" and index is None:
-        return of.require_orbit(n, amplitude, Side.of(side))
-    if side == "unstable" or (side == "all" and index is not None):
-        raise ParameterError("argument {index}: not allowed with argument {side}")
-    found = of.orbits(n, amplitude)
-    if not found.size:
-        raise NoOrbitError(f"no {n}-T orbit at Λ = {amplitude:g} for {of.label}")
-    if index is None:
-        return found
-    if index > found.size:
-        raise NoOrbitError(
-            f"no orbit {index}: {of.label} has {found.size} {n}-T orbits at Λ = {amplitude:g}"
-        )
-    return found[index - 1]
-
-
 @takes(model)
 def orbit(
     n: Index,
@@ -278,7 +246,20 @@ def orbit(
       apparent_restitution  0.851132
       max_height            5.41098
     """
-    return chosen_orbit(model_of_orbit(n, amplitude, side, **impact), n, amplitude, side, index)
+    branch = Side.STABLE if side == "all" else Side.of(side)
+    of = _model(impact, lambda kind, r, d: law_at_orbit(kind, r, d, n, amplitude, branch))
+    if side != "all" and index is None:
+        return of.require_orbit(n, amplitude, branch)
+    if side != "stable" and index is not None:
+        raise ParameterError("argument {index}: not allowed with argument {side}")
+    found = of.orbits(n, amplitude)
+    if not found.size:
+        raise NoOrbitError(f"no {n}-T orbit at Λ = {amplitude:g} for {of.label}")
+    if index is not None and index > found.size:
+        raise NoOrbitError(
+            f"no orbit {index}: {of.label} has {found.size} {n}-T orbits at Λ = {amplitude:g}"
+        )
+    return found if index is None else found[index - 1]
 
 
 def model_of_limits(n: int, **impact: Any) -> ImpactModel:
@@ -314,9 +295,7 @@ def limits(n: Index, **impact: Any) -> Limits:
     return Limits(of.saddle_node(n), of.period_doubling(n))
 
 
-def model_of_impact(
-    amplitude: float, phase: float = 0.0, velocity: float = -math.pi, **impact: Any
-) -> ImpactModel:
+def model_of_impact(amplitude: float, phase: float, velocity: float, **impact: Any) -> ImpactModel:
     """The model; a law that is given by r and D has them at the speed of this impact."""
     speed = amplitude * np.cos(phase) - velocity
     return _model(impact, lambda kind, r, d: law_of_impact(kind, r, d, speed))

@@ -116,7 +116,6 @@ def explain(file: Path, /) -> dict[str, Any]:
     target = made.target
     if file.suffix not in CARRIERS:
         target = f"results/{'' if file.name == 'paper.md' else 'figures/'}{file.name}"
-    running = versions()
     return {
         "file": str(file),
         "commit": made.commit,
@@ -126,7 +125,7 @@ def explain(file: Path, /) -> dict[str, Any]:
         "parameters": _parameters(file, made),
         "inputs": list(_parsed(made.inputs)),
         "versions": {
-            name: {"made_with": version, "running": running.get(name)}
+            name: {"made_with": version, "running": versions().get(name)}
             for name, version in _parsed(made.versions).items()
         },
         "make_again": _commands(made, target, checked_out),

@@ -14,7 +14,7 @@ rule paper:
         data=expand("results/figures/{name}.nc", name=STUDIES),
         tables=expand("results/figures/{table}.md", table=TABLES),
         source=modules(
-            *("figures.article.render", "figures.atlas.tables", "figures.tables.error_law"),
+            *("figures.article.render", "figures.atlas.tables", "figures.tables.rows"),
             "claims.tally",
         ),
     output:

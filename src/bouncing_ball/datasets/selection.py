@@ -1,5 +1,6 @@
-"""Places of a variable by the labels of its coordinates."""
+"""Places of a dataset: by the labels of its coordinates, or one after another."""
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -51,3 +52,16 @@ def index_of(values: xr.DataArray, name: str, wanted: Any) -> int:
         often = "is not among" if not there.size else f"is {there.size} times among"
         raise ModelError(f"{name} = {wanted} {often} {known}")
     return int(there[0])
+
+
+def each(data: xr.Dataset, *dims: str) -> Iterator[xr.Dataset]:
+    """The dataset at each place along some dimensions, the last one running fastest.
+
+    Examples
+    --------
+    >>> data = xr.Dataset(coords={"n": [1, 2], "bound": ["from", "to"]})
+    >>> [part.n.item() for part in each(data, "n", "bound")]
+    [1, 1, 2, 2]
+    """
+    for place in np.ndindex(*(data.sizes[dim] for dim in dims)):
+        yield data.isel(dict(zip(dims, place, strict=True)))

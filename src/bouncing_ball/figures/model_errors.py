@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from bouncing_ball.figures.canvas import legend_below, logarithmic, panels, parameters
 from bouncing_ball.figures.style import CORRECTED, GUIDE, LAWS, QUANTITIES, RESTITUTION, Look
+from bouncing_ball.figures.tables.rows import accidental
 
 # Bands that differ in grey and by their hatching; lines that differ by their dashes.
 _MODELS: dict[str, Look] = {
@@ -93,22 +94,6 @@ def validity(data: xr.Dataset) -> Figure:
     )
     legend_below(figure, list(handles.values()), ncols=len(handles))
     return figure
-
-
-def accidental(data: xr.Dataset) -> xr.DataArray:
-    """Whether its error passes through zero above the ϖ from which it is within the tolerance.
-
-    The error then changes its sign there, and would be beyond the tolerance otherwise.
-
-    Examples
-    --------
-    >>> data = xr.Dataset(
-    ...     {"error_threshold": (("model", "restitution"), [[3.0, 80.0]]),
-    ...      "error_zero": ("restitution", [9.0, 2.0])}, coords={"model": ["restitution"]})
-    >>> accidental(data).values.tolist()
-    [True, False]
-    """
-    return data.error_zero > data.error_threshold.sel(model="restitution", drop=True)
 
 
 def _by_quantity(

@@ -23,7 +23,6 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.motion.contact import contact_cycle, simulate
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence
 from bouncing_ball.orbits.continued import orbit_at
-from bouncing_ball.orbits.highest import highest
 from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
@@ -79,21 +78,11 @@ class LawOrbit(Orbit):
         """δ_b at release."""
         return -self.contact.penetration
 
-    @property
-    def max_height(self) -> np.ndarray:
-        """Greatest absolute height over the cycle, in flight or in contact."""
-        return highest(self)
-
     def contact_motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ at times 0 ≤ τ ≤ τ_b in contact."""
         speed = -self.relative_impact_velocity
         depth, rate = path(self.law, self.contact, time, speed, self.phase, self.amplitude)
         return -depth, -rate
-
-    def contact_acceleration(self, time: np.ndarray) -> np.ndarray:
-        """Absolute acceleration in contact, f - 1."""
-        displacement, velocity = self.contact_motion(time)
-        return self.law.force(np.maximum(-displacement, np.finfo(float).tiny), -velocity) - 1
 
     def residual(self) -> np.ndarray:
         """Duration, velocity and landing defects, shape (..., 3).

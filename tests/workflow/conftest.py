@@ -14,11 +14,9 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 
 import pytest
@@ -29,40 +27,9 @@ ROOT = Path(__file__).resolve().parents[2]
 IGNORED = shutil.ignore_patterns(
     ".git", ".venv*", "results", ".snakemake", "tests", "*.egg-info", "__pycache__", ".*_cache"
 )
-# A program, and no test.
-collect_ignore = ["starts.py"]
 # Seconds that only a run which hangs can take, however busy the machine.
 HANGS = 3600
 SNAKEMAKE = Path(sys.executable).with_name("snakemake")
-
-
-@cache
-def starter() -> subprocess.Popen:
-    """What starts Snakemake for the tests of this process; it ends with it."""
-    # The program itself is started where a run is to be interrupted, by the commands that
-    # explain names, and where another Python or package is refused.
-    program = [sys.executable, Path(__file__).with_name("starts.py")]
-    return subprocess.Popen(program, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-
-
-def pytest_unconfigure() -> None:
-    if starter.cache_info().currsize:
-        starter().communicate()
-
-
-def started(
-    arguments: Sequence[str], folder: Path, environment: Mapping[str, str]
-) -> subprocess.CompletedProcess:
-    """What ``snakemake`` with these arguments does there, and says."""
-    server = starter()
-    with tempfile.TemporaryDirectory() as kept:
-        said = {name: str(Path(kept, name)) for name in ("stdout", "stderr")}
-        call = {"arguments": arguments, "folder": str(folder), "environment": dict(environment)}
-        server.stdin.write(json.dumps(call | said) + "\n")
-        server.stdin.flush()
-        status = int(server.stdout.readline())
-        texts = {name: Path(path).read_text(encoding="utf-8") for name, path in said.items()}
-    return subprocess.CompletedProcess(arguments, status, **texts)
 
 
 @dataclass(frozen=True)
@@ -73,7 +40,14 @@ class Tree:
 
     def run(self, *arguments: str, check: bool = True) -> subprocess.CompletedProcess:
         """Snakemake in this tree; the package is imported from this tree."""
-        done = started(arguments, self.path, self.environment())
+        done = subprocess.run(
+            [SNAKEMAKE, *arguments],
+            cwd=self.path,
+            env=self.environment(),
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+        )
         if check and done.returncode != 0:
             pytest.fail(f"snakemake {' '.join(arguments)} failed:\n{done.stdout}{done.stderr}")
         return done

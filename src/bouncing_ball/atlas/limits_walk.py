@@ -20,7 +20,7 @@ from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits import restitution_orbit
 from bouncing_ball.orbits import spring_damper_limits as limits
 from bouncing_ball.orbits.spring_damper_branch import BranchPoint, branch_point
-from bouncing_ball.orbits.stability import period_doubling_function
+from bouncing_ball.orbits.stability import Bifurcation
 
 _SECANTS = 6
 # First step of the secants in t, and the last one at most; t is of the order of 1.
@@ -59,7 +59,7 @@ def limit_errors(nodes: Nodes, ratios: np.ndarray) -> Iterator[tuple[float, np.n
 
 
 def _flip(point: BranchPoint) -> np.ndarray:
-    return period_doubling_function(point.trace, point.determinant)
+    return Bifurcation.PERIOD_DOUBLING.test(point.trace, point.determinant)
 
 
 def _track(

@@ -22,11 +22,7 @@ from bouncing_ball.orbits.model import ImpactModel, Route
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
-from bouncing_ball.orbits.stability import (
-    Bifurcation,
-    period_doubling_function,
-    saddle_node_function,
-)
+from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.orbits.system import OrbitSystem
 
 # Periods over which the simulation must hold a stable orbit.
@@ -50,10 +46,6 @@ _UNSTABLE = -0.05
 _NEWTON = NewtonSettings(max_iterations=20)
 # Distance along the branch over which a test function is differentiated.
 _WIDTH = 1e-4
-_TESTS = {
-    Bifurcation.SADDLE_NODE: saddle_node_function,
-    Bifurcation.PERIOD_DOUBLING: period_doubling_function,
-}
 
 
 class CrossCheckError(ValueError):
@@ -223,7 +215,7 @@ def limits_against_formula(shown: Shown) -> np.ndarray:
     The distance from the formula's branch, and along it the test function over its slope.
     """
     orbit, model, system = shown.orbit, shown.model, shown.model.system(shown.orbit.n)
-    test = _TESTS[Bifurcation(str(shown.bifurcation))]
+    test = Bifurcation(str(shown.bifurcation)).test
     start = model.nearest(orbit)
     y = system.point(start)
     step = _WIDTH / np.maximum(start.clock, 1.0)
@@ -307,7 +299,7 @@ def comparisons(shown: Shown) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
     yield CLOSES, moving, simulation_closes(orbit)
     stable = orbit.is_stable()
     yield HOLDS, moving[stable], simulation_holds(orbit[stable])
-    tests = [test(*orbit.trace_and_determinant()) for test in _TESTS.values()]
+    tests = [kind.test(*orbit.trace_and_determinant()) for kind in Bifurcation]
     left = np.min(tests, axis=0) < _UNSTABLE
     yield LEAVES, moving[left], simulation_leaves(orbit[left])
 

@@ -34,7 +34,7 @@ ALLOWED = {
     # Studies are imported by name when they are run.
     "configuration": ({"atlas"}, {"yaml", "pydantic", BY_NAME}),
     "claims": (
-        {"datasets", "contacts", "continuation", "motion", "orbits", "studies", "configuration"},
+        {"datasets", "contacts", "continuation", "motion", "orbits", "accuracy", "studies"},
         {"numpy", "scipy", "xarray"},
     ),
     # Pandoc and Typst only where the PDF is made.

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.accuracy.errors import modulus, orbit_errors
+from bouncing_ball.accuracy.errors import errors, modulus, orbit_errors
+from bouncing_ball.accuracy.quantities import OF_LIMITS
 from bouncing_ball.atlas import answers, shards
 from bouncing_ball.atlas.crossings import LastCrossings
-from bouncing_ball.atlas.limits_walk import limit_errors
 from bouncing_ball.atlas.walk import walk
 from bouncing_ball.errors import ModelError
 
@@ -56,11 +56,11 @@ def test_the_answers_are_those_of_all_errors_at_once(small, atlas, every_node):
     nodes = every_node(plan, row)
     steps = list(walk(nodes, plan.ratios))
     ratios = np.concatenate([step.frequency_ratio for step in steps])
-    errors = np.concatenate([orbit_errors(step.orbit) for step in steps], axis=2)
+    found = np.concatenate([orbit_errors(step.orbit) for step in steps], axis=2)
     stable = np.concatenate([step.stable for step in steps])
     for ratio in plan.examined:
         k, at = int(np.flatnonzero(ratios == ratio)[0]), there.sel(frequency_ratio=ratio)
-        tiles = modulus(errors[:, :, k]).reshape(*errors.shape[:2], 3, -1)
+        tiles = modulus(found[:, :, k]).reshape(*found.shape[:2], 3, -1)
         assert np.array_equal(at.largest_error.values, np.moveaxis(tiles.max(-1), -1, 0))
         for m, limit in enumerate(plan.tolerances):
             count = np.moveaxis((tiles > limit).sum(-1), -1, 0)
@@ -79,7 +79,7 @@ def test_counts_add_up(small, atlas):
     assert np.all(nodes[reached] == plan.nodes_per_tile)
     # The force release does not reach the first range of r: nothing is known of it.
     assert np.all(nodes[~reached] == 0) and (~reached).sum() == 2
-    for name in ("largest_threshold", "largest_error", "farthest", "limit_needed"):
+    for name in ("largest_threshold", "largest_error", "limit_needed"):
         assert np.all(np.isnan(atlas[name].values[~reached])), name
     # The histogram has the largest threshold in its last bin that is not empty.
     bins, largest = atlas.threshold_bin.values, atlas.largest_threshold.values[reached]
@@ -103,7 +103,8 @@ def test_the_limits_of_a_row_are_the_largest_of_its_r(small, limits):
     for r in plan.restitutions(row):
         one = plan.placed(row, np.array([r]), np.zeros(1))
         crossings = LastCrossings(np.array(plan.tolerances), (2, 3, 1))
-        for ratio, error in limit_errors(one, plan.ratios):
-            crossings.meet(np.array([ratio]), error[np.newaxis])
+        down = plan.ratios[::-1]
+        error = errors(one.contact(down[:, np.newaxis]), one.n, one.amplitude, OF_LIMITS)
+        crossings.meet(down, np.moveaxis(error, 2, 0))
         found.append(np.moveaxis(crossings.thresholds()[..., 0], 0, -1))
     np.testing.assert_allclose(limits.limit_needed[-1], np.max(found, axis=0), rtol=1e-9)

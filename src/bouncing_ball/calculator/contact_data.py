@@ -57,6 +57,14 @@ def which(given: Given, names: tuple[str, ...], what: str) -> str | None:
     return found[0] if found else None
 
 
+def required(given: Given, names: tuple[str, ...], what: str, give: str) -> str:
+    """The one of some parameters that is given; a ModelError that says what to give, if none."""
+    found = which(given, names, what)
+    if found is None:
+        raise ModelError(f"{what} is missing: give {give}")
+    return found
+
+
 def rebound(drop_height: float, rebound_height: float) -> float:
     """Restitution coefficient r = √(h′/h) of a drop test.
 
@@ -85,9 +93,7 @@ def loss(given: Given, release: Release) -> float | None:
     ModelError
         If nothing says it, or two parameters do, or r is out of range.
     """
-    name = which(given, LOSSY, "how much the contact loses")
-    if name is None:
-        raise ModelError(f"how much the contact loses is missing: give one of {_words(LOSSY)}")
+    name = required(given, LOSSY, "how much the contact loses", f"one of {_words(LOSSY)}")
     if name == "damping":
         return None
     if name == "damping_ratio":

@@ -89,12 +89,12 @@ def _assignment(text: str) -> tuple[str, float]:
         raise argparse.ArgumentTypeError(f"{text!r} is not {example}") from None
 
 
-def _within(allowed: Range, kind: type = float) -> Callable[[str], Any]:
+def _within(allowed: Range, kind: Any = float) -> Callable[[str], Any]:
     """A parser of numbers in a range, for ``type=``."""
 
     def parse(text: str) -> Any:
         try:
-            value = kind(text)
+            value = int(text) if kind is int else float(text)
         except ValueError:
             value = math.nan
         if value not in allowed:
@@ -115,11 +115,10 @@ def _reading(annotation: Any) -> dict[str, Any]:
     origin = typing.get_origin(annotation)
     if origin is typing.Annotated:
         kind, how = kinds
-        if not isinstance(how, Range):
-            return {"type": how, "metavar": "FILE"}
-        if kind is int:
-            return {"type": _within(how, int), "metavar": "N"}
-        return {"type": _within(how), "metavar": "X"}
+        if isinstance(how, Range):
+            return {"type": _within(how, kind), "metavar": "N" if kind is int else "X"}
+        # A parser of one's own, or a unit, which the call itself reads.
+        return {"type": how, "metavar": "FILE"} if callable(how) else {"metavar": "X"}
     if origin is typing.Literal:
         return {"choices": kinds}
     if origin is Mapping:

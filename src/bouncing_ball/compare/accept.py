@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any
 
 from bouncing_ball.compare.folders import Artifact, compare_folders
-from bouncing_ball.compare.outcome import Outcome
 from bouncing_ball.compare.terminal import to_terminal
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.atomic import replacing
@@ -41,7 +40,7 @@ def _copied(artifact: Artifact, record: Path, results: Path) -> list[str]:
     said = []
     for part in artifact.parts:
         old, new = record / part.file, results / part.file
-        if part.outcome is Outcome.MISSING:
+        if not new.exists():
             old.unlink()
             said.append(f"removed {part.file}")
         elif not old.is_file() or old.read_bytes() != new.read_bytes():

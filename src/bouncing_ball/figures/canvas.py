@@ -1,11 +1,16 @@
 """Figures without overlaps, and the words on them."""
 
+from collections.abc import Iterator
+from itertools import cycle
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+
+from bouncing_ball.datasets.selection import each
+from bouncing_ball.figures.style import COLOURS
 
 WIDTH = 3.4
 """Width of a one-column figure in inches."""
@@ -35,16 +40,21 @@ def legend_below(figure: Figure, handles: Any = None, labels: Any = None, **opti
     figure.legend(handles, labels, loc="outside lower center", **options)
 
 
-def logarithmic(axes: Axes, ratio: xr.DataArray | None = None) -> None:
-    """Logarithmic frequency-ratio axis with plain numbers at the decades.
+def logarithmic(axes: Axes, ratio: xr.DataArray | None = None, **settings: Any) -> None:
+    """Logarithmic frequency-ratio axis with plain numbers at the decades, and other settings.
 
     It is named, and as long as the ϖ that are given.
     """
     if ratio is not None:
         axes.set(xlabel=r"frequency ratio $\varpi$", xlim=(float(ratio[0]), float(ratio[-1])))
-    axes.set_xscale("log")
+    axes.set(xscale="log", **settings)
     axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
     axes.xaxis.set_minor_formatter(lambda value, _: "")
+
+
+def coloured(data: xr.Dataset, dim: str) -> Iterator[tuple[xr.Dataset, str]]:
+    """The dataset at each place along a dimension, with a colour of its own."""
+    return zip(each(data, dim), cycle(COLOURS))
 
 
 def number(value: float) -> str:

@@ -13,7 +13,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from bouncing_ball.datasets.selection import each
-from bouncing_ball.figures.canvas import WIDE, canvas, legend_below, number, parameters
+from bouncing_ball.figures.canvas import WIDE, canvas, legend_below
+from bouncing_ball.figures.labels import number, parameters
 from bouncing_ball.figures.style import COLOURS, END, LINES, MARKS, RESTITUTION, Look
 
 _KEYS = "#5f5f5f"

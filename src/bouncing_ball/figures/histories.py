@@ -8,7 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bouncing_ball.datasets.selection import each
-from bouncing_ball.figures.canvas import WIDE, canvas, legend_below, note, number, parameters
+from bouncing_ball.figures.canvas import WIDE, canvas, legend_below
+from bouncing_ball.figures.labels import note, number, parameters
 from bouncing_ball.figures.style import COLOURS, CONTACT, CORRECTED, GUIDE, RESTITUTION, TABLE, Look
 
 _ARROW = {

@@ -8,7 +8,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from bouncing_ball.datasets.selection import each
-from bouncing_ball.figures.canvas import WIDE, canvas, coloured, legend_below, logarithmic, number
+from bouncing_ball.figures.canvas import WIDE, canvas, coloured, legend_below, logarithmic
+from bouncing_ball.figures.labels import number
 from bouncing_ball.figures.style import COLOURS, CONTACT, GUIDE, MARKS, TABLE, Look
 
 _MARKS: dict[str, Look] = {

@@ -11,16 +11,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bouncing_ball.figures.canvas import (
-    WIDE,
-    canvas,
-    legend_below,
-    logarithmic,
-    number,
-    panels,
-    parameters,
-)
-from bouncing_ball.figures.style import CORRECTED, GUIDE, LAWS, QUANTITIES, RESTITUTION, Look
+from bouncing_ball.figures.canvas import WIDE, canvas, legend_below, logarithmic, panels
+from bouncing_ball.figures.labels import QUANTITIES, number, parameters
+from bouncing_ball.figures.style import CORRECTED, GUIDE, LAWS, RESTITUTION, Look
 from bouncing_ball.figures.tables.rows import accidental
 
 # Bands that differ in grey and by their hatching; lines that differ by their dashes.

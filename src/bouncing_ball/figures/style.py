@@ -50,17 +50,6 @@ LAWS: dict[str, Look] = {
 }
 """How each contact law is drawn."""
 
-QUANTITIES = {
-    "max_height": r"greatest height $\max\,z$",
-    "bounce_velocity": r"bouncing-off velocity $z'_b$",
-    "phase": r"phase of impact $\varphi$",
-    "apparent_restitution": r"apparent restitution $r_a$",
-    "saddle_node": r"saddle-node $\Lambda_{SN}$",
-    "period_doubling": r"period doubling $\Lambda_{PD}$",
-    "permanent_contact": r"permanent contact",
-}
-"""The quantities compared between the models, as a title names them."""
-
 
 def style() -> AbstractContextManager[None]:
     """The settings of ``matplotlibrc`` beside this module, to draw and save a figure."""

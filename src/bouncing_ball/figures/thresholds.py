@@ -9,15 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bouncing_ball.figures.branches import draw_curve
-from bouncing_ball.figures.canvas import (
-    WIDE,
-    canvas,
-    coloured,
-    legend_below,
-    logarithmic,
-    note,
-    parameters,
-)
+from bouncing_ball.figures.canvas import WIDE, canvas, coloured, legend_below, logarithmic
+from bouncing_ball.figures.labels import note, parameters
 from bouncing_ball.figures.style import CONTACT, GUIDE, RESTITUTION, TABLE, Look
 from bouncing_ball.figures.tables.formats import words
 

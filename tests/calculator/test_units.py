@@ -7,15 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bouncing_ball import design
-from bouncing_ball.calculator.units import Unit, number, shown
+from bouncing_ball.calculator.design import quantities
+from bouncing_ball.calculator.units import number, shown
 from bouncing_ball.errors import ModelError
 
-KINDS = {
-    name: hint.__metadata__[0]
-    for name, hint in design.__annotations__.items()
-    if isinstance(getattr(hint, "__metadata__", [None])[0], Unit)
-}
+KINDS = quantities()
 
 
 def read(name, value):

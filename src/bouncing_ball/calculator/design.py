@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Annotated, Any
+from typing import Annotated, Any, get_args
 
 import numpy as np
 
@@ -173,12 +173,17 @@ def design(
     return _design(case, found, one, need, assessed(one, need, ratio), *remarks)
 
 
+def quantities() -> dict[str, Unit]:
+    """The parameters of :func:`design` that have a unit, by name."""
+    hints = {name: get_args(hint)[1:] for name, hint in design.__annotations__.items()}
+    return {name: what[0] for name, what in hints.items() if what and isinstance(what[0], Unit)}
+
+
 def _read(parameters: Mapping[str, Any]) -> dict[str, float]:
     """The quantities that are given, in SI units and in their ranges."""
     given = {}
-    for name, hint in design.__annotations__.items():
-        kind = getattr(hint, "__metadata__", (None,))[0]
-        if not isinstance(kind, Unit) or parameters[name] is None:
+    for name, kind in quantities().items():
+        if parameters[name] is None:
             continue
         given[name] = value = number(name, parameters[name], kind)
         said = f"{name} = {value:g} {kind.name}".rstrip()
@@ -291,7 +296,8 @@ def _design(
     *remarks: str,
 ) -> Design:
     """Everything that is known of a contact; `one` is the family of the verdict."""
-    contact, table, instant = case.contact, case.table, case.instant(one.n)
+    contact, table = case.contact, case.table
+    delay, r, load = map(float, case.instant(one.n)[:3])
     threshold = next(iter(case.permanent_contact.values()))
     return Design(
         frequency_ratio=float(contact.frequency_ratio),
@@ -308,11 +314,7 @@ def _design(
         permanent_contact=PermanentContact(
             finite(threshold), RESTITUTION_THRESHOLD, finite(1 - threshold / table.amplitude)
         ),
-        corrected=Corrected(
-            delay=float(instant.delay) * table.time,
-            restitution=float(instant.restitution),
-            load=float(instant.load) * table.time,
-        ),
+        corrected=Corrected(delay * table.time, r, load * table.time),
         orbits=found,
         needed=need,
         is_good_enough=verdict.is_good_enough,

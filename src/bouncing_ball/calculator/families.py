@@ -50,11 +50,14 @@ def _loads(orbit: Any) -> tuple[float, float]:
     """Greatest compression and greatest force over weight in one contact, dimensionless."""
     if not orbit.exists:
         return math.nan, math.nan
+
+    def force(time: np.ndarray) -> np.ndarray:
+        displacement, velocity = orbit.contact_motion(time)
+        return orbit.law.force(np.maximum(-displacement, 0.0), -velocity)
+
     duration = float(orbit.contact_duration)
-    return (
-        greatest(lambda time: -orbit.contact_motion(time)[0], duration),
-        greatest(lambda time: 1 + orbit.contact_acceleration(time), duration),
-    )
+    depth = greatest(lambda time: -orbit.contact_motion(time)[0], duration)
+    return depth, greatest(force, duration)
 
 
 def by_error_law(

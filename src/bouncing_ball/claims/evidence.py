@@ -13,9 +13,10 @@ from bouncing_ball.claims import as_printed as printed
 from bouncing_ball.claims.parameters import PERMANENT_CONTACT, STIFF, TOLERANCE
 from bouncing_ball.claims.verdict import largest
 from bouncing_ball.orbits import restitution_orbit
+from bouncing_ball.orbits.stability import Bifurcation
 
 Data = Mapping[str, xr.Dataset]
-BOUNDS = ("saddle-node", "period doubling")
+BOUNDS = tuple(map(str, Bifurcation))
 # A logarithmic grid meets its round numbers, and a sample a bifurcation, but for rounding.
 _GRID = 1e-9
 

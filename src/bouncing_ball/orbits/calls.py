@@ -118,40 +118,38 @@ def _refuse(given: Mapping[str, Any], names: tuple[str, ...], why: str) -> None:
             raise ParameterError(f"{{{name}}} {why}")
 
 
+def _demand(fulfilled: bool, text: str) -> None:
+    if not fulfilled:
+        raise ParameterError(text)
+
+
 def _model(given: Mapping[str, Any], law_at: LawAt | None) -> ImpactModel:
     """The model of the parameters that are not None."""
     given = {name: value for name, value in given.items() if value is not None}
     losses = [name for name in LOSS if name in given]
-    if len(losses) > 1:
-        raise ParameterError(f"argument {{{losses[1]}}}: not allowed with argument {{{losses[0]}}}")
+    for other in losses[1:]:
+        raise ParameterError(f"argument {{{other}}}: not allowed with argument {{{losses[0]}}}")
     kind = given.get("model") or ("spring-damper" if "frequency_ratio" in given else "restitution")
     if "law" in given:
         law = _law(given, law_at)
         return CorrectedModel(LawSignature(law)) if kind == "corrected" else LawModel(law)
     _refuse(given, ("parameters", "duration", "speed"), "needs {law}")
-    if not losses:
-        names = " ".join(f"{{{name}}}" for name in LOSS)
-        raise ParameterError(f"one of the arguments {names} is required")
+    names = " ".join(f"{{{name}}}" for name in LOSS)
+    _demand(bool(losses), f"one of the arguments {names} is required")
     if kind == "restitution":
         instead = "needs {frequency_ratio}; {model} restitution takes {restitution}"
         _refuse(given, ("damping_ratio",), instead)
         meaning = "has no meaning for {model} restitution, which has no contact"
         _refuse(given, ("frequency_ratio", "release"), meaning)
         return RestitutionModel(given[losses[0]])
-    if "frequency_ratio" not in given:
-        raise ParameterError(f"{{model}} {kind} needs {{frequency_ratio}}")
-    contact = _contact(given, losses[0])
-    if kind == "corrected":
-        return CorrectedModel.of_contact(contact)
-    return SpringDamperModel(contact)
-
-
-def _contact(given: Mapping[str, Any], loss: str) -> SpringDamper:
+    _demand("frequency_ratio" in given, f"{{model}} {kind} needs {{frequency_ratio}}")
     ratio, rule = given["frequency_ratio"], Release.of(given.get("release", Release.DISPLACEMENT))
-    if loss == "damping_ratio":
-        return SpringDamper(ratio, given[loss], rule)
-    measured = loss == "measured_restitution"
-    return SpringDamper.from_restitution(given[loss], ratio, rule, measured=measured)
+    if "damping_ratio" in given:
+        contact = SpringDamper(ratio, given["damping_ratio"], rule)
+    else:
+        measured = "measured_restitution" in given
+        contact = SpringDamper.from_restitution(given[losses[0]], ratio, rule, measured=measured)
+    return CorrectedModel.of_contact(contact) if kind == "corrected" else SpringDamperModel(contact)
 
 
 def _law(given: Mapping[str, Any], law_at: LawAt | None) -> ContactLaw:
@@ -184,19 +182,14 @@ def _law_of_parameters(kind: type[ContactLaw], given: Mapping[str, Any]) -> Cont
     named = {name.replace("-", "_"): value for name, value in given["parameters"].items()}
     known = kind.parameter_names()
     for name in named:
-        if name not in known:
-            raise ModelError(
-                f"unknown parameter {name!r} of {kind.name}: its parameters are {', '.join(known)}"
-            )
+        all_of = f"its parameters are {', '.join(known)}"
+        _demand(name in known, f"unknown parameter {name!r} of {kind.name}: {all_of}")
     for name in known:
-        if name not in named:
-            raise ParameterError(f"{kind.name} needs {{parameters}} {name}=NUMBER as well")
-    if "release" not in given:
-        return kind(**named)
-    if not kind.chooses_release():
-        text = f"the release is part of {kind.name}: {{release}} is for the linear law"
-        raise ParameterError(text)
-    named["release"] = Release.of(given["release"])
+        _demand(name in named, f"{kind.name} needs {{parameters}} {name}=NUMBER as well")
+    if "release" in given:
+        why = f"the release is part of {kind.name}: {{release}} is for the linear law"
+        _demand(kind.chooses_release(), why)
+        named["release"] = Release.of(given["release"])
     return kind(**named)
 
 

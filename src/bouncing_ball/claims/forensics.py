@@ -18,7 +18,7 @@ from bouncing_ball.datasets.rounding import levels
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
-from bouncing_ball.orbits.stability import Bifurcation, trace_and_determinant
+from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.studies.printed_table1 import AXES, LAST_DIGIT, RESTITUTION, printed_table
 
 PRINTED_DAMPING = 0.052
@@ -95,7 +95,8 @@ def altered_ends(
 
     def doubling(excess):
         matrix = monodromy(orbit_at(np.asarray(excess), contact, np.array(n)))
-        return Bifurcation.PERIOD_DOUBLING.test(*trace_and_determinant(matrix))
+        trace = np.trace(matrix, axis1=-2, axis2=-1)
+        return Bifurcation.PERIOD_DOUBLING.test(trace, np.linalg.det(matrix))
 
     grid = np.linspace(-1, 1, _SAMPLES) * np.minimum(_REACH / omega, 0.9 * contact.free_angle)
     lowest = int(np.nanargmin(amplitude(grid)))

@@ -20,7 +20,7 @@ COMMON = ("errors", "parameters", "signatures")
 ALLOWED = {
     "datasets": (set(), {"numpy", "xarray"}),
     "contacts": (set(), {"numpy"}),
-    "continuation": (set(), {"numpy"}),
+    "continuation": (set(), {"numpy", "scipy"}),
     "motion": ({"contacts"}, {"numpy"}),
     "orbits": ({"contacts", "continuation", "motion"}, {"numpy", "scipy"}),
     "accuracy": ({"contacts", "continuation", "motion", "orbits"}, {"numpy", "scipy"}),

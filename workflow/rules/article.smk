@@ -38,7 +38,7 @@ rule paper_pdf:
         paper=rules.paper.output.paper,
         template=f"{ARTICLE}/article.typ",
         figures=expand("results/figures/{figure}.svg", figure=DRAWINGS),
-        source=modules("figures.article.pdf", "datasets.atomic"),
+        source=modules("figures.article.pdf", "datasets.files"),
     output:
         pdf="results/paper.pdf",
     log:

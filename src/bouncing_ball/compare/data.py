@@ -114,11 +114,10 @@ def _place(variable: xr.DataArray, index: tuple[int, ...]) -> str:
     >>> _place(xr.DataArray([[1.0, 2.0]], {"t": [0.0, 0.5]}, ("case", "t")), (0, 1))
     'case = 0, t = 0.5'
     """
-    found = []
-    for name, k in zip(variable.dims, index, strict=True):
-        label = variable[name].values[k] if name in variable.coords else k
-        found.append(f"{name} = {f'{label:.6g}' if isinstance(label, float) else label}")
-    return ", ".join(found)
+    places = zip(variable.dims, index, strict=True)
+    labels = {name: variable[name].values[k] for name, k in places}
+    texts = {name: f"{x:.6g}" if isinstance(x, float) else x for name, x in labels.items()}
+    return ", ".join(f"{name} = {text}" for name, text in texts.items())
 
 
 def _entries(artifact: str, name: str, record: xr.Dataset, new: xr.Dataset) -> Iterator[Row]:

@@ -43,7 +43,7 @@ def marked(record: str | None, new: str | None) -> tuple[_Words, _Words]:
 
 
 def to_html(comparison: Comparison) -> str:
-    """The page: artifacts worst first; record, new and difference of each picture.
+    """The page: artifacts worst first; record and new of each picture.
 
     All pictures are part of the page; one that is the same on both sides is
     there once. What the buttons do is style, and no script.

@@ -24,6 +24,7 @@ from bouncing_ball.errors import ModelError, printable
 
 MAX_BYTES = 16 * 2**20
 """Size of a file; the largest artifact of the record has half a megabyte."""
+_DRAWN = (".png", ".svg")
 
 
 @dataclass(frozen=True)
@@ -39,13 +40,13 @@ class Part:
     redrawn : str
         How the versions of matplotlib differ; a difference is only reported then.
     pictures : tuple
-        The record's and the new picture and their difference as PNG files.
+        The record's and the new picture as PNG files.
     """
 
     file: str
     rows: tuple[Row, ...] = ()
     redrawn: str = ""
-    pictures: tuple[bytes | None, bytes | None, bytes | None] = (None, None, None)
+    pictures: tuple[bytes | None, bytes | None] = (None, None)
 
     @property
     def outcome(self) -> Outcome:
@@ -103,22 +104,20 @@ def _content(path: Path) -> bytes | None:
 def _judge(file: str, folders: tuple[Path, Path], data: Outcome | None) -> Part:
     old, now = (folder / file for folder in folders)
     record, new = _content(old), _content(now)
-    suffix, shown, drawn, rows = old.suffix, None, "", []
+    rows: list[Row] = []
     if record is None or new is None:
         rows = [Row("", Outcome.EXTRA if record is None else Outcome.MISSING)]
     elif record == new:
         pass
-    elif suffix == ".nc":
+    elif old.suffix == ".nc":
         rows = compare_datasets(old.stem, read_dataset(old), read_dataset(now))
-    elif suffix == ".png":
-        rows, shown = compare_pictures(read_picture(old), read_picture(now))
-        drawn = redrawn(record, new)
+    elif old.suffix == ".png":
+        rows = compare_pictures(read_picture(old), read_picture(now))
     else:
         rows = compare_texts(words_of(old), words_of(now), data)
-        drawn = redrawn(record, new)
     rows.sort(key=lambda row: (-row.outcome.rank, -(row.share or 0.0)))
-    pictures = (record, new, shown) if suffix == ".png" else (None, None, None)
-    return Part(file, tuple(rows), drawn, pictures)
+    drawn = redrawn(record, new) if record and new and old.suffix in _DRAWN else ""
+    return Part(file, tuple(rows), drawn, (record, new) if old.suffix == ".png" else (None, None))
 
 
 def judge(file: str, folders: tuple[Path, Path], data: Outcome | None) -> Part:

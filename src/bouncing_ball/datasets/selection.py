@@ -10,21 +10,6 @@ from bouncing_ball.errors import ModelError
 
 # Coordinates are computed from the numbers of the configuration.
 _MATCH = 1e-9
-# Labels that a message names.
-_MOST = 20
-
-
-def _listed(labels: list) -> str:
-    """Labels one after another; of many the first and the last.
-
-    Examples
-    --------
-    >>> _listed([1.0, 2.0]), _listed(list(range(301)))
-    ('1.0, 2.0', '0, 1, 2, …, 300')
-    """
-    if len(labels) > _MOST:
-        labels = [*labels[:3], "…", labels[-1]]
-    return ", ".join(map(str, labels))
 
 
 def index_of(values: xr.DataArray, name: str, wanted: Any) -> int:
@@ -48,7 +33,8 @@ def index_of(values: xr.DataArray, name: str, wanted: Any) -> int:
     else:
         there = np.flatnonzero(np.isclose(labels, wanted, rtol=_MATCH, atol=0))
     if there.size != 1:
-        known = _listed(labels.tolist())
+        # Of many labels the first and the last.
+        known = np.array2string(labels, threshold=20, separator=", ", max_line_width=10**6)
         often = "is not among" if not there.size else f"is {there.size} times among"
         raise ModelError(f"{name} = {wanted} {often} {known}")
     return int(there[0])

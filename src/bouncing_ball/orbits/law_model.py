@@ -21,7 +21,7 @@ from bouncing_ball.contacts.signature import Instant, free_impact
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.motion.contact import contact_cycle, simulate
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence
-from bouncing_ball.orbits.continued import orbit_at
+from bouncing_ball.orbits.continued import orbit_at, orbits_at
 from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
@@ -142,6 +142,10 @@ class LawModel(ImpactModel):
     def signature(self, speed: ArrayLike) -> Instant:
         """That of a free impact."""
         return free_impact(self.law, speed)
+
+    def orbits(self, n: int, amplitude: float) -> LawOrbit:
+        """All n-T orbits of one law at one Λ on the branch, in order of contact duration."""
+        return orbits_at(self, n, amplitude)
 
     def simulate(
         self, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int

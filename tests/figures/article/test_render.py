@@ -75,7 +75,7 @@ def test_verdicts_come_from_the_claims(render):
 @pytest.mark.parametrize(
     ("template", "message"),
     [
-        ('{{ at("t", "x", 2, n=7) }}', "t: x: n = 7 is not among 1, 2"),
+        ('{{ at("t", "x", 2, n=7) }}', "t: x: n = 7 is not among [1, 2]"),
         ('{{ at("t", "x", 2) }}', "t: x at {} is 2 numbers, not one"),
         ('{{ claims("height") }}', "no claim 'height' in the ledger"),
     ],

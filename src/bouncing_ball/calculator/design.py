@@ -23,7 +23,6 @@ from bouncing_ball.calculator.units import Unit, number, shown
 from bouncing_ball.calculator.verdict import Verdict, assessed, chosen, notes
 from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.contacts.signature import free_impact
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError, require
 from bouncing_ball.orbits.calls import Index, Rule

@@ -36,7 +36,8 @@ weighted by 1 and r: ``[D - (1 + r) t_c] a``. Together ::
 For any other law they come from its free impacts. One of speed v ends after D(v) with p_e
 and p′_e = -r v, and its force has its centroid at ``t_c = (p_e + D r v)/((1 + r) v)``. A
 small constant load a during the contact changes p′_e by a known derivative, and the
-continued flights before and after it by a t_c and a (D - t_c), so that at the speed of the instant ::
+continued flights before and after it by a t_c and a (D - t_c), so that at the speed of
+the instant ::
 
     σ = -∂p′_e/∂a + (D - t_c) - t_c d(r v)/dv
 

@@ -17,7 +17,7 @@ COMMON = ("errors", "parameters", "signatures")
 ALLOWED = {
     "datasets": (set(), {"numpy", "xarray"}),
     "contacts": (set(), {"numpy"}),
-    "continuation": (set(), {"numpy"}),
+    "continuation": (set(), {"numpy", "scipy"}),
     "motion": ({"contacts"}, {"numpy"}),
     "orbits": ({"contacts", "continuation", "motion"}, {"numpy", "scipy"}),
     "accuracy": ({"contacts", "continuation", "motion", "orbits"}, {"numpy", "scipy"}),
@@ -31,7 +31,7 @@ ALLOWED = {
     # Studies are imported by name when they are run.
     "configuration": ({"atlas"}, {"yaml", "pydantic"}),
     "claims": (
-        {"datasets", "contacts", "continuation", "motion", "orbits", "studies", "configuration"},
+        {"datasets", "contacts", "continuation", "motion", "orbits", "accuracy", "studies"},
         {"numpy", "scipy", "xarray"},
     ),
     # Pandoc and Typst only where the PDF is made.

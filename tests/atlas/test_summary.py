@@ -36,7 +36,6 @@ MADE = {
     "law_exceeding": ([[0, 0], [1, 0], [0, 0], [1, 0]], ("quantity",), TWO),
     "unstable": ([[0, 1], [2, 0], [0, 0], [0, 3]], (), TWO),
     "sought": ([0, 3, 0, 2], (), ()),
-    "farthest": ([1e-9, 2e-9, 5e-8, 0.0], (), ()),
 }
 EXPECTED = {
     "needed": [[5.0, 200.0], [70.0, 90.0]],
@@ -56,7 +55,6 @@ EXPECTED = {
     "worst_restitution": 0.7,
     "worst_amplitude": 4.0,
     "sought_orbits": 5,
-    "farthest": 5e-8,
     "orbits": 16 * 5,
     "restitution_edge": [0.5, 0.7, 0.9],
     "position_edge": [0.0, 0.5, 1.0],

@@ -3,9 +3,6 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.accuracy.errors import errors
-from bouncing_ball.accuracy.quantities import OF_LIMITS
-from bouncing_ball.atlas.limits_walk import limit_errors
 from bouncing_ball.atlas.walk import REACHED, stiff_start, walk
 from bouncing_ball.orbits import spring_damper_limits as limits
 from bouncing_ball.orbits.restitution_model import RestitutionModel
@@ -65,14 +62,3 @@ def test_the_start_is_the_limit_of_stiff_contacts(small, every_node, ratio):
         lift = expected.amplitude * np.sin(expected.phase)
         # Of the order of 1/ϖ, with the load over the speed of the ball that leaves.
         assert np.max(np.abs(point.y - lift)) < 200 / ratio
-
-
-def test_the_limits_are_those_that_root_finding_gives(small):
-    plan = small(examined=COMPARED)
-    for row in rows(plan, 3):
-        r = plan.restitutions(row)
-        nodes = plan.placed(row, r, np.zeros_like(r))
-        for ratio, error in limit_errors(nodes, plan.ratios):
-            if ratio in COMPARED:
-                expected = errors(nodes.contact(ratio), nodes.n, nodes.amplitude, OF_LIMITS)
-                assert np.allclose(error, expected, rtol=0, atol=1e-9, equal_nan=True)

@@ -53,9 +53,9 @@ clear = formula("a limit", "Results", "Eq. 2", "the limit", row="Eq. 1", clear=T
 @pytest.fixture(autouse=True)
 def papers(monkeypatch):
     """The paper's parameters of the small dataset."""
-    needed = {"n": 1, "cases": [{"r": 0.5}], "span.max": parameters._at_least(10.0)}
-    needed["tolerances"] = parameters._all_of(0.01, 0.02)
-    needed["span.min"] = parameters._at_most(1.0)
+    needed = {"n": 1, "cases": [{"r": 0.5}], "span.max": ("at least", 10.0)}
+    needed["tolerances"] = ("all of", [0.01, 0.02])
+    needed["span.min"] = ("at most", 1.0)
     monkeypatch.setattr(parameters, "PARAMETERS", {"fig": needed, "formulas": {}})
 
 

@@ -8,13 +8,12 @@ from bouncing_ball.claims.forensics import (
     PRINTED_DAMPING,
     WeightlessOrbit,
     altered_ends,
-    branch_orbit,
     forensics,
     high_bounce_monodromy,
 )
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.figures.tables.forensics import rows
+from bouncing_ball.figures.tables.rows import forensics as rows
 from bouncing_ball.orbits import restitution_orbit
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
@@ -58,8 +57,8 @@ def cycle(phase, u, orbit, reference, *, weight, rise):
     ("orbit_at", "monodromy", "weight", "rise"),
     [
         (WeightlessOrbit.at, WeightlessOrbit.monodromy, 0, True),
-        (branch_orbit, high_bounce_monodromy, 1, False),
-        (branch_orbit, SpringDamperOrbit.monodromy, 1, True),
+        (SpringDamperOrbit.on_branch, high_bounce_monodromy, 1, False),
+        (SpringDamperOrbit.on_branch, SpringDamperOrbit.monodromy, 1, True),
     ],
 )
 def test_orbit_and_monodromy_are_those_of_the_altered_return_map(
@@ -82,7 +81,7 @@ def test_orbit_and_monodromy_are_those_of_the_altered_return_map(
 def test_the_ends_of_an_unaltered_branch_are_those_of_the_model(omega):
     contact = SpringDamper(omega, ZETA)
     model = SpringDamperModel(contact)
-    found = altered_ends(contact, 2, branch_orbit, SpringDamperOrbit.monodromy)
+    found = altered_ends(contact, 2, SpringDamperOrbit.on_branch, SpringDamperOrbit.monodromy)
     expected = [float(x(2).amplitude) for x in (model.saddle_node, model.period_doubling)]
     # At a fold Λ is known to rounding; at the other end ε has the digits of D.
     assert found == pytest.approx(expected, abs=1e-10)

@@ -6,6 +6,7 @@ import pytest
 
 from bouncing_ball.compare import accept as module
 from bouncing_ball.compare.accept import RefusedError, accept
+from bouncing_ball.compare.folders import ComparisonError
 from bouncing_ball.datasets.netcdf import write_dataset
 from bouncing_ball.provenance.revision import UNKNOWN, Revision
 
@@ -60,10 +61,10 @@ def test_what_is_named_is_copied_and_nothing_else(pair, run, one_line):
     pair.rewrite("paper.md", "reproduced", "contradicted")
     data = pair.dataset("fig08")
     write_dataset(data.assign_attrs(provenance_commit="2a2a"), pair.new / "figures/fig08.nc")
-    assert run("fig08", "paper")[:-1] == ["copied figures/fig08.nc", "copied paper.md"]
+    assert {*run("fig08", "paper")[:-1]} == {"copied figures/fig08.nc", "copied paper.md"}
     assert not pair.artifact("fig05").outcome.agrees
     before = contents(pair)
-    with pytest.raises(RefusedError) as error:
+    with pytest.raises(ComparisonError) as error:
         run("fig05", "fig99")
     one_line(error, "unknown artifact fig99")
     assert contents(pair) == before

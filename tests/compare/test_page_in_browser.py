@@ -114,11 +114,10 @@ def test_the_browser_shows_every_picture_and_the_worst_first(seen, kept_pair):
         "fig08, record and new",
         "fig09, record",
         "fig09, new",
-        "fig09, difference",
     }
     for image in found.values():
         assert image["drawn"] and image["width"] > 0 and image["height"] > 0, image
-    for name in ("fig09, record", "fig09, new", "fig09, difference"):
+    for name in ("fig09, record", "fig09, new"):
         with Image.open(kept_pair.record / "figures" / "fig09.png") as picture:
             assert (found[name]["width"], found[name]["height"]) == picture.size
     sections = [(part["name"], part["outcome"], part["open"]) for part in seen["sections"]]
@@ -137,33 +136,30 @@ def test_the_browser_shows_every_picture_and_the_worst_first(seen, kept_pair):
 
 def test_side_by_side_then_one_upon_the_other(seen):
     modes = seen["modes"]
-    assert list(modes) == [
-        "side by side", "record", "new", "blink", "wipe", "difference", "large"
-    ]  # fmt: skip
+    assert list(modes) == ["side by side", "record", "new", "blink", "wipe", "large"]
     lefts = [figure["left"] for figure in modes["side by side"]]
-    assert lefts == sorted(set(lefts)) and len(lefts) == 3
+    assert lefts == sorted(set(lefts)) and len(lefts) == 2
     shown = {name: [figure["shown"] for figure in found] for name, found in modes.items()}
     assert shown == {
-        "side by side": [True, True, True],
-        "record": [True, False, False],
-        "new": [False, True, False],
-        "blink": [True, True, False],
-        "wipe": [True, True, False],
-        "difference": [False, False, True],
-        # As it was before, the difference.
-        "large": [False, False, True],
+        "side by side": [True, True],
+        "record": [True, False],
+        "new": [False, True],
+        "blink": [True, True],
+        "wipe": [True, True],
+        # As it was before.
+        "large": [True, True],
     }
     for name in ("blink", "wipe"):
-        before, after, _ = modes[name]
+        before, after = modes[name]
         assert (before["left"], before["top"]) == (after["left"], after["top"])
         # The same pixel of both pictures is at the same place.
         assert before["picture"] == pytest.approx(after["picture"], abs=0.01) and before["picture"]
-    assert [figure["moved"] for figure in modes["blink"]] == ["none", "blink", "none"]
-    before, after, _ = modes["wipe"]
+    assert [figure["moved"] for figure in modes["blink"]] == ["none", "blink"]
+    before, after = modes["wipe"]
     assert after["resize"] == "horizontal"
     assert after["width"] == pytest.approx(before["width"] / 2, abs=1)
-    assert modes["large"][2]["wide"] == 1200
-    assert modes["large"][2]["picture"] > 1.2 * modes["difference"][2]["picture"]
+    assert modes["large"][0]["wide"] == 1200
+    assert modes["large"][0]["picture"] > 1.2 * modes["wipe"][0]["picture"]
 
 
 def test_the_page_fits_a_telephone(page, browse):

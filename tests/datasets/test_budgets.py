@@ -93,7 +93,7 @@ def results(stages):
                 continue
             again = on_the_old_grid(made(**varied), record).assign_attrs(record.attrs)
             for each in compare_datasets(artifact, record, again):
-                found.setdefault((artifact, each.name), []).append(each)
+                found.setdefault((artifact, each.where), []).append(each)
     return found
 
 

@@ -1,6 +1,5 @@
 """All texts that are read from the accepted datasets, for tests to change."""
 
-from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -9,8 +8,9 @@ from bouncing_ball.claims.ledger import ledger
 from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.figures.article.render import render_article
 from bouncing_ball.figures.atlas.tables import shares
-from bouncing_ball.figures.tables.error_law import law_table
+from bouncing_ball.figures.tables import rows
 from bouncing_ball.figures.tables.formats import to_csv, to_latex, to_markdown
+from bouncing_ball.figures.tables.rows import law_table
 
 ROOT = Path(__file__).resolve().parents[2]
 TEMPLATES = ROOT / "workflow" / "report" / "paper"
@@ -29,9 +29,9 @@ def all_texts(data):
     data = {**data, "claims": ledger(data)}
     made = {}
     for name in TABLES:
-        rows = import_module(f"bouncing_ball.figures.tables.{name}").rows(data[name])
+        table = getattr(rows, name)(data[name])
         for form in (to_csv, to_latex, to_markdown):
-            made[name, form.__name__] = form(*rows)
+            made[name, form.__name__] = form(*table)
     texts = {name: made[name, "to_markdown"] for name in TABLES}
     summary = (ROOT / "config" / "error_law.csv").read_text(encoding="utf-8")
     texts["error_law"] = law_table(summary)

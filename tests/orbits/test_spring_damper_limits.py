@@ -19,13 +19,7 @@ from bouncing_ball.orbits.spring_damper_limits import (
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.spring_damper_system import Parameter, SpringDamperSystem
-from bouncing_ball.orbits.stability import (
-    Side,
-    is_stable,
-    period_doubling_function,
-    saddle_node_function,
-    trace_and_determinant,
-)
+from bouncing_ball.orbits.stability import Bifurcation, Side, is_stable
 
 EPS = np.finfo(float).eps
 
@@ -38,7 +32,8 @@ releases = st.sampled_from(list(Release))
 
 
 def stability(orbit):
-    return trace_and_determinant(orbit.monodromy())
+    matrix = orbit.monodromy()
+    return np.trace(matrix, axis1=-2, axis2=-1), np.linalg.det(matrix)
 
 
 def stable(orbit):
@@ -71,7 +66,7 @@ def test_the_saddle_node_is_the_lowest_amplitude(n, r, log_omega, release):
     # undefined; else a multiplier is one.
     assume(r < 0.999)
     trace, det = stability(SpringDamperOrbit.from_branch(point, contact, n))
-    assert abs(float(saddle_node_function(trace, det))) <= 1e-10
+    assert abs(float(Bifurcation.SADDLE_NODE.test(trace, det))) <= 1e-10
 
 
 @given(families, coefficients, log_ratios, releases)
@@ -82,7 +77,7 @@ def test_a_multiplier_is_minus_one_at_the_period_doubling(n, r, log_omega, relea
     orbit = SpringDamperOrbit.from_branch(branch_point(excess, contact, n), contact, n)
     trace, det = stability(orbit)
     # A root to the last digit; the trace has lost two or three.
-    assert abs(float(period_doubling_function(trace, det))) <= 1e-11 * (1 + n)
+    assert abs(float(Bifurcation.PERIOD_DOUBLING.test(trace, det))) <= 1e-11 * (1 + n)
     assert -1 < float(det) <= 1 + 1e-12
 
 
@@ -264,7 +259,7 @@ def test_saddle_node_of_a_nearly_elastic_contact_released_at_zero_force(n, r, om
     contact = SpringDamper(omega, float(damping_ratio(r)), Release.FORCE)
     point = branch_point(saddle_node(contact, n), contact, n)
     assert float(point.amplitude) < 1e-3
-    assert abs(float(saddle_node_function(point.trace, point.determinant))) < 1e-9
+    assert abs(float(Bifurcation.SADDLE_NODE.test(point.trace, point.determinant))) < 1e-9
 
 
 @pytest.mark.parametrize("omega", [0.18, 0.32])

@@ -15,7 +15,7 @@ from bouncing_ball.cli.main import main
 from bouncing_ball.datasets.netcdf import write_dataset
 from bouncing_ball.figures.files import save
 from bouncing_ball.provenance import explain as module
-from bouncing_ball.provenance.origin import Provenance, gather, read_attributes, versions
+from bouncing_ball.provenance.origin import Provenance, gather, read_provenance, versions
 from bouncing_ball.provenance.revision import Revision
 
 ROOT = Path(bouncing_ball.__file__).resolve().parents[2]
@@ -143,7 +143,7 @@ def test_a_file_that_is_not_ours_exits_2_with_one_line(results, capsys, file, sa
     assert lines[0].startswith(f"bouncing-ball: {file} ") and said in lines[0]
 
 
-def test_a_malformed_attribute_and_a_name_with_controls(results, capsys):
+def test_names_and_attributes_with_control_characters(results, capsys):
     path = results / "figures" / "a\x1b[2J\nb.nc"
     write_dataset(xr.Dataset(attrs=made("x") | {"c": "\x1b[2J\nforged"}), path)
     main(["explain", str(path)])
@@ -154,7 +154,6 @@ def test_a_malformed_attribute_and_a_name_with_controls(results, capsys):
         main(["explain", str(path)])
     said = capsys.readouterr().err
     assert said.count("\n") == 1 and said[:-1].isprintable()
-    assert "is not what this workflow writes" in said
 
 
 def test_the_accepted_record_can_be_explained(results, capsys):
@@ -176,4 +175,4 @@ def test_what_a_job_gathers(tmp_path, monkeypatch):
     assert json.loads(found.inputs) == ["results/a.nc", "results/b.nc"]
     assert json.loads(found.configuration) == {"n": 2}
     write_dataset(xr.Dataset(attrs=found.attributes()), tmp_path / "c.nc")
-    assert Provenance.of(read_attributes(tmp_path / "c.nc")) == found
+    assert read_provenance(tmp_path / "c.nc") == found

@@ -38,9 +38,6 @@ def reduce_to_imports(script: Path) -> None:
     text = "".join(ast.unparse(node) + "\n" for node in imports) + LATE_DATA
     if script.stem == "study":
         text += "from bouncing_ball.configuration.study import load\nload(snakemake.params.study)\n"
-    if script.stem == "table":
-        text += "name = 'bouncing_ball.figures.tables.' + Path(snakemake.output[0]).stem\n"
-        text += "import_module(name)\n"
     if script.stem == "figure":
         text += "load(snakemake.params.drawing)\n" + LATE_FIGURE
     script.write_text(text + FINISH, encoding="utf-8")

@@ -17,7 +17,6 @@ from bouncing_ball.studies.continuation import (
     SADDLE_NODE,
     _on_the_way,
     branch_along_amplitude,
-    controls,
     first_limits,
 )
 from bouncing_ball.studies.orbit_branches import both_domains, orbit_branches
@@ -51,9 +50,9 @@ def figure_8(continuation_settings):
 
 
 def test_settings_reach_the_parts(continuation_settings):
-    control, newton = controls(
-        continuation_settings.model_copy(update={"largest_step": 0.07, "max_newton_iterations": 5})
-    )
+    changed = {"largest_step": 0.07, "max_newton_iterations": 5}
+    settings = continuation_settings.model_copy(update=changed)
+    control, newton = settings.step_control(), settings.newton()
     reached = control.initial, control.smallest, control.largest, control.max_angle
     assert reached == (0.02, 1e-8, 0.07, 0.2)
     assert newton[:2] == (1e-12, 5)

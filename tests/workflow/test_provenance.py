@@ -7,11 +7,7 @@ import sys
 from pathlib import Path
 
 from bouncing_ball.provenance.explain import explain
-from bouncing_ball.provenance.origin import CARRIERS, LIBRARIES, Provenance, read_attributes
-
-
-def read_provenance(path) -> Provenance:
-    return Provenance.of(read_attributes(path))
+from bouncing_ball.provenance.origin import CARRIERS, LIBRARIES, Provenance, read_provenance
 
 
 def test_every_artifact_carries_its_provenance(pristine):

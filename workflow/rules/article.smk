@@ -14,7 +14,7 @@ rule paper:
         data=expand("results/figures/{name}.nc", name=STUDIES),
         tables=expand("results/figures/{table}.md", table=TABLES),
         source=modules(
-            *("figures.article.render", "figures.atlas.tables", "figures.tables.error_law"),
+            *("figures.article.render", "figures.atlas.tables", "figures.tables.rows"),
             "claims.tally",
         ),
     output:
@@ -38,7 +38,7 @@ rule paper_pdf:
         paper=rules.paper.output.paper,
         template=f"{ARTICLE}/article.typ",
         figures=expand("results/figures/{figure}.svg", figure=DRAWINGS),
-        source=modules("figures.article.pdf", "datasets.atomic"),
+        source=modules("figures.article.pdf", "datasets.files"),
     output:
         pdf="results/paper.pdf",
     log:

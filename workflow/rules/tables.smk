@@ -9,10 +9,7 @@ rule set_table:
         "Setting {wildcards.table}"
     input:
         data="results/figures/{table}.nc",
-        source=lambda wildcards: modules(
-            f"figures.tables.{wildcards.table}",
-            "figures.tables.formats",
-        ),
+        source=modules("figures.tables.rows"),
     output:
         csv="results/figures/{table}.csv",
         md="results/figures/{table}.md",

@@ -3,7 +3,8 @@
 import os
 from pathlib import Path
 
-from bouncing_ball.compare.accept import RefusedError, accept
+from bouncing_ball.compare.accept import accept
+from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.conclusion import conclude
 from bouncing_ball.pipeline.job import logged
 
@@ -13,5 +14,5 @@ with logged(snakemake) as lines:
     try:
         lines += accept(Path(given.record), Path("results"), given.files, snakemake.config, only)
         print(*lines, sep="\n", flush=True)
-    except RefusedError as error:
+    except ModelError as error:
         conclude(f"accept: {error}")

@@ -2,16 +2,20 @@
 
 from pathlib import Path
 
-from bouncing_ball.compare.report import compared
+from bouncing_ball.compare.folders import compare_folders
+from bouncing_ball.compare.page import to_html
+from bouncing_ball.compare.terminal import to_terminal
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.pipeline.conclusion import conclude
 from bouncing_ball.pipeline.job import logged
 
 table_file, page = Path("results/diff/diff.txt"), Path("results/diff/index.html")
 with logged(snakemake) as lines:
-    table, status = compared(Path(snakemake.params.record), Path("results"), page=page)
+    comparison = compare_folders(Path(snakemake.params.record), Path("results"))
+    table = to_terminal(comparison)
     lines += table.splitlines()
     write_text(table_file, table)
+    write_text(page, to_html(comparison))
     print(table, end="", flush=True)
-    if status:
+    if comparison.outcome.status:
         conclude(f"diff: the results differ from the record, see {page}")

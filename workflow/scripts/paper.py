@@ -8,8 +8,8 @@ from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.figures import DRAWINGS
 from bouncing_ball.figures.article.render import render_article
 from bouncing_ball.figures.atlas.tables import shares
-from bouncing_ball.figures.tables.error_law import law_table
 from bouncing_ball.figures.tables.formats import to_markdown
+from bouncing_ball.figures.tables.rows import law_table
 from bouncing_ball.pipeline.job import logged, read_input
 
 

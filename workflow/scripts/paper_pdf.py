@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from bouncing_ball.datasets.atomic import replacing
+from bouncing_ball.datasets.files import replacing
 from bouncing_ball.figures.article.pdf import article_pdf
 from bouncing_ball.pipeline.job import logged
 

@@ -1,17 +1,16 @@
 """One table as CSV, Markdown and LaTeX from its dataset."""
 
-from importlib import import_module
 from pathlib import Path
 
 from bouncing_ball.datasets.files import write_text
+from bouncing_ball.figures.tables import rows
 from bouncing_ball.figures.tables.formats import texts
 from bouncing_ball.pipeline.job import logged, read_input, withdraw
 
 with logged(snakemake) as lines:
     withdraw()
     name = Path(snakemake.output[0]).stem
-    rows = import_module(f"bouncing_ball.figures.tables.{name}").rows
-    table = texts(*rows(read_input(snakemake.input.data)))
+    table = texts(*getattr(rows, name)(read_input(snakemake.input.data)))
     for path in snakemake.output:
         write_text(path, table[Path(path).suffix])
     lines += snakemake.output

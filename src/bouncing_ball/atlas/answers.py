@@ -40,7 +40,6 @@ KEPT: Mapping[str, tuple[tuple[str, ...], np.ufunc]] = {
     "law_exceeding": (_LAW, np.add),
     "unstable": (("frequency_ratio",), np.add),
     "sought": ((), np.add),
-    "farthest": ((), np.maximum),
 }
 """The answers, by their names: dimensions after the tile, and how those of some of its
 nodes and of the others are combined."""
@@ -117,13 +116,11 @@ def _block(plan: Plan, row: int, start: int) -> Answers:
     tolerances = np.array(plan.tolerances)
     crossings = LastCrossings(tolerances, (len(SIMPLE), len(OF_ORBITS), len(index)))
     described = []
-    sought, off = np.zeros(len(index), np.int32), np.zeros(len(index))
+    sought = np.zeros(len(index), np.int32)
     for step in walk(nodes, plan.ratios):
         error = orbit_errors(step.orbit)
         crossings.meet(step.frequency_ratio, np.moveaxis(error, 2, 0))
         sought += np.sum(step.sought, axis=0, dtype=np.int32)
-        away = np.abs(step.orbit.amplitude / nodes.amplitude - 1)
-        off = np.fmax(off, np.fmax.reduce(away, axis=0))
         for k in np.flatnonzero(np.isin(step.frequency_ratio, plan.examined)):
             one, signature = error[:, :, k], LinearSignature(nodes.contact(step.frequency_ratio[k]))
             left = remainder(nodes.n, signature(), nodes.amplitude, one[0], OF_ORBITS)
@@ -143,7 +140,6 @@ def _block(plan: Plan, row: int, start: int) -> Answers:
         **columns,
         **_thresholds(plan, tiles, np.moveaxis(crossings.thresholds(), 0, 2)),
         "sought": tiles.reduce(np.add, sought, 0),
-        "farthest": tiles.reduce(np.maximum, off, 0.0),
     }
 
 

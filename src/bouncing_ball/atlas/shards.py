@@ -5,13 +5,13 @@ from collections.abc import Iterable
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.accuracy.errors import SIMPLE
+from bouncing_ball.accuracy.errors import SIMPLE, errors
 from bouncing_ball.accuracy.quantities import OF_LIMITS, OF_ORBITS
 from bouncing_ball.atlas.answers import KEPT, row_answers, threshold_bins
 from bouncing_ball.atlas.crossings import LastCrossings
-from bouncing_ball.atlas.limits_walk import limit_errors
 from bouncing_ball.atlas.plan import Plan
-from bouncing_ball.datasets.variables import describe
+from bouncing_ball.atlas.walk import TOGETHER
+from bouncing_ball.datasets.variables import described
 from bouncing_ball.errors import ModelError
 
 _PLACE = ("release", "n", "restitution")
@@ -41,70 +41,55 @@ def limit_shard(plan: Plan) -> xr.Dataset:
     """
     shape = len(SIMPLE), len(OF_LIMITS)
     needed = np.empty((len(plan.rows), *shape, len(plan.tolerances)))
-    family = plan.rows // plan.restitution.tiles
+    family, down = plan.rows // plan.restitution.tiles, plan.ratios[::-1]
     for each in np.unique(family):
         here = np.flatnonzero(family == each)
         r = np.concatenate([plan.restitutions(row) for row in plan.rows[here]])
+        # The limits do not depend on the position.
         nodes = plan.placed(plan.rows[here[0]], r, np.zeros_like(r))
         crossings = LastCrossings(np.array(plan.tolerances), (*shape, r.size))
-        for ratio, error in limit_errors(nodes, plan.ratios):
-            crossings.meet(np.array([ratio]), error[np.newaxis])
-        threshold = np.moveaxis(crossings.thresholds(), 0, 2).reshape(
-            *shape, len(plan.tolerances), len(here), -1
-        )
-        needed[here] = np.moveaxis(threshold.max(axis=-1), -1, 0)
+        for k in range(0, len(down), TOGETHER):
+            ratio = down[k : k + TOGETHER]
+            contact = nodes.contact(ratio[:, np.newaxis])
+            error = errors(contact, nodes.n, nodes.amplitude, OF_LIMITS)
+            crossings.meet(ratio, np.moveaxis(error, 2, 0))
+        largest = crossings.thresholds().reshape(-1, *shape, len(here), plan.restitution.samples)
+        needed[here] = np.moveaxis(largest.max(axis=-1), (0, -1), (-1, 0))
     data = {"limit_needed": (("row", "model", "limit_quantity", "tolerance"), needed)}
     return _dataset(plan, plan.rows, data, {"limit_quantity": [str(q) for q in OF_LIMITS]})
 
 
 def _dataset(plan: Plan, rows: np.ndarray, data: dict, coords: dict) -> xr.Dataset:
     common = {"row": rows, "model": list(SIMPLE), "tolerance": np.array(plan.tolerances)}
-    return describe(xr.Dataset(data, common | coords))
+    return described(data, common | coords)
 
 
 def merge(plan: Plan, shards: Iterable[xr.Dataset], limits: xr.Dataset) -> xr.Dataset:
     """The answers of all shards by rule, n, range of r and range of p.
 
-    The memory is that of the result and of one shard. Ranges of r that a rule
-    does not reach have no nodes: their counts are 0, the rest is not a number.
+    Ranges of r that a rule does not reach have no nodes: their counts are 0, the rest is not a
+    number.
 
     Raises
     ------
     ModelError
         If the shards do not hold each row of the plan once.
     """
-    whole: dict[str, tuple[tuple[str, ...], np.ndarray]] = {}
-    coords = {
-        "release": [str(rule) for rule in plan.release],
-        "n": list(plan.n),
-        "restitution": _middle(plan.edges),
-        "position": _middle(plan.positions),
-    }
-    seen = np.zeros(np.prod(plan.shape), dtype=int)
-    for part in shards:
-        _put(plan, whole, coords, part)
-        np.add.at(seen, part.row.values, 1)
+    found = xr.concat(list(shards), "row", coords="minimal", compat="override", join="exact")
+    seen = np.bincount(found.row, minlength=np.prod(plan.shape))
     for row in plan.rows[seen[plan.rows] != 1]:
         raise ModelError(f"row {row} of the atlas is in {seen[row]} shards, not in one")
-    _put(plan, whole, coords, limits)
+    whole = xr.merge([found, limits], join="outer", compat="no_conflicts")
+    empty = {name: 0 if part.dtype.kind == "i" else np.nan for name, part in whole.items()}
+    whole = whole.reindex(row=np.arange(len(seen)), fill_value=empty)
     data = {
-        name: ((*_PLACE, *dims), values.reshape(*plan.shape, *values.shape[1:]))
-        for name, (dims, values) in whole.items()
+        str(name): ((*_PLACE, *part.dims[1:]), part.values.reshape(*plan.shape, *part.shape[1:]))
+        for name, part in whole.items()
     }
-    return describe(xr.Dataset(data, coords))
-
-
-def _put(plan: Plan, whole: dict, coords: dict, part: xr.Dataset) -> None:
-    """The rows of a part into the whole, which is made as its first part comes."""
-    for name, variable in part.data_vars.items():
-        if name not in whole:
-            empty = 0 if variable.dtype.kind == "i" else np.nan
-            shape = int(np.prod(plan.shape)), *variable.shape[1:]
-            whole[name] = variable.dims[1:], np.full(shape, empty, variable.dtype)
-        whole[name][1][part.row.values] = variable.values
-    # The number of a row is its place, and a position's is its own in the plan.
-    for name in set(part.coords) - {"row"}:
-        coords.setdefault(name, part[name].values)
+    coords: dict[str, object] = {str(x): whole[x].values for x in whole.coords if x != "row"}
+    places = [str(rule) for rule in plan.release], list(plan.n), _middle(plan.edges)
+    coords |= dict(zip(_PLACE, places, strict=True)) | {"position": _middle(plan.positions)}
+    return described(data, coords)
 
 
 def _middle(edges: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ import xarray as xr
 from bouncing_ball.accuracy.error_law import coefficients, law_thresholds
 from bouncing_ball.accuracy.quantities import OF_LIMITS, OF_ORBITS
 from bouncing_ball.atlas.plan import AtlasParameters
-from bouncing_ball.datasets.variables import describe
+from bouncing_ball.datasets.variables import described
 
 QUANTILES = (0.5, 0.9, 0.99, 1.0)
 _TILES = ("restitution", "position")
@@ -40,13 +40,12 @@ def summary(plan: AtlasParameters, atlas: xr.Dataset) -> xr.Dataset:
         **_law(plan),
         "orbits": plan.orbits,
         "sought_orbits": int(atlas.sought.sum()),
-        "farthest": float(atlas.farthest.max()),
         "resolution": plan.resolution,
         "summary_tolerance": tolerance,
         "rule_of_thumb": rule,
     }
     edges = {"restitution_edge": plan.edges, "position_edge": plan.positions}
-    return describe(xr.Dataset(data, edges))
+    return described(data, edges)
 
 
 def _share(atlas: xr.Dataset, name: str) -> xr.DataArray:

@@ -1,12 +1,11 @@
 """The stiffness that a tolerance needs: the exact error, inverted by a root."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from bouncing_ball.accuracy.quantities import OF_ORBITS, Quantity
 from bouncing_ball.accuracy.thresholds import search
 from bouncing_ball.calculator.families import by_error_law, finite
+from bouncing_ball.calculator.results import Needed
 from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits.restitution_model import RestitutionModel
@@ -17,25 +16,6 @@ RATIOS = np.geomspace(1.0, 1e6, 97)
 
 NO_ORBIT = "the restitution model has no such orbit"
 """One more :class:`~bouncing_ball.accuracy.thresholds.ThresholdStatus`."""
-
-
-@dataclass(frozen=True)
-class Needed:
-    """The contact from which on the error of a quantity stays within a tolerance.
-
-    ``frequency_ratio`` is the largest ϖ at which the restitution model's error
-    crosses the tolerance, if its ``status`` is "found"; ``by_law`` is |K|/ε of the error
-    law (the root of |K₂|/ε for the permanent contact), ``corrected`` the largest crossing
-    of the corrected model. None where there is none; the status says why.
-    """
-
-    quantity: str
-    tolerance: float
-    frequency_ratio: float | None
-    by_law: float | None
-    corrected: float | None
-    status: str
-    corrected_status: str
 
 
 def needed(

@@ -24,34 +24,13 @@ _TEXT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOT
 _UNIT = re.compile(r"(?:[^\W\d]|[ ·*/%°²³¹⁻]|\^-?\d(?![\d^])|_0|1(?= */)){1,40}")
 
 
-class UnitKind(NamedTuple):
-    """What a parameter is: its SI unit, and an example."""
+class Unit(NamedTuple):
+    """What a parameter is, as its annotation: its SI unit, an example, and its range."""
 
-    unit: str
+    name: str
     example: str
+    allowed: str = "positive"
 
-
-KINDS = {
-    "mass": UnitKind("kg", "20 g"),
-    "frequency": UnitKind("Hz", "50 Hz"),
-    "angular_frequency": UnitKind("rad/s", "314 rad/s"),
-    "period": UnitKind("s", "20 ms"),
-    "amplitude": UnitKind("m", "0.1 mm"),
-    "acceleration": UnitKind("m/s^2", "2 g"),
-    "gravity": UnitKind("m/s^2", "9.81 m/s^2"),
-    "stiffness": UnitKind("N/m", "1e6 N/m"),
-    "damping": UnitKind("N*s/m", "10 N s/m"),
-    "damping_ratio": UnitKind("", "0.05"),
-    "restitution": UnitKind("", "0.85"),
-    "measured_restitution": UnitKind("", "0.85"),
-    "contact_time": UnitKind("s", "50 us"),
-    "drop_height": UnitKind("m", "1 m"),
-    "rebound_height": UnitKind("m", "70 cm"),
-    "reduced_modulus": UnitKind("Pa", "115 GPa"),
-    "radius": UnitKind("m", "5 mm"),
-    "tolerance": UnitKind("", "1 %"),
-}
-"""The parameters that are quantities, by the names of the calculator."""
 
 _CYCLES = {"hertz", "kilohertz", "megahertz", "millihertz", "counts_per_second"}
 # What one calls the standard acceleration of gravity; pint's g is the gram.
@@ -70,6 +49,14 @@ _DIMENSIONS = {
     "Pa": "a pressure",
     "": "a number without dimension",
 }
+# Parameters that a quantity may have been meant for.
+_OWN = {
+    "a time": "period",
+    "a frequency": "frequency",
+    "an acceleration": "acceleration",
+    "a damping": "damping",
+}
+_OF_THE_TABLE = ("frequency", "angular_frequency", "period", "amplitude", "acceleration")
 
 
 @cache
@@ -80,15 +67,17 @@ def _registry() -> Any:
     return pint.UnitRegistry()
 
 
-def number(name: str, value: Any) -> float:
+def number(name: str, value: Any, kind: Unit) -> float:
     """A parameter in SI units.
 
     Parameters
     ----------
     name : str
-        One of :data:`KINDS`.
+        What the parameter is called in an error.
     value : float, str or pint.Quantity
         A plain number is in SI units.
+    kind : Unit
+        What it is; its range is not checked here.
 
     Raises
     ------
@@ -97,11 +86,12 @@ def number(name: str, value: Any) -> float:
 
     Examples
     --------
-    >>> number("stiffness", 2e6), number("stiffness", "2 kN/mm")
+    >>> stiffness, frequency = Unit("N/m", "1e6 N/m"), Unit("Hz", "50 Hz")
+    >>> number("stiffness", 2e6, stiffness), number("stiffness", "2 kN/mm", stiffness)
     (2000000.0, 2000000.0)
-    >>> number("frequency", "3000 rpm"), number("acceleration", "2 g")
-    (50.0, 19.6133)
-    >>> number("frequency", "20 ms")
+    >>> number("frequency", "3000 rpm", frequency)
+    50.0
+    >>> number("frequency", "20 ms", frequency)
     Traceback (most recent call last):
     ...
     bouncing_ball.errors.ModelError: frequency = 20 ms is a time: it needs a frequency, \
@@ -112,9 +102,8 @@ such as 50 Hz; a period has its own parameter, period
     if isinstance(value, str):
         found = _TEXT.fullmatch(value.strip())
         if found is None:
-            example = KINDS[name].example
             raise ModelError(
-                f"{name} = {short!r} does not begin with a number: write it as {example!r}"
+                f"{name} = {short!r} does not begin with a number: write it as {kind.example!r}"
             )
         value, unit = found.groups()
     elif hasattr(value, "magnitude") and hasattr(value, "units"):
@@ -124,78 +113,71 @@ such as 50 Hz; a period has its own parameter, period
     except (TypeError, ValueError):
         raise ModelError(f"{name} = {value!r} is neither a number nor a text") from None
     # To the last digit but one: the digits that a user wrote are kept.
-    found_value = float(f"{plain * _factor(name, given, unit):.15g}") if unit else plain
+    found_value = float(f"{plain * _factor(name, given, unit, kind):.15g}") if unit else plain
     if not math.isfinite(found_value):
         raise ModelError(f"{given} is not a finite number")
     return found_value
 
 
-def _factor(name: str, given: str, unit: str) -> float:
-    """What one unit is in SI units."""
-    kind, registry = KINDS[name], _registry()
-    if kind.unit == "m/s^2" and unit in _GRAVITY:
+def _factor(name: str, given: str, unit: str, kind: Unit) -> float:
+    """What one unit is in SI units; cycles or radians in a second, whichever is asked for."""
+    registry = _registry()
+    if kind.name == "m/s^2" and unit in _GRAVITY:
         unit = "standard_gravity"
     try:
         if not _UNIT.fullmatch(unit.replace("**", "^")):
             raise ValueError(unit)
-        parsed = registry.parse_units(unit)
-        one = registry.Quantity(1.0, parsed)
+        one = registry.Quantity(1.0, registry.parse_units(unit))
         # An offset scale, such as °C, has no factor.
         linear = math.isclose((2 * one).to_root_units().m, 2 * one.to_root_units().m)
     except Exception:  # pint raises whatever its tokenizer does
         linear = False
     if not linear:
         raise ModelError(f"{given} has an unknown unit: write it as {kind.example!r}")
-    if not one.is_compatible_with(kind.unit or "dimensionless"):
-        raise ModelError(_other_kind(name, given, one))
-    if kind.unit in ("Hz", "rad/s"):
-        return _rate(name, given, one)
-    return float(one.to(kind.unit or "dimensionless").m)
-
-
-def _rate(name: str, given: str, one: Any) -> float:
-    """Cycles or radians in a second, whichever is asked for."""
-    root = one.to_root_units()
-    units = {str(unit) for unit, _ in one.unit_items()}
-    if "radian" in {str(unit) for unit, _ in root.unit_items()}:
-        radians = float(root.m)
-    elif units <= _CYCLES:
-        radians = 2 * math.pi * float(root.m)
-    else:
+    if not one.is_compatible_with(kind.name or "dimensionless"):
+        raise ModelError(_other_kind(name, given, one, kind))
+    if kind.name not in ("Hz", "rad/s"):
+        return float(one.to(kind.name or "dimensionless").m)
+    root, turn = one.to_root_units(), 2 * math.pi
+    if "radian" in str(root.units):
+        return float(root.m) / (1 if kind.name == "rad/s" else turn)
+    if not {str(unit) for unit, _ in one.unit_items()} <= _CYCLES:
         raise ModelError(
             f"{given} does not say whether it counts cycles or radians: write Hz or rad/s"
         )
-    return radians if KINDS[name].unit == "rad/s" else radians / (2 * math.pi)
+    return float(root.m) * (turn if kind.name == "rad/s" else 1)
 
 
-def _other_kind(name: str, given: str, one: Any) -> str:
+def _other_kind(name: str, given: str, one: Any, kind: Unit) -> str:
     found = [words for unit, words in _DIMENSIONS.items() if one.is_compatible_with(unit)]
     what = found[0] if found else f"of dimension {one.dimensionality}"
-    kind = KINDS[name]
-    text = f"{given} is {what}: it needs {_DIMENSIONS[kind.unit]}, such as {kind.example}"
-    if name == "damping_ratio" and what == "a damping":
-        return f"{text}; a damping has its own parameter, damping"
-    own = {"a time": "period", "a frequency": "frequency", "an acceleration": "acceleration"}
-    table = ("frequency", "angular_frequency", "period", "amplitude", "acceleration")
-    if name in table and what in own:
-        text += f"; {'a period' if what == 'a time' else what} has its own parameter, {own[what]}"
-    return text
+    text = f"{given} is {what}: it needs {_DIMENSIONS[kind.name]}, such as {kind.example}"
+    own = _OWN.get(what)
+    if own is None or name not in (("damping_ratio",) if own == "damping" else _OF_THE_TABLE):
+        return text
+    return f"{text}; a{'n' if own == 'acceleration' else ''} {own} has its own parameter, {own}"
 
 
 _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n"}
 
 
-def shown(value: float | None, unit: str) -> str:
-    """A value with a prefix of its unit, four digits.
+def shown(value: float | None, unit: str = "") -> str:
+    """A value to read: four digits, with a prefix of its unit; a share in "%", two digits.
 
     Examples
     --------
-    >>> shown(1.25e-5, "s"), shown(2e7, "N/m"), shown(None, "m")
-    ('12.5 µs', '20 MN/m', 'none')
+    >>> shown(1.25e-5, "s"), shown(2e7, "N/m"), shown(None, "m"), shown(1.25e-5)
+    ('12.5 µs', '20 MN/m', 'none', '1.25e-05')
+    >>> [shown(share, "%") for share in (0.0123, 2.5e-5, 1e-9, 0.996)]
+    ['1.2 %', '0.0025 %', 'less than 0.001 %', '100 %']
     """
     if value is None:
         return "none"
-    if value == 0:
-        return f"0 {unit}"
+    if unit == "%":
+        if 0 < value < 1e-5:
+            return "less than 0.001 %"
+        return f"{100 * value:.2g} %" if value < 0.995 else f"{100 * value:.0f} %"
+    if value == 0 or not unit:
+        return f"{value:.4g} {unit}".rstrip()
     power = min(9, max(-9, 3 * math.floor(math.log10(abs(float(f"{value:.4g}"))) / 3)))
     return f"{value / 10**power:.4g} {_PREFIXES[power]}{unit}"

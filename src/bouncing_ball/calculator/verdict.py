@@ -5,21 +5,9 @@ from typing import NamedTuple
 from bouncing_ball.accuracy.quantities import Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.calculator.case import Case
-from bouncing_ball.calculator.families import Family
-from bouncing_ball.calculator.needed import Needed
+from bouncing_ball.calculator.results import QUANTITIES, Family, Needed
 from bouncing_ball.calculator.units import shown
 from bouncing_ball.contacts.release import Release
-
-QUANTITIES = {
-    Quantity.MAX_HEIGHT: "greatest height",
-    Quantity.BOUNCE_VELOCITY: "bouncing-off velocity",
-    Quantity.PHASE: "phase of impact",
-    Quantity.APPARENT_RESTITUTION: "apparent restitution",
-    Quantity.SADDLE_NODE: "saddle-node",
-    Quantity.PERIOD_DOUBLING: "period doubling",
-    Quantity.PERMANENT_CONTACT: "threshold of permanent contact",
-}
-"""The quantities as a sentence calls them."""
 
 
 class Verdict(NamedTuple):
@@ -28,19 +16,6 @@ class Verdict(NamedTuple):
     is_good_enough: bool
     sentence: str
     reason: str
-
-
-def percent(share: float) -> str:
-    """A share in percent, two digits; what is very little as such.
-
-    Examples
-    --------
-    >>> percent(0.0123), percent(2.5e-5), percent(1e-9), percent(0.996)
-    ('1.2 %', '0.0025 %', 'less than 0.001 %', '100 %')
-    """
-    if 0 < share < 1e-5:
-        return "less than 0.001 %"
-    return f"{100 * share:.2g} %" if share < 0.995 else f"{100 * share:.0f} %"
 
 
 def _subject(quantity: str, n: int) -> str:
@@ -64,7 +39,7 @@ def _disagreement(family: Family) -> str | None:
 
 def assessed(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
     """The verdict on a given contact: the orbits agree, and the error is within the tolerance."""
-    tolerance, subject = percent(needed.tolerance), _subject(needed.quantity, family.n)
+    tolerance, subject = shown(needed.tolerance, "%"), _subject(needed.quantity, family.n)
     error, wrong = family.errors[needed.quantity], _disagreement(family)
     if wrong is None and error is None:
         name = QUANTITIES[Quantity(needed.quantity)]
@@ -72,9 +47,9 @@ def assessed(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
         return Verdict(False, sentence, "this contact, or the model, has no value to compare")
     good = wrong is None and error is not None and error <= needed.tolerance
     if good:
-        found = f"good enough: {subject} is {percent(error or 0.0)} off, within {tolerance}"
+        found = f"good enough: {subject} is {shown(error or 0.0, '%')} off, within {tolerance}"
     else:
-        wrong = wrong or f"{subject} is {percent(error or 0.0)} off, beyond {tolerance}"
+        wrong = wrong or f"{subject} is {shown(error or 0.0, '%')} off, beyond {tolerance}"
         found = f"not good enough: {wrong}{_instead(family, needed)}"
     reason = _reason(needed, frequency_ratio, good, tolerance)
     return Verdict(good, f"The restitution model is {found}.", reason)
@@ -86,7 +61,7 @@ def _instead(family: Family, needed: Needed) -> str:
     exact, corrected = next(iter(family.standing.values())), family.standing["corrected"]
     same = (exact.exists, exact.is_stable) == (corrected.exists, corrected.is_stable)
     if same and error is not None and error <= needed.tolerance:
-        return f"; the corrected restitution model is, with {percent(error)}"
+        return f"; the corrected restitution model is, with {shown(error, '%')}"
     return "; nor is the corrected one: simulate the contact"
 
 
@@ -106,7 +81,7 @@ def _reason(needed: Needed, frequency_ratio: float, good: bool, tolerance: str) 
 
 def chosen(case: Case, needed: Needed, n: int) -> Verdict:
     """The verdict on the most compliant contact within the tolerance."""
-    tolerance = percent(needed.tolerance)
+    tolerance = shown(needed.tolerance, "%")
     sentence = (
         f"A simulation needs a contact of at least {shown(case.stiffness, 'N/m')}, with a contact "
         f"time of {shown(case.contact_time, 's')} or less and a damping of "

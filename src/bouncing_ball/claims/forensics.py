@@ -5,8 +5,7 @@ and 8. Two alter an equation: a contact without gravity, and a period doubling w
 linearised flight ignores the table's displacement, as Holmes' map does.
 """
 
-from collections.abc import Callable, Iterator
-from typing import NamedTuple
+from collections.abc import Callable
 
 import numpy as np
 import xarray as xr
@@ -14,12 +13,12 @@ import xarray as xr
 from bouncing_ball.claims import as_printed
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.contacts.spring_damper import SpringDamper, responses
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.rounding import levels
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.studies.printed_table1 import AXES, LAST_DIGIT, RESTITUTION, printed_table
 
 PRINTED_DAMPING = 0.052
@@ -33,13 +32,8 @@ OrbitAt = Callable[[np.ndarray, SpringDamper, np.ndarray], SpringDamperOrbit]
 Monodromy = Callable[[SpringDamperOrbit], np.ndarray]
 
 
-class Reading(NamedTuple):
-    """Both ends of each range, shape (ϖ, n, 2), under an assumption."""
-
-    name: str
-    description: str
-    ends: np.ndarray
-    truncated: bool = False
+# A name, what the reading assumes, and both ends of each range, shape (ϖ, n, 2).
+Reading = tuple[str, str, np.ndarray]
 
 
 class WeightlessOrbit(SpringDamperOrbit):
@@ -47,38 +41,24 @@ class WeightlessOrbit(SpringDamperOrbit):
 
     @classmethod
     def at(cls, excess: np.ndarray, contact: SpringDamper, n: np.ndarray) -> "WeightlessOrbit":
-        """The orbit at ε, from Eqs. 23-25 without the response to gravity.
-
-        At a fixed duration D they are linear in u = δ′ at the start, Λ cos φ and Λ sin φ.
+        """The orbit at ε: at a fixed duration Eqs. 23-25 are linear in u = δ′ at the start,
+        Λ cos φ and Λ sin φ.
         """
         duration = (contact.free_angle + excess) / contact.damped_frequency
-        flight = 2 * np.pi * n - duration
-        push, _, table = responses(duration, contact.frequency_ratio, contact.damping_ratio)
-        (p, p_rate), (q, q_rate) = (
-            (part(table.value), part(table.rate)) for part in (np.imag, np.real)
-        )
-        cos, sin = np.cos(duration), np.sin(duration)
-        rows = np.broadcast_arrays(
-            *(push.value, p, q),
-            *(push.rate - 1, p_rate + cos - 1, q_rate - sin),
-            *(flight, flight + sin, cos - 1),
-        )
-        right = np.broadcast_arrays(0.0, flight, -flight * flight / 2)
-        matrix = np.stack(rows, axis=-1).reshape(*rows[0].shape, 3, 3)
-        solved = np.linalg.solve(matrix, np.stack(right, axis=-1)[..., np.newaxis])
-        u, x, y = np.moveaxis(solved[..., 0], -1, 0)
-        return cls(n, contact, np.hypot(x, y), np.arctan2(y, x), duration, u + x)
+
+        def orbit(u, x, y):
+            return cls(n, contact, np.hypot(x, y), np.arctan2(y, x), duration, u + x)
+
+        none, *units = (orbit(*at).residual() for at in ((0.0, 0.0, 0.0), *np.eye(3)))
+        matrix = np.stack([one - none for one in units], axis=-1)
+        solved = np.linalg.solve(matrix, -none[..., np.newaxis])[..., 0]
+        return orbit(*np.moveaxis(solved, -1, 0))
 
     def _contact_flow(self, time: np.ndarray):
-        flow = super()._contact_flow(time)
-        omega, zeta = self.contact.frequency_ratio, self.contact.damping_ratio
-        gravity = responses(time, omega, zeta).gravity
-        lifted = 1 - 2 * zeta * omega * gravity.rate - omega * omega * gravity.value
+        flow, sag = super()._contact_flow(time), self.contact.flow(time, 0.0, 0.0, 0.0, 0.0)
         jacobian = flow.jacobian.copy()
-        jacobian[..., 0, 0] += gravity.rate
-        jacobian[..., 1, 0] += lifted
-        displacement, velocity = flow.displacement + gravity.value, flow.velocity + gravity.rate
-        return type(flow)(displacement, velocity, flow.acceleration + lifted, jacobian)
+        jacobian[..., 0] -= sag.jacobian[..., 0]
+        return type(flow)(*(x - y for x, y in zip(flow[:3], sag[:3], strict=True)), jacobian)
 
 
 def high_bounce_monodromy(orbit: SpringDamperOrbit) -> np.ndarray:
@@ -96,11 +76,6 @@ def high_bounce_monodromy(orbit: SpringDamperOrbit) -> np.ndarray:
     return np.stack([d_landing, d_bounce - d_flight + table * d_landing], axis=-2)
 
 
-def branch_orbit(excess: np.ndarray, contact: SpringDamper, n: np.ndarray) -> SpringDamperOrbit:
-    """The orbit of the explicit branch at ε."""
-    return SpringDamperOrbit.from_branch(branch_point(excess, contact, n), contact, n)
-
-
 @np.errstate(divide="ignore", invalid="ignore")  # where the ball grazes
 def altered_ends(
     contact: SpringDamper, n: int, orbit_at: OrbitAt, monodromy: Monodromy
@@ -113,29 +88,26 @@ def altered_ends(
     """
     from scipy.optimize import brentq, minimize_scalar
 
-    family, omega = np.array(n), float(contact.frequency_ratio)
+    omega = float(contact.frequency_ratio)
 
     def amplitude(excess):
-        return orbit_at(np.asarray(excess), contact, family).amplitude
+        return orbit_at(np.asarray(excess), contact, np.array(n)).amplitude
 
     def doubling(excess):
-        (a, b), (c, d) = np.moveaxis(
-            monodromy(orbit_at(np.asarray(excess), contact, family)), (-2, -1), (0, 1)
-        )
-        return 1 + a + d + a * d - b * c
+        matrix = monodromy(orbit_at(np.asarray(excess), contact, np.array(n)))
+        trace = np.trace(matrix, axis1=-2, axis2=-1)
+        return Bifurcation.PERIOD_DOUBLING.test(trace, np.linalg.det(matrix))
 
     grid = np.linspace(-1, 1, _SAMPLES) * np.minimum(_REACH / omega, 0.9 * contact.free_angle)
     lowest = int(np.nanargmin(amplitude(grid)))
-    node = minimize_scalar(
-        amplitude, bracket=grid[lowest - 1 : lowest + 2], options={"xtol": 1e-12}
-    )
-    side = grid[:lowest]
+    bracket, side = grid[lowest - 1 : lowest + 2], grid[:lowest]
+    node = minimize_scalar(amplitude, bracket=bracket, options={"xtol": 1e-12})
     unstable = np.flatnonzero(doubling(side) < 0)
     root = brentq(doubling, side[unstable[-1]], node.x, xtol=1e-15 / omega)
     return [float(node.fun), float(amplitude(root))]
 
 
-def readings() -> Iterator[Reading]:
+def readings() -> list[Reading]:
     """The eight readings."""
     omega, n = np.meshgrid(AXES["frequency_ratio"], AXES["n"], indexing="ij")
     zeta = float(damping_ratio(RESTITUTION))
@@ -150,21 +122,23 @@ def readings() -> Iterator[Reading]:
         return np.reshape(ends, (*n.shape, 2))
 
     plain, first_order = of_model(), -np.log(RESTITUTION) / np.pi
-    yield Reading("equations as they stand", "Eqs. 11-26, the linearised return map", plain)
-    yield Reading("digits cut off", "digits beyond the last printed one are cut off", plain, True)
-    printed = of_model(PRINTED_DAMPING)
-    yield Reading("damping as printed", f"ζ = {PRINTED_DAMPING}, as printed", printed)
-    yield Reading("damping to first order", "ζ = -ln r/π", of_model(first_order))
-    forced = of_model(release=Release.FORCE)
-    yield Reading("force release", "the contact ends where its force vanishes", forced)
-    weightless = altered(WeightlessOrbit.at, WeightlessOrbit.monodromy)
-    yield Reading("no gravity in contact", "Eq. 11 without gravity", weightless)
+    cut = np.floor(plain / LAST_DIGIT) * LAST_DIGIT
     high = "the orbit is exact, but the linearised flight ignores the table's displacement"
-    holmes = altered(branch_orbit, high_bounce_monodromy)
-    yield Reading("high-bounce stability", high, holmes)
+    holmes = altered(SpringDamperOrbit.on_branch, high_bounce_monodromy)
+    weightless = altered(WeightlessOrbit.at, WeightlessOrbit.monodromy)
+    forced = of_model(release=Release.FORCE)
     ends = [end(n, RESTITUTION) for end in (as_printed.saddle_node, as_printed.period_doubling)]
     rigid = "every row is the restitution model's: what the stiffness changes"
-    yield Reading("all rows from Eqs. 7-8", rigid, np.stack(ends, axis=-1))
+    return [
+        ("equations as they stand", "Eqs. 11-26, the linearised return map", plain),
+        ("digits cut off", "digits beyond the last printed one are cut off", cut),
+        ("damping as printed", f"ζ = {PRINTED_DAMPING}, as printed", of_model(PRINTED_DAMPING)),
+        ("damping to first order", "ζ = -ln r/π", of_model(first_order)),
+        ("force release", "the contact ends where its force vanishes", forced),
+        ("no gravity in contact", "Eq. 11 without gravity", weightless),
+        ("high-bounce stability", high, holmes),
+        ("all rows from Eqs. 7-8", rigid, np.stack(ends, axis=-1)),
+    ]
 
 
 def forensics() -> xr.Dataset:
@@ -178,15 +152,12 @@ def forensics() -> xr.Dataset:
         entries are reproduced; ``unreachable``, the saddle-nodes that are printed below
         the fold by more than the digits can hide, where no orbit exists.
     """
-    found = list(readings())
+    names, descriptions, ends = zip(*readings(), strict=True)
     printed = printed_table()
-    names, cut = [reading.name for reading in found], np.array([x.truncated for x in found])
-    axes = {"reading": names, **printed.coords}
-    exact = xr.DataArray([reading.ends for reading in found], axes, ("reading", *printed.dims))
-    truncated = xr.DataArray(cut, {"reading": names})
-    computed = xr.where(truncated, np.floor(exact / LAST_DIGIT) * LAST_DIGIT, exact)
-    difference = ((computed - printed) / LAST_DIGIT).transpose("reading", *printed.dims)
-    below = (exact - printed).sel(bound="saddle-node", drop=True) / LAST_DIGIT
+    axes = {"reading": list(names), **printed.coords}
+    computed = xr.DataArray(np.array(ends), axes, ("reading", *printed.dims))
+    difference = (computed - printed) / LAST_DIGIT
+    below = difference.sel(bound="saddle-node", drop=True) > 0.5
     ratio = printed.frequency_ratio
     groups = {"all rows": ratio > 0, "softer rows": ratio < ratio.max()}
     groups |= {f"ϖ = {float(value):g}": ratio == value for value in ratio}
@@ -195,20 +166,20 @@ def forensics() -> xr.Dataset:
     parts = xr.concat([difference.where(group) for group in groups.values()], rows)
     data = xr.Dataset(
         {
-            "computed": computed.transpose(*difference.dims),
+            "computed": computed,
             "printed": printed,
             "difference": difference,
             "largest_difference": abs(parts).max(over).transpose("reading", "rows"),
-            "rms_difference": np.sqrt((parts**2).mean(over)).transpose("reading", "rows"),
+            "rms_difference": ((parts**2).mean(over) ** 0.5).transpose("reading", "rows"),
             "reproduced": (abs(parts) <= 0.5).sum(over).transpose("reading", "rows"),
             "entries": parts.isel(reading=0, drop=True).count(over),
-            "unreachable": (below > xr.where(truncated, 1.0, 0.5)).sum(["frequency_ratio", "n"]),
-            "description": ("reading", [reading.description for reading in found]),
+            "unreachable": below.sum(["frequency_ratio", "n"]),
+            "description": ("reading", list(descriptions)),
         }
     )
     distances = (data.rms_difference.sel(rows=name).values for name in ("all rows", "softer rows"))
     order = np.lexsort([levels(values) for values in distances])
-    ranked = data.isel(reading=order).assign(rank=("reading", 1 + np.arange(len(found))))
+    ranked = data.isel(reading=order).assign(rank=("reading", 1 + np.arange(len(names))))
     return describe(ranked).assign_attrs(
         last_digit=LAST_DIGIT, restitution=RESTITUTION, printed_damping_ratio=PRINTED_DAMPING
     )

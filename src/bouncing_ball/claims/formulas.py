@@ -7,24 +7,25 @@ simulated cycles and their finite differences, the contact with the matrix expon
 its equation of motion, the orbits with the event-driven simulation.
 """
 
-from typing import Annotated, NamedTuple
+from typing import Annotated
 
 import numpy as np
 import xarray as xr
 from scipy.linalg import expm
-from scipy.optimize.elementwise import find_minimum, find_root
+from scipy.optimize.elementwise import find_minimum
 
 from bouncing_ball.claims import as_printed as printed
 from bouncing_ball.claims.flow import contact_matrix, fall_matrix, flow, matrix, state
+from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.motion.contact import contact_cycle
 from bouncing_ball.motion.rest import lift_off_phase
 from bouncing_ball.motion.restitution import impact_cycle
-from bouncing_ball.orbits.spring_damper_branch import branch_point
-from bouncing_ball.orbits.spring_damper_limits import orbit_at, saddle_node
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.parameters import Parameters, Seed, number
 
 # Flow, roots and minima are right to rounding, 1e-16, amplified by the terms
@@ -36,6 +37,8 @@ DIFFERENCES = 1e-8
 _STEP = 1e-5
 # The faintest rebound that a double can hold.
 _FAINT = float(np.finfo(float).tiny)
+# An impact so fast that the weight, 1/(ϖv) of its force, is less than rounding.
+WEIGHTLESS = 1e16
 # A contact so soft that Λ_SD ϖ² is 1 but for ϖ².
 _SOFT = 1e-4
 # The equations in metres and seconds.
@@ -43,31 +46,24 @@ _GRAVITY = 9.81
 # Eq. 16 on a table at rest: r and ϖ, with the impact velocity of the 1-T orbit.
 STATIC = {"restitution": [0.85, 0.65], "frequency_ratio": [10.0, 100.0]}
 
-_CYCLE = "simulated flight and impact"
+_CYCLE, _METRES = "simulated flight and impact", ", in metres and seconds"
 _FLOW, _FALL = "matrix exponential of Eq. 11", "matrix exponential of the free fall"
 _ORBITS, _PERIOD = "orbits that repeat in the simulation", "period of the flow"
+_FLIP = "multiplier at -1 of "
+
+# By formula: with what it is compared, the disagreement, and what rounding allows.
+Checks = dict[str, tuple[str, float, float]]
 
 
-class Check(NamedTuple):
-    """One formula: with what it is compared, the disagreement, and what rounding allows."""
-
-    comparison: str
-    disagreement: float
-    budget: float = ROUNDING
-
-
-Checks = dict[str, Check]
-
-
-def largest(*defects) -> float:
-    """The largest absolute entry of all arrays; NaN if one is NaN.
+def check(comparison: str, *defects, budget: float = ROUNDING) -> tuple[str, float, float]:
+    """With the largest absolute entry of all defects; NaN if one is NaN.
 
     Examples
     --------
-    >>> largest([0.5, -2.0], 1.0)
-    2.0
+    >>> check("a root", [0.5, -2.0], 1.0, budget=1e-8)
+    ('a root', 2.0, 1e-08)
     """
-    return float(np.max([np.max(np.abs(x)) for x in defects]))
+    return comparison, float(np.max([np.max(np.abs(x)) for x in defects])), budget
 
 
 # Eqs. 1-9: the restitution model.
@@ -96,21 +92,13 @@ def stability(cycle, phase, velocity, r, lam):
     return tt + vv, tt * vv - tv * vt
 
 
-def located_doubling(cycle, n, r):
-    """Λ of the period doubling of a map, along its fixed points.
+def doubled(cycle, n, r, lam):
+    """1 + tr + det of a map at its n-T orbit, zero at the period doubling.
 
-    Both maps have them at v = nπ and Λ cos φ = nπ(1 - r)/(1 + r), so that along
-    them Λ = nπ(1 - r)/(1 + r)/cos φ.
+    Holmes' map and that of Eq. 5 have the orbits v = nπ and Λ cos φ = nπ(1 - r)/(1 + r).
     """
-    along = n * np.pi * (1 - r) / (1 + r)
-
-    def flip(phase, n, r, along):
-        trace, det = stability(cycle, phase, n * np.pi, r, along / np.cos(phase))
-        return 1 + trace + det
-
-    # From next to the saddle-node, where the function is positive, far to the right.
-    bracket = (np.full_like(r, 1e-3), np.full_like(r, np.pi / 2 - 1e-3))
-    return along / np.cos(find_root(flip, bracket, args=(n, r, along)).x)
+    phase = np.arccos(n * np.pi * (1 - r) / (1 + r) / lam)
+    return Bifurcation.PERIOD_DOUBLING.test(*stability(cycle, phase, n * np.pi, r, lam))
 
 
 def restitution_model(rng, samples) -> Checks:
@@ -120,7 +108,7 @@ def restitution_model(rng, samples) -> Checks:
     velocity = lam + rng.uniform(0.5, 6, samples)
     cycle = impact_cycle(r, lam, phase, velocity)
     bounced = printed.bounced_velocity(phase, velocity, cycle.time, lam, r)
-    defect = printed.landing_defect(phase, velocity, cycle.time, lam)
+    landed = printed.landing_defect(phase, velocity, cycle.time, lam)
     # Eqs. 2 and 3 in metres and seconds.
     speed, landing = _GRAVITY / 40.0, (phase + cycle.time) / 40.0
     start, thrown = phase / 40.0, velocity * speed
@@ -136,48 +124,41 @@ def restitution_model(rng, samples) -> Checks:
     back = impact_cycle(r, above, phi, launch)
     # The orbit at which both sides of the fold meet, φ = 0, exists at this Λ only.
     met = impact_cycle(r, fold, 0.0 * r, n * np.pi)
-    trace, det = stability(exact_cycle, 0.0 * r, n * np.pi, r, fold)
+    multiplier = Bifurcation.SADDLE_NODE.test(*stability(exact_cycle, 0.0 * r, n * np.pi, r, fold))
     doubling = printed.period_doubling(n, r)
-    exact, holmes = (located_doubling(cycle, n, r) for cycle in (exact_cycle, holmes_cycle))
     corrected = np.hypot(2 * (1 + r * r) / (1 + r) ** 2, n * np.pi * (1 - r) / (1 + r))
+    exact, holmes = doubled(exact_cycle, n, r, corrected), doubled(holmes_cycle, n, r, doubling)
     # A ball at rest on tables a little below and above the threshold.
     edge = printed.restitution_threshold() + np.array([-1, 1]) * ROUNDING
     stays = np.isnan(lift_off_phase(edge)).tolist() == [True, False]
 
-    metres, flip = ", in metres and seconds", "multiplier at -1 of "
-    folded = "one simulated cycle, and a Floquet multiplier at 1"
+    folds = multiplier, met.phase, met.velocity - n * np.pi
+    fixed = reduce_angle(back.phase - phi), back.velocity - launch
+    one, of = "one simulated cycle", _FLIP + "the map of Eq. 5"
     return {
-        "Eq. 2": Check(_CYCLE + metres, largest(after / speed - cycle.velocity)),
-        "Eq. 3": Check(_FALL + metres, largest((before - fallen[:, 1]) / speed)),
-        "Eq. 4": Check(_FALL + metres, free_flight(rng, samples)),
-        "Eq. 5": Check(_CYCLE, largest(defect, bounced - cycle.velocity)),
-        "Eq. 6": Check(
-            "one simulated cycle", largest(reduce_angle(back.phase - phi), back.velocity - launch)
-        ),
-        "Eq. 7": Check(
-            folded, largest(1 - trace + det, met.phase, met.velocity - n * np.pi), DIFFERENCES
-        ),
-        "Eq. 8": Check(flip + "the map of Eq. 5", largest(doubling / exact - 1), DIFFERENCES),
-        "Eq. 8, Holmes' map": Check(
-            flip + "Holmes' map", largest(doubling / holmes - 1), DIFFERENCES
-        ),
-        "Eq. 8, corrected": Check(
-            flip + "the map of Eq. 5", largest(corrected / exact - 1), DIFFERENCES
-        ),
-        "Eq. 9": Check("lift-off of a ball at rest", 0.0 if stays else 1.0),
+        "Eq. 2": check(_CYCLE + _METRES, after / speed - cycle.velocity),
+        "Eq. 3": check(_FALL + _METRES, (before - fallen[:, 1]) / speed),
+        "Eq. 4": check(_FALL + _METRES, free_flight(rng, samples)),
+        "Eq. 5": check(_CYCLE, landed, bounced - cycle.velocity),
+        "Eq. 6": check(one, *fixed),
+        "Eq. 7": check(f"{one}, and a Floquet multiplier at 1", *folds, budget=DIFFERENCES),
+        "Eq. 8": check(of, doubling / corrected - 1, budget=DIFFERENCES),
+        "Eq. 8, Holmes' map": check(_FLIP + "Holmes' map", holmes, budget=DIFFERENCES),
+        "Eq. 8, corrected": check(of, exact, budget=DIFFERENCES),
+        "Eq. 9": check("lift-off of a ball at rest", float(not stays)),
     }
 
 
-def free_flight(rng, samples) -> float:
-    """Eq. 1 in metres and seconds, by its differential equation, against Eq. 4."""
+def free_flight(rng, samples) -> np.ndarray:
+    """Defects of Eq. 4 against Eq. 1, its differential equation in metres and seconds."""
     height, velocity = rng.uniform(-1, 1, samples), rng.uniform(-6, 6, samples)
     start, flown = rng.uniform(-np.pi, np.pi, samples), rng.uniform(0.5, 6, samples)
     big_omega = rng.uniform(20, 60, samples)
     length, speed = _GRAVITY / big_omega**2, _GRAVITY / big_omega
     begin = state(height * length, velocity * speed, 0.0)
     there = flow(fall_matrix(_GRAVITY), flown / big_omega, begin)
-    z, rate = printed.free_flight(start + flown, start, height, velocity)
-    return largest(z - there[:, 0] / length, rate - there[:, 1] / speed)
+    found = printed.free_flight(start + flown, start, height, velocity)
+    return np.array(found) - there[:, :2].T / (length, speed)
 
 
 # Eqs. 10-17 and 21-27: the contact, its damping and its orbits.
@@ -188,7 +169,7 @@ def printed_contact(time, omega, zeta, lam, phase, impact):
     zero, rate = printed.contact(0.0, omega, zeta, lam, phase, 0.0, 0.0)
     a = lam * np.sin(phase) - zero
     b = (impact - rate + zeta * omega * a) / (omega * np.sqrt(1 - zeta**2))
-    return printed.contact(time, omega, zeta, lam, phase, a, b)
+    return np.array(printed.contact(time, omega, zeta, lam, phase, a, b))
 
 
 def contact_and_flight(rng, samples) -> Checks:
@@ -199,7 +180,7 @@ def contact_and_flight(rng, samples) -> Checks:
     time = np.pi / omega * rng.uniform(0.2, 1, samples)
     start = state(lam * np.sin(phase), impact, phase)
     there = flow(contact_matrix(omega, zeta, lam), time, start)
-    height, velocity = printed_contact(time, omega, zeta, lam, phase, impact)
+    in_contact = printed_contact(time, omega, zeta, lam, phase, impact) - there[:, :2].T
 
     # Eq. 10 in metres and seconds: k/m = ω², c/m = 2ζω, gravity g, table a sin Ωt.
     big_omega = rng.uniform(20, 60, samples)
@@ -211,100 +192,72 @@ def contact_and_flight(rng, samples) -> Checks:
 
     def scaled(ratio):
         """Eq. 11 with a frequency ratio, against Eq. 10."""
-        return largest(
-            (flow(contact_matrix(ratio, zeta, lam), time, start)[:, 0] - fallen) / impact
-        )
+        return (flow(contact_matrix(ratio, zeta, lam), time, start)[:, 0] - fallen) / impact
 
-    release, thrown = time, rng.uniform(1, 6, samples)
-    since = rng.uniform(0.5, 6, samples)
-    flown = flow(fall_matrix(), since, state(lam * np.sin(release + phase), thrown, 0.0))
-    flight = printed.flight(release + since, release, thrown, lam, phase)
+    thrown, since = rng.uniform(1, 6, samples), rng.uniform(0.5, 6, samples)
+    flown = flow(fall_matrix(), since, state(lam * np.sin(time + phase), thrown, 0.0))
+    flight = printed.flight(time + since, time, thrown, lam, phase)
     units = "Eq. 10 in physical units; "
-    in_contact = (height - there[:, 0]) / impact, (velocity - there[:, 1]) / impact
     return {
-        "ϖ = Ω/ω, Ω of the table": Check(f"{units}one of two readings", scaled(1 / omega)),
-        "ϖ = Ω/ω, Ω of the contact": Check(f"{units}the other reading", scaled(omega)),
-        "Eqs. 12-13": Check(_FLOW, largest(*in_contact)),
-        "Eqs. 14-15": Check(_FALL, largest(flight[0] - flown[:, 0], flight[1] - flown[:, 1])),
+        "ϖ = Ω/ω, Ω of the table": check(f"{units}one of two readings", scaled(1 / omega)),
+        "ϖ = Ω/ω, Ω of the contact": check(f"{units}the other reading", scaled(omega)),
+        "Eqs. 12-13": check(_FLOW, in_contact / impact),
+        "Eqs. 14-15": check(_FALL, np.array(flight) - flown[:, :2].T),
     }
 
 
-def measured_restitution(r, frequency_ratio, velocity, gravity):
-    """-δ′ at release over δ′ at impact on a table at rest, by root finding.
+def measured_restitution(r, frequency_ratio, velocity):
+    """Velocity after a simulated impact over that before it, on a table at rest.
 
-    NaN where the ball has not come off after one and a half weightless contacts.
+    NaN where the ball stays on the table.
     """
-    zeta = printed.damping_ratio(r)
-    m = contact_matrix(frequency_ratio, zeta, 0.0, gravity)
-    start = state(0.0, -np.asarray(velocity, dtype=float) + 0 * r, 0.0)
-
-    def displacement(time, row):
-        # The rows whose roots are still looked for.
-        rows = row.astype(int)
-        return flow(m[rows], time, start[rows])[:, 0]
-
-    half = np.pi / (frequency_ratio * np.sqrt(1 - zeta**2))
-    # The first return to δ = 0; gravity prolongs the contact.
-    found = find_root(displacement, (half / 2, 1.5 * half), args=(np.arange(float(r.size)),))
-    end = np.where(found.success, found.x, 0.0)
-    return np.where(found.success, flow(m, end, start)[:, 1] / velocity, np.nan)
+    contact = SpringDamper(frequency_ratio, printed.damping_ratio(r))
+    return contact_cycle(contact, 0.0, 0.0, -velocity).relative_velocity / -velocity
 
 
 def damping(rng, samples) -> Checks:
     """Eq. 16 and its limits."""
     r, omega = rng.uniform(0.1, 0.99, samples), np.exp(rng.uniform(0, 5, samples))
-    weightless = largest(measured_restitution(r, omega, 1.0, 0.0) - r)
     # For r → 0, 1 - ζ tends to π²/(2 ln² r), slowly; twice that leaves room.
-    faint = largest(1 - printed.damping_ratio(_FAINT))
+    slow, faint = np.pi**2 / np.log(_FAINT) ** 2, 1 - printed.damping_ratio(_FAINT)
+    impact = measured_restitution(r, omega, WEIGHTLESS) - r
     return {
-        "Eq. 16": Check("simulated impact, table at rest, no gravity", weightless),
-        "Eq. 16, r = 1": Check("no damping", largest(printed.damping_ratio(1.0))),
-        "Eq. 16, r → 0": Check("critical damping", faint, np.pi**2 / np.log(_FAINT) ** 2),
+        "Eq. 16": check("simulated impact, table at rest, no gravity", impact),
+        "Eq. 16, r = 1": check("no damping", printed.damping_ratio(1.0)),
+        "Eq. 16, r → 0": check("critical damping", faint, budget=slow),
     }
 
 
 def static_error() -> xr.DataArray:
     """|r_static - r|/r of a heavy ball on a table at rest, over r and ϖ; NaN where it is held."""
-    r, ratio = (np.array(STATIC[key]) for key in ("restitution", "frequency_ratio"))
-    rows, columns = (x.ravel() for x in np.meshgrid(r, ratio, indexing="ij"))
-    heavy = measured_restitution(rows, columns, np.pi, 1.0)
-    return xr.DataArray(np.abs(heavy / rows - 1).reshape(r.size, ratio.size), STATIC)
+    r, ratio = np.meshgrid(*STATIC.values(), indexing="ij")
+    return xr.DataArray(np.abs(measured_restitution(r, ratio, np.pi) / r - 1), STATIC)
 
 
 def contact_orbits(rng, samples) -> Checks:
     """Eqs. 21 to 27 on orbits that repeat in the simulation."""
     omega, zeta = np.exp(rng.uniform(1, 5, samples)), rng.uniform(0.01, 0.3, samples)
     n = rng.integers(1, 4, samples)
-    contact = SpringDamper(omega, zeta)
-    fold = branch_point(saddle_node(contact, n), contact, n).amplitude
-    lam = fold + rng.uniform(0.05, 0.5, samples)
-    orbit = orbit_at(contact, n, lam)
+    model = SpringDamperModel(SpringDamper(omega, zeta))
+    lam = model.saddle_node(n).amplitude + rng.uniform(0.05, 0.5, samples)
+    orbit = model.orbit(n, lam)
     phase, impact, end = orbit.phase, orbit.impact_velocity, orbit.contact_duration
     u, period = orbit.relative_impact_velocity, 2 * np.pi * n
-    again = contact_cycle(contact, lam, phase, u)
+    again = orbit.cycle(phase, u)
+    repeated = reduce_angle(again.phase - phase), again.relative_velocity - u
     start = state(lam * np.sin(phase), impact, phase)
     released = flow(contact_matrix(omega, zeta, lam), end, start)[:, 1]
     thrown = printed.bounce_velocity(impact, n, end)
     at_release = printed_contact(end, omega, zeta, lam, phase, impact)
     # Eq. 24 gives z′_b; Eqs. 21-22 give A and B, and Eqs. 23-26 are left.
-    at_impact = printed.flight(period, end, at_release[1], lam, phase)
-    table = lam * np.sin(phase + end), lam * np.sin(period + phase)
-    fulfilled = largest(
-        reduce_angle(again.phase - phase),
-        again.relative_velocity - u,
-        at_release[0] - table[0],
-        at_release[1] - released,
-        at_impact[0] - table[1],
-        at_impact[1] - impact,
-    )
+    at_impact = np.array(printed.flight(period, end, at_release[1], lam, phase))
+    release, landing = (lam * np.sin(phase + end), released), (lam * np.sin(period + phase), impact)
     # Eqs. 16 and 17 give numbers, no motion: the contact would last to the next impact.
     held = printed_contact(period, omega, zeta, lam, phase, impact)
     return {
-        "Eqs. 21-26": Check(_ORBITS, fulfilled),
-        "Eqs. 21-26 by Eqs. 12, 13, 16, 17": Check(
-            _ORBITS, largest(held[0] - table[1], held[1] - impact)
-        ),
-        "Eq. 27": Check(_FLOW, largest(thrown - released)),
+        "Eqs. 21-26": check(_ORBITS, *repeated, at_release - release, at_impact - landing),
+        "Eqs. 21-26 by Eqs. 12, 13, 16, 17": check(_ORBITS, held - landing),
+        "Eq. 27": check(_FLOW, thrown - released),
     }
 
 
@@ -321,8 +274,7 @@ def points_with_one_impact(rng, points: int) -> int:
     longest = np.minimum(2.0, 2 * np.pi * n * contact.damped_frequency / np.pi)
     duration = np.pi / contact.damped_frequency * rng.uniform(0.5, longest)
     excess = duration * contact.damped_frequency - contact.free_angle
-    orbit = SpringDamperOrbit.from_branch(branch_point(excess, contact, n), contact, n)
-    return int(np.sum(orbit.is_admissible()))
+    return int(np.sum(SpringDamperOrbit.on_branch(excess, contact, n).is_admissible()))
 
 
 # Eqs. 29-36: permanent contact.
@@ -339,57 +291,51 @@ def steady_amplitude(frequency_ratio, damping_ratio):
     return np.hypot(start[..., 0], flow(m, np.pi / 2, start)[..., 0] - 1)
 
 
-def _threshold(x, zeta):
-    """Λ_SD at x = 1/ϖ²: √[(1 - x)² + 4ζ²x], for roots and minima of Eq. 33."""
-    return np.hypot(1 - x, 2 * zeta * np.sqrt(x))
-
-
-def _steady_motion(rng, samples, omega, zeta) -> float:
-    """Eq. 31 against the flow from one of its own states."""
-    lam, begin = rng.uniform(0.1, 2, samples), rng.uniform(-np.pi, np.pi, samples)
-
-    def steady(time):
-        return printed.steady_displacement(time, omega, zeta, lam)
-
-    # z = δ + w; the velocity of the printed solution a quarter of a cycle away.
-    rate = steady(begin + np.pi / 2) + 1 / omega**2 + lam * np.cos(begin)
-    later = rng.uniform(0.5, 6, samples)
-    start = state(steady(begin) + lam * np.sin(begin), rate, begin)
-    there = flow(contact_matrix(omega, zeta, lam), later, start)
-    return largest(there[:, 0] - lam * np.sin(begin + later) - steady(begin + later))
-
-
 def permanent_contact(rng, samples) -> Checks:
     """Eqs. 29 to 36."""
     omega, zeta = np.exp(rng.uniform(-0.5, 2, samples)), rng.uniform(0.02, 0.5, samples)
-    steady = _steady_motion(rng, samples, omega, zeta)
+    lam, begin = rng.uniform(0.1, 2, samples), rng.uniform(-np.pi, np.pi, samples)
+    end = begin + rng.uniform(0.5, 6, samples)
+    now, quarter, later = (
+        printed.steady_displacement(time, omega, zeta, lam)
+        for time in (begin, begin + np.pi / 2, end)
+    )
+    # z = δ + w; the velocity of the printed solution a quarter of a cycle away.
+    rate = quarter + 1 / omega**2 + lam * np.cos(begin)
+    start = state(now + lam * np.sin(begin), rate, begin)
+    moved = flow(contact_matrix(omega, zeta, lam), end - begin, start)[:, 0]
+    steady = moved - lam * np.sin(end) - later
     threshold = 1 / (omega**2 * steady_amplitude(omega, zeta))
     at_any = printed.permanent_contact_threshold(omega, zeta) / threshold - 1
     resonant = printed.resonant_threshold(zeta) * steady_amplitude(1.0, zeta) - 1
     # Λ_SD grows as 1/ϖ², with a next term of relative order ϖ².
     soft = 1 / steady_amplitude(_SOFT, zeta) - 1
-    lowest = find_minimum(
-        _threshold, (0 * zeta + 1e-3, 1 - 2 * zeta**2, 0 * zeta + 10), args=(zeta,)
-    )
+
+    def at_inverse_square(x, zeta):
+        return permanent_contact_threshold(x**-0.5, zeta)
+
+    bracket = (0 * zeta + 1e-3, 1 - 2 * zeta**2, 0 * zeta + 10)
+    lowest = find_minimum(at_inverse_square, bracket, args=(zeta,))
+    bottom, place = lowest.f_x, lowest.x**-0.5
     # Λ between the minimum and 1, where both frequency ratios exist.
-    bottom, place = lowest.f_x, lowest.x
     level = bottom + (1 - bottom) * rng.uniform(0.1, 0.9, samples)
 
-    def inverse(sign, low, high):
-        """The printed ϖ against the one at which the threshold has the level."""
-        found = find_root(lambda x, y, z: _threshold(x, z) - y, (low, high), args=(level, zeta))
+    def inverse(sign):
+        """The printed ϖ has this threshold, on its side of the lowest one."""
         ratio = printed.permanent_contact_frequency_ratio(level, zeta, sign)
-        return Check("roots of Λ_SD", largest(ratio * np.sqrt(found.x) - 1))
+        astray = np.sign(ratio - place) != sign
+        off = permanent_contact_threshold(ratio, zeta) / level - 1
+        return check("roots of Λ_SD", off, astray.astype(float))
 
     minimum = printed.permanent_contact_minimum(zeta) / bottom - 1
     return {
-        "Eq. 31": Check(_FLOW, steady),
-        "Eq. 33": Check(_PERIOD, largest(at_any)),
-        "Eq. 33, ϖ = 1": Check(_PERIOD, largest(resonant)),
-        "Eq. 33, ϖ → 0": Check(_PERIOD, largest(soft), 2 * _SOFT**2),
-        "Eq. 34": inverse(1, 0 * place + 1e-8, place),
-        "Eq. 35": inverse(-1, place, 0 * place + 1e4),
-        "Eq. 36": Check("minimum of Λ_SD", largest(minimum)),
+        "Eq. 31": check(_FLOW, steady),
+        "Eq. 33": check(_PERIOD, at_any),
+        "Eq. 33, ϖ = 1": check(_PERIOD, resonant),
+        "Eq. 33, ϖ → 0": check(_PERIOD, soft, budget=2 * _SOFT**2),
+        "Eq. 34": inverse(1),
+        "Eq. 35": inverse(-1),
+        "Eq. 36": check("minimum of Λ_SD", minimum),
     }
 
 

@@ -23,13 +23,8 @@ from bouncing_ball.datasets.rounding import compared_text
 from bouncing_ball.datasets.variables import described
 
 _SECTIONS = (
-    introduction,
-    restitution_model,
-    spring_damper_model,
-    apparent_restitution,
-    orbits,
-    permanent_contact,
-    both_models,
+    *(introduction, restitution_model, spring_damper_model, apparent_restitution),
+    *(orbits, permanent_contact, both_models),
 )
 CLAIMS: tuple[Claim, ...] = tuple(
     claim for section in _SECTIONS for claim in defined_in(section, Claim)
@@ -58,17 +53,12 @@ def _row(claim: Claim, data: Mapping[str, xr.Dataset], holding: set[str]) -> dic
     finding, reason, used = claim.verdict(data)
     why = claim.explanation.id if claim.explanation else ""
     settled = finding.verdict in (Verdict.REPRODUCED, Verdict.NOT_ASKED)
+    said = ("section", "item", "kind", "group", "statement", "remark", "condition")
     return {
-        "section": claim.section,
-        "item": claim.item,
-        "kind": claim.kind,
-        "group": claim.group,
+        **{key: getattr(claim, key) for key in said},
         "restates": claim.restates.id if claim.restates else "",
-        "statement": claim.statement,
         "printed_text": claim.printed,
         "legibility": "clear" if claim.clear else "damaged",
-        "remark": claim.remark,
-        "condition": claim.condition,
         "decided_by": ", ".join(used),
         "required": finding.required,
         "limit": finding.bound,

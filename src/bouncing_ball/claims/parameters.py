@@ -1,14 +1,15 @@
 """The paper's parameters by dataset: computed with others, a dataset decides no claim."""
 
 import json
-from collections.abc import Callable, Iterator, Mapping
+import operator
+from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.accuracy.quantities import Quantity
 from bouncing_ball.datasets.netcdf import attribute_name
 from bouncing_ball.errors import ModelError
 
@@ -20,27 +21,12 @@ PERMANENT_CONTACT = 6.0
 """ϖ at which, by the paper, the thresholds of permanent contact differ by its limit."""
 
 
-@dataclass(frozen=True)
-class _Needed:
-    """What a parameter must be, where more than one value will do."""
-
-    words: str
-    holds: Callable[[Any], bool]
-
-    def __str__(self) -> str:
-        return self.words
-
-
-def _at_least(limit: float) -> _Needed:
-    return _Needed(f"at least {limit}", lambda given: given >= limit)
-
-
-def _at_most(limit: float) -> _Needed:
-    return _Needed(f"at most {limit}", lambda given: given <= limit)
-
-
-def _all_of(*values: Any) -> _Needed:
-    return _Needed(f"all of {list(values)}", lambda given: set(values) <= set(_listed(given)))
+# What a parameter must be where more than one value will do.
+_HOLDS: dict[str, Callable[[Any, Any], bool]] = {
+    "at least": operator.ge,
+    "at most": operator.le,
+    "all of": lambda given, values: set(values) <= set(_listed(given)),
+}
 
 
 def _listed(value: Any) -> list:
@@ -51,10 +37,8 @@ def _cases(*pairs: tuple[float, float]) -> list[dict[str, float]]:
     return [{"restitution": r, "amplitude": lam} for r, lam in pairs]
 
 
-_FAR = {"frequency_ratio.max": _at_least(1000.0)}
-_SCAN = {**_FAR, "frequency_ratio.min": 1.0, "frequency_ratio.samples": _at_least(101)}
-_QUANTITIES = ("max_height", "bounce_velocity", "phase", "apparent_restitution")
-_QUANTITIES += ("saddle_node", "period_doubling", "permanent_contact")
+_FAR = {"frequency_ratio.max": ("at least", 1000.0)}
+_SCAN = {**_FAR, "frequency_ratio.min": 1.0, "frequency_ratio.samples": ("at least", 101)}
 
 # Required of every dataset that has the parameter.
 COMMON: dict[str, Any] = {"release": "displacement"}
@@ -70,32 +54,37 @@ PARAMETERS: dict[str, dict[str, Any]] = {
     "fig13": {"n": 1, "restitution": 0.65, "amplitude": [1.0], **_FAR},
     "fig14": {"n": 1, "restitution": 0.65, "amplitude": 1.0, "tolerance": TOLERANCE, **_FAR},
     # Beyond both period doublings.
-    "fig15": {"n": 2, "restitution": 0.65, "frequency_ratio": 10.0, "amplitude_max": _at_least(2)},
+    "fig15": {
+        "n": 2,
+        "restitution": 0.65,
+        "frequency_ratio": 10.0,
+        "amplitude_max": ("at least", 2),
+    },
     "fig16": {
         "restitution": 0.65,
         "tolerance": TOLERANCE,
-        "frequency_ratio.min": _at_most(PERMANENT_CONTACT),
-        "frequency_ratio.max": _at_least(100.0),
-        "frequency_ratio.samples": _at_least(101),
+        "frequency_ratio.min": ("at most", PERMANENT_CONTACT),
+        "frequency_ratio.max": ("at least", 100.0),
+        "frequency_ratio.samples": ("at least", 101),
     },
     "table1": {"n": [1, 2, 3], "restitution": 0.85, "frequency_ratio": [1e4, 10.0, 2.0]},
     "thresholds": {
         "n": 1,
         "restitution": 0.65,
         "amplitude": 1.0,
-        "quantities": _all_of(*_QUANTITIES),
-        "tolerances": _all_of(TOLERANCE, 0.005, 0.002),
+        "quantities": ("all of", list(map(str, Quantity))),
+        "tolerances": ("all of", [TOLERANCE, 0.005, 0.002]),
         **_SCAN,
-        "frequency_ratio.max": _at_least(1e4),
+        "frequency_ratio.max": ("at least", 1e4),
     },
     "ext_release": {
         "n": [1, 2, 3],
         "restitution": 0.85,
         "frequency_ratio.min": 2.0,
-        "frequency_ratio.samples": _at_least(61),
+        "frequency_ratio.samples": ("at least", 61),
         **_FAR,
     },
-    "motions": {"n": 1, "restitution": 0.85, "amplitude": _all_of(1.0, 1.1, 2.0)},
+    "motions": {"n": 1, "restitution": 0.85, "amplitude": ("all of", [1.0, 1.1, 2.0])},
     "formulas": {},
     "forensics": {},
     "witness": {},
@@ -116,16 +105,17 @@ def _plain(value: Any) -> Any:
 
 
 def _agrees(given: Any, paper: Any) -> bool:
-    if isinstance(paper, _Needed):
+    if isinstance(paper, tuple):
+        words, limit = paper
         # A text where a number is needed is not the paper's.
         with suppress(TypeError):
-            return paper.holds(given)
+            return _HOLDS[words](given, limit)
         return False
     # A list of one number is that number among the attributes.
     return _listed(given) == _listed(paper)
 
 
-class PaperData(Mapping[str, xr.Dataset]):
+class PaperData(dict[str, xr.Dataset]):
     """Datasets by name, as far as they have the paper's parameters.
 
     Taking one that has others raises :class:`NotAsked`; one without a required
@@ -134,28 +124,21 @@ class PaperData(Mapping[str, xr.Dataset]):
     """
 
     def __init__(self, data: Mapping[str, xr.Dataset]) -> None:
-        self._data = data
+        super().__init__(data)
         self.used: dict[str, None] = {}
 
     def __getitem__(self, name: str) -> xr.Dataset:
-        if name not in PARAMETERS or name not in self._data:
+        if name not in PARAMETERS or name not in self:
             raise ModelError(f"no dataset {name}")
-        attributes = self._data[name].attrs
+        data = super().__getitem__(name)
         for key, paper in {**COMMON, **PARAMETERS[name]}.items():
-            attribute = attribute_name(key)
-            if attribute in attributes:
-                given = _plain(attributes[attribute])
-                if not _agrees(given, paper):
-                    raise NotAsked(
-                        f"{name} was computed with {key} = {given}; the claim requires {paper}"
-                    )
-            elif key not in COMMON:
-                raise ModelError(f"dataset {name} has no parameter {key}, required: {paper}")
+            words = " ".join(map(str, paper)) if isinstance(paper, tuple) else paper
+            given = _plain(data.attrs.get(attribute_name(key)))
+            if given is None and key not in COMMON:
+                raise ModelError(f"dataset {name} has no parameter {key}, required: {words}")
+            if given is not None and not _agrees(given, paper):
+                raise NotAsked(
+                    f"{name} was computed with {key} = {given}; the claim requires {words}"
+                )
         self.used[name] = None
-        return self._data[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._data)
-
-    def __len__(self) -> int:
-        return len(self._data)
+        return data

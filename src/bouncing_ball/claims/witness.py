@@ -2,10 +2,11 @@
 
 *Continuation* solves the model's equations, the *formula* is the closed form of its
 branch, the *simulation* runs from event to event. Every published orbit and bifurcation
-is taken from its dataset and met by the routes that it did not come from.
+is taken from its dataset and met by all of them.
 """
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,21 +14,16 @@ import xarray as xr
 
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.continuation.corrector import Condition, NewtonSettings, newton, plane
+from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane
 from bouncing_ball.continuation.events import vanishing
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.errors import ModelError
 from bouncing_ball.motion.angles import reduce_angle
-from bouncing_ball.orbits.model import ImpactModel, Route
+from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
-from bouncing_ball.orbits.stability import (
-    Bifurcation,
-    period_doubling_function,
-    saddle_node_function,
-)
-from bouncing_ball.orbits.system import OrbitSystem
+from bouncing_ball.orbits.stability import Bifurcation
 
 # Periods over which the simulation must hold a stable orbit.
 HELD_PERIODS = 50
@@ -43,17 +39,14 @@ HOLDS = f"simulation over {HELD_PERIODS} cycles, stable orbits"
 LEAVES = "rate of departure, unstable orbits"
 BUDGETS = {FORMULA: 1e-11, CLOSES: 1e-10, HOLDS: 1e-9, LEAVES: 1e-5}
 
+# What an unstable orbit is left by, as a share of the impact velocity: soft landings too.
 _NUDGE = 1e-8
 # Test function below which an orbit counts as left: away from the bifurcations,
 # where the multiplier is ±1 and a departure would show nothing.
 _UNSTABLE = -0.05
 _NEWTON = NewtonSettings(max_iterations=20)
-# Distance along the branch over which a test function is differentiated.
-_WIDTH = 1e-4
-_TESTS = {
-    Bifurcation.SADDLE_NODE: saddle_node_function,
-    Bifurcation.PERIOD_DOUBLING: period_doubling_function,
-}
+# Where a dataset says nothing else, what it shows is an orbit of the ball.
+_UNSAID = {"admissible": True, "restitution_admissible": True}
 
 
 class CrossCheckError(ValueError):
@@ -61,17 +54,15 @@ class CrossCheckError(ValueError):
 
 
 class Shown(NamedTuple):
-    """Orbits of one model in a row, as a dataset shows them.
+    """Orbits of one model in a row, or bifurcations, as a dataset shows them.
 
-    ``made`` is the route that they come from. For a ``bifurcation`` what the dataset does
-    not show is NaN. ``admissible`` is what the dataset says of each orbit.
+    ``admissible`` is what the dataset says of each orbit.
     """
 
     model: ImpactModel
     orbit: Any
-    made: Route
     bifurcation: Bifurcation | None = None
-    admissible: np.ndarray | None = None
+    admissible: Any = None
 
     def name(self, k: int) -> str:
         """What an orbit is called in messages."""
@@ -85,48 +76,38 @@ class Shown(NamedTuple):
 
 def _row(data: xr.Dataset, *names: str) -> Iterator[np.ndarray]:
     """Variables, or parameters, in one row each, without the NaN entries of the first."""
-    columns = [data[x] if x in data else xr.DataArray(data.attrs[x]) for x in names]
-    flat = [column.values.ravel() for column in xr.broadcast(*columns)]
-    there = np.isfinite(flat[0])
-    return (column[there] for column in flat)
-
-
-def _contacts(data: xr.Dataset, restitution: Any, omega: np.ndarray) -> SpringDamperModel:
-    law = SpringDamper.from_restitution(restitution, omega, data.attrs["release"])
-    return SpringDamperModel(law)
+    known = {**_UNSAID, **data.attrs, **data.coords, **data}
+    flat = [x.values.ravel() for x in xr.broadcast(*(xr.DataArray(known[x]) for x in names))]
+    return (column[np.isfinite(flat[0])] for column in flat)
 
 
 def contact_orbits(data: xr.Dataset) -> Iterator[Shown]:
     """The orbits of the spring-damper model along Λ or ϖ."""
-    data = data.assign(admissible=data.get("admissible", xr.DataArray(True)))
-    names = ("contact_duration", "phase", "impact_velocity", "amplitude", "restitution")
-    row = _row(data, *names, "frequency_ratio", "n", "admissible")
-    duration, phase, velocity, lam, r, omega, n, admissible = row
-    model = _contacts(data, r, omega)
-    made = Route.CONTINUATION if "special_kind" in data else Route.FORMULA
-    orbit = model.orbit_of(n, lam, phase, duration, velocity)
-    yield Shown(model, orbit, made, admissible=admissible.astype(bool))
+    names = ("contact_duration", "phase", "impact_velocity", "amplitude", "admissible")
+    duration, phase, velocity, lam, admissible, r, omega, n = _row(
+        data, *names, "restitution", "frequency_ratio", "n"
+    )
+    model = SpringDamperModel(SpringDamper.from_restitution(r, omega, data.attrs["release"]))
+    yield Shown(model, model.orbit_of(n, lam, phase, duration, velocity), None, admissible)
 
 
 def restitution_orbits(data: xr.Dataset) -> Iterator[Shown]:
     """The orbits of the restitution model, and both bifurcations of each family."""
-    beside = "restitution_amplitude" in data
-    names = [("restitution_" if beside else "") + x for x in ("phase", "amplitude", "admissible")]
-    data = data.assign({names[2]: data.get(names[2], xr.DataArray(True))})
-    phase, lam, n, admissible = _row(data, names[0], names[1], "n", names[2])
-    model = RestitutionModel(np.full(len(n), data.attrs["restitution"]))
-    orbit = model.orbit_of(n, lam, phase)
-    yield Shown(model, orbit, Route.FORMULA, admissible=admissible.astype(bool))
-    families = np.unique(n)
-    model = RestitutionModel(np.full(len(families), data.attrs["restitution"]))
+    beside = "restitution_" if "restitution_amplitude" in data else ""
+    names = (beside + x for x in ("phase", "amplitude", "admissible"))
+    phase, lam, admissible, r, n = _row(data, *names, "restitution", "n")
+    model = RestitutionModel(r)
+    yield Shown(model, model.orbit_of(n, lam, phase), None, admissible)
+    n, first = np.unique(n, return_index=True)
+    model = RestitutionModel(r[first])
     for kind in Bifurcation:
-        name = kind.replace("-", "_").replace(" ", "_")
-        limit = getattr(model, name)(families)
+        name = kind.name.lower()
+        limit = getattr(model, name)(n)
         if f"{name}_amplitude" in data:
-            shown = data[[f"{name}_amplitude", f"{name}_phase"]]
-            shown = shown.sel(impact_map="exact") if "impact_map" in shown.dims else shown
-            limit = model.orbit_of(families, *(np.atleast_1d(shown[x].values) for x in shown))
-        yield Shown(model, limit, Route.FORMULA, kind)
+            exact = data.sel(impact_map="exact") if "impact_map" in data.dims else data
+            shown = (np.atleast_1d(exact[f"{name}_{x}"].values) for x in ("amplitude", "phase"))
+            limit = model.orbit_of(n, *shown)
+        yield Shown(model, limit, kind)
 
 
 def located(data: xr.Dataset) -> Iterator[Shown]:
@@ -136,21 +117,24 @@ def located(data: xr.Dataset) -> Iterator[Shown]:
             part = data.assign(place=data.special_amplitude.where(data.special_kind == kind))
         else:
             part = data.sel(bound=kind).rename(computed="place")
-        names = ("place", "frequency_ratio", "n", "special_phase", "special_contact_duration")
-        lam, omega, n, phase, duration = _row(part, *names)
-        model = _contacts(data, data.attrs["restitution"], omega)
-        yield Shown(model, model.orbit_of(n, lam, phase, duration), Route.CONTINUATION, kind)
+        names = ("place", "special_phase", "special_contact_duration")
+        lam, phase, duration, r, omega, n = _row(
+            part, *names, "restitution", "frequency_ratio", "n"
+        )
+        model = SpringDamperModel(SpringDamper.from_restitution(r, omega, data.attrs["release"]))
+        yield Shown(model, model.orbit_of(n, lam, phase, duration), kind)
 
 
 def along_frequency_ratio(data: xr.Dataset) -> Iterator[Shown]:
-    """Bifurcations of the formula, under each rule that ends a contact."""
+    """Bifurcations of the formula, under each rule that ends a contact; Λ alone is shown."""
     for rule in data.release.values:
         for kind in Bifurcation:
             part = data.sel(release=rule, bound=kind)
-            lam, omega, n = _row(part, "bifurcation_amplitude", "frequency_ratio", "n")
-            model = SpringDamperModel(SpringDamper(omega, float(data.damping_ratio), Release(rule)))
-            orbit = model.orbit_of(n, lam, np.full_like(lam, np.nan))
-            yield Shown(model, orbit, Route.FORMULA, kind)
+            names = ("bifurcation_amplitude", "frequency_ratio", "damping_ratio", "n")
+            lam, omega, zeta, n = _row(part, *names)
+            model = SpringDamperModel(SpringDamper(omega, zeta, Release(rule)))
+            limit = getattr(model, kind.name.lower())(n)
+            yield Shown(model, replace(limit, amplitude=lam), kind)
 
 
 # What each dataset shows.
@@ -168,20 +152,20 @@ SHOWN: dict[str, tuple[Callable[[xr.Dataset], Iterator[Shown]], ...]] = {
 # The comparisons.
 
 
-def _size(orbit: Orbit) -> np.ndarray:
-    """What differences of orbits are relative to: the larger of Λ and n."""
-    return np.maximum(orbit.amplitude, orbit.n)
+def _by_equations(shown: Shown, near: Orbit) -> Orbit:
+    """What Newton's method on the model's equations finds next to orbits; NaN where it fails.
 
-
-def _tangents(system: OrbitSystem, y: np.ndarray) -> np.ndarray:
-    """Unit tangents of the branches through y; any where y is not a number."""
-    jacobian = system.jacobian(y)
-    known = np.where(np.isfinite(jacobian), jacobian, 0.0)
-    return np.linalg.svd(known)[2][..., -1, :]
-
-
-def _solved(system: OrbitSystem, y: np.ndarray, condition: Condition) -> Any:
-    """The orbits to which Newton's method moves the points y; NaN where it fails."""
+    A bifurcation is found with its test function. An orbit is found in the plane that is
+    normal to its branch: well conditioned at a fold too, where Λ alone has half of the digits.
+    """
+    system, kind = shown.model.system(near.n), shown.bifurcation
+    y = system.point(near)
+    if kind:
+        condition = vanishing(next(one.function for one in system.events() if one.name == kind))
+    else:
+        # The null vector of the Jacobian is the branch's tangent.
+        jacobian = np.nan_to_num(system.jacobian(y), posinf=0.0, neginf=0.0)
+        condition = plane(np.linalg.svd(jacobian)[2][..., -1, :], y)
     with np.errstate(all="ignore"):
         found = newton(system, y, condition, _NEWTON)
     # At the limit of rounding the last step never gets short enough.
@@ -189,87 +173,40 @@ def _solved(system: OrbitSystem, y: np.ndarray, condition: Condition) -> Any:
     return system.orbit(np.where(good[:, np.newaxis], found.point, np.nan))
 
 
-def orbits_against_equations(shown: Shown) -> np.ndarray:
-    """Orbits of the formula against the solutions of the equations next to them.
+def formula_and_equations(shown: Shown) -> np.ndarray:
+    """Distance of every orbit from the closed form, and from the equations' solution there.
 
-    Each in the plane through the orbit that is normal to its branch: well conditioned at a
-    fold too, where Λ alone has half of the digits.
+    Of a bifurcation, which a dataset has with Λ and φ, the distance in both.
     """
-    system = shown.model.system(shown.orbit.n)
-    y = system.point(shown.orbit)
-    found = _solved(system, y, plane(_tangents(system, y), y))
-    return shown.orbit.distance(found) / _size(shown.orbit)
+    orbit, near = shown.orbit, shown.model.nearest(shown.orbit)
+    found = _by_equations(shown, near)
+    if not shown.bifurcation:
+        return np.maximum(orbit.distance(near), orbit.distance(found)) / _size(orbit)
+    lam, turn = orbit.amplitude - found.amplitude, reduce_angle(orbit.phase - found.phase)
+    return np.max(np.abs([lam, turn, near.distance(found)]), axis=0) / _size(orbit)
 
 
-def orbits_against_formula(shown: Shown) -> np.ndarray:
-    """Orbits of a continuation against the nearest points of the formula."""
-    return shown.orbit.distance(shown.model.nearest(shown.orbit)) / _size(shown.orbit)
+def _size(orbit: Orbit) -> np.ndarray:
+    """What differences of orbits are relative to: the larger of Λ and n."""
+    return np.maximum(orbit.amplitude, orbit.n)
 
 
-def limits_against_equations(shown: Shown) -> np.ndarray:
-    """Bifurcations of the formula against the equations with the test function added."""
-    kind, system = shown.bifurcation, shown.model.system(shown.orbit.n)
-    name = "saddle_node" if kind is Bifurcation.SADDLE_NODE else "period_doubling"
-    start = getattr(shown.model, name)(shown.orbit.n)
-    test = next(event.function for event in system.events() if event.name == kind)
-    found = _solved(system, system.point(start), vanishing(test))
-    turn = np.abs(reduce_angle(shown.orbit.phase - found.phase))
-    return np.fmax(np.abs(shown.orbit.amplitude - found.amplitude), turn) / _size(shown.orbit)
-
-
-def limits_against_formula(shown: Shown) -> np.ndarray:
-    """Located bifurcations against the nearest zero of the test function on the formula.
-
-    The distance from the formula's branch, and along it the test function over its slope.
-    """
-    orbit, model, system = shown.orbit, shown.model, shown.model.system(shown.orbit.n)
-    test = _TESTS[Bifurcation(str(shown.bifurcation))]
-    start = model.nearest(orbit)
-    y = system.point(start)
-    step = _WIDTH / np.maximum(start.clock, 1.0)
-    along = step[:, np.newaxis] * _tangents(system, y)
-    low, middle, high = (
-        test(*model.nearest(at).trace_and_determinant())
-        for at in (system.orbit(y - along), start, system.orbit(y + along))
+def simulation_returns(orbit: Orbit, cycles: int) -> np.ndarray:
+    """How far the simulation is from orbits after some cycles: φ, δ′ and the last period."""
+    phase, speed = orbit.phase, orbit.relative_impact_velocity
+    for _ in range(cycles):
+        time, phase, speed = _next(orbit, phase, speed)
+    off = (
+        time - 2 * np.pi * orbit.n,
+        reduce_angle(phase - orbit.phase),
+        speed - orbit.relative_impact_velocity,
     )
-    off = np.abs(2 * middle / (high - low)) * step
-    turn = np.abs(reduce_angle(orbit.phase - start.phase))
-    apart = np.maximum(np.abs(orbit.amplitude - start.amplitude), turn)
-    return np.maximum(apart, off) / _size(orbit)
+    return np.max(np.abs(off), axis=0) / _size(orbit)
 
 
-# The route that a dataset did not take, by the one that it took, for orbits and bifurcations.
-_OTHER_ROUTE = {
-    (Route.FORMULA, False): orbits_against_equations,
-    (Route.CONTINUATION, False): orbits_against_formula,
-    (Route.FORMULA, True): limits_against_equations,
-    (Route.CONTINUATION, True): limits_against_formula,
-}
-
-
-def _differences(orbit: Orbit, cycle, *, late: bool) -> np.ndarray:
-    """Largest difference in φ, δ′ and, over one cycle, time."""
-    parts = [
-        reduce_angle(cycle.phase - orbit.phase),
-        cycle.relative_velocity - orbit.relative_impact_velocity,
-    ]
-    if late:
-        parts.append(cycle.time - 2 * np.pi * np.asarray(orbit.n))
-    return np.max(np.abs(parts), axis=0) / _size(orbit)
-
-
-def simulation_closes(orbit: Orbit) -> np.ndarray:
-    """How far the simulation is from every orbit after one cycle."""
-    cycle = orbit.cycle(orbit.phase, orbit.relative_impact_velocity)
-    return _differences(orbit, cycle, late=True)
-
-
-def simulation_holds(orbit: Orbit) -> np.ndarray:
-    """How far the simulation is from every stable orbit after many cycles."""
-    cycle = orbit.cycle(orbit.phase, orbit.relative_impact_velocity)
-    for _ in range(HELD_PERIODS - 1):
-        cycle = orbit.cycle(cycle.phase, cycle.relative_velocity)
-    return _differences(orbit, cycle, late=False)
+def _next(orbit: Orbit, phase: np.ndarray, speed: np.ndarray) -> tuple[np.ndarray, ...]:
+    cycle = orbit.cycle(phase, speed)
+    return cycle.time, cycle.phase, cycle.relative_velocity
 
 
 def simulation_leaves(orbit: Orbit) -> np.ndarray:
@@ -278,19 +215,13 @@ def simulation_leaves(orbit: Orbit) -> np.ndarray:
     Started a little off along the unstable direction, on both sides.
     """
     values, vectors = np.linalg.eig(orbit.monodromy())
-    which = np.argmax(np.abs(values), axis=-1)[..., np.newaxis]
-    multiplier = np.take_along_axis(values, which, axis=-1)[..., 0].real
-    direction = np.take_along_axis(vectors, which[..., np.newaxis, :], axis=-1)[..., 0].real
-    u = orbit.relative_impact_velocity
-    # A fixed part of the impact velocity, so that soft landings are met too.
-    nudge = _NUDGE * np.abs(u)[:, np.newaxis] * direction
-    ends = []
-    for sign in (1.0, -1.0):
-        cycle = orbit.cycle(orbit.phase + sign * nudge[:, 0], u + sign * nudge[:, 1])
-        turn = reduce_angle(cycle.phase - orbit.phase)
-        ends.append(np.stack([turn, cycle.relative_velocity], axis=-1))
-    growth = np.sum((ends[0] - ends[1]) * nudge, axis=-1) / (2 * np.sum(nudge * nudge, axis=-1))
-    return np.abs(growth / multiplier - 1)
+    every, which = np.arange(orbit.size), np.argmax(np.abs(values), axis=-1)
+    nudge = _NUDGE * np.abs(orbit.relative_impact_velocity) * vectors[every, :, which].real.T
+    at = np.stack([orbit.phase, orbit.relative_impact_velocity])
+    (ahead, fast), (behind, slow) = (_next(orbit, *(at + x))[1:] for x in (nudge, -nudge))
+    apart = np.stack([reduce_angle(ahead - behind), fast - slow])
+    growth = np.sum(apart * nudge, axis=0) / (2 * np.sum(nudge * nudge, axis=0))
+    return np.abs(growth / values[every, which].real - 1)
 
 
 def comparisons(shown: Shown) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
@@ -298,17 +229,15 @@ def comparisons(shown: Shown) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
 
     The simulation meets those that are orbits of the ball, as the dataset says.
     """
-    every = np.arange(shown.orbit.size)
-    yield FORMULA, every, _OTHER_ROUTE[shown.made, shown.bifurcation is not None](shown)
+    yield FORMULA, np.arange(shown.orbit.size), formula_and_equations(shown)
     if shown.bifurcation:
         return
-    moving = np.flatnonzero(shown.admissible & shown.orbit.can_be_simulated())
+    moving = np.flatnonzero(shown.admissible.astype(bool) & shown.orbit.can_be_simulated())
     orbit = shown.orbit[moving]
-    yield CLOSES, moving, simulation_closes(orbit)
-    stable = orbit.is_stable()
-    yield HOLDS, moving[stable], simulation_holds(orbit[stable])
-    tests = [test(*orbit.trace_and_determinant()) for test in _TESTS.values()]
-    left = np.min(tests, axis=0) < _UNSTABLE
+    tests = [kind.test(*orbit.trace_and_determinant()) for kind in Bifurcation]
+    stable, left = orbit.is_stable(), np.min(tests, axis=0) < _UNSTABLE
+    yield CLOSES, moving, simulation_returns(orbit, 1)
+    yield HOLDS, moving[stable], simulation_returns(orbit[stable], HELD_PERIODS)
     yield LEAVES, moving[left], simulation_leaves(orbit[left])
 
 

@@ -4,7 +4,6 @@ Options come from the signatures: of the public calls, and of what is added to t
 """
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -18,11 +17,9 @@ from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import NoOrbitError, ParameterError
-from bouncing_ball.motion.sequence import ImpactSequence, Status
+from bouncing_ball.motion.sequence import Status
 from bouncing_ball.orbits import calls
 from bouncing_ball.orbits.continued import restitution_speed
-from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.law_model import LawModel
 from bouncing_ball.orbits.orbit import OBSERVABLES, Orbit
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.signatures import takes
@@ -31,7 +28,7 @@ Answer = dict[str, Any]
 __all__ = ["error_law", "limits", "lines", "orbit", "permanent_contact", "simulate"]
 
 
-def _described(of: Any, speed: Callable[[ContactLaw], float] = lambda _: math.nan) -> Answer:
+def _described(of: Any, speed: float = math.nan) -> Answer:
     """r and ζ of a contact; of a contact law its parameters, and r and D at an impact speed."""
     match of:
         case SpringDamper():
@@ -40,19 +37,16 @@ def _described(of: Any, speed: Callable[[ContactLaw], float] = lambda _: math.na
                 "damping_ratio": float(of.damping_ratio),
             }
         case ContactLaw():
-            at = speed(of)
-            impact = free_impact(of, np.float64(at))
+            impact = free_impact(of, np.float64(speed))
             return {
                 "law": of.name,
                 "parameters": {name: float(x) for name, x in of.parameters().items()},
                 "measured_restitution": float(impact.restitution),
                 "free_duration": float(impact.duration),
                 "frequency_ratio": math.pi / float(impact.duration),
-                "at_impact_speed": at,
+                "at_impact_speed": speed,
             }
-        case SpringDamperModel(inner) | LinearSignature(inner):
-            return _described(inner, speed)
-        case CorrectedModel(inner) | LawModel(inner) | LawSignature(inner):
+        case LinearSignature(inner) | LawSignature(inner):
             return _described(inner, speed)
     return {}
 
@@ -68,14 +62,12 @@ def _orbit(found: Orbit) -> Answer:
 
 
 @takes(calls.orbit)
-def orbit(n=1, *, amplitude, side, index, **impact: Any) -> Answer:
+def orbit(n=1, **given: Any) -> Answer:
     """The n-T orbit at Λ on a side of the saddle-node, or all of them, or one of all."""
-    of = calls.model_of_orbit(n, amplitude, side, **impact)
-    found = calls.chosen_orbit(of, n, amplitude, side, index)
+    found = calls.orbit(n, **given)
     several = [_orbit(found[k]) for k in range(found.size)] if found.shape else []
     answer = {"orbits": several} if several else _orbit(found)
-    speed = -float(np.ravel(found.relative_impact_velocity)[0])
-    return answer | _described(of, lambda _: speed)
+    return answer | _described(found.law, -float(np.ravel(found.relative_impact_velocity)[0]))
 
 
 @takes(calls.limits)
@@ -105,7 +97,7 @@ def limits(n=1, **impact: Any) -> Answer:
             "is_admissible": bool(orbit.is_admissible()),
         }
     # The limits have two impact speeds; a law is described at the restitution model's.
-    return found | _described(of, lambda law: float(restitution_speed(n, LawModel(law))[0]))
+    return found | _described(orbit.law, float(restitution_speed(n, of)[0]))
 
 
 @takes(calls.orbit, "n", "amplitude", "release", *calls.LOSS)
@@ -168,9 +160,11 @@ def permanent_contact(*, frequency_ratio: calls.FrequencyRatio, model, **given: 
     return answer | _described(contact)
 
 
-def _columns(found: ImpactSequence) -> Answer:
-    """The recorded impacts of one ball, as lists; null for what does not happen."""
-    there = np.isfinite(found.time)
+@takes(calls.simulate)
+def simulate(amplitude, phase, velocity, impacts, **impact: Any) -> Answer:
+    """The sequence of impacts of one ball, as lists; null for what does not happen."""
+    of = calls.model_of_impact(amplitude, phase, velocity, **impact)
+    found = of.simulate(amplitude, phase, velocity, impacts)
     columns = {
         "time": found.time,
         "phase": found.phase,
@@ -178,17 +172,12 @@ def _columns(found: ImpactSequence) -> Answer:
         "contact_duration": found.contact_duration,
         "bounce_velocity": found.release_velocity,
     }
+    there = np.isfinite(found.time)
     return {
-        name: [value if math.isfinite(value) else None for value in column[there].tolist()]
-        for name, column in columns.items()
+        "status": Status(int(found.status)).name.lower().replace("_", " "),
+        **_described(of.orbit_of(1, amplitude, phase).law, -float(found.relative_velocity[0])),
+        "sequence": {
+            name: [value if math.isfinite(value) else None for value in column[there].tolist()]
+            for name, column in columns.items()
+        },
     }
-
-
-@takes(calls.simulate)
-def simulate(amplitude, phase, velocity, impacts, **impact: Any) -> Answer:
-    """The sequence of impacts from an initial impact."""
-    of = calls.model_of_impact(amplitude, phase, velocity, **impact)
-    found = of.simulate(amplitude, phase, velocity, impacts)
-    status = Status(int(found.status)).name.lower().replace("_", " ")
-    speed = -float(found.relative_velocity[0])
-    return {"status": status} | _described(of, lambda _: speed) | {"sequence": _columns(found)}

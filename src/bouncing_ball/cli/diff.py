@@ -5,7 +5,10 @@ from pathlib import Path
 from typing import NoReturn
 
 from bouncing_ball.cli.output import fail, print_lines
-from bouncing_ball.compare.report import compared
+from bouncing_ball.compare.folders import compare_folders
+from bouncing_ball.compare.page import to_html
+from bouncing_ball.compare.terminal import to_terminal
+from bouncing_ball.datasets.files import write_text
 
 
 def diff(
@@ -28,9 +31,11 @@ def diff(
         One page with all pictures.
     """
     try:
-        table, status = compared(record, results, artifacts, html)
+        comparison = compare_folders(record, results, artifacts)
+        if html:
+            write_text(html, to_html(comparison))
     # 1 means that something differs, and a traceback would exit with it.
     except Exception as error:
         fail(" ".join(str(error).split()) or type(error).__name__, status=2)
-    print_lines(table.splitlines())
-    sys.exit(status)
+    print_lines(to_terminal(comparison).splitlines())
+    sys.exit(comparison.outcome.status)

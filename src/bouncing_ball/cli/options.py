@@ -70,14 +70,6 @@ def meanings(call: Callable) -> dict[str, str]:
     return found
 
 
-class _Assign(argparse.Action):
-    """Collects NAME=NUMBER, NAME=NUMBER, … in a dictionary."""
-
-    def __call__(self, parser, namespace, values, option_string=None):
-        found = getattr(namespace, self.dest) or {}
-        setattr(namespace, self.dest, {**found, values[0]: values[1]})
-
-
 def _assignment(text: str) -> tuple[str, float]:
     name, equals, value = text.partition("=")
     try:
@@ -89,12 +81,12 @@ def _assignment(text: str) -> tuple[str, float]:
         raise argparse.ArgumentTypeError(f"{text!r} is not {example}") from None
 
 
-def _within(allowed: Range, kind: type = float) -> Callable[[str], Any]:
+def _within(allowed: Range, kind: Any = float) -> Callable[[str], Any]:
     """A parser of numbers in a range, for ``type=``."""
 
     def parse(text: str) -> Any:
         try:
-            value = kind(text)
+            value = int(text) if kind is int else float(text)
         except ValueError:
             value = math.nan
         if value not in allowed:
@@ -115,15 +107,14 @@ def _reading(annotation: Any) -> dict[str, Any]:
     origin = typing.get_origin(annotation)
     if origin is typing.Annotated:
         kind, how = kinds
-        if not isinstance(how, Range):
-            return {"type": how, "metavar": "FILE"}
-        if kind is int:
-            return {"type": _within(how, int), "metavar": "N"}
-        return {"type": _within(how), "metavar": "X"}
+        if isinstance(how, Range):
+            return {"type": _within(how, kind), "metavar": "N" if kind is int else "X"}
+        # A parser of one's own, or a unit, which the call itself reads.
+        return {"type": how, "metavar": "FILE"} if callable(how) else {"metavar": "X"}
     if origin is typing.Literal:
         return {"choices": kinds}
     if origin is Mapping:
-        return {"type": _assignment, "action": _Assign, "metavar": "NAME=NUMBER"}
+        return {"type": _assignment, "action": "append", "metavar": "NAME=NUMBER"}
     return {"metavar": "X"} | ({"type": annotation} if annotation in (int, str, Path) else {})
 
 

@@ -8,6 +8,7 @@ import json
 import os
 import sys
 from contextlib import suppress
+from dataclasses import asdict
 from typing import Any, NoReturn
 
 from bouncing_ball.errors import printable
@@ -61,6 +62,7 @@ def to_json(value: Any) -> str:
     >>> to_json({"orbits": [1.5, None]})
     '{"orbits": [1.5, null]}'
     """
+    value = value if isinstance(value, dict) else asdict(value)
     text = json.dumps(value, allow_nan=False, ensure_ascii=False)
     try:
         text.encode(getattr(sys.stdout, "encoding", None) or "ascii")

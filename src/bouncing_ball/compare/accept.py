@@ -12,10 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from bouncing_ball.compare.folders import Artifact, compare_folders
-from bouncing_ball.compare.outcome import Outcome
 from bouncing_ball.compare.terminal import to_terminal
 from bouncing_ball.configuration.yaml_file import read_yaml
-from bouncing_ball.datasets.atomic import replacing
+from bouncing_ball.datasets.files import replacing
 from bouncing_ball.errors import ModelError
 from bouncing_ball.provenance.origin import CONFIGURATION, changes
 from bouncing_ball.provenance.revision import revision
@@ -41,7 +40,7 @@ def _copied(artifact: Artifact, record: Path, results: Path) -> list[str]:
     said = []
     for part in artifact.parts:
         old, new = record / part.file, results / part.file
-        if part.outcome is Outcome.MISSING:
+        if not new.exists():
             old.unlink()
             said.append(f"removed {part.file}")
         elif not old.is_file() or old.read_bytes() != new.read_bytes():
@@ -81,6 +80,8 @@ def accept(
     RefusedError
         If the tree is not committed, the configuration is not the committed one, or the
         results are not those of this commit. Nothing is changed then.
+    ComparisonError
+        If there is no artifact of one of these names.
     """
     if revision(record).dirty != "no":
         raise RefusedError("the tree is not committed: commit first, then accept what it makes")
@@ -90,13 +91,10 @@ def accept(
         raise RefusedError(f"Snakemake would still run {left} jobs: run it, and look at the diff")
     if foreign := sorted({*map(str, results.glob("figures/[!.]*"))} - {*files}):
         raise RefusedError(f"{foreign[0]} is not made by this workflow: remove it")
-    comparison = compare_folders(record, results)
+    comparison = compare_folders(record, results, only)
     print(to_terminal(comparison), end="", flush=True)
-    artifacts = {artifact.name: artifact for artifact in comparison.artifacts}
-    if unknown := sorted(set(only) - artifacts.keys()):
-        raise RefusedError(f"unknown artifact {unknown[0]}")
-    moved = [name for name, artifact in artifacts.items() if not artifact.outcome.agrees]
-    said = [line for name in only or moved for line in _copied(artifacts[name], record, results)]
+    taken = [x for x in comparison.artifacts if only or not x.outcome.agrees]
+    said = [line for artifact in taken for line in _copied(artifact, record, results)]
     if not said:
         return ["Nothing to accept: the record says what the results say."]
     return [*said, "Now commit the record, and say why: git add figures paper.md && git commit"]

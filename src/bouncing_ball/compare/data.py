@@ -1,61 +1,22 @@
 """Two datasets, variable by variable: structure first, then numbers."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from fnmatch import fnmatchcase
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from bouncing_ball.compare.drift import curve, pointwise, same, span
-from bouncing_ball.compare.files import UnreadableError
-from bouncing_ball.compare.outcome import Outcome, worst
+from bouncing_ball.compare.outcome import Outcome, Row
+from bouncing_ball.compare.texts import compare_texts
 from bouncing_ball.datasets.variables import IGNORED, Budget, budget_of
+from bouncing_ball.errors import ModelError
 
 # How and with what a file was made, and words about it.
-_NOT_COMPARED = ("provenance_*", "title", "references", "history")
-# Numbers and texts, 160 times those of the largest dataset: compressed, zeros take no room.
-_MAX_VALUES = 2**22
+_NOT_COMPARED = ("provenance_", "title", "references", "history")
 # Entries of a variable that a report names.
 _LARGEST = 5
-
-
-@dataclass(frozen=True)
-class Moved:
-    """An entry of a variable that has moved: where, its drift over its budget, both values."""
-
-    place: str
-    share: float
-    record: str
-    new: str
-
-
-@dataclass(frozen=True)
-class VariableResult:
-    """The result for one variable; ``largest`` are the entries that have moved most."""
-
-    name: str
-    outcome: Outcome
-    share: float | None = None
-    note: str = ""
-    largest: tuple[Moved, ...] = ()
-
-
-def read_data(content: bytes) -> xr.Dataset:
-    """A dataset from its file's content, whole; no number is taken for a date."""
-    from netCDF4 import Dataset
-
-    with Dataset("memory", memory=content) as raw:
-        if sum(variable.size for variable in raw.variables.values()) > _MAX_VALUES:
-            raise UnreadableError(f"more than {_MAX_VALUES} values")
-        store = xr.backends.NetCDF4DataStore(raw)
-        return xr.open_dataset(store, decode_times=False, decode_timedelta=False).load()
-
-
-def _kind(variable: xr.DataArray) -> str:
-    """The type as it matters: texts of any length are texts."""
-    return "text" if variable.dtype.kind in "OSUT" else str(variable.dtype)
 
 
 def _text(value: Any) -> str:
@@ -65,37 +26,41 @@ def _text(value: Any) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def _attributes(
-    record: xr.Dataset | xr.DataArray, new: xr.Dataset | xr.DataArray
-) -> Iterator[tuple[Outcome, str]]:
-    """One sentence for each attribute that matters and is not the same."""
-    for name in sorted({*map(str, record.attrs), *map(str, new.attrs)}):
-        if any(fnmatchcase(name, pattern) for pattern in _NOT_COMPARED):
-            continue
-        if name not in new.attrs:
-            yield Outcome.STRUCTURE, f"attribute {name} is gone"
-        elif name not in record.attrs:
-            yield Outcome.STRUCTURE, f"attribute {name} is new"
-        elif not np.array_equal(np.asarray(record.attrs[name]), np.asarray(new.attrs[name])):
-            change = f"{_text(record.attrs[name])} → {_text(new.attrs[name])}"
-            yield Outcome.DRIFTED, f"attribute {name}: {change}"
+def _form(variable: xr.DataArray) -> str:
+    """Type and sizes as they matter: texts of any length are texts.
+
+    Examples
+    --------
+    >>> _form(xr.DataArray([[1, 2]], dims=("case", "n")))
+    'int64, case: 1, n: 2'
+    """
+    kind = "text" if variable.dtype.kind in "OSUT" else str(variable.dtype)
+    return ", ".join([kind, *(f"{name}: {size}" for name, size in variable.sizes.items())])
 
 
-def _structure(record: xr.DataArray, new: xr.DataArray) -> Iterator[tuple[Outcome, str]]:
-    for what, before, after in (
-        ("sizes", dict(record.sizes), dict(new.sizes)),
-        ("dimensions", record.dims, new.dims),
-        ("type", _kind(record), _kind(new)),
-        ("a coordinate", record.name in record.coords, new.name in new.coords),
-    ):
-        if before != after:
-            yield Outcome.STRUCTURE, f"{what}: {before} → {after}"
+def header(data: xr.Dataset) -> str:
+    """All but the numbers, a line each: variables with their form, and attributes.
+
+    Examples
+    --------
+    >>> print(header(xr.Dataset({"x": ("t", [0.0], {"units": "1"})}, attrs={"n": 1})))
+    attribute n: 1
+    attribute units of x: '1'
+    x: float64, t: 1
+    """
+    lines = [f"{x}: {_form(data[x])}{' (coordinate)' * (x in data.coords)}" for x in data.variables]
+    owners = [("", data.attrs), *((f" of {name}", data[name].attrs) for name in data.variables)]
+    for owner, attributes in owners:
+        for name, value in attributes.items():
+            if not name.startswith(_NOT_COMPARED):
+                lines.append(f"attribute {name}{owner}: {np.asarray(value).tolist()!r}")
+    return "\n".join(sorted(lines))
 
 
 def _beside(data: xr.Dataset, name: str, other: str) -> np.ndarray:
     """Another variable of a dataset, in the shape of the first."""
     if other not in data.variables or not {*data[other].dims} <= {*data[name].dims}:
-        raise UnreadableError(f"the budget of {name} needs {other}, on dimensions of {name}")
+        raise ModelError(f"the budget of {name} needs {other}, on dimensions of {name}")
     sizes = {dim: data.sizes[dim] for dim in data[name].dims}
     return data[other].variable.set_dims(sizes).transpose(*sizes).values
 
@@ -113,7 +78,7 @@ def shares(name: str, record: xr.Dataset, new: xr.Dataset, budget: Budget | None
 
     Raises
     ------
-    UnreadableError
+    ModelError
         If the budget names a variable or a dimension that is not there.
 
     Examples
@@ -123,9 +88,11 @@ def shares(name: str, record: xr.Dataset, new: xr.Dataset, budget: Budget | None
     [1.0, 1.0, 1.0]
     """
     a, b = record[name], new[name]
+    if budget and budget.size == IGNORED:
+        return np.zeros(a.shape)
     if budget and budget.over:
         if "point" not in a.dims:
-            raise UnreadableError(f"the budget of {name} needs the dimension point")
+            raise ModelError(f"the budget of {name} needs the dimension point")
         axis = a.dims.index("point")
         x, new_x = (_beside(data, name, budget.over) for data in (record, new))
         pairs = [(x, span(x)), (a, span(a)), (new_x, span(x)), (b, span(a))]
@@ -147,69 +114,43 @@ def _place(variable: xr.DataArray, index: tuple[int, ...]) -> str:
     >>> _place(xr.DataArray([[1.0, 2.0]], {"t": [0.0, 0.5]}, ("case", "t")), (0, 1))
     'case = 0, t = 0.5'
     """
-    found = []
-    for name, k in zip(variable.dims, index, strict=True):
-        label = variable[name].values[k] if name in variable.coords else k
-        found.append(f"{name} = {f'{label:.6g}' if isinstance(label, float) else label}")
-    return ", ".join(found)
+    places = zip(variable.dims, index, strict=True)
+    labels = {name: variable[name].values[k] for name, k in places}
+    texts = {name: f"{x:.6g}" if isinstance(x, float) else x for name, x in labels.items()}
+    return ", ".join(f"{name} = {text}" for name, text in texts.items())
 
 
-def _told(name: str, changes: list[tuple[Outcome, str]]) -> VariableResult:
-    """The result for what has no number."""
-    outcome = worst(outcome for outcome, _ in changes)
-    return VariableResult(name, outcome, note="; ".join(text for _, text in changes))
-
-
-def _compare_variable(
-    artifact: str, name: str, record: xr.Dataset, new: xr.Dataset
-) -> VariableResult:
+def _entries(artifact: str, name: str, record: xr.Dataset, new: xr.Dataset) -> Iterator[Row]:
+    """The entries of a variable that have moved most, each with its share of the budget."""
     a, b = record[name], new[name]
-    if changes := [*_structure(a, b), *_attributes(a, b)]:
-        return _told(name, changes)
-    if same(a.values, b.values).all():
-        return VariableResult(name, Outcome.IDENTICAL, 0.0)
-    budget = budget_of(artifact, name)
-    if budget and budget.size == IGNORED:
-        return VariableResult(name, Outcome.WITHIN, note="differs, and is not compared")
-    try:
-        share = shares(name, record, new, budget)
-    except UnreadableError as error:
-        return _told(name, [(Outcome.STRUCTURE, str(error))])
-    order = np.argsort(-share, axis=None, kind="stable")[:_LARGEST]
-    places = [tuple(map(int, np.unravel_index(k, share.shape))) for k in order]
-    largest = tuple(
-        Moved(_place(a, at), float(share[at]), _text(a.values[at]), _text(b.values[at]))
-        for at in places
-        if share[at] > 0
-    )
-    top = float(share.max())
-    outcome = Outcome.WITHIN if top <= 1 else Outcome.DRIFTED
-    count = int(np.count_nonzero(share > 1))
-    note = f"{count} of {share.size} entries beyond the budget" if count else ""
-    return VariableResult(name, outcome, top, note, largest)
+    unmoved = same(a.values, b.values)
+    if unmoved.all():
+        yield Row(name, Outcome.IDENTICAL, share=0.0)
+        return
+    share = shares(name, record, new, budget_of(artifact, name))
+    places = np.argwhere((share > 0) | ~unmoved)
+    order = np.argsort([-share[*place] for place in places], kind="stable")
+    beyond = int(np.count_nonzero(share > 1))
+    note = f"{beyond} of {share.size} entries beyond the budget" if beyond else ""
+    for at in (tuple(places[k]) for k in order[:_LARGEST]):
+        outcome = Outcome.WITHIN if share[at] <= 1 else Outcome.DRIFTED
+        values = _text(a.values[at]), _text(b.values[at])
+        yield Row(name, outcome, *values, float(share[at]), _place(a, at), note)
 
 
-def compare_datasets(artifact: str, record: xr.Dataset, new: xr.Dataset) -> list[VariableResult]:
-    """All variables, coordinates and attributes of two datasets, worst first.
-
-    Budgets are those of :func:`bouncing_ball.datasets.variables.budget_of`.
-    Parameters, the global attributes, are always exact.
+def compare_datasets(artifact: str, record: xr.Dataset, new: xr.Dataset) -> list[Row]:
+    """The headers of two datasets, and the numbers of all variables that have one form.
 
     Examples
     --------
     >>> record = xr.Dataset({"residual": ("point", [0.0, 1.0])})
     >>> found = compare_datasets("fig", record, record + 2.0**-41)
-    >>> [(each.name, str(each.outcome), round(each.share, 3)) for each in found]
+    >>> [(each.where, str(each.outcome), round(each.share, 3)) for each in found][:1]
     [('residual', 'within budget', 0.455)]
     """
-    results = []
-    for name in sorted({*map(str, record.variables), *map(str, new.variables)}):
-        if name not in new.variables:
-            results.append(VariableResult(name, Outcome.STRUCTURE, note="is gone"))
-        elif name not in record.variables:
-            results.append(VariableResult(name, Outcome.STRUCTURE, note="is new"))
-        else:
-            results.append(_compare_variable(artifact, name, record, new))
-    if changes := list(_attributes(record, new)):
-        results.append(_told("(global attributes)", changes))
-    return sorted(results, key=lambda each: (-each.outcome.rank, -(each.share or 0.0), each.name))
+    changed = compare_texts(header(record), header(new), None)
+    rows = [replace(row, where="header", outcome=Outcome.STRUCTURE) for row in changed]
+    for name in map(str, record.variables):
+        if name in new.variables and _form(record[name]) == _form(new[name]):
+            rows += _entries(artifact, name, record, new)
+    return rows

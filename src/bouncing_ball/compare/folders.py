@@ -7,7 +7,7 @@ suffixes are one artifact.
 
 from collections.abc import Collection
 from dataclasses import dataclass
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 
 from bouncing_ball.compare.outcome import Outcome, worst
 from bouncing_ball.compare.parts import Part, judge
@@ -32,15 +32,14 @@ class Artifact:
     @property
     def outcome(self) -> Outcome:
         """The worst outcome of what decides; what is only reported costs identity."""
-        decided = worst(part.outcome for part in self.parts if part.decides)
-        same = all(part.outcome is Outcome.IDENTICAL for part in self.parts)
-        return decided if same else worst([decided, Outcome.WITHIN])
+        reported = [Outcome.WITHIN for part in self.parts if part.redrawn and part.moved]
+        return worst([*reported, *(part.outcome for part in self.parts if not part.redrawn)])
 
     @property
     def share(self) -> float | None:
         """The largest share of a budget that decides, None without any."""
-        shares = [part.share for part in self.parts if part.decides and part.share is not None]
-        return max(shares, default=None)
+        shares = [part.share for part in self.parts if not part.redrawn]
+        return max((share for share in shares if share is not None), default=None)
 
 
 @dataclass(frozen=True)
@@ -63,23 +62,16 @@ def artifacts_in(folder: Path) -> dict[str, set[str]]:
     ComparisonError
         If there is no such folder, or no artifact in it.
     """
+    figures = folder / _FIGURES
     if not folder.is_dir():
         raise ComparisonError(f"no folder {printable(folder)}")
-    figures = folder / _FIGURES
     if figures.is_symlink():
         raise ComparisonError(f"{printable(figures)}: a link; links are not followed")
-    try:
-        names = sorted(path.name for path in figures.iterdir()) if figures.is_dir() else []
-    except OSError as error:
-        raise ComparisonError(f"{printable(figures)}: {error.strerror}") from None
-    files = [f"{_FIGURES}/{name}" for name in names]
-    files += [_PAPER] * ((folder / _PAPER).is_symlink() or (folder / _PAPER).exists())
     found: dict[str, set[str]] = {}
-    for file in files:
-        path = PurePosixPath(file)
-        # Files that begin with a point are halfway written.
-        if path.suffix in _SUFFIXES and not path.name.startswith("."):
-            found.setdefault(path.stem, set()).add(file)
+    # Files that begin with a point are halfway written.
+    for path in [*figures.glob("[!.]*"), *folder.glob(_PAPER)]:
+        if path.suffix in _SUFFIXES:
+            found.setdefault(path.stem, set()).add(path.relative_to(folder).as_posix())
     if not found:
         raise ComparisonError(
             f"nothing to compare in {printable(folder)}: neither {_FIGURES}/ nor {_PAPER}"
@@ -97,32 +89,22 @@ def compare_folders(record: Path, new: Path, only: Collection[str] = ()) -> Comp
         one of those named.
     """
     before, after = artifacts_in(record), artifacts_in(new)
-    names = sorted(before.keys() | after.keys())
+    # The text is made from all datasets: it comes last.
+    names = sorted(before.keys() | after.keys(), key=lambda name: (f"{name}.md" == _PAPER, name))
     if unknown := [name for name in only if name not in names]:
         known = printable(", ".join(names))
         raise ComparisonError(f"unknown artifact {printable(unknown[0])}; known: {known}")
-
-    def artifact(name: str, data: Outcome | None = None) -> Artifact:
+    found: list[Artifact] = []
+    data: dict[str, Outcome] = {}
+    for name in names:
+        parts: list[Part] = []
         files = before.get(name, set()) | after.get(name, set())
-        parts = []
-        for file in sorted(files, key=lambda file: _SUFFIXES.index(PurePosixPath(file).suffix)):
-            there = (
-                record if file in before.get(name, ()) else None,
-                new if file in after.get(name, ()) else None,
-            )
-            parts.append(judge(file, name, there, data))
+        for file in sorted(files, key=lambda file: _SUFFIXES.index(Path(file).suffix)):
+            of = worst(data.values()) if file == _PAPER else data.get(name)
+            parts.append(judge(file, (record, new), of))
             if file.endswith(".nc"):
-                data = parts[-1].outcome
-        return Artifact(name, tuple(parts))
-
-    paper = PurePosixPath(_PAPER).stem
-    chosen = set(only or names)
-    # The text is made from all datasets: for its sake they are all judged.
-    found = [artifact(name) for name in names if name != paper and {name, paper} & chosen]
-    if paper in chosen:
-        parts = [part for each in found for part in each.parts]
-        data = worst(part.outcome for part in parts if part.file.endswith(".nc"))
-        found.append(artifact(paper, data))
-    found = [each for each in found if each.name in chosen]
+                data[name] = parts[-1].outcome
+        found.append(Artifact(name, tuple(parts)))
+    found = [each for each in found if not only or each.name in only]
     found.sort(key=lambda each: (-each.outcome.rank, -(each.share or 0.0), each.name))
     return Comparison(tuple(found))

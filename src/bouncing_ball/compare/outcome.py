@@ -1,6 +1,7 @@
-"""The ladder of outcomes, from the best to the worst."""
+"""The ladder of outcomes, from the best to the worst, and a place with its outcome."""
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from enum import StrEnum
 
 
@@ -49,3 +50,30 @@ def worst(outcomes: Iterable[Outcome]) -> Outcome:
     'missing'
     """
     return max(outcomes, key=lambda outcome: outcome.rank, default=Outcome.IDENTICAL)
+
+
+@dataclass(frozen=True)
+class Row:
+    """A place where a file was compared: a line of a text, an entry of a variable, its pixels.
+
+    Parameters
+    ----------
+    where : str
+        A line's number, or a variable's name.
+    outcome : Outcome
+    record, new : str, optional
+        What stands there; None where a side has nothing.
+    share : float, optional
+        Drift over its budget.
+    at : str
+        Coordinates of an entry of a variable.
+    note : str
+    """
+
+    where: str
+    outcome: Outcome
+    record: str | None = None
+    new: str | None = None
+    share: float | None = None
+    at: str = ""
+    note: str = ""

@@ -6,8 +6,6 @@ from difflib import SequenceMatcher
 from typing import Any
 from urllib.parse import quote
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
-
 from bouncing_ball.compare.folders import Comparison
 from bouncing_ball.compare.terminal import excerpts, remarks, sentence, share_text
 from bouncing_ball.errors import printable
@@ -45,7 +43,7 @@ def marked(record: str | None, new: str | None) -> tuple[_Words, _Words]:
 
 
 def to_html(comparison: Comparison) -> str:
-    """The page: artifacts worst first; record, new and difference of each picture.
+    """The page: artifacts worst first; record and new of each picture.
 
     All pictures are part of the page; one that is the same on both sides is
     there once. What the buttons do is style, and no script.
@@ -55,6 +53,9 @@ def to_html(comparison: Comparison) -> str:
     >>> "<h1>Artifacts against the record</h1>" in to_html(Comparison(()))
     True
     """
+    # Imported here, as the short table needs none of it.
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
     environment = Environment(
         loader=PackageLoader("bouncing_ball.compare", "."),
         autoescape=True,

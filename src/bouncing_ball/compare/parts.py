@@ -1,25 +1,30 @@
 """One file of an artifact against its counterpart in the record, each kind by its own measure.
 
-Data by their budgets, texts and tables line by line, PNG files by their pixels, SVG files by
-their words. Every file is judged alone: whatever is wrong with one, it could not be
+Data by their budgets, texts, tables and the words of SVG files line by line, PNG files by
+their pixels. Every file is judged alone: whatever is wrong with one, it could not be
 compared, with the reason, and the others are compared all the same.
+
+A folder of artifacts may come from anywhere. Nothing in it is run, no link in it is
+followed, and what is printed of it passes through :func:`bouncing_ball.errors.printable`.
 """
 
 import re
 import warnings
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-from pathlib import Path, PurePosixPath
-from typing import Any
+from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
-from bouncing_ball.compare.data import VariableResult, compare_datasets, read_data
-from bouncing_ball.compare.files import read_file
-from bouncing_ball.compare.outcome import Outcome, worst
+from bouncing_ball.compare.data import compare_datasets
+from bouncing_ball.compare.outcome import Outcome, Row, worst
 from bouncing_ball.compare.pictures import compare_pictures, read_picture
-from bouncing_ball.compare.texts import Line, compare_texts, text_of_page, words_of_drawing
-from bouncing_ball.errors import printable
+from bouncing_ball.compare.texts import compare_texts, words_of
+from bouncing_ball.datasets.netcdf import read_dataset
+from bouncing_ball.errors import ModelError, printable
+
+MAX_BYTES = 16 * 2**20
+"""Size of a file; the largest artifact of the record has half a megabyte."""
+_DRAWN = (".png", ".svg")
 
 
 @dataclass(frozen=True)
@@ -30,29 +35,43 @@ class Part:
     ----------
     file : str
         Relative to either folder.
-    outcome : Outcome
-    note : str
-        What is different, in a few words.
-    share : float, optional
-        Largest share of a budget.
-    decides : bool
-        False where a difference is only reported.
-    variables : tuple of VariableResult
-        Of a dataset, worst first.
-    lines : tuple of Line
-        Of a text or a vector graphic: all that are not the same.
+    rows : tuple of Row
+        What was compared, worst first; none where the bytes are the same.
+    redrawn : str
+        How the versions of matplotlib differ; a difference is only reported then.
     pictures : tuple
-        The record's and the new picture and their difference as PNG files.
+        The record's and the new picture as PNG files.
     """
 
     file: str
-    outcome: Outcome
-    note: str = ""
-    share: float | None = None
-    decides: bool = True
-    variables: tuple[VariableResult, ...] = ()
-    lines: tuple[Line, ...] = ()
-    pictures: tuple[bytes | None, bytes | None, bytes | None] = (None, None, None)
+    rows: tuple[Row, ...] = ()
+    redrawn: str = ""
+    pictures: tuple[bytes | None, bytes | None] = (None, None)
+
+    @property
+    def outcome(self) -> Outcome:
+        """The worst outcome of its rows."""
+        return worst(row.outcome for row in self.rows)
+
+    @property
+    def moved(self) -> list[Row]:
+        """The rows that are not identical."""
+        return [row for row in self.rows if row.outcome is not Outcome.IDENTICAL]
+
+    @property
+    def share(self) -> float | None:
+        """The largest share of a budget."""
+        return max((row.share for row in self.rows if row.share is not None), default=None)
+
+    @property
+    def note(self) -> str:
+        """Where it differs most, in a few words."""
+        if not self.moved:
+            return self.redrawn
+        first, *rest = self.moved
+        where = " at ".join(filter(None, [first.where, first.at]))
+        more = f"{where} and {len(rest)} more" if rest else where
+        return ": ".join(filter(None, [more, first.note, self.redrawn]))
 
 
 def redrawn(record: bytes, new: bytes) -> str:
@@ -69,61 +88,46 @@ def redrawn(record: bytes, new: bytes) -> str:
     return f"drawn by matplotlib {found[0][0].decode()} → {found[1][0].decode()}"
 
 
-_READERS: dict[str, Callable[[bytes], Any]] = {
-    ".nc": read_data,
-    ".png": read_picture,
-    ".svg": words_of_drawing,
-    ".html": text_of_page,
-}
+def _content(path: Path) -> bytes | None:
+    """The bytes of a regular file of a bounded size; None if there is none."""
+    if path.is_symlink():
+        raise ModelError("a link; links are not followed")
+    if not path.exists():
+        return None
+    if not path.is_file():
+        raise ModelError("not a regular file")
+    if path.stat().st_size > MAX_BYTES:
+        raise ModelError(f"larger than {MAX_BYTES} bytes")
+    return path.read_bytes()
 
 
-def _of_data(file: str, artifact: str, record: Any, new: Any) -> Part:
-    found = tuple(compare_datasets(artifact, record, new))
-    outcome = worst(each.outcome for each in found)
-    note = ""
-    if outcome is not Outcome.IDENTICAL:
-        place = f" at {found[0].largest[0].place}" if found[0].largest else ""
-        note = ": ".join(filter(None, [found[0].name + place, found[0].note]))
-    share = max((each.share for each in found if each.share is not None), default=None)
-    return Part(file, outcome, note, share, variables=found)
-
-
-def _of_text(file: str, record: str, new: str, data: Outcome | None) -> Part:
-    lines = compare_texts(record, new, data)
-    outcome = worst(line.outcome for line in lines)
-    count = sum(line.outcome is outcome for line in lines)
-    what = "changed" if outcome is Outcome.DRIFTED else "moved with their data"
-    return Part(file, outcome, f"{count} lines {what}" if lines else "", lines=lines)
-
-
-def _compared(file: str, artifact: str, record: bytes, new: bytes, data: Outcome | None) -> Part:
-    suffix = PurePosixPath(file).suffix
-    before, after = (_READERS.get(suffix, bytes.decode)(content) for content in (record, new))
-    if suffix == ".nc":
-        return _of_data(file, artifact, before, after)
-    if suffix == ".png":
-        seen = compare_pictures(before, after)
-        pictures = (record, new, seen.difference)
-        part = Part(file, seen.outcome, seen.note, seen.share, pictures=pictures)
+def _judge(file: str, folders: tuple[Path, Path], data: Outcome | None) -> Part:
+    old, now = (folder / file for folder in folders)
+    record, new = _content(old), _content(now)
+    rows: list[Row] = []
+    if record is None or new is None:
+        rows = [Row("", Outcome.EXTRA if record is None else Outcome.MISSING)]
+    elif record == new:
+        pass
+    elif old.suffix == ".nc":
+        rows = compare_datasets(old.stem, read_dataset(old), read_dataset(now))
+    elif old.suffix == ".png":
+        rows = compare_pictures(read_picture(old), read_picture(now))
     else:
-        part = _of_text(file, before, after, data)
-    if other := redrawn(record, new):
-        return replace(part, decides=False, note=f"{part.note}; {other}".strip("; "))
-    return part
+        rows = compare_texts(words_of(old), words_of(now), data)
+    rows.sort(key=lambda row: (-row.outcome.rank, -(row.share or 0.0)))
+    drawn = redrawn(record, new) if record and new and old.suffix in _DRAWN else ""
+    return Part(file, tuple(rows), drawn, (record, new) if old.suffix == ".png" else (None, None))
 
 
-def judge(
-    file: str, artifact: str, folders: tuple[Path | None, Path | None], data: Outcome | None
-) -> Part:
-    """A file of one folder or of both; never an error.
+def judge(file: str, folders: tuple[Path, Path], data: Outcome | None) -> Part:
+    """A file of the record's or the new folder, or of both; never an error.
 
     Parameters
     ----------
     file : str
-    artifact : str
-        Whose file it is.
+        Relative to either folder.
     folders : tuple
-        That of the record and the new one; None where the file is not there.
     data : Outcome, optional
         The worst of the datasets that a text is made from.
     """
@@ -131,14 +135,9 @@ def judge(
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         try:
-            record, new = (read_file(folder, file) if folder else None for folder in folders)
-            if record is not None and new is not None and record != new:
-                return _compared(file, artifact, record, new, data)
+            return _judge(file, folders, data)
         # What the libraries raise on a damaged file has no end.
         except Exception as error:
             why = " ".join(str(error).split()) or type(error).__name__
-            return Part(file, Outcome.UNREADABLE, printable(why, 120))
-    outcome = Outcome.EXTRA if record is None else Outcome.MISSING
-    outcome = Outcome.IDENTICAL if record == new else outcome
-    shown = (record, new, None) if file.endswith(".png") else (None, None, None)
-    return Part(file, outcome, pictures=shown)
+            row = Row("", Outcome.UNREADABLE, note=printable(why, 120))
+            return Part(file, (row,))

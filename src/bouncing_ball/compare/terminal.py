@@ -10,8 +10,8 @@ _SENTENCES = (
     "The new artifacts differ from the record.",
     "Some artifacts could not be compared.",
 )
-# Of a text, more changed lines than these are on the page only.
-_LINES = 5
+# Of a file, more that has moved than this is on the page only.
+_ROWS = 5
 
 
 def sentence(comparison: Comparison) -> str:
@@ -26,7 +26,7 @@ def sentence(comparison: Comparison) -> str:
     found = [(outcomes.count(outcome), outcome) for outcome in reversed(Outcome)]
     counts = ", ".join(f"{count} {outcome}" for count, outcome in found if count)
     parts = [part for artifact in comparison.artifacts for part in artifact.parts]
-    drawn = sum(not part.decides for part in parts)
+    drawn = sum(bool(part.redrawn) for part in parts)
     more = f" Pictures drawn by another matplotlib and not judged: {drawn}." if drawn else ""
     return f"{counts or 'No artifacts'}. {_SENTENCES[comparison.outcome.status]}{more}"
 
@@ -52,14 +52,13 @@ def share_text(share: float | None) -> str:
 
 def remarks(artifact: Artifact) -> list[str]:
     """One sentence for each part that is not the same; what decides comes first."""
-
-    def remark(part: Part) -> str:
-        note = f": {part.note}" if part.note else ""
-        return f"{part.file} {part.outcome}{note}" + ("" if part.decides else " (reported only)")
-
-    different = [part for part in artifact.parts if part.outcome is not Outcome.IDENTICAL]
-    ordered = sorted(different, key=lambda part: (not part.decides, -part.outcome.rank))
-    return [printable(remark(part)) for part in ordered]
+    different = [part for part in artifact.parts if part.moved]
+    different.sort(key=lambda part: (bool(part.redrawn), -part.outcome.rank))
+    return [
+        printable(f"{part.file} {part.outcome}: {part.note}".removesuffix(": "))
+        + " (reported only)" * bool(part.redrawn)
+        for part in different
+    ]
 
 
 def excerpts(record: str | None, new: str | None, width: int = 60) -> tuple[str, str]:
@@ -74,10 +73,11 @@ def excerpts(record: str | None, new: str | None, width: int = 60) -> tuple[str,
     >>> excerpts("All of the readings", "All of the readings indeed", width=17)
     ('…e readings', '…e readings indeed')
     """
-    pairs = enumerate(zip(record or "", new or "", strict=False))
-    # A line that only goes on differs where the other one ends.
-    ends = min(len(record or ""), len(new or ""))
-    start = max(0, next((k for k, (old, each) in pairs if old != each), ends) - 10)
+    old, now, start = record or "", new or "", 0
+    if max(len(old), len(now)) > width:
+        # A line that only goes on differs where the other one ends.
+        pairs, ends = enumerate(zip(old, now, strict=False)), min(len(old), len(now))
+        start = max(0, next((k for k, (a, b) in pairs if a != b), ends) - 10)
 
     def part(text: str | None) -> str:
         if text is None:
@@ -88,39 +88,36 @@ def excerpts(record: str | None, new: str | None, width: int = 60) -> tuple[str,
     return part(record), part(new)
 
 
-def _changed_lines(part: Part) -> list[str]:
-    """The first lines of a text that are not the same, from where they begin to differ."""
-    file, shown = printable(part.file), []
-    for line in part.lines[:_LINES]:
-        old, new = excerpts(line.record, line.new)
-        shown.append(f"  {file}, {line.place}: {old} → {new}")
-    if len(part.lines) > _LINES:
-        shown.append(f"  {file}: {len(part.lines) - _LINES} more")
+def _moved(part: Part) -> list[str]:
+    """What does not agree any more, from where both sides begin to differ."""
+    rows = [row for row in part.rows if not row.outcome.agrees and (row.record or row.new)]
+    shown = []
+    for row in rows[:_ROWS]:
+        where = f"{part.file}, {row.where}" + (f" at {row.at}" if row.at else "")
+        shown.append(f"  {printable(where)}: {' → '.join(excerpts(row.record, row.new))}")
+    if len(rows) > _ROWS:
+        shown.append(f"  {printable(part.file)}: {len(rows) - _ROWS} more")
     return shown
 
 
 def to_terminal(comparison: Comparison) -> str:
     """One line for each artifact that is not identical, worst first, and the result.
 
-    Under it are the first lines of its texts that are not the same.
+    Under it is what does not agree any more.
 
     Examples
     --------
     >>> print(to_terminal(Comparison((Artifact("fig01", ()),))), end="")
     1 identical. The new artifacts say what the record says.
     """
-    rows = [("artifact", "outcome", "of budget", "what")]
-    details: list[list[str]] = [[]]
-    for artifact in comparison.artifacts:
-        if artifact.outcome is not Outcome.IDENTICAL:
-            first, *rest = remarks(artifact)
-            what = first + (f" (+{len(rest)})" if rest else "")
-            name = printable(artifact.name, 40)
-            rows.append((name, str(artifact.outcome), share_text(artifact.share), what))
-            details.append([line for part in artifact.parts for line in _changed_lines(part)])
-    width = max(len(row[0]) for row in rows)
-    lines = []
-    for (name, outcome, share, what), more in zip(rows, details, strict=True):
-        if len(rows) > 1:
-            lines += [f"{name:<{width}}  {outcome:<21}  {share:>9}  {what}", *more]
+    different = [each for each in comparison.artifacts if each.outcome is not Outcome.IDENTICAL]
+    width = max((len(printable(each.name, 40)) for each in different), default=0)
+    form = f"{{:<{max(width, 8)}}}  {{:<21}}  {{:>9}}  {{}}".format
+    lines = [form("artifact", "outcome", "of budget", "what")] if different else []
+    for artifact in different:
+        first, *rest = remarks(artifact)
+        what = first + (f" (+{len(rest)})" if rest else "")
+        name = printable(artifact.name, 40)
+        lines.append(form(name, artifact.outcome, share_text(artifact.share), what))
+        lines += [line for part in artifact.parts for line in _moved(part)]
     return "".join(f"{line}\n" for line in [*lines, sentence(comparison)])

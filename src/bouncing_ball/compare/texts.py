@@ -1,37 +1,16 @@
 """Texts line by line: words as they are, numbers as their data allow."""
 
 import re
-from dataclasses import dataclass
 from decimal import Decimal
 from difflib import SequenceMatcher
 from itertools import zip_longest
+from pathlib import Path
 
-from bouncing_ball.compare.outcome import Outcome
+from bouncing_ball.compare.outcome import Outcome, Row
 
 # A number as it is printed, with its sign and exponent. An exponent of more digits
 # belongs to no number of ours, and Decimal would refuse it.
 _NUMBER = re.compile(r"[-+]?[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]{1,4}(?![0-9]))?")
-
-
-@dataclass(frozen=True)
-class Line:
-    """A line that is not the same on both sides; None where a side has no such line."""
-
-    place: str
-    outcome: Outcome
-    record: str | None
-    new: str | None
-
-
-def _unit(number: str) -> Decimal:
-    """One unit of the last printed digit.
-
-    Examples
-    --------
-    >>> [str(_unit(text)) for text in ("0.25", "-4.5e-13", "82")]
-    ['0.01', '1E-14', '1']
-    """
-    return Decimal((0, (1,), int(Decimal(number).as_tuple().exponent)))
 
 
 def _same_to_the_last_digit(old: str, new: str) -> bool:
@@ -43,6 +22,8 @@ def _same_to_the_last_digit(old: str, new: str) -> bool:
     (True, False)
     >>> _same_to_the_last_digit("99.99", "100"), _same_to_the_last_digit("7", "8")
     (True, False)
+    >>> _same_to_the_last_digit("-4.5e-13", "-4.6e-13")
+    True
     """
     if old == new:
         return True
@@ -50,7 +31,8 @@ def _same_to_the_last_digit(old: str, new: str) -> bool:
         # A count, or a part of a name.
         return False
     # Across a power of ten, and where zeros are left out, the smaller unit is the step.
-    return abs(Decimal(old) - Decimal(new)) <= min(_unit(old), _unit(new))
+    last = min(int(Decimal(number).as_tuple().exponent) for number in (old, new))
+    return abs(Decimal(old) - Decimal(new)) <= Decimal(1).scaleb(last)
 
 
 def may_be_rounding(old: str, new: str) -> bool:
@@ -68,7 +50,7 @@ def may_be_rounding(old: str, new: str) -> bool:
     )
 
 
-def compare_texts(record: str, new: str, data: Outcome | None) -> tuple[Line, ...]:
+def compare_texts(record: str, new: str, data: Outcome | None) -> list[Row]:
     """All lines that are not the same, each with its outcome.
 
     Where the data have drifted within their budget, the last digit of a printed
@@ -88,7 +70,7 @@ def compare_texts(record: str, new: str, data: Outcome | None) -> tuple[Line, ..
     within budget
     drifted
     >>> line, = compare_texts("are right\\n", "are wrong\\n", Outcome.WITHIN)
-    >>> line.place, str(line.outcome), line.record, line.new
+    >>> line.where, str(line.outcome), line.record, line.new
     ('line 1', 'drifted', 'are right', 'are wrong')
     """
     before, after = record.split("\n"), new.split("\n")
@@ -99,36 +81,27 @@ def compare_texts(record: str, new: str, data: Outcome | None) -> tuple[Line, ..
     for _, first, last, new_first, new_last in blocks:
         pairs = zip_longest(before[first:last], after[new_first:new_last])
         for number, (old, line) in enumerate(pairs, start=first + 1):
-            if old == line:
-                continue
-            moved = data is Outcome.WITHIN and old is not None and line is not None
-            within = moved and may_be_rounding(old or "", line or "")
-            outcome = Outcome.WITHIN if within else Outcome.DRIFTED
-            found.append(Line(f"line {number}", outcome, old, line))
-    return tuple(found)
+            if old != line:
+                there = data is Outcome.WITHIN and old is not None and line is not None
+                within = there and may_be_rounding(str(old), str(line))
+                outcome = Outcome.WITHIN if within else Outcome.DRIFTED
+                found.append(Row(f"line {number}", outcome, old, line))
+    return found
 
 
-def text_of_page(page: bytes) -> str:
-    """The text of an HTML page but for data in JSON, which have a dataset of their own.
+def words_of(path: Path) -> str:
+    """What a file says, as lines of words and numbers.
 
-    Examples
-    --------
-    >>> text_of_page(b'Orbits: <script type="application/json">{"n": 1}</script>')
-    'Orbits: <script type="application/json"></script>'
+    Of a vector graphic its labels, and the letters that draw them: matplotlib draws a text as
+    outlines, one for each letter, with the text in a comment. Of an HTML page all but data in
+    JSON, which have a dataset of their own. Of any other text the text.
     """
-    block = r'(<script type="application/json"[^>]*>)[^<]*(</script>)'
-    return re.sub(block, r"\1\2", page.decode())
-
-
-def words_of_drawing(drawing: bytes) -> str:
-    """The words of a vector graphic, one text a line: its labels, and the letters that draw them.
-
-    matplotlib draws a text as outlines, one for each letter, with the text in a comment.
-
-    Examples
-    --------
-    >>> words_of_drawing(b'<!-- 0.5 --><use href="#DejaVuSans-30"/><text>r</text>').split()
-    ['0.5', 'DejaVuSans-30', 'r']
-    """
-    words = r'<!-- (.*?) -->|href="#([\w-]+-[0-9a-f]+)"|<text[^>]*>(.*?)</text>'
-    return "\n".join("".join(parts) for parts in re.findall(words, drawing.decode()))
+    text = path.read_text(encoding="utf-8")
+    match path.suffix:
+        case ".svg":
+            words = r'<!-- (.*?) -->|href="#([\w-]+-[0-9a-f]+)"|<text[^>]*>(.*?)</text>'
+            return "\n".join("".join(parts) for parts in re.findall(words, text))
+        case ".html":
+            return re.sub(r'(<script type="application/json"[^>]*>)[^<]*', r"\1", text)
+        case _:
+            return text

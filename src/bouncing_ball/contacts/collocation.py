@@ -52,6 +52,9 @@ _BLOCK = 1024
 # Panels of one contact at most: a dozen oscillations of an orbit's, some hundreds in a
 # simulation.
 _PANELS, MOST_PANELS = 120, 2000
+# Change of p in a panel, in parts of p, up to which plain time will do: p = 0 is then at
+# least two panels away.
+_FAR = 0.5
 # A ball at rest on the table, in parts of V: its q is slow, and its time is not.
 _AT_REST = 1e-9
 # The end of the contact is taken where less than this part of it is left.
@@ -118,6 +121,9 @@ class _Motion(NamedTuple):
     length: np.ndarray
     speed: np.ndarray
 
+    def take(self, which) -> "_Motion":
+        return _Motion(*(x[which] for x in self))
+
 
 class _Panel(NamedTuple):
     """A panel: q, p′ and t at its nodes and its end, F at the nodes and at the end, its length,
@@ -137,10 +143,10 @@ class _Panel(NamedTuple):
         return _Panel(*(x[..., which] for x in self))
 
 
-def _lever(law: ContactLaw, root):
+def _lever(m: int, root):
     """λ = dp/dq, by products, which cost less than a power."""
-    lever = law.root * np.ones_like(root)
-    for _ in range(law.root - 1):
+    lever = m * np.ones_like(root)
+    for _ in range(m - 1):
         lever *= root
     return lever
 
@@ -151,39 +157,34 @@ def _load(start: Start, time):
     return start.weight - 2 * start.amplitude * tangent / (1 + tangent * tangent)
 
 
-def _grip(law: ContactLaw, root, rate):
+def _grip(law: ContactLaw, m: int, root, rate):
     """What vanishes at the release: the grip, or q where that is a power of q."""
     if law.release is Release.DISPLACEMENT:
         return root
-    grip = law.grip(root**law.root, rate)
+    grip = law.grip(root**m, rate)
     return grip if law.lag is None else np.where(law.lag == 0, root, grip)
 
 
-def _grip_slopes(law: ContactLaw, root, rate):
+def _grip_slopes(law: ContactLaw, m: int, root, rate):
     """Its derivatives by q and p′."""
     one = np.ones_like(root)
     if law.release is Release.DISPLACEMENT:
         return one, 0 * one
-    by = law.grip_slopes(root**law.root, rate)
-    by_root = by.by_penetration * _lever(law, root)
+    by = law.grip_slopes(root**m, rate)
+    by_root = by.by_penetration * _lever(m, root)
     return by_root if law.lag is None else np.where(law.lag == 0, one, by_root), by.by_rate
 
 
-def _left(law: ContactLaw, root, rate, time, until):
-    """What vanishes at the end of the contact."""
-    return _grip(law, root, rate) if until is None else until - time
-
-
-def _falls(law: ContactLaw, now: _Motion, root, rate, final, step, until):
-    """Its derivative in s, and its unit."""
+def _falls(law: ContactLaw, m: int, now: _Motion, root, rate, final, step, until):
+    """The derivative in s of what vanishes at the end of the contact, and its unit."""
     if until is not None:
-        return -_lever(law, root), 1e-4 * now.length / now.speed
-    by_root, by_rate = _grip_slopes(law, root, rate)
+        return -_lever(m, root), 1e-4 * now.length / now.speed
+    by_root, by_rate = _grip_slopes(law, m, root, rate)
     falls = by_root * rate + by_rate * final
     return falls, np.abs(falls) * step
 
 
-def _panel(law: ContactLaw, start: Start, now: _Motion, until: np.ndarray | None) -> _Panel:
+def _panel(law: ContactLaw, m: int, start: Start, now: _Motion, until: np.ndarray | None) -> _Panel:
     """The next panel of each ball, to the release, or to a time, if that comes first."""
     node, integral, tail, end = _rule()
     rate = now.rate + node * (now.step * now.push)
@@ -192,20 +193,24 @@ def _panel(law: ContactLaw, start: Start, now: _Motion, until: np.ndarray | None
     reached, push = ~last, more
     for sweep in range(_SWEEPS):
         # The nodes move with the end.
-        rate = rate + node * ((longer - step) * push) if longer is not step else rate
+        moved = longer is not step
+        rate = rate + node * ((longer - step) * push) if moved else rate
         step = longer
         q = now.root + step * (integral @ rate)
-        lever = _lever(law, q[:-1])
-        t = now.time + step * (integral @ lever)
-        push = lever * (_load(start, t[:-1]) - law.force(q[:-1] * lever / law.root, rate))
+        # In plain time, m = 1, these are known.
+        if m > 1 or moved or sweep == 0:
+            lever = _lever(m, q[:-1])
+            t = now.time + step * (integral @ lever)
+            load = _load(start, t[:-1])
+        push = lever * (load - law.force(q[:-1] * lever / m, rate))
         new = now.rate + step * (integral @ push)
         before, rate = rate, new[:-1]
         if sweep < _LOOK:
             continue
-        left = _left(law, q[-1], new[-1], t[-1], until)
+        left = _grip(law, m, q[-1], new[-1]) if until is None else until - t[-1]
         last |= left <= 0
         if last.any():
-            falls, unit = _falls(law, now, q[-1], new[-1], end @ push, step, until)
+            falls, unit = _falls(law, m, now, q[-1], new[-1], end @ push, step, until)
             more = np.where(falls < 0, -left / falls, -step)
             more = np.where(last, np.maximum(np.minimum(more, step / 2), -step / 2), 0.0)
             reached = ~last | (np.abs(left) <= _REACHED * unit)
@@ -219,12 +224,12 @@ def _panel(law: ContactLaw, start: Start, now: _Motion, until: np.ndarray | None
             break
     # What is still left, to first order.
     q[-1] += new[-1] * more
-    t[-1] += _lever(law, q[-1]) * more
+    t[-1] += _lever(m, q[-1]) * more
     final = end @ push
     new[-1] += final * more
     by_rate, by_time = (np.abs(tail @ x).max(axis=0) for x in (push, lever))
     error = np.maximum(by_rate / now.speed, by_time * now.speed / now.length) * step
-    held = ((q[:-1] > 0) & (_grip(law, q[:-1], rate) > 0)).all(axis=0)
+    held = ((q[:-1] > 0) & (_grip(law, m, q[:-1], rate) > 0)).all(axis=0)
     good = reached & held & (change <= _ENOUGH) & (error <= _SPECTRUM)
     slower = np.minimum(
         (error / _SPECTRUM) ** (-1 / _NODES), (early / _CHANGE) ** (-1 / (2 * _EARLY))
@@ -232,6 +237,34 @@ def _panel(law: ContactLaw, start: Start, now: _Motion, until: np.ndarray | None
     factor = np.where(np.isnan(slower), _SHORTER, np.clip(_SAFETY * slower, _SHORTER, _LONGER))
     following = np.where(good, step * factor, now.step * np.minimum(factor, _AGAIN))
     return _Panel(q, new, t, push, final, step, following, good, last)
+
+
+def _in_time(law: ContactLaw, start: Start, now: _Motion, until: np.ndarray | None) -> _Panel:
+    """The next panels, in plain time: that costs half, and will do where q hardly changes."""
+    m, lever = law.root, _lever(law.root, now.root)
+    now = now._replace(root=now.root**m, push=now.push / lever, step=now.step * lever)
+    panel = _panel(law, 1, start, now, until)
+    root = np.maximum(panel.root, 0.0) ** (1 / m)
+    then = _lever(m, root[-1])
+    following = panel.following / np.where(panel.good, then, lever)
+    return panel._replace(root=root, final=panel.final * then, following=following)
+
+
+def _next(law: ContactLaw, start: Start, now: _Motion, until: np.ndarray | None) -> _Panel:
+    """The next panels, each in the cheaper of the two variables."""
+    far = law.root * np.abs(now.rate) * now.step < _FAR * now.root
+    sides, panels = [np.flatnonzero(far), np.flatnonzero(~far)], []
+    for which in sides:
+        if which.size:
+            some = law.take(which), start.take(which), now.take(which)
+            limit = None if until is None else until[which]
+            panels.append(
+                _in_time(*some, limit)
+                if far[which[0]]
+                else _panel(some[0], law.root, *some[1:], limit)
+            )
+    order = np.argsort(np.concatenate(sides))
+    return _Panel(*(np.concatenate(x, axis=-1)[..., order] for x in zip(*panels, strict=True)))
 
 
 def _derivatives(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray):
@@ -245,7 +278,7 @@ def _derivatives(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray):
     node, integral, _, _ = _rule()
     m, q, rate = law.root, panel.root[:-1].T, panel.rate[:-1].T
     angle = start.phase[:, np.newaxis] + panel.time[:-1].T
-    lever, bend = _lever(law, q), m * (m - 1) * q ** max(m - 2, 0)
+    lever, bend = _lever(m, q), m * (m - 1) * q ** max(m - 2, 0)
     slopes = law.columns().slopes(q**m, rate)
 
     def column(rows):
@@ -275,8 +308,8 @@ def _derivatives(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray):
 def _at_release(law: ContactLaw, panel: _Panel, by: np.ndarray, strain: np.ndarray):
     """The derivatives of (D, p_e, p′_e), and the contraction, of panels that end in releases."""
     depth, rate, final = panel.root[-1] ** law.root, panel.rate[-1], panel.final
-    lever = _lever(law, panel.root[-1])
-    by_root, by_rate = _grip_slopes(law, panel.root[-1], rate)
+    lever = _lever(law.root, panel.root[-1])
+    by_root, by_rate = _grip_slopes(law, law.root, panel.root[-1], rate)
     falls = by_root * rate + by_rate * final
     # The grip vanishes at another rate where the force makes a step there.
     step = np.where(by_rate == 0, 0.0, by_rate * lever * law.force(depth, rate))
@@ -341,11 +374,17 @@ def march(
         active = np.flatnonzero(np.isfinite(start).all(axis=0))
         state = np.full((len(_Motion._fields), size), np.nan)
         state[:, active] = _begin(law.take(active), start.take(active))
+        plain = law.root > 1 and not differentiate
         for _ in range(panels if active.size else 0):
             for here in np.array_split(active, -(-active.size // _BLOCK)):
                 limit = None if until is None else until[here]
                 some, own = law.take(here), start.take(here)
-                panel = _panel(some, own, _Motion(*state[:, here]), limit)
+                now = _Motion(*state[:, here])
+                panel = (
+                    _next(some, own, now, limit)
+                    if plain
+                    else _panel(some, law.root, own, now, limit)
+                )
                 state[4, here] = panel.following
                 good = np.flatnonzero(panel.good)
                 some, own, here, panel = (

@@ -7,7 +7,7 @@ from typing import Any
 
 import xarray as xr
 
-from bouncing_ball.datasets.atomic import replacing
+from bouncing_ball.datasets.files import replacing
 
 CONVENTIONS = "CF-1.11"
 """The conventions that the files follow."""

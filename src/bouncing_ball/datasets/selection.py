@@ -1,5 +1,6 @@
-"""Places of a variable by the labels of its coordinates."""
+"""Places of a dataset: by the labels of its coordinates, or one after another."""
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -9,21 +10,6 @@ from bouncing_ball.errors import ModelError
 
 # Coordinates are computed from the numbers of the configuration.
 _MATCH = 1e-9
-# Labels that a message names.
-_MOST = 20
-
-
-def _listed(labels: list) -> str:
-    """Labels one after another; of many the first and the last.
-
-    Examples
-    --------
-    >>> _listed([1.0, 2.0]), _listed(list(range(301)))
-    ('1.0, 2.0', '0, 1, 2, …, 300')
-    """
-    if len(labels) > _MOST:
-        labels = [*labels[:3], "…", labels[-1]]
-    return ", ".join(map(str, labels))
 
 
 def index_of(values: xr.DataArray, name: str, wanted: Any) -> int:
@@ -47,7 +33,21 @@ def index_of(values: xr.DataArray, name: str, wanted: Any) -> int:
     else:
         there = np.flatnonzero(np.isclose(labels, wanted, rtol=_MATCH, atol=0))
     if there.size != 1:
-        known = _listed(labels.tolist())
+        # Of many labels the first and the last.
+        known = np.array2string(labels, threshold=20, separator=", ", max_line_width=10**6)
         often = "is not among" if not there.size else f"is {there.size} times among"
         raise ModelError(f"{name} = {wanted} {often} {known}")
     return int(there[0])
+
+
+def each(data: xr.Dataset, *dims: str) -> Iterator[xr.Dataset]:
+    """The dataset at each place along some dimensions, the last one running fastest.
+
+    Examples
+    --------
+    >>> data = xr.Dataset(coords={"n": [1, 2], "bound": ["from", "to"]})
+    >>> [part.n.item() for part in each(data, "n", "bound")]
+    [1, 1, 2, 2]
+    """
+    for place in np.ndindex(*(data.sizes[dim] for dim in dims)):
+        yield data.isel(dict(zip(dims, place, strict=True)))

@@ -254,7 +254,6 @@ VARIABLES: dict[str, Variable] = {
     "law_exceeding": Variable("number of these beyond the stated remainder"),
     "unstable": Variable("number of nodes whose exact orbit is not stable"),
     "sought": Variable("number of orbits that the walk did not reach, looked for directly"),
-    "farthest": Variable("largest relative distance of an orbit's Λ from its node's"),
     "limit_quantity": Variable("limit of the stable range, or of permanent contact"),
     "needed": Variable("ϖ from which the error of all nodes of a tile is tolerated", "ϖ"),
     "limit_needed": Variable(

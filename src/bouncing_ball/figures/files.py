@@ -8,7 +8,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
-from bouncing_ball.datasets.atomic import replacing
+from bouncing_ball.datasets.files import replacing
 from bouncing_ball.figures.style import RESOLUTION
 
 

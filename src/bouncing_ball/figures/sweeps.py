@@ -1,19 +1,16 @@
 """One orbit followed along ϖ, curve by curve (Figs. 5, 6, 10, 13)."""
 
+from itertools import cycle
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from bouncing_ball.datasets.selection import each
 from bouncing_ball.figures.branches import draw_curve
-from bouncing_ball.figures.canvas import (
-    canvas,
-    legend_below,
-    logarithmic,
-    note,
-    number,
-    parameters,
-)
+from bouncing_ball.figures.canvas import canvas, coloured, legend_below, logarithmic
+from bouncing_ball.figures.labels import note, number, parameters
 from bouncing_ball.figures.style import COLOURS, GUIDE, RESTITUTION, Look
 
 _DASHES = ("-", (0, (5, 1.5)), (0, (1, 1)), (0, (5, 1.5, 1, 1.5)))
@@ -26,15 +23,14 @@ def apparent_restitution_of_cases(data: xr.Dataset) -> Figure:
     """Fig. 5: a curve for each (r, Λ), named at its restitution coefficient."""
     figure, axes = canvas(height=2.8)
     ratio = data.frequency_ratio
-    for case, colour in zip(data.case, COLOURS, strict=False):
-        curve = data.sel(case=case)
+    for curve, colour in coloured(data, "case"):
         r, lam = float(curve.restitution), float(curve.amplitude)
         axes.axhline(r, **GUIDE)
         draw_curve(axes, ratio, curve.apparent_restitution, curve.admissible, color=colour)
         name = rf"$r={number(r)}$, $\Lambda={number(lam)}$"
         note(axes, name, (float(ratio[-1]), r), (0, -3), ha="right", va="top", fontsize=8)
-    logarithmic(axes, ratio)
-    axes.set(ylabel="apparent restitution $r_a$", ylim=(0, 1.05), title=parameters(data, "n"))
+    title = parameters(data, "n")
+    logarithmic(axes, ratio, ylabel="apparent restitution $r_a$", ylim=(0, 1.05), title=title)
     return figure
 
 
@@ -44,8 +40,7 @@ def apparent_restitution(data: xr.Dataset) -> Figure:
     values = sorted(set(data.restitution.values.tolist()))
     for restitution in values:
         axes.axhline(restitution, **GUIDE)
-    _draw_amplitudes(axes, data, data.apparent_restitution)
-    axes.set_ylabel("apparent restitution $r_a$")
+    _draw_amplitudes(axes, data, "apparent_restitution", "apparent restitution $r_a$")
     axes.legend(title=f"{parameters(data, 'n')}, $r={', '.join(map(number, values))}$")
     return figure
 
@@ -57,8 +52,7 @@ def bounce_velocity(data: xr.Dataset) -> Figure:
     axes.axhline(limit, **GUIDE)
     name = rf"${round(limit / np.pi)}\pi$" if limit > 1.5 * np.pi else r"$\pi$"
     note(axes, name, (float(data.frequency_ratio[0]), limit), (4, 3), fontsize=8)
-    _draw_amplitudes(axes, data, data.bounce_velocity)
-    axes.set_ylabel(r"bouncing-off velocity $z′_b$")
+    _draw_amplitudes(axes, data, "bounce_velocity", r"bouncing-off velocity $z′_b$")
     axes.legend(loc="lower right", title=parameters(data, "n", "restitution"))
     return figure
 
@@ -69,56 +63,47 @@ def poincare_map(data: xr.Dataset) -> Figure:
     Each curve is traced by ϖ; a few of its values are marked on it.
     """
     figure, axes = canvas(4.4, 4.0)
-    for k, case in enumerate(data.case.values):
-        curve = data.sel(case=case)
-        colour = COLOURS[1 + k % (len(COLOURS) - 1)]
+    for k, (curve, colour) in enumerate(zip(each(data, "case"), cycle(COLOURS[1:]))):
         end = (curve.release_phase, curve.bounce_velocity, data.restitution_bounce_velocity)
         start = (curve.phase, curve.impact_velocity, data.restitution_impact_velocity)
         for (phase, velocity, limit), name, dashes, face in (
             (end, r"end of contact, $(\varphi+\tau_b,\,z′_b)$", "-", colour),
             (start, r"start of contact, $(\varphi,\,z′_i)$", (0, (4, 1.5)), "white"),
         ):
-            look = {"color": colour, "linestyle": dashes, "markerfacecolor": face}
+            look: Look = {"color": colour, "linestyle": dashes, "markerfacecolor": face}
             # Named once for all cases.
-            _draw_trace(axes, curve, phase, velocity, name if k == 0 else None, **look)
+            _draw_trace(axes, curve, phase, velocity, name if k == 0 else None, look)
             axes.plot(curve.restitution_phase / np.pi, limit / np.pi, "*", **_LIMIT)
     axes.plot([], [], "*", label="restitution model", **_LIMIT)
     axes.set(xlabel=r"phase of the table over $\pi$", ylabel=r"velocity of the ball, $z′/\pi$")
     axes.margins(x=0.14)
     axes.axhline(0.0, color="#8c8c8c", linewidth=0.5)
     legend_below(figure, ncols=2)
-    amplitudes = "".join(rf", $\Lambda={number(x)}$" for x in data["amplitude"].values)
-    axes.set_title(parameters(data, "n", "restitution") + amplitudes)
+    amplitudes = [rf"$\Lambda={number(x)}$" for x in data["amplitude"].values]
+    axes.set_title(", ".join([parameters(data, "n", "restitution"), *amplitudes]))
     return figure
 
 
-def _draw_amplitudes(axes: Axes, data: xr.Dataset, values: xr.DataArray) -> None:
-    """One curve for each case, labelled by its Λ."""
-    for k, case in enumerate(data.case.values):
-        one = data.sel(case=case)
-        draw_curve(
-            axes,
-            data.frequency_ratio,
-            values.sel(case=case),
-            one.admissible,
-            color=COLOURS[k % len(COLOURS)],
-            linestyle=_DASHES[k % len(_DASHES)],
-            label=rf"$\Lambda={number(float(one.amplitude))}$",
-        )
-    logarithmic(axes, data.frequency_ratio)
+def _draw_amplitudes(axes: Axes, data: xr.Dataset, name: str, ylabel: str) -> None:
+    """One curve of a variable for each case, labelled by its Λ."""
+    for (one, colour), dashes in zip(coloured(data, "case"), cycle(_DASHES), strict=False):
+        label = rf"$\Lambda={number(float(one.amplitude))}$"
+        look: Look = {"color": colour, "linestyle": dashes, "label": label}
+        draw_curve(axes, one.frequency_ratio, one[name], one.admissible, **look)
+    logarithmic(axes, data.frequency_ratio, ylabel=ylabel)
 
 
-def _draw_trace(axes: Axes, curve: xr.Dataset, phase, velocity, label, **look) -> None:
+def _draw_trace(axes: Axes, curve: xr.Dataset, phase, velocity, label, look: Look) -> None:
     """Phase and velocity over π as ϖ varies, its round values marked.
 
     Of a curve with a label the small values are named; the next one's would overlap.
     """
     x, y = phase.values / np.pi, velocity.values / np.pi
-    line = {"color": look["color"], "linestyle": look["linestyle"]}
-    draw_curve(axes, x, y, curve.admissible, **line)
-    axes.plot([], [], marker="o", markersize=4, label=label, **look)
+    draw_curve(axes, x, y, curve.admissible, **look)
+    mark: Look = {"marker": "o", "markersize": 4, **look}
+    axes.plot([], [], label=label, **mark)
     for k, at in enumerate(np.flatnonzero(curve.labelled.values)):
-        axes.plot(x[at], y[at], marker="o", markersize=4, **look)
+        axes.plot(x[at], y[at], **mark)
         ratio = float(curve.frequency_ratio[at])
         if label and ratio <= _NAMED_UP_TO:
             # Neighbours on both sides of the curve.

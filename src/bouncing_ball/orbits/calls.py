@@ -118,40 +118,38 @@ def _refuse(given: Mapping[str, Any], names: tuple[str, ...], why: str) -> None:
             raise ParameterError(f"{{{name}}} {why}")
 
 
+def _demand(fulfilled: bool, text: str) -> None:
+    if not fulfilled:
+        raise ParameterError(text)
+
+
 def _model(given: Mapping[str, Any], law_at: LawAt | None) -> ImpactModel:
     """The model of the parameters that are not None."""
     given = {name: value for name, value in given.items() if value is not None}
     losses = [name for name in LOSS if name in given]
-    if len(losses) > 1:
-        raise ParameterError(f"argument {{{losses[1]}}}: not allowed with argument {{{losses[0]}}}")
+    for other in losses[1:]:
+        raise ParameterError(f"argument {{{other}}}: not allowed with argument {{{losses[0]}}}")
     kind = given.get("model") or ("spring-damper" if "frequency_ratio" in given else "restitution")
     if "law" in given:
         law = _law(given, law_at)
         return CorrectedModel(LawSignature(law)) if kind == "corrected" else LawModel(law)
     _refuse(given, ("parameters", "duration", "speed"), "needs {law}")
-    if not losses:
-        names = " ".join(f"{{{name}}}" for name in LOSS)
-        raise ParameterError(f"one of the arguments {names} is required")
+    names = " ".join(f"{{{name}}}" for name in LOSS)
+    _demand(bool(losses), f"one of the arguments {names} is required")
     if kind == "restitution":
         instead = "needs {frequency_ratio}; {model} restitution takes {restitution}"
         _refuse(given, ("damping_ratio",), instead)
         meaning = "has no meaning for {model} restitution, which has no contact"
         _refuse(given, ("frequency_ratio", "release"), meaning)
         return RestitutionModel(given[losses[0]])
-    if "frequency_ratio" not in given:
-        raise ParameterError(f"{{model}} {kind} needs {{frequency_ratio}}")
-    contact = _contact(given, losses[0])
-    if kind == "corrected":
-        return CorrectedModel.of_contact(contact)
-    return SpringDamperModel(contact)
-
-
-def _contact(given: Mapping[str, Any], loss: str) -> SpringDamper:
+    _demand("frequency_ratio" in given, f"{{model}} {kind} needs {{frequency_ratio}}")
     ratio, rule = given["frequency_ratio"], Release.of(given.get("release", Release.DISPLACEMENT))
-    if loss == "damping_ratio":
-        return SpringDamper(ratio, given[loss], rule)
-    measured = loss == "measured_restitution"
-    return SpringDamper.from_restitution(given[loss], ratio, rule, measured=measured)
+    if "damping_ratio" in given:
+        contact = SpringDamper(ratio, given["damping_ratio"], rule)
+    else:
+        measured = "measured_restitution" in given
+        contact = SpringDamper.from_restitution(given[losses[0]], ratio, rule, measured=measured)
+    return CorrectedModel.of_contact(contact) if kind == "corrected" else SpringDamperModel(contact)
 
 
 def _law(given: Mapping[str, Any], law_at: LawAt | None) -> ContactLaw:
@@ -181,55 +179,18 @@ def _law(given: Mapping[str, Any], law_at: LawAt | None) -> ContactLaw:
 
 
 def _law_of_parameters(kind: type[ContactLaw], given: Mapping[str, Any]) -> ContactLaw:
-    named = {name.replace("-", "_"): value for name, value in given["parameters"].items()}
+    named = {name.replace("-", "_"): value for name, value in dict(given["parameters"]).items()}
     known = kind.parameter_names()
     for name in named:
-        if name not in known:
-            raise ModelError(
-                f"unknown parameter {name!r} of {kind.name}: its parameters are {', '.join(known)}"
-            )
+        all_of = f"its parameters are {', '.join(known)}"
+        _demand(name in known, f"unknown parameter {name!r} of {kind.name}: {all_of}")
     for name in known:
-        if name not in named:
-            raise ParameterError(f"{kind.name} needs {{parameters}} {name}=NUMBER as well")
-    if "release" not in given:
-        return kind(**named)
-    if not kind.chooses_release():
-        text = f"the release is part of {kind.name}: {{release}} is for the linear law"
-        raise ParameterError(text)
-    named["release"] = Release.of(given["release"])
+        _demand(name in named, f"{kind.name} needs {{parameters}} {name}=NUMBER as well")
+    if "release" in given:
+        why = f"the release is part of {kind.name}: {{release}} is for the linear law"
+        _demand(kind.chooses_release(), why)
+        named["release"] = Release.of(given["release"])
     return kind(**named)
-
-
-def model_of_orbit(n: int, amplitude: float, side: str = "stable", **impact: Any) -> ImpactModel:
-    """The model; a law that is given by r and D has them at the impact speed of this orbit."""
-    own = Side.UNSTABLE if side == "unstable" else Side.STABLE
-    return _model(impact, lambda kind, r, d: law_at_orbit(kind, r, d, n, amplitude, own))
-
-
-def chosen_orbit(
-    of: ImpactModel, n: int, amplitude: float, side: str = "stable", index: int | None = None
-) -> Orbit:
-    """The orbit of a model on a side, or all of its orbits at Λ, or one of all by its number.
-
-    Raises
-    ------
-    NoOrbitError
-        If there is none, with the reason.
-    """
-    if side != "all" and index is None:
-        return of.require_orbit(n, amplitude, Side.of(side))
-    if side == "unstable" or (side == "all" and index is not None):
-        raise ParameterError("argument {index}: not allowed with argument {side}")
-    found = of.orbits(n, amplitude)
-    if not found.size:
-        raise NoOrbitError(f"no {n}-T orbit at Λ = {amplitude:g} for {of.label}")
-    if index is None:
-        return found
-    if index > found.size:
-        raise NoOrbitError(
-            f"no orbit {index}: {of.label} has {found.size} {n}-T orbits at Λ = {amplitude:g}"
-        )
-    return found[index - 1]
 
 
 @takes(model)
@@ -278,7 +239,20 @@ def orbit(
       apparent_restitution  0.851132
       max_height            5.41098
     """
-    return chosen_orbit(model_of_orbit(n, amplitude, side, **impact), n, amplitude, side, index)
+    branch = Side.STABLE if side == "all" else Side.of(side)
+    of = _model(impact, lambda kind, r, d: law_at_orbit(kind, r, d, n, amplitude, branch))
+    if side != "all" and index is None:
+        return of.require_orbit(n, amplitude, branch)
+    if side != "stable" and index is not None:
+        raise ParameterError("argument {index}: not allowed with argument {side}")
+    found = of.orbits(n, amplitude)
+    if not found.size:
+        raise NoOrbitError(f"no {n}-T orbit at Λ = {amplitude:g} for {of.label}")
+    if index is not None and index > found.size:
+        raise NoOrbitError(
+            f"no orbit {index}: {of.label} has {found.size} {n}-T orbits at Λ = {amplitude:g}"
+        )
+    return found if index is None else found[index - 1]
 
 
 def model_of_limits(n: int, **impact: Any) -> ImpactModel:
@@ -314,9 +288,7 @@ def limits(n: Index, **impact: Any) -> Limits:
     return Limits(of.saddle_node(n), of.period_doubling(n))
 
 
-def model_of_impact(
-    amplitude: float, phase: float = 0.0, velocity: float = -math.pi, **impact: Any
-) -> ImpactModel:
+def model_of_impact(amplitude: float, phase: float, velocity: float, **impact: Any) -> ImpactModel:
     """The model; a law that is given by r and D has them at the speed of this impact."""
     speed = amplitude * np.cos(phase) - velocity
     return _model(impact, lambda kind, r, d: law_of_impact(kind, r, d, speed))

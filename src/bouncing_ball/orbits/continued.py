@@ -22,9 +22,9 @@ from bouncing_ball.orbits import corrected_branch as corrected
 from bouncing_ball.orbits.orbit import check_index
 from bouncing_ball.orbits.stability import Bifurcation, Side
 
-# Speed of the orbit and its restitution depend on each other; each round gains a
-# digit or two, and a start needs three.
-_ROUNDS = 4
+# Newton steps for the speed of the orbit, and the last one: what is left is its square, and a
+# start needs three digits.
+_ROUNDS, _ENOUGH = 6, 1e-3
 # Newton steps, in so many rounds; those that are done leave after each. A first step may be
 # long next to the fold.
 _SETTINGS = NewtonSettings(max_iterations=5, longest=0.5)
@@ -44,7 +44,7 @@ _HERE = "this amplitude"
 
 def restitution_speed(n: ArrayLike, model: Any) -> tuple[np.ndarray, Instant]:
     """v = 2πn/(1 + r(v)), the impact speed of the restitution model's n-T orbits, and
-    the signature of the model's impact there.
+    the signature of the model's impact next to it.
 
     Examples
     --------
@@ -57,8 +57,13 @@ def restitution_speed(n: ArrayLike, model: Any) -> tuple[np.ndarray, Instant]:
     period = 2 * np.pi * np.asarray(n, dtype=float)
     speed = period / 1.7 + np.zeros(model.shape)
     for _ in range(_ROUNDS):
-        speed = period / (1 + model.signature(speed).restitution)
-    return speed, model.signature(speed)
+        instant = model.signature(speed)
+        slope = 1 + instant.restitution + instant.d_restitution * speed
+        step = (period - (1 + instant.restitution) * speed) / slope
+        speed = speed + step
+        if not np.any(np.abs(step) > _ENOUGH * speed):
+            break
+    return speed, instant
 
 
 class _Search(NamedTuple):
@@ -122,14 +127,23 @@ def _shaped(model: Any, n: ArrayLike, y: np.ndarray, shape: tuple[int, ...]) -> 
     return model.system(n).orbit(y.reshape(*shape, y.shape[-1]))
 
 
-def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Any:
-    """The n-T orbits at Λ on a side of the saddle-node; NaN where none is found."""
+def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side, near: Any = None) -> Any:
+    """The n-T orbits at Λ on a side of the saddle-node; NaN where none is found.
+
+    The search starts from ``near``, orbits of other models at Λ, where they are given.
+    """
     row, (index, lam), shape = _rows(model, n, amplitude)
-    search = _Search.of(row, index)
-    psi = corrected.instant_phase(index, search.instant, lam, side is Side.STABLE)
-    # Next to the fold the start may lie below it.
-    psi = np.where(np.isnan(psi), corrected.saddle_node_phase(search.instant), psi)
-    y = search.solved(search.start(lam, psi))
+    if near is None:
+        search = _Search.of(row, index)
+        psi = corrected.instant_phase(index, search.instant, lam, side is Side.STABLE)
+        # Next to the fold the start may lie below it.
+        psi = np.where(np.isnan(psi), corrected.saddle_node_phase(search.instant), psi)
+        guess = search.start(lam, psi)
+    else:
+        search = _Search(row, index, Instant(*np.zeros(4)))
+        points = model.system(n).point(near)
+        guess = points.reshape(-1, points.shape[-1])
+    y = search.solved(guess)
     found = _shaped(model, n, y, shape)
     test = Bifurcation.SADDLE_NODE.test(*found.trace_and_determinant())
     on_side = test > 0 if side is Side.STABLE else test < 0

@@ -7,6 +7,7 @@ starts at τ_2 = 2πn. Everything is dimensionless.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -16,6 +17,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.batch import Batch, in_words
 from bouncing_ball.errors import require
 from bouncing_ball.motion.angles import reduce_angle
+from bouncing_ball.motion.ensembles import blocks
 from bouncing_ball.motion.sequence import Cycle
 from bouncing_ball.orbits import stability
 
@@ -33,6 +35,10 @@ OBSERVABLES = (
 # An event that the equations do not know of shifts the next impact by a good
 # part of a period; rounding, amplified by one unstable cycle, by far less.
 _SAME = 1e-6
+# Samples of a contact among which its highest point is looked for, and steps from there: the
+# height is the square of the time's error. Orbits whose samples are in memory at once.
+_SAMPLES, _REFINEMENTS = 33, 6
+_BLOCK = 1024
 
 
 def check_index(n: ArrayLike) -> None:
@@ -48,6 +54,11 @@ def check_index(n: ArrayLike) -> None:
     index = np.asarray(n, dtype=float)
     whole = (index == np.floor(index)) & (index >= 1) & np.isfinite(index)
     require(whole, np.asarray(n), "index of the family n", "a positive integer")
+
+
+def _columns(*arrays: ArrayLike) -> Iterator[np.ndarray]:
+    """The arrays with a last axis of length one, for derivatives along it."""
+    return (np.asarray(x)[..., np.newaxis] for x in arrays)
 
 
 @dataclass(frozen=True, repr=False)
@@ -210,14 +221,40 @@ class Orbit(Batch, ABC):
 
     @property
     def max_height(self) -> np.ndarray:
-        """Greatest absolute height over the cycle."""
-        return self.flight_top
+        """Greatest absolute height over the cycle, in flight or in contact.
 
-    @property
-    def flight_top(self) -> np.ndarray:
-        """Greatest height in flight: its top, or its start if released downwards."""
+        In flight, if that reaches Λ: in contact the ball stays below the table. Else a long
+        contact may lift it higher with the table.
+        """
         rising = np.maximum(self.bounce_velocity, 0.0)
-        return self.bounce_height + rising * rising / 2
+        top = self.bounce_height + rising * rising / 2
+        low = np.broadcast_to((top < self.amplitude) & (self.contact_duration > 0), self.shape)
+        if not np.any(low):
+            return top
+        if not self.shape:
+            return np.maximum(top, self._contact_top())
+        top, lifted = np.array(np.broadcast_to(top, self.shape)), self[low]
+        # The samples of all at once would be gigabytes.
+        parts = [lifted[part]._contact_top() for part in blocks(lifted.size, _BLOCK)]
+        top[low] = np.maximum(top[low], np.concatenate(parts))
+        return top
+
+    def _contact_top(self) -> np.ndarray:
+        """Greatest height in contact: its highest sample, refined by secants of the velocity."""
+        share = np.linspace(0.0, 1.0, _SAMPLES).reshape(-1, *(1,) * len(self.shape))
+        height, _ = self.contact_path(share * self.contact_duration)
+        step = self.contact_duration / (_SAMPLES - 1)
+        centre = np.argmax(np.where(np.isnan(height), -np.inf, height), axis=0) * step
+        low, high = np.maximum(centre - step, 0.0), np.minimum(centre + step, self.contact_duration)
+        before, time = np.where(centre > low, low, high), centre
+        rate = self.contact_path(before)[1]
+        for _ in range(_REFINEMENTS):
+            rate_before, rate = rate, self.contact_path(time)[1]
+            run = time - before
+            slope = (rate - rate_before) / np.where(run == 0, np.inf, run)
+            moved = np.where(slope < 0, -rate / np.where(slope < 0, slope, -1.0), 0.0)
+            before, time = time, np.clip(time + moved, low, high)
+        return self.contact_path(time)[0]
 
     def flight_path(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Absolute position and velocity at times τ_b ≤ τ ≤ τ_2 in flight (Eqs. 14-15)."""
@@ -237,35 +274,53 @@ class Orbit(Batch, ABC):
         height, velocity = (np.where(touching, a, b) for a, b in zip(inside, outside, strict=True))
         return height, velocity
 
+    def flight_jacobian(
+        self, start: Iterable[np.ndarray], contact: Iterable[np.ndarray]
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives of :meth:`flight_defects`, along the last axis.
+
+        Of those of (φ, z′_i, Λ) at the start of contact, and of (τ_b, δ_b, δ′_b) at its end.
+        """
+        (d_phase, d_impact, d_lam), (d_duration, d_displacement, d_velocity) = start, contact
+        lam, phase, end = _columns(self.amplitude, self.phase, self.release_phase)
+        bounce, flight = _columns(self.bounce_velocity, self.flight_time)
+        d_end, d_bounce = d_phase + d_duration, d_impact - d_duration
+        velocity = d_velocity + np.cos(end) * d_lam - lam * np.sin(end) * d_end - d_bounce
+        rise = (np.sin(end) - np.sin(phase)) * d_lam
+        rise = rise + lam * (np.cos(end) * d_end - np.cos(phase) * d_phase)
+        return velocity, d_displacement + rise + flight * d_bounce - (bounce - flight) * d_duration
+
+    def jacobian(self) -> np.ndarray:
+        """Jacobian of the flight's two defects in (φ, z′_i, Λ), shape (..., 2, 3).
+
+        The contact is the one that starts so.
+        """
+        inner = np.tile(np.eye(3), (*self.shape, 1, 1))
+        inner[..., 1, 0] = self.amplitude * np.sin(self.phase)
+        inner[..., 1, 2] = -np.cos(self.phase)
+        contact = np.moveaxis(self.contact_jacobian() @ inner, -2, 0)
+        return np.stack(self.flight_jacobian(np.eye(3), contact), axis=-2)
+
     def monodromy(self) -> np.ndarray:
         """Jacobian of the return map (τ, δ′) → (τ₁, δ′₁), shape (..., 2, 2).
 
-        Its eigenvalues are the Floquet multipliers. The section is the start of
-        contact. One cycle is contact, then flight; the flight ends at an
-        implicit event, whose time is differentiated through its condition.
+        Its eigenvalues are the Floquet multipliers. The section is the start of contact. A
+        start moved by (dφ, dz′_i) leaves the defects (dV, dH) of velocity and height, and a
+        flight that is longer by s, to the table: ``u s = -(dH + T dV)``. So the next start is
+        moved by (dφ + s, dz′_i + dV - s).
         """
-        jacobian, lam = self.contact_jacobian()[..., :2], np.asarray(self.amplitude)
-        d_duration, d_displacement, d_velocity = (jacobian[..., k, :] for k in range(3))
-        start = np.broadcast_to(np.array([1.0, 0.0]), d_duration.shape)
-        d_release_phase = start + d_duration
-        landing_phase = self.phase + 2 * np.pi * np.asarray(self.n)
-
-        def table(x):
-            return np.asarray(x)[..., np.newaxis]
-
-        d_height = d_displacement + table(lam * np.cos(self.release_phase)) * d_release_phase
-        d_bounce = d_velocity - table(lam * np.sin(self.release_phase)) * d_release_phase
-        # The flight ends on the table: z_b + z′_b T - T²/2 = Λ sin(τ_b + T).
-        table_velocity = table(lam * np.cos(landing_phase))
-        d_gap = d_height + table(self.flight_time) * d_bounce - table_velocity * d_release_phase
-        d_flight = -d_gap / table(self.relative_impact_velocity)
-        d_landing_phase = d_release_phase + d_flight
-        d_impact = d_bounce - d_flight + table(lam * np.sin(landing_phase)) * d_landing_phase
-        return np.stack([d_landing_phase, d_impact], axis=-2)
+        d_velocity, d_height = np.moveaxis(self.jacobian()[..., :2], -2, 0)
+        flight, speed = _columns(self.flight_time, self.relative_impact_velocity)
+        later = -(d_height + flight * d_velocity) / speed
+        moved = np.eye(2) + np.stack([later, d_velocity - later], axis=-2)
+        # From (φ, z′_i) to (φ, δ′): δ′ = z′_i - Λ cos φ.
+        turn = np.zeros_like(moved)
+        turn[..., 1, 0] = self.amplitude * np.sin(self.phase)
+        return (np.eye(2) + turn) @ moved @ (np.eye(2) - turn)
 
     def trace_and_determinant(self) -> tuple[np.ndarray, np.ndarray]:
         """Trace and determinant of the monodromy."""
-        return stability.trace_and_determinant(self.monodromy())[0], self.determinant()
+        return np.trace(self.monodromy(), axis1=-2, axis2=-1), self.determinant()
 
     def multipliers(self) -> np.ndarray:
         """Floquet multipliers, complex, shape (..., 2), the larger modulus first."""

@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.contact import contact_cycle
 from bouncing_ball.motion.sequence import Cycle
-from bouncing_ball.orbits.highest import highest
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.spring_damper_branch import BranchPoint, branch_point
 
@@ -59,19 +58,9 @@ class SpringDamperOrbit(Orbit):
         """δ_b = -κ δ′_b at release."""
         return -self.contact.lag * self.relative_bounce_velocity
 
-    @property
-    def max_height(self) -> np.ndarray:
-        """Greatest absolute height over the cycle, in flight or in contact."""
-        return highest(self)
-
     def _contact_flow(self, time: np.ndarray):
         u = self.relative_impact_velocity
         return self.contact.flow(time, 0.0, u, self.phase, self.amplitude)
-
-    def contact_acceleration(self, time: np.ndarray) -> np.ndarray:
-        """Absolute acceleration in contact."""
-        table = self.amplitude * np.sin(self.phase + time)
-        return self._contact_flow(time).acceleration - table
 
     def contact_motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ at times 0 ≤ τ ≤ τ_b in contact."""

@@ -76,25 +76,11 @@ class SpringDamperSystem(OrbitSystem):
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """Exact Jacobian of the residual, shape (..., 3, 4)."""
         o, by_amplitude = self.orbit(y), self.parameter is Parameter.AMPLITUDE
-        lam, omega, flight = o.amplitude, o.contact.frequency_ratio, o.flight_time
+        lam, omega = o.amplitude, o.contact.frequency_ratio
         flow = o.contact.flow(
             o.contact_duration, 0.0, o.relative_impact_velocity, o.phase, o.amplitude
         )
-        end, d = o.release_phase, flow.jacobian[..., :6]
-        lift, pace = lam * np.sin(end), lam * np.cos(end)
-        # Derivatives of the residual with respect to (τ, δ, δ′, φ, Λ, ϖ) of the flow ...
-        by_flow = np.empty((*y.shape[:-1], 3, 6))
-        scale, sine = (np.asarray(x)[..., np.newaxis] for x in (omega, o.contact.release_sine))
-        by_flow[..., 0, :] = scale * d[..., 0, :] + 2 * sine * d[..., 1, :]
-        by_flow[..., 0, 5] += flow.displacement
-        by_flow[..., 1, :], by_flow[..., 2, :] = d[..., 1, :], d[..., 0, :]
-        by_flow[..., 1, 0] += 1 - lift
-        by_flow[..., 1, 3] -= lift
-        by_flow[..., 1, 4] += np.cos(end)
-        by_flow[..., 2, 0] += pace - o.bounce_velocity
-        by_flow[..., 2, 3] += pace - lam * np.cos(o.phase)
-        by_flow[..., 2, 4] += np.sin(end) - np.sin(o.phase)
-        # ... and of these with respect to (φ, z′_i, ϖ τ_b, p).
+        # Derivatives of (τ, δ, δ′, φ, Λ, ϖ) of the flow with respect to (φ, z′_i, ϖ τ_b, p).
         inner = np.zeros((*y.shape[:-1], 6, 4))
         inner[..., 0, 2] = 1 / omega
         inner[..., 2, 0], inner[..., 2, 1] = lam * np.sin(o.phase), 1
@@ -103,11 +89,15 @@ class SpringDamperSystem(OrbitSystem):
             inner[..., 2, 3], inner[..., 4, 3] = -np.cos(o.phase), 1
         else:
             inner[..., 0, 3], inner[..., 5, 3] = -o.contact_duration, omega
-        jacobian = by_flow @ inner
-        # The velocity of the flight, z′_i + 2πn - τ_b.
-        jacobian[..., 1, 1] -= 1
-        jacobian[..., 2, 1] += flight
-        return jacobian
+        d_duration, _, _, d_phase, d_lam, d_omega = np.moveaxis(inner, -2, 0)
+        ends = np.moveaxis(flow.jacobian[..., :6] @ inner, -2, 0)
+        scale, sine, displacement = (
+            np.asarray(x)[..., np.newaxis]
+            for x in (omega, o.contact.release_sine, flow.displacement)
+        )
+        release = scale * ends[0] + displacement * d_omega + 2 * sine * ends[1]
+        start = d_phase, np.eye(4)[1], d_lam
+        return np.stack([release, *o.flight_jacobian(start, [d_duration, *ends])], axis=-2)
 
     def guess(self, amplitude: float, frequency_ratio: float) -> np.ndarray:
         """The stable restitution orbit with a free contact: y to start from.

@@ -122,27 +122,4 @@ class ContactSystem(OrbitSystem):
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """Exact Jacobian of the residual, shape (..., 2, 3)."""
-        o = self.orbit(y)
-        lam, end = o.amplitude[..., np.newaxis], o.release_phase[..., np.newaxis]
-        phase, flight = o.phase[..., np.newaxis], o.flight_time[..., np.newaxis]
-        bounce = o.bounce_velocity[..., np.newaxis]
-        # Derivatives along (φ, z′_i, Λ), the last axis.
-        d_phase, d_impact, d_lam = np.eye(3)
-        d_speed = d_impact - np.cos(phase) * d_lam + lam * np.sin(phase) * d_phase
-        by = o.contact_jacobian()
-
-        def along(row):
-            by_phase, by_speed, by_lam = (by[..., row, k, np.newaxis] for k in range(3))
-            return by_phase * d_phase + by_speed * d_speed + by_lam * d_lam
-
-        d_duration, d_displacement, d_velocity = (along(row) for row in range(3))
-        d_end, d_bounce = d_phase + d_duration, d_impact - d_duration
-        velocity = d_velocity + np.cos(end) * d_lam - lam * np.sin(end) * d_end - d_bounce
-        landing = (
-            d_displacement
-            + (np.sin(end) - np.sin(phase)) * d_lam
-            + lam * (np.cos(end) * d_end - np.cos(phase) * d_phase)
-            + flight * d_bounce
-            - (bounce - flight) * d_duration
-        )
-        return np.stack([velocity, landing], axis=-2)
+        return self.orbit(y).jacobian()

@@ -3,7 +3,7 @@
 import json
 import shlex
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import astuple
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ from bouncing_ball.provenance.origin import (
     Provenance,
     ProvenanceError,
     read_attributes,
+    read_provenance,
     versions,
 )
 from bouncing_ball.provenance.revision import UNKNOWN, checkout, revision
@@ -42,27 +43,15 @@ def _carriers(path: Path) -> list[Path]:
     return found
 
 
-def _provenance(path: Path) -> Provenance:
-    try:
-        return Provenance.of(read_attributes(path))
-    except ProvenanceError as error:
-        raise ProvenanceError(f"{path} carries no provenance: {error}") from None
-
-
 def _common(all_of: list[Provenance]) -> Provenance:
     """What several artifacts agree on; "several" for the rest."""
-    values = {
-        field.name: {getattr(one, field.name) for one in all_of} for field in fields(Provenance)
-    }
-    return Provenance(**{k: v.pop() if len(v) == 1 else _SEVERAL for k, v in values.items()})
+    parts = zip(*map(astuple, all_of), strict=True)
+    return Provenance(*(values[0] if len({*values}) == 1 else _SEVERAL for values in parts))
 
 
 def _parsed(text: str) -> Any:
     """JSON from an artifact; nothing where several artifacts differ."""
-    try:
-        return {} if text == _SEVERAL else json.loads(text)
-    except ValueError:
-        raise ProvenanceError(f"{printable(text, 60)} is not what this workflow writes") from None
+    return {} if text == _SEVERAL else json.loads(text)
 
 
 def flattened(mapping: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
@@ -82,16 +71,14 @@ def flattened(mapping: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
 
 def _parameters(path: Path, made: Provenance) -> dict[str, Any]:
     """The parameters, from the artifact's dataset if it is beside it and of the same commit."""
-    try:
-        attributes = read_attributes(path.with_suffix(".nc"))
-    except ProvenanceError:
-        return {}
+    beside = path.with_suffix(".nc")
+    attributes = read_attributes(beside) if beside.is_file() else {}
     if attributes.get(PREFIX + "commit") != made.commit:
         return {}
     return {
-        name: value.tolist() if isinstance(value, np.ndarray | np.generic) else value
+        name: np.asarray(value).tolist()
         for name, value in attributes.items()
-        if not name.startswith(PREFIX) and name not in ("title", "references")
+        if not name.startswith((PREFIX, "title", "references", "history", "Conventions"))
     }
 
 
@@ -122,14 +109,13 @@ def explain(file: Path, /) -> dict[str, Any]:
     ProvenanceError
         If the file is not one of this workflow, or carries no provenance.
     """
-    made = _common([_provenance(carrier) for carrier in _carriers(file)])
+    made = _common([read_provenance(carrier) for carrier in _carriers(file)])
     repository = checkout(Path.cwd(), Path(bouncing_ball.__file__).resolve())
     now = revision(repository) if repository else UNKNOWN
     checked_out = None if "unknown" in (made.commit, now.commit) else made.commit == now.commit
     target = made.target
     if file.suffix not in CARRIERS:
         target = f"results/{'' if file.name == 'paper.md' else 'figures/'}{file.name}"
-    running = versions()
     return {
         "file": str(file),
         "commit": made.commit,
@@ -139,7 +125,7 @@ def explain(file: Path, /) -> dict[str, Any]:
         "parameters": _parameters(file, made),
         "inputs": list(_parsed(made.inputs)),
         "versions": {
-            name: {"made_with": version, "running": running.get(name)}
+            name: {"made_with": version, "running": versions().get(name)}
             for name, version in _parsed(made.versions).items()
         },
         "make_again": _commands(made, target, checked_out),
@@ -151,20 +137,23 @@ def lines(answer: Mapping[str, Any]) -> list[str]:
     here = {None: "", True: " (checked out)", False: " (not checked out)"}
     tree = {"no": "clean", "yes": "dirty: the commit alone does not give this file"}
     changed = answer["configuration"]
-    rows = [
-        ("file", answer["file"]),
-        ("commit", answer["commit"] + here[answer["checked_out"]]),
-        ("tree", tree.get(answer["dirty"], answer["dirty"])),
-        ("configuration", "config/config.yaml" + (" with other values:" if changed else "")),
-        *((f"  {name}", json.dumps(value)) for name, value in changed.items()),
-        *((f"parameter {name}", value) for name, value in answer["parameters"].items()),
-        *(("input", path) for path in answer["inputs"]),
-    ]
+    rows = {
+        "file": answer["file"],
+        "commit": answer["commit"] + here[answer["checked_out"]],
+        "tree": tree.get(answer["dirty"], answer["dirty"]),
+        "configuration": "config/config.yaml" + (" with other values:" if changed else ""),
+        **{f"  {name}": json.dumps(value) for name, value in changed.items()},
+        **{f"parameter {name}": value for name, value in answer["parameters"].items()},
+        "inputs": ", ".join(answer["inputs"]),
+    }
     for name, item in answer["versions"].items():
         made, running = item["made_with"], item["running"]
-        rows.append((f"version of {name}", made if made == running else f"{made}, now {running}"))
-    # The content of a file moves no cursor; the commands must stay whole.
-    shown = [(printable(name), printable(value)) for name, value in rows]
-    shown.append(("make it again", printable(" && ".join(answer["make_again"]), None)))
-    width = max(32, max(len(name) for name, _ in shown) + 2)
-    return [f"{name:<{width}}{value}" for name, value in shown]
+        rows[f"version of {name}"] = made if made == running else f"{made}, now {running}"
+    rows["make it again"] = " && ".join(answer["make_again"])
+    # The content of a file moves no cursor; paths and commands must stay whole.
+    whole = ("inputs", "make it again")
+    width = max(30, *map(len, rows)) + 2
+    return [
+        f"{printable(name):<{width}}{printable(value, None if name in whole else 300)}"
+        for name, value in rows.items()
+    ]

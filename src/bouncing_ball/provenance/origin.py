@@ -13,7 +13,7 @@ from dataclasses import asdict, dataclass, fields
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Self
+from typing import Any
 
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.errors import ModelError
@@ -53,21 +53,6 @@ class Provenance:
     def attributes(self) -> dict[str, str]:
         """The provenance as attributes of a dataset, or metadata of a picture."""
         return {PREFIX + name: value for name, value in asdict(self).items()}
-
-    @classmethod
-    def of(cls, attributes: Mapping[str, Any]) -> Self:
-        """The provenance among the attributes of an artifact.
-
-        Raises
-        ------
-        ProvenanceError
-            If a part of it is missing.
-        """
-        names = {field.name: PREFIX + field.name for field in fields(cls)}
-        for name in names.values():
-            if name not in attributes:
-                raise ProvenanceError(f"no attribute {name}")
-        return cls(**{field: str(attributes[name]) for field, name in names.items()})
 
 
 def changes(config: Mapping[str, Any], written: Mapping[str, Any]) -> dict[str, Any]:
@@ -126,32 +111,40 @@ def read_attributes(path: Path) -> dict[str, Any]:
     ProvenanceError
         If the file is of another kind, cannot be read, or is damaged.
     """
-    if path.suffix not in CARRIERS:
-        raise ProvenanceError(f"{path} is not one of {', '.join(CARRIERS)}")
+    # Imported where they are needed: each takes a while.
     try:
-        return _attributes(path)
-    except FileNotFoundError:
-        raise ProvenanceError(f"{path} cannot be read: no such file") from None
+        match path.suffix:
+            case ".nc":
+                from netCDF4 import Dataset
+
+                with Dataset(path) as dataset:
+                    return {name: dataset.getncattr(name) for name in dataset.ncattrs()}
+            case ".png":
+                from PIL import Image
+
+                with Image.open(path, formats=["PNG"]) as picture:
+                    return {str(name): value for name, value in picture.info.items()}
+            case _:
+                from xml.etree import ElementTree
+
+                found = ElementTree.parse(path).find(f".//{_DESCRIPTION}")
+                return {} if found is None else dict(json.loads(found.text or "{}"))
     # The libraries raise errors of many types on a damaged file.
     except Exception:
         raise ProvenanceError(f"{path} cannot be read: damaged, or not ours") from None
 
 
-def _attributes(file: Path) -> dict[str, Any]:
-    # Imported here: each takes a while, and one of them is needed.
-    match file.suffix:
-        case ".nc":
-            from netCDF4 import Dataset
+def read_provenance(path: Path) -> Provenance:
+    """What a dataset or a picture carries.
 
-            with Dataset(file) as dataset:
-                return {name: dataset.getncattr(name) for name in dataset.ncattrs()}
-        case ".png":
-            from PIL import Image
-
-            with Image.open(file, formats=["PNG"]) as picture:
-                return {str(name): value for name, value in picture.info.items()}
-        case _:
-            from xml.etree import ElementTree
-
-            found = ElementTree.parse(file).find(f".//{_DESCRIPTION}")
-            return {} if found is None else dict(json.loads(found.text or "{}"))
+    Raises
+    ------
+    ProvenanceError
+        As :func:`read_attributes`, or if a part of it is missing.
+    """
+    attributes = read_attributes(path)
+    try:
+        return Provenance(*(str(attributes[PREFIX + field.name]) for field in fields(Provenance)))
+    except KeyError as missing:
+        why = f"no attribute {missing.args[0]}"
+        raise ProvenanceError(f"{path} carries no provenance: {why}") from None

@@ -9,10 +9,9 @@ import xarray as xr
 import yaml
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.figures.article.claim_texts import Claims
+from bouncing_ball.figures.article.claim_texts import Claims, places
 from bouncing_ball.figures.article.numbers import value_at
 from bouncing_ball.figures.article.pandoc import with_citations
-from bouncing_ball.figures.article.places import places
 from bouncing_ball.figures.article.render import render_article
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -76,7 +75,7 @@ def test_verdicts_come_from_the_claims(render):
 @pytest.mark.parametrize(
     ("template", "message"),
     [
-        ('{{ at("t", "x", 2, n=7) }}', "t: x: n = 7 is not among 1, 2"),
+        ('{{ at("t", "x", 2, n=7) }}', "t: x: n = 7 is not among [1, 2]"),
         ('{{ at("t", "x", 2) }}', "t: x at {} is 2 numbers, not one"),
         ('{{ claims("height") }}', "no claim 'height' in the ledger"),
     ],

@@ -1,12 +1,13 @@
 """Claims and their verdicts as an article needs them."""
 
+import re
 from types import SimpleNamespace
 
 import xarray as xr
 
+from bouncing_ball.datasets.selection import each
 from bouncing_ball.errors import ModelError
-from bouncing_ball.figures.article.places import places
-from bouncing_ball.figures.tables.claims import found_text
+from bouncing_ball.figures.tables.rows import found_text
 
 # One claim: the dataset's variables over ``claim`` by name, its ``id``, and
 # ``found`` as in the table of claims.
@@ -20,29 +21,26 @@ class Claims:
         self._data = data
         self._shown: set[str] = set()
         columns = [name for name, values in data.data_vars.items() if values.dims == ("claim",)]
-        self._claims = []
-        for index, name in enumerate(data.claim.values.tolist()):
-            row = data[columns].isel(claim=index)
-            texts = {str(key): row[key].item() for key in columns}
-            self._claims.append(ClaimRow(**texts | {"id": name, "found": found_text(row)}))
+        self._claims: dict[str, ClaimRow] = {}
+        for row in each(data[columns], "claim"):
+            texts = {str(name): row[name].item() for name in columns}
+            name = row.claim.item()
+            self._claims[name] = ClaimRow(**texts | {"id": name, "found": found_text(row)})
 
     def __call__(self, name: str) -> ClaimRow:
         """A claim by its id."""
-        for claim in self._claims:
-            if claim.id == name:
-                return claim
-        raise ModelError(f"no claim {name!r} in the ledger")
+        if name not in self._claims:
+            raise ModelError(f"no claim {name!r} in the ledger")
+        return self._claims[name]
 
     def about(self, *items: str) -> list[ClaimRow]:
         """The claims about a figure or equation, each only the first time; entries of
         tables are left out."""
-        wanted = set(items)
         found = [
             claim
-            for claim in self._claims
-            if places(claim.item) & wanted
-            and not claim.printed_table
-            and claim.id not in self._shown
+            for name, claim in self._claims.items()
+            if places(claim.item) & set(items) and not claim.printed_table
+            if name not in self._shown
         ]
         self._shown |= {claim.id for claim in found}
         return found
@@ -57,12 +55,8 @@ class Claims:
             group in ("all", claim.group, _counted_as(claim))
             and verdict in ("", claim.verdict)
             and table in ("", claim.printed_table)
-            for claim in self._claims
+            for claim in self._claims.values()
         )
-
-    def all(self, verdict: str) -> list[ClaimRow]:
-        """All claims with a verdict."""
-        return [claim for claim in self._claims if claim.verdict == verdict]
 
     def asked(self, name: str) -> bool:
         """Whether a claim has a verdict: the run has the paper's parameters for it."""
@@ -70,24 +64,41 @@ class Claims:
 
     def not_asked(self) -> list[str]:
         """Which parameters are not the paper's, so that claims are not asked."""
-        return sorted({claim.reason for claim in self.all("not asked")})
+        return sorted({self(name).reason for name in self._claims if not self.asked(name)})
 
     def explanations(self) -> list[dict[str, object]]:
         """Explanations of the claims that are asked and not reproduced, with those claims."""
-        names = ("explanation", "explanation_text", "explanation_holds", "explanation_checks")
-        columns = [self._data[name].values.tolist() for name in names]
+        parts = ("text", "holds", "checks")
         found: list[dict[str, object]] = []
-        for name, text, holds, checks in zip(*columns, strict=True):
+        for one in each(self._data, "explanation"):
             about = [
                 claim
-                for claim in self._claims
-                if claim.explained_by == name and claim.verdict not in ("reproduced", "not asked")
+                for claim in self._claims.values()
+                if claim.explained_by == one.explanation
+                and claim.verdict not in ("reproduced", "not asked")
             ]
             if about:
-                said = {"name": name, "text": text.strip(), "holds": holds, "checks": checks}
-                found.append(said | {"claims": about})
+                said = {part: one[f"explanation_{part}"].item() for part in parts}
+                found.append({"name": one.explanation.item(), "claims": about, **said})
         return found
 
 
 def _counted_as(claim: ClaimRow) -> str:
     return "restatement" if claim.group == "restatement" else "independent"
+
+
+def places(text: str) -> set[str]:
+    """The figures, tables and equations named in a text such as "Figs. 8-10 and Table 1".
+
+    Examples
+    --------
+    >>> sorted(places("Figs. 5, 6 and 8-10, Table 1"))
+    ['Fig. 10', 'Fig. 5', 'Fig. 6', 'Fig. 8', 'Fig. 9', 'Table 1']
+    """
+    found = set()
+    for kind, numbers in re.findall(r"(Fig|Eq|Table)s?\.? ((?:\d+(?:-\d+)?(?:, | and )?)+)", text):
+        dot = "" if kind == "Table" else "."
+        for first, last in re.findall(r"(\d+)(?:-(\d+))?", numbers):
+            span = range(int(first), int(last or first) + 1)
+            found |= {f"{kind}{dot} {number}" for number in span}
+    return found

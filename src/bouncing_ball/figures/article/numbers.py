@@ -15,8 +15,9 @@ FORMATS = ("decimal", "largest", "listed", "pairs", "percent", "short")
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
-def _not_finite(value: float) -> str:
-    return "–" if math.isnan(value) else f"{value:+.0f}".replace("+inf", "∞").replace("-inf", "−∞")
+def _typeset(number: str) -> str:
+    """A number as Python prints it, with a minus sign, infinity, and a dash where there is none."""
+    return number.replace("nan", "–").replace("inf", "∞").replace("-", "−")
 
 
 def decimal(value: float, digits: int) -> str:
@@ -27,10 +28,7 @@ def decimal(value: float, digits: int) -> str:
     >>> decimal(82.1774, 2), decimal(float("nan"), 2), decimal(float("inf"), 2)
     ('82.18', '–', '∞')
     """
-    value = float(value)
-    if not math.isfinite(value):
-        return _not_finite(value)
-    return f"{value:.{digits}f}".replace("-", "−")
+    return _typeset(f"{float(value):.{digits}f}")
 
 
 def short(value: float, digits: int = 6) -> str:
@@ -42,14 +40,12 @@ def short(value: float, digits: int = 6) -> str:
     ('0.85', '10⁴', '2.5·10⁻¹³')
     """
     value = float(value)
-    if not math.isfinite(value):
-        return _not_finite(value)
-    if value and not 1e-3 <= abs(value) < 1e4:
-        mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
-        factor = f"{float(mantissa):g}"
-        power = f"10{str(int(exponent)).translate(_SUPERSCRIPTS)}"
-        return power if factor == "1" else f"{factor}·{power}".replace("-", "−")
-    return f"{value:.{digits}g}".replace("-", "−")
+    if not (0 < abs(value) < 1e-3 or 1e4 <= abs(value) < math.inf):
+        return _typeset(f"{value:.{digits}g}")
+    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+    factor = f"{float(mantissa):g}"
+    power = f"10{str(int(exponent)).translate(_SUPERSCRIPTS)}"
+    return power if factor == "1" else _typeset(f"{factor}·{power}")
 
 
 def percent(share: float, digits: int = 3) -> str:

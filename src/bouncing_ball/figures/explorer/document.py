@@ -8,42 +8,31 @@ nothing else: the page can ask for nothing, from nowhere.
 import base64
 import hashlib
 import json
-from collections.abc import Mapping
 from importlib.resources import files
 
 import numpy as np
 import xarray as xr
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from bouncing_ball.datasets.selection import each
+
 BOUND = 1e-11
 """Difference from Python above which the badge is red: a hundred times the largest seen."""
 STATE = ("release", "restitution", "frequency_ratio", "n", "amplitude")
 """Parameters of a reference orbit, in the order of its ``state``."""
-SOURCES = ("model.js", "page.js", "page.css")
-
-
-def sources() -> dict[str, str]:
-    """The scripts and the style by name."""
-    folder = files(__package__)
-    return {name: folder.joinpath(name).read_text(encoding="utf-8") for name in SOURCES}
 
 
 def references(data: xr.Dataset) -> str:
     """The reference orbits as JSON, one in a line; what does not exist is null."""
     names = [str(name) for name in data.data_vars if name not in STATE]
     rows = []
-    for rule in data["release"].values:
-        part = data.sel(release=rule)
-        for k in range(data.sizes["sample"]):
-            one = part.isel(sample=k)
-            n = int(one["n"])
-            numbers = [float(one[name]) for name in ("restitution", "frequency_ratio")]
-            values = [float(one[name]) for name in names]
-            row = {
-                "state": [str(rule), *numbers, n, float(one["amplitude"])],
-                "values": [value if np.isfinite(value) else None for value in values],
-            }
-            rows.append(json.dumps(row, allow_nan=False))
+    for one in each(data, "release", "sample"):
+        values = [float(one[name]) for name in names]
+        row = {
+            "state": [one[name].item() for name in STATE],
+            "values": [value if np.isfinite(value) else None for value in values],
+        }
+        rows.append(json.dumps(row, allow_nan=False))
     commit = str(data.attrs.get("provenance_commit", "unknown"))
     head = f'{{"commit": {json.dumps(commit)}, "names": {json.dumps(names)}, "orbits": ['
     return "\n".join([head, ",\n".join(rows), "]}"])
@@ -55,19 +44,13 @@ def _allowed(text: str) -> str:
     return f"'sha256-{digest}'"
 
 
-def to_html(data: xr.Dataset, texts: Mapping[str, str] | None = None) -> str:
-    """The page.
-
-    Parameters
-    ----------
-    data : Dataset
-        The reference orbits (:mod:`bouncing_ball.studies.reference_orbits`).
-    texts : mapping, optional
-        The scripts and the style, if not those beside this module.
-    """
-    texts = sources() if texts is None else texts
-    script = f"\n{texts['model.js']}\n{texts['page.js']}"
-    style = f"\n{texts['page.css']}"
+def to_html(data: xr.Dataset) -> str:
+    """The page with reference orbits (:mod:`bouncing_ball.studies.reference_orbits`)."""
+    model, page, look = (
+        files(__package__).joinpath(name).read_text(encoding="utf-8")
+        for name in ("model.js", "page.js", "page.css")
+    )
+    script, style = f"\n{model}\n{page}", f"\n{look}"
     environment = Environment(
         loader=PackageLoader(str(__package__), "."), undefined=StrictUndefined, autoescape=False
     )

@@ -1,1 +1,1 @@
-"""Tables of datasets as text: ``rows(dataset)`` gives header and rows."""
+"""Tables of datasets as text: ``rows`` says what each shows, ``formats`` how it is written."""

@@ -11,7 +11,7 @@ from bouncing_ball.errors import ModelError
 
 Rows = Sequence[Sequence[str]]
 Table = tuple[list[str], list[list[str]]]
-"""Header and rows, which ``rows(dataset)`` of each table gives."""
+"""Header and rows."""
 
 
 def words(name: object) -> str:
@@ -25,15 +25,15 @@ def words(name: object) -> str:
     return str(name).replace("_", " ")
 
 
-def number(value: Any, form: str) -> str:
-    """A number in a format, or a dash where there is none.
+def number(value: Any, form: str, none: str = "–") -> str:
+    """A number in a format, or what stands where there is none.
 
     Examples
     --------
     >>> number(2.0, ".2f"), number(float("nan"), ".2f")
     ('2.00', '–')
     """
-    return f"{float(value):{form}}" if np.isfinite(value) else "–"
+    return f"{float(value):{form}}" if np.isfinite(value) else none
 
 
 def to_csv(header: Sequence[str], rows: Rows) -> str:

@@ -1,0 +1,188 @@
+"""The results of the calculator: each stands once, with its words and its unit.
+
+JSON has all of them under their names; the text and the page list those that have words.
+"""
+
+from dataclasses import dataclass, is_dataclass
+from typing import Annotated, Any, NamedTuple, get_type_hints
+
+from bouncing_ball.accuracy.quantities import Quantity
+from bouncing_ball.calculator.case import Case
+from bouncing_ball.calculator.units import shown
+
+Errors = dict[str, float | None]
+"""Relative errors by quantity; None where there is nothing to compare, or to divide by."""
+
+QUANTITIES = {
+    Quantity.MAX_HEIGHT: "greatest height",
+    Quantity.BOUNCE_VELOCITY: "bouncing-off velocity",
+    Quantity.PHASE: "phase of impact",
+    Quantity.APPARENT_RESTITUTION: "apparent restitution",
+    Quantity.SADDLE_NODE: "saddle-node",
+    Quantity.PERIOD_DOUBLING: "period doubling",
+    Quantity.PERMANENT_CONTACT: "threshold of permanent contact",
+}
+"""The quantities as a sentence calls them."""
+
+
+class Row(NamedTuple):
+    """How a result is listed: its words, and the unit of :func:`~.units.shown`."""
+
+    words: str
+    unit: str = ""
+
+
+def rows(result: Any) -> list[tuple[str, str]]:
+    """Words and text of all results that are listed, in order, those of parts within.
+
+    Examples
+    --------
+    >>> rows(TimeStep(2e-6, "a rule"))
+    [('largest time step', '2 µs')]
+    """
+    found = []
+    for name, hint in get_type_hints(type(result), include_extras=True).items():
+        value = getattr(result, name)
+        values = value.values() if isinstance(value, dict) else [value]
+        for row, each in zip(getattr(hint, "__metadata__", ()), values, strict=False):
+            text = ("no", "yes")[each] if isinstance(each, bool) else shown(each, row.unit)
+            found.append((row.words, text))
+        found += rows(value) if is_dataclass(value) else []
+    return found
+
+
+@dataclass(frozen=True)
+class Standing:
+    """Where a case stands in its family, in one model.
+
+    ``saddle_node`` and ``period_doubling`` are Λ; the margins are the shares by
+    which Λ may fall to the one, ``1 - Λ_SN/Λ``, and rise to the other,
+    ``Λ_PD/Λ - 1``. None where there is no such bifurcation.
+    """
+
+    exists: Annotated[bool, Row("exists")]
+    is_stable: Annotated[bool, Row("stable")]
+    is_admissible: bool
+    saddle_node: Annotated[float | None, Row("saddle-node at Λ")]
+    saddle_node_margin: Annotated[float | None, Row("  Λ may fall by", "%")]
+    period_doubling: Annotated[float | None, Row("period doubling at Λ")]
+    period_doubling_margin: Annotated[float | None, Row("  Λ may rise by", "%")]
+
+
+@dataclass(frozen=True)
+class Family:
+    """The n-T orbit of a case, in SI units, and how wrong the simple models are.
+
+    ``exists``, ``is_stable`` and ``is_admissible`` are those of the exact model, which comes
+    first in ``standing``. The errors are the moduli of relative errors: ``errors`` of the
+    restitution and ``corrected_errors`` of the corrected model, ``law_errors`` those of the
+    restitution model by the error law, which is stated where ``law_holds``.
+    """
+
+    n: int
+    exists: bool
+    is_stable: bool
+    is_admissible: bool
+    standing: dict[str, Standing]
+    max_height: Annotated[float | None, Row("greatest height", "m")]
+    impact_speed: Annotated[float | None, Row("impact speed", "m/s")]
+    contact_duration: Annotated[float | None, Row("duration of contact", "s")]
+    greatest_compression: Annotated[float | None, Row("greatest compression", "m")]
+    peak_force: Annotated[float | None, Row("peak force", "N")]
+    peak_force_over_weight: Annotated[float | None, Row("peak force over weight")]
+    errors: Errors
+    corrected_errors: Errors
+    law_errors: Errors
+    law_holds: bool
+
+
+@dataclass(frozen=True)
+class Needed:
+    """The contact from which on the error of a quantity stays within a tolerance.
+
+    ``frequency_ratio`` is the largest ϖ at which the restitution model's error
+    crosses the tolerance, if its ``status`` is "found"; ``by_law`` is |K|/ε of the error
+    law (the root of |K₂|/ε for the permanent contact), ``corrected`` the largest crossing
+    of the corrected model. None where there is none; the status says why.
+    """
+
+    quantity: str
+    tolerance: float
+    frequency_ratio: float | None
+    by_law: float | None
+    corrected: float | None
+    status: str
+    corrected_status: str
+
+
+@dataclass(frozen=True)
+class TimeStep:
+    """The largest time step that resolves the contact, in s, and where the rule is from."""
+
+    largest: Annotated[float, Row("largest time step", "s")]
+    rule: str
+
+
+@dataclass(frozen=True)
+class PermanentContact:
+    """Λ up to which the ball stays down, in the contact and in the restitution model.
+
+    ``margin`` is the share by which Λ may fall to the threshold; below zero the ball may
+    stay down. None of a Hertz contact, whose stiffness at rest is that of its static deflection.
+    """
+
+    threshold: Annotated[float | None, Row("permanent contact up to Λ")]
+    restitution_threshold: Annotated[float, Row("  in the restitution model")]
+    margin: float | None
+
+
+@dataclass(frozen=True)
+class Corrected:
+    """The three numbers of the corrected restitution model, in SI units.
+
+    The impact is an instant t_c = ``delay`` after the ball touches, with the
+    restitution ``r + σ a/v``: σ = ``load`` is a time, a the acceleration that
+    presses the ball to the table and v the impact speed.
+    """
+
+    delay: Annotated[float, Row("corrected model, delay t_c", "s")]
+    restitution: Annotated[float, Row("corrected model, restitution r")]
+    load: Annotated[float, Row("corrected model, load σ", "s")]
+
+
+@dataclass(frozen=True)
+class Design:
+    """What an engineer needs to know of a contact; times in s, lengths in m, forces in N.
+
+    ``frequency_ratio``, ``damping_ratio`` and ``amplitude`` are ϖ, ζ and Λ; ``restitution``
+    is that of a free impact by the release rule; ``n`` is the family of the verdict.
+    """
+
+    frequency_ratio: Annotated[float, Row("frequency ratio ϖ")]
+    damping_ratio: Annotated[float, Row("damping ratio ζ")]
+    amplitude: Annotated[float, Row("excitation amplitude Λ")]
+    stiffness: Annotated[float, Row("stiffness", "N/m")]
+    damping: Annotated[float, Row("damping", "N s/m")]
+    contact_time: Annotated[float, Row("contact time", "s")]
+    time_step: TimeStep
+    static_deflection: Annotated[float, Row("static deflection", "m")]
+    restitution: Annotated[
+        dict[str, float],
+        Row("restitution, released at δ = 0"),
+        Row("restitution, released without force"),
+    ]
+    permanent_contact: PermanentContact
+    corrected: Corrected
+    orbits: tuple[Family, ...]
+    needed: Needed
+    is_good_enough: bool
+    verdict: str
+    reason: str
+    notes: tuple[str, ...]
+    case: Case
+    n: int
+
+    @property
+    def judged(self) -> Family:
+        """The family of the verdict."""
+        return next(one for one in self.orbits if one.n == self.n)

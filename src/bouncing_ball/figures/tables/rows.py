@@ -1,0 +1,276 @@
+"""The tables of the run: for each a function of its dataset, named as the table.
+
+A table is its parts, one for each row, and its columns: see :mod:`.layout`.
+"""
+
+import csv
+import io
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.datasets.rounding import compared_text
+from bouncing_ball.datasets.selection import each
+from bouncing_ball.figures.tables.formats import Table, number, to_markdown, words
+from bouncing_ball.figures.tables.layout import Columns, at, quantity, table, text, value
+
+_SHOWN = ("orbits", "stated", "exceed", "exceed elsewhere", "largest M", "5 %", "50 %", "95 %")
+
+
+def table1(data: xr.Dataset) -> Table:
+    """Stability ranges over Λ: each end of each range computed, printed, and their difference.
+
+    The last unit is that of the last printed digit, 0.001. Nothing is compared in the rows of
+    the restitution model.
+    """
+    ends: Columns = {"n": text("n"), "bound": text("bound")}
+    contacts: Columns = {
+        "ϖ": value("frequency_ratio", "g"),
+        **ends,
+        "computed": value("computed", ".5f"),
+        "printed": value("printed", ".3f", ""),
+        "difference": lambda part: number(part.computed - part.printed, "+.5f", ""),
+    }
+    maps: Columns = {
+        "map": lambda part: f"restitution ({part.impact_map.item()} map)",
+        **ends,
+        "computed": value("restitution_range", ".5f"),
+        **dict.fromkeys(("printed", "difference"), lambda part: ""),
+    }
+    header, body = table(each(data, "frequency_ratio", *ends), contacts)
+    return header, body + table(each(data, "impact_map", *ends), maps)[1]
+
+
+def thresholds(data: xr.Dataset) -> Table:
+    """ϖ needed for each tolerance, quantity by quantity.
+
+    Where the threshold lies outside the range scanned, the entry is the end of
+    the range after < or >.
+    """
+    low, high = (f"{float(data.frequency_ratio[k]):g}" for k in (0, -1))
+    found = _threshold(".5g", f"< {low}", f"> {high}")
+    columns = {f"{100 * each:g} %": at(found, tolerance=each) for each in data.tolerance.values}
+    return table(each(data, "quantity"), {"quantity": quantity, **columns})
+
+
+def _threshold(form: str, within: str, never: str):
+    """A column of thresholds, or what is said where they are outside the range scanned."""
+
+    def column(part: xr.Dataset) -> str:
+        status = part.threshold_status.item()
+        if status == "found":
+            return number(part.error_threshold, form)
+        return within if status.startswith("within") else never
+
+    return column
+
+
+def formulas(data: xr.Dataset) -> Table:
+    """Printed formulas: compared with what, disagreement, what is allowed.
+
+    Disagreements of the size of rounding are given by their bound.
+    """
+    columns: Columns = {
+        "formula": text("formula"),
+        "compared with": text("compared_with"),
+        "largest disagreement": lambda part: compared_text(
+            float(part.disagreement), float(part.budget), ".1e"
+        ),
+        "allowed": value("budget", ".0e"),
+    }
+    return table(each(data, "formula"), columns)
+
+
+def forensics(data: xr.Dataset) -> Table:
+    """Readings of Table 1, the closest first; differences in last digits.
+
+    A dash is where a reading has no orbit.
+    """
+    columns: Columns = {"rank": text("rank"), "reading": text("reading")}
+    for name in data.rows.values[:2]:
+        columns[f"largest, {name}"] = at(value("largest_difference", ".2f"), rows=name)
+        columns[f"rms, {name}"] = at(value("rms_difference", ".2f"), rows=name)
+    for name in data.rows.values[:2]:
+        columns[f"reproduced, {name}"] = at(
+            lambda part: f"{int(part.reproduced)} of {int(part.entries)}", rows=name
+        )
+    columns["printed below every orbit"] = text("unreachable")
+    return table(each(data, "reading"), columns)
+
+
+def witness(data: xr.Dataset) -> Table:
+    """Largest disagreement between the routes to the orbits of each figure or table.
+
+    An entry is a bound of the largest disagreement, which is the budget unless
+    it is exceeded, and in brackets the number of orbits. The disagreement itself
+    is rounding, and no two processors have the same.
+    """
+
+    def entry(part: xr.Dataset) -> str:
+        found, allowed = float(part.disagreement), float(part.budget)
+        text = f"≤ {allowed:.0e}" if found <= allowed else f"{found:.1e}"
+        return f"{text} ({int(part.orbits)})" if part.orbits else "–"
+
+    kinds = {str(kind): at(entry, comparison=kind) for kind in data.comparison.values}
+    header, body = table(each(data, "artifact"), {"artifact": text("artifact"), **kinds})
+    return header, [["budget", *(f"{float(value):.0e}" for value in data.budget.values)], *body]
+
+
+def claims(data: xr.Dataset) -> Table:
+    """Claims of the paper: place, statement, number, deviation, verdict.
+
+    The column "printed or required" has the printed number, or the bound that a
+    formula or a statement must meet.
+    """
+    columns: Columns = {
+        "claim": text("claim"),
+        "where": text("item"),
+        "what the paper says": text("statement"),
+        "printed or required": text("required"),
+        "found": found_text,
+        "deviation": deviation_text,
+        "verdict": text("verdict"),
+    }
+    return table(each(data, "claim"), columns)
+
+
+def found_text(claim: xr.Dataset) -> str:
+    """The number found: two digits more than printed, or four in all, or its bound
+    where that is of the size of rounding."""
+    printed = claim.printed_text.item()
+    if not printed and np.isfinite(claim.found):
+        return compared_text(float(claim.found), float(claim.limit))
+    return number(claim.found, f".{len(printed.partition('.')[2]) + 2}f")
+
+
+def deviation_text(claim: xr.Dataset) -> str:
+    """In units of the last printed digit, and in per cent."""
+    units, share = float(claim.deviation_units), float(claim.deviation)
+    return "" if np.isnan(units) else f"{units:+.2f} ({100 * share:+.3g} %)"
+
+
+def ext_error_law(data: xr.Dataset) -> Table:
+    """The error law by quantity; the permanent contact last, without a correction.
+
+    C is the corrected model's error times ϖ²; the last column is the ϖ at which
+    the restitution model's error passes through zero by accident.
+    """
+    found = _threshold(".4g", "all", "none")
+    columns: Columns = {
+        "quantity": quantity,
+        "K": value("coefficient", ".4f"),
+        "C": value("second_order", ".4f"),
+        "law": value("law_threshold", ".4g"),
+        **{str(model): at(found, model=model) for model in data.model.values},
+        "error zero at": value("error_zero", ".3g"),
+    }
+    permanent: Columns = {
+        "quantity": lambda part: "permanent contact, second order",
+        "K": value("permanent_coefficient", ".4f"),
+        "C": lambda part: "–",
+        "law": value("permanent_law", ".4g"),
+        "restitution": value("permanent_threshold", ".4g"),
+        **dict.fromkeys(("corrected", "error zero at"), lambda part: "–"),
+    }
+    header, body = table(each(data, "quantity"), columns)
+    return header, body + table([data], permanent)[1]
+
+
+def law_table(summary: str) -> str:
+    r"""The error law on random orbits, over the whole range of ϖ, as Markdown.
+
+    Parameters
+    ----------
+    summary : str
+        The text of ``config/error_law.csv``, which is accepted by hand.
+
+    Examples
+    --------
+    >>> header = "release,quantity,from,to," + ",".join(_SHOWN)
+    >>> law_table(header + "\nforce,phase,1,10000,9,8,0,0,3.1,1,1,1\n").splitlines()[-1]
+    '| force | phase | 9 | 8 | 0 | 0 | 3.1 | 1 | 1 | 1 |'
+    """
+    body = [
+        [row["release"], words(row["quantity"]), *(row[name] for name in _SHOWN)]
+        for row in csv.DictReader(io.StringIO(summary))
+        if (row["from"], row["to"]) == ("1", "10000")
+    ]
+    return to_markdown(["release", "quantity", *_SHOWN], body)
+
+
+def ext_hertz(data: xr.Dataset) -> Table:
+    """Stability ranges on contacts of other laws, from saddle-node to period doubling."""
+
+    def ends(part: xr.Dataset) -> str:
+        return "–".join(f"{end:.4f}" for end in part.bifurcation_amplitude.values)
+
+    families = {f"n = {n}": at(ends, n=n) for n in data.n.values}
+    columns = {"law": text("law"), "π/D": value("shown_ratio", "g"), **families}
+    return table(each(data, "law", "shown_ratio"), columns)
+
+
+def ext_laws(data: xr.Dataset) -> Table:
+    """Errors on contacts of five laws with the same restitution coefficient and duration.
+
+    Both models at three π/D, the softest, the middle and the stiffest of the grid, and the
+    height's threshold.
+    """
+    grid = data.duration_ratio.values
+    columns: Columns = {"quantity": quantity, "law": text("law")}
+    for model in data.model.values:
+        for ratio in grid[[0, round((len(grid) - 1) / 2), -1]]:
+            error = at(value("relative_error", ".2g"), model=model, duration_ratio=ratio)
+            columns[f"{model}, π/D = {ratio:.3g}"] = error
+    columns[f"π/D for {100 * data.attrs['tolerance']:g} %"] = lambda part: (
+        number(part.error_threshold, ".4g") if part["quantity"] == "max_height" else "–"
+    )
+    return table(each(data, "quantity", "law"), columns)
+
+
+def ext_validity(data: xr.Dataset) -> Table:
+    """The ϖ from which each model is right, over r, n and Λ/Λ_SN.
+
+    A star marks a restitution model whose error passes through zero above that ϖ:
+    by accident, so that it looks better there than it is. A dash is outside the
+    stable range of the restitution model. The limits of a family are the same at every Λ.
+    """
+    low, high = (data.attrs[f"frequency_ratio__{end}"] for end in ("min", "max"))
+
+    def entry(part: xr.Dataset) -> str:
+        if not part.within:
+            return "–"
+        found = float(part.error_threshold)
+        # The end of the range itself, but for rounding.
+        shown = f"< {low:g}" if found <= low * (1 + 1e-6) else number(found, ".3g", f"> {high:g}")
+        return shown + "*" * bool(part.model == "restitution" and part.accident)
+
+    there = data.error_threshold.notnull().any(("model", "quantity"))
+    data = data.assign(within=there, accident=accidental(data))
+    limits = data["quantity"].isin(("saddle_node", "period_doubling"))
+    columns: Columns = {
+        "quantity": quantity,
+        "n": text("n"),
+        "model": text("model"),
+        "Λ/Λ_SN": lambda part: "any" if part.limits else number(part.amplitude_ratio, "g"),
+        **{f"r = {r:g}": at(entry, restitution=r) for r in data.restitution.values},
+    }
+    parts = each(data.assign(limits=limits), "quantity", "n", "model", "amplitude_ratio")
+    first = data.amplitude_ratio[0]
+    return table((one for one in parts if not one.limits or one.amplitude_ratio == first), columns)
+
+
+def accidental(data: xr.Dataset) -> xr.DataArray:
+    """Whether its error passes through zero above the ϖ from which it is within the tolerance.
+
+    The restitution model's error then changes its sign there, and would be beyond the tolerance
+    otherwise.
+
+    Examples
+    --------
+    >>> data = xr.Dataset(
+    ...     {"error_threshold": (("model", "restitution"), [[3.0, 80.0]]),
+    ...      "error_zero": ("restitution", [9.0, 2.0])}, coords={"model": ["restitution"]})
+    >>> accidental(data).values.tolist()
+    [True, False]
+    """
+    return data.error_zero > data.error_threshold.sel(model="restitution", drop=True)

@@ -6,7 +6,7 @@ of the corrected one. The law of the first order is that of
 :mod:`bouncing_ball.accuracy.error_law`.
 """
 
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 import xarray as xr
@@ -198,13 +198,14 @@ def meeting_flights(parameters: Meeting, release: Release) -> xr.Dataset:
         If the orbit does not exist.
     """
     exact = parameters.exact(parameters.frequency_ratio, release)
-    orbit: Any = exact.require_orbit(parameters.n, parameters.amplitude)
+    orbit = exact.require_orbit(parameters.n, parameters.amplitude)
     end = float(orbit.contact_duration)
     time = np.linspace(-0.6 * end, 1.6 * end, parameters.samples)
     inside, within = (time >= 0) & (time <= end), np.clip(time, 0, end)
     start, velocity = orbit.contact_path(np.zeros(()))
     before, (after, _) = start + (velocity - time / 2) * time, orbit.flight_path(time)
     touching, _ = orbit.contact_path(within)
+    force = exact.contact.force(*-np.array(orbit.contact_motion(within)))
     # The meeting point of the two parabolas, exact; and where the signature has it.
     jump = float(orbit.bounce_velocity + end - orbit.impact_velocity)
     apart = float(orbit.bounce_height - (start + (velocity - end / 2) * end))
@@ -215,7 +216,7 @@ def meeting_flights(parameters: Meeting, release: Release) -> xr.Dataset:
             "table": ("time", orbit.amplitude * np.sin(orbit.phase + time)),
             "flight_before": ("time", before),
             "flight_after": ("time", after),
-            "contact_force": ("time", inside * (orbit.contact_acceleration(within) + 1)),
+            "contact_force": ("time", inside * force),
             "contact_duration": ((), end),
             "meeting_time": ((), meeting),
             "meeting_height": ((), float(start + (velocity - meeting / 2) * meeting)),

@@ -64,7 +64,7 @@ def _under(rule: Release, omega: np.ndarray, seed: int) -> xr.Dataset:
         "saddle_node_amplitude": exact.saddle_node(n).amplitude,
         "period_doubling_amplitude": exact.period_doubling(n).amplitude,
         "ball": orbit.contact_path(middle)[0],
-        "contact_force": orbit.contact_acceleration(middle) + 1,
+        "contact_force": exact.contact.force(*-np.array(orbit.contact_motion(middle))),
         "restitution_phase": by_r.phase,
         "restitution_trace": by_r.trace_and_determinant()[0],
         "restitution_period_doubling": simple.period_doubling(n).amplitude,

@@ -146,8 +146,7 @@ def stiff_orbit_error(data: Data) -> xr.DataArray:
             "phase": sweep.phase / phase - 1,
             "phase in cycles": (sweep.phase - phase) / (2 * np.pi),
         }
-        columns = [np.abs(error).reset_coords(drop=True) for error in errors.values()]
-        return worst_when_stiff(xr.concat(columns, xr.Variable("measure", list(errors))))
+        return worst_when_stiff(abs(xr.Dataset(errors).to_dataarray("measure")))
 
     worst = _curves(data, ("fig05", "fig06", "fig10"), "orbit", of)
     return worst.transpose("orbit", "measure")

@@ -59,7 +59,7 @@ class BranchPoint(NamedTuple):
 
     ``x``, ``y``, ``u`` are Λ cos φ, Λ sin φ and the relative impact velocity;
     ``contact_duration`` is D; ``d_x``, ``d_y`` the derivatives dX/dε and dY/dε;
-    ``trace`` and ``determinant`` those of the monodromy.
+    ``determinant`` that of the monodromy, ``saddle_node`` the ``1 - tr + det`` of it.
     """
 
     contact_duration: np.ndarray
@@ -68,8 +68,13 @@ class BranchPoint(NamedTuple):
     u: np.ndarray
     d_x: np.ndarray
     d_y: np.ndarray
-    trace: np.ndarray
+    saddle_node: np.ndarray
     determinant: np.ndarray
+
+    @property
+    def trace(self) -> np.ndarray:
+        """Trace of the monodromy."""
+        return 1 + self.determinant - self.saddle_node
 
     @property
     def amplitude(self) -> np.ndarray:
@@ -245,8 +250,7 @@ def _branch_point(eps, omega, zeta, sine, n) -> BranchPoint:
     with np.errstate(divide="ignore", invalid="ignore"):
         saddle = matrix * (x * d_x + y * d_y) / (u * along[0])
     determinant = decay * decay + 0 * u
-    trace = 1 + determinant - saddle
-    return BranchPoint(duration, x, y, u, d_x * per_angle, d_y * per_angle, trace, determinant)
+    return BranchPoint(duration, x, y, u, d_x * per_angle, d_y * per_angle, saddle, determinant)
 
 
 # Gauss-Newton from a start that is right to rounding of D converges at once.

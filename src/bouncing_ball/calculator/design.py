@@ -219,8 +219,7 @@ def _choose(
 
 def _judged(found: Sequence[Family]) -> Family:
     """The family that a verdict is about: the first stable one, or the first there is."""
-    steady = [one for one in found if one.exists and one.is_stable and one.is_admissible]
-    return (steady or [one for one in found if one.exists] or list(found))[0]
+    return max(found, key=lambda one: (one.exists, one.is_stable and one.is_admissible))
 
 
 def _design(

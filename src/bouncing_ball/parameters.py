@@ -89,15 +89,6 @@ LawRestitution = Annotated[
         "restitution coefficient r; contacts of every law have r from 0.3 to 0.99", ge=0.3, le=0.99
     ),
 ]
-ThresholdRestitution = Annotated[
-    float,
-    number(
-        "restitution coefficient r; the threshold of permanent contact has a minimum over ϖ where "
-        "ζ < 1/√2 (Eq. 36), which is r > e^-π",
-        gt=0.0433,
-        le=1,
-    ),
-]
 Amplitude = Annotated[
     float,
     number(

@@ -23,13 +23,8 @@ STEEL = {"mass": "20 g", "frequency": "50 Hz", "acceleration": "0.8 g", "stiffne
 PAPER = {"mass": 0.02, "frequency": 50.0, "acceleration": "1 g", "restitution": 0.65, "n": 1}
 # SI units in which mass, Ω and g are 1: ϖ² is the stiffness and Λ the acceleration.
 UNIT = {"mass": 1.0, "angular_frequency": 1.0, "gravity": 1.0, "restitution": 0.85, "n": 1}
-HERTZ = {
-    "mass": "4 g",
-    "frequency": "50 Hz",
-    "acceleration": "0.8 g",
-    "reduced_modulus": "115 GPa",
-    "radius": "5 mm",
-}
+SHAKEN = {"mass": "4 g", "frequency": "50 Hz", "acceleration": "0.8 g"}
+HERTZ = SHAKEN | {"reduced_modulus": "115 GPa", "radius": "5 mm"}
 
 
 @pytest.fixture(scope="module")
@@ -181,10 +176,7 @@ def test_a_hertz_contact_is_judged_by_its_own_orbits():
         # To first order the law knows any contact by its signature.
         assert law[name] == pytest.approx(errors[name], rel=0.1)
         assert corrected[name] < 0.02 * errors[name]
-    linear = design(
-        **{k: v for k, v in HERTZ.items() if k not in ("reduced_modulus", "radius")},
-        restitution=0.65, contact_time=found.contact_time, n=1,
-    )  # fmt: skip
+    linear = design(**SHAKEN, restitution=0.65, contact_time=found.contact_time, n=1)
     assert linear.frequency_ratio == pytest.approx(found.frequency_ratio, rel=1e-12)
     assert linear.orbits[0].errors["max_height"] != errors["max_height"]
     # What is not known of it is neither claimed nor judged.
@@ -263,44 +255,50 @@ def test_the_error_law_holds_up_to_its_small_parameter():
         assert found.orbits[0].law_holds is holds
 
 
+FAINT = {"acceleration": "0.1 g"}
+
+
 @pytest.mark.parametrize(
-    ("change", "kind", "says"),
+    ("change", "says"),
     [
-        ({"acceleration": "0.1 g"}, NoOrbitError, "n-T orbit in any model: the table's"),
-        ({"acceleration": "0.1 g", "n": 1}, NoOrbitError, "and the 1-T orbit needs 0.2526"),
-        ({"acceleration": "0.1 g", "stiffness": None}, NoOrbitError, "below the saddle-node"),
-        ({"n": 9}, NoOrbitError, "no 9-T orbit in any model"),
-        ({"n": 1.5}, ModelError, "not a positive integer"),
-        ({"stiffness": -1.0}, ModelError, "stiffness = -1 N/m is not positive"),
-        ({"mass": None}, ModelError, "mass is missing"),
-        ({"frequency": None}, ModelError, "how fast the table moves is missing"),
-        ({"acceleration": None}, ModelError, "how far the table moves is missing"),
-        ({"amplitude": "1 mm"}, ModelError, "contradict each other"),
-        ({"quantity": "colour"}, ModelError, "one of max_height"),
-        ({"release": "glue"}, ModelError, "unknown release"),
-        ({"restitution": 0.0}, ModelError, "restitution = 0.0 is not in (0, 1]"),
-        (
-            {"restitution": None, "damping_ratio": 0.9999999},
-            ModelError,
-            "damping_ratio = 0.9999999",
-        ),
-        ({"restitution": None, "damping": "5 N s/m", "stiffness": None}, ModelError, "missing"),
-        ({"stiffness": 1e40}, ModelError, "ϖ = "),
-        # Its square is beyond all numbers, or below them.
-        ({"frequency": 1e300}, ModelError, "frequency = 1e+300 Hz is not between 1e-40 and 1e+40"),
-        ({"mass": 1e-300}, ModelError, "mass = 1e-300 kg is not between"),
-        ({"stiffness": None, "restitution": 1.0, "quantity": "saddle_node"}, NoOrbitError, "1e+06"),
-        (
-            {"stiffness": None, "reduced_modulus": 1e11, "radius": 1.0, "release": "force"},
-            ModelError,
-            "released at δ = 0",
-        ),
+        (FAINT, "no n-T orbit in any model: the table's"),
+        (FAINT | {"n": 1}, "and the 1-T orbit needs 0.2526"),
+        (FAINT | {"stiffness": None}, "below the saddle-node"),
+        ({"n": 9}, "no 9-T orbit in any model"),
+        ({"stiffness": None, "restitution": 1.0, "quantity": "saddle_node"}, "no contact up to"),
     ],
 )
-def test_mistakes(change, kind, says):
-    with pytest.raises(kind) as error:
+def test_no_orbit_or_no_contact(change, says, one_line):
+    with pytest.raises(NoOrbitError) as error:
         design(**{**STEEL, "restitution": 0.85, **change})
-    assert says in str(error.value) and "\n" not in str(error.value)
+    one_line(error, says)
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"n": 1.5}, "not a positive integer"),
+        ({"stiffness": -1.0}, "stiffness = -1 N/m is not positive"),
+        ({"mass": None}, "mass is missing"),
+        ({"frequency": None}, "how fast the table moves is missing"),
+        ({"acceleration": None}, "how far the table moves is missing"),
+        ({"amplitude": "1 mm"}, "contradict each other"),
+        ({"quantity": "colour"}, "one of max_height"),
+        ({"release": "glue"}, "unknown release"),
+        ({"restitution": 0.0}, "restitution = 0.0 is not in (0, 1]"),
+        ({"restitution": None, "damping_ratio": 0.9999999}, "damping_ratio = 0.9999999"),
+        ({"restitution": None, "damping": "5 N s/m", "stiffness": None}, "missing"),
+        ({"stiffness": 1e40}, "ϖ = "),
+        # Its square is beyond all numbers, or below them.
+        ({"frequency": 1e300}, "frequency = 1e+300 Hz is not between 1e-40 and 1e+40"),
+        ({"mass": 1e-300}, "mass = 1e-300 kg is not between"),
+        (HERTZ | {"stiffness": None, "release": "force"}, "released at δ = 0"),
+    ],
+)
+def test_mistakes(change, says, one_line):
+    with pytest.raises(ModelError) as error:
+        design(**{**STEEL, "restitution": 0.85, **change})
+    one_line(error, says)
 
 
 def test_the_orbit_of_a_choice_is_that_of_the_restitution_model():

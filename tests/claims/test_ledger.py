@@ -1,7 +1,5 @@
 """The claims of the paper on the accepted datasets: complete, decided, explained."""
 
-import copy
-import re
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +9,6 @@ import yaml
 from bouncing_ball.claims.ledger import CLAIMS, EXPLANATIONS, READS, ledger
 from bouncing_ball.claims.parameters import PARAMETERS
 from bouncing_ball.claims.tally import tally
-from bouncing_ball.configuration.study import arguments
 from bouncing_ball.datasets.netcdf import attribute_name, parameter_attributes
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -136,48 +133,6 @@ def test_every_parameter_is_the_papers_or_harmless(name):
     needed = set(PARAMETERS[name])
     assert not needed & harmless
     assert set(parameter_attributes(section)) == {attribute_name(x) for x in needed | harmless}
-
-
-# All that a user may change at once.
-OTHER = {
-    ("figures", "fig03", "n"): [2],
-    ("figures", "fig05", "frequency_ratio"): {"min": 2.0, "max": 50.0, "samples": 11},
-    ("figures", "fig06", "cases"): [{"restitution": 0.6, "amplitude": 1.0}],
-    ("figures", "fig08", "frequency_ratio"): [5.0],
-    ("release",): "force",
-}
-# The formulas do not depend on any of this, nor do the three routes.
-ASKED_ANYWAY = {claim.id for claim in CLAIMS if claim.kind == "formula"} | {
-    *(
-        "needs continuation",
-        "equations cited",
-        "frequency ratio",
-        "static table",
-        "kinds of motion",
-    ),
-    "damping of 0.85",
-}
-
-
-def test_what_was_computed_with_other_parameters_is_not_asked(data, stages):
-    """The accepted numbers, as if they had been computed with these parameters."""
-    config = copy.deepcopy(CONFIG)
-    for keys, value in OTHER.items():
-        section = config
-        for key in keys[:-1]:
-            section = section[key]
-        section[keys[-1]] = value
-    changed = {}
-    for name, dataset in data.items():
-        settings = arguments(stages[name], name, config)
-        given = settings.pop("parameters", {}) | settings if name != "witness" else {}
-        changed[name] = dataset.assign_attrs(parameter_attributes(given))
-    result = ledger(changed)
-    asked = (result.verdict != "not asked").values
-    words = re.compile(r"\w+ was computed with \S+ = .*; the claim requires .*")
-    assert all(words.fullmatch(text) for text in result.reason.values[~asked].tolist())
-    assert result.explained.values[~asked].all()
-    assert set(result.claim.values[asked].tolist()) == ASKED_ANYWAY
 
 
 @pytest.mark.parametrize("claim", FOUND)

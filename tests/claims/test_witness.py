@@ -16,6 +16,7 @@ from bouncing_ball.claims.witness import (
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import ModelError
 from bouncing_ball.figures.tables.rows import witness as rows
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.studies.continuation import Continuation
 from bouncing_ball.studies.orbit_branches import Domains, orbit_branches
@@ -88,6 +89,19 @@ def test_one_orbit_that_is_not_a_number_is_seen(recorded):
     data.phase.values[2, 7] = np.nan
     with pytest.raises(CrossCheckError, match="disagree by inf"):
         witness({"fig05": data})
+
+
+@pytest.mark.parametrize("blind", ["nearest", "system"])
+def test_formula_and_equations_each_see_what_is_off(recorded, monkeypatch, blind):
+    data = recorded["fig05"].copy(deep=True)
+    data.phase.values[:] += 1e-9
+    with monkeypatch.context() as patch:
+        if blind == "nearest":
+            patch.setattr(SpringDamperModel, "nearest", lambda self, orbit: orbit)
+        else:
+            patch.setattr("bouncing_ball.claims.witness._by_equations", lambda _, near: near)
+        with pytest.raises(CrossCheckError, match=FORMULA):
+            witness({"fig05": data})
 
 
 @pytest.mark.parametrize(

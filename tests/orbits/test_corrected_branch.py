@@ -5,9 +5,10 @@ import pytest
 
 from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.orbits import corrected_branch, stability
+from bouncing_ball.orbits import corrected_branch
 from bouncing_ball.orbits import spring_damper_limits as limits
 from bouncing_ball.orbits.spring_damper_branch import branch_point
+from bouncing_ball.orbits.stability import Bifurcation
 
 RELEASES = list(Release)
 
@@ -36,11 +37,11 @@ def test_multipliers_at_the_bifurcations(release):
     psi = corrected_branch.instant_phase(n, instant, fold * (1 + 1e-15))
     trace, det = corrected_branch.trace_and_determinant(n, instant, fold, psi)
     # The phase at the fold has half the digits, and so has the test function.
-    assert np.all(np.abs(stability.saddle_node_function(trace, det)) < 1e-6)
+    assert np.all(np.abs(Bifurcation.SADDLE_NODE.test(trace, det)) < 1e-6)
     lam, psi = corrected_branch.period_doubling(n, instant)
     np.testing.assert_allclose(corrected_branch.instant_phase(n, instant, lam), psi, atol=1e-12)
     trace, det = corrected_branch.trace_and_determinant(n, instant, lam, psi)
-    assert np.all(np.abs(stability.period_doubling_function(trace, det)) < 1e-12)
+    assert np.all(np.abs(Bifurcation.PERIOD_DOUBLING.test(trace, det)) < 1e-12)
 
 
 @pytest.mark.parametrize("release", RELEASES)

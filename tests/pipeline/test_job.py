@@ -35,22 +35,6 @@ def test_a_failure_is_one_line(tmp_path, interruptible, one_line, error, said):
     assert "Traceback" in log.read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("fails", [True, False])
-def test_a_log_that_cannot_be_written(tmp_path, interruptible, monkeypatch, one_line, fails):
-    def full(*_, **__):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(Path, "write_text", full)
-    log = tmp_path / "logs" / "job.log"
-    job = SimpleNamespace(rule="stage", wildcards=["fig08"], log=[str(log)], output=[])
-    with pytest.raises(SystemExit) as exit_, logged(job):
-        if fails:
-            raise ValueError("no orbit")
-    one_line(exit_, f"(no details: {log}: No space left on device)")
-    assert ("no orbit" in str(exit_.value)) == fails
-    assert list(log.parent.iterdir()) == []
-
-
 @pytest.fixture
 def made(tmp_path, interruptible, monkeypatch):
     """A folder with two datasets as their jobs write them."""

@@ -7,16 +7,18 @@ from functools import cached_property
 import numpy as np
 
 from bouncing_ball.accuracy.errors import models
-from bouncing_ball.contacts.law_signature import LawSignature
 from bouncing_ball.contacts.laws.tsuji import Tsuji
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.contacts.signature import Instant
+from bouncing_ball.contacts.signature import Instant, LawSignature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.law_model import LawModel
 from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
+
+# Of a restitution coefficient: some hundred units in the last place of 1.
+_ROUNDING = 1e-13
 
 
 @dataclass(frozen=True)
@@ -114,7 +116,8 @@ class Case:
         """The signature of the contact at the impact speed of the restitution model's orbit."""
         found = self.models["corrected"].signature(rigid_speed(n, self.contact.restitution))
         # Interpolated, that of an elastic Hertz contact is 1 but for rounding.
-        return found._replace(restitution=np.minimum(found.restitution, 1.0))
+        r = found.restitution
+        return found._replace(restitution=np.where(np.abs(1 - r) < _ROUNDING, 1.0, r))
 
     @property
     def contact_time(self) -> float:

@@ -12,14 +12,19 @@ all of it. Everything in SI units.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
-from bouncing_ball.calculator.case import Table
+import numpy as np
+
+from bouncing_ball.calculator.case import Case, Table
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.laws.tsuji import Tsuji, tsuji_damping
 from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.signature import free_impact
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, require
+from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.restitution_orbit import rigid_speed
 
 STIFF = ("stiffness", "contact_time", "reduced_modulus")
 """What says how stiff a contact is; a modulus goes with a radius."""
@@ -28,6 +33,9 @@ LOSSY = ("damping", "damping_ratio", "restitution", "measured_restitution", "reb
 _PAIRS = {"reduced_modulus": "radius", "rebound_height": "drop_height"}
 
 Given = Mapping[str, float]
+
+STANDARD_GRAVITY = 9.80665
+"""Standard acceleration of gravity, in m/s²."""
 
 
 def _words(names: tuple[str, ...]) -> str:
@@ -174,3 +182,59 @@ def stiffness_and_damping(mass: float, given: Given, release: Release) -> tuple[
     else:
         k = of_contact_time(mass, given["contact_time"], zeta, release)
     return k, 2 * zeta * math.sqrt(k * mass)
+
+
+def table_of(given: Given) -> Table:
+    """The table, from one of the ways to say how fast and one to say how far it moves."""
+    fast = ("frequency", "angular_frequency", "period")
+    rate = required(given, fast, "how fast the table moves", "frequency, such as 50 Hz")
+    ways = "amplitude, such as 0.1 mm, or acceleration, such as 2 g"
+    far = required(given, ("amplitude", "acceleration"), "how far the table moves", ways)
+    value, turn = given[rate], 2 * math.pi
+    omega = {"frequency": turn * value, "period": turn / value}.get(rate, value)
+    height = given["amplitude"] if far == "amplitude" else given["acceleration"] / omega**2
+    return Table(omega, height, given.get("gravity", STANDARD_GRAVITY))
+
+
+def meant(asked: Sequence[int], restitution: float, amplitude: float) -> int:
+    """The lowest family that is stable in the restitution model, or the first asked for."""
+    orbits = RestitutionModel(restitution).orbit(np.array(asked), amplitude)
+    return asked[int(np.argmax(orbits.exists & orbits.is_stable()))]
+
+
+def _hertz(table: Table, given: Given, release: Release, asked: Sequence[int]) -> tuple[Case, str]:
+    """The case of a Hertz contact, with the linear contact that is like it at the impact; a note.
+
+    Raises
+    ------
+    ModelError
+        If the release is not that of the law, or the loss is not given as a restitution.
+    """
+    if release is not Release.DISPLACEMENT:
+        raise ModelError("a Hertz contact with Tsuji's damping is released at δ = 0: no force")
+    mass, zeta = given["mass"], loss(given, release)
+    if zeta is None:
+        raise ModelError("damping needs stiffness: a Hertz contact takes a restitution coefficient")
+    r = float(SpringDamper(1.0, zeta, release).restitution)
+    law = hertz(mass, given["reduced_modulus"], given["radius"], r, table)
+    speed = rigid_speed(meant(asked, r, table.amplitude), r)
+    time = float(free_impact(law, speed).duration) * table.time
+    k = of_contact_time(mass, time, zeta, release)
+    note = (
+        "the orbits are those of the Hertz contact with Tsuji's damping; stiffness, damping, ϖ, ζ "
+        "and the ϖ that is needed are those of the linear contact with its r, and its duration at "
+        f"the impact speed {speed * table.speed:.3g} m/s of the restitution model's orbit"
+    )
+    return Case(mass, table, k, 2 * zeta * math.sqrt(k * mass), release, law), note
+
+
+def case_of(
+    given: Given, table: Table, release: Release, asked: Sequence[int]
+) -> tuple[Case] | tuple[Case, str] | None:
+    """The case whose contact is given, with a note on it; None without any stiffness."""
+    stiff = which(given, STIFF, "how stiff the contact is")
+    if stiff == "reduced_modulus":
+        return _hertz(table, given, release, asked)
+    mass = given["mass"]
+    found = stiff and stiffness_and_damping(mass, given, release)
+    return (Case(mass, table, *found, release),) if found else None

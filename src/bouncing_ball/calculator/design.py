@@ -1,25 +1,13 @@
 """The calculator: :func:`design`, parameters with units in, a :class:`Design` out."""
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Annotated, Any, get_args
 
-import numpy as np
-
 from bouncing_ball.accuracy.quantities import OF_ORBITS, Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.calculator.case import Case, Table
-from bouncing_ball.calculator.contact_data import (
-    STIFF,
-    Given,
-    hertz,
-    loss,
-    of_contact_time,
-    required,
-    stiffness_and_damping,
-    which,
-)
+from bouncing_ball.calculator.contact_data import Given, case_of, loss, meant, table_of
 from bouncing_ball.calculator.families import families, finite
 from bouncing_ball.calculator.needed import RATIOS, needed
 from bouncing_ball.calculator.results import (
@@ -33,17 +21,13 @@ from bouncing_ball.calculator.results import (
 )
 from bouncing_ball.calculator.units import Unit, number, shown
 from bouncing_ball.calculator.verdict import Verdict, assessed, chosen, notes
-from bouncing_ball.contacts.law_signature import free_impact
 from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError, require
 from bouncing_ball.orbits.calls import Index, Rule
 from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.orbits.restitution_orbit import rigid_speed
 
-STANDARD_GRAVITY = 9.80665
-"""Standard acceleration of gravity, in m/s²."""
 STEPS = 50
 """Steps in one contact."""
 STEP_RULE = (
@@ -152,19 +136,15 @@ def design(
         raise ModelError(f"unknown quantity {quantity!r}: one of {', '.join(QUANTITIES)}")
     if n is not None and (n != int(n) or n < 1):
         raise ModelError(f"index of the family n = {n} is not a positive integer")
-    table = _table(given)
+    table = table_of(given)
     if "mass" not in given:
         raise ModelError("mass is missing: give it, such as 20 g")
     require(table.amplitude < _LARGEST, table.amplitude, "Λ", f"below {_LARGEST:g}")
     asked = _FAMILIES if n is None else [n]
-    stiff = which(given, STIFF, "how stiff the contact is")
-    if stiff is None:
+    found_case = case_of(given, table, rule, asked)
+    if found_case is None:
         return _choose(table, given, rule, asked, quantity, epsilon)
-    if stiff == "reduced_modulus":
-        case, *remarks = _hertz(table, given, rule, asked)
-    else:
-        k, c = stiffness_and_damping(given["mass"], given, rule)
-        case, remarks = Case(given["mass"], table, k, c, rule), []
+    case, *remarks = found_case
     ratio = float(case.contact.frequency_ratio)
     require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
     found = families(case, asked)
@@ -196,50 +176,6 @@ def _read(parameters: Mapping[str, Any]) -> dict[str, float]:
     return given
 
 
-def _table(given: Given) -> Table:
-    """The table, from one of the ways to say how fast and one to say how far it moves."""
-    fast = ("frequency", "angular_frequency", "period")
-    rate = required(given, fast, "how fast the table moves", "frequency, such as 50 Hz")
-    ways = "amplitude, such as 0.1 mm, or acceleration, such as 2 g"
-    far = required(given, ("amplitude", "acceleration"), "how far the table moves", ways)
-    value, turn = given[rate], 2 * math.pi
-    omega = {"frequency": turn * value, "period": turn / value}.get(rate, value)
-    height = given["amplitude"] if far == "amplitude" else given["acceleration"] / omega**2
-    return Table(omega, height, given.get("gravity", STANDARD_GRAVITY))
-
-
-def _meant(asked: Sequence[int], restitution: float, amplitude: float) -> int:
-    """The lowest family that is stable in the restitution model, or the first asked for."""
-    orbits = RestitutionModel(restitution).orbit(np.array(asked), amplitude)
-    return asked[int(np.argmax(orbits.exists & orbits.is_stable()))]
-
-
-def _hertz(table: Table, given: Given, release: Release, asked: Sequence[int]) -> tuple[Case, str]:
-    """The case of a Hertz contact, with the linear contact that is like it at the impact; a note.
-
-    Raises
-    ------
-    ModelError
-        If the release is not that of the law, or the loss is not given as a restitution.
-    """
-    if release is not Release.DISPLACEMENT:
-        raise ModelError("a Hertz contact with Tsuji's damping is released at δ = 0: no force")
-    mass, zeta = given["mass"], loss(given, release)
-    if zeta is None:
-        raise ModelError("damping needs stiffness: a Hertz contact takes a restitution coefficient")
-    r = float(SpringDamper(1.0, zeta, release).restitution)
-    law = hertz(mass, given["reduced_modulus"], given["radius"], r, table)
-    speed = rigid_speed(_meant(asked, r, table.amplitude), r)
-    time = float(free_impact(law, speed).duration) * table.time
-    k = of_contact_time(mass, time, zeta, release)
-    note = (
-        "the orbits are those of the Hertz contact with Tsuji's damping; stiffness, damping, ϖ, ζ "
-        "and the ϖ that is needed are those of the linear contact with its r, and its duration at "
-        f"the impact speed {speed * table.speed:.3g} m/s of the restitution model's orbit"
-    )
-    return Case(mass, table, k, 2 * zeta * math.sqrt(k * mass), release, law), note
-
-
 def _choose(
     table: Table,
     given: Given,
@@ -263,7 +199,7 @@ def _choose(
         )
     unit = SpringDamper(1.0, zeta, release)
     r, lam = float(unit.restitution), table.amplitude
-    n = _meant(asked, r, lam)
+    n = meant(asked, r, lam)
     if quantity in OF_ORBITS:
         RestitutionModel(r).require_orbit(n, lam)
     need = needed(quantity, tolerance, unit, n, lam)
@@ -283,8 +219,7 @@ def _choose(
 
 def _judged(found: Sequence[Family]) -> Family:
     """The family that a verdict is about: the first stable one, or the first there is."""
-    steady = [one for one in found if one.exists and one.is_stable and one.is_admissible]
-    return (steady or [one for one in found if one.exists] or list(found))[0]
+    return max(found, key=lambda one: (one.exists, one.is_stable and one.is_admissible))
 
 
 def _design(

@@ -100,9 +100,9 @@ def lift(data: Data) -> tuple[xr.DataArray, xr.DataArray]:
     n, r, ratio = sweep.attrs["n"], sweep.restitution, sweep.frequency_ratio
     phase, _ = printed.fixed_point(n, r, sweep.amplitude)
     scaled = n * np.pi * ratio**2 * (sweep.apparent_restitution - r)
-    softer = int(np.argmin(np.abs(np.log(ratio.values / (ratio.values[-1] / 10)))))
-    high, low = (scaled.isel(frequency_ratio=k, drop=True) for k in (-1, softer))
-    limit = (high - low) / (ratio.values[-1] - ratio.values[softer])
+    stiffest = ratio.values[-1]
+    high, low = (scaled.sel(frequency_ratio=x, method="nearest") for x in (stiffest, stiffest / 10))
+    limit = (high - low) / (high.frequency_ratio - low.frequency_ratio)
     measured = -limit / (printed.damping_ratio(r) * (1 + r) ** 2)
     return 1 - sweep.amplitude * np.sin(phase), measured
 
@@ -278,12 +278,6 @@ def stiff_difference(data: Data, source: str, impact_map: str) -> xr.DataArray:
     return np.abs(_rows(data, source).isel(frequency_ratio=0) - ranges)
 
 
-def soft_range_shift(data: Data) -> xr.DataArray:
-    """Distance of the softest row of Table 1 from the restitution model's ranges, relatively."""
-    ranges = data["table1"].restitution_range.sel(impact_map="exact")
-    return np.abs(_rows(data, "computed").isel(frequency_ratio=-1) / ranges - 1)
-
-
 def printed_slight_move(data: Data) -> xr.DataArray:
     """The largest printed move from the stiffest row of Table 1 to the next one, relatively:
     what the paper calls slight."""
@@ -304,13 +298,6 @@ def period_doubling_drop(data: Data) -> xr.DataArray:
     )
     drop = curve.isel(frequency_ratio=-1, drop=True) - curve.min("frequency_ratio")
     return drop.reindex(n=data["table1"].n)
-
-
-def release_rule_move(data: Data) -> xr.DataArray:
-    """How far the other release rule moves a bifurcation, at most."""
-    curves = data["ext_release"].bifurcation_amplitude
-    rules = (curves.sel(release=rule, drop=True) for rule in ("force", "displacement"))
-    return np.abs(next(rules) - next(rules)).max()
 
 
 def permanent_contact_error(data: Data) -> float:

@@ -13,12 +13,12 @@ import xarray as xr
 from bouncing_ball.claims import as_printed
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.contacts.spring_damper import SpringDamper, responses
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.rounding import levels
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
-from bouncing_ball.orbits.stability import Bifurcation, trace_and_determinant
+from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.studies.printed_table1 import AXES, LAST_DIGIT, RESTITUTION, printed_table
 
 PRINTED_DAMPING = 0.052
@@ -41,38 +41,24 @@ class WeightlessOrbit(SpringDamperOrbit):
 
     @classmethod
     def at(cls, excess: np.ndarray, contact: SpringDamper, n: np.ndarray) -> "WeightlessOrbit":
-        """The orbit at ε, from Eqs. 23-25 without the response to gravity.
-
-        At a fixed duration D they are linear in u = δ′ at the start, Λ cos φ and Λ sin φ.
+        """The orbit at ε: at a fixed duration Eqs. 23-25 are linear in u = δ′ at the start,
+        Λ cos φ and Λ sin φ.
         """
         duration = (contact.free_angle + excess) / contact.damped_frequency
-        flight = 2 * np.pi * n - duration
-        push, _, table = responses(duration, contact.frequency_ratio, contact.damping_ratio)
-        (p, p_rate), (q, q_rate) = (
-            (part(table.value), part(table.rate)) for part in (np.imag, np.real)
-        )
-        cos, sin = np.cos(duration), np.sin(duration)
-        rows = np.broadcast_arrays(
-            *(push.value, p, q),
-            *(push.rate - 1, p_rate + cos - 1, q_rate - sin),
-            *(flight, flight + sin, cos - 1),
-        )
-        right = np.broadcast_arrays(0.0, flight, -flight * flight / 2)
-        matrix = np.stack(rows, axis=-1).reshape(*rows[0].shape, 3, 3)
-        solved = np.linalg.solve(matrix, np.stack(right, axis=-1)[..., np.newaxis])
-        u, x, y = np.moveaxis(solved[..., 0], -1, 0)
-        return cls(n, contact, np.hypot(x, y), np.arctan2(y, x), duration, u + x)
+
+        def orbit(u, x, y):
+            return cls(n, contact, np.hypot(x, y), np.arctan2(y, x), duration, u + x)
+
+        none, *units = (orbit(*at).residual() for at in ((0.0, 0.0, 0.0), *np.eye(3)))
+        matrix = np.stack([one - none for one in units], axis=-1)
+        solved = np.linalg.solve(matrix, -none[..., np.newaxis])[..., 0]
+        return orbit(*np.moveaxis(solved, -1, 0))
 
     def _contact_flow(self, time: np.ndarray):
-        flow = super()._contact_flow(time)
-        omega, zeta = self.contact.frequency_ratio, self.contact.damping_ratio
-        gravity = responses(time, omega, zeta).gravity
-        lifted = 1 - 2 * zeta * omega * gravity.rate - omega * omega * gravity.value
+        flow, sag = super()._contact_flow(time), self.contact.flow(time, 0.0, 0.0, 0.0, 0.0)
         jacobian = flow.jacobian.copy()
-        jacobian[..., 0, 0] += gravity.rate
-        jacobian[..., 1, 0] += lifted
-        displacement, velocity = flow.displacement + gravity.value, flow.velocity + gravity.rate
-        return type(flow)(displacement, velocity, flow.acceleration + lifted, jacobian)
+        jacobian[..., 0] -= sag.jacobian[..., 0]
+        return type(flow)(*(x - y for x, y in zip(flow[:3], sag[:3], strict=True)), jacobian)
 
 
 def high_bounce_monodromy(orbit: SpringDamperOrbit) -> np.ndarray:
@@ -109,7 +95,8 @@ def altered_ends(
 
     def doubling(excess):
         matrix = monodromy(orbit_at(np.asarray(excess), contact, np.array(n)))
-        return Bifurcation.PERIOD_DOUBLING.test(*trace_and_determinant(matrix))
+        trace = np.trace(matrix, axis1=-2, axis2=-1)
+        return Bifurcation.PERIOD_DOUBLING.test(trace, np.linalg.det(matrix))
 
     grid = np.linspace(-1, 1, _SAMPLES) * np.minimum(_REACH / omega, 0.9 * contact.free_angle)
     lowest = int(np.nanargmin(amplitude(grid)))

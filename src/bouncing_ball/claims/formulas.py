@@ -138,7 +138,7 @@ def restitution_model(rng, samples) -> Checks:
     return {
         "Eq. 2": check(_CYCLE + _METRES, after / speed - cycle.velocity),
         "Eq. 3": check(_FALL + _METRES, (before - fallen[:, 1]) / speed),
-        "Eq. 4": check(_FALL + _METRES, *free_flight(rng, samples)),
+        "Eq. 4": check(_FALL + _METRES, free_flight(rng, samples)),
         "Eq. 5": check(_CYCLE, landed, bounced - cycle.velocity),
         "Eq. 6": check(one, *fixed),
         "Eq. 7": check(f"{one}, and a Floquet multiplier at 1", *folds, budget=DIFFERENCES),
@@ -149,7 +149,7 @@ def restitution_model(rng, samples) -> Checks:
     }
 
 
-def free_flight(rng, samples) -> tuple[np.ndarray, np.ndarray]:
+def free_flight(rng, samples) -> np.ndarray:
     """Defects of Eq. 4 against Eq. 1, its differential equation in metres and seconds."""
     height, velocity = rng.uniform(-1, 1, samples), rng.uniform(-6, 6, samples)
     start, flown = rng.uniform(-np.pi, np.pi, samples), rng.uniform(0.5, 6, samples)
@@ -157,8 +157,8 @@ def free_flight(rng, samples) -> tuple[np.ndarray, np.ndarray]:
     length, speed = _GRAVITY / big_omega**2, _GRAVITY / big_omega
     begin = state(height * length, velocity * speed, 0.0)
     there = flow(fall_matrix(_GRAVITY), flown / big_omega, begin)
-    z, rate = printed.free_flight(start + flown, start, height, velocity)
-    return z - there[:, 0] / length, rate - there[:, 1] / speed
+    found = printed.free_flight(start + flown, start, height, velocity)
+    return np.array(found) - there[:, :2].T / (length, speed)
 
 
 # Eqs. 10-17 and 21-27: the contact, its damping and its orbits.
@@ -169,7 +169,7 @@ def printed_contact(time, omega, zeta, lam, phase, impact):
     zero, rate = printed.contact(0.0, omega, zeta, lam, phase, 0.0, 0.0)
     a = lam * np.sin(phase) - zero
     b = (impact - rate + zeta * omega * a) / (omega * np.sqrt(1 - zeta**2))
-    return printed.contact(time, omega, zeta, lam, phase, a, b)
+    return np.array(printed.contact(time, omega, zeta, lam, phase, a, b))
 
 
 def contact_and_flight(rng, samples) -> Checks:
@@ -180,7 +180,7 @@ def contact_and_flight(rng, samples) -> Checks:
     time = np.pi / omega * rng.uniform(0.2, 1, samples)
     start = state(lam * np.sin(phase), impact, phase)
     there = flow(contact_matrix(omega, zeta, lam), time, start)
-    height, velocity = printed_contact(time, omega, zeta, lam, phase, impact)
+    in_contact = printed_contact(time, omega, zeta, lam, phase, impact) - there[:, :2].T
 
     # Eq. 10 in metres and seconds: k/m = ω², c/m = 2ζω, gravity g, table a sin Ωt.
     big_omega = rng.uniform(20, 60, samples)
@@ -194,18 +194,15 @@ def contact_and_flight(rng, samples) -> Checks:
         """Eq. 11 with a frequency ratio, against Eq. 10."""
         return (flow(contact_matrix(ratio, zeta, lam), time, start)[:, 0] - fallen) / impact
 
-    release, thrown = time, rng.uniform(1, 6, samples)
-    since = rng.uniform(0.5, 6, samples)
-    flown = flow(fall_matrix(), since, state(lam * np.sin(release + phase), thrown, 0.0))
-    flight = printed.flight(release + since, release, thrown, lam, phase)
+    thrown, since = rng.uniform(1, 6, samples), rng.uniform(0.5, 6, samples)
+    flown = flow(fall_matrix(), since, state(lam * np.sin(time + phase), thrown, 0.0))
+    flight = printed.flight(time + since, time, thrown, lam, phase)
     units = "Eq. 10 in physical units; "
-    in_contact = (height - there[:, 0]) / impact, (velocity - there[:, 1]) / impact
-    in_flight = flight[0] - flown[:, 0], flight[1] - flown[:, 1]
     return {
         "ϖ = Ω/ω, Ω of the table": check(f"{units}one of two readings", scaled(1 / omega)),
         "ϖ = Ω/ω, Ω of the contact": check(f"{units}the other reading", scaled(omega)),
-        "Eqs. 12-13": check(_FLOW, *in_contact),
-        "Eqs. 14-15": check(_FALL, *in_flight),
+        "Eqs. 12-13": check(_FLOW, in_contact / impact),
+        "Eqs. 14-15": check(_FALL, np.array(flight) - flown[:, :2].T),
     }
 
 
@@ -247,26 +244,19 @@ def contact_orbits(rng, samples) -> Checks:
     phase, impact, end = orbit.phase, orbit.impact_velocity, orbit.contact_duration
     u, period = orbit.relative_impact_velocity, 2 * np.pi * n
     again = orbit.cycle(phase, u)
+    repeated = reduce_angle(again.phase - phase), again.relative_velocity - u
     start = state(lam * np.sin(phase), impact, phase)
     released = flow(contact_matrix(omega, zeta, lam), end, start)[:, 1]
     thrown = printed.bounce_velocity(impact, n, end)
     at_release = printed_contact(end, omega, zeta, lam, phase, impact)
     # Eq. 24 gives z′_b; Eqs. 21-22 give A and B, and Eqs. 23-26 are left.
-    at_impact = printed.flight(period, end, at_release[1], lam, phase)
-    table = lam * np.sin(phase + end), lam * np.sin(period + phase)
-    fulfilled = (
-        reduce_angle(again.phase - phase),
-        again.relative_velocity - u,
-        at_release[0] - table[0],
-        at_release[1] - released,
-        at_impact[0] - table[1],
-        at_impact[1] - impact,
-    )
+    at_impact = np.array(printed.flight(period, end, at_release[1], lam, phase))
+    release, landing = (lam * np.sin(phase + end), released), (lam * np.sin(period + phase), impact)
     # Eqs. 16 and 17 give numbers, no motion: the contact would last to the next impact.
     held = printed_contact(period, omega, zeta, lam, phase, impact)
     return {
-        "Eqs. 21-26": check(_ORBITS, *fulfilled),
-        "Eqs. 21-26 by Eqs. 12, 13, 16, 17": check(_ORBITS, held[0] - table[1], held[1] - impact),
+        "Eqs. 21-26": check(_ORBITS, *repeated, at_release - release, at_impact - landing),
+        "Eqs. 21-26 by Eqs. 12, 13, 16, 17": check(_ORBITS, held - landing),
         "Eq. 27": check(_FLOW, thrown - released),
     }
 
@@ -301,25 +291,20 @@ def steady_amplitude(frequency_ratio, damping_ratio):
     return np.hypot(start[..., 0], flow(m, np.pi / 2, start)[..., 0] - 1)
 
 
-def _steady_motion(rng, samples, omega, zeta) -> np.ndarray:
-    """Eq. 31 against the flow from one of its own states."""
-    lam, begin = rng.uniform(0.1, 2, samples), rng.uniform(-np.pi, np.pi, samples)
-
-    def steady(time):
-        return printed.steady_displacement(time, omega, zeta, lam)
-
-    # z = δ + w; the velocity of the printed solution a quarter of a cycle away.
-    rate = steady(begin + np.pi / 2) + 1 / omega**2 + lam * np.cos(begin)
-    later = rng.uniform(0.5, 6, samples)
-    start = state(steady(begin) + lam * np.sin(begin), rate, begin)
-    there = flow(contact_matrix(omega, zeta, lam), later, start)
-    return there[:, 0] - lam * np.sin(begin + later) - steady(begin + later)
-
-
 def permanent_contact(rng, samples) -> Checks:
     """Eqs. 29 to 36."""
     omega, zeta = np.exp(rng.uniform(-0.5, 2, samples)), rng.uniform(0.02, 0.5, samples)
-    steady = _steady_motion(rng, samples, omega, zeta)
+    lam, begin = rng.uniform(0.1, 2, samples), rng.uniform(-np.pi, np.pi, samples)
+    end = begin + rng.uniform(0.5, 6, samples)
+    now, quarter, later = (
+        printed.steady_displacement(time, omega, zeta, lam)
+        for time in (begin, begin + np.pi / 2, end)
+    )
+    # z = δ + w; the velocity of the printed solution a quarter of a cycle away.
+    rate = quarter + 1 / omega**2 + lam * np.cos(begin)
+    start = state(now + lam * np.sin(begin), rate, begin)
+    moved = flow(contact_matrix(omega, zeta, lam), end - begin, start)[:, 0]
+    steady = moved - lam * np.sin(end) - later
     threshold = 1 / (omega**2 * steady_amplitude(omega, zeta))
     at_any = printed.permanent_contact_threshold(omega, zeta) / threshold - 1
     resonant = printed.resonant_threshold(zeta) * steady_amplitude(1.0, zeta) - 1

@@ -70,14 +70,6 @@ def meanings(call: Callable) -> dict[str, str]:
     return found
 
 
-class _Assign(argparse.Action):
-    """Collects NAME=NUMBER, NAME=NUMBER, … in a dictionary."""
-
-    def __call__(self, parser, namespace, values, option_string=None):
-        found = getattr(namespace, self.dest) or {}
-        setattr(namespace, self.dest, {**found, values[0]: values[1]})
-
-
 def _assignment(text: str) -> tuple[str, float]:
     name, equals, value = text.partition("=")
     try:
@@ -122,7 +114,7 @@ def _reading(annotation: Any) -> dict[str, Any]:
     if origin is typing.Literal:
         return {"choices": kinds}
     if origin is Mapping:
-        return {"type": _assignment, "action": _Assign, "metavar": "NAME=NUMBER"}
+        return {"type": _assignment, "action": "append", "metavar": "NAME=NUMBER"}
     return {"metavar": "X"} | ({"type": annotation} if annotation in (int, str, Path) else {})
 
 

@@ -38,7 +38,7 @@ def configuration_model(studies: Mapping[str, str], config: Mapping[str, Any]) -
     """
     places: dict[str, dict[str, Any]] = {name: {} for name in SECTIONS}
     keys: dict[str, Any] = {"atlas": (AtlasParameters, ...)}
-    for artifact, study in studies.items():
+    for artifact, study in sorted(studies.items()):
         for name, kind in taken(study).items():
             if name == "parameters":
                 where, key = section(artifact, config)
@@ -46,14 +46,8 @@ def configuration_model(studies: Mapping[str, str], config: Mapping[str, Any]) -
             else:
                 keys[name] = (kind, ...)
     for name, fields in places.items():
-        fields = _in_order(fields, config.get(name))
         keys[name] = (create_model(name, __base__=Parameters, **fields), ...)
-    return create_model("Configuration", __base__=_Sections, **_in_order(keys, config))
-
-
-def _in_order(fields: Mapping[str, Any], given: Any) -> dict[str, Any]:
-    """Fields in the order in which the configuration has them, missing ones last."""
-    return {name: fields[name] for name in [*(given or ()), *fields] if name in fields}
+    return create_model("Configuration", __base__=_Sections, **keys)
 
 
 def check_configuration(

@@ -48,8 +48,8 @@ def _allowed(schema: Mapping[str, Any], root: Mapping[str, Any]) -> str:
 def _rows(schema, root, default, path) -> Iterator[str]:
     schema = resolved(schema, root)
     if schema.get("type") == "object":
-        for key, part in schema.get("properties", {}).items():
-            yield from _rows(part, root, default[key], [*path, key])
+        for key, part in default.items():
+            yield from _rows(schema["properties"][key], root, part, [*path, key])
         return
     items = resolved(schema.get("items", {}), root)
     meaning = schema.get("description", items.get("description", ""))
@@ -61,7 +61,7 @@ def _rows(schema, root, default, path) -> Iterator[str]:
 def configuration_page(model: type[BaseModel], config: Mapping[str, Any]) -> str:
     """The page as Markdown: a table for each section, with the values of ``config``."""
     root, page = model.model_json_schema(), _HEAD
-    for name, part in root["properties"].items():
-        rows = "".join(_rows(part, root, config[name], [name]))
+    for name, default in config.items():
+        rows = "".join(_rows(root["properties"][name], root, default, [name]))
         page += _TABLE.format(title=name) + rows
     return page

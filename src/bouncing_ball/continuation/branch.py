@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import Enum, auto
 from typing import NamedTuple
 
 import numpy as np
@@ -17,31 +16,20 @@ class ContinuationError(RuntimeError):
     """No point to start from."""
 
 
-class Ending(Enum):
-    """How a branch can end."""
+class End(NamedTuple):
+    """An end of a branch: why, a sentence as which it prints, and whether that is the end of it.
 
-    START = auto()
-    """Where it was started."""
-    EVENT = auto()
-    """At a terminal event, or where one comes so close that it cannot be located."""
-    STEP = auto()
-    """Where no step is short enough."""
-    POINTS = auto()
-    """Unfinished, after as many points as were allowed."""
+    Unfinished is a branch of as many points as were allowed.
+    """
 
-
-@dataclass(frozen=True)
-class End:
-    """An end of a branch: how, and a sentence that says why, as which it prints."""
-
-    kind: Ending
     sentence: str
+    finished: bool = True
 
     def __str__(self) -> str:
         return self.sentence
 
 
-STARTED = End(Ending.START, "starting point")
+STARTED = End("starting point")
 
 
 @dataclass(frozen=True)
@@ -70,11 +58,6 @@ class Branch:
         steps = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
         return np.concatenate([[0.0], np.cumsum(steps)])
 
-    def reversed(self) -> "Branch":
-        """The same branch run through the other way."""
-        points, tangents, special = self.points[::-1], -self.tangents[::-1], self.special[::-1]
-        return Branch(points, tangents, special, start=self.end, end=self.start)
-
     def named(self, name: str) -> list[np.ndarray]:
         """The points of all located events of one name."""
         return [special.point for special in self.special if special.name == name]
@@ -101,87 +84,34 @@ def solve_at(
     return found.point
 
 
-class _Step(NamedTuple):
-    """A corrected point one step along the branch, and its end if that is one."""
-
-    point: np.ndarray
-    direction: np.ndarray
-    values: list[float]
-    special: list[SpecialPoint]
-    next_length: float
-    end: End | None = None
-
-
 class _Rejected(Exception):
     """A step that must be shorter; ``end`` is why the branch ends if it cannot be.
 
     With a cause, an error that no shorter step has cured, that is raised instead.
     """
 
-    def __init__(self, kind: Ending, sentence: str, cause: Exception | None = None):
+    def __init__(self, sentence: str, cause: Exception | None = None):
         super().__init__(sentence)
-        self.end, self.cause = End(kind, sentence), cause
+        self.end, self.cause = End(sentence), cause
 
 
-@dataclass(frozen=True)
-class _Walk:
-    """What stays the same along a branch."""
-
-    problem: Problem
-    events: Sequence[Event]
-    control: StepControl
-    settings: NewtonSettings
-
-    def values(self, point: np.ndarray) -> list[float]:
-        return [float(event.function(point)) for event in self.events]
-
-    def step(self, y: np.ndarray, along: np.ndarray, values: list[float], length: float) -> _Step:
-        """Predict, correct, and locate the events on the way, up to a terminal one.
-
-        Raises
-        ------
-        _Rejected
-            If the corrector fails, the tangent turns by too much, or an event
-            cannot be located.
-        """
-        predicted, limit = y + length * along, self.control.max_angle
-        found = newton(self.problem, predicted, plane(along, predicted), self.settings)
-        small = f"step too small ({length:.1e})"
-        if not found.converged:
-            failed = f"{small}: the corrector fails with residual {found.residual:.1e}"
-            raise _Rejected(Ending.STEP, failed)
-        direction = tangent(self.problem.jacobian(found.point), along)
-        angle = float(np.arccos(np.clip(direction @ along, -1.0, 1.0)))
-        if not angle <= limit:
-            turns = f"{small}: the tangent turns by more than {limit} rad"
-            raise _Rejected(Ending.STEP, turns)
-        after = self.values(found.point)
-        located = self._locate(y, found.point, values, after, length)
-        located.sort(key=lambda pair: float((pair[1].point - y) @ along))
-        special = [point for _, point in located]
-        for k, (event, point) in enumerate(located):
-            if event.terminal:
-                at_end = tangent(self.problem.jacobian(point.point), along)
-                end = End(Ending.EVENT, event.reason or event.name)
-                return _Step(point.point, at_end, after, special[: k + 1], length, end)
-        longer = self.control.after_success(length, found.iterations, angle)
-        return _Step(found.point, direction, after, special, longer)
-
-    def _locate(self, y, point, before, after, length) -> list[tuple[Event, SpecialPoint]]:
-        """The events whose test functions change sign between two points."""
-        located, failure = [], None
-        for event, left, right in zip(self.events, before, after, strict=True):
-            if (left >= 0) != (right >= 0):
-                try:
-                    located.append((event, locate(self.problem, event, y, point, self.settings)))
-                except LocationError as error:
-                    failure = event, error
-        if failure and not any(event.terminal for event, _ in located):
-            # The step may have left the domain in which the event makes sense.
-            event, error = failure
-            ending = f"{event.reason or event.name} (within {length:.0e})"
-            raise _Rejected(Ending.EVENT, ending, None if event.terminal else error)
-        return located
+def _located(problem, events, y, point, values, settings, length):
+    """Events and points where test functions change sign between y and a point, up to the end."""
+    located, failure = [], None
+    for event, (left, right) in zip(events, values, strict=True):
+        if (left >= 0) != (right >= 0):
+            try:
+                located.append((event, locate(problem, event, y, point, settings)))
+            except LocationError as error:
+                failure = event, error
+    located.sort(key=lambda pair: float((pair[1].point - y) @ (point - y)))
+    ends = [k for k, (event, _) in enumerate(located) if event.terminal]
+    if failure and not ends:
+        # The step may have left the domain in which the event makes sense.
+        event, error = failure
+        sentence = f"{event.reason or event.name} (within {length:.0e})"
+        raise _Rejected(sentence, None if event.terminal else error)
+    return located[: ends[0] + 1] if ends else located
 
 
 def continue_branch(
@@ -221,21 +151,38 @@ def continue_branch(
     LocationError
         If an announced event cannot be located, down to the smallest step.
     """
-    walk = _Walk(problem, events, control, settings)
     y = solve_at(problem, np.asarray(start, dtype=float), settings)
     direction = null_vector(problem.jacobian(y)) * (1.0 if increasing else -1.0)
-    values = walk.values(y)
+    values = [float(event.function(y)) for event in events]
     for event, value in zip(events, values, strict=True):
         if event.terminal and value < 0:
             raise ContinuationError(
                 f"the start {np.array2string(y, precision=4)} lies beyond the end of the branch: "
                 f"{event.reason or event.name}"
             )
-    points, tangents, special = [y], [direction], []
-    length, end = control.initial, End(Ending.POINTS, f"reached the limit of {max_points} points")
+    points, tangents = [y], [direction]
+    special: list[SpecialPoint] = []
+    length, end = control.initial, End(f"reached the limit of {max_points} points", finished=False)
+
+    def step() -> tuple[np.ndarray, np.ndarray, list[float], list, float]:
+        """Predict, correct, and locate the events on the way."""
+        predicted, small = y + length * direction, f"step too small ({length:.1e})"
+        found = newton(problem, predicted, plane(direction, predicted), settings)
+        if not found.converged:
+            raise _Rejected(f"{small}: the corrector fails with residual {found.residual:.1e}")
+        ahead = tangent(problem.jacobian(found.point), direction)
+        angle = float(np.arccos(np.clip(ahead @ direction, -1.0, 1.0)))
+        if not angle <= control.max_angle:
+            raise _Rejected(f"{small}: the tangent turns by more than {control.max_angle} rad")
+        after = [float(event.function(found.point)) for event in events]
+        pairs = list(zip(values, after, strict=True))
+        passed = _located(problem, events, y, found.point, pairs, settings, length)
+        longer = control.after_success(length, found.iterations, angle)
+        return found.point, ahead, after, passed, longer
+
     while len(points) < max_points:
         try:
-            step = walk.step(y, direction, values, length)
+            point, ahead, values, passed, length = step()
         except _Rejected as rejected:
             shorter = control.after_failure(length)
             if shorter is not None:
@@ -245,12 +192,16 @@ def continue_branch(
                 raise rejected.cause from None
             end = rejected.end
             break
-        y, direction, values, passed, length, last = step
+        special.extend(where for _, where in passed)
+        last = passed[-1][0] if passed and passed[-1][0].terminal else None
+        if last:
+            point = special[-1].point
+            ahead = tangent(problem.jacobian(point), direction)
+            end = End(last.reason or last.name)
+        y, direction = point, ahead
         points.append(y)
         tangents.append(direction)
-        special += passed
         if last:
-            end = last
             break
     return Branch(np.array(points), np.array(tangents), tuple(special), STARTED, end)
 
@@ -261,11 +212,11 @@ def continue_both_ways(problem: Problem, start: np.ndarray, **options) -> Branch
     The parameter increases at ``start``. Options are those of
     :func:`continue_branch`, but for ``increasing``.
     """
-    back = continue_branch(problem, start, increasing=False, **options).reversed()
+    back = continue_branch(problem, start, increasing=False, **options)
     ahead = continue_branch(problem, start, increasing=True, **options)
-    points = np.concatenate([back.points, ahead.points[1:]])
-    tangents = np.concatenate([back.tangents, ahead.tangents[1:]])
-    return Branch(points, tangents, back.special + ahead.special, back.start, ahead.end)
+    points = np.concatenate([back.points[::-1], ahead.points[1:]])
+    tangents = np.concatenate([-back.tangents[::-1], ahead.tangents[1:]])
+    return Branch(points, tangents, back.special[::-1] + ahead.special, back.end, ahead.end)
 
 
 # Rounds of equalising the chords between resampled points; each gains two to
@@ -289,37 +240,25 @@ def resample(
         If the corrector fails, on a branch followed with too long steps, or if
         the branch has a single point.
     """
+    # Imported here: not every run resamples.
+    from scipy.interpolate import CubicHermiteSpline
+
     arc = branch.arclength
     if len(arc) < 2:
         raise ContinuationError(f"a branch of one point has no length: {branch.end}")
+    spline = CubicHermiteSpline(arc, branch.points, branch.tangents)
     wanted = np.linspace(0.0, arc[-1], count)
     for _ in range(_EQUALISING_ROUNDS):
-        points = _interpolated(problem, branch, arc, wanted, settings)
-        chords = np.linalg.norm(np.diff(points, axis=0), axis=1)
+        guess = spline(wanted)
+        found = newton(problem, guess, plane(spline(wanted, 1), guess), settings)
+        if not np.all(found.converged):
+            residual = found.residual.max()
+            raise ContinuationError(
+                f"resampling to {count} points failed with residual {residual:.1e}"
+            )
+        chords = np.linalg.norm(np.diff(found.point, axis=0), axis=1)
         if np.ptp(chords) <= settings.tolerance * chords.mean():
             break
         reached = np.concatenate([[0.0], np.cumsum(chords)])
         wanted = np.interp(np.linspace(0.0, reached[-1], count), reached, wanted)
-    return points
-
-
-def _interpolated(problem, branch, arc, wanted, settings) -> np.ndarray:
-    """Solutions near given chord lengths from the branch's first point."""
-    left = np.clip(np.searchsorted(arc, wanted, side="right") - 1, 0, len(arc) - 2)
-    width = (arc[left + 1] - arc[left])[:, np.newaxis]
-    t = (wanted[:, np.newaxis] - arc[left][:, np.newaxis]) / width
-    rest = 1 - t
-    guess = (
-        (1 + 2 * t) * rest**2 * branch.points[left]
-        + t * rest**2 * width * branch.tangents[left]
-        + (1 + 2 * rest) * t**2 * branch.points[left + 1]
-        - rest * t**2 * width * branch.tangents[left + 1]
-    )
-    normal = branch.points[left + 1] - branch.points[left]
-    normal = normal / np.linalg.norm(normal, axis=1, keepdims=True)
-    found = newton(problem, guess, plane(normal, guess), settings)
-    if not np.all(found.converged):
-        raise ContinuationError(
-            f"resampling to {len(wanted)} points failed with residual {found.residual.max():.1e}"
-        )
     return found.point

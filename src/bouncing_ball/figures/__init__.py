@@ -21,13 +21,13 @@ DRAWINGS = {
     "fig14": "thresholds.height_error",
     "fig15": "branches.both_domains",
     "fig16": "thresholds.permanent_contact_error",
-    "ext_release": "release_rules.release_rules",
+    "ext_release": "thresholds.release_rules",
     "ext_rattling": "long_contacts.stable_windows",
     "ext_basins": "long_contacts.basins",
     "ext_instant": "histories.meeting_flights",
     "ext_orders": "model_errors.orders",
     "ext_validity": "model_errors.validity",
     "ext_laws": "model_errors.contact_laws",
-    "ext_hertz": "contact_laws.figures_of_laws",
+    "ext_hertz": "model_errors.figures_of_laws",
 }
 """Where each figure is drawn: ``module.function`` of this package."""

@@ -3,7 +3,7 @@
 Solid where stable, dashed where unstable, dotted where inadmissible (Figs. 3, 8, 9, 15).
 """
 
-from itertools import pairwise
+from itertools import cycle, pairwise
 from typing import Any
 
 import numpy as np
@@ -12,11 +12,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from bouncing_ball.figures.canvas import WIDE, canvas, legend_below, number, parameters
+from bouncing_ball.datasets.selection import each
+from bouncing_ball.figures.canvas import WIDE, canvas, legend_below
+from bouncing_ball.figures.labels import number, parameters
 from bouncing_ball.figures.style import COLOURS, END, LINES, MARKS, RESTITUTION, Look
 
 _KEYS = "#5f5f5f"
-_AMPLITUDE = r"amplitude $\Lambda$"
 _TABLE_PHASE = r"phase of the table over $\pi$"
 
 
@@ -24,14 +25,13 @@ def restitution_families(data: xr.Dataset) -> Figure:
     """Fig. 3: the restitution model's branch for each family."""
     figure, axes = canvas(4.2, height=3.6)
     names = []
-    for n in data.n.values:
-        family = data.sel(n=n)
+    for family in each(data, "n"):
         _draw_branch(axes, family, family.phase, RESTITUTION)
         _draw_named_points(axes, family.sel(impact_map="exact"))
-        names.append(_upper_end(family.amplitude, family.phase, f"$n={n}$"))
+        names.append(_upper_end(family.amplitude, family.phase, f"$n={family.n:d}$"))
     title = parameters(data, "restitution")
-    axes.set(ylabel=r"phase $\varphi/\pi$", ylim=(-0.52, 0.52), title=title)
-    axes.set(xlabel=_AMPLITUDE, xlim=(0, data.attrs["amplitude_max"]))
+    _name_axes(axes, data, r"phase $\varphi/\pi$", title)
+    axes.set_ylim(-0.52, 0.52)
     _label_ends(axes, names, 0.055)
     _explain(figure, bool(data.admissible.all()), colour="black", ncols=4)
     return figure
@@ -40,19 +40,15 @@ def restitution_families(data: xr.Dataset) -> Figure:
 def domains(data: xr.Dataset) -> Figure:
     """Figs. 8 and 9: the spring-damper model's branch for each ϖ, in one panel."""
     figure, axes = canvas(WIDE, 4.2)
-    curves = [
-        up_to_second_saddle_node(data.sel(frequency_ratio=ratio))
-        for ratio in data.frequency_ratio.values
-    ]
+    curves = [up_to_second_saddle_node(curve) for curve in each(data, "frequency_ratio")]
     names = []
-    for k, curve in enumerate(curves):
-        colour, ratio = COLOURS[k % len(COLOURS)], number(float(curve.frequency_ratio))
+    for curve, colour in zip(curves, cycle(COLOURS), strict=False):
+        ratio = number(float(curve.frequency_ratio))
         _draw_spring_damper(axes, curve, colour, colour)
         for symbol, phase in ((r"\varphi", curve.phase), (r"\varphi+\tau_b", curve.release_phase)):
             name = rf"$\varpi={ratio}$: ${symbol}$"
             names.append((float(curve.amplitude[-1]), float(phase[-1]) / np.pi, name))
-    axes.set(ylabel=_TABLE_PHASE, title=parameters(data, "n", "restitution"))
-    axes.set(xlabel=_AMPLITUDE, xlim=(0, data.attrs["amplitude_max"]))
+    _name_axes(axes, data, _TABLE_PHASE, parameters(data, "n", "restitution"))
     _label_ends(axes, names, 0.05)
     admissible = all(curve.admissible.all() for curve in curves)
     _explain(figure, admissible, ended=any(len(_ends(curve)) for curve in curves))
@@ -71,8 +67,7 @@ def both_domains(data: xr.Dataset) -> Figure:
     # The contact may have no such branch.
     lowest = float(curve.amplitude.fillna(data.saddle_node_amplitude).min())
     title = parameters(data, "n", "restitution", "frequency_ratio")
-    axes.set(ylabel=_TABLE_PHASE, title=title)
-    axes.set(xlabel=_AMPLITUDE, xlim=(0.9 * lowest, data.attrs["amplitude_max"]))
+    _name_axes(axes, data, _TABLE_PHASE, title, left=0.9 * lowest)
     names = [
         _upper_end(curve.amplitude, curve.release_phase, r"spring-damper, $\varphi+\tau_b$"),
         _upper_end(rigid.amplitude, rigid.phase, r"restitution, $\varphi$"),
@@ -108,6 +103,11 @@ def draw_curve(axes: Axes, x: Any, y: Any, admissible: Any, **look: Any) -> None
     axes.plot(x, np.where(shown, y, np.nan), **look)
     if not np.all(shown):
         axes.plot(x, np.where(shown, np.nan, y), color=look["color"], **LINES["inadmissible"])
+
+
+def _name_axes(axes: Axes, data: xr.Dataset, ylabel: str, title: str, left: float = 0.0) -> None:
+    axes.set(xlabel=r"amplitude $\Lambda$", ylabel=ylabel, title=title)
+    axes.set_xlim(left, data.attrs["amplitude_max"])
 
 
 def _draw_branch(axes: Axes, curve: xr.Dataset, phase: xr.DataArray, colour: str) -> None:

@@ -1,4 +1,4 @@
-"""Figures without overlaps, and the words on them."""
+"""Figures without overlaps, and what all of their panels have alike."""
 
 from collections.abc import Iterator
 from itertools import cycle
@@ -55,37 +55,3 @@ def logarithmic(axes: Axes, ratio: xr.DataArray | None = None, **settings: Any) 
 def coloured(data: xr.Dataset, dim: str) -> Iterator[tuple[xr.Dataset, str]]:
     """The dataset at each place along a dimension, with a colour of its own."""
     return zip(each(data, dim), cycle(COLOURS))
-
-
-def number(value: float) -> str:
-    """A parameter as a label shows it.
-
-    Examples
-    --------
-    >>> number(0.85), number(10000.0), number(250000.0)
-    ('0.85', '10^{4}', '2.5\\\\times 10^{5}')
-    """
-    if value >= 1e4:
-        mantissa, exponent = f"{value:e}".split("e")
-        factor = "" if float(mantissa) == 1 else rf"{float(mantissa):g}\times "
-        return f"{factor}10^{{{int(exponent)}}}"
-    return f"{value:g}"
-
-
-_SYMBOLS = {"n": "n", "restitution": "r", "amplitude": r"\Lambda", "frequency_ratio": r"\varpi"}
-
-
-def parameters(data: xr.Dataset, *names: str) -> str:
-    """Parameters of a dataset, as a title shows them.
-
-    Examples
-    --------
-    >>> parameters(xr.Dataset(attrs={"n": 1, "restitution": 0.85}), "n", "restitution")
-    '$n=1$, $r=0.85$'
-    """
-    return ", ".join(f"${_SYMBOLS[name]}={number(data.attrs[name])}$" for name in names)
-
-
-def note(axes: Axes, text: str, point: Any, offset: Any, **look: Any) -> None:
-    """A text at an offset in points from a point of the data."""
-    axes.annotate(text, point, xytext=offset, textcoords="offset points", **look)

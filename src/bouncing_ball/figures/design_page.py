@@ -10,15 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter
 
-from bouncing_ball.figures.style import (
-    COLOURS,
-    CONTACT,
-    CORRECTED,
-    QUANTITIES,
-    RESTITUTION,
-    TABLE,
-    Look,
-)
+from bouncing_ball.figures.labels import QUANTITIES
+from bouncing_ball.figures.style import COLOURS, CONTACT, CORRECTED, RESTITUTION, TABLE, Look
 
 # A4 upright, in inches.
 _PAGE = 8.27, 11.69

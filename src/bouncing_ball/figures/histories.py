@@ -1,12 +1,16 @@
 """Motion of ball and table over time (Figs. 2, 7, 12 and the instant of an impact)."""
 
+from itertools import cycle, islice
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bouncing_ball.figures.canvas import WIDE, canvas, legend_below, note, number, parameters
-from bouncing_ball.figures.style import COLOURS, CONTACT, CORRECTED, GUIDE, RESTITUTION, TABLE
+from bouncing_ball.datasets.selection import each
+from bouncing_ball.figures.canvas import WIDE, canvas, legend_below
+from bouncing_ball.figures.labels import note, number, parameters
+from bouncing_ball.figures.style import COLOURS, CONTACT, CORRECTED, GUIDE, RESTITUTION, TABLE, Look
 
 _ARROW = {
     **{"arrowstyle": "-|>", "color": "black", "linewidth": 0.9},
@@ -23,12 +27,9 @@ def restitution_history(data: xr.Dataset) -> Figure:
     periods = data.time / (2 * np.pi)
     axes.plot(periods, data.ball, color=RESTITUTION, label="ball $z$")
     axes.plot(periods, data.table, color=TABLE, label="table $w$")
-    axes.set(
-        xlabel=r"time $\tau/2\pi$",
-        ylabel="$z$, $w$",
-        xlim=(0, float(periods[-1])),
-        title=parameters(data, "n", "restitution", "amplitude"),
-    )
+    title = parameters(data, "n", "restitution", "amplitude")
+    axes.set(xlabel=r"time $\tau/2\pi$", ylabel="$z$, $w$", title=title)
+    axes.set_xlim(0, float(periods[-1]))
     axes.set_ylim(top=1.25 * float(data.ball.max()))
     axes.legend(loc="upper center", ncols=2)
     return figure
@@ -67,13 +68,9 @@ def contact_history(data: xr.Dataset) -> Figure:
     middle = (duration / 2, ball[touching].min())
     note(axes, "contact", middle, (0, -9), ha="center", va="top", fontsize=8)
     axes.annotate("flight", (time[top], 0.62 * ball[top]), ha="center", fontsize=8)
-    axes.set(
-        ylabel="$z$, $w$",
-        xticks=[],
-        xlim=(-0.16 * end, 1.12 * end),
-        ylim=(low, 1.15 * ball.max()),
-        title=parameters(data, "n", "restitution", "amplitude", "frequency_ratio"),
-    )
+    title = parameters(data, "n", "restitution", "amplitude", "frequency_ratio")
+    axes.set(ylabel="$z$, $w$", xticks=[], title=title)
+    axes.set(xlim=(-0.16 * end, 1.12 * end), ylim=(low, 1.15 * ball.max()))
     axes.set_xlabel(r"time $\tau$", labelpad=16)
     return figure
 
@@ -82,11 +79,11 @@ def both_histories(data: xr.Dataset) -> Figure:
     """Fig. 12: height over τ, with the table at Λ sin τ for all curves; right, the summit."""
     figure, (axes, summit) = canvas(WIDE, 3.4, columns=2, width_ratios=(2.4, 1.0))
     n, amplitude = data.attrs["n"], data.attrs["amplitude"]
-    cycle = 2 * np.pi * n
-    time = np.linspace(-0.1 * 2 * np.pi, cycle + 0.35 * 2 * np.pi, 400)
+    period = 2 * np.pi * n
+    time = np.linspace(-0.1 * 2 * np.pi, period + 0.35 * 2 * np.pi, 400)
     axes.plot(time, amplitude * np.sin(time), color=TABLE, label="table")
     for part in (axes, summit):
-        _draw_both_models(part, data, cycle)
+        _draw_both_models(part, data, period)
     halves = np.arange(0, 2 * n + 1)
     axes.set_xticks(np.pi * halves, ["0", r"$\pi$", *(rf"${k}\pi$" for k in halves[2:])])
     title = parameters(data, "n", "restitution", "amplitude")
@@ -96,12 +93,8 @@ def both_histories(data: xr.Dataset) -> Figure:
     top, at = float(ball.max()), float(data.time[int(ball.argmax())] + data.restitution_phase)
     below = max(3 * (top - float(data.ball.isel(frequency_ratio=-1).max())), 0.02 * top)
     reach = np.sqrt(2 * below)  # of a free flight
-    summit.set(
-        xlabel=r"time $\tau$",
-        xlim=(at - reach, at + reach),
-        ylim=(top - below, top + 0.15 * below),
-        title="the summit, enlarged",
-    )
+    summit.set(xlabel=r"time $\tau$", title="the summit, enlarged")
+    summit.set(xlim=(at - reach, at + reach), ylim=(top - below, top + 0.15 * below))
     legend_below(figure, ncols=data.sizes["frequency_ratio"] + 2, columnspacing=1.2)
     return figure
 
@@ -143,31 +136,28 @@ def meeting_flights(data: xr.Dataset) -> Figure:
     return figure
 
 
-def _draw_both_models(axes: Axes, data: xr.Dataset, cycle: float) -> None:
+def _draw_both_models(axes: Axes, data: xr.Dataset, period: float) -> None:
     """Both models; the restitution model is a broad line, over which the others are seen."""
     phase = data.time.values + float(data.restitution_phase)
-    rigid = _three_cycles(phase, data.restitution_ball.values, cycle)
+    rigid = _three_cycles(phase, data.restitution_ball.values, period)
     axes.plot(*rigid, color=_RIGID, label="restitution", linewidth=3.5)
-    last = data.sizes["frequency_ratio"] - 1
-    for k, ratio in enumerate(data.frequency_ratio.values):
-        curve = data.sel(frequency_ratio=ratio)
-        axes.plot(
-            *_three_cycles(curve.table_phase.values, curve.ball.values, cycle),
-            # The stiffest contact is black and solid, whatever their number.
-            color=COLOURS[(last - k) % len(COLOURS)],
-            linestyle="-" if k == last else _DASHES[k % len(_DASHES)],
-            linewidth=0.9 if k == last else 1.3,
-            label=rf"$\varpi={number(ratio)}$",
-        )
+    # The stiffest contact is black, solid and drawn last, whatever their number.
+    colours = list(islice(cycle(COLOURS), data.sizes["frequency_ratio"]))[::-1]
+    for curve, colour, dashes in zip(each(data, "frequency_ratio"), colours, cycle(_DASHES)):
+        flight = _three_cycles(curve.table_phase.values, curve.ball.values, period)
+        look: Look = {"color": colour, "linestyle": dashes, "linewidth": 1.3}
+        if curve.frequency_ratio == data.frequency_ratio[-1]:
+            look |= {"linestyle": "-", "linewidth": 0.9}
+        axes.plot(*flight, label=rf"$\varpi={number(curve.frequency_ratio.item())}$", **look)
 
 
 def _three_cycles(
-    phase: np.ndarray, ball: np.ndarray, cycle: float
+    phase: np.ndarray, ball: np.ndarray, period: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """The orbit repeats: the cycles before and after are drawn as well.
 
     Each point once: where a cycle ends and the next begins, rounding would
     make a segment without direction, and the dashes of the line start anew.
     """
-    shifted = np.concatenate([phase[:-1] - cycle, phase[:-1], phase + cycle])
+    shifted = np.concatenate([phase[:-1] - period, phase[:-1], phase + period])
     return shifted, np.concatenate([ball[:-1], ball[:-1], ball])

@@ -7,7 +7,9 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from bouncing_ball.figures.canvas import WIDE, canvas, legend_below, logarithmic, number
+from bouncing_ball.datasets.selection import each
+from bouncing_ball.figures.canvas import WIDE, canvas, coloured, legend_below, logarithmic
+from bouncing_ball.figures.labels import number
 from bouncing_ball.figures.style import COLOURS, CONTACT, GUIDE, MARKS, TABLE, Look
 
 _MARKS: dict[str, Look] = {
@@ -20,6 +22,7 @@ _MARKS: dict[str, Look] = {
 _EVERY = 8
 # In the order of the motions; five steps of grey.
 _FILLS = ("#ffffff", "#b9d7ea", "#b34a10", "#e0a030", "#000000")
+_RATIO = r"frequency ratio $\varpi$"
 _ORBITS = {1: "o", 2: "^"}
 _ORBIT: Look = {
     **{"linestyle": "none", "color": "#000000", "markerfacecolor": "#ffffff"},
@@ -32,20 +35,15 @@ def stable_windows(data: xr.Dataset) -> Figure:
     figure, (left, right) = canvas(WIDE, 3.2, columns=2)
     _draw_window(left, data.isel(restitution=0))
     ratio = data.frequency_ratio.values
-    for k, r in enumerate(sorted(data.restitution.values)):
-        one, colour = data.sel(restitution=r), COLOURS[k % len(COLOURS)]
+    for one, colour in coloured(data.sortby("restitution"), "restitution"):
         width = ratio**2 * (one.window_amplitude - one.threshold_amplitude).values
         for run in _runs(one.window_end.values):
             right.plot(ratio[run], width[run], marker="." if run.size == 1 else "", color=colour)
-        right.plot([], [], color=colour, label=number(float(r)))
+        right.plot([], [], color=colour, label=number(float(one.restitution)))
         right.plot(ratio[-1], one.stiff_window, marker=5, color=colour, clip_on=False)
-    logarithmic(right)
-    right.set(
-        yscale="log",
-        xlabel=r"frequency ratio $\varpi$",
-        ylabel=r"$\varpi^2\,(\Lambda_{\mathrm{end}}-\Lambda_{SD})$",
-        title=r"its width for each $r$, and the limit for $\varpi\to\infty$",
-    )
+    ylabel = r"$\varpi^2\,(\Lambda_{\mathrm{end}}-\Lambda_{SD})$"
+    title = r"its width for each $r$, and the limit for $\varpi\to\infty$"
+    logarithmic(right, xlabel=_RATIO, yscale="log", ylabel=ylabel, title=title)
     right.legend(loc="lower right", title="$r$, from above")
     return figure
 
@@ -53,18 +51,11 @@ def stable_windows(data: xr.Dataset) -> Figure:
 def basins(data: xr.Dataset) -> Figure:
     """One panel for each Λ; each start has the colour of the motion it leads to."""
     figure, row = canvas(WIDE, 3.1, columns=data.sizes["case"], sharey=True, squeeze=False)
-    for case, axes in zip(data.case.values, row[0], strict=True):
-        one = data.sel(case=case)
-        axes.imshow(
-            one.destination,
-            origin="lower",
-            extent=(-1.0, 1.0, 0.0, data.attrs["velocity_max"]),
-            aspect="auto",
-            interpolation="none",
-            cmap=ListedColormap(_FILLS),
-            vmin=-0.5,
-            vmax=len(_FILLS) - 0.5,
-        )
+    image: Look = {"origin": "lower", "aspect": "auto", "interpolation": "none"}
+    image |= {"extent": (-1.0, 1.0, 0.0, data.attrs["velocity_max"])}
+    image |= {"cmap": ListedColormap(_FILLS), "vmin": -0.5, "vmax": len(_FILLS) - 0.5}
+    for one, axes in zip(each(data, "case"), row[0], strict=True):
+        axes.imshow(one.destination, **image)
         for k, mark in _ORBITS.items():
             if np.isfinite(one.orbit_phase[k]):
                 axes.plot(one.orbit_phase[k] / np.pi, one.orbit_speed[k], marker=mark, **_ORBIT)
@@ -103,7 +94,6 @@ def _draw_window(axes: Axes, window: xr.Dataset) -> None:
     axes.plot(ratio, low, color=CONTACT, linewidth=1.3, label=r"$\Lambda_{SD}$")
     axes.axhline(1.0, **GUIDE)
     title = rf"stable window, $r={number(float(window.restitution))}$"
-    axes.set(xlabel=r"frequency ratio $\varpi$", ylabel=r"amplitude $\Lambda$", title=title)
-    logarithmic(axes)
+    logarithmic(axes, xlabel=_RATIO, ylabel=r"amplitude $\Lambda$", title=title)
     axes.set_ylim(bottom=0.0)
     axes.legend(loc="lower right", title="upper end")

@@ -1,7 +1,6 @@
 """One look for all figures: colours, lines, markers and matplotlib's settings."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 
@@ -51,21 +50,7 @@ LAWS: dict[str, Look] = {
 }
 """How each contact law is drawn."""
 
-QUANTITIES = {
-    "max_height": r"greatest height $\max\,z$",
-    "bounce_velocity": r"bouncing-off velocity $z'_b$",
-    "phase": r"phase of impact $\varphi$",
-    "apparent_restitution": r"apparent restitution $r_a$",
-    "saddle_node": r"saddle-node $\Lambda_{SN}$",
-    "period_doubling": r"period doubling $\Lambda_{PD}$",
-    "permanent_contact": r"permanent contact",
-}
-"""The quantities compared between the models, as a title names them."""
 
-
-@contextmanager
-def style() -> Iterator[None]:
+def style() -> AbstractContextManager[None]:
     """The settings of ``matplotlibrc`` beside this module, to draw and save a figure."""
-    settings = matplotlib.rc_params_from_file(SETTINGS, use_default_template=False)
-    with matplotlib.rc_context(settings):
-        yield
+    return matplotlib.rc_context(fname=SETTINGS)

@@ -9,15 +9,8 @@ from matplotlib.figure import Figure
 
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.figures.branches import draw_curve
-from bouncing_ball.figures.canvas import (
-    canvas,
-    coloured,
-    legend_below,
-    logarithmic,
-    note,
-    number,
-    parameters,
-)
+from bouncing_ball.figures.canvas import canvas, coloured, legend_below, logarithmic
+from bouncing_ball.figures.labels import note, number, parameters
 from bouncing_ball.figures.style import COLOURS, GUIDE, RESTITUTION, Look
 
 _DASHES = ("-", (0, (5, 1.5)), (0, (1, 1)), (0, (5, 1.5, 1, 1.5)))

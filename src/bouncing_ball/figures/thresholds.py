@@ -1,4 +1,7 @@
-"""Thresholds along ϖ: of permanent contact, and of an error (Figs. 11, 14, 16)."""
+"""Thresholds along ϖ: of permanent contact, and of an error (Figs. 11, 14, 16).
+
+What the release rule changes in them, and in the bifurcations of Table 1 (ext_release).
+"""
 
 import numpy as np
 import xarray as xr
@@ -6,10 +9,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bouncing_ball.figures.branches import draw_curve
-from bouncing_ball.figures.canvas import canvas, logarithmic, note, parameters
-from bouncing_ball.figures.style import CONTACT, GUIDE, RESTITUTION, Look
+from bouncing_ball.figures.canvas import WIDE, canvas, coloured, legend_below, logarithmic
+from bouncing_ball.figures.labels import note, parameters
+from bouncing_ball.figures.style import CONTACT, GUIDE, RESTITUTION, TABLE, Look
+from bouncing_ball.figures.tables.formats import words
 
 _RIGID: Look = {"color": RESTITUTION, "linewidth": 1.0, "linestyle": "--"}
+_DASHES = {"saddle-node": "-", "period doubling": (0, (4, 1.5))}
+_MARKS = ("o", "x", "s")
+_NAMES = {"saddle_node": "saddle-node", "bounce_velocity": "bouncing-off velocity"}
 
 
 def permanent_contact(data: xr.Dataset) -> Figure:
@@ -28,12 +36,10 @@ def height_error(data: xr.Dataset) -> Figure:
     draw_curve(axes, data.frequency_ratio, data.max_height, data.admissible, **look)
     limit = float(data.restitution_max_height)
     axes.axhline(limit, label="restitution", **_RIGID)
-    axes.set(
-        ylabel=r"greatest height $\max\,z$", title=parameters(data, "n", "restitution", "amplitude")
-    )
+    title = parameters(data, "n", "restitution", "amplitude")
+    logarithmic(axes, ylabel=r"greatest height $\max\,z$", title=title)
     axes.set_ylim(top=1.09 * limit)
     axes.legend(loc="lower right")
-    logarithmic(axes)
     _draw_error(below, data, "h", digits=1)
     logarithmic(below, data.frequency_ratio)
     return figure
@@ -57,6 +63,17 @@ def permanent_contact_error(data: xr.Dataset) -> Figure:
     return figure
 
 
+def release_rules(data: xr.Dataset) -> Figure:
+    """Shift of the bifurcations (left) and thresholds of each quantity (right)."""
+    figure, (left, right) = canvas(WIDE, 3.8, columns=2, width_ratios=(1.0, 1.25))
+    _draw_shifts(left, data)
+    _draw_by_quantity(right, data)
+    # What the arrows mean, in the colour of none of the readings.
+    right.plot([], [], ">", color=TABLE, markersize=6, label="never within the range")
+    legend_below(figure, *right.get_legend_handles_labels(), ncols=4)
+    return figure
+
+
 def _draw_threshold(axes: Axes, data: xr.Dataset) -> str:
     """Λ_SD, or Λ_F of the force release, with its minimum; its symbol."""
     high, minimum = float(data.frequency_ratio[-1]), float(data.minimum_threshold)
@@ -65,11 +82,10 @@ def _draw_threshold(axes: Axes, data: xr.Dataset) -> str:
     force = data.attrs.get("release") == "force"
     name = "minimum" if force else r"$2\zeta\sqrt{1-\zeta^2}$"
     note(axes, name, (high, minimum), (0, 3), ha="right", fontsize=8)
-    logarithmic(axes, data.frequency_ratio)
     symbol = r"$\Lambda_{F}$" if force else r"$\Lambda_{SD}$"
-    damping = rf"$\zeta={float(data.damping_ratio):.4f}$"
-    title = f"{parameters(data, 'restitution')}, {damping}"
-    axes.set(ylabel=f"threshold amplitude {symbol}", ylim=(0, 2), title=title)
+    ylabel = f"threshold amplitude {symbol}"
+    title = rf"{parameters(data, 'restitution')}, $\zeta={float(data.damping_ratio):.4f}$"
+    logarithmic(axes, data.frequency_ratio, ylabel=ylabel, ylim=(0, 2), title=title)
     return symbol
 
 
@@ -87,5 +103,45 @@ def _draw_error(axes: Axes, data: xr.Dataset, name: str, digits: int) -> None:
         axes.plot(found, tolerance, "o", color="black", markersize=4)
         value = rf"$\varpi_{{{name},{100 * tolerance:g}\%}}={found:.{digits}f}$"
         note(axes, value, (found, tolerance), (5, 5), fontsize=8)
-    logarithmic(axes)
-    axes.set(yscale="log", ylabel="relative error")
+    logarithmic(axes, yscale="log", ylabel="relative error")
+
+
+def _draw_shifts(axes: Axes, data: xr.Dataset) -> None:
+    """Shift of the bifurcations with ϖ, one curve for each family and bifurcation."""
+    for family, colour in coloured(data, "n"):
+        for bound, dashes in _DASHES.items():
+            amplitude = family.bifurcation_amplitude.sel(bound=bound)
+            shift = amplitude.sel(release="force") - amplitude.sel(release="displacement")
+            label = f"$n={family.n:d}$, {bound}"
+            axes.plot(data.frequency_ratio, shift, color=colour, linestyle=dashes, label=label)
+    axes.axhline(0.0, **GUIDE)
+    ylabel, title = r"shift of $\Lambda$, force minus displacement", parameters(data, "restitution")
+    logarithmic(axes, data.frequency_ratio, ylabel=ylabel, title=title)
+    spacing: Look = {"columnspacing": 0.7, "handlelength": 1.6, "handletextpad": 0.4}
+    axes.legend(fontsize=6, loc="lower right", bbox_to_anchor=(1.0, 0.1), ncols=2, **spacing)
+
+
+def _draw_by_quantity(axes: Axes, data: xr.Dataset) -> None:
+    """Threshold of each quantity, one mark for each reading; an arrow where there is none.
+
+    The marks of a quantity stand below one another, in the order of the legend.
+    """
+    rows = np.arange(data.sizes["quantity"])[::-1]
+    prefix = "thresholds__"
+    own = [name for name in data.attrs if str(name).startswith(prefix)]
+    given = xr.Dataset(attrs={name.removeprefix(prefix): data.attrs[name] for name in own})
+    limit = given.attrs["frequency_ratio__max"]
+    for k, ((one, colour), mark) in enumerate(zip(coloured(data, "reading"), _MARKS, strict=False)):
+        face, places = "none" if mark == "s" else colour, rows + 0.24 * (1 - k)
+        look: Look = {"color": colour, "markerfacecolor": face, "markersize": 5}
+        axes.plot(one.error_threshold, places, mark, label=one.reading.item(), **look)
+        never = one.threshold_status.str.startswith("outside").values
+        at_the_end = np.full(never.sum(), limit / 1.25)
+        axes.plot(at_the_end, places[never], ">", color=colour, markersize=6)
+    for row in rows[:-1]:
+        axes.axhline(row - 0.5, **GUIDE)
+    axes.set_yticks(rows, [_NAMES.get(name, words(name)) for name in data.quantity.values])
+    xlabel = rf"$\varpi$ for an error of {100 * given.attrs['tolerance']:g} %"
+    title = parameters(given, "n", "restitution", "amplitude")
+    ylim = -0.7, len(rows) - 0.3
+    logarithmic(axes, xlabel=xlabel, xlim=(1, limit), ylim=ylim, title=title)

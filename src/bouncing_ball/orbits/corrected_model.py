@@ -12,7 +12,6 @@ from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.corrected import simulate
 from bouncing_ball.motion.sequence import ImpactSequence
 from bouncing_ball.orbits import corrected_branch as formulas
-from bouncing_ball.orbits.continued import both_sides
 from bouncing_ball.orbits.corrected_orbit import CorrectedOrbit, CorrectedSystem
 from bouncing_ball.orbits.model import ImpactModel, Route
 from bouncing_ball.orbits.orbit import Orbit, check_index
@@ -57,10 +56,6 @@ class CorrectedModel(ImpactModel):
     def system(self, n: int | np.ndarray) -> CorrectedSystem:
         """The equations of the orbits, continued in Λ."""
         return CorrectedSystem(n, self.law)
-
-    def orbits(self, n: int, amplitude: float) -> CorrectedOrbit:
-        """Both n-T orbits at one Λ, the shorter contact first; one at the saddle-node."""
-        return both_sides(self, n, amplitude)
 
     def simulate(
         self, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int

@@ -13,6 +13,7 @@ from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane
 from bouncing_ball.continuation.problem import Problem
 
 _BISECTIONS = 60
+_TINY, _ROUNDING = np.finfo(float).tiny, 4e-16
 
 
 def grazing_points(
@@ -20,8 +21,8 @@ def grazing_points(
     admissible_at: Callable[[np.ndarray], np.ndarray],
     points: np.ndarray,
     settings: NewtonSettings,
-) -> list[np.ndarray]:
-    """The last admissible points of a branch, one for every change along it.
+) -> np.ndarray:
+    """The last admissible points of a branch, one for every change along it, (k, N + 1).
 
     Parameters
     ----------
@@ -34,22 +35,14 @@ def grazing_points(
     settings : NewtonSettings
     """
     admissible = admissible_at(points)
-    found = []
-    for k in np.nonzero(admissible[:-1] != admissible[1:])[0]:
-        inside, outside = (k, k + 1) if admissible[k] else (k + 1, k)
-        left, right = points[inside], points[outside]
-        for _ in range(_BISECTIONS):
-            middle = (left + right) / 2
-            normal = (right - left) / np.linalg.norm(right - left)
-            corrected = newton(problem, middle, plane(normal, middle), settings)
-            if not corrected.converged:
-                break
-            middle = corrected.point
-            if np.linalg.norm(right - left) <= 4e-16 * np.linalg.norm(left):
-                break
-            if admissible_at(middle[np.newaxis])[0]:
-                left = middle
-            else:
-                right = middle
-        found.append(left)
-    return found
+    at = np.flatnonzero(admissible[:-1] != admissible[1:])
+    inside, outside = points[at + ~admissible[at]], points[at + admissible[at]]
+    for _ in range(_BISECTIONS if at.size else 0):
+        middle, normal = (inside + outside) / 2, outside - inside
+        length = np.linalg.norm(normal, axis=-1, keepdims=True)
+        found = newton(problem, middle, plane(normal / np.maximum(length, _TINY), middle), settings)
+        good = admissible_at(found.point)
+        closer = found.converged & (length[:, 0] > _ROUNDING * np.linalg.norm(inside, axis=-1))
+        inside[closer & good] = found.point[closer & good]
+        outside[closer & ~good] = found.point[closer & ~good]
+    return inside

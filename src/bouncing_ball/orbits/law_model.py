@@ -16,13 +16,12 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.collocation import Contacts, contacts, path
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.law_choice import law_of_impact
-from bouncing_ball.contacts.law_permanent_contact import permanent_contact
-from bouncing_ball.contacts.law_signature import free_impact
-from bouncing_ball.contacts.signature import Instant
+from bouncing_ball.contacts.permanent_contact import permanent_contact
+from bouncing_ball.contacts.signature import Instant, free_impact
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.motion.contact import contact_cycle, simulate
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence
-from bouncing_ball.orbits.continued import orbit_at
+from bouncing_ball.orbits.continued import orbit_at, orbits_at
 from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
@@ -144,6 +143,10 @@ class LawModel(ImpactModel):
         """That of a free impact."""
         return free_impact(self.law, speed)
 
+    def orbits(self, n: int, amplitude: float) -> LawOrbit:
+        """All n-T orbits of one law at one Λ on the branch, in order of contact duration."""
+        return orbits_at(self, n, amplitude)
+
     def simulate(
         self, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
     ) -> ImpactSequence:
@@ -179,7 +182,7 @@ def law_at_orbit(
 
     Examples
     --------
-    >>> from bouncing_ball.contacts.law_signature import free_impact
+    >>> from bouncing_ball.contacts.signature import free_impact
     >>> from bouncing_ball.contacts.laws.tsuji import Tsuji
     >>> law = law_at_orbit(Tsuji, 0.65, 0.1, 1, 1.0)
     >>> speed = -LawModel(law).orbit(1, 1.0).relative_impact_velocity

@@ -18,6 +18,7 @@ oscillation after the landing reaches x = 0 again (:func:`stiff_limit`).
 """
 
 import math
+from collections.abc import Callable
 from enum import StrEnum
 from typing import NamedTuple
 
@@ -111,6 +112,17 @@ def _kind(contact: SpringDamper, flight_time: np.ndarray) -> np.ndarray:
     return np.where(1 - trace + determinant <= 0, End.SADDLE_NODE, kind)
 
 
+def _bisected(
+    good: Callable, inside: np.ndarray, outside: np.ndarray, times: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Closer points inside, where something holds, and outside, where it does not."""
+    for _ in range(times):
+        middle = (inside + outside) / 2
+        here = good(middle)
+        inside, outside = np.where(here, middle, inside), np.where(here, outside, middle)
+    return inside, outside
+
+
 def stable_window(contact: SpringDamper) -> Window:
     """Where the stable orbits that begin at Λ_SD end.
 
@@ -144,10 +156,7 @@ def stable_window(contact: SpringDamper) -> Window:
     found = np.flatnonzero((last > 0) & (last < _SAMPLES))
     part = each[found]
     inside, outside = grid[last[found] - 1, found], grid[last[found], found]
-    for _ in range(_BISECTIONS):
-        middle = (inside + outside) / 2
-        good = _usual(part, middle)
-        inside, outside = np.where(good, middle, inside), np.where(good, outside, middle)
+    inside, outside = _bisected(lambda time: _usual(part, time), inside, outside, _BISECTIONS)
     amplitude, flight = np.full((2, *ratio.shape), np.nan)
     end = np.full(ratio.shape, str(End.NONE), dtype="<U18")
     if found.size:
@@ -201,10 +210,8 @@ def joining_ratio(
 
     below, above = np.full(zeta.shape, low), np.full(zeta.shape, high)
     parting = together(below) & ~together(above)
-    while parting.any() and above[0] - below[0] > _CLOSE:
-        middle = (below + above) / 2
-        here = together(middle)
-        below, above = np.where(here, middle, below), np.where(here, above, middle)
+    if parting.any():
+        below, _ = _bisected(together, below, above, math.ceil(math.log2((high - low) / _CLOSE)))
     return np.where(parting, below, np.nan).reshape(np.shape(damping_ratio))
 
 

@@ -99,8 +99,11 @@ class ImpactModel(Batch, ABC):
         return continued.orbit_at(self, n, amplitude, Side(side))
 
     def orbits(self, n: int, amplitude: float) -> Any:
-        """All n-T orbits at one Λ, in order of contact duration, shape (count,)."""
-        return continued.orbits_at(self, n, amplitude)
+        """All n-T orbits at one Λ, in order of contact duration, shape (count,).
+
+        Those of both sides, one at the saddle-node: an impact that takes no time has no others.
+        """
+        return continued.both_sides(self, n, amplitude)
 
     def absence(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> np.ndarray:
         """The :class:`Absence` of each orbit that :meth:`orbit` looks for, as text."""

@@ -15,7 +15,6 @@ from bouncing_ball.errors import ModelError
 from bouncing_ball.motion.restitution import simulate
 from bouncing_ball.motion.sequence import ImpactSequence
 from bouncing_ball.orbits import restitution_orbit as formulas
-from bouncing_ball.orbits.continued import both_sides
 from bouncing_ball.orbits.model import ImpactModel, Route
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_orbit import RestitutionOrbit
@@ -113,10 +112,6 @@ class RestitutionModel(_Instants):
         there = lam >= fold
         phase = formulas.phase(n, self.restitution, np.where(there, lam, fold), side == Side.STABLE)
         return self.orbit_of(n, lam, np.where(there, phase, np.nan))
-
-    def orbits(self, n: int, amplitude: float) -> RestitutionOrbit:
-        """Both n-T orbits at one Λ, the stable side first; one at the saddle-node."""
-        return both_sides(self, n, amplitude)
 
     def saddle_node(self, n: ArrayLike) -> RestitutionOrbit:
         """The orbits at the saddle-node, φ = 0."""

@@ -27,9 +27,13 @@ that of u in the release condition, is then proportional to sin ε.
 
 Differentiating the three equations along ε gives dΛ/dε. It vanishes at the
 saddle-node, and also where the ball grazes at impact or release, without a
-multiplier at 1. Linearising one cycle about the orbit gives the trace of the
-monodromy; its determinant is ``exp(-2ζϖD)``, as the contact contracts
-(τ, δ, δ′) volume at the rate 2ζϖ and the flight preserves it.
+multiplier at 1. The determinant of the monodromy M is ``exp(-2ζϖD)``, as the
+contact contracts (τ, δ, δ′) volume at the rate 2ζϖ and the flight preserves it.
+Its trace follows from ``det(M - 1) = 1 - tr + det``, which is the Jacobian
+determinant of velocity and landing in (φ, u) over u. With A the matrix of the
+three equations, R_D the derivative of the first along D at fixed (X, Y, u), ::
+
+    1 - tr + det = -(det A / (u R_D)) ½ d(Λ²)/dD
 
 All quantities are dimensionless; all functions broadcast.
 """
@@ -55,7 +59,7 @@ class BranchPoint(NamedTuple):
 
     ``x``, ``y``, ``u`` are Λ cos φ, Λ sin φ and the relative impact velocity;
     ``contact_duration`` is D; ``d_x``, ``d_y`` the derivatives dX/dε and dY/dε;
-    ``trace`` and ``determinant`` those of the monodromy.
+    ``determinant`` that of the monodromy, ``saddle_node`` the ``1 - tr + det`` of it.
     """
 
     contact_duration: np.ndarray
@@ -64,8 +68,13 @@ class BranchPoint(NamedTuple):
     u: np.ndarray
     d_x: np.ndarray
     d_y: np.ndarray
-    trace: np.ndarray
+    saddle_node: np.ndarray
     determinant: np.ndarray
+
+    @property
+    def trace(self) -> np.ndarray:
+        """Trace of the monodromy."""
+        return 1 + self.determinant - self.saddle_node
 
     @property
     def amplitude(self) -> np.ndarray:
@@ -127,7 +136,7 @@ def _responses(duration, sin_angle, cos_angle, sin_d, cos_d, decay, omega, zeta,
 
 
 def _solve(rows, right):
-    """Solution of 3×3 systems by Cramer's rule, and a solver for more right sides."""
+    """Solution of 3×3 systems by Cramer's rule, a solver for more right sides, and det A."""
     (a1, a2, a3), (b1, b2, b3), (c1, c2, c3) = rows
     bc = b2 * c3 - b3 * c2, b3 * c1 - b1 * c3, b1 * c2 - b2 * c1
     ca = c2 * a3 - c3 * a2, c3 * a1 - c1 * a3, c1 * a2 - c2 * a1
@@ -141,7 +150,7 @@ def _solve(rows, right):
     def solve(s, t, v):
         return tuple((s * bc[k] + t * ca[k] + v * ab[k]) * inverse for k in range(3))
 
-    return solve(*right), solve
+    return solve(*right), solve, determinant
 
 
 def branch_point(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> BranchPoint:
@@ -230,49 +239,18 @@ def _branch_point(eps, omega, zeta, sine, n) -> BranchPoint:
     velocity = dg - 1, q + versine, dq - sin_d
     d_velocity = ddg, ddp - sin_d, ddq - cos_d
 
-    (u, x, y), solve = _solve((release, velocity, landing), (weight, g + flight, fall))
-    _, d_x, d_y = solve(
-        *(
-            db - (row[0] * u + row[1] * x + row[2] * y)
-            for db, row in ((d_weight, d_release), (dg - 1, d_velocity), (d_fall, d_landing))
-        )
-    )
-
-    trace = _trace(omega, zeta, sine, flight, (u, x, y), (sin_d, cos_d), (g, dg, p, q, dq), push)
-    return BranchPoint(
-        duration, x, y, u, d_x * per_angle, d_y * per_angle, trace, decay * decay + 0 * trace
-    )
-
-
-@np.errstate(divide="ignore", invalid="ignore")
-def _trace(omega, zeta, sine, flight, orbit, end, responses_at_end, push):
-    """Trace of the linearised cycle: contact, release, flight, landing.
-
-    Infinite or not a number where the ball grazes at impact or at release.
-    """
-    (u, x, y), (sin_d, cos_d), (g, dg, p, q, dq) = orbit, end, responses_at_end
-    # Columns of the monodromy over (τ, u).
-    bounce = u * dg + x * q + y * dq - g  # δ′ at release
-    leaving = x * cos_d - y * sin_d  # Λ cos and Λ sin of the phase at release
-    lifted = y * cos_d + x * sin_d
-    by_phase, by_phase_rate = x * q - y * p, x * dq - y * q
-    # δ″ at release, where δ_b = -κ δ′_b.
-    acceleration = lifted - 1 - 2 * (zeta - sine) * omega * bounce
-    slope = omega * bounce + 2 * sine * acceleration
-    stay_tau = -(omega * by_phase + 2 * sine * by_phase_rate) / slope
-    stay_u = -push / slope
-    columns = []
-    for stay, direct, displaced, moved in (
-        (stay_tau, by_phase_rate, by_phase, 1.0),
-        (stay_u, dg, g, 0.0),
-    ):
-        release_phase = moved + stay
-        risen = displaced + bounce * stay + leaving * release_phase
-        thrown = direct + acceleration * stay - lifted * release_phase
-        hang = -(risen + flight * thrown - x * release_phase) / u
-        landing_phase = release_phase + hang
-        columns.append((landing_phase, thrown - hang + y * landing_phase))
-    return columns[0][0] + columns[1][1]
+    equations = release, velocity, landing
+    (u, x, y), solve, matrix = _solve(equations, (weight, g + flight, fall))
+    along = [
+        db - (row[0] * u + row[1] * x + row[2] * y)
+        for db, row in ((d_weight, d_release), (dg - 1, d_velocity), (d_fall, d_landing))
+    ]
+    _, d_x, d_y = solve(*along)
+    # Infinite or not a number where the ball grazes at impact or at release.
+    with np.errstate(divide="ignore", invalid="ignore"):
+        saddle = matrix * (x * d_x + y * d_y) / (u * along[0])
+    determinant = decay * decay + 0 * u
+    return BranchPoint(duration, x, y, u, d_x * per_angle, d_y * per_angle, saddle, determinant)
 
 
 # Gauss-Newton from a start that is right to rounding of D converges at once.

@@ -33,10 +33,6 @@ _SHORTEST = 1e-3
 _FULL = 1e-6
 # Contacts searched at once: as many as keep a scan in some ten megabytes.
 _BLOCK = 1024
-# Width, in parts of its ε and of 1/ϖ, in which the zero of dΛ/dε is looked for next
-# to that of the multiplier: wide against the rounding of the trace (some 1e-9 of
-# these for ϖ = 10⁸), narrow against the distance to the next turn of Λ.
-_NEXT_TO = 1e-4
 # Steps of the search for all orbits, in radians of the contact's oscillation and
 # of the table's, which Λ(ε) follows; and how many are taken at most.
 _FINE = 0.02
@@ -49,10 +45,6 @@ def _fold(point: BranchPoint) -> np.ndarray:
 
 def _surplus(point: BranchPoint, amplitude: np.ndarray) -> np.ndarray:
     return point.amplitude - amplitude
-
-
-def _test(kind: Bifurcation) -> Callable:
-    return lambda point: kind.test(point.trace, point.determinant)
 
 
 class _Curves(NamedTuple):
@@ -99,7 +91,7 @@ class _Curves(NamedTuple):
         return result
 
     def zero(
-        self, kind: Bifurcation, grid: np.ndarray, points: BranchPoint, *, last: bool = False
+        self, test: Callable, grid: np.ndarray, points: BranchPoint, *, last: bool = False
     ) -> np.ndarray:
         """First, or last, zero of a test function along a grid; NaN where there is none.
 
@@ -107,7 +99,6 @@ class _Curves(NamedTuple):
         is then larger than at both ends of the bracket, and at a zero smaller: no
         tolerance decides that it is one.
         """
-        test = _test(kind)
         values = test(points)
         index, found = _bracket(values, last=last)
         root = self.close(test, _at(grid, index), _at(grid, index + 1), found)
@@ -117,12 +108,7 @@ class _Curves(NamedTuple):
 
     def fold(self, grid: np.ndarray, points: BranchPoint) -> np.ndarray:
         """ε of the saddle-node, the first among the points of the scan's grid."""
-        root = self.zero(Bifurcation.SADDLE_NODE, grid, points)
-        width = _NEXT_TO * np.minimum(np.abs(root), 1 / self.omega)
-        left, right = root - width, root + width
-        turns = self.point(left).fold * self.point(right).fold < 0
-        closer = self.close(_fold, left, right, turns)
-        return np.where(np.isnan(closer), root, closer)
+        return self.zero(lambda point: point.saddle_node, grid, points)
 
 
 def _bracket(values, *, last=False):
@@ -155,10 +141,8 @@ def _searched(search: Callable, contact: SpringDamper, n: ArrayLike, *more: Arra
 def saddle_node(contact: SpringDamper, n: ArrayLike) -> np.ndarray:
     """Excess angle ε of the saddle-node, the first zero of 1 - tr + det.
 
-    dΛ/dε vanishes there too, and with more digits for a stiff contact: next to
-    the zero of the one, that of the other is taken. It vanishes as well where
-    the ball grazes, and changes sign at the poles of the branch, where Λ is
-    infinite; neither is a bifurcation.
+    dΛ/dε vanishes there too, but also where the ball grazes, and changes sign at
+    the poles of the branch, where Λ is infinite; neither is a bifurcation.
 
     Returns
     -------
@@ -192,7 +176,11 @@ def _period_doubling(curves: _Curves) -> np.ndarray:
     grid, fold = curves.scan(), _saddle_node(curves)
     # The part of the scan on the stable side; its points beyond collapse there.
     grid = np.minimum(grid, np.where(np.isnan(fold), grid[-1], fold))
-    return curves.zero(Bifurcation.PERIOD_DOUBLING, grid, curves.point(grid), last=True)
+
+    def test(point: BranchPoint) -> np.ndarray:
+        return Bifurcation.PERIOD_DOUBLING.test(point.trace, point.determinant)
+
+    return curves.zero(test, grid, curves.point(grid), last=True)
 
 
 def _stable_side(curves: _Curves, lam: np.ndarray) -> np.ndarray:
@@ -206,10 +194,8 @@ def _stable_side(curves: _Curves, lam: np.ndarray) -> np.ndarray:
     # Without a fold Λ falls all the way, and the whole branch is this side.
     end = np.where(np.isnan(fold), grid[-1], fold)
     lowest = curves.point(end).amplitude
-    below = np.where(grid < end, points.amplitude, lowest) <= lam
-    at = np.argmax(below, axis=0)
-    found = np.any(below, axis=0) & (at > 0) & (lowest <= lam)
-    left, right = (np.minimum(_at(grid, k), end) for k in (np.maximum(at - 1, 0), at))
+    at, found = _bracket(lam - np.where(grid < end, points.amplitude, lowest))
+    left, right = (np.minimum(_at(grid, k), end) for k in (at, at + 1))
     return curves.close(_surplus, left, right, found, lam)
 
 

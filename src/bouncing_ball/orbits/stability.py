@@ -13,20 +13,6 @@ from numpy.typing import ArrayLike
 from bouncing_ball.errors import ModelError
 
 
-def trace_and_determinant(monodromy: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """Trace and determinant of matrices of shape (..., 2, 2).
-
-    Examples
-    --------
-    >>> trace, det = trace_and_determinant([[2.0, 1.0], [1.0, 1.0]])
-    >>> float(trace), float(det)
-    (3.0, 1.0)
-    """
-    m = np.asarray(monodromy, dtype=float)
-    trace = m[..., 0, 0] + m[..., 1, 1]
-    return trace, m[..., 0, 0] * m[..., 1, 1] - m[..., 0, 1] * m[..., 1, 0]
-
-
 def multipliers(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
     """Floquet multipliers, complex, shape (..., 2), the larger modulus first.
 
@@ -46,16 +32,6 @@ def multipliers(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
     with np.errstate(invalid="ignore"):  # where there is no orbit
         second = np.where(zero, 0, det / np.where(zero, 1, first))
     return np.stack([first, second], axis=-1)
-
-
-def saddle_node_function(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
-    """``1 - tr + det``: zero at a saddle-node, positive on the stable side."""
-    return 1 - np.asarray(trace) + np.asarray(determinant)
-
-
-def period_doubling_function(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
-    """``1 + tr + det``: zero at a period doubling, positive on the stable side."""
-    return 1 + np.asarray(trace) + np.asarray(determinant)
 
 
 class Side(StrEnum):
@@ -87,16 +63,15 @@ class Bifurcation(StrEnum):
     PERIOD_DOUBLING = "period doubling"
 
     def test(self, trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
-        """The function of the monodromy that is zero there, and positive on the stable side.
+        """``1 ∓ tr + det``: zero at the bifurcation, positive on the stable side.
 
         Examples
         --------
         >>> [float(kind.test(1.5, 0.5)) for kind in Bifurcation]
         [0.0, 3.0]
         """
-        if self is Bifurcation.SADDLE_NODE:
-            return saddle_node_function(trace, determinant)
-        return period_doubling_function(trace, determinant)
+        sign = -1 if self is Bifurcation.SADDLE_NODE else 1
+        return 1 + sign * np.asarray(trace) + np.asarray(determinant)
 
 
 def is_stable(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
@@ -108,8 +83,4 @@ def is_stable(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
     (True, False)
     """
     inside = np.abs(np.asarray(determinant)) < 1
-    return (
-        inside
-        & (saddle_node_function(trace, determinant) > 0)
-        & (period_doubling_function(trace, determinant) > 0)
-    )
+    return inside & np.all([kind.test(trace, determinant) > 0 for kind in Bifurcation], axis=0)

@@ -9,7 +9,7 @@ import signal
 import sys
 import traceback
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -63,19 +63,13 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
             print("made", *outputs, flush=True)
     except Exception as error:
         kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
-        sys.exit(f"{name}: {kind}{' '.join(str(error).split())} ({_details(log)})")
+        # A full disk may not take it.
+        with suppress(OSError):
+            write_text(log, traceback.format_exc())
+        sys.exit(f"{name}: {kind}{' '.join(str(error).split())} (details in {log})")
     finally:
         if without_pint:
             del sys.modules["pint"]
-
-
-def _details(log: Path) -> str:
-    """Where the traceback of the error at hand is; a full disk may not take it."""
-    try:
-        write_text(log, traceback.format_exc())
-    except OSError as error:
-        return f"no details: {log}: {error.strerror}"
-    return f"details in {log}"
 
 
 def withdraw() -> None:
@@ -129,9 +123,9 @@ def make_dataset(snakemake: Any) -> None:
         withdraw()
         job = snakemake.params
         data = {Path(path).stem: read_input(path) for path in snakemake.input.data}
-        given, settings = {"data": data} if data else {}, dict(job.arguments)
-        dataset = typed(load(job.study))(**given, **settings)
-        named = settings.pop("parameters", {}) | settings
+        given = dict(job.arguments)
+        dataset = typed(load(job.study))(**given, **({"data": data} if data else {}))
+        named = given.pop("parameters", {}) | given
         parameters = dataset.attrs or parameter_attributes(named)
         publish(snakemake, dataset, parameters)
         sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())

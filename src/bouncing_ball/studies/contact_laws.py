@@ -6,6 +6,9 @@ Hertz contact does not have, is π/D: that of the elastic linear contact of the
 same duration. Errors are relative to the value of the exact orbit on the contact.
 """
 
+from bisect import bisect_left
+from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -17,10 +20,9 @@ from bouncing_ball.accuracy.quantities import Quantity, values
 from bouncing_ball.accuracy.thresholds import thresholds
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.law_choice import law_of_impact
-from bouncing_ball.contacts.law_permanent_contact import permanent_contact
-from bouncing_ball.contacts.law_signature import LawSignature
 from bouncing_ball.contacts.laws import LAWS
 from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.signature import LawSignature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.errors import ModelError, NoOrbitError
@@ -37,10 +39,9 @@ from bouncing_ball.parameters import (
     LawRestitution,
     Many,
     Parameters,
-    Span,
     Tolerance,
 )
-from bouncing_ball.studies.parameters import BranchEnd, OrbitParameters, Points
+from bouncing_ball.studies.parameters import BranchEnd, OrbitsAlongRatio, Points
 
 HERTZ = ("hunt-crossley", "tsuji", "kuwabara-kono")
 LINEAR = {"linear": Release.DISPLACEMENT, "linear, force release": Release.FORCE}
@@ -49,11 +50,10 @@ BOUNDS = (Quantity.SADDLE_NODE, Quantity.PERIOD_DOUBLING)
 QUANTITIES = (Quantity.MAX_HEIGHT, Quantity.BOUNCE_VELOCITY, Quantity.PHASE, *BOUNDS)
 
 
-class OneOrbit(OrbitParameters):
+class OneOrbit(OrbitsAlongRatio):
     """One orbit on contacts of several durations; ϖ stands for π over the duration."""
 
     restitution: LawRestitution
-    frequency_ratio: Span
 
 
 class LawErrors(OneOrbit):
@@ -96,32 +96,31 @@ def exact_model(
     return LawModel(law_of_impact(LAWS[name], restitution, duration, speed))
 
 
-def exact_models(name: str, parameters: OneOrbit, duration: np.ndarray) -> ImpactModel:
-    """The exact models of contacts with r and D at their own orbits' speeds."""
-    r, n, lam = parameters.restitution, parameters.n, parameters.amplitude
-    if name in LINEAR:
-        return SpringDamperModel(linear_contact(r, duration, LINEAR[name]))
-    return LawModel(law_at_orbit(LAWS[name], r, duration, n, lam))
+def own_models(name: str, orbit: OneOrbit, ratios: np.ndarray) -> Any:
+    """The exact models of contacts with r and π/D at their own orbits' speeds.
 
-
-def stiff_enough(
-    name: str, parameters: OneOrbit, ratios: np.ndarray
-) -> tuple[slice, ImpactModel | None]:
-    """The contacts, from some π/D on, that all have their orbit, and their models.
-
-    Softer ones may have none: a contact longer than the cycle, for one, has no orbit
-    whose impact it is. No model where there is no such contact.
+    None if a contact has no such orbit: one that is longer than the cycle, for example.
     """
-    first, last, middle, models = 0, len(ratios), 0, None
-    while first < last:
-        try:
-            models = exact_models(name, parameters, np.pi / ratios[middle:])
-        except (ModelError, NoOrbitError):
-            first = middle + 1
-        else:
-            last = middle
-        middle = (first + last) // 2
-    return slice(first, None), models
+    r, duration = orbit.restitution, np.pi / ratios
+    if name in LINEAR:
+        return exact_model(name, r, duration, 1.0)
+    try:
+        return LawModel(law_at_orbit(LAWS[name], r, duration, orbit.n, orbit.amplitude))
+    except (ModelError, NoOrbitError):
+        return None
+
+
+def along(name: str, orbit: OneOrbit, value: Callable[[Any], np.ndarray]) -> np.ndarray:
+    """A value of the exact models along π/D, shape (..., ϖ), NaN below the first of their orbits.
+
+    The softest contact is found by bisection from which on all have their orbit.
+    """
+    ratios = orbit.frequency_ratio.grid()
+    models = cache(lambda first: own_models(name, orbit, ratios[first:]))
+    # The stiffest one alone is taken as it is: without an orbit on it there is nothing to show.
+    first = bisect_left(range(len(ratios) - 1), True, key=lambda k: models(k) is not None)
+    found = value(models(first))
+    return np.concatenate([np.full((*found.shape[:-1], first), np.nan), found], axis=-1)
 
 
 def corrected_model(exact: Any) -> CorrectedModel:
@@ -131,36 +130,26 @@ def corrected_model(exact: Any) -> CorrectedModel:
     return CorrectedModel(LawSignature(exact.law))
 
 
-def _errors(name: str, parameters: OneOrbit, ratios: np.ndarray) -> np.ndarray:
-    """Relative errors of both simple models, (model, quantity, ratio)."""
-    orbit = parameters.n, parameters.amplitude, QUANTITIES
-    errors = np.full((len(SIMPLE), len(QUANTITIES), len(ratios)), np.nan)
-    part, models = stiff_enough(name, parameters, ratios)
-    if models is None:
-        return errors
-    exact: Any = models
-    wanted = values(exact, *orbit)
-    rigid = values(RestitutionModel(parameters.restitution), *orbit)[:, np.newaxis]
-    each = [values(corrected_model(exact[k]), *orbit) for k in range(len(exact))]
-    errors[..., part] = np.abs([relative(x, wanted) for x in (rigid, np.stack(each, axis=-1))])
-    return errors
-
-
-def _height_threshold(
-    name: str, parameters: LawErrors, ratios: np.ndarray, errors: np.ndarray
-) -> float:
-    """ϖ from which the restitution model's greatest height is right; NaN outside the range."""
+def _errors(name: str, parameters: LawErrors) -> tuple[np.ndarray, float]:
+    """Relative errors of both simple models, (model, quantity, ratio), and the π/D from which on
+    the greatest height of the restitution model is right."""
     n, lam = parameters.n, parameters.amplitude
-    rigid = RestitutionModel(parameters.restitution).require_orbit(n, lam).max_height
+    rigid, asked = RestitutionModel(parameters.restitution), (n, lam, QUANTITIES)
 
-    def error(ratio: np.ndarray, _: np.ndarray) -> np.ndarray:
-        try:
-            exact = exact_models(name, parameters, np.pi / ratio)
-        except (ModelError, NoOrbitError):
+    def both(exact: Any) -> np.ndarray:
+        wanted, constant = values(exact, *asked), values(rigid, *asked)[:, np.newaxis]
+        each = [values(corrected_model(exact[k]), *asked) for k in range(len(exact))]
+        return np.abs([relative(x, wanted) for x in (constant, np.stack(each, axis=-1))])
+
+    def height(ratio: np.ndarray, _: np.ndarray) -> np.ndarray:
+        exact = own_models(name, parameters, ratio)
+        if exact is None:
             return np.full(ratio.shape, np.nan)
-        return relative(rigid, exact.orbit(n, lam).max_height)
+        return relative(rigid.orbit(n, lam).max_height, exact.orbit(n, lam).max_height)
 
-    return float(thresholds(error, ratios, errors[np.newaxis], [parameters.tolerance]).ratio[0, 0])
+    errors, ratios = along(name, parameters, both), parameters.frequency_ratio.grid()
+    found = thresholds(height, ratios, errors[0, :1], [parameters.tolerance])
+    return errors, float(found.ratio[0, 0])
 
 
 def law_errors(parameters: LawErrors) -> xr.Dataset:
@@ -169,54 +158,50 @@ def law_errors(parameters: LawErrors) -> xr.Dataset:
     Moduli, shape (law, model, quantity, π/D), and the π/D from which the greatest height of the
     restitution model is right, shape (law,); NaN where there is none.
     """
-    ratios = parameters.frequency_ratio.grid()
-    errors = np.array([_errors(name, parameters, ratios) for name in NAMES])
-    threshold = [
-        _height_threshold(name, parameters, ratios, errors[k, 0, 0]) for k, name in enumerate(NAMES)
-    ]
+    errors, threshold = zip(*(_errors(name, parameters) for name in NAMES), strict=True)
     return described(
         {
-            "relative_error": (("law", "model", "quantity", "duration_ratio"), errors),
-            "error_threshold": ("law", np.array(threshold)),
+            "relative_error": (("law", "model", "quantity", "duration_ratio"), np.array(errors)),
+            "error_threshold": ("law", list(threshold)),
         },
         coords={
             "law": list(NAMES),
             "model": list(SIMPLE),
             "quantity": list(QUANTITIES),
-            "duration_ratio": ratios,
+            "duration_ratio": parameters.frequency_ratio.grid(),
         },
     )
 
 
-def _bounds(name: str, r: float, ratios: np.ndarray, n: np.ndarray) -> np.ndarray:
+def _bounds(name: str, parameters: FiguresOfLaws) -> np.ndarray:
     """Λ of both bifurcations, shape (bound, ratio, n)."""
-    model = exact_model(name, r, np.pi / ratios[:, np.newaxis], rigid_speed(n, r))
-    families = np.broadcast_to(n, (len(ratios), len(n)))
-    return np.array([getattr(model, bound)(families).amplitude for bound in BOUNDS])
+    r, ratios = parameters.restitution, np.array(parameters.frequency_ratio)[:, np.newaxis]
+    n = np.broadcast_to(parameters.n, (len(ratios), len(parameters.n)))
+    model = exact_model(name, r, np.pi / ratios, rigid_speed(n, r))
+    return np.array([getattr(model, bound)(n).amplitude for bound in BOUNDS])
 
 
-def _domains(
-    name: str, r: float, ratios: np.ndarray, n: int, top: float, points: int
-) -> tuple[np.ndarray, np.ndarray]:
-    """Λ and φ along branches from the unstable side over the fold, shape (ratio, point)."""
-    speed = rigid_speed(n, r)
-    fold = exact_model(name, r, np.pi / ratios, speed).saddle_node(n)
-    lowest, turn = fold.amplitude[:, np.newaxis], fold.phase[:, np.newaxis]
-    lam = lowest + np.linspace(0.0, 1.0, points)[1:] ** 2 * (top - lowest)
-    model = exact_model(name, r, np.pi / ratios[:, np.newaxis], speed)
+def _domains(name: str, parameters: FiguresOfLaws) -> np.ndarray:
+    """Λ and φ along branches of the first family from the unstable side over the fold.
+
+    Shape (2, ratio, point).
+    """
+    n, r, top = parameters.n[0], parameters.restitution, parameters.amplitude_max
+    duration, speed = np.pi / np.array(parameters.frequency_ratio)[:, np.newaxis], rigid_speed(n, r)
+    model = exact_model(name, r, duration, speed)
+    fold = model.saddle_node(n)
+    steps = np.linspace(0.0, 1.0, parameters.points)[1:] ** 2
+    lam = fold.amplitude + steps * (top - fold.amplitude)
     left, right = (model.orbit(n, lam, side).phase for side in (Side.UNSTABLE, Side.STABLE))
-    return np.hstack([lam[:, ::-1], lowest, lam]), np.hstack([left[:, ::-1], turn, right])
+    amplitudes = np.hstack([lam[:, ::-1], fold.amplitude, lam])
+    return np.array([amplitudes, np.hstack([left[:, ::-1], fold.phase, right])])
 
 
 def _held(name: str, restitution: float, ratio: float) -> float:
     """Threshold of permanent contact; NaN where no contact that just touches was found."""
-    speed = rigid_speed(1, restitution)
-    if name in LINEAR:
-        law: Any = linear_contact(restitution, np.pi / ratio, LINEAR[name])
-    else:
-        law = law_of_impact(LAWS[name], restitution, np.pi / ratio, speed)
     try:
-        return permanent_contact(law).amplitude
+        model = exact_model(name, restitution, np.pi / ratio, rigid_speed(1, restitution))
+        return float(model.permanent_contact_threshold())
     except ModelError:
         return np.nan
 
@@ -228,37 +213,26 @@ def figures_of_laws(parameters: FiguresOfLaws) -> xr.Dataset:
     (law, π/D, point); greatest height and threshold of permanent contact, shape (law, π/D), NaN
     where a contact has no such orbit.
     """
-    heights, lossy, families = parameters.heights, parameters.restitution, np.array(parameters.n)
-    r, n, lam = heights.restitution, heights.n, heights.amplitude
-    shown, top = np.array(parameters.frequency_ratio), parameters.amplitude_max
-    points = parameters.points
-    ratios = heights.frequency_ratio.grid()
-    names = ("linear", *HERTZ)
-
-    bounds = [_bounds(name, lossy, shown, families) for name in names]
-    branches = [_domains(name, lossy, shown, int(families[0]), top, points) for name in names]
-    amplitude, phase = map(np.array, zip(*branches, strict=True))
-    height = np.full((len(names), len(ratios)), np.nan)
-    for k, name in enumerate(names):
-        part, models = stiff_enough(name, heights, ratios)
-        if models is not None:
-            height[k, part] = models.orbit(n, lam).max_height
+    one, names = parameters.heights, ("linear", *HERTZ)
+    r, n, lam, ratios = one.restitution, one.n, one.amplitude, one.frequency_ratio.grid()
+    bounds = [_bounds(name, parameters) for name in names]
+    branches = np.array([_domains(name, parameters) for name in names])
+    height = [along(name, one, lambda exact: exact.orbit(n, lam).max_height) for name in names]
     held = [[_held(name, r, x) for x in ratios] for name in names]
     return described(
         {
             "bifurcation_amplitude": (("law", "bound", "shown_ratio", "n"), np.array(bounds)),
-            "amplitude": (("law", "shown_ratio", "point"), amplitude),
-            "phase": (("law", "shown_ratio", "point"), phase),
-            "max_height": (("law", "duration_ratio"), height),
+            "amplitude": (("law", "shown_ratio", "point"), branches[:, 0]),
+            "phase": (("law", "shown_ratio", "point"), branches[:, 1]),
+            "max_height": (("law", "duration_ratio"), np.array(height)),
             "restitution_max_height": ((), float(RestitutionModel(r).orbit(n, lam).max_height)),
             "threshold_amplitude": (("law", "duration_ratio"), np.array(held)),
         },
         coords={
             "law": list(names),
             "bound": list(BOUNDS),
-            "shown_ratio": shown,
-            "n": families,
+            "shown_ratio": np.array(parameters.frequency_ratio),
+            "n": np.array(parameters.n),
             "duration_ratio": ratios,
-            "point": np.arange(phase.shape[-1]),
         },
     )

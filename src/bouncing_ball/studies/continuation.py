@@ -12,16 +12,14 @@ from pydantic import model_validator
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.continuation.branch import (
-    STARTED,
     Branch,
     ContinuationError,
     End,
-    Ending,
     continue_both_ways,
     continue_branch,
     solve_at,
 )
-from bouncing_ball.continuation.corrector import NewtonSettings, null_vector
+from bouncing_ball.continuation.corrector import NewtonSettings
 from bouncing_ball.continuation.events import Event, fold, parameter_bound
 from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.errors import NoOrbitError
@@ -33,7 +31,7 @@ from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.parameters import FrequencyRatio, Parameters, number
 
 SADDLE_NODE, PERIOD_DOUBLING = Bifurcation
-_REACHED = End(Ending.EVENT, "target reached")
+_REACHED = End("target reached")
 
 
 class Continuation(Parameters):
@@ -88,63 +86,39 @@ class Continuation(Parameters):
         return NewtonSettings(self.newton_tolerance, self.max_newton_iterations)
 
 
-def controls(continuation: Continuation) -> tuple[StepControl, NewtonSettings]:
-    """Lengths of the steps, and when Newton's method ends."""
-    return continuation.step_control(), continuation.newton()
-
-
-def followed_from_stiff(
-    n: int,
-    contact: SpringDamper,
-    amplitude: float,
-    stiff: float,
-    control: StepControl,
-    newton: NewtonSettings,
-) -> Branch:
-    """The branch in ln ϖ at one Λ, from a very stiff contact to the one wanted.
-
-    It starts at the restitution orbit, and ends before ``contact`` where it
-    turns back to stiffer contacts or leaves the domain of the equations.
+def _on_the_way(
+    n: int, contact: SpringDamper, amplitude: float, continuation: Continuation
+) -> np.ndarray:
+    """(φ, z′_i, ϖ τ_b) of the orbit at Λ, followed along ln ϖ from a very stiff contact.
 
     Raises
     ------
     ContinuationError
-        If there is no orbit near that of the restitution model.
+        If there is no orbit near that of the restitution model, or if the branch turns back to
+        stiffer contacts or leaves the domain of the equations before ``contact``.
     """
+    omega, newton = float(contact.frequency_ratio), continuation.newton()
+    stiff = max(continuation.stiff_frequency_ratio, omega)
     towards = SpringDamperSystem(
         n, contact.damping_ratio, Parameter.LOG_FREQUENCY_RATIO, amplitude, contact.release
     )
     y = solve_at(towards, towards.guess(amplitude, stiff), newton)
-    if contact.frequency_ratio >= stiff:
-        along = null_vector(towards.jacobian(y))
-        return Branch(y[np.newaxis], along[np.newaxis], (), STARTED, _REACHED)
-    target = parameter_bound(np.log(float(contact.frequency_ratio)), False, str(_REACHED))
+    if omega == stiff:
+        return y[:-1]
+    target = parameter_bound(np.log(omega), False, _REACHED.sentence)
     determinant = fold(towards).function
     side = np.sign(determinant(y))
-    turn = Event(
-        "turn",
-        lambda y: side * determinant(y),
-        terminal=True,
-        reason="the branch turns back to stiffer contacts",
-    )
+    reason = "the branch turns back to stiffer contacts"
+    turn = Event("turn", lambda y: side * determinant(y), terminal=True, reason=reason)
     ends = (event for event in towards.events() if event.terminal)
-    return continue_branch(
+    way = continue_branch(
         towards,
         y,
         increasing=False,
         events=(*ends, turn, target),
-        control=control,
+        control=continuation.step_control(),
         settings=newton,
     )
-
-
-def _on_the_way(
-    n: int, contact: SpringDamper, amplitude: float, continuation: Continuation
-) -> np.ndarray:
-    """(φ, z′_i, ϖ τ_b) of the orbit at Λ, followed along ϖ from a very stiff contact."""
-    omega = float(contact.frequency_ratio)
-    stiff = max(continuation.stiff_frequency_ratio, omega)
-    way = followed_from_stiff(n, contact, amplitude, stiff, *controls(continuation))
     if way.end != _REACHED:
         raise ContinuationError(
             f"{n}-T orbit at Λ = {amplitude:.4g} followed from ϖ = {stiff:g} ends at "
@@ -218,7 +192,7 @@ def branch_along_amplitude(
         settings=continuation.newton(),
     )
     for end in (branch.start, branch.end):
-        if end.kind is Ending.POINTS:
+        if not end.finished:
             raise ContinuationError(
                 f"the branch of {n}-T orbits at ϖ = {frequency_ratio:g} is not "
                 f"followed to its end: {end}"
@@ -226,8 +200,8 @@ def branch_along_amplitude(
     return system, branch
 
 
-def first_limits(branch: Branch) -> dict[str, np.ndarray]:
-    """The saddle-node and the period doubling that bound the first stable range.
+def first_limits(branch: Branch) -> np.ndarray:
+    """The saddle-node and the period doubling that bound the first stable range, (2, N + 1).
 
     The branch's last saddle-node in its order, from the unstable to the stable
     side, and the first period doubling after it.
@@ -237,20 +211,18 @@ def first_limits(branch: Branch) -> dict[str, np.ndarray]:
     NoOrbitError
         If the branch has not both.
     """
-    names = [special.name for special in branch.special]
-    nodes = [k for k, name in enumerate(names) if name == SADDLE_NODE]
-    node = nodes[-1] if nodes else len(names)
-    doublings = [k for k, name in enumerate(names) if name == PERIOD_DOUBLING and k > node]
-    if not doublings:
+    limits: list[np.ndarray] = []
+    for special in branch.special:
+        if special.name == SADDLE_NODE:
+            limits = [special.point]
+        elif special.name == PERIOD_DOUBLING and len(limits) == 1:
+            limits.append(special.point)
+    if len(limits) < 2:
         raise NoOrbitError(
             f"the branch from {str(branch.start)!r} to {str(branch.end)!r} has no "
-            f"{PERIOD_DOUBLING if nodes else SADDLE_NODE} to bound its stable range"
+            f"{PERIOD_DOUBLING if limits else SADDLE_NODE} to bound its stable range"
         )
-    doubling = doublings[0]
-    return {
-        SADDLE_NODE: branch.special[node].point,
-        PERIOD_DOUBLING: branch.special[doubling].point,
-    }
+    return np.array(limits)
 
 
 def missing(n: int, count: int) -> Orbit:

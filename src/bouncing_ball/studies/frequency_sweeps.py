@@ -4,14 +4,14 @@ from typing import Annotated
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 from pydantic import AfterValidator, ValidationInfo
 
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.orbits import restitution_orbit as restitution_orbits
-from bouncing_ball.orbits.spring_damper_limits import orbit_at
-from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.parameters import Amplitude, Family, Many, Parameters, Restitution, Span
 from bouncing_ball.studies.columns import OBSERVED, columns
 from bouncing_ball.studies.parameters import OrbitAmplitude, require_orbit
@@ -50,14 +50,6 @@ class Sweep(Parameters):
     frequency_ratio: Span
 
 
-def sweep(
-    n: int, restitution: np.ndarray, amplitude: np.ndarray, ratios: np.ndarray, release: Release
-) -> SpringDamperOrbit:
-    """Orbits on the stable side, shape (cases, ϖ); NaN where there is none."""
-    contact = SpringDamper.from_restitution(restitution[:, np.newaxis], ratios, release)
-    return orbit_at(contact, n, amplitude[:, np.newaxis])
-
-
 def with_round_values(ratios: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """A grid of ϖ with 2, 5 and the decades of its range, and where these are.
 
@@ -69,31 +61,30 @@ def with_round_values(ratios: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     >>> ratios.tolist(), labelled.tolist()
     ([1.0, 2.0, 4.0, 5.0, 10.0], [True, True, False, True, True])
     """
-    decades = 10.0 ** np.arange(np.floor(np.log10(ratios[0])), np.log10(ratios[-1]) + 1)
-    round_values = np.union1d(decades, [2.0, 5.0])
-    inside = (round_values >= ratios[0] * (1 - _ROUNDING)) & (
-        round_values <= ratios[-1] * (1 + _ROUNDING)
-    )
-    round_values = round_values[inside]
-    distance = np.abs(ratios[:, np.newaxis] / round_values - 1)
-    kept = ratios[np.all(distance > _ROUNDING, axis=1)]
-    merged = np.union1d(kept, round_values)
-    return merged, np.isin(merged, round_values)
+    values = np.array([0.1, 1.0, 2.0, 5.0, *10.0 ** np.arange(1, 7)])
+    low, high = ratios[0] * (1 - _ROUNDING), ratios[-1] * (1 + _ROUNDING)
+    shown = values[(values >= low) & (values <= high)]
+    same = np.abs(ratios[:, np.newaxis] / shown - 1) <= _ROUNDING
+    merged = np.union1d(ratios[~same.any(axis=1)], shown)
+    return merged, np.isin(merged, shown)
 
 
-def _sweep_dataset(
-    n: int, restitution: np.ndarray, amplitude: np.ndarray, ratios: np.ndarray, release: Release
+def _sweep(
+    n: int, restitution: ArrayLike, amplitude: ArrayLike, ratios: np.ndarray, release: Release
 ) -> xr.Dataset:
-    orbits = sweep(n, restitution, amplitude, ratios, release)
+    """Orbits on the stable side, shape (case, ϖ); NaN where there is none."""
+    r, lam = np.broadcast_arrays(restitution, amplitude)
+    contact = SpringDamper.from_restitution(r[:, np.newaxis], ratios, release)
+    orbits = SpringDamperModel(contact).orbit(n, lam[:, np.newaxis])
     found = columns(orbits, *OBSERVED, "max_height")
     dims = ("case", "frequency_ratio")
     return xr.Dataset(
         {
-            "restitution": ("case", restitution),
-            "amplitude": ("case", amplitude),
+            "restitution": ("case", r),
+            "amplitude": ("case", lam),
             **{name: (dims, values) for name, values in found.items()},
         },
-        coords={"frequency_ratio": ratios, "case": np.arange(len(restitution))},
+        coords={"frequency_ratio": ratios},
     )
 
 
@@ -102,10 +93,8 @@ def apparent_restitution(parameters: Cases, release: Release) -> xr.Dataset:
 
     Figures 5 and 6.
     """
-    restitution = np.array([case.restitution for case in parameters.cases])
-    amplitude = np.array([case.amplitude for case in parameters.cases])
-    ratios = parameters.frequency_ratio.grid()
-    return describe(_sweep_dataset(parameters.n, restitution, amplitude, ratios, release))
+    r, lam = zip(*((case.restitution, case.amplitude) for case in parameters.cases), strict=True)
+    return describe(_sweep(parameters.n, r, lam, parameters.frequency_ratio.grid(), release))
 
 
 def frequency_sweep(parameters: Sweep, release: Release) -> xr.Dataset:
@@ -117,12 +106,12 @@ def frequency_sweep(parameters: Sweep, release: Release) -> xr.Dataset:
 
 
 def _with_limits(parameters: Sweep, ratios: np.ndarray, release: Release) -> xr.Dataset:
-    n, r, amplitude = parameters.n, parameters.restitution, np.array(parameters.amplitude)
-    dataset = _sweep_dataset(n, np.full_like(amplitude, r), amplitude, ratios, release)
-    dataset["restitution_phase"] = ("case", restitution_orbits.phase(n, r, amplitude))
-    dataset["restitution_bounce_velocity"] = ((), n * np.pi)
-    dataset["restitution_impact_velocity"] = ((), -n * np.pi)
-    return dataset
+    n, r, lam = parameters.n, parameters.restitution, np.array(parameters.amplitude)
+    return _sweep(n, r, lam, ratios, release).assign(
+        restitution_phase=("case", RestitutionModel(r).orbit(n, lam).phase),
+        restitution_bounce_velocity=n * np.pi,
+        restitution_impact_velocity=-n * np.pi,
+    )
 
 
 def poincare_map(parameters: Sweep, release: Release) -> xr.Dataset:

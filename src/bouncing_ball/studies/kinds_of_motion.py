@@ -46,24 +46,20 @@ def kinds_of_motion(parameters: Motions) -> xr.Dataset:
     The period is 0 unless all balls have the same one. The exponent is that of
     all balls together, each until it sticks.
 
-    Raises
-    ------
-    NoOrbitError
-        If an amplitude lies below the saddle-node.
+    Every amplitude must be one at which there is an orbit, which the type of the parameters
+    checks.
     """
     n, r, ensemble = parameters.n, parameters.restitution, parameters.ensemble
-    amplitude, model, balls = np.array(parameters.amplitude), RestitutionModel(r), ensemble.balls
-    orbits = [model.require_orbit(n, lam) for lam in amplitude]
-    phase = np.array([orbit.phase for orbit in orbits])[:, np.newaxis]
-    velocity = np.array([orbit.impact_velocity for orbit in orbits])[:, np.newaxis]
-    relative = np.array([orbit.relative_impact_velocity for orbit in orbits])[:, np.newaxis]
-    beside = phase + ensemble.displacement * np.arange(1, balls + 1) / balls
-    table = amplitude[:, np.newaxis] * np.cos(beside)
+    model, balls = RestitutionModel(r), ensemble.balls
+    amplitude = np.array(parameters.amplitude)[:, np.newaxis]
+    orbit = model.orbit(n, amplitude)
+    beside = orbit.phase + ensemble.displacement * np.arange(1, balls + 1) / balls
+    table, speed = amplitude * np.cos(beside), orbit.impact_velocity
     # So far from the orbit the table may fall faster than its ball: there is no impact at that
     # velocity, and the ball starts with the orbit's relative one.
-    velocity = np.where(velocity < table, velocity, table + relative)
+    velocity = np.where(speed < table, speed, table + orbit.relative_impact_velocity)
     impacts = ensemble.transient + ensemble.impacts
-    sequence = model.simulate(amplitude[:, np.newaxis], beside, velocity, impacts + 1)
+    sequence = model.simulate(amplitude, beside, velocity, impacts + 1)
 
     periods = period(sequence, ensemble.longest_period, _SAME)
     shared = np.where(np.ptp(periods, axis=1) == 0, periods[:, 0], 0)
@@ -71,7 +67,7 @@ def kinds_of_motion(parameters: Motions) -> xr.Dataset:
     exponents = np.array([Stretching(*rows).exponent() for rows in zip(*growth, strict=True)])
     return described(
         {
-            "amplitude": ("case", amplitude),
+            "amplitude": ("case", amplitude[:, 0]),
             "motion_period": ("case", shared),
             "lyapunov_exponent": ("case", exponents[:, 0]),
             "lyapunov_error": ("case", exponents[:, 1]),

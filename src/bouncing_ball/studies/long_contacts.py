@@ -1,6 +1,5 @@
 """The 1-T orbits into which permanent contact continues: their windows and their basins."""
 
-from collections.abc import Sequence
 from typing import Annotated
 
 import numpy as np
@@ -79,40 +78,30 @@ def stable_windows(parameters: Windows, release: Release) -> xr.Dataset:
     a long contact are one family; both are NaN for another release than the
     displacement's.
     """
-    restitution = np.array(parameters.restitution)
-    ratio = parameters.frequency_ratio.grid()
-    shape = len(restitution), len(ratio)
+    restitution, ratio = np.array(parameters.restitution), parameters.frequency_ratio.grid()
     zeta = damping_ratio(restitution)
     # All contacts at once: many small steps cost more than large ones.
-    law = SpringDamper(np.tile(ratio, shape[0]), np.repeat(zeta, shape[1]), release)
+    law = SpringDamper(np.tile(ratio, zeta.size), np.repeat(zeta, ratio.size), release)
     window = stable_window(law)
     stiff, joining = np.full((2, *zeta.shape), np.nan)
     if release is Release.DISPLACEMENT:
         stiff = np.array([stiff_limit(z) for z in zeta])
         joining = joining_ratio(zeta, release, *_PARTING)
-    along = ("restitution", "frequency_ratio")
+    along = {
+        "threshold_amplitude": SpringDamperModel(law).permanent_contact_threshold(),
+        "window_amplitude": window.amplitude,
+        "window_flight": window.flight_time,
+        "window_end": window.end,
+    }
+    dims, shape = ("restitution", "frequency_ratio"), (zeta.size, ratio.size)
     return described(
         {
-            "threshold_amplitude": (
-                along,
-                SpringDamperModel(law).permanent_contact_threshold().reshape(shape),
-            ),
-            "window_amplitude": (along, window.amplitude.reshape(shape)),
-            "window_flight": (along, window.flight_time.reshape(shape)),
-            "window_end": (along, window.end.reshape(shape)),
+            **{name: (dims, values.reshape(shape)) for name, values in along.items()},
             "stiff_window": ("restitution", stiff),
             "joining_ratio": ("restitution", joining),
         },
         coords={"restitution": restitution, "frequency_ratio": ratio},
     )
-
-
-def _stable_orbits(model: SpringDamperModel, families: Sequence[int], amplitude: float):
-    """The stable orbits at one Λ, each alone."""
-    for n in families:
-        found = model.orbits(n, amplitude)
-        kept = found[found.is_stable() & found.is_admissible()]
-        yield from (kept[k] for k in range(kept.shape[0]))
 
 
 def _motion(orbit: SpringDamperOrbit) -> int:
@@ -155,12 +144,16 @@ def basins(parameters: Basins, release: Release) -> xr.Dataset:
     places = np.full((2, len(amplitudes), len(MOTIONS)), np.nan)
     start, velocity = (np.ravel(x) for x in np.meshgrid(phase, -speed))
     for k, lam in enumerate(amplitudes):
-        orbits = list(_stable_orbits(model, parameters.n, lam))
-        found = destinations(model, lam, orbits, start, velocity, parameters.impacts)
+        orbits = [
+            found[k]
+            for found in (model.orbits(n, lam) for n in parameters.n)
+            for k in np.flatnonzero(found.is_stable() & found.is_admissible())
+        ]
+        reached = destinations(model, lam, orbits, start, velocity, parameters.impacts)
         kinds = np.array([*map(_motion, orbits), *(0, 0)], dtype=np.int8)
         kinds[ELSEWHERE], kinds[PERMANENT] = len(MOTIONS) - 1, 0
-        ends[k] = kinds[found.orbit].reshape(count, count)
-        periods[k] = _shared_period(model, lam, found)
+        ends[k] = kinds[reached.orbit].reshape(count, count)
+        periods[k] = _shared_period(model, lam, reached)
         for orbit in orbits:
             if orbit.n == 1:
                 places[:, k, _motion(orbit)] = (orbit.phase, -orbit.relative_impact_velocity)

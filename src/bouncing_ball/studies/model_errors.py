@@ -16,11 +16,11 @@ from bouncing_ball.accuracy import error_law
 from bouncing_ball.accuracy.errors import SIMPLE, errors
 from bouncing_ball.accuracy.quantities import OF_IMPACTS, Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus, search
+from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.parameters import (
     Family,
     LossyRestitution,
@@ -34,16 +34,19 @@ from bouncing_ball.parameters import (
     number,
 )
 from bouncing_ball.studies.law_distribution import law_errors
-from bouncing_ball.studies.parameters import MotionRatio, OrbitParameters
+from bouncing_ball.studies.parameters import (
+    MotionRatio,
+    OrbitErrors,
+    OrbitParameters,
+    OrbitsAlongRatio,
+)
 from bouncing_ball.studies.random_orbits import random_orbits
 
 
-class ErrorLaw(OrbitParameters):
+class ErrorLaw(OrbitErrors):
     """One orbit, and the error tolerated."""
 
     restitution: LossyRestitution
-    tolerance: Tolerance
-    frequency_ratio: Span
 
 
 class Sample(Parameters):
@@ -63,11 +66,10 @@ class Sample(Parameters):
     law_samples: Annotated[Samples, Field(description="random orbits on which the law is tried")]
 
 
-class Orders(OrbitParameters):
+class Orders(OrbitsAlongRatio):
     """One orbit along ϖ, and random ones."""
 
     restitution: LossyRestitution
-    frequency_ratio: Span
     random: Sample
 
 
@@ -109,25 +111,24 @@ def _second_order(zeta: float, rule: Release, n, amplitude) -> np.ndarray:
 def error_law_table(parameters: ErrorLaw, release: Release) -> xr.Dataset:
     """K, and the ϖ for a tolerance: exact, by the law, corrected; shape (model, quantity)."""
     n, lam, tolerance = parameters.n, parameters.amplitude, parameters.tolerance
-    ratios, rule = parameters.frequency_ratio.grid(), release
     # ζ of Eq. 16; the restitution model has the r that this contact really has.
-    one = SpringDamper.from_restitution(parameters.restitution, 1.0, rule)
-    zeta = float(one.damping_ratio)
-
-    found = search(zeta, rule, n, lam, ratios, tolerance, tuple(Quantity))
-    k = np.array([*error_law.coefficients(n, zeta, lam, rule).values()], dtype=float)
-    still = float(error_law.permanent_contact_coefficient(zeta, rule))
+    zeta = float(damping_ratio(parameters.restitution))
+    ratios = parameters.frequency_ratio.grid()
+    found = search(zeta, release, n, lam, ratios, tolerance, tuple(Quantity))
+    k = [float(x) for x in error_law.coefficients(n, zeta, lam, release).values()]
+    law = error_law.law_thresholds(n, zeta, lam, release, tolerance)
+    still = float(error_law.permanent_contact_coefficient(zeta, release))
     return described(
         {
             "coefficient": ("quantity", k),
-            "law_threshold": ("quantity", np.abs(k) / tolerance),
+            "law_threshold": ("quantity", [float(law[q]) for q in OF_IMPACTS]),
             "error_threshold": (("model", "quantity"), found.threshold[:, :-1, 0]),
             "threshold_status": (("model", "quantity"), found.status[:, :-1, 0]),
             "error_zero": ("quantity", found.zero[:-1, 0]),
-            "second_order": ("quantity", _second_order(zeta, rule, n, lam)),
+            "second_order": ("quantity", _second_order(zeta, release, n, lam)),
             "permanent_coefficient": ((), still),
-            "permanent_law": ((), float(np.sqrt(abs(still) / tolerance))),
-            "permanent_threshold": ((), float(found.threshold[0, -1, 0])),
+            "permanent_law": ((), float(law[Quantity.PERMANENT_CONTACT])),
+            "permanent_threshold": ((), found.threshold[0, -1, 0]),
         },
         coords={"model": list(SIMPLE), "quantity": list(OF_IMPACTS)},
     )
@@ -135,22 +136,17 @@ def error_law_table(parameters: ErrorLaw, release: Release) -> xr.Dataset:
 
 def orders(parameters: Orders, release: Release) -> xr.Dataset:
     """Errors along ϖ for one orbit, shape (model, quantity, ϖ), and the orders of random ones."""
-    ratios, rule = parameters.frequency_ratio.grid(), release
-    one = SpringDamper.from_restitution(parameters.restitution, ratios, rule)
-    curves = np.abs(errors(one, parameters.n, parameters.amplitude))
-    sample = parameters.random
+    span, sample = parameters.frequency_ratio, parameters.random
+    exact = parameters.exact(span.grid(), release)
+    curves = np.abs(errors(exact.contact, parameters.n, parameters.amplitude))
     n, zeta, lam, _ = random_orbits(sample.samples, sample.seed, release, (0.2, 0.95))
-    stiff = sample.stiff_frequency_ratio
-    pair = [
-        np.abs(errors(SpringDamper(np.full(lam.shape, k * stiff), zeta, rule), n, lam))
-        for k in (1.0, 2.0)
-    ]
-    span = parameters.frequency_ratio
+    stiff = sample.stiff_frequency_ratio * np.array([[1.0], [2.0]])
+    once, twice = np.moveaxis(np.abs(errors(SpringDamper(stiff, zeta, release), n, lam)), 2, 0)
     law = law_errors(sample.law_samples, sample.seed + 1, span, release)
     return described(
         {
             "relative_error": (("model", "quantity", "frequency_ratio"), curves),
-            "order": (("model", "quantity", "sample"), np.log2(pair[0] / pair[1])),
+            "order": (("model", "quantity", "sample"), np.log2(once / twice)),
             "law_remainder": (("quantity", "law_sample"), law.remainder),
             "small_parameter": ("law_sample", law.small_parameter),
             "stated_below": ((), error_law.STATED),
@@ -158,9 +154,7 @@ def orders(parameters: Orders, release: Release) -> xr.Dataset:
         coords={
             "model": list(SIMPLE),
             "quantity": list(OF_IMPACTS),
-            "frequency_ratio": ratios,
-            "sample": np.arange(sample.samples),
-            "law_sample": np.arange(sample.law_samples),
+            "frequency_ratio": span.grid(),
         },
     )
 
@@ -172,33 +166,26 @@ def validity(parameters: Validity, release: Release) -> xr.Dataset:
     or the error is too large at the largest ϖ. Beside it, where the restitution model's error
     passes through zero by accident.
     """
-    ratios, rule = parameters.frequency_ratio.grid(), release
-    axes = [np.array(getattr(parameters, k)) for k in ("n", "amplitude_ratio", "restitution")]
-    n, places, r = np.meshgrid(*axes, indexing="ij")
+    ratios, names = parameters.frequency_ratio.grid(), ("n", "amplitude_ratio", "restitution")
+    axes = {name: np.array(getattr(parameters, name)) for name in names}
+    n, places, r = np.meshgrid(*axes.values(), indexing="ij")
     model = RestitutionModel(r)
     lam = places * model.saddle_node(n).amplitude
     # Outside the stable range of the restitution model there is nothing to be right about.
     there = lam <= model.period_doubling(n).amplitude
-    zeta = np.asarray(SpringDamper.from_restitution(r, 1.0, rule, measured=True).damping_ratio)
-    found = search(zeta[there], rule, n[there], lam[there], ratios, parameters.tolerance)
+    zeta = SpringDamper.from_restitution(r[there], 1.0, release, measured=True).damping_ratio
+    found = search(zeta, release, n[there], lam[there], ratios, parameters.tolerance)
     threshold = np.full((len(SIMPLE), len(OF_IMPACTS), *r.shape), np.nan)
     zero = np.full(threshold.shape[1:], np.nan)
     always = found.status == ThresholdStatus.ALWAYS_WITHIN
     threshold[..., there] = np.where(always, ratios[0], found.threshold)
     zero[..., there] = found.zero
-    dims = ("quantity", "n", "amplitude_ratio", "restitution")
     return described(
         {
-            "error_threshold": (("model", *dims), threshold),
-            "error_zero": (dims, zero),
+            "error_threshold": (("model", "quantity", *names), threshold),
+            "error_zero": (("quantity", *names), zero),
         },
-        coords={
-            "model": list(SIMPLE),
-            "quantity": list(OF_IMPACTS),
-            "n": axes[0],
-            "amplitude_ratio": axes[1],
-            "restitution": axes[2],
-        },
+        coords={"model": list(SIMPLE), "quantity": list(OF_IMPACTS), **axes},
     )
 
 
@@ -210,36 +197,30 @@ def meeting_flights(parameters: Meeting, release: Release) -> xr.Dataset:
     NoOrbitError
         If the orbit does not exist.
     """
-    contact = SpringDamper.from_restitution(
-        parameters.restitution, parameters.frequency_ratio, release
-    )
-    orbit = SpringDamperModel(contact).require_orbit(parameters.n, parameters.amplitude)
+    exact = parameters.exact(parameters.frequency_ratio, release)
+    orbit = exact.require_orbit(parameters.n, parameters.amplitude)
     end = float(orbit.contact_duration)
     time = np.linspace(-0.6 * end, 1.6 * end, parameters.samples)
-    start = orbit.contact_path(np.zeros(()))
-    before = start[0] + (start[1] - time / 2) * time
-    after, _ = orbit.flight_path(time)
-    inside = (time >= 0) & (time <= end)
-    touching, rate = orbit.contact_path(np.clip(time, 0, end))
-    table = orbit.amplitude * np.sin(orbit.phase + time)
-    gap, closing = touching - table, rate - orbit.amplitude * np.cos(orbit.phase + time)
-    zeta, omega = contact.damping_ratio, contact.frequency_ratio
-    force = np.where(inside, -(2 * zeta * omega * closing + omega**2 * gap), 0.0)
+    inside, within = (time >= 0) & (time <= end), np.clip(time, 0, end)
+    start, velocity = orbit.contact_path(np.zeros(()))
+    before, (after, _) = start + (velocity - time / 2) * time, orbit.flight_path(time)
+    touching, _ = orbit.contact_path(within)
+    force = exact.contact.force(*-np.array(orbit.contact_motion(within)))
     # The meeting point of the two parabolas, exact; and where the signature has it.
     jump = float(orbit.bounce_velocity + end - orbit.impact_velocity)
-    apart = float(orbit.bounce_height - (start[0] + (start[1] - end / 2) * end))
+    apart = float(orbit.bounce_height - (start + (velocity - end / 2) * end))
     meeting = end - apart / jump
     return described(
         {
             "ball": ("time", np.where(time < 0, before, np.where(inside, touching, after))),
-            "table": ("time", table),
+            "table": ("time", orbit.amplitude * np.sin(orbit.phase + time)),
             "flight_before": ("time", before),
             "flight_after": ("time", after),
-            "contact_force": ("time", force),
+            "contact_force": ("time", inside * force),
             "contact_duration": ((), end),
             "meeting_time": ((), meeting),
-            "meeting_height": ((), float(start[0] + (start[1] - meeting / 2) * meeting)),
-            "delay": ((), float(LinearSignature(contact)().delay)),
+            "meeting_height": ((), float(start + (velocity - meeting / 2) * meeting)),
+            "delay": ((), float(LinearSignature(exact.contact)().delay)),
         },
         coords={"time": time},
     )

@@ -4,12 +4,14 @@ A type looks at the parameters that stand before it in its class: ``n`` and ``re
 a contact ``amplitude``.
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable
 from typing import Annotated
 
+import numpy as np
+from numpy.typing import ArrayLike
 from pydantic import AfterValidator, Field, ValidationInfo
 
-from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits.restitution_orbit import period_doubling, saddle_node
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
@@ -20,20 +22,9 @@ from bouncing_ball.parameters import (
     FrequencyRatio,
     Parameters,
     Restitution,
+    Span,
+    Tolerance,
 )
-
-
-def _known(info: ValidationInfo, *names: str) -> bool:
-    """Whether the parameters before are right; if not, they are the mistake."""
-    return all(name in info.data for name in names)
-
-
-def _require(amplitude: float, lowest: float, what: str, n: int, restitution: float) -> None:
-    if amplitude < lowest:
-        raise ValueError(
-            f"must be at least {lowest:.6g}, the {what} of the {n}-T restitution orbit at "
-            f"r = {restitution:g} (Eqs. 7-8)"
-        )
 
 
 def require_orbit(amplitude: float, n: int, restitution: float) -> float:
@@ -49,32 +40,37 @@ def require_orbit(amplitude: float, n: int, restitution: float) -> float:
     >>> require_orbit(1.0, 1, 0.85)
     1.0
     """
-    _require(amplitude, float(saddle_node(n, restitution)), "saddle-node", n, restitution)
+    lowest = float(saddle_node(n, restitution))
+    return _require(amplitude, lowest, "saddle-node", n, restitution)
+
+
+def _require(amplitude: float, lowest: float, what: str, n: int, restitution: float) -> float:
+    if amplitude < lowest:
+        raise ValueError(
+            f"must be at least {lowest:.6g}, the {what} of the {n}-T restitution orbit at "
+            f"r = {restitution:g} (Eqs. 7-8)"
+        )
     return amplitude
 
 
-def _families(info: ValidationInfo) -> list[int]:
-    n = info.data["n"]
-    return list(n) if isinstance(n, Iterable) else [n]
+def _known(info: ValidationInfo, *names: str) -> bool:
+    """Whether the parameters before are right; if not, they are the mistake."""
+    return all(name in info.data for name in names)
 
 
-def _has_an_orbit(amplitude: float, info: ValidationInfo) -> float:
-    # What is shown at several Λ shows the orbits that there are.
-    if _known(info, "n", "restitution"):
-        require_orbit(amplitude, min(_families(info)), info.data["restitution"])
-    return amplitude
+def _has_orbits(families: Callable[[np.ndarray], int]) -> AfterValidator:
+    def check(amplitude: float, info: ValidationInfo) -> float:
+        if _known(info, "n", "restitution"):
+            n = families(np.atleast_1d(info.data["n"]))
+            require_orbit(amplitude, n, info.data["restitution"])
+        return amplitude
 
-
-def _has_all_orbits(amplitude: float, info: ValidationInfo) -> float:
-    # The branch of the highest family starts last.
-    if _known(info, "n", "restitution"):
-        require_orbit(amplitude, max(_families(info)), info.data["restitution"])
-    return amplitude
+    return AfterValidator(check)
 
 
 def _has_all_ranges(amplitude: float, info: ValidationInfo) -> float:
     if _known(info, "n", "restitution"):
-        n, r = max(_families(info)), info.data["restitution"]
+        n, r = max(info.data["n"]), info.data["restitution"]
         lowest = 1.1 * float(period_doubling(n, r))
         _require(amplitude, lowest, "period doubling, with a tenth to spare,", n, r)
     return amplitude
@@ -94,7 +90,7 @@ def _has_a_motion(ratio: float, info: ValidationInfo) -> float:
     return ratio
 
 
-OrbitAmplitude = Annotated[Amplitude, AfterValidator(_has_an_orbit)]
+OrbitAmplitude = Annotated[Amplitude, _has_orbits(min)]
 """Λ at which the family, or the lowest of several, has an orbit."""
 
 
@@ -105,8 +101,25 @@ class OrbitParameters(Parameters):
     restitution: Restitution
     amplitude: OrbitAmplitude
 
+    def exact(self, frequency_ratio: ArrayLike, release: Release) -> SpringDamperModel:
+        """The spring-damper models of contacts with the damping of Eq. 16."""
+        contact = SpringDamper.from_restitution(self.restitution, frequency_ratio, release)
+        return SpringDamperModel(contact)
 
-BranchEnd = Annotated[AmplitudeMax, AfterValidator(_has_all_orbits)]
+
+class OrbitsAlongRatio(OrbitParameters):
+    """One orbit along ϖ."""
+
+    frequency_ratio: Span
+
+
+class OrbitErrors(OrbitsAlongRatio):
+    """One orbit along ϖ, and the error tolerated of a simple model."""
+
+    tolerance: Tolerance
+
+
+BranchEnd = Annotated[AmplitudeMax, _has_orbits(max)]
 """Λ up to which branches are followed, above where the highest family begins."""
 RangeEnd = Annotated[AmplitudeMax, AfterValidator(_has_all_ranges)]
 """Λ up to which branches are followed, above where the highest family loses its stability."""

@@ -10,13 +10,16 @@ from bouncing_ball.contacts.permanent_contact import (
 )
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.parameters import Parameters, Span, ThresholdRestitution
+from bouncing_ball.parameters import Parameters, Restitution, Span
 
 
 class PermanentContact(Parameters):
-    """The threshold of permanent contact of one restitution coefficient along ϖ."""
+    """The threshold of permanent contact of one restitution coefficient along ϖ.
 
-    restitution: ThresholdRestitution
+    It has a minimum where ζ < 1/√2 (Eq. 36), which is r > e^-π = 0.0432.
+    """
+
+    restitution: Restitution
     frequency_ratio: Span
 
 

@@ -9,7 +9,7 @@ import xarray as xr
 from bouncing_ball.accuracy.errors import models
 from bouncing_ball.contacts.damping import restitution_coefficient
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.contacts.spring_damper import SpringDamper, contact_force
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.parameters import Parameters, Seed, Span
 from bouncing_ball.studies.random_orbits import random_orbits
@@ -17,6 +17,10 @@ from bouncing_ball.studies.random_orbits import random_orbits
 # Of the restitution model's stable range: from next to its saddle-node to beyond
 # its period doubling.
 _PLACES = (0.02, 1.2)
+_SHOWN = (
+    *("phase", "contact_duration", "impact_velocity", "bounce_velocity"),
+    *("apparent_restitution", "max_height"),
+)
 
 
 class References(Parameters):
@@ -49,26 +53,18 @@ def _under(rule: Release, omega: np.ndarray, seed: int) -> xr.Dataset:
     trace, determinant = orbit.trace_and_determinant()
     by_r, repaired = simple.orbit(n, lam), corrected.orbit(n, lam)
     middle = orbit.contact_duration / 2
-    start = (0.0, orbit.relative_impact_velocity, orbit.phase, lam)
-    flow = orbit.contact.flow(middle, *start)
-    force = contact_force(flow.displacement, flow.velocity, omega, orbit.contact.damping_ratio)
     values = {
         "n": n,
         "restitution": r,
         "frequency_ratio": omega,
         "amplitude": lam,
-        "phase": orbit.phase,
-        "contact_duration": orbit.contact_duration,
-        "impact_velocity": orbit.impact_velocity,
-        "bounce_velocity": orbit.bounce_velocity,
-        "apparent_restitution": orbit.apparent_restitution,
-        "max_height": orbit.max_height,
+        **{name: getattr(orbit, name) for name in _SHOWN},
         "trace": trace,
         "determinant": determinant,
         "saddle_node_amplitude": exact.saddle_node(n).amplitude,
         "period_doubling_amplitude": exact.period_doubling(n).amplitude,
         "ball": orbit.contact_path(middle)[0],
-        "contact_force": force,
+        "contact_force": exact.contact.force(*-np.array(orbit.contact_motion(middle))),
         "restitution_phase": by_r.phase,
         "restitution_trace": by_r.trace_and_determinant()[0],
         "restitution_period_doubling": simple.period_doubling(n).amplitude,
@@ -78,7 +74,4 @@ def _under(rule: Release, omega: np.ndarray, seed: int) -> xr.Dataset:
         "corrected_saddle_node": corrected.saddle_node(n).amplitude,
         "corrected_period_doubling": corrected.period_doubling(n).amplitude,
     }
-    return xr.Dataset(
-        {name: ("sample", np.asarray(value)) for name, value in values.items()},
-        coords={"sample": np.arange(omega.size)},
-    )
+    return xr.Dataset({name: ("sample", np.asarray(value)) for name, value in values.items()})

@@ -8,15 +8,10 @@ ends where its force vanishes. Three things are compared along ϖ:
 * the same with the restitution coefficient that the force release really has.
 """
 
-from typing import Annotated
-
 import numpy as np
 import xarray as xr
-from pydantic import Strict
 from scipy.optimize.elementwise import find_minimum
 
-from bouncing_ball.accuracy.quantities import Quantity
-from bouncing_ball.accuracy.thresholds import model_thresholds
 from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import describe
@@ -24,16 +19,14 @@ from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.parameters import Family, LossyRestitution, Many, Parameters, Span, Tolerance
-from bouncing_ball.studies.parameters import OrbitParameters
+from bouncing_ball.studies.error_thresholds import ErrorsAlongRatio, thresholds_along
 
 
-class RuleThresholds(OrbitParameters):
+class RuleThresholds(ErrorsAlongRatio):
     """One orbit, the quantities compared on it, and the error tolerated."""
 
     restitution: LossyRestitution
     tolerance: Tolerance
-    quantities: Many[Annotated[Quantity, Strict(False)]]
-    frequency_ratio: Span
 
 
 class ReleaseRules(Parameters):
@@ -68,40 +61,34 @@ def _lowest_doubling(
     return float(np.exp(find_minimum(doubling, bracket).x))
 
 
-def _bifurcations(parameters: ReleaseRules) -> xr.Dataset:
-    """Both bifurcations along ϖ under each rule, and the ϖ of the lowest period doubling."""
+def _bifurcations(parameters: ReleaseRules, rule: Release) -> xr.Dataset:
+    """Both bifurcations along ϖ under a rule, and the ϖ of the lowest period doubling."""
     families, ratios = np.array(parameters.n), parameters.frequency_ratio.grid()
     zeta = float(damping_ratio(parameters.restitution))
-    rules = list(Release)
-    amplitudes = np.empty((len(rules), len(families), len(ratios), 2))
-    turns = np.empty((len(rules), len(families)))
-    for i, rule in enumerate(rules):
-        model = SpringDamperModel(SpringDamper(ratios, zeta, rule))
-        for j, n in enumerate(families):
-            amplitudes[i, j, :, 0] = model.saddle_node(n).amplitude
-            amplitudes[i, j, :, 1] = model.period_doubling(n).amplitude
-            turns[i, j] = _lowest_doubling(ratios, amplitudes[i, j, :, 1], zeta, rule, n)
-    dims = ("release", "n", "frequency_ratio", "bound")
+    model, n = SpringDamperModel(SpringDamper(ratios, zeta, rule)), families[:, np.newaxis]
+    ends = np.stack([model.saddle_node(n).amplitude, model.period_doubling(n).amplitude], axis=-1)
+    turns = [
+        _lowest_doubling(ratios, row, zeta, rule, k)
+        for k, row in zip(parameters.n, ends[..., 1], strict=True)
+    ]
     return xr.Dataset(
         {
-            "bifurcation_amplitude": (dims, amplitudes),
-            "period_doubling_turn": (dims[:2], turns),
-            "damping_ratio": ((), zeta),
+            "bifurcation_amplitude": (("n", "frequency_ratio", "bound"), ends),
+            "period_doubling_turn": ("n", turns),
         },
         coords={
-            "release": [str(rule) for rule in rules],
             "n": families,
             "frequency_ratio": ratios,
             "bound": list(Bifurcation),
+            "release": str(rule),
         },
     )
 
 
 def _thresholds(wanted: RuleThresholds) -> xr.Dataset:
     """The ϖ above which each quantity is within the tolerance, reading by reading."""
-    n, lam, r = wanted.n, wanted.amplitude, wanted.restitution
-    quantities = wanted.quantities
-    scan, loss = wanted.frequency_ratio.grid(), float(damping_ratio(r))
+    r, orbit = wanted.restitution, (wanted.n, wanted.amplitude)
+    loss = float(damping_ratio(r))
     own = float(restitution_coefficient(loss, Release.FORCE))
     found = []
     for rule, reading in READINGS:
@@ -110,20 +97,10 @@ def _thresholds(wanted: RuleThresholds) -> xr.Dataset:
             return SpringDamperModel(SpringDamper(ratio, loss, rule))
 
         simple = RestitutionModel(own if reading.endswith("own r") else r)
-        _, one = model_thresholds(exact, simple, n, lam, scan, [wanted.tolerance], quantities)
-        found.append(one)
-    dims = ("reading", "quantity")
-    return xr.Dataset(
-        {
-            "error_threshold": (dims, np.array([one.ratio[:, 0] for one in found])),
-            "threshold_status": (dims, np.array([one.status[:, 0] for one in found])),
-            "force_restitution": ((), own),
-        },
-        coords={
-            "reading": [reading for _, reading in READINGS],
-            "quantity": [str(quantity) for quantity in quantities],
-        },
-    )
+        asked = wanted.frequency_ratio, wanted.quantities, [wanted.tolerance]
+        one = thresholds_along(exact, simple, orbit, *asked).isel(tolerance=0, drop=True)
+        found.append(one.drop_dims("frequency_ratio").assign_coords(reading=reading))
+    return xr.concat(found, "reading").assign(force_restitution=own)
 
 
 def release_rules(parameters: ReleaseRules) -> xr.Dataset:
@@ -133,4 +110,6 @@ def release_rules(parameters: ReleaseRules) -> xr.Dataset:
     lowest, and the ϖ from which each quantity is right, shape (reading, quantity); NaN where there
     is none.
     """
-    return describe(_bifurcations(parameters).merge(_thresholds(parameters.thresholds)))
+    dataset = xr.concat([_bifurcations(parameters, rule) for rule in Release], "release")
+    dataset["damping_ratio"] = float(damping_ratio(parameters.restitution))
+    return describe(dataset.merge(_thresholds(parameters.thresholds)))

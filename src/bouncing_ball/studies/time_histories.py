@@ -4,11 +4,8 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.datasets.variables import described
-from bouncing_ball.orbits.orbit import Orbit
+from bouncing_ball.datasets.variables import describe
 from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.parameters import Many, Samples
 from bouncing_ball.studies.parameters import MotionRatio, OrbitParameters
 
@@ -30,19 +27,30 @@ class Histories(OrbitParameters):
     samples: Samples
 
 
-def _cycle(orbit: Orbit, samples: int) -> tuple[np.ndarray, ...]:
-    """Times of one cycle with the orbit's states: contact, then flight.
+def _cycle(parameters: ContactHistory | Histories, ratio: float, release: Release) -> xr.Dataset:
+    """One cycle on one contact: its contact, then its flight.
 
     Half the samples fall in either part, and τ_b is a sample in both: the
     contact may be a hundredth of the cycle and must be resolved all the same.
     """
-    half = samples // 2
+    n, lam, half = parameters.n, parameters.amplitude, parameters.samples // 2
+    orbit = parameters.exact(ratio, release).require_admissible(n, lam)
     during = np.linspace(0.0, orbit.contact_duration, half)
-    after = np.linspace(orbit.contact_duration, 2 * np.pi * orbit.n, samples - half)
-    pairs = [orbit.contact_path(during), orbit.flight_path(after)]
-    time = np.concatenate([during, after])
-    touching = np.concatenate([np.ones(half, bool), np.zeros(samples - half, bool)])
-    return time, *(np.concatenate(part) for part in zip(*pairs, strict=True)), touching
+    after = np.linspace(orbit.contact_duration, 2 * np.pi * n, parameters.samples - half)
+    ball, velocity = np.hstack([orbit.contact_path(during), orbit.flight_path(after)])
+    phase = np.concatenate([during, after]) + orbit.phase
+    return xr.Dataset(
+        {
+            "time": ("sample", np.concatenate([during, after])),
+            "ball": ("sample", ball),
+            "ball_velocity": ("sample", velocity),
+            "table": ("sample", lam * np.sin(phase)),
+            "table_phase": ("sample", phase),
+            "contact": ("sample", np.arange(parameters.samples) < half),
+            "frequency_ratio": ratio,
+            **{name: float(getattr(orbit, name)) for name in _STATE},
+        }
+    )
 
 
 def contact_history(parameters: ContactHistory, release: Release) -> xr.Dataset:
@@ -53,20 +61,8 @@ def contact_history(parameters: ContactHistory, release: Release) -> xr.Dataset:
     NoOrbitError
         If the orbit does not exist or is inadmissible.
     """
-    lam, ratio = parameters.amplitude, parameters.frequency_ratio
-    contact = SpringDamper.from_restitution(parameters.restitution, ratio, release)
-    orbit = SpringDamperModel(contact).require_admissible(parameters.n, lam)
-    time, ball, velocity, touching = _cycle(orbit, parameters.samples)
-    return described(
-        {
-            "time": ("sample", time),
-            "ball": ("sample", ball),
-            "ball_velocity": ("sample", velocity),
-            "table": ("sample", lam * np.sin(time + orbit.phase)),
-            "contact": ("sample", touching),
-            "frequency_ratio": ((), ratio),
-            **{name: ((), float(getattr(orbit, name))) for name in _STATE},
-        }
+    return describe(
+        _cycle(parameters, parameters.frequency_ratio, release).drop_vars("table_phase")
     )
 
 
@@ -78,30 +74,17 @@ def both_histories(parameters: Histories, release: Release) -> xr.Dataset:
     NoOrbitError
         If an orbit does not exist or is inadmissible.
     """
-    n, lam, r = parameters.n, parameters.amplitude, parameters.restitution
-    ratios = np.sort(parameters.frequency_ratio)
-    columns: dict[str, list[np.ndarray]] = {"table_phase": [], "ball": [], "contact": []}
-    states: dict[str, list[float]] = {name: [] for name in _STATE}
-    for ratio in ratios:
-        orbit = SpringDamperModel(
-            SpringDamper.from_restitution(r, ratio, release)
-        ).require_admissible(n, lam)
-        time, ball, _, touching = _cycle(orbit, parameters.samples)
-        for name, values in zip(columns, (time + orbit.phase, ball, touching), strict=True):
-            columns[name].append(values)
-        for name in _STATE:
-            states[name].append(float(getattr(orbit, name)))
-    rigid = RestitutionModel(r).require_orbit(n, lam)
-    time = np.linspace(0.0, 2 * np.pi * n, parameters.samples)
+    cycles = [_cycle(parameters, ratio, release) for ratio in sorted(parameters.frequency_ratio)]
+    dataset = xr.concat([x.set_coords("frequency_ratio") for x in cycles], "frequency_ratio")
+    rigid = RestitutionModel(parameters.restitution).require_orbit(
+        parameters.n, parameters.amplitude
+    )
+    time = np.linspace(0.0, 2 * np.pi * parameters.n, parameters.samples)
     height, _ = rigid.path(np.minimum(time, time[-1] * (1 - 1e-15)))
-    dims = ("frequency_ratio", "sample")
-    return described(
-        {
-            **{name: (dims, np.array(values)) for name, values in columns.items()},
-            **{name: ("frequency_ratio", values) for name, values in states.items()},
-            "restitution_ball": ("sample", height),
-            "time": ("sample", time),
-            "restitution_phase": ((), float(rigid.phase)),
-        },
-        coords={"frequency_ratio": ratios},
+    return describe(
+        dataset[["table_phase", "ball", "contact", *_STATE]].assign(
+            restitution_ball=("sample", height),
+            time=("sample", time),
+            restitution_phase=float(rigid.phase),
+        )
     )

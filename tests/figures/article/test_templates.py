@@ -61,12 +61,3 @@ def test_no_number_is_typed(template):
 def test_no_number_is_typed_into_an_explanation():
     for explanation in EXPLANATIONS:
         assert typed_numbers(explanation.text) == [], explanation.id
-
-
-def test_a_typed_number_is_seen():
-    for text in ("the threshold is 9.81", r"at $\varpi = 9.81$", "Fig. 3 shows 5 curves"):
-        assert typed_numbers(text)
-    for text in ("the 1-T orbit of Fig. 8 (Eqs. 21–26)", r"$z = -\tfrac{1}{2} T^2$", "a [@b2011]"):
-        assert typed_numbers(text) == []
-    assert literals("{{ decimal(9.81, 2) }}") == ["9.81"]
-    assert literals('{{ at("fig14", "x", 2, n=1) }}') == []

@@ -12,7 +12,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from bouncing_ball.figures.canvas import WIDE, canvas, legend_below, panels
-from bouncing_ball.figures.style import COLOURS, CORRECTED, GUIDE, QUANTITIES, Look
+from bouncing_ball.figures.labels import QUANTITIES
+from bouncing_ball.figures.style import COLOURS, CORRECTED, GUIDE, Look
 
 LEVELS = (3, 5, 10, 20, 50, 100, 200, 500, 1000)
 """Bounds of the colours; the last colour is for what lies beyond."""

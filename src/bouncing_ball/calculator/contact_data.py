@@ -18,9 +18,9 @@ import numpy as np
 
 from bouncing_ball.calculator.case import Case, Table
 from bouncing_ball.contacts.damping import damping_ratio
-from bouncing_ball.contacts.law_signature import free_impact
 from bouncing_ball.contacts.laws.tsuji import Tsuji, tsuji_damping
 from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.signature import free_impact
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, require
 from bouncing_ball.orbits.restitution_model import RestitutionModel

@@ -2,8 +2,6 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from bouncing_ball.atlas.plan import AtlasParameters
-from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 
@@ -68,15 +66,3 @@ def test_what_is_examined_is_among_the_ratios_once(small):
 def test_what_does_not_fit_together_is_refused(small, changed, said):
     with pytest.raises(ValidationError, match=said):
         small(**changed)
-
-
-def test_the_sizes_that_are_promised(pytestconfig):
-    folder = pytestconfig.rootpath / "config"
-    section = read_yaml(folder / "config.yaml")["atlas"]
-    assert AtlasParameters(**section).orbits >= 10**8
-    for key, value in read_yaml(folder / "atlas-large.yaml")["atlas"].items():
-        section[key] = section[key] | value if isinstance(value, dict) else value
-    large = AtlasParameters(**section)
-    assert large.orbits >= 10**10
-    # Ten minutes a shard, at the rate of docs/atlas.md.
-    assert large.orbits / len(large.shard_rows()) / 1.4e6 > 600

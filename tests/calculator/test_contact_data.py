@@ -9,8 +9,8 @@ from scipy.integrate import quad
 
 from bouncing_ball.calculator.case import Case, Table
 from bouncing_ball.calculator.contact_data import hertz, stiffness_and_damping
-from bouncing_ball.contacts.law_signature import free_impact
 from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.signature import free_impact
 from bouncing_ball.contacts.spring_damper import contact_flow
 from bouncing_ball.errors import ModelError
 

@@ -36,9 +36,9 @@ def test_a_number_is_judged_by_units_of_its_last_digit(digits, decimals, off):
         else Verdict.CONTRADICTED
     )
     assert found.verdict is expected
-    assert found.units == pytest.approx(off, abs=1e-8)
-    assert found.relative == pytest.approx(off * unit / abs(float(text)), abs=1e-8)
-    assert (found.required, np.isnan(found.bound)) == (text, True)
+    assert found.deviation_units == pytest.approx(off, abs=1e-8)
+    assert found.deviation == pytest.approx(off * unit / abs(float(text)), abs=1e-8)
+    assert (found.required, np.isnan(found.limit)) == (text, True)
 
 
 @pytest.mark.parametrize(
@@ -56,7 +56,7 @@ def test_ties_are_decided_in_favour_of_the_paper(value, printed, verdict):
 
 def test_a_unit_that_the_digits_do_not_show():
     assert against_print(140, "100", unit=100).verdict is Verdict.REPRODUCED
-    assert against_print(27, "100", unit=100).units == pytest.approx(-0.73)
+    assert against_print(27, "100", unit=100).deviation_units == pytest.approx(-0.73)
     assert against_print(27, "100").verdict is Verdict.CONTRADICTED
     assert last_unit("100") == 1
 
@@ -74,8 +74,8 @@ def test_conditions_hold_for_all_values(condition, sign, holding, failing, decid
     for values, verdict in ((holding, Verdict.REPRODUCED), (failing, Verdict.CONTRADICTED)):
         found = condition(values, 2)
         assert found.verdict is verdict
-        assert (found.value, found.bound, found.required) == (decides(values), 2, f"{sign} 2")
-        assert np.isnan(found.units) and np.isnan(found.relative)
+        assert (found.found, found.limit, found.required) == (decides(values), 2, f"{sign} 2")
+        assert np.isnan(found.deviation_units) and np.isnan(found.deviation)
 
 
 def test_rounding_decides_nothing_on_a_bound():

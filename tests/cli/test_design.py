@@ -62,10 +62,7 @@ def test_choosing(said):
     ("arguments", "status", "says"),
     [
         (("--stiffness", "-5N/m"), 2, "stiffness = -5 N/m is not positive"),
-        (("--stiffness", "-1e6"), 2, "stiffness = -1e+06 N/m is not positive"),
         (("--acceleration", "0.1 g"), 1, "no n-T orbit in any model"),
-        (("--n", "0"), 2, "whole number"),
-        (("--release", "glue"), 2, "invalid choice"),
         (("--plot", "page.jpg"), 2, "'page.jpg' does not end in .pdf or .png or .svg"),
         (("--plot", "page.png/"), 2, "'page.png/' does not end in .pdf or .png or .svg"),
         (("--plot", "/dev/null/page.png"), 2, "/dev/null/page.png cannot be written"),

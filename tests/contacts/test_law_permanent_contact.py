@@ -5,10 +5,10 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from bouncing_ball.contacts.law_choice import law_of_impact
-from bouncing_ball.contacts.law_permanent_contact import permanent_contact
 from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji
+from bouncing_ball.contacts.permanent_contact import permanent_contact
 from bouncing_ball.errors import ModelError
 
 

@@ -15,14 +15,12 @@ from scipy.integrate import solve_ivp
 
 from bouncing_ball.contacts.collocation import contacts, path
 from bouncing_ball.contacts.contact_law import ContactLaw, slopes_of
-from bouncing_ball.contacts.law_permanent_contact import permanent_contact
-from bouncing_ball.contacts.law_signature import LawSignature, free_impact
 from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji
-from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
+from bouncing_ball.contacts.permanent_contact import permanent_contact, permanent_contact_threshold
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.contacts.signature import LinearSignature
+from bouncing_ball.contacts.signature import LawSignature, LinearSignature, free_impact
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.contact import contact_cycle, simulate
 from bouncing_ball.motion.history import history
@@ -194,11 +192,14 @@ def test_the_tabulated_signature_is_the_impact_itself(law):
 def test_the_defaults_are_the_closed_forms(release):
     """Contact, signature, permanent contact, motion and history of the spring-damper."""
     exact, law = SpringDamper(20.0, 0.13, release), Spring(20.0, 0.13, release)
-    closed, computed = LinearSignature(exact)(1.0), LawSignature(law)([0.1, 3.3])
-    for name in ("delay", "restitution", "load", "duration"):
-        np.testing.assert_allclose(getattr(computed, name), getattr(closed, name), rtol=1e-12)
-    for name in ("d_delay", "d_restitution", "d_load"):
-        np.testing.assert_allclose(getattr(computed, name), 0.0, atol=1e-11)
+    for zeta in (0.0, 0.05, 0.4, 0.8):
+        closed = LinearSignature(SpringDamper(20.0, zeta, release))(1.0)
+        computed = LawSignature(Spring(20.0, zeta, release))([0.1, 3.3])
+        for name in ("delay", "restitution", "duration"):
+            np.testing.assert_allclose(getattr(computed, name), getattr(closed, name), rtol=1e-12)
+        np.testing.assert_allclose(computed.load, closed.load, atol=1e-12 * float(closed.duration))
+        for name in ("d_delay", "d_restitution", "d_load"):
+            np.testing.assert_allclose(getattr(computed, name), 0.0, atol=1e-11)
     for omega in (1.0, 2.0, 10.0):
         found = permanent_contact(Spring(omega, 0.136, release)).amplitude
         assert found == pytest.approx(
@@ -284,6 +285,9 @@ def test_a_history_is_continuous_and_obeys_the_law(law):
     np.testing.assert_allclose((ahead.velocity - behind.velocity) / (2 * h), force - 1, atol=1e-4)
     flying = history(sequence, 0.5 * (release[0] + sequence.time[1]))
     assert not flying.touching and flying.gap > 0
+    # Before the first impact and after the last known release the ball is nowhere.
+    outside = history(sequence, [-1.0, sequence.time[-1] + 100.0])
+    assert np.all(np.isnan(outside.height)) and np.all(np.isfinite(outside.table))
 
 
 def test_many_balls_are_each_its_own():

@@ -69,59 +69,6 @@ def test_contacts_that_resume_below_the_level(omega, zeta, factor, taylor_ball):
         np.testing.assert_allclose(b, a, rtol=0, atol=1e-11)
 
 
-# The branch of the fifth does not turn round below its Λ.
-SIDES = [(case, Side.STABLE) for case in CASES]
-SIDES += [(case, Side.UNSTABLE) for case in CASES if case != CASES[4]]
-
-
-@pytest.mark.parametrize("release", RELEASES)
-@pytest.mark.parametrize(("case", "side"), SIDES)
-def test_orbits_are_fixed_points(case, side, release):
-    contact, lam, orbit = build(case, release, side)
-    cycle = contact_cycle(contact, lam, orbit.phase, orbit.relative_impact_velocity)
-    # The orbit is known to 1e-14; the map enlarges that by its multipliers, below 30.
-    assert abs(turn(cycle.phase - orbit.phase)) < 1e-12
-    assert abs(cycle.relative_velocity - orbit.relative_impact_velocity) < 1e-12
-    assert abs(cycle.time - 2 * np.pi * case[0]) < 1e-12
-
-
-@pytest.mark.parametrize("release", RELEASES)
-@pytest.mark.parametrize("case", CASES)
-def test_jacobian_is_the_monodromy(case, release):
-    contact, lam, orbit = build(case, release)
-    step = 1e-5
-    state = np.array([orbit.phase, orbit.relative_impact_velocity])
-    offsets = step * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]])
-    cycle = contact_cycle(contact, lam, *(state + offsets).T)
-    after = np.array([cycle.phase, cycle.relative_velocity])
-    columns = [(after[:, k] - after[:, k + 1]) / (2 * step) for k in (0, 2)]
-    # Central differences: step² times third derivatives, up to 100, and rounding over step.
-    np.testing.assert_allclose(np.transpose(columns), orbit.monodromy(), rtol=0, atol=1e-7)
-
-
-@pytest.mark.parametrize("case", CASES[:3])
-def test_the_stable_orbit_holds_and_the_unstable_one_is_left(case):
-    contact, lam, orbit = build(case, Release.DISPLACEMENT)
-    sequence = simulate(contact, lam, orbit.phase, orbit.impact_velocity, 51)
-    # A contraction: errors of 1e-14 in each impact do not add up. The time does.
-    assert np.max(np.abs(turn(sequence.phase - orbit.phase))) < 1e-12
-    assert abs(sequence.time[-1] - 100 * np.pi * case[0]) < 1e-11
-
-    contact, lam, orbit = build(case, Release.DISPLACEMENT, Side.UNSTABLE)
-    values, vectors = np.linalg.eig(orbit.monodromy())
-    k = np.argmax(np.abs(values))
-    multiplier, direction = values[k].real, vectors[:, k].real
-    assert multiplier > 1
-    start = 1e-9 * direction / np.abs(direction[0])
-    relative = orbit.relative_impact_velocity + start[1]
-    phase = orbit.phase + start[0]
-    steps = int(np.log(1e4) / np.log(multiplier)) + 1
-    left = simulate(contact, lam, phase, relative + lam * np.cos(phase), steps)
-    grown = np.abs(turn(left.phase - orbit.phase)) / 1e-9
-    # Linear up to the size of the deviation, 1e-5; at its start known to 1e-14/1e-9.
-    np.testing.assert_allclose(grown, multiplier ** np.arange(steps), rtol=1e-3)
-
-
 def test_an_elastic_ball_on_a_table_at_rest_keeps_its_energy():
     """The only exact answer with many impacts: equal velocities and equal times."""
     omega, speed = 7.0, 1.5
@@ -212,30 +159,6 @@ def test_the_ball_is_where_its_state_says(lam, omega, zeta, phase, speed, releas
     flying = ~dense.touching
     assert np.all(np.maximum(dense.gap, loaded)[flying] >= -noise)
     assert np.all(loaded[~flying] <= noise)
-
-
-def test_history_is_continuous_and_knows_its_end():
-    contact = SpringDamper(5.0, 0.1)
-    sequence = simulate(contact, 1.2, 0.5, -3.0, 6)
-    event = np.concatenate([sequence.time[1:], (sequence.time + sequence.contact_duration)[:-1]])
-    before, after = (history(sequence, event + x) for x in (-1e-9, 1e-9))
-    # Twice 1e-9 at a velocity below 10.
-    assert np.max(np.abs(before.height - after.height)) < 2e-8
-    assert np.max(np.abs(before.velocity - after.velocity)) < 1e-6
-    outside = history(sequence, [-1.0, sequence.time[-1] + 100.0])
-    assert np.all(np.isnan(outside.height)) and np.all(np.isfinite(outside.table))
-    resting = simulate(contact, 0.1, 0.5, 0.0, 50)
-    # The steady state 1/ϖ² below a table that hardly moves.
-    late = history(resting, float(np.nanmax(resting.time)) + 500.0)
-    assert late.touching and abs(float(late.gap) + 1 / 25) < 0.1 / 20
-
-
-def test_section_collects_the_impacts():
-    sequence = simulate(SpringDamper(10.0, 0.05), [0.9, 0.1], 0.8, -3.0, 200)
-    phase, velocity = sequence.section(skip=50)
-    there = np.isfinite(sequence.phase[50:])
-    assert phase.shape == velocity.shape == (there.sum(),)
-    assert sequence.status.tolist() == [Status.BOUNCING, Status.PERMANENT_CONTACT]
 
 
 def test_errors_are_one_line(one_line):

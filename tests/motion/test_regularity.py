@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.motion.angles import reduce_angle
-from bouncing_ball.motion.regularity import Stretching, period, stretching
+from bouncing_ball.motion.regularity import Stretching, exact_map_jacobian, period, stretching
 from bouncing_ball.motion.restitution import impact_cycle, simulate
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 
@@ -75,3 +75,15 @@ def test_the_cascade(amplitude, length):
 def test_a_short_sequence_shows_no_long_period():
     with pytest.raises(ValueError, match="30 impacts are too few to find a period of 16"):
         period(beside(1.0, 30), 16, 1e-6)
+
+
+@pytest.mark.parametrize("r", [0.1, 0.7, 1.0])
+def test_the_jacobian_is_that_of_the_simulated_map(r):
+    lam, phase, velocity, step = 1.3, 0.4, 3.0, 1e-5
+    around = step * np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]])
+    cycle = impact_cycle(r, lam, phase + around[:, 0], velocity + around[:, 1])
+    after = np.array([cycle.phase, cycle.velocity])
+    columns = [(after[:, k] - after[:, k + 1]) / (2 * step) for k in (1, 3)]
+    expected = exact_map_jacobian(cycle.time[0], phase, velocity, lam, r)
+    # Central differences: step² times third derivatives of order 10.
+    np.testing.assert_allclose(np.transpose(columns), expected, rtol=0, atol=1e-8)

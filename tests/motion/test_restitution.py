@@ -6,43 +6,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bouncing_ball.contacts.restitution_map import exact_map_jacobian
 from bouncing_ball.errors import ModelError
 from bouncing_ball.motion.history import history
 from bouncing_ball.motion.rest import lift_off_phase
-from bouncing_ball.motion.restitution import impact_cycle, simulate
+from bouncing_ball.motion.restitution import simulate
 from bouncing_ball.motion.sequence import Status
-from bouncing_ball.orbits import restitution_orbit as orbits
-
-
-@pytest.mark.parametrize(("n", "r", "lam"), [(1, 0.85, 1.0), (2, 0.65, 1.5), (3, 0.9, 0.8)])
-def test_orbits_are_fixed_points(n, r, lam):
-    for stable in (True, False):
-        phase = orbits.phase(n, r, lam, stable)
-        cycle = impact_cycle(r, lam, phase, n * np.pi)
-        # A few units in the last place, times the multiplier, below 10.
-        assert abs(cycle.phase - phase) < 1e-13
-        assert abs(cycle.velocity - n * np.pi) < 1e-13
-        assert abs(cycle.time - 2 * np.pi * n) < 1e-13
-
-
-def test_jacobian_is_that_of_the_exact_map():
-    r, lam, phase, velocity, step = 0.7, 1.3, 0.4, 3.0, 1e-5
-    around = step * np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]])
-    cycle = impact_cycle(r, lam, phase + around[:, 0], velocity + around[:, 1])
-    after = np.array([cycle.phase, cycle.velocity])
-    columns = [(after[:, k] - after[:, k + 1]) / (2 * step) for k in (1, 3)]
-    expected = exact_map_jacobian(cycle.time[0], phase, velocity, lam, r)
-    # Central differences: step² times third derivatives of order 10.
-    np.testing.assert_allclose(np.transpose(columns), expected, rtol=0, atol=1e-8)
-
-
-def test_the_stable_orbit_holds():
-    phase = orbits.phase(1, 0.85, 0.9)
-    sequence = simulate(0.85, 0.9, phase, np.pi, 51)
-    # A contraction: the errors of 1e-15 do not add up.
-    assert np.max(np.abs(sequence.phase - phase)) < 1e-13
-    np.testing.assert_allclose(sequence.apparent_restitution, 0.85, rtol=1e-13)
 
 
 def test_an_elastic_ball_on_a_table_at_rest_keeps_its_energy():

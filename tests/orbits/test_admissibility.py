@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from bouncing_ball.contacts.restitution_map import landing_gap
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper, contact_flow
 from bouncing_ball.continuation.corrector import NewtonSettings
 from bouncing_ball.orbits.grazing import grazing_points
@@ -16,6 +15,11 @@ from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.spring_damper_system import Parameter, SpringDamperSystem
 
 SHARES = np.linspace(0, 1, 2001)[1:-1, np.newaxis]
+
+
+def landing_gap(s, phase, velocity, amplitude):
+    """Height of the ball over the table a time s after an impact (Eq. 5)."""
+    return s * velocity - s * s / 2 - amplitude * (np.sin(phase + s) - np.sin(phase))
 
 
 def sampled(orbit):

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from bouncing_ball.contacts.law_choice import law_named, law_of_impact
-from bouncing_ball.contacts.law_signature import LawSignature, free_impact
 from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji
+from bouncing_ball.contacts.signature import LawSignature, free_impact
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.orbits.corrected_model import CorrectedModel

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bouncing_ball.contacts.restitution_map import bounce, exact_map_jacobian, landing_gap
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.motion.regularity import exact_map_jacobian
 from bouncing_ball.orbits.restitution_orbit import (
     ImpactMap,
     RestitutionOrbit,
@@ -23,6 +23,16 @@ families = st.integers(1, 5)
 coefficients = st.floats(0.05, 1.0)
 excesses = st.floats(0.0, 2.0)
 sides = st.booleans()
+
+
+def landing_gap(s, phase, velocity, amplitude):
+    """Height of the ball over the table a time s after an impact (Eq. 5)."""
+    return s * velocity - s * s / 2 - amplitude * (np.sin(phase + s) - np.sin(phase))
+
+
+def bounce(s, phase, velocity, amplitude, r):
+    """Velocity after the impact that ends a flight (Eq. 5)."""
+    return -r * (velocity - s) + (1 + r) * amplitude * np.cos(phase + s)
 
 
 def holmes_map(phase, velocity, amplitude, r):

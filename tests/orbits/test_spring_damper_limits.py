@@ -9,7 +9,6 @@ from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper, responses
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
-from bouncing_ball.orbits.model import Absence
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import (
     orbit_at,
@@ -18,7 +17,6 @@ from bouncing_ball.orbits.spring_damper_limits import (
 )
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
-from bouncing_ball.orbits.spring_damper_system import Parameter, SpringDamperSystem
 from bouncing_ball.orbits.stability import Bifurcation, Side, is_stable
 
 EPS = np.finfo(float).eps
@@ -38,6 +36,17 @@ def stability(orbit):
 
 def stable(orbit):
     return bool(is_stable(*stability(orbit)))
+
+
+def check_orbit(orbit, n, lam):
+    """The orbit is at Λ, and solves the paper's equations."""
+    assert float(orbit.amplitude) == pytest.approx(lam, rel=1e-13, abs=1e-13)
+    assert 0 < orbit.contact_duration < 2 * np.pi * n
+    # Heights of the landing equation are of order (2πn)².
+    scale = np.array([1, 1, 2 * np.pi * n]) * (2 * np.pi * n)
+    assert np.all(np.abs(orbit.residual()) < 1e-12 * scale)
+    assert float(orbit.relative_impact_velocity) < 0
+    assert float(orbit.apparent_restitution) > 0
 
 
 def amplitudes(contact, n):
@@ -79,21 +88,6 @@ def test_a_multiplier_is_minus_one_at_the_period_doubling(n, r, log_omega, relea
     # A root to the last digit; the trace has lost two or three.
     assert abs(float(Bifurcation.PERIOD_DOUBLING.test(trace, det))) <= 1e-11 * (1 + n)
     assert -1 < float(det) <= 1 + 1e-12
-
-
-def check_orbit(orbit, n, lam):
-    """The orbit is at Λ, and solves the paper's equations."""
-    assert float(orbit.amplitude) == pytest.approx(lam, rel=1e-13, abs=1e-13)
-    assert 0 < orbit.contact_duration < 2 * np.pi * n
-    omega, zeta = (float(x) for x in (orbit.contact.frequency_ratio, orbit.contact.damping_ratio))
-    # In the continuation's variables; heights of the landing equation are of
-    # order (2πn)².
-    y = np.array([orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration, lam])
-    system = SpringDamperSystem(n, zeta, Parameter.AMPLITUDE, omega, orbit.contact.release)
-    scale = np.array([1, 1, 2 * np.pi * n]) * (2 * np.pi * n)
-    assert np.all(np.abs(system.residual(y)) < 1e-12 * scale)
-    assert float(orbit.relative_impact_velocity) < 0
-    assert float(orbit.apparent_restitution) > 0
 
 
 @given(families, st.floats(0.2, 1.0), log_ratios, releases, st.floats(0.01, 0.99))
@@ -194,17 +188,6 @@ def test_table_of_the_model_notes():
             assert amplitudes(SpringDamper(omega, zeta), n) == pytest.approx(row, abs=5.1e-5)
 
 
-def test_the_unstable_side_starts_at_the_fold():
-    contact = SpringDamper(10.0, float(damping_ratio(0.85)))
-    node, _ = amplitudes(contact, 1)
-    near = [orbit_at(contact, 1, node * (1 + 1e-10), side) for side in Side]
-    # Λ is quadratic there: √1e-10 in D, in units of the fold's scale.
-    assert float(near[0].contact_duration) == pytest.approx(
-        float(near[1].contact_duration), abs=1e-4
-    )
-    assert near[0].contact_duration < near[1].contact_duration
-
-
 def test_a_required_orbit_that_is_missing(one_line):
     contact = SpringDamper(10.0, float(damping_ratio(0.85)))
     with pytest.raises(NoOrbitError) as error:
@@ -225,19 +208,6 @@ def test_a_required_orbit_that_is_missing(one_line):
             1, 1.3, Side.UNSTABLE
         )
     one_line(error, "Λ = 1.3", "does not reach this Λ")
-
-
-def test_reasons_for_missing_orbits():
-    zeta = float(damping_ratio(0.85))
-    amplitudes = np.array([0.1, 0.9, 1.3])
-    below, there, short = Absence.BELOW_SADDLE_NODE, Absence.NONE, Absence.NOT_REACHED
-    model = SpringDamperModel(SpringDamper(2.0, zeta))
-    assert model.absence(1, amplitudes).tolist() == [below, there, there]
-    assert model.absence(1, amplitudes, Side.UNSTABLE).tolist() == [below, there, short]
-    # At ϖ = 1 there is no fold.
-    model, other = SpringDamperModel(SpringDamper(1.0, zeta)), Absence.NO_OTHER_SIDE
-    assert model.absence(1, 0.9, Side.UNSTABLE).tolist() == other
-    assert model.absence(1, np.array([0.05, 0.9])).tolist() == [short, there]
 
 
 def test_without_a_fold():

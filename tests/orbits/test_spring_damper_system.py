@@ -147,15 +147,6 @@ def test_continuation_along_the_frequency_ratio(n, r, lam, release):
     )
 
 
-def test_guess_of_a_strongly_damped_contact_released_at_zero_force():
-    # r = 0.3, half way between the bifurcations of the restitution orbit: the
-    # study starts from here for every contact.
-    n, zeta, lam = 3, float(damping_ratio(0.3)), 5.155
-    system = SpringDamperSystem(n, zeta, Parameter.LOG_FREQUENCY_RATIO, lam, Release.FORCE)
-    assert float(orbit_at(SpringDamper(1e4, zeta, Release.FORCE), n, lam).contact_duration) > 0
-    solve_at(system, system.guess(lam, 1e4))
-
-
 def follow_unstable_side(n, omega, r, lam, largest=0.2):
     zeta = float(damping_ratio(r))
     system = SpringDamperSystem(n, zeta, Parameter.AMPLITUDE, omega)

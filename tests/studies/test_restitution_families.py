@@ -4,13 +4,22 @@ import numpy as np
 import pytest
 
 from bouncing_ball.configuration.study import typed
-from bouncing_ball.contacts.restitution_map import bounce, landing_gap
 from bouncing_ball.studies.restitution_families import restitution_history, restitution_orbits
 
 # As the configuration gives them.
 restitution_history, restitution_orbits = map(typed, (restitution_history, restitution_orbits))
 
 DOMAINS = {"n": [1, 2, 3], "restitution": 0.85, "amplitude_max": 2.0, "points": 81}
+
+
+def landing_gap(s, phase, velocity, amplitude):
+    """Height of the ball over the table a time s after an impact (Eq. 5)."""
+    return s * velocity - s * s / 2 - amplitude * (np.sin(phase + s) - np.sin(phase))
+
+
+def bounce(s, phase, velocity, amplitude, r):
+    """Velocity after the impact that ends a flight (Eq. 5)."""
+    return -r * (velocity - s) + (1 + r) * amplitude * np.cos(phase + s)
 
 
 def test_domains(described):

@@ -7,10 +7,9 @@ from functools import cached_property
 import numpy as np
 
 from bouncing_ball.accuracy.errors import models
-from bouncing_ball.contacts.law_signature import LawSignature
 from bouncing_ball.contacts.laws.tsuji import Tsuji
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.contacts.signature import Instant
+from bouncing_ball.contacts.signature import Instant, LawSignature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.law_model import LawModel

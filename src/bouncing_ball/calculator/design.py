@@ -191,12 +191,8 @@ def _choose(
     NoOrbitError
         If the restitution model has no orbit to be right about, or no contact will do.
     """
-    zeta = loss(given, release)
-    if zeta is None:
-        raise ModelError(
-            "damping needs stiffness, which is missing; to choose a contact, give its restitution "
-            "instead"
-        )
+    instead = ", which is missing; to choose a contact, give its restitution instead"
+    zeta = loss(given, release, instead)
     unit = SpringDamper(1.0, zeta, release)
     r, lam = float(unit.restitution), table.amplitude
     n = meant(asked, r, lam)
@@ -219,8 +215,7 @@ def _choose(
 
 def _judged(found: Sequence[Family]) -> Family:
     """The family that a verdict is about: the first stable one, or the first there is."""
-    steady = [one for one in found if one.exists and one.is_stable and one.is_admissible]
-    return (steady or [one for one in found if one.exists] or list(found))[0]
+    return max(found, key=lambda one: (one.exists, one.is_stable and one.is_admissible))
 
 
 def _design(

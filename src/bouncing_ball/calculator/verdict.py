@@ -25,13 +25,12 @@ def _subject(quantity: str, n: int) -> str:
 
 def _disagreement(family: Family) -> str | None:
     """What the restitution model says of the orbit that is not so, before any number."""
-    exact, simple = next(iter(family.standing.values())), family.standing["restitution"]
-    orbit = f"{family.n}-T orbit"
-    if exact.exists != simple.exists:
+    simple, orbit = family.standing["restitution"], f"{family.n}-T orbit"
+    if family.exists != simple.exists:
         missed = f"it misses the {orbit}, which the contact has"
-        return missed if exact.exists else f"it has the {orbit}, which the contact has not"
+        return missed if family.exists else f"it has the {orbit}, which the contact has not"
     for name, word in (("is_admissible", "free of other impacts"), ("is_stable", "stable")):
-        if getattr(exact, name) != getattr(simple, name):
+        if getattr(family, name) != getattr(simple, name):
             own, other = ("is", "is not") if getattr(simple, name) else ("is not", "is")
             return f"its {orbit} {own} {word}, and the contact's {other}"
     return None
@@ -46,20 +45,17 @@ def assessed(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
         sentence = f"Whether the restitution model is good enough in the {name} is not known."
         return Verdict(False, sentence, "this contact, or the model, has no value to compare")
     good = wrong is None and error is not None and error <= needed.tolerance
-    if good:
-        found = f"good enough: {subject} is {shown(error or 0.0, '%')} off, within {tolerance}"
-    else:
-        wrong = wrong or f"{subject} is {shown(error or 0.0, '%')} off, beyond {tolerance}"
-        found = f"not good enough: {wrong}{_instead(family, needed)}"
+    off = f"{subject} is {shown(error, '%')} off, {'within' if good else 'beyond'} {tolerance}"
+    instead = _instead(family, needed)
+    found = f"good enough: {off}" if good else f"not good enough: {wrong or off}{instead}"
     reason = _reason(needed, frequency_ratio, good, tolerance)
     return Verdict(good, f"The restitution model is {found}.", reason)
 
 
 def _instead(family: Family, needed: Needed) -> str:
     """Whether the corrected model will do."""
-    error = family.corrected_errors[needed.quantity]
-    exact, corrected = next(iter(family.standing.values())), family.standing["corrected"]
-    same = (exact.exists, exact.is_stable) == (corrected.exists, corrected.is_stable)
+    error, corrected = family.corrected_errors[needed.quantity], family.standing["corrected"]
+    same = (family.exists, family.is_stable) == (corrected.exists, corrected.is_stable)
     if same and error is not None and error <= needed.tolerance:
         return f"; the corrected restitution model is, with {shown(error, '%')}"
     return "; nor is the corrected one: simulate the contact"

@@ -151,7 +151,7 @@ class Claim:
 
 def _shown(finding: Finding) -> str:
     """The number found, but where only its being rounding says anything."""
-    return "" if 0 < finding.bound <= 1e-8 else f" ({finding.value:.4g})"
+    return "" if 0 < finding.limit <= 1e-8 else f" ({finding.found:.4g})"
 
 
 def claim(

@@ -1,6 +1,7 @@
 """The ledger: every claim of the paper with its verdict, as a dataset."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 
 import numpy as np
 import xarray as xr
@@ -42,7 +43,7 @@ def _words(found: Mapping[str, Finding] | str) -> str:
         return found
     parts = []
     for name, one in found.items():
-        text = compared_text(one.value, one.bound)
+        text = compared_text(one.found, one.limit)
         text = text if text.startswith("≤") else f"= {text}"
         parts.append(f"{name} {text} (required {one.required})")
     return "; ".join(parts)
@@ -60,12 +61,7 @@ def _row(claim: Claim, data: Mapping[str, xr.Dataset], holding: set[str]) -> dic
         "printed_text": claim.printed,
         "legibility": "clear" if claim.clear else "damaged",
         "decided_by": ", ".join(used),
-        "required": finding.required,
-        "limit": finding.bound,
-        "found": finding.value,
-        "deviation_units": finding.units,
-        "deviation": finding.relative,
-        "verdict": str(finding.verdict),
+        **asdict(finding),
         "reason": reason,
         "printed_table": claim.table,
         "explained_by": why,

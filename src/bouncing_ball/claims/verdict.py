@@ -36,17 +36,17 @@ class Verdict(StrEnum):
 class Finding:
     """What decides a claim in one reading.
 
-    ``required`` is the printed number, or the condition in signs with its ``bound``,
-    which is NaN for a printed number. ``units`` and ``relative`` are the deviation from
+    ``required`` is the printed number, or the condition in signs with its ``limit``,
+    which is NaN for a printed number. ``deviation_units`` and ``deviation`` are that from
     a printed number, in units of its last digit and as a share of it; NaN for a condition.
     """
 
-    value: float
+    found: float
     verdict: Verdict
     required: str = ""
-    bound: float = np.nan
-    units: float = np.nan
-    relative: float = np.nan
+    limit: float = np.nan
+    deviation_units: float = np.nan
+    deviation: float = np.nan
 
 
 def _finite(values: ArrayLike | xr.DataArray) -> np.ndarray:
@@ -143,4 +143,4 @@ def against_print(value: float, printed: str, unit: float | None = None) -> Find
         verdict = Verdict.CLOSE
     else:
         verdict = Verdict.CONTRADICTED
-    return Finding(value, verdict, printed, units=units, relative=(value - wanted) / abs(wanted))
+    return Finding(value, verdict, printed, np.nan, units, (value - wanted) / abs(wanted))

@@ -11,10 +11,9 @@ import numpy as np
 from bouncing_ball.accuracy import error_law as error_laws
 from bouncing_ball.cli.readable import lines
 from bouncing_ball.contacts.contact_law import ContactLaw
-from bouncing_ball.contacts.law_signature import LawSignature, free_impact
 from bouncing_ball.contacts.permanent_contact import permanent_contact_minimum
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.contacts.signature import LinearSignature
+from bouncing_ball.contacts.signature import LawSignature, LinearSignature, free_impact
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.motion.sequence import Status

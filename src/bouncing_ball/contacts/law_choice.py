@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.contact_law import ContactLaw
-from bouncing_ball.contacts.law_signature import free_impact
 from bouncing_ball.contacts.laws import LAWS
+from bouncing_ball.contacts.signature import free_impact
 from bouncing_ball.errors import ModelError, require
 
 Law = TypeVar("Law", bound=ContactLaw)

@@ -58,11 +58,6 @@ class Branch:
         steps = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
         return np.concatenate([[0.0], np.cumsum(steps)])
 
-    def reversed(self) -> "Branch":
-        """The same branch run through the other way."""
-        points, tangents, special = self.points[::-1], -self.tangents[::-1], self.special[::-1]
-        return Branch(points, tangents, special, start=self.end, end=self.start)
-
     def named(self, name: str) -> list[np.ndarray]:
         """The points of all located events of one name."""
         return [special.point for special in self.special if special.name == name]
@@ -217,11 +212,11 @@ def continue_both_ways(problem: Problem, start: np.ndarray, **options) -> Branch
     The parameter increases at ``start``. Options are those of
     :func:`continue_branch`, but for ``increasing``.
     """
-    back = continue_branch(problem, start, increasing=False, **options).reversed()
+    back = continue_branch(problem, start, increasing=False, **options)
     ahead = continue_branch(problem, start, increasing=True, **options)
-    points = np.concatenate([back.points, ahead.points[1:]])
-    tangents = np.concatenate([back.tangents, ahead.tangents[1:]])
-    return Branch(points, tangents, back.special + ahead.special, back.start, ahead.end)
+    points = np.concatenate([back.points[::-1], ahead.points[1:]])
+    tangents = np.concatenate([-back.tangents[::-1], ahead.tangents[1:]])
+    return Branch(points, tangents, back.special[::-1] + ahead.special, back.end, ahead.end)
 
 
 # Rounds of equalising the chords between resampled points; each gains two to

@@ -59,20 +59,13 @@ class LocationError(RuntimeError):
 def fold(problem: Problem, name: str = "fold") -> Event:
     """Event at which ∂F/∂x is singular: the branch turns in the parameter."""
 
-    def function(y):
-        return np.linalg.det(problem.jacobian(y)[..., :-1])
-
-    return Event(name, function)
+    return Event(name, lambda y: np.linalg.det(problem.jacobian(y)[..., :-1]))
 
 
 def parameter_bound(bound: float, upper: bool, reason: str) -> Event:
     """Terminal event at which the parameter, the last entry of y, meets a bound."""
     sign = -1.0 if upper else 1.0
-
-    def function(y):
-        return sign * (y[..., -1] - bound)
-
-    return Event("parameter bound", function, terminal=True, reason=reason)
+    return Event("parameter bound", lambda y: sign * (y[..., -1] - bound), True, reason)
 
 
 def vanishing(function: Callable[[np.ndarray], np.ndarray]) -> Condition:

@@ -10,8 +10,8 @@ is that of any other ball that sticks: what is measured ends there.
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.restitution_map import exact_map_jacobian
 from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.motion.sequence import ImpactSequence
 
@@ -54,6 +54,36 @@ def period(sequence: ImpactSequence, longest: int, closeness: float) -> np.ndarr
         same = np.maximum(np.abs(turned), np.abs(faster)).max(axis=0) < closeness
         found[same] = k
     return found
+
+
+def exact_map_jacobian(
+    flight_time: ArrayLike,
+    phase: ArrayLike,
+    velocity: ArrayLike,
+    amplitude: ArrayLike,
+    restitution: ArrayLike,
+) -> np.ndarray:
+    """Jacobian of the exact map (τ, v) → (τ₁, v₁) (Eq. 5), shape (..., 2, 2).
+
+    ``flight_time`` must solve the landing condition. Differentiating it,
+    ``ds = -(∂gap/∂τ dτ + s dv)/(v - s - Λ cos τ₁)``. The determinant is
+    ``r² (v - Λ cos τ)/(v₁ - Λ cos τ₁)`` in these coordinates.
+    """
+    s, tau, v, lam, r = np.broadcast_arrays(
+        *(np.asarray(x, float) for x in (flight_time, phase, velocity, amplitude, restitution))
+    )
+    landing = tau + s
+    closing = v - s - lam * np.cos(landing)
+    s_tau = lam * (np.cos(landing) - np.cos(tau)) / closing
+    s_v = -s / closing
+    # v₁ depends on s through the gravity term and the table's phase.
+    v_s = r - (1 + r) * lam * np.sin(landing)
+    jacobian = np.empty((*s.shape, 2, 2))
+    jacobian[..., 0, 0] = 1 + s_tau
+    jacobian[..., 0, 1] = s_v
+    jacobian[..., 1, 0] = v_s * s_tau - (1 + r) * lam * np.sin(landing)
+    jacobian[..., 1, 1] = v_s * s_v - r
+    return jacobian
 
 
 class Stretching(NamedTuple):

@@ -13,8 +13,8 @@ import numpy as np
 
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.law_choice import law_named, law_of_impact
-from bouncing_ball.contacts.law_signature import LawSignature
 from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.signature import LawSignature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError
 from bouncing_ball.motion.sequence import ImpactSequence

@@ -16,9 +16,8 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.collocation import Contacts, contacts, path
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.law_choice import law_of_impact
-from bouncing_ball.contacts.law_permanent_contact import permanent_contact
-from bouncing_ball.contacts.law_signature import free_impact
-from bouncing_ball.contacts.signature import Instant
+from bouncing_ball.contacts.permanent_contact import permanent_contact
+from bouncing_ball.contacts.signature import Instant, free_impact
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.motion.contact import contact_cycle, simulate
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence
@@ -183,7 +182,7 @@ def law_at_orbit(
 
     Examples
     --------
-    >>> from bouncing_ball.contacts.law_signature import free_impact
+    >>> from bouncing_ball.contacts.signature import free_impact
     >>> from bouncing_ball.contacts.laws.tsuji import Tsuji
     >>> law = law_at_orbit(Tsuji, 0.65, 0.1, 1, 1.0)
     >>> speed = -LawModel(law).orbit(1, 1.0).relative_impact_velocity

@@ -20,9 +20,9 @@ from bouncing_ball.accuracy.quantities import Quantity, values
 from bouncing_ball.accuracy.thresholds import thresholds
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.law_choice import law_of_impact
-from bouncing_ball.contacts.law_signature import LawSignature
 from bouncing_ball.contacts.laws import LAWS
 from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.signature import LawSignature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.errors import ModelError, NoOrbitError

@@ -200,8 +200,8 @@ def branch_along_amplitude(
     return system, branch
 
 
-def first_limits(branch: Branch) -> dict[str, np.ndarray]:
-    """The saddle-node and the period doubling that bound the first stable range.
+def first_limits(branch: Branch) -> np.ndarray:
+    """The saddle-node and the period doubling that bound the first stable range, (2, N + 1).
 
     The branch's last saddle-node in its order, from the unstable to the stable
     side, and the first period doubling after it.
@@ -211,18 +211,18 @@ def first_limits(branch: Branch) -> dict[str, np.ndarray]:
     NoOrbitError
         If the branch has not both.
     """
-    limits: dict[str, np.ndarray] = {}
+    limits: list[np.ndarray] = []
     for special in branch.special:
         if special.name == SADDLE_NODE:
-            limits = {SADDLE_NODE: special.point}
-        elif special.name == PERIOD_DOUBLING and limits:
-            limits.setdefault(PERIOD_DOUBLING, special.point)
+            limits = [special.point]
+        elif special.name == PERIOD_DOUBLING and len(limits) == 1:
+            limits.append(special.point)
     if len(limits) < 2:
         raise NoOrbitError(
             f"the branch from {str(branch.start)!r} to {str(branch.end)!r} has no "
             f"{PERIOD_DOUBLING if limits else SADDLE_NODE} to bound its stable range"
         )
-    return limits
+    return np.array(limits)
 
 
 def missing(n: int, count: int) -> Orbit:

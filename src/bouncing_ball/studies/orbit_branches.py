@@ -1,6 +1,5 @@
 """Existence and stability of n-T orbits by continuation (Figs. 8, 9 and 15)."""
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -73,9 +72,7 @@ def _places(orbit: Orbit) -> dict[str, np.ndarray]:
     return {**{name: getattr(orbit, name) for name in PLACE}, "residual": orbit.defect()}
 
 
-def _row(
-    ratio: float, parameters: Domains | BothDomains, release: Release, continuation: Continuation
-) -> _Row:
+def _row(ratio: float, parameters: Domains, release: Release, continuation: Continuation) -> _Row:
     """The branch of one contact; NaN, with the reason, where it cannot be followed."""
     n, count, newton = parameters.n, parameters.points, continuation.newton()
     try:
@@ -113,15 +110,7 @@ def orbit_branches(parameters: Domains, release: Release, continuation: Continua
     each branch, shape (ϖ, special). NaN where a branch cannot be followed; ``end_reason`` says
     why it ends.
     """
-    return _branches(parameters.frequency_ratio, parameters, release, continuation)
-
-
-def _branches(
-    ratios: Sequence[float],
-    parameters: Domains | BothDomains,
-    release: Release,
-    continuation: Continuation,
-) -> xr.Dataset:
+    ratios = parameters.frequency_ratio
     rows = [_row(ratio, parameters, release, continuation) for ratio in ratios]
     dims, special = ("frequency_ratio", "point"), ("frequency_ratio", "special")
     dataset = xr.Dataset(coords={"frequency_ratio": np.array(ratios)})
@@ -146,7 +135,8 @@ def both_domains(
         If the restitution model has no orbit up to ``amplitude_max``.
     """
     n, r, top = parameters.n, parameters.restitution, parameters.amplitude_max
-    contact = _branches([parameters.frequency_ratio], parameters, release, continuation)
+    one = dict(parameters) | {"frequency_ratio": (parameters.frequency_ratio,)}
+    contact = orbit_branches(Domains(**one), release, continuation)
     model = RestitutionModel(r)
     rigid = model.orbit_of(n, *restitution_orbits.branch(n, r, top, parameters.points))
     node, doubling = model.saddle_node(n), model.period_doubling(n)

@@ -40,10 +40,9 @@ def _limits(
     r, top = parameters.restitution, parameters.amplitude_max
     try:
         system, branch = branch_along_amplitude(n, r, ratio, top, release, continuation)
-        ends = first_limits(branch)
+        return system.orbit(first_limits(branch)), ""
     except (NoOrbitError, ContinuationError) as error:
         return missing(n, 2), str(error)
-    return system.orbit(np.array([ends[SADDLE_NODE], ends[PERIOD_DOUBLING]])), ""
 
 
 def stability_ranges(

@@ -6,18 +6,11 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bouncing_ball.compare.data import compare_datasets, shares
+from bouncing_ball.compare.data import compare_datasets
 from bouncing_ball.compare.drift import curve, pointwise, span
 from bouncing_ball.compare.outcome import Outcome
-from bouncing_ball.datasets.variables import Budget, budget_of
+from bouncing_ball.datasets.variables import budget_of
 from bouncing_ball.errors import ModelError
-
-HALF, TWICE = 0.5, 2.0
-BOTH = pytest.mark.parametrize("part", [HALF, TWICE])
-
-
-def expected(part: float) -> Outcome:
-    return Outcome.WITHIN if part < 1 else Outcome.DRIFTED
 
 
 def moved(data: xr.Dataset, name: str, index: tuple, by: float) -> xr.Dataset:
@@ -27,46 +20,32 @@ def moved(data: xr.Dataset, name: str, index: tuple, by: float) -> xr.Dataset:
     return changed
 
 
-@BOTH
-def test_pointwise_over_the_range(pair, part):
-    data = pair.dataset("fig05")
-    # Where the phase is next to 0, and a relative error would be meaningless.
-    index = tuple(int(k) for k in np.argwhere(np.abs(data.phase.values) < 0.01)[0])
-    budget = budget_of("fig05", "phase").size
-    pair.write("fig05", moved(data, "phase", index, part * budget * span(data.phase)))
-    result = pair.variable("fig05", "phase")
-    assert result.outcome is expected(part)
+@pytest.mark.parametrize(("part", "outcome"), [(0.5, Outcome.WITHIN), (2.0, Outcome.DRIFTED)])
+@pytest.mark.parametrize(
+    ("figure", "name", "index"),
+    [
+        # Next to 0, where a relative error would be meaningless.
+        ("fig05", "phase", None),
+        # On the stiff branch the velocity is nπ everywhere, so that the curve over Λ is level:
+        # moved up, a point is as far from it as it has moved.
+        ("fig08", "bounce_velocity", (0, 300)),
+        # Over another variable.
+        ("witness", "disagreement", (0, 0)),
+    ],
+)
+def test_a_number_moved_by_a_share_of_its_budget(pair, figure, name, index, part, outcome):
+    data = pair.dataset(figure)
+    if index is None:
+        index = np.unravel_index(np.nanargmin(np.abs(data[name])), data[name].shape)
+    budget = budget_of(figure, name)
+    scale = data.budget.values[index[1]] if budget.scale == "budget" else span(data[name])
+    pair.write(figure, moved(data, name, index, part * budget.size * scale))
+    row, artifact = pair.variable(figure, name), pair.artifact(figure)
     # One rounding of a phase up to 1.6 against a budget of 1e-13 of the range.
-    assert result.share == pytest.approx(part, abs=2e-3)
-    ratio = data.frequency_ratio.values[index[1]]
-    assert result.at == f"case = {index[0]}, frequency_ratio = {ratio:.6g}"
-    artifact = pair.artifact("fig05")
-    assert artifact.outcome is result.outcome and artifact.share == result.share
-
-
-@BOTH
-def test_a_curve(pair, part):
-    data = pair.dataset("fig08")
-    # On the stiff branch the velocity is nπ everywhere, so that the curve over
-    # Λ is level: moved up, a point is as far from it as it has moved.
-    height = part * budget_of("fig08", "bounce_velocity").size * span(data.bounce_velocity)
-    pair.write("fig08", moved(data, "bounce_velocity", (0, 300), height))
-    result = pair.variable("fig08", "bounce_velocity")
-    assert result.outcome is expected(part)
-    # The slope of the level curve, 1e-4, is what is missing to the right angle.
-    assert result.share == pytest.approx(part, rel=1e-3)
-
-
-@BOTH
-def test_over_another_variable(pair, part):
-    data = pair.dataset("witness")
-    at = (0, 0)
-    changed = data.copy(deep=True)
-    changed.disagreement.values[at] += part * float(data.budget.values[at[1]])
-    pair.write("witness", changed)
-    result = pair.variable("witness", "disagreement")
-    assert result.outcome is expected(part)
-    assert result.share == pytest.approx(part, rel=1e-9)
+    assert row.share == artifact.share == pytest.approx(part, abs=2e-3)
+    assert row.outcome is artifact.outcome is outcome
+    places = [f"{dim} = " for dim in data[name].dims]
+    assert [place for place in places if place not in row.at] == []
 
 
 @pytest.mark.parametrize(
@@ -80,17 +59,14 @@ def test_counts_words_and_choices_are_exact(values, other):
     assert (found.record, found.new) == (str(values[1]), str(other[1]))
 
 
-def test_an_unknown_variable_is_exact_and_a_known_number_is_not():
-    record = xr.Dataset({"phase": ("t", [0.0, 1.0]), "unheard": ("t", [0.0, 1.0])})
+def test_unknown_variables_are_exact_and_what_another_dataset_holds_is_not_compared():
+    values = {name: ("t", [0.0, 1.0]) for name in ("phase", "unheard", "found")}
+    record = xr.Dataset(values)
     found = {x.where: x.outcome for x in compare_datasets("fig", record, record + 2.0**-45)}
-    assert found == {"phase": Outcome.WITHIN, "unheard": Outcome.DRIFTED}
-
-
-def test_what_another_dataset_holds_is_not_compared():
-    record = xr.Dataset({"found": ("claim", [1.0, 2.0])}, coords={"claim": ["a", "b"]})
-    found = compare_datasets("claims", record, record.assign(found=2 * record.found))
-    outcomes = {x.where: x.outcome for x in found}
-    assert outcomes == {"found": Outcome.WITHIN, "claim": Outcome.IDENTICAL}
+    outcomes = (Outcome.WITHIN, Outcome.DRIFTED, Outcome.WITHIN)
+    assert found == dict(zip(values, outcomes, strict=True))
+    (found,) = compare_datasets("fig", record[["found"]], 2 * record[["found"]])
+    assert found.outcome is Outcome.WITHIN
 
 
 def test_stability_at_the_edge_and_elsewhere(pair):
@@ -106,11 +82,7 @@ def test_stability_at_the_edge_and_elsewhere(pair):
 
 def test_points_that_slide_along_the_curve(pair):
     data = pair.dataset("fig09")
-    curves = [
-        name
-        for name in map(str, data.data_vars)
-        if budget_of("fig09", name).over not in ("", "point")
-    ]
+    curves = [name for name in data.data_vars if budget_of("fig09", name).over in data.data_vars]
     changed = data.copy(deep=True)
     for name in curves:
         # A ten-thousandth of the way to the next sample, on the parabola through
@@ -201,13 +173,3 @@ def test_a_curve_moved_across_is_off_by_its_distance(slope, shift):
     found = curve(x, slope * x, x, slope * x + shift)
     away = abs(shift) / np.hypot(1, slope)
     assert found[50] == pytest.approx(away, rel=1e-9, abs=1e-12)
-
-
-def test_shares_are_drifts_over_the_budget():
-    record = xr.Dataset({"y": ("point", [0.0, 1.0, 2.0]), "x": ("point", [0.0, 1.0, 2.0])})
-    new = record.assign(y=record.y + 0.5)
-    assert shares("y", record, new, Budget(0.5, scale=2.0)).tolist() == [0.5] * 3
-    assert shares("y", record, new, Budget(0.25, over="x")).tolist() == pytest.approx(
-        [0.5**0.5] * 3, abs=0.3
-    )
-    assert shares("y", record, new, None).tolist() == [np.inf] * 3

@@ -1,7 +1,6 @@
 """``bouncing-ball explain``: what a file is made from, and how to make it again."""
 
 import json
-import shutil
 import subprocess
 from dataclasses import replace
 from pathlib import Path
@@ -10,7 +9,6 @@ import pytest
 import xarray as xr
 from matplotlib.figure import Figure
 
-import bouncing_ball
 from bouncing_ball.cli.main import main
 from bouncing_ball.datasets.netcdf import write_dataset
 from bouncing_ball.figures.files import save
@@ -18,7 +16,6 @@ from bouncing_ball.provenance import explain as module
 from bouncing_ball.provenance.origin import Provenance, gather, read_provenance, versions
 from bouncing_ball.provenance.revision import Revision
 
-ROOT = Path(bouncing_ball.__file__).resolve().parents[2]
 COMMIT, OTHER = "a" * 40, "b" * 40
 MADE = Provenance(COMMIT, "no", "{}", "", json.dumps(["config/x.yaml"]), json.dumps(versions()))
 
@@ -50,36 +47,38 @@ def asked(capsys, file):
     return json.loads(out)
 
 
+MAKE = "snakemake --cores 2 --force"
+
+
 def test_a_picture(results, capsys):
     answer = asked(capsys, "results/figures/fig08.png")
-    name = {"file": "results/figures/fig08.png"}
-    assert answer == asked(capsys, "results/figures/fig08.svg") | name
-    assert answer["commit"] == COMMIT and answer["checked_out"] is True
-    assert answer["dirty"] == "no" and answer["inputs"] == ["config/x.yaml"]
-    assert answer["parameters"] == {"restitution": 0.85, "n": [1, 2]}
-    running = {name: {"made_with": x, "running": x} for name, x in versions().items()}
-    assert answer["versions"] == running
-    make = "snakemake --cores 2 --force results/figures/fig08.png"
-    assert answer["make_again"] == [make]
+    assert answer == {
+        "file": "results/figures/fig08.png",
+        "commit": COMMIT,
+        "checked_out": True,
+        "dirty": "no",
+        "configuration": {},
+        "parameters": {"restitution": 0.85, "n": [1, 2]},
+        "inputs": ["config/x.yaml"],
+        "versions": {name: {"made_with": x, "running": x} for name, x in versions().items()},
+        "make_again": [f"{MAKE} results/figures/fig08.png"],
+    }
+    assert asked(capsys, "results/figures/fig08.svg") | {"file": answer["file"]} == answer
     main(["explain", "results/figures/fig08.png"])
     shown = dict(line.split(maxsplit=1) for line in capsys.readouterr().out.splitlines())
     assert shown["commit"] == f"{COMMIT} (checked out)" and shown["tree"] == "clean"
-    assert shown["make"].endswith(make)
+    assert shown["make"].endswith(f"{MAKE} results/figures/fig08.png")
 
 
 @pytest.mark.parametrize("file", ["figures/fig08.nc", "figures/fig08.csv", "paper.md"])
-def test_other_artifacts(results, capsys, file):
-    answer = asked(capsys, results / file)
-    assert answer["commit"] == COMMIT
-    assert answer["make_again"] == [f"snakemake --cores 2 --force results/{file}"]
-
-
-def test_the_paper_of_several_commits(results, capsys):
-    other = xr.Dataset(attrs=made("results/figures/fig09.nc", commit=OTHER))
+@pytest.mark.parametrize("commit", [COMMIT, OTHER])
+def test_other_artifacts(results, capsys, file, commit):
+    other = xr.Dataset(attrs=made("results/figures/fig09.nc", commit=commit))
     write_dataset(other, results / "figures" / "fig09.nc")
-    answer = asked(capsys, results / "paper.md")
-    assert answer["commit"] == "several"
-    assert answer["make_again"] == ["snakemake --cores 2 --force results/paper.md"]
+    answer = asked(capsys, results / file)
+    several = file == "paper.md" and commit == OTHER
+    assert answer["commit"] == ("several" if several else COMMIT)
+    assert answer["make_again"] == [f"{MAKE} results/{file}"]
 
 
 def test_another_commit_dirt_and_other_versions(results, capsys, monkeypatch):
@@ -88,11 +87,10 @@ def test_another_commit_dirt_and_other_versions(results, capsys, monkeypatch):
     changed = {"commit": OTHER, "dirty": "yes", "versions": '{"python": "3.99.0"}'}
     save(Figure(), path, made(target, **changed))
     answer = asked(capsys, path)
-    assert answer["checked_out"] is False
     # Its dataset beside it is of another commit.
-    assert answer["parameters"] == {}
-    make = f"snakemake --cores 2 --force '{target}'"
-    assert answer["make_again"] == [f"git checkout {OTHER}", "make setup", make]
+    assert answer["checked_out"] is False and answer["parameters"] == {}
+    again = [f"git checkout {OTHER}", "make setup", f"{MAKE} '{target}'"]
+    assert answer["make_again"] == again
     main(["explain", str(path)])
     out = capsys.readouterr().out
     assert f"{OTHER} (not checked out)" in out and "3.99.0, now " in out
@@ -102,19 +100,15 @@ def test_another_commit_dirt_and_other_versions(results, capsys, monkeypatch):
 
 
 def test_another_configuration_is_named_and_written_again(results, capsys):
-    changed = {"figures": {"fig11": {"restitution": 0.7, "tolerance": 1e-12}}, "release": "it's"}
+    changed = {"figures": {"fig11": {"restitution": 0.7}}, "release": "it's"}
     path = results / "figures" / "fig11.png"
-    target = "results/figures/fig11.png"
-    save(Figure(), path, made(target, configuration=json.dumps(changed)))
+    save(Figure(), path, made("fig11", configuration=json.dumps(changed)))
     answer = asked(capsys, path)
-    assert answer["configuration"] == {
-        "figures.fig11.restitution": 0.7, "figures.fig11.tolerance": 1e-12, "release": "it's"
-    }  # fmt: skip
+    assert answer["configuration"] == {"figures.fig11.restitution": 0.7, "release": "it's"}
     write, make = answer["make_again"]
     subprocess.run(["sh", "-c", write], check=True)
-    written = results / "configuration.json"
-    assert json.loads(written.read_text(encoding="utf-8")) == changed
-    assert make == f"snakemake --cores 2 --force {target} --configfile results/configuration.json"
+    assert json.loads((results / "configuration.json").read_text(encoding="utf-8")) == changed
+    assert make == f"{MAKE} fig11 --configfile results/configuration.json"
     main(["explain", str(path)])
     assert "  figures.fig11.restitution     0.7\n" in capsys.readouterr().out
 
@@ -149,18 +143,6 @@ def test_names_and_attributes_with_control_characters(results, capsys):
     main(["explain", str(path)])
     out = capsys.readouterr().out
     assert all(line.isprintable() for line in out.splitlines()) and "\\x1b[2J\\nforged" in out
-    write_dataset(xr.Dataset(attrs=made("x", inputs="\x1b[2J")), path)
-    with pytest.raises(SystemExit):
-        main(["explain", str(path)])
-    said = capsys.readouterr().err
-    assert said.count("\n") == 1 and said[:-1].isprintable()
-
-
-def test_the_accepted_record_can_be_explained(results, capsys):
-    shutil.copytree(ROOT / "figures", results.parent / "figures")
-    for file in sorted((results.parent / "figures").glob("fig1*")):
-        answer = asked(capsys, file)
-        assert set(answer["commit"]) <= set("0123456789abcdef") and answer["make_again"]
 
 
 def test_what_a_job_gathers(tmp_path, monkeypatch):

@@ -14,58 +14,22 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
-from importlib.metadata import version
 from pathlib import Path
 
 import pytest
 import yaml
-
-from bouncing_ball.provenance.origin import LIBRARIES
 
 ROOT = Path(__file__).resolve().parents[2]
 # A fresh clone: neither results nor the state of earlier runs.
 IGNORED = shutil.ignore_patterns(
     ".git", ".venv*", "results", ".snakemake", "tests", "*.egg-info", "__pycache__", ".*_cache"
 )
-# A program, and no test.
-collect_ignore = ["starts.py"]
 # Seconds that only a run which hangs can take, however busy the machine.
 HANGS = 3600
 SNAKEMAKE = Path(sys.executable).with_name("snakemake")
-
-
-@cache
-def starter() -> subprocess.Popen:
-    """What starts Snakemake for the tests of this process; it ends with it."""
-    # The program itself is started where a run is to be interrupted, by the commands that
-    # explain names, and where another Python or package is refused.
-    program = [sys.executable, Path(__file__).with_name("starts.py")]
-    return subprocess.Popen(program, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-
-
-def pytest_unconfigure() -> None:
-    if starter.cache_info().currsize:
-        starter().communicate()
-
-
-def started(
-    arguments: Sequence[str], folder: Path, environment: Mapping[str, str]
-) -> subprocess.CompletedProcess:
-    """What ``snakemake`` with these arguments does there, and says."""
-    server = starter()
-    with tempfile.TemporaryDirectory() as kept:
-        said = {name: str(Path(kept, name)) for name in ("stdout", "stderr")}
-        call = {"arguments": arguments, "folder": str(folder), "environment": dict(environment)}
-        server.stdin.write(json.dumps(call | said) + "\n")
-        server.stdin.flush()
-        status = int(server.stdout.readline())
-        texts = {name: Path(path).read_text(encoding="utf-8") for name, path in said.items()}
-    return subprocess.CompletedProcess(arguments, status, **texts)
 
 
 @dataclass(frozen=True)
@@ -76,7 +40,14 @@ class Tree:
 
     def run(self, *arguments: str, check: bool = True) -> subprocess.CompletedProcess:
         """Snakemake in this tree; the package is imported from this tree."""
-        done = started(arguments, self.path, self.environment())
+        done = subprocess.run(
+            [SNAKEMAKE, *arguments],
+            cwd=self.path,
+            env=self.environment(),
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+        )
         if check and done.returncode != 0:
             pytest.fail(f"snakemake {' '.join(arguments)} failed:\n{done.stdout}{done.stderr}")
         return done
@@ -123,23 +94,10 @@ class Tree:
         section[keys[-1]] = value
         path.write_text(yaml.safe_dump(config, sort_keys=False), encoding="utf-8")
 
-    def lock_what_runs(self) -> None:
-        """Pin the libraries at work, of which only pinned ones may make a record.
-
-        Changes nothing in the locked environment; the tests run in newer ones too.
-        """
-        path = self.path / "requirements.lock"
-        text = path.read_text(encoding="utf-8")
-        for name in LIBRARIES:
-            pin = rf"^({re.escape(name)}==)[^\s;\\]+"
-            text, count = re.subn(pin, rf"\g<1>{version(name)}", text, flags=re.M | re.I)
-            assert count, f"no pin of {name}"
-        path.write_text(text, encoding="utf-8")
-
     def edit(self, file: str) -> None:
         """Change a source file without changing what it does."""
-        path = self.path / "src" / "bouncing_ball" / file
-        path.write_text(path.read_text(encoding="utf-8") + "\n# edited\n", encoding="utf-8")
+        with (self.path / "src" / "bouncing_ball" / file).open("a", encoding="utf-8") as module:
+            module.write("\n# edited\n")
 
     def rewrite(self, file: str, old: str, new: str) -> None:
         """Replace a text that occurs once in a file."""
@@ -225,7 +183,6 @@ def cloned(shared) -> Tree:
 
     def make(folder: Path) -> None:
         tree = copy_tree(ROOT, folder)
-        tree.lock_what_runs()
         tree.git("init", "--quiet")
         tree.commit("All")
         # Once, and not by every process of every copy.

@@ -191,12 +191,8 @@ def _choose(
     NoOrbitError
         If the restitution model has no orbit to be right about, or no contact will do.
     """
-    zeta = loss(given, release)
-    if zeta is None:
-        raise ModelError(
-            "damping needs stiffness, which is missing; to choose a contact, give its restitution "
-            "instead"
-        )
+    instead = ", which is missing; to choose a contact, give its restitution instead"
+    zeta = loss(given, release, instead)
     unit = SpringDamper(1.0, zeta, release)
     r, lam = float(unit.restitution), table.amplitude
     n = meant(asked, r, lam)

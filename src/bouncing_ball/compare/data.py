@@ -86,6 +86,8 @@ def shares(name: str, record: xr.Dataset, new: xr.Dataset, budget: Budget | None
     >>> record = xr.Dataset({"x": ("t", [0.0, 1.0, 2.0])})
     >>> shares("x", record, record + 0.5, Budget(0.25)).tolist()
     [1.0, 1.0, 1.0]
+    >>> shares("x", record, record + 0.5, Budget(0.25, scale=4.0)).tolist()
+    [0.5, 0.5, 0.5]
     """
     a, b = record[name], new[name]
     if budget and budget.size == IGNORED:

@@ -58,7 +58,7 @@ class WeightlessOrbit(SpringDamperOrbit):
         flow, sag = super().contact_flow(time), self.contact.flow(time, 0.0, 0.0, 0.0, 0.0)
         jacobian = flow.jacobian.copy()
         jacobian[..., 0] -= sag.jacobian[..., 0]
-        return flow._make([*(x - y for x, y in zip(flow[:3], sag[:3], strict=True)), jacobian])
+        return type(flow)(*(x - y for x, y in zip(flow[:3], sag[:3], strict=True)), jacobian)
 
 
 def high_bounce_monodromy(orbit: SpringDamperOrbit) -> np.ndarray:

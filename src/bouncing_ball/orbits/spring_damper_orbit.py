@@ -3,12 +3,12 @@ r"""n-T orbits of the spring-damper model: their contact, equations and stabilit
 All quantities are dimensionless.
 """
 
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.spring_damper import ContactFlow, SpringDamper
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.contact import contact_cycle
 from bouncing_ball.motion.sequence import Cycle
 from bouncing_ball.orbits.orbit import Orbit
@@ -58,7 +58,7 @@ class SpringDamperOrbit(Orbit):
         """δ_b = -κ δ′_b at release."""
         return -self.contact.lag * self.relative_bounce_velocity
 
-    def contact_flow(self, time: np.ndarray) -> ContactFlow:
+    def contact_flow(self, time: np.ndarray) -> Any:
         """The contact's motion and its derivatives at times 0 ≤ τ ≤ τ_b."""
         u = self.relative_impact_velocity
         return self.contact.flow(time, 0.0, u, self.phase, self.amplitude)

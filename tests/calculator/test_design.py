@@ -13,7 +13,7 @@ from bouncing_ball.accuracy.quantities import Quantity
 from bouncing_ball.calculator.verdict import assessed
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import LinearSignature
-from bouncing_ball.contacts.spring_damper import SpringDamper, contact_force
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
@@ -76,9 +76,7 @@ def test_loads_of_a_damped_contact_by_a_fine_sample():
     orbit = SpringDamperModel(contact).orbit(1, found.amplitude)
     time = np.linspace(0, float(orbit.contact_duration), 200_001)
     flow = contact.flow(time, 0.0, orbit.relative_impact_velocity, orbit.phase, found.amplitude)
-    force = contact_force(
-        flow.displacement, flow.velocity, contact.frequency_ratio, contact.damping_ratio
-    )
+    force = contact.force(-flow.displacement, -flow.velocity)
     one = found.orbits[0]
     # A parabola's top between two samples.
     assert one.peak_force_over_weight == pytest.approx(force.max(), rel=1e-9)

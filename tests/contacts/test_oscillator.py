@@ -9,7 +9,6 @@ import mpmath
 import numpy as np
 import pytest
 
-from bouncing_ball.contacts.oscillator import Response, exponential_response, impulse_response
 from bouncing_ball.contacts.spring_damper import responses
 
 EPS = np.finfo(float).eps
@@ -100,16 +99,6 @@ def test_all_fields_against_high_precision(name, function):
         assert np.all(error <= 8 * EPS * (1 + omega[k] * s[k])), (s[k], omega[k], zeta[k])
 
 
-@pytest.mark.parametrize("s", [1e-6, 0.1, 1.0, 3.0, 10.0])
-def test_exact_resonance(s):
-    # ζ = 0, ϖ = 1: the response to e^{is} is (s e^{is} - sin s)/(2i).
-    h = responses(s, 1.0, 0.0).table
-    with mpmath.workdps(50):
-        t = mpmath.mpf(s)
-        expected = complex((t * mpmath.expj(t) - mpmath.sin(t)) / mpmath.mpc(0, 2))
-    assert abs(complex(h.value) - expected) <= 8 * EPS * (1 + s) * min(s, s * s)
-
-
 @pytest.mark.parametrize("zeta", [10.1, 101.3, 701.9588247134583])
 def test_strong_damping_keeps_the_digits_of_the_slow_decay(zeta):
     # The slow exponent q/(κ + a) is well conditioned: it needs no digits of ζ².
@@ -142,24 +131,3 @@ def test_arrays_and_scalars_agree_and_broadcast():
                     complex(x[i, j]) == pytest.approx(complex(y), rel=4 * EPS, abs=0)
                     for x, y in zip(whole, single, strict=True)
                 )
-
-
-def test_the_circle_and_the_quotient_agree_where_both_hold():
-    # |p| s² just below and above 4, where the method changes: the response is
-    # continuous there, to the size of the step.
-    omega = 2.0
-    below, above = responses(1 - 1e-13, omega, 0.1), responses(1 + 1e-13, omega, 0.1)
-    assert complex(below.gravity.value) == pytest.approx(complex(above.gravity.value), rel=1e-12)
-
-
-def test_exponential_response_for_a_general_exponent():
-    # h solves y″ + 2a y′ + q y = e^{νs} and has the transform 1/((σ-ν) p(σ)):
-    # for ν = -a + iω_d it is resonant whatever the damping.
-    a, q, s = 0.3, 2.0, 1.7
-    root = np.sqrt(q - a * a)
-    g = impulse_response(s, a, q, q - a * a)
-    h = exponential_response(complex(-a, root), s, a, q, g)
-    assert isinstance(h, Response)
-    expected = np.exp(-a * s) * (s * np.exp(1j * root * s) - np.sin(root * s) / root) / (2j * root)
-    # Numbers of order one.
-    assert complex(h.value) == pytest.approx(complex(expected), abs=10 * EPS)

@@ -11,7 +11,7 @@ from bouncing_ball.contacts.permanent_contact import (
     permanent_contact_minimum,
     permanent_contact_threshold,
 )
-from bouncing_ball.contacts.spring_damper import Release, contact_flow, contact_force
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper, contact_flow
 from bouncing_ball.errors import ModelError
 
 EPS = np.finfo(float).eps
@@ -42,7 +42,7 @@ def test_steady_oscillation_just_reaches_the_release(omega, zeta, release):
     # In units of the weight, both oscillate about one with amplitude one; the
     # sample nearest to the extremum is within (2π/40000)²/2 of it.
     if release is Release.FORCE:
-        reserve = contact_force(flow.displacement, flow.velocity, omega, zeta)
+        reserve = SpringDamper(omega, zeta).force(-flow.displacement, -flow.velocity)
     else:
         reserve = -(omega**2) * flow.displacement
     assert abs(reserve.min()) < 2e-8

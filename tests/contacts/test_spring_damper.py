@@ -10,7 +10,6 @@ from bouncing_ball.contacts.spring_damper import (
     SpringDamper,
     check_contact,
     contact_flow,
-    contact_force,
 )
 from bouncing_ball.errors import ModelError
 
@@ -107,7 +106,7 @@ def test_shapes_broadcast():
 def test_acceleration_satisfies_the_equation():
     s, phase, lam, omega, zeta = np.linspace(0, 3, 20), 0.3, 1.2, 5.0, 0.2
     flow = contact_flow(s, 0.1, -1.0, phase, lam, omega, zeta)
-    force = contact_force(flow.displacement, flow.velocity, omega, zeta)
+    force = SpringDamper(omega, zeta).force(-flow.displacement, -flow.velocity)
     balance = force - 1 + lam * np.sin(s + phase)
     assert flow.acceleration == pytest.approx(balance, abs=200 * EPS)
     # And it is the derivative of the velocity: second-order differences.
@@ -116,13 +115,6 @@ def test_acceleration_satisfies_the_equation():
     inner = slice(1, None)  # s - h ≥ 0
     rate = (up.velocity - down.velocity) / (2 * h)
     assert flow.acceleration[inner] == pytest.approx(rate[inner], abs=1e-7)
-
-
-def test_force_pushes_at_impact_and_pulls_at_the_papers_release():
-    omega, zeta = 10.0, 0.2
-    assert float(contact_force(0.0, -1.0, omega, zeta)) > 0
-    assert float(contact_force(0.0, 1.0, omega, zeta)) < 0
-    assert float(contact_force(-0.01, 0.0, omega, zeta)) == 1.0
 
 
 @pytest.mark.parametrize("omega", [0.0, -1.0, np.nan, np.inf])

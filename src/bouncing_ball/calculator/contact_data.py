@@ -93,17 +93,17 @@ def rebound(drop_height: float, rebound_height: float) -> float:
     return math.sqrt(rebound_height / drop_height)
 
 
-def loss(given: Given, release: Release) -> float | None:
-    """Damping ratio ζ; None where a damping c is given, which needs the stiffness.
+def loss(given: Given, release: Release, instead: str) -> float:
+    """Damping ratio ζ; a damping c needs the stiffness, and ``instead`` says what else will do.
 
     Raises
     ------
     ModelError
-        If nothing says it, or two parameters do, or r is out of range.
+        If nothing says it, or two parameters do, or a damping c, or r is out of range.
     """
     name = required(given, LOSSY, "how much the contact loses", f"one of {_words(LOSSY)}")
     if name == "damping":
-        return None
+        raise ModelError(f"damping needs stiffness{instead}")
     if name == "damping_ratio":
         zeta = given[name]
         require(zeta < 1, zeta, "damping_ratio", "below 1: the contact would not oscillate")
@@ -166,21 +166,18 @@ def stiffness_and_damping(mass: float, given: Given, release: Release) -> tuple[
     >>> stiffness_and_damping(1.0, {"stiffness": 4.0, "damping": 0.4}, Release.DISPLACEMENT)
     (4.0, 0.4)
     """
-    stiff, zeta = which(given, STIFF, "how stiff the contact is"), loss(given, release)
-    if zeta is None:
-        if stiff != "stiffness":
-            raise ModelError("damping needs stiffness: the two make the contact")
+    stiff = which(given, STIFF, "how stiff the contact is")
+    if stiff == "stiffness" and which(given, LOSSY, "how much the contact loses") == "damping":
         k, c = given["stiffness"], given["damping"]
-        if c >= 2 * math.sqrt(k * mass):
+        critical = 2 * math.sqrt(k * mass)
+        if c >= critical:
             raise ModelError(
-                f"damping = {c:g} N s/m is not below the critical {2 * math.sqrt(k * mass):g} "
-                "N s/m: the contact would not oscillate, and a free impact not end"
+                f"damping = {c:g} N s/m is not below the critical {critical:g} N s/m: the contact "
+                "would not oscillate, and a free impact not end"
             )
         return k, c
-    if stiff == "stiffness":
-        k = given["stiffness"]
-    else:
-        k = of_contact_time(mass, given["contact_time"], zeta, release)
+    zeta = loss(given, release, ": the two make the contact")
+    k = given.get("stiffness") or of_contact_time(mass, given["contact_time"], zeta, release)
     return k, 2 * zeta * math.sqrt(k * mass)
 
 
@@ -212,9 +209,8 @@ def _hertz(table: Table, given: Given, release: Release, asked: Sequence[int]) -
     """
     if release is not Release.DISPLACEMENT:
         raise ModelError("a Hertz contact with Tsuji's damping is released at δ = 0: no force")
-    mass, zeta = given["mass"], loss(given, release)
-    if zeta is None:
-        raise ModelError("damping needs stiffness: a Hertz contact takes a restitution coefficient")
+    zeta = loss(given, release, ": a Hertz contact takes a restitution coefficient")
+    mass = given["mass"]
     r = float(SpringDamper(1.0, zeta, release).restitution)
     law = hertz(mass, given["reduced_modulus"], given["radius"], r, table)
     speed = rigid_speed(meant(asked, r, table.amplitude), r)

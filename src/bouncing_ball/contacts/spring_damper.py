@@ -168,27 +168,6 @@ def contact_flow(
     return ContactFlow(d, v, acc, _jacobian(rows, phi, lam, omega, zeta))
 
 
-def contact_force(
-    displacement: ArrayLike,
-    velocity: ArrayLike,
-    frequency_ratio: ArrayLike,
-    damping_ratio: ArrayLike,
-) -> np.ndarray:
-    """Force of the table on the ball over its weight, -(2ζϖ δ′ + ϖ² δ).
-
-    Positive when the contact pushes. With the displacement release it is
-    negative, a pull, at the end of every damped contact.
-
-    Examples
-    --------
-    >>> float(contact_force(-0.25, 0.0, 2.0, 0.1))
-    1.0
-    """
-    omega = np.asarray(frequency_ratio, dtype=float)
-    pull = 2 * np.asarray(damping_ratio) * omega * np.asarray(velocity)
-    return -(pull + omega * omega * np.asarray(displacement))
-
-
 @dataclass(frozen=True, repr=False)
 class SpringDamper(ContactLaw):
     """The paper's contact: ϖ, ζ and the rule that ends it, with f = ϖ² p + 2ζϖ p′.

@@ -90,8 +90,8 @@ def test_a_parameter(fresh):
     )
     fresh.rewrite(
         "src/bouncing_ball/studies/permanent_contact_curve.py",
-        "import Parameters, Span, ThresholdRestitution",
-        "import Parameters, Span, ThresholdRestitution, Tolerance",
+        "import Parameters, Restitution, Span",
+        "import Parameters, Restitution, Span, Tolerance",
     )
     fresh.rewrite(CONFIG, "fig11: # permanent-contact threshold", "fig11:\n    load: 2.0")
     assert fresh.refusal().startswith("configuration: figures.fig11.load = 2.0 must be less than 1")

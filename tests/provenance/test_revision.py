@@ -28,10 +28,7 @@ def repository(tmp_path, monkeypatch):
 
 
 def head(folder):
-    done = subprocess.run(
-        ["git", "rev-parse", "HEAD"], cwd=folder, capture_output=True, text=True, check=True
-    )
-    return done.stdout.strip()
+    return subprocess.check_output(["git", "rev-parse", "HEAD"], cwd=folder, text=True).strip()
 
 
 @pytest.mark.parametrize(

@@ -20,14 +20,8 @@ def without_make() -> dict[str, str]:
 
 def dry(*arguments: str) -> str:
     """What make would do."""
-    return subprocess.run(
-        ["make", "--dry-run", "--always-make", *arguments],
-        cwd=ROOT,
-        env=without_make(),
-        capture_output=True,
-        text=True,
-        check=True,
-    ).stdout
+    command = ["make", "--dry-run", "--always-make", *arguments]
+    return subprocess.check_output(command, cwd=ROOT, env=without_make(), text=True)
 
 
 def run_script(tmp_path, failing: str) -> tuple[int, list[str], str]:

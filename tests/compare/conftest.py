@@ -79,19 +79,9 @@ def _record(tmp_path_factory) -> Path:
     return folder
 
 
-def _two(record: Path, folder: Path) -> Pair:
-    for side in ("record", "new"):
-        shutil.copytree(record, folder / side)
-    return Pair(folder / "record", folder / "new")
-
-
 @pytest.fixture
 def pair(_record, tmp_path) -> Pair:
     """Two equal folders."""
-    return _two(_record, tmp_path)
-
-
-@pytest.fixture(scope="module")
-def kept_pair(_record, tmp_path_factory) -> Pair:
-    """Two equal folders, changed once for all tests of a module."""
-    return _two(_record, tmp_path_factory.mktemp("kept"))
+    for side in ("record", "new"):
+        shutil.copytree(_record, tmp_path / side)
+    return Pair(tmp_path / "record", tmp_path / "new")

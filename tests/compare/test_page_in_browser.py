@@ -77,30 +77,26 @@ def observe(browse, folder, width):
     return json.loads(unescaped)
 
 
-@pytest.fixture(scope="module")
-def page(kept_pair, tmp_path_factory):
-    """A page with a drifted, a missing, a within-budget and a swapped figure."""
-    pair = kept_pair
+def test_the_page_as_a_browser_shows_it(pair, tmp_path, browse):
+    """With a drifted, a missing and a swapped figure."""
     data = pair.dataset("fig05")
     data.phase.values[1, 40] += 1e-3
     pair.write("fig05", data)
     shutil.copyfile(pair.new / "figures" / "fig08.png", pair.new / "figures" / "fig09.png")
     (pair.new / "figures" / "fig01.svg").unlink()
-    folder = tmp_path_factory.mktemp("browser")
-    (folder / "page.html").write_text(to_html(pair.compare()), encoding="utf-8")
-    return folder
+    (tmp_path / "page.html").write_text(to_html(pair.compare()), encoding="utf-8")
+    seen = observe(browse, tmp_path, 1200)
+    every_picture_is_there_and_the_worst_first(seen, pair)
+    side_by_side_then_one_upon_the_other(seen["modes"])
+    # The page fits a telephone.
+    assert observe(browse, tmp_path, 360)["overflow"] == 0
 
 
-@pytest.fixture(scope="module")
-def seen(page, browse):
-    return observe(browse, page, 1200)
-
-
-def test_the_browser_shows_every_picture_and_the_worst_first(seen, kept_pair):
+def every_picture_is_there_and_the_worst_first(seen, pair):
     images = dict(seen["images"])
     for name in ("fig01, record and new", "fig05, record and new", "fig08, record and new"):
         assert images.pop(name)[2]
-    with Image.open(kept_pair.record / "figures" / "fig09.png") as picture:
+    with Image.open(pair.record / "figures" / "fig09.png") as picture:
         expected = [*picture.size, True]
     assert images == {"fig09, record": expected, "fig09, new": expected}
     worst = [["fig01", "missing", True], ["fig05", "drifted", True], ["fig09", "drifted", True]]
@@ -111,8 +107,7 @@ def test_the_browser_shows_every_picture_and_the_worst_first(seen, kept_pair):
     assert [name for name in seen["fetched"] if not name.startswith("data:")] == []
 
 
-def test_side_by_side_then_one_upon_the_other(seen):
-    modes = seen["modes"]
+def side_by_side_then_one_upon_the_other(modes):
     assert list(modes) == ["side by side", "record", "new", "blink", "wipe", "large"]
     lefts = [figure["left"] for figure in modes["side by side"]]
     assert lefts == sorted(set(lefts)) and len(lefts) == 2
@@ -137,7 +132,3 @@ def test_side_by_side_then_one_upon_the_other(seen):
     assert after["width"] == pytest.approx(before["width"] / 2, abs=1)
     assert modes["large"][0]["wide"] == 1200
     assert modes["large"][0]["picture"] > 1.2 * modes["wipe"][0]["picture"]
-
-
-def test_the_page_fits_a_telephone(page, browse):
-    assert observe(browse, page, 360)["overflow"] == 0

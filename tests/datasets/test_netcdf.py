@@ -43,15 +43,6 @@ def test_round_trip(data, tmp_path):
     path.unlink()
 
 
-def test_coordinates_have_no_fill_value(data, tmp_path):
-    sweep = data.assign_coords(frequency_ratio=("point", [1.0, 10.0, 100.0]), point=[0.0, 0.5, 1.0])
-    write_dataset(sweep, tmp_path / "data.nc")
-    written = xr.open_dataset(tmp_path / "data.nc")
-    filled = {name for name, each in written.variables.items() if "_FillValue" in each.encoding}
-    written.close()
-    assert filled == {"phase", "saddle_node_amplitude"}
-
-
 def test_the_same_bytes_every_time(data, tmp_path):
     paths = [tmp_path / name for name in ("one.nc", "two.nc")]
     for path in paths:

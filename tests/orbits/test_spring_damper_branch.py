@@ -47,17 +47,6 @@ def test_every_point_satisfies_the_papers_equations(log_omega, zeta, n, release,
 
 
 @pytest.mark.parametrize("release", list(Release))
-@pytest.mark.parametrize("omega", [2.0, 10.0, 1e3, 1e6])
-@pytest.mark.parametrize("n", [1, 3])
-def test_next_to_the_fold_at_any_stiffness(release, omega, n):
-    contact = SpringDamper(omega, 0.05, release)
-    system = SpringDamperSystem(n, 0.05, Parameter.AMPLITUDE, omega, release)
-    for excess in np.linspace(-1.0, 1.0, 9) / omega:
-        point = branch_point(excess, contact, n)
-        assert np.all(np.abs(scaled_residual(system, point, contact)) < 1e-14)
-
-
-@pytest.mark.parametrize("release", list(Release))
 @pytest.mark.parametrize("zeta", [0.0, 0.0517, 0.4, 0.9])
 @pytest.mark.parametrize("omega", [0.7, 1.0, 2.0, 10.0, 1e4, 1e6])
 def test_derivatives_along_the_branch(release, zeta, omega):
@@ -180,10 +169,10 @@ def test_trace_and_determinant_are_those_of_the_linearised_flow(log_omega, zeta,
 
 def test_long_arrays_are_the_same_as_single_points():
     # More than two blocks, with the short and resonant contacts among them.
-    excess = np.linspace(-3.1, 3.0, 5000)
+    excess = np.linspace(-3.1, 3.0, 20_000)
     whole = branch_point(excess, SpringDamper(1.0, 0.0), 2)
-    assert whole.amplitude.shape == (5000,)
-    for k in (0, 1, 2047, 2048, 3001, 4999):
+    assert whole.amplitude.shape == (20_000,)
+    for k in (0, 1, 8191, 8192, 12_001, 19_999):
         single = branch_point(excess[k], SpringDamper(1.0, 0.0), 2)
         for field, value in zip(whole, single, strict=True):
             assert float(field[k]) == pytest.approx(float(value), rel=1e-12, abs=1e-14)

@@ -33,10 +33,7 @@ def errors():
 def law_at_rigid_speed(name, duration):
     """The trial gave r and D at the restitution model's impact speed, 2π/(1 + r)."""
     model = exact_model(name, 0.65, duration, rigid_speed(1, 0.65))
-    if name not in LINEAR:
-        return model, model.law
-    contact = model.contact
-    return model, contact
+    return model, model.contact if name in LINEAR else model.law
 
 
 def height_by_one_impact(law):

@@ -8,7 +8,6 @@ from bouncing_ball.accuracy.quantities import Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.configuration.study import typed
 from bouncing_ball.contacts.damping import damping_ratio
-from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_limits import orbit_at
@@ -31,46 +30,27 @@ PARAMETERS = {
 
 def test_one_percent_height_of_the_paper(described):
     # Eq. 37, Figure 14: n = 1, r = 0.65, Λ = 1; printed "≈ 82".
-    data = described(
-        typed(height_error)(
-            {
-                "n": 1,
-                "restitution": 0.65,
-                "amplitude": 1.0,
-                "frequency_ratio": {"min": 1.0, "max": 1000.0, "samples": 31},
-                "tolerance": 0.01,
-            },
-            "displacement",
-        )
-    )
-    ratio = float(data.error_threshold.squeeze())
-    assert ratio == pytest.approx(82.177, abs=5e-4)
+    parameters = {key: PARAMETERS[key] for key in ("n", "restitution", "amplitude")}
+    parameters |= {"frequency_ratio": {"min": 1.0, "max": 1000.0, "samples": 31}, "tolerance": 0.01}
+    data = described(typed(height_error)(parameters, "displacement"))
+    assert data.error_threshold.item() == pytest.approx(82.177, abs=5e-4)
     assert data.threshold_status.values.tolist() == [[str(ThresholdStatus.FOUND)]]
     reference = np.pi**2 / 2 + np.sqrt(1 - (np.pi * 0.35 / 1.65) ** 2)
     assert float(data.restitution_max_height) == pytest.approx(reference, rel=1e-14)
-    expected = np.abs(data.max_height / data.restitution_max_height - 1).values
-    assert data.relative_error.sel(quantity="max_height").values == pytest.approx(
-        expected, rel=1e-12
-    )
+    expected = np.abs(data.max_height / reference - 1)
+    np.testing.assert_allclose(data.relative_error.sel(quantity="max_height"), expected, rtol=1e-9)
 
 
 def test_one_percent_permanent_contact(described):
     # Eq. 38, Figure 16; printed "≈ 6".
-    data = described(
-        typed(permanent_contact_error)(
-            {
-                "restitution": 0.65,
-                "frequency_ratio": {"min": 0.5, "max": 100.0, "samples": 101},
-                "tolerance": 0.01,
-            },
-            "displacement",
-        )
-    )
-    ratio = float(data.error_threshold.squeeze())
+    span = {"min": 0.5, "max": 100.0, "samples": 101}
+    parameters = {"restitution": 0.65, "frequency_ratio": span, "tolerance": 0.01}
+    data = described(typed(permanent_contact_error)(parameters, "displacement"))
+    ratio = data.error_threshold.item()
     assert ratio == pytest.approx(9.81177, abs=5e-6)
-    threshold = permanent_contact_threshold(ratio, damping_ratio(0.65))
-    assert threshold == pytest.approx(0.99, rel=1e-12)
-    assert data.threshold_amplitude.dims == ("frequency_ratio",)
+    # Λ_SD of Eq. 35, 1 % below the restitution model's Λ = 1.
+    gamma = (ratio**2 - 1) ** 2 + (2 * float(damping_ratio(0.65)) * ratio) ** 2
+    assert np.sqrt(gamma) / ratio**2 == pytest.approx(0.99, rel=1e-12)
 
 
 def test_all_quantities(described):

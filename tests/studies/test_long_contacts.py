@@ -57,11 +57,6 @@ def test_basins_of_one_contact(described):
                 assert near.item() == kind
 
 
-def test_basins_with_the_other_release(described):
-    small = BASINS | {"starts": 10, "amplitude": [0.9]}
-    assert described(typed(basins)(small, "force")).basin_share.sum().item() == pytest.approx(1)
-
-
 def test_balls_that_rise_when_they_are_given_up_have_no_period():
     parameters = {"n": [1, 10], "restitution": 0.5707358288321754, "starts": 119, "impacts": 10}
     parameters |= {"frequency_ratio": 24.11573489959817, "amplitude": [8.614520580887136]}

@@ -15,11 +15,8 @@ RELEASES = list(Release)
 
 
 def test_the_table_of_the_error_law(described):
-    data = described(
-        typed(study.error_law_table)(
-            {**ORBIT, "tolerance": 0.01, "frequency_ratio": SPAN}, "displacement"
-        )
-    )
+    parameters = {**ORBIT, "tolerance": 0.01, "frequency_ratio": SPAN}
+    data = described(typed(study.error_law_table)(parameters, "displacement"))
     exact = data.error_threshold.sel(model="restitution")
     # The thresholds of the replication's own table.
     assert float(exact.sel(quantity="max_height")) == pytest.approx(82.177, abs=1e-3)
@@ -48,18 +45,9 @@ def test_orders_of_random_orbits(described, release):
 
 
 def test_where_each_model_is_right(described):
-    data = described(
-        typed(study.validity)(
-            {
-                "n": [1, 2],
-                "restitution": [0.5, 0.8],
-                "amplitude_ratio": [1.2, 5.0],
-                "tolerance": 0.01,
-                "frequency_ratio": SPAN,
-            },
-            "displacement",
-        )
-    )
+    grid = {"n": [1, 2], "restitution": [0.5, 0.8], "amplitude_ratio": [1.2, 5.0]}
+    parameters = {**grid, "tolerance": 0.01, "frequency_ratio": SPAN}
+    data = described(typed(study.validity)(parameters, "displacement"))
     height = data.error_threshold.sel(quantity="max_height", amplitude_ratio=1.2, n=1)
     assert np.all(height.sel(model="corrected") < height.sel(model="restitution") / 5)
     # Nearly elastic orbits need 1/(nε).

@@ -1,9 +1,9 @@
 """What a run refuses before anything is run: one line, and nothing is touched."""
 
-import os
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -15,14 +15,8 @@ def test_the_workflow_stops_at_once_and_touches_nothing(complete):
     before = {k: (complete.path / k).stat().st_mtime_ns for k in complete.contents()}
     complete.configure("figures", "fig08", "restitution", value=1.2)
     del before["config/config.yaml"]
-    done = complete.run("--cores", "2", check=False)
-    assert done.returncode == 1
-    # Snakemake itself says which profile it uses; the rest is ours.
-    said = [line for line in done.stderr.splitlines() if not line.startswith("Using ")]
-    assert len(said) == 1
-    assert said[0].startswith(
-        "configuration: figures.fig08.restitution = 1.2 must be at most 0.999"
-    )
+    said = "configuration: figures.fig08.restitution = 1.2 must be at most 0.999"
+    assert complete.refusal().startswith(said)
     after = {k: (complete.path / k).stat().st_mtime_ns for k in before}
     assert after == before
 
@@ -40,14 +34,13 @@ def test_what_snakemake_reads_without_a_word(fresh, options, said):
     else:
         with (fresh.path / "config/config.yaml").open("a") as file:
             file.write("release: force\n")
-    assert refusal(fresh, *options).startswith(said)
+    assert fresh.refusal(*options).startswith(said)
 
 
 def test_the_package_of_another_checkout_is_refused(fresh, tmp_path):
     # Run as it would be with that checkout's environment.
     shutil.copytree(fresh.path / "src", tmp_path / "other")
-    environment = os.environ | {"PYTHONPATH": str(tmp_path / "other")}
-    said = refusal(fresh, environment=environment)
+    said = replace(fresh, package=str(tmp_path / "other")).refusal()
     assert said.startswith(f"bouncing_ball is imported from {tmp_path / 'other'}")
     assert str(fresh.path / "src") in said
 
@@ -58,7 +51,7 @@ def test_a_python_whose_path_has_a_space_is_refused(fresh, tmp_path):
     (venv / "bin" / "python").symlink_to(Path(sys.executable).resolve())
     shutil.copyfile(Path(sys.prefix, "pyvenv.cfg"), venv / "pyvenv.cfg")
     (venv / "lib").symlink_to(Path(sys.prefix, "lib"))
-    said = refusal(fresh, python=venv / "bin" / "python")
+    said = replace(fresh, python=f"{venv}/bin/python").refusal()
     assert said.startswith(f"{venv}/bin/python: a path of Python with a space")
 
 
@@ -76,20 +69,3 @@ def test_make_refuses_a_path_with_a_space(tmp_path):
         )
         assert done.returncode == status
         assert ("the path of this checkout has a space" in done.stderr) == (status == 2)
-
-
-def refusal(tree, *options, python=sys.executable, environment=None):
-    """The line with which a run ends before anything is run."""
-    done = subprocess.run(
-        [python, "-m", "snakemake", "--cores", "1", *options],
-        cwd=tree.path,
-        env=environment or tree.environment(),
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 1
-    # Snakemake itself says which profile and files it uses; the rest is ours.
-    own = ("Using ", "Config file ")
-    (said,) = [line for line in done.stderr.splitlines() if not line.startswith(own)]
-    return said

@@ -31,17 +31,11 @@ def heights(data: xr.Dataset) -> Figure:
 '''
 
 
-def said(tree, *arguments):
-    """The one line with which a run is refused before anything runs."""
-    done = tree.run("--cores", "1", *arguments, check=False)
-    assert done.returncode == 1
-    (line,) = [x for x in done.stderr.splitlines() if not x.startswith("Using ")]
-    return line
-
-
 def test_a_figure_with_its_own_parameters(fresh):
     fresh.rewrite(BEYOND, "BEYOND_THE_PAPER = {", ENTRY)
-    assert said(fresh).startswith("configuration: ext_heights has no parameters: a key ext_heights")
+    assert fresh.refusal().startswith(
+        "configuration: ext_heights has no parameters: a key ext_heights"
+    )
     fresh.rewrite(CONFIG, "studies:\n  formulas:", PARAMETERS)
     fresh.rewrite(DRAWINGS, "DRAWINGS = {", 'DRAWINGS = {\n    "ext_heights": "heights.heights",')
     (fresh.path / FIGURE).write_text(DRAWING, encoding="utf-8")
@@ -81,7 +75,7 @@ BEYOND_THE_PAPER = {
     "lowest": "studies.lowest.lowest","""
     fresh.rewrite(BEYOND, "BEYOND_THE_PAPER = {", entry)
     fresh.rewrite(CONFIG, "studies:\n  formulas:", "studies:\n  lowest: { n: 110 }\n  formulas:")
-    assert said(fresh).startswith("configuration: studies.lowest.n = 110 must be at most 20")
+    assert fresh.refusal().startswith("configuration: studies.lowest.n = 110 must be at most 20")
     fresh.rewrite(CONFIG, "lowest: { n: 110 }", "lowest: { n: 11 }")
     fresh.run("--cores", "1", "lowest")
     made = {path.name for path in (fresh.path / "results/figures").iterdir()}
@@ -96,10 +90,10 @@ def test_a_parameter(fresh):
     )
     fresh.rewrite(
         "src/bouncing_ball/studies/permanent_contact_curve.py",
-        "import Parameters, Span, ThresholdRestitution",
-        "import Parameters, Span, ThresholdRestitution, Tolerance",
+        "import Parameters, Restitution, Span",
+        "import Parameters, Restitution, Span, Tolerance",
     )
     fresh.rewrite(CONFIG, "fig11: # permanent-contact threshold", "fig11:\n    load: 2.0")
-    assert said(fresh).startswith("configuration: figures.fig11.load = 2.0 must be less than 1")
+    assert fresh.refusal().startswith("configuration: figures.fig11.load = 2.0 must be less than 1")
     fresh.rewrite(CONFIG, "load: 2.0", "load: 0.5")
-    assert said(fresh).startswith("configuration: missing key figures.fig16.load")
+    assert fresh.refusal().startswith("configuration: missing key figures.fig16.load")

@@ -132,11 +132,11 @@ class Case:
         return self.mass * self.table.gravity / self.stiffness
 
     @cached_property
-    def permanent_contact(self) -> dict[str, float]:
-        """Λ up to which the ball stays down, by model; NaN for a Hertz contact.
+    def permanent_contact(self) -> float:
+        """Λ up to which the ball stays down; NaN for a Hertz contact.
 
         At rest that contact has the stiffness of its static deflection, not k.
         """
         if self.law is not None:
-            return dict.fromkeys(self.models, math.nan)
-        return {name: float(x.permanent_contact_threshold()) for name, x in self.models.items()}
+            return math.nan
+        return float(self.models["spring-damper"].permanent_contact_threshold())

@@ -229,7 +229,6 @@ def _design(
     """Everything that is known of a contact; `one` is the family of the verdict."""
     contact, table = case.contact, case.table
     delay, r, load = map(float, case.instant(one.n)[:3])
-    threshold = next(iter(case.permanent_contact.values()))
     return Design(
         frequency_ratio=float(contact.frequency_ratio),
         damping_ratio=float(contact.damping_ratio),
@@ -243,7 +242,9 @@ def _design(
             str(rule): float(replace(contact, release=rule).restitution) for rule in Release
         },
         permanent_contact=PermanentContact(
-            finite(threshold), RESTITUTION_THRESHOLD, finite(1 - threshold / table.amplitude)
+            finite(case.permanent_contact),
+            RESTITUTION_THRESHOLD,
+            finite(1 - case.permanent_contact / table.amplitude),
         ),
         corrected=Corrected(delay * table.time, r, load * table.time),
         orbits=found,

@@ -12,6 +12,7 @@ from bouncing_ball.accuracy.errors import relative
 from bouncing_ball.accuracy.quantities import OF_ORBITS, Quantity
 from bouncing_ball.calculator.case import Case
 from bouncing_ball.calculator.results import Errors, Family, Standing
+from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.contacts.signature import Instant
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import NoOrbitError
@@ -115,14 +116,14 @@ class _InModel:
 
 
 def _in_models(case: Case, n: np.ndarray) -> list[_InModel]:
-    found = []
-    for name, model in case.models.items():
+    found: list[_InModel] = []
+    for model in case.models.values():
         orbit = model.orbit(n, case.table.amplitude)
         values = (
             *(getattr(orbit, quantity) for quantity in OF_ORBITS),
             model.saddle_node(n).amplitude,
             model.period_doubling(n).amplitude,
-            np.full(n.shape, case.permanent_contact[name]),
+            np.full(n.shape, RESTITUTION_THRESHOLD if found else case.permanent_contact),
         )
         found.append(_InModel(orbit, dict(zip(Quantity, values, strict=True))))
     return found

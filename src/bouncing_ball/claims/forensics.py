@@ -54,8 +54,8 @@ class WeightlessOrbit(SpringDamperOrbit):
         solved = np.linalg.solve(matrix, -none[..., np.newaxis])[..., 0]
         return orbit(*np.moveaxis(solved, -1, 0))
 
-    def _contact_flow(self, time: np.ndarray):
-        flow, sag = super()._contact_flow(time), self.contact.flow(time, 0.0, 0.0, 0.0, 0.0)
+    def contact_flow(self, time: np.ndarray):
+        flow, sag = super().contact_flow(time), self.contact.flow(time, 0.0, 0.0, 0.0, 0.0)
         jacobian = flow.jacobian.copy()
         jacobian[..., 0] -= sag.jacobian[..., 0]
         return type(flow)(*(x - y for x, y in zip(flow[:3], sag[:3], strict=True)), jacobian)

@@ -79,7 +79,7 @@ def limits(n=1, **impact: Any) -> Answer:
         If the branch has not both.
     """
     of = calls.model_of_limits(n, **impact)
-    found = {}
+    found: Answer = {}
     for name in calls.Limits._fields:
         orbit = getattr(of, name)(n)
         if not orbit.exists:
@@ -89,12 +89,8 @@ def limits(n=1, **impact: Any) -> Answer:
             raise NoOrbitError(
                 f"{branch} has no {what}" if closed else f"no {what} was found on {branch}"
             )
-        found[name] = {
-            "amplitude": float(orbit.amplitude),
-            "phase": float(orbit.phase),
-            "contact_duration": float(orbit.contact_duration),
-            "is_admissible": bool(orbit.is_admissible()),
-        }
+        found[name] = {key: float(getattr(orbit, key)) for key in OBSERVABLES[:3]}
+        found[name]["is_admissible"] = bool(orbit.is_admissible())
     # The limits have two impact speeds; a law is described at the restitution model's.
     return found | _described(orbit.law, float(restitution_speed(n, of)[0]))
 

@@ -104,12 +104,6 @@ def period_doubling(
     return np.hypot(period_doubling_lift(restitution, impact_map), saddle_node(n, restitution))
 
 
-def _first_below(lam, n, fold):
-    """Λ, n and Λ_SN where Λ lies below the saddle-node."""
-    lam, n, fold = np.broadcast_arrays(lam, n, fold)
-    return tuple(np.atleast_1d(x)[np.atleast_1d(~(lam >= fold))] for x in (lam, n, fold))
-
-
 def phase(
     n: ArrayLike, restitution: ArrayLike, amplitude: ArrayLike, stable_side: bool = True
 ) -> np.ndarray:
@@ -127,10 +121,11 @@ def phase(
     0.5
     """
     fold, lam = saddle_node(n, restitution), np.asarray(amplitude, dtype=float)
-    if not np.all(lam >= fold):
-        lam, family, fold = (x.ravel()[0] for x in _first_below(lam, np.asarray(n), fold))
+    below = ~(lam >= fold)
+    if np.any(below):
+        least, where, family = (np.broadcast_to(x, below.shape)[below][0] for x in (fold, lam, n))
         raise NoOrbitError(
-            f"no {family}-T orbit at Λ = {lam:g}: below the saddle-node at Λ = {fold:.6g}"
+            f"no {family}-T orbit at Λ = {where:g}: below the saddle-node at Λ = {least:.6g}"
         )
     lift = np.sqrt((lam - fold) * (lam + fold))
     return np.arctan2(lift if stable_side else -lift, fold)

@@ -3,7 +3,7 @@ r"""n-T orbits of the spring-damper model: their contact, equations and stabilit
 All quantities are dimensionless.
 """
 
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -58,13 +58,14 @@ class SpringDamperOrbit(Orbit):
         """δ_b = -κ δ′_b at release."""
         return -self.contact.lag * self.relative_bounce_velocity
 
-    def _contact_flow(self, time: np.ndarray):
+    def contact_flow(self, time: np.ndarray) -> Any:
+        """The contact's motion and its derivatives at times 0 ≤ τ ≤ τ_b."""
         u = self.relative_impact_velocity
         return self.contact.flow(time, 0.0, u, self.phase, self.amplitude)
 
     def contact_motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ at times 0 ≤ τ ≤ τ_b in contact."""
-        flow = self._contact_flow(time)
+        flow = self.contact_flow(time)
         return flow.displacement, flow.velocity
 
     def residual(self) -> np.ndarray:
@@ -72,7 +73,7 @@ class SpringDamperOrbit(Orbit):
 
         The first is ϖ (δ_b + κ δ′_b), of the order of a velocity as the second.
         """
-        flow, contact = self._contact_flow(self.contact_duration), self.contact
+        flow, contact = self.contact_flow(self.contact_duration), self.contact
         release = contact.frequency_ratio * flow.displacement
         release = release + 2 * contact.release_sine * flow.velocity
         return np.stack([release, *self.flight_defects(flow.displacement, flow.velocity)], axis=-1)
@@ -83,7 +84,7 @@ class SpringDamperOrbit(Orbit):
         The duration is differentiated through δ_b + κ δ′_b = 0.
         """
         # Rows δ, δ′; columns (τ, δ′, Λ) of the start, and the time.
-        jacobian = self._contact_flow(self.contact_duration).jacobian
+        jacobian = self.contact_flow(self.contact_duration).jacobian
         state, by_time = jacobian[..., [3, 2, 4]], jacobian[..., 0]
         lag = np.asarray(self.contact.lag)
         released = state[..., 0, :] + lag[..., np.newaxis] * state[..., 1, :]

@@ -56,13 +56,10 @@ class SpringDamperSystem(OrbitSystem):
 
     def orbit(self, y: np.ndarray) -> SpringDamperOrbit:
         """The orbits at points y of shape (..., 4)."""
-        phase, impact, angle, p = (y[..., k] for k in range(4))
-        fixed = np.broadcast_to(np.asarray(self.fixed, dtype=float), p.shape)
-        zeta = np.broadcast_to(np.asarray(self.damping_ratio, dtype=float), p.shape)
-        if self.parameter is Parameter.AMPLITUDE:
-            amplitude, omega = p, fixed
-        else:
-            amplitude, omega = fixed, np.exp(p)
+        phase, impact, angle, p = np.moveaxis(y, -1, 0)
+        fixed, zeta = (0.0 * p + x for x in (self.fixed, self.damping_ratio))
+        by_amplitude = self.parameter is Parameter.AMPLITUDE
+        amplitude, omega = (p, fixed) if by_amplitude else (fixed, np.exp(p))
         contact = SpringDamper(omega, zeta, self.release)
         return SpringDamperOrbit(self.n, contact, amplitude, phase, angle / omega, impact)
 
@@ -77,9 +74,7 @@ class SpringDamperSystem(OrbitSystem):
         """Exact Jacobian of the residual, shape (..., 3, 4)."""
         o, by_amplitude = self.orbit(y), self.parameter is Parameter.AMPLITUDE
         lam, omega = o.amplitude, o.contact.frequency_ratio
-        flow = o.contact.flow(
-            o.contact_duration, 0.0, o.relative_impact_velocity, o.phase, o.amplitude
-        )
+        flow = o.contact_flow(o.contact_duration)
         # Derivatives of (τ, δ, δ′, φ, Λ, ϖ) of the flow with respect to (φ, z′_i, ϖ τ_b, p).
         inner = np.zeros((*y.shape[:-1], 6, 4))
         inner[..., 0, 2] = 1 / omega

@@ -7,13 +7,13 @@ sample's: too long for every run, so that the pipeline makes them on request.
 
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
 
 from bouncing_ball.accuracy.error_law import REMAINDER, STATED, remainder
 from bouncing_ball.accuracy.errors import errors
-from bouncing_ball.accuracy.quantities import OF_IMPACTS
+from bouncing_ball.accuracy.quantities import OF_IMPACTS, Quantity
 from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.parameters import Span
@@ -42,59 +42,56 @@ these ``exceed`` are beyond the remainder, of the others ``exceed elsewhere``. Q
 error over predicted value, of all that exist; the last two columns are shares of these."""
 
 
-class LawErrors(NamedTuple):
-    """Errors of random orbits beside the error law; rows are the quantities."""
+def law_errors(size: int, seed: int | Sequence[int], span: Span, release: Release) -> xr.Dataset:
+    """Errors of random orbits of the whole stable range, ϖ even in its logarithm.
 
-    frequency_ratio: np.ndarray
-    restitution: np.ndarray
-    """Signed relative error of the restitution model."""
-    corrected: np.ndarray
-    law: np.ndarray
-    """K/ϖ, what the law says of the first."""
-    remainder: np.ndarray
-    """|error - K/ϖ|/(S δ), which the law states to be below M."""
-    small_parameter: np.ndarray
-    """δ of each orbit."""
-
-
-def law_errors(size: int, seed: int | Sequence[int], span: Span, release: Release) -> LawErrors:
-    """Errors of random orbits of the whole stable range, ϖ even in its logarithm."""
+    Signed relative errors of both simple models, what the law K/ϖ says of the first, and
+    |error - K/ϖ|/(S δ), which the law states to be below M, shape (quantity, orbit); ϖ and δ
+    of each orbit.
+    """
     n, zeta, lam, rng = random_orbits(size, seed, release)
     omega = np.exp(rng.uniform(np.log(span.min), np.log(span.max), size))
     contact = SpringDamper(omega, zeta, release)
-    instant = LinearSignature(contact)()
     restitution, corrected = errors(contact, n, lam)
-    left = remainder(n, instant, lam, restitution)
-    return LawErrors(omega, restitution, corrected, left.law, left.factor, left.small)
+    left = remainder(n, LinearSignature(contact)(), lam, restitution)
+    shown = {"restitution": restitution, "corrected": corrected}
+    shown |= {"law": left.law, "remainder": left.factor}
+    return xr.Dataset(
+        {
+            **{name: (("quantity", "orbit"), values) for name, values in shown.items()},
+            "small_parameter": ("orbit", left.small),
+            "frequency_ratio": ("orbit", omega),
+        }
+    )
 
 
-def sample(size: int, seed: int, span: Span, release: Release) -> LawErrors:
+def sample(size: int, seed: int, span: Span, release: Release) -> xr.Dataset:
     """The errors of ``size`` random orbits, drawn in batches."""
     counts = [min(BATCH, size - start) for start in range(0, size, BATCH)]
     parts = [law_errors(count, (seed, k), span, release) for k, count in enumerate(counts)]
-    return LawErrors(*(np.concatenate(part, axis=-1) for part in zip(*parts, strict=True)))
+    return xr.concat(parts, "orbit")
 
 
-def summary(drawn: LawErrors, release: Release) -> Iterator[list[str]]:
+def summary(drawn: xr.Dataset, release: Release) -> Iterator[list[str]]:
     """One row for each quantity and range of ϖ, the whole range first."""
     ranges = [(DECADES[0], DECADES[-1]), *pairwise(DECADES)]
     for k, quantity in enumerate(OF_IMPACTS):
+        own = drawn.isel(quantity=k)
         for low, high in ranges:
-            inside = (drawn.frequency_ratio >= low) & (drawn.frequency_ratio <= high)
-            there = inside & np.isfinite(drawn.restitution[k])
-            yield [release, quantity, f"{low:g}", f"{high:g}", *_cells(drawn, k, there)]
+            ratio = own.frequency_ratio
+            there = (ratio >= low) & (ratio <= high) & np.isfinite(own.restitution)
+            chosen = own.isel(orbit=there.values)
+            yield [release, quantity, f"{low:g}", f"{high:g}", *_cells(chosen, quantity)]
 
 
-def _cells(drawn: LawErrors, k: int, there: np.ndarray) -> list[str]:
+def _cells(chosen: xr.Dataset, quantity: Quantity) -> list[str]:
     """Counts, quantiles and shares of one quantity of the orbits chosen."""
-    error, law = drawn.restitution[k, there], drawn.law[k, there]
-    left, stated = drawn.remainder[k, there], drawn.small_parameter[there] < STATED
-    beyond = left > REMAINDER[OF_IMPACTS[k]]
-    corrected = drawn.corrected[k, there]
+    error, left = chosen.restitution.values, chosen.remainder.values
+    stated, beyond = chosen.small_parameter.values < STATED, left > REMAINDER[quantity]
     # Without an orbit of its own the corrected model is not nearer.
-    nearer = np.abs(np.where(np.isfinite(corrected), corrected, np.inf)) < np.abs(error)
-    ratio = error / law
-    counts = (there.sum(), stated.sum(), (beyond & stated).sum(), (beyond & ~stated).sum())
+    nearer = np.abs(chosen.corrected.fillna(np.inf).values) < np.abs(error)
+    ratio = error / chosen.law.values
+    counts = (error.size, stated.sum(), (beyond & stated).sum(), (beyond & ~stated).sum())
     shares = (np.mean(np.abs(ratio - 1) < 0.1), np.mean(nearer))
     return [
         *(str(int(count)) for count in counts),

@@ -147,8 +147,8 @@ def orders(parameters: Orders, release: Release) -> xr.Dataset:
         {
             "relative_error": (("model", "quantity", "frequency_ratio"), curves),
             "order": (("model", "quantity", "sample"), np.log2(once / twice)),
-            "law_remainder": (("quantity", "law_sample"), law.remainder),
-            "small_parameter": ("law_sample", law.small_parameter),
+            "law_remainder": (("quantity", "law_sample"), law.remainder.values),
+            "small_parameter": ("law_sample", law.small_parameter.values),
             "stated_below": ((), error_law.STATED),
         },
         coords={

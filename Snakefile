@@ -12,6 +12,7 @@ configfile: "config/config.yaml"
 
 include: "workflow/rules/common.smk"
 # The stages of the paper: parameters in, datasets out.
+include: "workflow/rules/study.smk"
 include: "workflow/rules/restitution_model.smk"
 include: "workflow/rules/apparent_restitution.smk"
 include: "workflow/rules/time_histories.smk"

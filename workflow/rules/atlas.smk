@@ -1,19 +1,11 @@
 # The atlas: how stiff is stiff enough, everywhere. Not part of a run. Its summary is
 # accepted by hand, see docs/atlas.md, and the article takes its numbers from there.
 
-from bouncing_ball.pipeline.atlas import discard_damaged, shard_minutes, shard_names
+from bouncing_ball.pipeline.atlas import shard_minutes
 
 # What the shards are made from.
 ATLAS = {key: part for key, part in config["atlas"].items() if key != "summary"}
 CHARTS = ["max_height", "bounce_velocity", "phase", "apparent_restitution", "limits", "page"]
-
-
-# The shards; one that is damaged is removed, and so made again.
-def shard_files(wildcards):
-    paths = [f"results/atlas/shards/{name}.nc" for name in [*shard_names(ATLAS), "limits"]]
-    if workflow.is_main_process:
-        discard_damaged(paths, logger.warning)
-    return paths
 
 
 rule atlas_shard:

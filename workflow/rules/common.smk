@@ -1,4 +1,4 @@
-# Names shared by the rules, and the study from which each stage of the paper is made.
+# Names and functions shared by the rules.
 
 import gc
 import os
@@ -29,6 +29,7 @@ if found.resolve() != HERE.resolve():
 
 from bouncing_ball.configuration.study import arguments
 from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
+from bouncing_ball.pipeline.atlas import discard_damaged, shard_names
 from bouncing_ball.pipeline.sources import sources
 
 # Two lines before every job, which say nothing of it.
@@ -52,25 +53,9 @@ def modules(*names):
     return [os.path.relpath(file) for file in files]
 
 
-# Parameters in, a dataset out. The stages of the paper are this rule for their own artifacts;
-# itself it makes none.
-rule study:
-    message:
-        "{wildcards.artifact}: {params.title}"
-    input:
-        data=lambda w: expand("results/figures/{x}.nc", x=READS.get(w.artifact, [])),
-        source=lambda wildcards: modules(STUDIES[wildcards.artifact].rpartition(".")[0]),
-    output:
-        data="results/figures/{artifact}.nc",
-    wildcard_constraints:
-        artifact="(?!)",
-    params:
-        study=lambda wildcards: STUDIES[wildcards.artifact],
-        title=lambda wildcards: TITLES.get(wildcards.artifact, wildcards.artifact),
-        arguments=lambda w: arguments(STUDIES[w.artifact], w.artifact, config),
-    log:
-        "results/logs/stages/{artifact}.log",
-    benchmark:
-        "results/benchmarks/stages/{artifact}.tsv"
-    script:
-        "../scripts/study.py"
+# The shards of the atlas; one that is damaged is removed, and so made again.
+def shard_files(wildcards):
+    paths = [f"results/atlas/shards/{name}.nc" for name in [*shard_names(ATLAS), "limits"]]
+    if workflow.is_main_process:
+        discard_damaged(paths, logger.warning)
+    return paths

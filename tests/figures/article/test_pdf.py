@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[3]
 TEMPLATE = ROOT / "workflow" / "report" / "paper" / "article.typ"
 SMALL = """# A title
 
-Text with $\\varpi^2\\,(\\Lambda-1)$ and a [file](config/claims.yaml).
+Text with $\\varpi^2\\,(\\Lambda-1)$ and a [file](config/config.yaml).
 
 ![Figure 7](figures/fig07.png)
 **Figure 7.** One cycle.
@@ -60,7 +60,7 @@ def test_a_short_one():
     reader = PdfReader(io.BytesIO(first))
     words = " ".join(reader.pages[0].extract_text().split())
     assert "One cycle. From its dataset" in words
-    assert sorted(uris(reader)) == ["../config/claims.yaml", "figures/fig07.nc"]
+    assert sorted(uris(reader)) == ["../config/config.yaml", "figures/fig07.nc"]
 
 
 def test_what_cannot_be_set_is_said_in_one_line(tmp_path, one_line):

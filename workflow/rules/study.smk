@@ -1,0 +1,22 @@
+# Parameters in, a dataset out. The stages of the paper are this rule for their own artifacts;
+# itself it makes none.
+rule study:
+    message:
+        "{wildcards.artifact}: {params.title}"
+    input:
+        data=lambda w: expand("results/figures/{x}.nc", x=READS.get(w.artifact, [])),
+        source=lambda wildcards: modules(STUDIES[wildcards.artifact].rpartition(".")[0]),
+    output:
+        data="results/figures/{artifact}.nc",
+    wildcard_constraints:
+        artifact="(?!)",
+    params:
+        study=lambda wildcards: STUDIES[wildcards.artifact],
+        title=lambda wildcards: TITLES.get(wildcards.artifact, wildcards.artifact),
+        arguments=lambda w: arguments(STUDIES[w.artifact], w.artifact, config),
+    log:
+        "results/logs/stages/{artifact}.log",
+    benchmark:
+        "results/benchmarks/stages/{artifact}.tsv"
+    script:
+        "../scripts/study.py"

@@ -57,7 +57,8 @@ class SpringDamperSystem(OrbitSystem):
     def orbit(self, y: np.ndarray) -> SpringDamperOrbit:
         """The orbits at points y of shape (..., 4)."""
         phase, impact, angle, p = np.moveaxis(y, -1, 0)
-        fixed, zeta = (0.0 * p + x for x in (self.fixed, self.damping_ratio))
+        # Where there is no orbit p is NaN, and the contact is a contact all the same.
+        fixed, zeta = (np.broadcast_to(x, p.shape) for x in (self.fixed, self.damping_ratio))
         by_amplitude = self.parameter is Parameter.AMPLITUDE
         amplitude, omega = (p, fixed) if by_amplitude else (fixed, np.exp(p))
         contact = SpringDamper(omega, zeta, self.release)

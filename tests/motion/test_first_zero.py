@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.contacts.spring_damper import Release, SpringDamper, contact_flow
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.motion.angles import table
 from bouncing_ball.motion.landing import Flight, land
 from bouncing_ball.motion.simulation import next_impact, simulate
@@ -80,7 +80,7 @@ def peaks(release, seed=0):
         phase, s0 = rng.uniform(-np.pi, np.pi), rng.uniform(1.2, 6.0)
 
         def observed(u, lam, s=s0, phase=phase):
-            flow = contact_flow(s, 0.0, u, phase, lam, omega, zeta)
+            flow = SpringDamper(omega, zeta).flow(s, 0.0, u, phase, lam)
             d, v, a = flow.displacement, flow.velocity, flow.acceleration
             jerk = -2 * zeta * omega * a - omega**2 * v + lam * np.cos(s + phase)
             return d + lag * v, v + lag * a, a + lag * jerk

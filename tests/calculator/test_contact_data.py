@@ -11,7 +11,7 @@ from bouncing_ball.calculator.case import Case, Table
 from bouncing_ball.calculator.contact_data import case_of, hertz
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import free_impact
-from bouncing_ball.contacts.spring_damper import SpringDamper, contact_flow
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError
 
 MASS, TABLE = 0.02, Table(300.0, 1e-4, 9.81)
@@ -47,7 +47,7 @@ def test_the_contact_time_is_that_of_the_flow(release):
     # so large a one leaves the weight below rounding.
     omega = math.sqrt(k / MASS)
     zeta = c / (2 * math.sqrt(k * MASS))
-    end = contact_flow(1e-3, 0.0, -1e12, 0.0, 0.0, omega, zeta)
+    end = SpringDamper(omega, zeta).flow(1e-3, 0.0, -1e12, 0.0, 0.0)
     held = end.displacement + (c / k) * end.velocity * (release is Release.FORCE)
     assert abs(held) < 1e-9 * end.velocity / omega
 

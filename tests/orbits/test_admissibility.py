@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from bouncing_ball.contacts.spring_damper import Release, SpringDamper, contact_flow
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.continuation.corrector import NewtonSettings
 from bouncing_ball.orbits.grazing import grazing_points
 from bouncing_ball.orbits.restitution_model import RestitutionModel
@@ -26,7 +26,7 @@ def sampled(orbit):
     """The definition, on 2000 samples of contact and flight each."""
     omega, zeta = orbit.contact.frequency_ratio, orbit.contact.damping_ratio
     u, lam = orbit.relative_impact_velocity, orbit.amplitude
-    flow = contact_flow(SHARES * orbit.contact_duration, 0.0, u, orbit.phase, lam, omega, zeta)
+    flow = SpringDamper(omega, zeta).flow(SHARES * orbit.contact_duration, 0.0, u, orbit.phase, lam)
     time = orbit.contact_duration + SHARES * orbit.flight_time
     height, velocity = orbit.flight_path(time)
     over = height - lam * np.sin(orbit.phase + time)

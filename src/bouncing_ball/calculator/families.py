@@ -95,7 +95,8 @@ def families(case: Case, asked: Sequence[int]) -> tuple[Family, ...]:
     [1]
     """
     n, lam = np.array(asked), case.table.amplitude
-    orbits, found = [], []
+    orbits: list[Orbit] = []
+    found: list[list[np.ndarray]] = []
     for model in case.models.values():
         still = np.full(n.shape, RESTITUTION_THRESHOLD if found else case.permanent_contact)
         limits = model.saddle_node(n).amplitude, model.period_doubling(n).amplitude, still

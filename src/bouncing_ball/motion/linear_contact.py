@@ -23,9 +23,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError
 from bouncing_ball.motion.angles import sine_and_versine
-from bouncing_ball.motion.ensembles import pick
-from bouncing_ball.motion.first_zero import State, Zero, first_zero
-from bouncing_ball.motion.starts import check_amplitude
+from bouncing_ball.motion.first_zero import Motion, State, Zero, first_zero
 
 # √γ below which the steady part has lost too many digits: ε/√γ remain.
 _RESONANCE = 1e-4
@@ -56,10 +54,6 @@ class Oscillator(NamedTuple):
     half: np.ndarray
     growth: np.ndarray
 
-    def take(self, which) -> "Oscillator":
-        """The constants of some of the balls; scalars are those of all."""
-        return Oscillator(*(pick(x, which) for x in self))
-
 
 def oscillator(contact: SpringDamper, amplitude: ArrayLike) -> Oscillator:
     """Constants of the contact of each ball; scalars stay scalars.
@@ -80,7 +74,6 @@ def oscillator(contact: SpringDamper, amplitude: ArrayLike) -> Oscillator:
             f"damping ratio ζ = {contact.damping_ratio} is not below 1: "
             "the simulation needs an underdamped contact"
         )
-    check_amplitude(np.asarray(amplitude, dtype=float))
     detuning, loss = (omega - 1) * (omega + 1), 2 * zeta * omega
     gamma = detuning * detuning + loss * loss
     if not np.all(np.sqrt(gamma) >= _RESONANCE):
@@ -111,7 +104,7 @@ def oscillator(contact: SpringDamper, amplitude: ArrayLike) -> Oscillator:
     return Oscillator(*(x[0] if x.size == 1 else x for x in constants))
 
 
-class ContactMotion:
+class ContactMotion(Motion):
     """The motion y of balls in contact.
 
     Parameters
@@ -173,14 +166,6 @@ class ContactMotion:
             o.stiffness * bound + o.steady,
             envelope + (o.steady - level) <= _ROUNDING * level,
         )
-
-    def take(self, which: np.ndarray) -> "ContactMotion":
-        part = object.__new__(ContactMotion)
-        part.constants = self.constants.take(which)
-        for name, value in vars(self).items():
-            if name != "constants":
-                setattr(part, name, value[which])
-        return part
 
     def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
         """No zero while even the transient's envelope leaves y negative.

@@ -5,17 +5,18 @@ import pytest
 import xarray as xr
 
 from bouncing_ball.compare.budgets import ARTIFACTS, BUDGETS
-from bouncing_ball.datasets.variables import VARIABLES, attributes, describe
+from bouncing_ball.datasets.variables import VARIABLES, describe
 
 
 def test_every_entry_is_complete():
-    found = {name: attributes(name) for name in VARIABLES}
-    for name, entry in found.items():
+    for name, entry in VARIABLES.items():
         assert name.isidentifier()
+        assert list(entry) == ["long_name", "symbol", "units", "equation"]
+        assert entry["units"] == ("rad" if name.endswith("phase") else "1")
         assert entry["long_name"] and entry["long_name"] == entry["long_name"].strip()
         assert not entry["equation"] or entry["equation"].startswith(("Eq", "Table"))
     # Two names must not mean the same.
-    pairs = [(entry["long_name"], entry["symbol"]) for entry in found.values()]
+    pairs = [(entry["long_name"], entry["symbol"]) for entry in VARIABLES.values()]
     assert len(set(pairs)) == len(pairs)
 
 
@@ -30,14 +31,14 @@ def test_describe():
     data = xr.Dataset({"phase": ("point", [0.5, 1.0]), "special_kind": ("special", ["fold"])})
     result = describe(data.assign_coords(frequency_ratio=2.0))
     assert result.phase.attrs == {
-        "long_name": VARIABLES["phase"][0],
+        "long_name": VARIABLES["phase"]["long_name"],
         "units": "rad",
         "symbol": "φ",
         "equation": "Eqs. 6, 21",
     }
     # Coordinates and what is no number are described too.
     for name in ("special_kind", "special", "frequency_ratio"):
-        assert result[name].attrs["long_name"] == VARIABLES[name][0]
+        assert result[name].attrs["long_name"] == VARIABLES[name]["long_name"]
         assert result[name].attrs["units"] == "1"
     # The data stay, and so does the argument.
     assert np.array_equal(result.phase, data.phase) and data.phase.attrs == {}

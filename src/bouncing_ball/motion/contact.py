@@ -4,10 +4,10 @@ A state on the Poincaré section is (φ, δ′) at the start of contact. With a 
 vanishing force a contact may also start at δ < 0, see
 :mod:`bouncing_ball.motion.resumption`; each such start is an impact.
 
-A contact is followed by :func:`bouncing_ball.contacts.collocation.march`. That of the
-spring-damper is in closed form (:mod:`bouncing_ball.motion.linear_contact`): there the
-release is certified to be the first, and contacts that never end are known. Landings are
-certified to be the first for every law.
+A contact is followed by :func:`bouncing_ball.contacts.collocation.march`. That of an
+underdamped spring-damper is in closed form (:mod:`bouncing_ball.motion.linear_contact`),
+but for the undamped resonance: there the release is certified to be the first, and contacts
+that never end are known. Landings are certified to be the first for every law.
 """
 
 from dataclasses import dataclass, replace
@@ -23,7 +23,7 @@ from bouncing_ball.motion.angles import reduce_angle, table
 from bouncing_ball.motion.ensembles import BLOCK, flatten, pick
 from bouncing_ball.motion.follow import BELOW, Columns, Departure, Impact, follow, next_impact
 from bouncing_ball.motion.landing import Flight, land
-from bouncing_ball.motion.linear_contact import ContactMotion, Oscillator, oscillator, release
+from bouncing_ball.motion.linear_contact import ContactMotion, has_closed_form, release
 from bouncing_ball.motion.resumption import leaves_fast, resumption
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence, Status
 from bouncing_ball.motion.starts import approach, check_amplitude
@@ -78,17 +78,15 @@ class AnyContact:
 
 @dataclass(frozen=True)
 class LinearContact(AnyContact):
-    """That of the spring-damper, with the constants of its closed form."""
+    """That of the spring-damper, in closed form."""
 
-    constants: Oscillator
+    law: Any
     block: ClassVar[int] = BLOCK
-
-    def take(self, which: Any) -> Self:
-        return replace(super().take(which), constants=self.constants.take(which))
 
     def depart(self, impact: Impact) -> Departure:
         x, y = table(impact.phase, self.amplitude)
-        motion = ContactMotion(self.constants, impact.displacement, impact.velocity, x, y)
+        state = impact.displacement, impact.velocity
+        motion = ContactMotion(self.law, self.amplitude, *state, x, y)
         end = release(motion)
         _, lift = table(impact.phase + end.time, self.amplitude)
         # Rounding may leave a touch of the table's level with a falling ball.
@@ -108,9 +106,8 @@ def _prepare(law: ContactLaw, amplitude, *states):
     (lam, _), states, shape = flatten([amplitude, np.zeros(law.shape)], states)
     check_amplitude(lam)
     laws = law.flat(shape)
-    if isinstance(laws, SpringDamper):
-        return LinearContact(laws, lam, oscillator(laws, lam)), states, shape
-    return AnyContact(laws, lam), states, shape
+    closed = isinstance(laws, SpringDamper) and has_closed_form(laws)
+    return (LinearContact if closed else AnyContact)(laws, lam), states, shape
 
 
 def simulate(
@@ -132,8 +129,7 @@ def simulate(
     Raises
     ------
     ModelError
-        If Λ or a state is not finite, or if a ball rises from the table; for the
-        spring-damper if ζ ≥ 1, and at the undamped resonance.
+        If Λ or a state is not finite, or if a ball rises from the table.
 
     Examples
     --------

@@ -6,7 +6,7 @@ import pytest
 from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError
-from bouncing_ball.motion.contact import simulate
+from bouncing_ball.motion.simulation import simulate
 
 RELEASES = list(Release)
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)

@@ -5,8 +5,8 @@ import pytest
 
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.motion.angles import table
-from bouncing_ball.motion.contact import contact_cycle, simulate
 from bouncing_ball.motion.landing import Flight, land
+from bouncing_ball.motion.simulation import next_impact, simulate
 
 # A gap function is known to about four units in the last place of its terms,
 # which are of order 10 here.
@@ -129,6 +129,6 @@ def test_a_ball_at_rest_on_the_table_starts_at_once():
     pressed, thrown = landing(2 * np.sin(phase), 2 * np.cos(phase), phase, 2.0)
     assert pressed == 0
     assert thrown > 1
-    cycle = contact_cycle(SpringDamper(10.0, 0.1), 2.0, 1.0, 0.0)
+    cycle = next_impact(SpringDamper(10.0, 0.1), 2.0, 1.0, 0.0)
     # The contact of no duration changes nothing.
     assert abs(float(cycle.time) - thrown) < 1e-12

@@ -19,7 +19,7 @@ import numpy as np
 
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.angles import sine_and_versine
-from bouncing_ball.motion.first_zero import State, Zero, first_zero
+from bouncing_ball.motion.first_zero import Motion, State, Zero, first_zero
 
 # √γ below which the steady part has lost too many digits: ε/√γ remain.
 _RESONANCE = 1e-4
@@ -41,7 +41,7 @@ def has_closed_form(contact: SpringDamper) -> bool:
     return bool(underdamped and np.all(np.hypot(*_resistance(contact)) >= _RESONANCE))
 
 
-class ContactMotion:
+class ContactMotion(Motion):
     """The motion y of balls in contact.
 
     Parameters
@@ -58,7 +58,7 @@ class ContactMotion:
 
     def __init__(self, contact: SpringDamper, amplitude, displacement, velocity, x, y):
         # By arrays of one element, so that one ball is computed as many are.
-        self.omega, zeta, lam, lag, detuning, loss = (
+        omega, zeta, lam, lag, detuning, loss = (
             np.atleast_1d(np.asarray(value, dtype=float))
             for value in (
                 contact.frequency_ratio,
@@ -68,15 +68,24 @@ class ContactMotion:
                 *_resistance(contact),
             )
         )
-        self.stiffness, self.decay, self.lag = self.omega * self.omega, loss / 2, lag
-        self.damped = self.omega * np.sqrt((1 - zeta) * (1 + zeta))
-        # The steady response to Λ sin τ + κ Λ cos τ, over Λ sin τ and Λ cos τ.
         gamma = detuning * detuning + loss * loss
+        # The steady response to Λ sin τ + κ Λ cos τ, over Λ sin τ and Λ cos τ.
         in_phase, quadrature = (detuning + lag * loss) / gamma, (lag * detuning - loss) / gamma
-        self.steady = lam * np.sqrt(in_phase * in_phase + quadrature * quadrature)
+        self.omega, self.stiffness, self.decay, self.damped, self.lag, self.steady, self.forcing = (
+            value[0] if value.size == 1 else value
+            for value in (
+                omega,
+                omega * omega,
+                zeta * omega,
+                omega * np.sqrt((1 - zeta) * (1 + zeta)),
+                lag,
+                lam * np.sqrt(in_phase * in_phase + quadrature * quadrature),
+                lam * np.sqrt(1 + lag * lag),
+            )
+        )
         self.sine, self.cosine = in_phase * x - quadrature * y, in_phase * y + quadrature * x
-        # The forcing now, and at most.
-        self.push, self.forcing = y + lag * x, lam * np.sqrt(1 + lag * lag)
+        # The forcing now.
+        self.push = y + lag * x
         self.start, self.start_rate = self._observed(displacement, velocity, y)
         self.a = self.start + (1 / self.stiffness - self.cosine)
         self.b = (self.start_rate - self.sine + self.decay * self.a) / self.damped
@@ -119,12 +128,6 @@ class ContactMotion:
             self.stiffness * bound + self.steady,
             envelope + (self.steady - level) <= _ROUNDING * level,
         )
-
-    def take(self, which: np.ndarray) -> "ContactMotion":
-        part = object.__new__(ContactMotion)
-        for name, value in vars(self).items():
-            setattr(part, name, value[which] if value.size > 1 else value)
-        return part
 
     def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
         """No zero while even the transient's envelope leaves y negative.

@@ -19,6 +19,7 @@ from bouncing_ball.errors import require
 from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.motion.ensembles import blocks
 from bouncing_ball.motion.sequence import Cycle
+from bouncing_ball.motion.simulation import next_impact
 from bouncing_ball.orbits import stability
 
 OBSERVABLES = (
@@ -155,11 +156,11 @@ class Orbit(Batch, ABC):
         Their rounding would decide between stable and not without dissipation.
         """
 
-    @abstractmethod
+    # What follows from the law and the flight.
+
     def cycle(self, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
         """From impacts (φ, δ′) with these orbits' parameters to the next, simulated."""
-
-    # What follows from the flight.
+        return next_impact(self.law, self.amplitude, phase, relative_velocity)
 
     def flight_defects(
         self, displacement: ArrayLike, velocity: ArrayLike

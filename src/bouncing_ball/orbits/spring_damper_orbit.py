@@ -9,8 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.motion.contact import contact_cycle
-from bouncing_ball.motion.sequence import Cycle
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.spring_damper_branch import BranchPoint, branch_point
 
@@ -92,10 +90,6 @@ class SpringDamperOrbit(Orbit):
         """exp(-2ζϖ τ_b), exactly."""
         loss = np.asarray(self.contact.damping_ratio) * self.contact.frequency_ratio
         return np.exp(-2 * loss * self.contact_duration)
-
-    def cycle(self, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
-        """From impacts (φ, δ′) to the next, simulated."""
-        return contact_cycle(self.contact, self.amplitude, phase, relative_velocity)
 
     def holding(self, time: np.ndarray) -> np.ndarray:
         """δ + κ δ′ in contact."""

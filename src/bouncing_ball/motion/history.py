@@ -40,8 +40,8 @@ def history(sequence: ImpactSequence, time: ArrayLike, ball: int | tuple[int, ..
 
     Examples
     --------
-    >>> from bouncing_ball.motion.restitution import simulate
-    >>> history(simulate(1.0, 0.0, 0.0, 2.0, 2), [0.0, 2.0, 4.0]).height.tolist()
+    >>> from bouncing_ball.motion.simulation import simulate
+    >>> history(simulate(1.0, 0.0, 0.0, -2.0, 2), [0.0, 2.0, 4.0]).height.tolist()
     [0.0, 2.0, 0.0]
     """
     index: tuple[Any, ...] = (ball,) if isinstance(ball, int) else tuple(ball)

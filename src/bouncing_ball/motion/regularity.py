@@ -30,8 +30,8 @@ def period(sequence: ImpactSequence, longest: int, closeness: float) -> np.ndarr
 
     Examples
     --------
-    >>> from bouncing_ball.motion.restitution import simulate
-    >>> period(simulate(1.0, 0.0, 0.0, np.pi, 8), 4, 1e-9).tolist()
+    >>> from bouncing_ball.motion.simulation import simulate
+    >>> period(simulate(1.0, 0.0, 0.0, -np.pi, 8), 4, 1e-9).tolist()
     1
 
     Raises
@@ -128,8 +128,8 @@ def stretching(sequence: ImpactSequence, restitution: float, skip: int) -> Stret
     --------
     On a table at rest a velocity only shrinks, and a phase stays off for ever:
 
-    >>> from bouncing_ball.motion.restitution import simulate
-    >>> parting = stretching(simulate(0.5, 0.0, 0.0, [4.0, 3.0], 16), 0.5, 12)
+    >>> from bouncing_ball.motion.simulation import simulate
+    >>> parting = stretching(simulate(0.5, 0.0, 0.0, [-8.0, -6.0], 16), 0.5, 12)
     >>> round(parting.exponent()[0], 5), parting.impacts.tolist()
     (0.0, [3, 3])
     """

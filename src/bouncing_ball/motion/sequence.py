@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bouncing_ball.contacts.batch import in_words
-from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.motion.angles import reduce_angle
 
 
@@ -46,8 +46,8 @@ class ImpactSequence:
     ----------
     amplitude : array
         Λ of each ball.
-    contact : SpringDamper or None
-        The spring-damper, or None for the restitution model.
+    contact : ContactLaw or None
+        The contact's law, or None where an impact is an instant.
     time, phase : array
         Time of the impact since the first one, and the table's phase, in [-π, π].
     displacement, relative_velocity : array
@@ -60,13 +60,13 @@ class ImpactSequence:
         δ and δ′ when the ball leaves.
     status : array of int
         :class:`Status` of each ball.
-    settling : array or None
-        Restitution model: the part of ``contact_duration`` taken by the
-        infinitely many impacts that are left out before the ball sticks.
+    settling : array
+        The part of ``contact_duration`` taken by the infinitely many impacts of the restitution
+        model that are left out before a ball sticks; 0 for the other models.
     """
 
     amplitude: np.ndarray
-    contact: SpringDamper | None
+    contact: ContactLaw | None
     time: np.ndarray
     phase: np.ndarray
     displacement: np.ndarray
@@ -75,7 +75,7 @@ class ImpactSequence:
     release_displacement: np.ndarray
     relative_release_velocity: np.ndarray
     status: np.ndarray
-    settling: np.ndarray | None = None
+    settling: np.ndarray
 
     def __repr__(self) -> str:
         balls = f" of {self.status.size} balls" if self.status.ndim else ""

@@ -15,6 +15,7 @@ from bouncing_ball.motion.contact import Contacts, LinearContacts
 from bouncing_ball.motion.corrected import Corrected
 from bouncing_ball.motion.dynamics import Dynamics, Impact
 from bouncing_ball.motion.ensembles import blocks, pick
+from bouncing_ball.motion.linear_contact import has_closed_form
 from bouncing_ball.motion.restitution import Instants
 from bouncing_ball.motion.sequence import RECORDED, Cycle, ImpactSequence, Status
 
@@ -28,7 +29,7 @@ _ROUNDING = 8 * np.finfo(float).eps
 def _dynamics(law: Law, amplitude: ArrayLike) -> Dynamics:
     lam = np.asarray(amplitude, dtype=float)
     require((lam >= 0) & np.isfinite(lam), lam, "amplitude Λ", "finite and ≥ 0")
-    if isinstance(law, SpringDamper):
+    if isinstance(law, SpringDamper) and has_closed_form(law):
         return LinearContacts(law, lam)
     if isinstance(law, ContactLaw):
         return Contacts(law, lam)
@@ -74,8 +75,7 @@ def simulate(
     Raises
     ------
     ModelError
-        If r, Λ or a state is outside its range, or if a ball rises from the table; for the
-        spring-damper if ζ ≥ 1, and at the undamped resonance.
+        If r, Λ or a state is outside its range, or if a ball rises from the table.
 
     Examples
     --------

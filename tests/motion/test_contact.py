@@ -163,8 +163,6 @@ def test_the_ball_is_where_its_state_says(lam, omega, zeta, phase, speed, releas
 
 def test_errors_are_one_line(one_line):
     for arguments, part in (
-        ((SpringDamper(1.0, 1.0), 1.0, 0.0, -1.0, 2), "underdamped"),
-        ((SpringDamper(1.0, 0.0), 1.0, 0.0, -1.0, 2), "resonance"),
         ((SpringDamper(2.0, 0.1), -1.0, 0.0, -1.0, 2), "amplitude"),
         ((SpringDamper(2.0, 0.1), 1.0, 0.0, 1.5, 2), "rises"),
         ((SpringDamper(2.0, 0.1), 1.0, np.nan, 1.5, 2), "finite"),

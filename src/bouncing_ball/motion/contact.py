@@ -4,14 +4,13 @@ A state on the Poincaré section is (φ, δ′) at the start of contact. With a 
 vanishing force a contact may also start at δ < 0, see
 :mod:`bouncing_ball.motion.resumption`; each such start is an impact.
 
-A contact is followed by :func:`bouncing_ball.contacts.collocation.march`. That of the
-spring-damper is in closed form (:mod:`bouncing_ball.motion.linear_contact`): there the
-release is certified to be the first, and contacts that never end are known. Landings are
-certified to be the first for every law.
+A contact is followed by :func:`bouncing_ball.contacts.collocation.march`. That of an
+underdamped spring-damper is in closed form (:mod:`bouncing_ball.motion.linear_contact`),
+but for the undamped resonance: there the release is certified to be the first, and contacts
+that never end are known. Landings are certified to be the first for every law.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -21,7 +20,7 @@ from bouncing_ball.motion.angles import reduce_angle, table
 from bouncing_ball.motion.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.motion.ensembles import BLOCK
 from bouncing_ball.motion.landing import Flight, land
-from bouncing_ball.motion.linear_contact import ContactMotion, Oscillator, oscillator, release
+from bouncing_ball.motion.linear_contact import ContactMotion, release
 from bouncing_ball.motion.resumption import resumption
 from bouncing_ball.motion.sequence import Status
 
@@ -61,19 +60,15 @@ class Contacts(Dynamics):
 
 @dataclass(frozen=True, repr=False)
 class LinearContacts(Contacts):
-    """Those of the :class:`~bouncing_ball.contacts.spring_damper.SpringDamper`."""
+    """Those of an underdamped :class:`~bouncing_ball.contacts.spring_damper.SpringDamper`."""
 
     block: ClassVar[int] = BLOCK
-
-    @cached_property
-    def constants(self) -> Oscillator:
-        """The constants of the closed form."""
-        return oscillator(self.law, self.amplitude)
 
     def depart(self, impact: Impact) -> Departure:
         """The end of each contact, or the proof that there is none."""
         x, y = table(impact.phase, self.amplitude)
-        motion = ContactMotion(self.constants, impact.displacement, impact.velocity, x, y)
+        state = impact.displacement, impact.velocity
+        motion = ContactMotion(self.law, self.amplitude, *state, x, y)
         end = release(motion)
         phase = impact.phase + end.time
         x, y = table(phase, self.amplitude)

@@ -15,24 +15,21 @@ from bouncing_ball.motion.contact import Contacts, LinearContacts
 from bouncing_ball.motion.corrected import Corrected
 from bouncing_ball.motion.dynamics import Dynamics, Impact
 from bouncing_ball.motion.ensembles import blocks, pick
+from bouncing_ball.motion.linear_contact import has_closed_form
 from bouncing_ball.motion.restitution import Instants
-from bouncing_ball.motion.sequence import Cycle, ImpactSequence, Status
+from bouncing_ball.motion.sequence import RECORDED, Cycle, ImpactSequence, Status
 
 Law = ContactLaw | Signature | RestitutionLaw | ArrayLike
 """A contact's law, its signature, or the restitution coefficient, a law r(v) or a number."""
 
 # A ball at rest on the table may come out of rounding as rising by a little.
 _ROUNDING = 8 * np.finfo(float).eps
-_RECORDED = (
-    *("time", "phase", "displacement", "relative_velocity", "contact_duration"),
-    *("release_displacement", "relative_release_velocity", "settling"),
-)
 
 
 def _dynamics(law: Law, amplitude: ArrayLike) -> Dynamics:
     lam = np.asarray(amplitude, dtype=float)
     require((lam >= 0) & np.isfinite(lam), lam, "amplitude Λ", "finite and ≥ 0")
-    if isinstance(law, SpringDamper):
+    if isinstance(law, SpringDamper) and has_closed_form(law):
         return LinearContacts(law, lam)
     if isinstance(law, ContactLaw):
         return Contacts(law, lam)
@@ -78,8 +75,7 @@ def simulate(
     Raises
     ------
     ModelError
-        If r, Λ or a state is outside its range, or if a ball rises from the table; for the
-        spring-damper if ζ ≥ 1, and at the undamped resonance.
+        If r, Λ or a state is outside its range, or if a ball rises from the table.
 
     Examples
     --------
@@ -97,7 +93,7 @@ def simulate(
     if not np.all(relative <= _ROUNDING * (np.abs(before) + dynamics.amplitude)):
         raise ModelError("a ball that rises from the table has no impact: z′ > w′")
     relative = np.minimum(relative, 0.0)
-    rows = {name: np.full((impacts, start.size), np.nan) for name in _RECORDED}
+    rows = {name: np.full((impacts, start.size), np.nan) for name in RECORDED}
     status = np.zeros(start.size, dtype=np.int8)
     for part in blocks(start.size, dynamics.block):
         impact = Impact.at_level(start[part], relative[part])

@@ -137,10 +137,6 @@ class Orbit(Batch, ABC):
         """What a contact holds the ball by: negative until it vanishes at the release."""
         return self.contact_path(time)[0] - self.amplitude * np.sin(self.phase + time)
 
-    def can_be_simulated(self) -> np.ndarray:
-        """Whether :meth:`cycle` is defined for each orbit's parameters."""
-        return np.ones(self.shape, dtype=bool)
-
     @abstractmethod
     def residual(self) -> np.ndarray:
         """Defects of the model's equations, along the last axis."""

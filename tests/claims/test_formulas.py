@@ -21,7 +21,7 @@ from bouncing_ball.claims.formulas import (
     stability,
 )
 from bouncing_ball.configuration.study import typed
-from bouncing_ball.contacts.spring_damper import contact_flow
+from bouncing_ball.contacts.spring_damper import SpringDamper
 
 PARAMETERS = {"samples": 16, "curve_points": 40, "seed": 2011}
 # What is wrong in the paper, and must be seen.
@@ -144,7 +144,7 @@ def test_the_flow_against_the_closed_form():
     lam, phase, omega, zeta, time = 0.8, 0.7, 3.0, 0.2, 0.9
     start = state(lam * np.sin(phase), -2.0, phase)
     there = flow(contact_matrix(omega, zeta, lam), time, start)
-    exact = contact_flow(time, 0.0, -2.0 - lam * np.cos(phase), phase, lam, omega, zeta)
+    exact = SpringDamper(omega, zeta).flow(time, 0.0, -2.0 - lam * np.cos(phase), phase, lam)
     angle = phase + time
     assert there[0] == pytest.approx(float(exact.displacement) + lam * np.sin(angle), abs=1e-14)
     assert there[1] == pytest.approx(float(exact.velocity) + lam * np.cos(angle), abs=1e-14)

@@ -20,9 +20,8 @@ from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.motion.angles import reduce_angle
-from bouncing_ball.motion.contact import contact_cycle
 from bouncing_ball.motion.rest import lift_off_phase
-from bouncing_ball.motion.restitution import impact_cycle
+from bouncing_ball.motion.simulation import next_impact
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.stability import Bifurcation
@@ -69,10 +68,16 @@ def check(comparison: str, *defects, budget: float = ROUNDING) -> tuple[str, flo
 # Eqs. 1-9: the restitution model.
 
 
+def impact_cycle(phase, velocity, r, lam):
+    """One simulated cycle from after an impact: (φ, v) after the next, and the time until it."""
+    cycle = next_impact(r, lam, phase, (lam * np.cos(phase) - velocity) / r)
+    bounced = lam * np.cos(cycle.phase) - r * cycle.relative_velocity
+    return cycle.phase, bounced, cycle.time
+
+
 def exact_cycle(phase, velocity, r, lam):
-    """One simulated cycle, (φ, v) after the next impact."""
-    cycle = impact_cycle(r, lam, phase, velocity)
-    return cycle.phase, cycle.velocity
+    """(φ, v) of the same."""
+    return impact_cycle(phase, velocity, r, lam)[:2]
 
 
 def holmes_cycle(phase, velocity, r, lam):
@@ -106,11 +111,11 @@ def restitution_model(rng, samples) -> Checks:
     r, lam = rng.uniform(0.1, 0.95, samples), rng.uniform(0.1, 3, samples)
     phase = rng.uniform(-np.pi, np.pi, samples)
     velocity = lam + rng.uniform(0.5, 6, samples)
-    cycle = impact_cycle(r, lam, phase, velocity)
-    bounced = printed.bounced_velocity(phase, velocity, cycle.time, lam, r)
-    landed = printed.landing_defect(phase, velocity, cycle.time, lam)
+    _, rebound, time = impact_cycle(phase, velocity, r, lam)
+    bounced = printed.bounced_velocity(phase, velocity, time, lam, r)
+    landed = printed.landing_defect(phase, velocity, time, lam)
     # Eqs. 2 and 3 in metres and seconds.
-    speed, landing = _GRAVITY / 40.0, (phase + cycle.time) / 40.0
+    speed, landing = _GRAVITY / 40.0, (phase + time) / 40.0
     start, thrown = phase / 40.0, velocity * speed
     before = printed.impact_velocity(landing, start, thrown, _GRAVITY)
     after = printed.restitution_law(before, lam * speed * np.cos(40.0 * landing), r)
@@ -121,9 +126,9 @@ def restitution_model(rng, samples) -> Checks:
     # Orbits above the fold, wherever that is printed.
     above = n * np.pi * (1 - r) / (1 + r) * rng.uniform(1.01, 3, samples)
     phi, launch = printed.fixed_point(n, r, above)
-    back = impact_cycle(r, above, phi, launch)
+    back_phase, back_velocity = exact_cycle(phi, launch, r, above)
     # The orbit at which both sides of the fold meet, φ = 0, exists at this Λ only.
-    met = impact_cycle(r, fold, 0.0 * r, n * np.pi)
+    met_phase, met_velocity = exact_cycle(0.0 * r, n * np.pi, r, fold)
     multiplier = Bifurcation.SADDLE_NODE.test(*stability(exact_cycle, 0.0 * r, n * np.pi, r, fold))
     doubling = printed.period_doubling(n, r)
     corrected = np.hypot(2 * (1 + r * r) / (1 + r) ** 2, n * np.pi * (1 - r) / (1 + r))
@@ -132,14 +137,14 @@ def restitution_model(rng, samples) -> Checks:
     edge = printed.restitution_threshold() + np.array([-1, 1]) * ROUNDING
     stays = np.isnan(lift_off_phase(edge)).tolist() == [True, False]
 
-    folds = multiplier, met.phase, met.velocity - n * np.pi
-    fixed = reduce_angle(back.phase - phi), back.velocity - launch
+    folds = multiplier, met_phase, met_velocity - n * np.pi
+    fixed = reduce_angle(back_phase - phi), back_velocity - launch
     one, of = "one simulated cycle", _FLIP + "the map of Eq. 5"
     return {
-        "Eq. 2": check(_CYCLE + _METRES, after / speed - cycle.velocity),
+        "Eq. 2": check(_CYCLE + _METRES, after / speed - rebound),
         "Eq. 3": check(_FALL + _METRES, (before - fallen[:, 1]) / speed),
         "Eq. 4": check(_FALL + _METRES, free_flight(rng, samples)),
-        "Eq. 5": check(_CYCLE, landed, bounced - cycle.velocity),
+        "Eq. 5": check(_CYCLE, landed, bounced - rebound),
         "Eq. 6": check(one, *fixed),
         "Eq. 7": check(f"{one}, and a Floquet multiplier at 1", *folds, budget=DIFFERENCES),
         "Eq. 8": check(of, doubling / corrected - 1, budget=DIFFERENCES),
@@ -212,7 +217,7 @@ def measured_restitution(r, frequency_ratio, velocity):
     NaN where the ball stays on the table.
     """
     contact = SpringDamper(frequency_ratio, printed.damping_ratio(r))
-    return contact_cycle(contact, 0.0, 0.0, -velocity).relative_velocity / -velocity
+    return next_impact(contact, 0.0, 0.0, -velocity).relative_velocity / -velocity
 
 
 def damping(rng, samples) -> Checks:

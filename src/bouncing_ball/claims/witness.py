@@ -232,7 +232,7 @@ def comparisons(shown: Shown) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
     yield FORMULA, np.arange(shown.orbit.size), formula_and_equations(shown)
     if shown.bifurcation:
         return
-    moving = np.flatnonzero(shown.admissible.astype(bool) & shown.orbit.can_be_simulated())
+    moving = np.flatnonzero(shown.admissible.astype(bool))
     orbit = shown.orbit[moving]
     tests = [kind.test(*orbit.trace_and_determinant()) for kind in Bifurcation]
     stable, left = orbit.is_stable(), np.min(tests, axis=0) < _UNSTABLE

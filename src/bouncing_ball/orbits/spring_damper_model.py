@@ -16,7 +16,7 @@ from bouncing_ball.orbits.model import Absence, ImpactModel, Route
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.spring_damper_branch import nearest_excess
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
-from bouncing_ball.orbits.spring_damper_system import Parameter, SpringDamperSystem
+from bouncing_ball.orbits.spring_damper_system import SpringDamperSystem
 from bouncing_ball.orbits.stability import Side
 
 # Units in the last place of z′_i that rounding leaves of a Λ = 0; at most 3.9 were
@@ -110,10 +110,7 @@ class SpringDamperModel(ImpactModel):
 
     def system(self, n: int | np.ndarray) -> SpringDamperSystem:
         """The paper's equations, continued in Λ."""
-        contact = self.contact
-        return SpringDamperSystem(
-            n, contact.damping_ratio, Parameter.AMPLITUDE, contact.frequency_ratio, contact.release
-        )
+        return SpringDamperSystem(n, self.contact)
 
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ_SD(ϖ) or Λ_F(ϖ)."""

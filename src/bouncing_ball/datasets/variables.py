@@ -287,8 +287,6 @@ VARIABLES: dict[str, Variable] = {
     "static_error": Variable(
         "relative error of Eq. 16 on a table at rest, with gravity", equation="Eq. 16", budget=1e-12
     ),
-    "curve_points": Variable("random points of the explicit curve"),
-    "curve_points_admissible": Variable("those of them with one impact per period"),
     # numbers printed with the claims
     "period_doubling_turn": Variable(
         "frequency ratio at which the period doubling is lowest", "ϖ", budget=1e-5
@@ -318,14 +316,11 @@ VARIABLES: dict[str, Variable] = {
     ),
     # claims: the paper against the replication
     "claim": Variable("claim of the paper"),
-    "section": Variable("section of the paper"),
     "item": Variable("figure, table or equation of the paper"),
-    "kind": Variable("number, formula or statement"),
     "group": Variable("what the claim is counted as"),
     "restates": Variable("claim that it says again"),
     "statement": Variable("what the claim says"),
     "printed_text": Variable("the number as printed"),
-    "legibility": Variable("how legible the claim is in the text at hand"),
     "remark": Variable("how the claim was read"),
     "condition": Variable("condition that decides a statement in words"),
     "decided_by": Variable("datasets that decide"),
@@ -338,8 +333,8 @@ VARIABLES: dict[str, Variable] = {
     "printed_table": Variable("the printed table whose entry the claim is"),
     "reason": Variable("why a claim is undecidable or not asked"),
     "explained_by": Variable("name of the explanation"),
-    "explained": Variable("reproduced, not asked, or explained by checks that hold"),
-    "explanation": Variable("explanation of claims that are not reproduced"),
+    "explained": Variable("neither close nor contradicted, or explained by checks that hold"),
+    "explanation": Variable("explanation of claims that are close or contradicted"),
     "explanation_text": Variable("the explanation in words"),
     "explanation_checks": Variable(
         "the checks of the explanation, with the numbers found", budget=IGNORED
@@ -352,7 +347,6 @@ VARIABLES: dict[str, Variable] = {
     # forensics
     "rows": Variable("rows of the table that are compared", equation="Table 1"),
     "rank": Variable("place of the reading, the closest to the printed table first"),
-    "description": Variable("what the reading assumes, in words"),
     "difference": Variable("computed less printed value, in units of the last digit", budget=1e-8),
     "largest_difference": Variable("largest difference, in units of the last digit", budget=1e-8),
     "rms_difference": Variable(

@@ -14,12 +14,11 @@ import xarray as xr
 
 from bouncing_ball.claims import as_printed as printed
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
-from bouncing_ball.contacts.spring_damper import SpringDamper, contact_flow
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.motion.angles import reduce_angle
-from bouncing_ball.motion.contact import contact_cycle
 from bouncing_ball.motion.rest import lift_off_phase
-from bouncing_ball.motion.restitution import impact_cycle
+from bouncing_ball.motion.simulation import next_impact
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Bifurcation
@@ -64,31 +63,37 @@ def slopes(motion, time):
     return np.imag(motion(time + 1j * step)) / step
 
 
+def impact_cycle(phase, velocity, r, lam):
+    """One simulated cycle from after an impact: (φ, v) after the next, and the time until it."""
+    cycle = next_impact(r, lam, phase, (lam * np.cos(phase) - velocity) / r)
+    bounced = lam * np.cos(cycle.phase) - r * cycle.relative_velocity
+    return cycle.phase, bounced, cycle.time
+
+
 def restitution_model(rng, samples) -> Checks:
     """Eqs. 1 to 9: impacts from random states, and orbits with their stability."""
     r, lam = rng.uniform(0.1, 0.95, samples), rng.uniform(0.1, 3, samples)
     phase = rng.uniform(-np.pi, np.pi, samples)
     velocity = lam + rng.uniform(0.5, 6, samples)
-    cycle = impact_cycle(r, lam, phase, velocity)
-    landing = phase + cycle.time
+    landing, rebound, time = impact_cycle(phase, velocity, r, lam)
     table = lam * np.cos(landing)
-    falling = table - (cycle.velocity - table) / r
-    height, fallen = printed.free_flight(landing, phase, lam * np.sin(phase), velocity)
+    falling = table - (rebound - table) / r
+    height, fallen = printed.free_flight(phase + time, phase, lam * np.sin(phase), velocity)
     flight = height - lam * np.sin(landing), fallen - falling
-    map_height = printed.landing_defect(phase, velocity, cycle.time, lam)
-    bounced = printed.bounced_velocity(phase, velocity, cycle.time, lam, r)
+    map_height = printed.landing_defect(phase, velocity, time, lam)
+    bounced = printed.bounced_velocity(phase, velocity, time, lam, r)
 
     n = rng.integers(1, 6, samples).astype(float)
     along, model = n * np.pi * (1 - r) / (1 + r), RestitutionModel(r)
     above = along * rng.uniform(1.01, 3, samples)
     phi, launch = printed.fixed_point(n, r, above)
-    back = impact_cycle(r, above, phi, launch)
-    fixed = reduce_angle(back.phase - phi), back.velocity - launch
+    back_phase, back_velocity, _ = impact_cycle(phi, launch, r, above)
+    fixed = reduce_angle(back_phase - phi), back_velocity - launch
     # The orbit at which both sides of the fold meet, φ = 0, exists at this Λ only.
     fold = printed.saddle_node(n, r)
-    met = impact_cycle(r, fold, 0.0 * r, n * np.pi)
+    met_phase, met_velocity, _ = impact_cycle(0.0 * r, n * np.pi, r, fold)
     at_fold = model.orbit_of(n, fold, 0.0 * r).trace_and_determinant()
-    folds = Bifurcation.SADDLE_NODE.test(*at_fold), met.phase, met.velocity - n * np.pi
+    folds = Bifurcation.SADDLE_NODE.test(*at_fold), met_phase, met_velocity - n * np.pi
     doubling = printed.period_doubling(n, r)
     corrected = np.hypot(2 * (1 + r * r) / (1 + r) ** 2, along)
     flips = model.orbit_of(n, corrected, np.arccos(along / corrected)).trace_and_determinant()
@@ -101,9 +106,9 @@ def restitution_model(rng, samples) -> Checks:
     simulated, flip = "simulated flight and impact", "multiplier at -1 of "
     exact = check(flip + "the map of Eq. 5", Bifurcation.PERIOD_DOUBLING.test(*flips))
     return {
-        "Eq. 2": check(simulated, printed.restitution_law(falling, table, r) - cycle.velocity),
+        "Eq. 2": check(simulated, printed.restitution_law(falling, table, r) - rebound),
         "Eq. 4": check(simulated, *flight),
-        "Eq. 5": check(simulated, map_height, bounced - cycle.velocity),
+        "Eq. 5": check(simulated, map_height, bounced - rebound),
         "Eq. 6": check("one simulated cycle", *fixed),
         "Eq. 7": check("one simulated cycle, and a Floquet multiplier at 1", *folds),
         "Eq. 8": check("the corrected form", doubling / corrected - 1),
@@ -132,7 +137,7 @@ def measured_restitution(r, frequency_ratio, velocity):
     NaN where the ball stays on the table.
     """
     contact = SpringDamper(frequency_ratio, printed.damping_ratio(r))
-    return contact_cycle(contact, 0.0, 0.0, -velocity).relative_velocity / -velocity
+    return next_impact(contact, 0.0, 0.0, -velocity).relative_velocity / -velocity
 
 
 def damping(rng, samples) -> Checks:
@@ -158,7 +163,8 @@ def contact_orbits(rng, samples) -> Checks:
     """The definition of ϖ, and Eqs. 12 to 15 and 21 to 27 on orbits that repeat."""
     omega, zeta = np.exp(rng.uniform(0.7, 5, samples)), rng.uniform(0.01, 0.5, samples)
     n = rng.integers(1, 4, samples)
-    model = SpringDamperModel(SpringDamper(omega, zeta))
+    contact = SpringDamper(omega, zeta)
+    model = SpringDamperModel(contact)
     lam = model.saddle_node(n).amplitude + rng.uniform(0.05, 0.5, samples)
     orbit = model.orbit(n, lam)
     phase, impact, end = orbit.phase, orbit.impact_velocity, orbit.contact_duration
@@ -168,7 +174,7 @@ def contact_orbits(rng, samples) -> Checks:
 
     def simulated(time):
         """δ and δ′, and height and velocity, from the impact on."""
-        rise, rate, *_ = contact_flow(time, 0.0, u, phase, lam, omega, zeta)
+        rise, rate, *_ = contact.flow(time, 0.0, u, phase, lam)
         return rise, rate, rise + lam * np.sin(phase + time), rate + lam * np.cos(phase + time)
 
     time = end * rng.uniform(0.1, 1, samples)
@@ -217,7 +223,7 @@ def permanent_contact(rng, samples) -> Checks:
         return printed.steady_displacement(time, omega, zeta, lam)
 
     start = steady(begin), slopes(steady, begin)
-    later = contact_flow(end - begin, *start, begin, lam, omega, zeta).displacement
+    later = SpringDamper(omega, zeta).flow(end - begin, *start, begin, lam).displacement
     at_any = omega**2 * steady_amplitude(omega, zeta)
     threshold = printed.permanent_contact_threshold(omega, zeta) * at_any - 1
     resonant = 2 * zeta * steady_amplitude(1.0, zeta) - 1

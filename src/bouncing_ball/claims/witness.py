@@ -203,7 +203,7 @@ def comparisons(shown: Shown) -> Iterator[tuple[str, np.ndarray]]:
     yield FORMULA, formula_and_equations(shown)
     if shown.bifurcation:
         return
-    orbit = shown.orbit[shown.admissible.astype(bool) & shown.orbit.can_be_simulated()]
+    orbit = shown.orbit[shown.admissible.astype(bool)]
     tests = [kind.test(*orbit.trace_and_determinant()) for kind in Bifurcation]
     yield CLOSES, simulation_returns(orbit, 1)
     yield HOLDS, simulation_returns(orbit[orbit.is_stable()], HELD_PERIODS)

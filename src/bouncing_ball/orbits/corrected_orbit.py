@@ -18,8 +18,6 @@ from bouncing_ball.contacts.corrected_map import (
     start_jacobian,
 )
 from bouncing_ball.contacts.signature import Instant, Signature
-from bouncing_ball.motion.corrected import corrected_cycle
-from bouncing_ball.motion.sequence import Cycle
 from bouncing_ball.orbits import corrected_branch as formulas
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.system import OrbitSystem
@@ -103,10 +101,6 @@ class CorrectedOrbit(Orbit):
     def determinant(self) -> np.ndarray:
         """That of the linearised cycle, in closed form."""
         return self.trace_and_determinant()[1]
-
-    def cycle(self, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
-        """From starts of contact (φ, δ′) to the next, simulated."""
-        return corrected_cycle(self.law, self.amplitude, phase, relative_velocity)
 
 
 @dataclass(frozen=True)

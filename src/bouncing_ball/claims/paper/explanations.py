@@ -8,7 +8,7 @@ from bouncing_ball.claims.claim import of_formula
 from bouncing_ball.claims.verdict import above, at_least, at_most, below
 
 
-def holmes_map(data):
+def approximate_map(data):
     """Eq. 8 is the period doubling of Holmes' map, for flights that are high against the
     excitation, an assumption that the paper announces in its introduction. Its own Eq. 5 does
     without, and so does the model that it compares with.
@@ -17,7 +17,7 @@ def holmes_map(data):
     return {f"error of {row}": of_formula(data, row) for row in rows}
 
 
-def ends_of_holmes_map(data):
+def ends_of_the_approximate_map(data):
     """The printed upper ends of the stiffest row are those of Eq. 8, which belongs to Holmes' map,
     while the spring-damper model converges to Eq. 5.
     """

@@ -100,7 +100,7 @@ def _entry(ratio: float, n: int, bound: str) -> Claim:
     said: dict[str, Any] = {"explanation": why.no_reading_fits}
     if ratio == max(AXES["frequency_ratio"]):
         equation = getattr(restitution_model, Bifurcation(bound).name.lower())
-        said = {"explanation": why.ends_of_holmes_map, "restates": equation}
+        said = {"explanation": why.ends_of_the_approximate_map, "restates": equation}
     return Claim(
         f"Table 1: {ratio:g}, {n}, {bound}",
         *("number", "Table 1"),

@@ -18,7 +18,7 @@ period_doubling = formula(
     "the n-T orbits lose stability in a period doubling at this amplitude",
     remark="the paper refers to Holmes for the stability, and its introduction speaks of flights "
     "that are large compared with the excitation",
-    explanation=why.holmes_map,
+    explanation=why.approximate_map,
 )
 
 

@@ -32,7 +32,8 @@ def test_all_routes_agree_on_all_that_is_shown(result, recorded):
     assert (np.isnan(result.disagreement) == ~compared).all()
     assert (result.disagreement <= result.budget).where(compared, True).all()
     # Nothing that an earlier run compared is left out.
-    assert (result.orbits == recorded["witness"].orbits).all()
+    accepted = recorded["witness"].orbits
+    assert (result.orbits >= accepted.sel(artifact=result.artifact)).all()
     assert (result.orbits.sel(comparison=FORMULA) > 0).all()
     # All points of three branches, and their bifurcations.
     assert result.orbits.sel(artifact="fig08", comparison=FORMULA).item() == 1803 + 9

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from bouncing_ball import calls
 from bouncing_ball.accuracy import error_law as error_laws
 from bouncing_ball.cli.readable import lines
 from bouncing_ball.contacts.contact_law import ContactLaw
@@ -17,7 +18,6 @@ from bouncing_ball.contacts.signature import LawSignature, LinearSignature, free
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.motion.sequence import Status
-from bouncing_ball.orbits import calls
 from bouncing_ball.orbits.continued import restitution_speed
 from bouncing_ball.orbits.orbit import OBSERVABLES, Orbit
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel

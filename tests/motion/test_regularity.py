@@ -54,7 +54,7 @@ def test_neighbours_part_at_the_rate_of_the_exponent():
 
 def test_what_comes_after_sticking_is_not_counted():
     # A ball dropped from low sticks, and is thrown at Λ sin τ = 1.
-    sequence = simulate(0.2, 1.2, -np.pi / 2, -0.5, 30)
+    sequence = simulate(0.2, 1.2, [-np.pi / 2], -0.5, 30)
     stuck = np.flatnonzero(sequence.contact_duration > 0)[0]
     assert 0 <= stuck < 20
     assert stretching(sequence, 0.2, 0).impacts.item() == stuck

@@ -35,9 +35,10 @@ def prepared(tree):
 
 @pytest.fixture(scope="module")
 def resumed(cloned, tmp_path_factory):
-    """A run killed as the third of its files was there, the first of which was then damaged.
+    """A run killed as the third of its files was there; the first of which was then damaged.
 
-    The tree, the checksums of what was there then in its order, and what the second run said.
+    The tree, the checksums of what was there then in its order, what the next run said of the
+    damage, and what the one said by which that file was made again.
     """
     folder = tmp_path_factory.mktemp("atlas") / "tree"
     shutil.copytree(cloned.path, folder, copy_function=shutil.copy2)
@@ -51,13 +52,14 @@ def resumed(cloned, tmp_path_factory):
     when, content = damaged.stat(), damaged.read_bytes()
     damaged.write_bytes(content[: len(content) // 2])
     os.utime(damaged, ns=(when.st_atime_ns, when.st_mtime_ns))
-    tree.run("--unlock", *ATLAS[:2])
-    said = tree.run("--cores", "1", *ATLAS)
-    return tree, early, said.stdout + said.stderr
+    refused = tree.run("--cores", "1", "--nolock", *ATLAS, check=False).stderr
+    path = str(damaged.relative_to(folder))
+    said = tree.run("--cores", "1", "--force", *ATLAS, path)
+    return tree, early, refused, said.stdout
 
 
 def test_a_killed_atlas_is_resumed_without_loss(resumed):
-    tree, early, _ = resumed
+    tree, early, *_ = resumed
     after = tree.checksums("results/atlas/shards")
     assert 3 == len(early) < len(after) == 4
     # Those of the first run are as they were, the damaged one too, made again.
@@ -65,12 +67,13 @@ def test_a_killed_atlas_is_resumed_without_loss(resumed):
 
 
 def test_a_damaged_shard_is_named_and_made_again(resumed):
-    _, early, said = resumed
+    _, early, refused, said = resumed
     # The job of the last one was killed before it could say that it was done.
-    damaged, whole, _ = early
-    assert f"results/atlas/shards/{damaged} is damaged: it is made again" in said
-    assert f"made results/atlas/shards/{damaged}" in said
-    assert f"made results/atlas/shards/{whole}" not in said
+    damaged, whole, _ = (f"results/atlas/shards/{name}" for name in early)
+    command = f"snakemake --cores 2 --force {damaged}"
+    assert f"{damaged} is damaged: make it again, {command}" in refused
+    assert f"made {damaged}" in said
+    assert f"made {whole}" not in said
 
 
 def test_the_files_hold_what_the_package_computes(resumed):

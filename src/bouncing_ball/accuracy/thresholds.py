@@ -23,6 +23,8 @@ Numbered = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 # Errors are bounded for the root finder: they may vanish, or be infinite.
 _SMALLEST, _LARGEST = 1e-300, 1e3
+# Of ln ϖ: the rounding of an error of 0.1 % moves its threshold by as much.
+_CLOSE = 1e-13
 
 
 class ThresholdStatus(StrEnum):
@@ -77,7 +79,10 @@ def last_crossing(function: Numbered, ratios: np.ndarray, scanned: np.ndarray) -
         bracket = np.log(ratios[last]), np.log(ratios[last + 1])
         with np.errstate(invalid="ignore"):  # of an interpolation that is then not taken
             root = find_root(
-                lambda x, k: function(np.exp(x), k.astype(int)), bracket, args=(which,)
+                lambda x, k: function(np.exp(x), k.astype(int)),
+                bracket,
+                args=(which,),
+                tolerances={"xatol": _CLOSE},
             )
         # On a sample rounding may turn the sign back: the root is that sample.
         values_at_ends = np.abs(root.f_bracket)

@@ -18,7 +18,7 @@ from bouncing_ball.accuracy.quantities import OF_ORBITS
 from bouncing_ball.atlas.crossings import LastCrossings
 from bouncing_ball.atlas.plan import Nodes, Plan
 from bouncing_ball.atlas.walk import TOGETHER, walk
-from bouncing_ball.contacts.signature import LinearSignature
+from bouncing_ball.contacts.signature import Signature
 
 BLOCK = 8192 // TOGETHER
 """Nodes walked at once: as many as keep the arrays in the cache, some ϖ long."""
@@ -122,7 +122,7 @@ def _block(plan: Plan, row: int, start: int) -> Answers:
         crossings.meet(step.frequency_ratio, np.moveaxis(error, 2, 0))
         sought += np.sum(step.sought, axis=0, dtype=np.int32)
         for k in np.flatnonzero(np.isin(step.frequency_ratio, plan.examined)):
-            one, signature = error[:, :, k], LinearSignature(nodes.contact(step.frequency_ratio[k]))
+            one, signature = error[:, :, k], Signature(nodes.contact(step.frequency_ratio[k]))
             left = remainder(nodes.n, signature(), nodes.amplitude, one[0], OF_ORBITS)
             described.append(
                 _errors(nodes, tiles, tolerances, one)

@@ -21,11 +21,11 @@ from bouncing_ball.calculator.results import (
 )
 from bouncing_ball.calculator.units import Unit, number, shown
 from bouncing_ball.calculator.verdict import assessed, chosen, notes
+from bouncing_ball.calls import Index, Rule
 from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError, require
-from bouncing_ball.orbits.calls import Index, Rule
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.signatures import Range
 

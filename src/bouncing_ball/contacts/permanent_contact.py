@@ -20,8 +20,8 @@ ends in the same state (p₀, p′₀), at which the grip g vanishes together wi
     g(p₀, p′₀) = 0,   ∂g/∂p p′₀ + ∂g/∂p′ (1 - Λ sin φ - f) = 0
 
 with φ and Λ unknown too; for a release at p = 0 the last two are p₀ = p′₀ = 0. Next to the
-touch p goes as t². In x with t = 2π S(x) of :mod:`bouncing_ball.contacts.quadrature`, with
-half as many roots as an impact has, the contact is smooth.
+touch p goes as t². In x with t = 2π S(x) and S′ ∝ [x (1 - x)]^{m-1}, m half the roots of the
+law, the contact is smooth.
 
 All quantities are dimensionless.
 """
@@ -31,11 +31,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.contact_law import ContactLaw, slopes_of
+from bouncing_ball.contacts.contact_law import ContactLaw, check_damping, check_positive, slopes_of
 from bouncing_ball.contacts.contact_scales import depth
-from bouncing_ball.contacts.quadrature import share, share_rate
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.contacts.spring_damper import check_contact
 from bouncing_ball.errors import ModelError, require
 
 _PERIOD = 2 * np.pi
@@ -70,7 +68,8 @@ def permanent_contact_threshold(
     >>> float(permanent_contact_threshold(1.0, 0.25))
     0.5
     """
-    check_contact(frequency_ratio, damping_ratio)
+    check_positive(frequency_ratio, "frequency ratio ϖ")
+    check_damping(damping_ratio, "damping ratio ζ")
     omega = np.asarray(frequency_ratio, dtype=float)
     loss = 2 * np.asarray(damping_ratio) / omega
     lag = 2 * Release.of(release).sine(damping_ratio) / omega
@@ -123,6 +122,7 @@ def permanent_contact(law: ContactLaw) -> float:
     0.25
     """
     from scipy.integrate import solve_bvp
+    from scipy.special import beta, betainc
 
     roots = max(1, law.root // 2)
 
@@ -132,9 +132,8 @@ def permanent_contact(law: ContactLaw) -> float:
         return 1 - amplitude * np.sin(phase + time) - law.force(np.maximum(depth, _TINY), rate)
 
     def rates(x, state, unknown):
-        time = _PERIOD * share(x, roots)
-        pace = np.stack([state[1], change(time, state, unknown)])
-        return _PERIOD * share_rate(x, roots) * pace
+        pace = np.stack([state[1], change(_PERIOD * betainc(roots, roots, x), state, unknown)])
+        return _PERIOD / beta(roots, roots) * (x * (1 - x)) ** (roots - 1) * pace
 
     def touch(start, end, unknown):
         if law.release is Release.DISPLACEMENT:
@@ -145,7 +144,7 @@ def permanent_contact(law: ContactLaw) -> float:
 
     # The contact that follows its load slowly.
     x = np.linspace(0, 1, _FIRST)
-    time, unknown = _PERIOD * share(x, roots), [np.pi / 2, 1.0]
+    time, unknown = _PERIOD * betainc(roots, roots, x), [np.pi / 2, 1.0]
     path = depth(law, 0 * x, 0.0, np.maximum(1 - np.cos(time), 1e-9))
     guess = np.stack([path, np.gradient(path, time)])
     with np.errstate(all="ignore"):

@@ -1,14 +1,20 @@
 """Sequences of impacts of many balls, as arrays."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
-from typing import NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
 from bouncing_ball.contacts.batch import in_words
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.motion.angles import reduce_angle
+
+RECORDED = (
+    *("time", "phase", "displacement", "relative_velocity", "contact_duration"),
+    *("release_displacement", "relative_release_velocity", "settling"),
+)
+"""The arrays of an :class:`ImpactSequence` with a row for each impact, in order."""
 
 
 class Status(IntEnum):
@@ -85,6 +91,20 @@ class ImpactSequence:
         values = (f"  {name:<22}{in_words(getattr(self, name))}" for name in names)
         return "\n".join([head, *values])
 
+    def __getitem__(self, balls: Any) -> Self:
+        """The impacts of one of the balls, or of some, along their first axis.
+
+        Examples
+        --------
+        >>> from bouncing_ball.motion.simulation import simulate
+        >>> simulate(1.0, 0.0, 0.0, [-1.0, -2.0], 2)[1].time.tolist()
+        [0.0, 4.0]
+        """
+        found = {name: value[:, balls] for name, value in vars(self).items() if name in RECORDED}
+        of_all = {"amplitude": self.amplitude[balls], "status": self.status[balls]}
+        law = None if self.contact is None else self.contact.take(balls)
+        return replace(self, contact=law, **of_all, **found)
+
     @property
     def impact_velocity(self) -> np.ndarray:
         """Absolute velocity z′_i of the ball at the impact."""
@@ -102,20 +122,6 @@ class ImpactSequence:
         return self.relative_release_velocity + self.amplitude * np.cos(self.release_phase)
 
     @property
-    def apparent_restitution(self) -> np.ndarray:
-        """r_a of each impact (Eq. 17)."""
-        return -self.relative_release_velocity / self.relative_velocity
-
-    @property
     def impacts(self) -> np.ndarray:
         """Number of recorded impacts of each ball."""
         return np.sum(np.isfinite(self.time), axis=0)
-
-    def section(self, skip: int = 0) -> tuple[np.ndarray, np.ndarray]:
-        """Poincaré section at the impacts: all (phase, relative velocity), flat.
-
-        Without the first ``skip`` impacts of each ball.
-        """
-        phase, velocity = self.phase[skip:], self.relative_velocity[skip:]
-        there = np.isfinite(phase)
-        return phase[there], velocity[there]

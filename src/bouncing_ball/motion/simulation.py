@@ -17,17 +17,13 @@ from bouncing_ball.motion.dynamics import Dynamics, Impact
 from bouncing_ball.motion.ensembles import blocks, pick
 from bouncing_ball.motion.linear_contact import has_closed_form
 from bouncing_ball.motion.restitution import Instants
-from bouncing_ball.motion.sequence import Cycle, ImpactSequence, Status
+from bouncing_ball.motion.sequence import RECORDED, Cycle, ImpactSequence, Status
 
 Law = ContactLaw | Signature | RestitutionLaw | ArrayLike
 """A contact's law, its signature, or the restitution coefficient, a law r(v) or a number."""
 
 # A ball at rest on the table may come out of rounding as rising by a little.
 _ROUNDING = 8 * np.finfo(float).eps
-_RECORDED = (
-    *("time", "phase", "displacement", "relative_velocity", "contact_duration"),
-    *("release_displacement", "relative_release_velocity", "settling"),
-)
 
 
 def _dynamics(law: Law, amplitude: ArrayLike) -> Dynamics:
@@ -97,7 +93,7 @@ def simulate(
     if not np.all(relative <= _ROUNDING * (np.abs(before) + dynamics.amplitude)):
         raise ModelError("a ball that rises from the table has no impact: z′ > w′")
     relative = np.minimum(relative, 0.0)
-    rows = {name: np.full((impacts, start.size), np.nan) for name in _RECORDED}
+    rows = {name: np.full((impacts, start.size), np.nan) for name in RECORDED}
     status = np.zeros(start.size, dtype=np.int8)
     for part in blocks(start.size, dynamics.block):
         impact = Impact.at_level(start[part], relative[part])

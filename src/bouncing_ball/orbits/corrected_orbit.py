@@ -28,9 +28,9 @@ class CorrectedOrbit(Orbit):
 
     Examples
     --------
-    >>> from bouncing_ball.contacts.signature import LinearSignature
+    >>> from bouncing_ball.contacts.signature import Signature
     >>> from bouncing_ball.contacts.spring_damper import SpringDamper
-    >>> orbit = CorrectedOrbit.at(1, LinearSignature(SpringDamper(np.pi, 0.0)), 0.8, np.pi / 2)
+    >>> orbit = CorrectedOrbit.at(1, Signature(SpringDamper(np.pi, 0.0)), 0.8, np.pi / 2)
     >>> float(orbit.bounce_velocity) == np.pi - 0.5, round(float(orbit.phase) - np.pi / 2, 12)
     (True, -0.5)
     """
@@ -119,9 +119,9 @@ class CorrectedSystem(OrbitSystem):
 
     Examples
     --------
-    >>> from bouncing_ball.contacts.signature import LinearSignature
+    >>> from bouncing_ball.contacts.signature import Signature
     >>> from bouncing_ball.contacts.spring_damper import SpringDamper
-    >>> system = CorrectedSystem(1, LinearSignature(SpringDamper(5.0, 0.0)))
+    >>> system = CorrectedSystem(1, Signature(SpringDamper(5.0, 0.0)))
     >>> [abs(round(float(x), 12)) for x in system.residual(np.array([np.pi / 2, np.pi, 1.0]))]
     [0.0, 0.0]
     """

@@ -14,7 +14,7 @@ import xarray as xr
 from bouncing_ball.accuracy.error_law import REMAINDER, STATED, remainder
 from bouncing_ball.accuracy.errors import errors
 from bouncing_ball.accuracy.quantities import OF_IMPACTS, Quantity
-from bouncing_ball.contacts.signature import LinearSignature
+from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.parameters import Span
 from bouncing_ball.studies.random_orbits import random_orbits
@@ -53,7 +53,7 @@ def law_errors(size: int, seed: int | Sequence[int], span: Span, release: Releas
     omega = np.exp(rng.uniform(np.log(span.min), np.log(span.max), size))
     contact = SpringDamper(omega, zeta, release)
     restitution, corrected = errors(contact, n, lam)
-    left = remainder(n, LinearSignature(contact)(), lam, restitution)
+    left = remainder(n, Signature(contact)(), lam, restitution)
     shown = {"restitution": restitution, "corrected": corrected}
     shown |= {"law": left.law, "remainder": left.factor}
     return xr.Dataset(

@@ -17,7 +17,7 @@ from bouncing_ball.accuracy.errors import SIMPLE, errors
 from bouncing_ball.accuracy.quantities import OF_IMPACTS, Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus, search
 from bouncing_ball.contacts.damping import damping_ratio
-from bouncing_ball.contacts.signature import LinearSignature
+from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.orbits.restitution_model import RestitutionModel
@@ -220,7 +220,7 @@ def meeting_flights(parameters: Meeting, release: Release) -> xr.Dataset:
             "contact_duration": ((), end),
             "meeting_time": ((), meeting),
             "meeting_height": ((), float(start + (velocity - meeting / 2) * meeting)),
-            "delay": ((), float(LinearSignature(exact.contact)().delay)),
+            "delay": ((), float(Signature(exact.contact)().delay)),
         },
         coords={"time": time},
     )

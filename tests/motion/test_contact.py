@@ -102,6 +102,8 @@ def test_cycle_of_a_permanent_contact():
     cycle = next_impact(SpringDamper(10.0, 0.1), 0.2, [0.0, 1.0], [0.0, -50.0])
     assert np.isnan(cycle.phase[0]) and cycle.time[0] == np.inf
     assert np.isfinite(cycle.phase[1])
+    # Of no ball there is no impact.
+    assert next_impact(SpringDamper(10.0, 0.1), 0.2, [], []).phase.shape == (0,)
 
 
 @pytest.mark.parametrize("release", RELEASES)

@@ -59,7 +59,7 @@ class Corrected(Dynamics):
         landing = land(flight, flight.sure())
         at_level = departure.phase + landing.time
         flown = landing.time + self._descent(at_level, -landing.rate)
-        instant = reduce_angle(departure.phase + flown), flight.thrown - flown
+        instant = reduce_angle(departure.phase + flown), flight.velocity + flight.x - flown
         hit = corrected_map.impact(self.law, self.amplitude, *instant)
         phase, velocity = corrected_map.start_of(self.amplitude, hit)
         passed = departure.duration + flown - hit.instant.delay

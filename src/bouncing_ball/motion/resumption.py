@@ -74,7 +74,7 @@ def _leaves_fast(flight: Flight, law: ContactLaw) -> np.ndarray:
         slopes = slopes_of(law.grip, -flight.displacement, -flight.velocity)
         lag = slopes.by_rate / slopes.by_penetration
     inside = flight.room()
-    return (inside > 0) & (np.sqrt(np.maximum(inside, 0.0)) >= lag * flight.gravity)
+    return (inside > 0) & (np.sqrt(np.maximum(inside, 0.0)) >= lag * (1 + flight.amplitude))
 
 
 def _certified(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.ndarray]:

@@ -166,4 +166,4 @@ def next_impact(
             landed, passed = here.take(going).fly(pick(departure, going))
             values = landed.phase, landed.velocity, landed.displacement, passed
             out[:, part.start + going] = values
-    return Cycle(*out.reshape(-1, *shape))
+    return Cycle(*out.reshape(len(Cycle._fields), *shape))

@@ -109,7 +109,8 @@ def lines(answer: Mapping[str, Any]) -> list[str]:
     rows: dict[str, Any] = {}
     for name, value in answer.items():
         parts = value if isinstance(value, Mapping) else {"": value}
-        rows |= {f"{name} {key}".strip().replace("_", " "): part for key, part in parts.items()}
+        title = name.replace("_", " ")
+        rows |= {f"{title} {key}".strip(): part for key, part in parts.items()}
     rows["make again"] = " && ".join(answer["make_again"])
     texts = {k: x if isinstance(x, str) else json.dumps(x) for k, x in rows.items()}
     width = max(map(len, rows)) + 2

@@ -9,7 +9,7 @@ from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.figures.article.render import render_article
 from bouncing_ball.figures.atlas.tables import shares
 from bouncing_ball.figures.tables import rows
-from bouncing_ball.figures.tables.formats import to_csv, to_latex, to_markdown
+from bouncing_ball.figures.tables.formats import to_csv, to_markdown
 from bouncing_ball.figures.tables.rows import law_table
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -30,7 +30,7 @@ def all_texts(data):
     made = {}
     for name in TABLES:
         table = getattr(rows, name)(data[name])
-        for form in (to_csv, to_latex, to_markdown):
+        for form in (to_csv, to_markdown):
             made[name, form.__name__] = form(*table)
     texts = {name: made[name, "to_markdown"] for name in TABLES}
     summary = (ROOT / "config" / "error_law.csv").read_text(encoding="utf-8")

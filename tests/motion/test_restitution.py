@@ -10,7 +10,7 @@ from bouncing_ball.errors import ModelError
 from bouncing_ball.motion.history import history
 from bouncing_ball.motion.rest import lift_off_phase
 from bouncing_ball.motion.sequence import Status
-from bouncing_ball.motion.simulation import simulate
+from bouncing_ball.motion.simulation import next_impact, simulate
 
 
 def test_an_elastic_ball_on_a_table_at_rest_keeps_its_energy():
@@ -108,6 +108,11 @@ def test_the_ball_stays_above_the_table(r, lam, phase, speed):
     # Each impact obeys the law and happens on the table, for flights of some length.
     flown = np.isfinite(sequence.time[1:])
     assert np.all(sequence.relative_velocity[1:][flown] <= 0)
+
+
+def test_no_balls_are_no_error():
+    assert simulate(0.5, 1.0, np.zeros((0, 2)), -1.0, 3).time.shape == (3, 0, 2)
+    assert next_impact(0.5, 1.0, np.zeros((0, 2)), -1.0).time.shape == (0, 2)
 
 
 def test_errors_are_one_line(one_line):

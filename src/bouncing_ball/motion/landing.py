@@ -33,11 +33,11 @@ class Flight(Motion):
     def __init__(self, displacement, velocity, x, y, amplitude):
         self.displacement, self.velocity = displacement, velocity
         self.x, self.y, self.amplitude = x, y, amplitude
-        self.thrown, self.gravity = velocity + x, 1 + amplitude
-        over = self.thrown * self.thrown + 2 * (displacement + (y - amplitude))
+        thrown = velocity + x
+        over = thrown * thrown + 2 * (displacement + (y - amplitude))
         root = np.sqrt(np.maximum(over, 0.0))
         # z > Λ between these two times; the second is the first or less if never.
-        self.above, self.below = self.thrown - root, self.thrown + root
+        self.above, self.below = thrown - root, thrown + root
 
     def gap(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """δ, δ′, δ″, δ‴ after a time of flight."""
@@ -61,7 +61,7 @@ class Flight(Motion):
 
     def room(self) -> np.ndarray:
         """v² + 2(1 + Λ)δ_b: positive if the ball certainly comes above the table's level."""
-        return self.velocity * self.velocity + 2 * self.gravity * self.displacement
+        return self.velocity * self.velocity + 2 * (1 + self.amplitude) * self.displacement
 
     def sure(self) -> np.ndarray:
         """A time by which the ball has not landed.
@@ -70,7 +70,7 @@ class Flight(Motion):
         relative gravity, 1 + Λ. From rest on a table that recedes, Y ≥ 1,
         ``δ ≥ (Y - 1) s²/2 + X s³/6 - Λ s⁴/24``.
         """
-        time = (self.velocity + np.sqrt(np.maximum(self.room(), 0.0))) / self.gravity
+        time = (self.velocity + np.sqrt(np.maximum(self.room(), 0.0))) / (1 + self.amplitude)
         if np.all(self.velocity):
             return time
         x, top, excess = self.x, np.maximum(self.amplitude, 1.0), self.y - 1
@@ -78,6 +78,32 @@ class Flight(Motion):
         lift = np.maximum(excess, 0.0)
         steep = np.minimum(lift / np.maximum(np.abs(x), 1e-300), np.sqrt(3 * lift / top))
         return np.where(rests, np.maximum(steep, 4 * x / top), time)
+
+
+class Rise(Motion):
+    """The motion δ of a ball that was let go below the table's level, while it rises."""
+
+    def __init__(self, flight: Flight):
+        self.flight = flight
+
+    def __call__(self, time: np.ndarray) -> State:
+        displacement, rate, second, third = self.flight.gap(time)
+        lam = self.flight.amplitude
+        return State(displacement, rate, second, third, 1 + lam, lam, lam, rate <= 0)
+
+
+def emerge(flight: Flight) -> tuple[np.ndarray, np.ndarray]:
+    """A time by which balls let go at the table's level or below it have not landed, and
+    whether they come above it."""
+    time, rising = flight.sure(), flight.velocity > 0
+    unsure = np.flatnonzero(rising & (flight.room() <= 0))
+    if unsure.size:
+        part = flight.take(unsure)
+        rise = first_zero(Rise(part), np.zeros(unsure.size))
+        rising[unsure] = ~(rise.ended | rise.undecided) & (rise.rate > 0)
+        # From the table's level on, against the strongest relative gravity.
+        time[unsure] = rise.time + 2 * rise.rate / (1 + part.amplitude)
+    return time, rising
 
 
 def land(flight: Flight, start: np.ndarray) -> Zero:

@@ -10,7 +10,7 @@ from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.contacts.signature import Instant, LinearSignature, Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits import corrected_branch as formulas
-from bouncing_ball.orbits.corrected_orbit import CorrectedOrbit, CorrectedSystem
+from bouncing_ball.orbits.corrected_orbit import CorrectedOrbit
 from bouncing_ball.orbits.model import ImpactModel, Route
 from bouncing_ball.orbits.orbit import Orbit, check_index
 from bouncing_ball.orbits.stability import Side
@@ -50,10 +50,6 @@ class CorrectedModel(ImpactModel):
     def signature(self, speed: ArrayLike) -> Instant:
         """The law."""
         return self.law(speed)
-
-    def system(self, n: int | np.ndarray) -> CorrectedSystem:
-        """The equations of the orbits, continued in Λ."""
-        return CorrectedSystem(n, self.law)
 
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ = 1, as in the restitution model: no impact, nothing to correct."""

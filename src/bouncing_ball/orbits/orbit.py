@@ -114,6 +114,11 @@ class Orbit(Batch, ABC):
     # What a model's orbits add.
 
     @property
+    def unknowns(self) -> tuple[np.ndarray, ...]:
+        """(φ, z′_i), from which the contact follows."""
+        return self.phase, self.impact_velocity
+
+    @property
     def clock(self) -> ArrayLike:
         """Rate of the contact's own time against the table's; 1 without any."""
         return 1.0

@@ -233,7 +233,7 @@ class Orbit(Batch, ABC):
         low = np.flatnonzero((top < self.amplitude) & (self.contact_duration > 0))
         # The samples of all at once would be gigabytes.
         for part in blocks(low.size, _BLOCK):
-            lifted = self.ravel()[low[part]]._contact_top()
+            lifted = self.flat(self.shape).take(low[part])._contact_top()
             top.flat[low[part]] = np.maximum(top.flat[low[part]], lifted)
         return top
 

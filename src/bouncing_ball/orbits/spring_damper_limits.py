@@ -11,6 +11,7 @@ fold. Entries for which the quantity does not exist are NaN.
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -254,7 +255,8 @@ def orbits_at(contact: SpringDamper, n: int, amplitude: float) -> SpringDamperOr
     ([1.601, 2.249, 5.193], [True, False, True])
     """
     check_index(n)
-    one = _Curves(contact.ravel(), np.array([float(n)]))
+    omega = np.atleast_1d(contact.frequency_ratio)
+    one = _Curves(replace(contact, frequency_ratio=omega), np.array([float(n)]))
     low, high = (float(x[0]) for x in one.ends())
     step = _FINE * min(1.0, float(contact.damped_frequency))
     fine = np.arange(low, min(high, low + _MOST * step), step)

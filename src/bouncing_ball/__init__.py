@@ -24,6 +24,7 @@ The layers, each importing only what lies above it in this list (and ``errors`` 
 ``continuation``  pseudo-arclength continuation; knows nothing of balls
 ``motion``        event-driven simulation, from any initial state
 ``orbits``        n-T orbits, their stability and bifurcations
+``calls``         the calls that most people need: a model, an orbit, its limits, a simulation
 ``accuracy``      errors of one model against another, their thresholds, the error law
 ``studies``       the stages of the pipeline: parameters in, datasets out
 ``calculator``    units, cases and verdicts for an engineer's own contact
@@ -45,10 +46,10 @@ __version__ = "0.1.0"
 # What users import from here, and where it is. Imported when it is asked for:
 # the command line's --help needs no numpy.
 _PUBLIC = {
-    "orbit": "orbits.calls",
-    "limits": "orbits.calls",
-    "simulate": "orbits.calls",
-    "model": "orbits.calls",
+    "orbit": "calls",
+    "limits": "calls",
+    "simulate": "calls",
+    "model": "calls",
     "design": "calculator.design",
     "SpringDamper": "contacts.spring_damper",
     "SpringDamperModel": "orbits.spring_damper_model",

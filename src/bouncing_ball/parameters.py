@@ -47,65 +47,44 @@ def _distinct(values: tuple) -> tuple:
 Many = Annotated[tuple[_T, ...], Strict(False), Field(min_length=1), AfterValidator(_distinct)]
 """One or more different values, a list in the configuration."""
 
+# Why r and Λ have the limits that they have.
+_HELD = "an r below 0.05 is that of a contact which the ball hardly leaves"
+_UNSTABLE = "of the families n ≤ 20 have long been unstable"
+
 Family = Annotated[
     int,
     number(
-        "index n of the family, whose orbit repeats every 2πn; beyond 20 the rounding of 2πn is "
-        "more than the routes to an orbit may differ by",
+        "index n of the family, of period 2πn; beyond 20 the routes to an orbit part by rounding",
         ge=1,
         le=20,
     ),
 ]
 Restitution = Annotated[
     float,
-    number(
-        "restitution coefficient r, from which the contact's damping follows (Eq. 16); an r below "
-        "0.05 is that of a contact which the ball hardly leaves",
-        ge=0.05,
-        le=1,
-    ),
+    number(f"restitution coefficient r, which gives the damping (Eq. 16); {_HELD}", ge=0.05, le=1),
 ]
 LossyRestitution = Annotated[
     float,
-    number(
-        "restitution coefficient r; at r = 1 no orbit is asymptotically stable, and an r below "
-        "0.05 is that of a contact which the ball hardly leaves",
-        ge=0.05,
-        le=0.999,
-    ),
+    number(f"restitution coefficient r; at r = 1 no orbit attracts; {_HELD}", ge=0.05, le=0.999),
 ]
 OwnRestitution = Annotated[
     float,
-    number(
-        "restitution coefficient r, which a contact has under either release rule: r > e⁻² if it "
-        "ends where its force vanishes",
-        ge=0.15,
-        le=0.999,
-    ),
+    number("restitution coefficient r of either release: by force r > e⁻²", ge=0.15, le=0.999),
 ]
 LawRestitution = Annotated[
-    float,
-    number(
-        "restitution coefficient r; contacts of every law have r from 0.3 to 0.99", ge=0.3, le=0.99
-    ),
+    float, number("restitution coefficient r, one of contacts of any law", ge=0.3, le=0.99)
 ]
 Amplitude = Annotated[
     float,
     number(
-        "amplitude Λ of the table's acceleration over gravity; at 1000 all orbits of the families "
-        "n ≤ 20 have long been unstable",
+        f"amplitude Λ of the table's acceleration over gravity; at 1000 all orbits {_UNSTABLE}",
         gt=0,
         le=1000,
     ),
 ]
 AmplitudeMax = Annotated[
     float,
-    number(
-        "upper end of the Λ axis, up to which branches are followed; at 100 all restitution orbits "
-        "of the families n ≤ 20 have long been unstable",
-        gt=0,
-        le=100,
-    ),
+    number(f"upper end of the Λ axis; at 100 all restitution orbits {_UNSTABLE}", gt=0, le=100),
 ]
 FrequencyRatio = Annotated[
     float,

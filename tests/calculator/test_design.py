@@ -276,20 +276,20 @@ def test_no_orbit_or_no_contact(change, says, one_line):
     ("change", "says"),
     [
         ({"n": 1.5}, "not a positive integer"),
-        ({"stiffness": -1.0}, "stiffness = -1 N/m is not positive"),
+        ({"stiffness": -1.0}, "stiffness = -1 N/m is not a number in [1e-40, 1e+40]"),
         ({"mass": None}, "mass is missing"),
         ({"frequency": None}, "how fast the table moves is missing"),
         ({"acceleration": None}, "how far the table moves is missing"),
         ({"amplitude": "1 mm"}, "contradict each other"),
         ({"quantity": "colour"}, "one of max_height"),
         ({"release": "glue"}, "unknown release"),
-        ({"restitution": 0.0}, "restitution = 0.0 is not in (0, 1]"),
+        ({"restitution": 0.0}, "restitution = 0 is not a number in (0, 1]"),
         ({"restitution": None, "damping_ratio": 0.9999999}, "damping_ratio = 0.9999999"),
         ({"restitution": None, "damping": "5 N s/m", "stiffness": None}, "missing"),
         ({"stiffness": 1e40}, "ϖ = "),
         # Its square is beyond all numbers, or below them.
-        ({"frequency": 1e300}, "frequency = 1e+300 Hz is not between 1e-40 and 1e+40"),
-        ({"mass": 1e-300}, "mass = 1e-300 kg is not between"),
+        ({"frequency": 1e300}, "frequency = 1e+300 Hz is not a number in"),
+        ({"mass": 1e-300}, "mass = 1e-300 kg is not a number in"),
         (HERTZ | {"stiffness": None, "release": "force"}, "released at δ = 0"),
     ],
 )
@@ -308,7 +308,7 @@ def test_the_orbit_of_a_choice_is_that_of_the_restitution_model():
     assert RestitutionModel(0.614).orbit(4, 3.118).is_stable()
     assert found.n == 4 and "of the 4-T orbit" in found.verdict
     assert [one.exists for one in found.orbits if one.n == 4] == [False]
-    assert found.notes[0] == "at this Λ the contact that is chosen has no 4-T orbit"
+    assert found.notes[0] == "at this Λ the contact has no 4-T orbit"
 
 
 def test_a_tolerance_that_every_contact_meets_needs_no_frequency_ratio():

@@ -56,21 +56,20 @@ def test_a_plain_number_is_in_si_units(name, value):
 @pytest.mark.parametrize(
     ("name", "value", "says"),
     [
-        ("frequency", "20 ms", "is a time: it needs a frequency, such as 50 Hz; a period has"),
-        ("period", "50 Hz", "is a frequency: it needs a time, such as 20 ms"),
-        ("frequency", "314 s^-1", "cycles or radians: write Hz or rad/s"),
-        ("frequency", "5 Bq", "cycles or radians"),
-        ("amplitude", "2 m/s^2", "acceleration has its own parameter, acceleration"),
-        ("amplitude", "2 g", "is a mass: it needs a length"),
-        ("damping_ratio", "3 N s/m", "has its own parameter, damping"),
-        ("restitution", "3 m", "is a length: it needs a number"),
-        ("mass", "50 furlong^2 candela", "is of dimension"),
+        ("frequency", "20 ms", "is of the dimension [time]: write it as '50 Hz'"),
+        ("period", "50 Hz", "of the dimension [angle] / [time]: write it as '20 ms'"),
+        ("frequency", "314 s^-1", "of the dimension 1 / [time]: write it as '50 Hz'"),
+        ("frequency", "5 Bq", "of the dimension 1 / [time]"),
+        ("amplitude", "2 m/s^2", "[length] / [time] ** 2: write it as '0.1 mm'"),
+        ("amplitude", "2 g", "of the dimension [mass]"),
+        ("restitution", "3 m", "of the dimension [length]: write it as '0.85'"),
+        ("mass", "50 furlong^2 candela", "of the dimension [length] ** 2"),
         ("mass", "20 grams of steel", "an unknown unit"),
         ("mass", "twenty", "does not begin with a number"),
         ("mass", "1e999", "not a finite number"),
         ("mass", math.nan, "not a finite number"),
         ("mass", [1.0, 2.0], "neither a number nor a text"),
-        ("contact_time", "20 degC", "an unknown unit"),
+        ("contact_time", "20 degC", "of the dimension [temperature]"),
         # Nothing is evaluated, however short its text.
         ("frequency", "9**9**9**9", "an unknown unit"),
         ("frequency", "9 m^9^9", "an unknown unit"),
@@ -95,7 +94,7 @@ def test_quantities_of_any_registry():
     registry = pint.UnitRegistry()
     assert read("stiffness", 2 * registry.kilonewton / registry.millimeter) == 2e6
     assert read("restitution", registry.Quantity(0.5)) == 0.5
-    with pytest.raises(ModelError, match="is a time"):
+    with pytest.raises(ModelError, match=r"\[time\]"):
         read("frequency", 3 * registry.second)
 
 

@@ -8,24 +8,18 @@ from scipy.optimize import brentq
 
 from bouncing_ball.claims import as_printed as printed
 from bouncing_ball.claims import formulas as checks
-from bouncing_ball.claims.flow import contact_matrix, flow, state
 from bouncing_ball.claims.formulas import (
     ROUNDING,
     WEIGHTLESS,
     check,
-    doubled,
-    exact_cycle,
     formulas,
-    holmes_cycle,
     measured_restitution,
-    stability,
 )
 from bouncing_ball.configuration.study import typed
-from bouncing_ball.contacts.spring_damper import contact_flow
 
-PARAMETERS = {"samples": 16, "curve_points": 40, "seed": 2011}
+PARAMETERS = {"samples": 16, "seed": 2011}
 # What is wrong in the paper, and must be seen.
-WRONG = {"Eq. 8", "ϖ = Ω/ω, Ω of the table", "Eqs. 21-26 by Eqs. 12, 13, 16, 17"}
+WRONG = {"Eq. 8", "ϖ = Ω/ω, Ω of the table"}
 
 
 def agreeing(data):
@@ -54,21 +48,18 @@ def test_other_samples_give_the_same_verdicts(seed, samples):
 # compared with roots and minima of a Λ_SD of their own.
 ROWS = {
     "restitution_law": {"Eq. 2"},
-    "impact_velocity": {"Eq. 2", "Eq. 3"},
-    "free_flight": {"Eq. 4"},
+    "free_flight": {"Eq. 4", "Eqs. 14-15", "Eqs. 21-26"},
     "landing_defect": {"Eq. 5"},
     "bounced_velocity": {"Eq. 5"},
     "fixed_point": {"Eq. 6"},
     "saddle_node": {"Eq. 7"},
     "period_doubling": {"Eq. 8, Holmes' map"},
-    "restitution_threshold": {"Eq. 9"},
     "contact": {"Eqs. 12-13", "Eqs. 21-26"},
     "flight": {"Eqs. 14-15", "Eqs. 21-26"},
     "damping_ratio": {"Eq. 16", "Eq. 16, r = 1", "Eq. 16, r → 0"},
     "bounce_velocity": {"Eq. 27"},
-    "steady_displacement": {"Eq. 31"},
+    "steady_displacement": {"Eq. 31", "Eq. 33", "Eq. 33, ϖ = 1", "Eq. 33, ϖ → 0"},
     "permanent_contact_threshold": {"Eq. 33"},
-    "resonant_threshold": {"Eq. 33, ϖ = 1"},
     "permanent_contact_frequency_ratio": {"Eq. 34", "Eq. 35"},
     "permanent_contact_minimum": {"Eq. 36"},
 }
@@ -140,40 +131,6 @@ def test_not_a_number_is_not_agreement(monkeypatch):
 # The second computations themselves.
 
 
-def test_the_flow_against_the_closed_form():
-    lam, phase, omega, zeta, time = 0.8, 0.7, 3.0, 0.2, 0.9
-    start = state(lam * np.sin(phase), -2.0, phase)
-    there = flow(contact_matrix(omega, zeta, lam), time, start)
-    exact = contact_flow(time, 0.0, -2.0 - lam * np.cos(phase), phase, lam, omega, zeta)
-    angle = phase + time
-    assert there[0] == pytest.approx(float(exact.displacement) + lam * np.sin(angle), abs=1e-14)
-    assert there[1] == pytest.approx(float(exact.velocity) + lam * np.cos(angle), abs=1e-14)
-    assert there[2:] == pytest.approx([1.0, np.cos(angle), np.sin(angle)], abs=1e-14)
-
-
-def test_trace_and_determinant_of_the_maps():
-    n, r, phase = 2.0, 0.6, 0.5
-    lam = n * np.pi * (1 - r) / (1 + r) / np.cos(phase)
-    push = (1 + r) * lam * np.sin(phase)
-    trace, det = stability(exact_cycle, phase, n * np.pi, r, lam)
-    assert trace == pytest.approx(1 + r * r - (1 + r) * push, abs=1e-8)
-    assert det == pytest.approx(r * r, abs=1e-8)
-    trace, det = stability(holmes_cycle, phase, n * np.pi, r, lam)
-    assert trace == pytest.approx(1 + r - 2 * push, abs=1e-8)
-    assert det == pytest.approx(r, abs=1e-8)
-
-
-def test_the_period_doublings_of_both_maps():
-    n, r = np.array([1.0, 3.0]), np.array([0.85, 0.3])
-    along = n * np.pi * (1 - r) / (1 + r)
-    exact, holmes = np.hypot(2 * (1 + r * r) / (1 + r) ** 2, along), np.hypot(1, along)
-    assert doubled(exact_cycle, n, r, exact) == pytest.approx(0, abs=1e-8)
-    assert doubled(holmes_cycle, n, r, holmes) == pytest.approx(0, abs=1e-8)
-    # Positive on the stable side, below.
-    assert (doubled(exact_cycle, n, r, exact * 0.99) > 1e-3).all()
-    assert (doubled(exact_cycle, n, r, exact * 1.01) < -1e-3).all()
-
-
 def test_the_steady_amplitude_is_that_of_the_resonance_curve():
     omega, zeta = np.array([0.7, 1.3, 9.0]), np.array([0.4, 0.2, 0.02])
     expected = 1 / np.hypot(omega**2 - 1, 2 * zeta * omega)
@@ -201,12 +158,6 @@ def test_the_static_error(checked, reference):
     found = abs(at(end)[1] / np.pi / r - 1)
     assert float(error.max()) == pytest.approx(found, abs=1e-13)
     assert float(error.sel(restitution=r, frequency_ratio=omega)) == float(error.max())
-
-
-def test_points_of_the_curve_that_are_no_orbits():
-    # Of the first hundred some are, some are not: the others are counted one by one.
-    found = typed(formulas)(PARAMETERS)
-    assert 0 < found.curve_points_admissible < found.curve_points == PARAMETERS["curve_points"]
 
 
 def test_a_ball_that_its_weight_holds_has_no_static_error():

@@ -15,7 +15,6 @@ from bouncing_ball.claims.verdict import (
     at_most,
     below,
     largest,
-    last_unit,
     smallest,
 )
 from bouncing_ball.errors import ModelError
@@ -52,13 +51,6 @@ def test_a_number_is_judged_by_units_of_its_last_digit(digits, decimals, off):
 )
 def test_ties_are_decided_in_favour_of_the_paper(value, printed, verdict):
     assert against_print(value, printed).verdict is verdict
-
-
-def test_a_unit_that_the_digits_do_not_show():
-    assert against_print(140, "100", unit=100).verdict is Verdict.REPRODUCED
-    assert against_print(27, "100", unit=100).deviation_units == pytest.approx(-0.73)
-    assert against_print(27, "100").verdict is Verdict.CONTRADICTED
-    assert last_unit("100") == 1
 
 
 @pytest.mark.parametrize(

@@ -99,7 +99,7 @@ def test_limits(ask, refused):
     assert status == 1 and "no saddle node was found on the branch of 1-T orbits" in line
 
 
-def test_permanent_contact(ask, refused):
+def test_permanent_contact(ask):
     call = ("permanent-contact", "--restitution", "0.65", "--frequency-ratio")
     for release in ("displacement", "force"):
         answer = ask(*call, "6", "--release", release)
@@ -112,9 +112,6 @@ def test_permanent_contact(ask, refused):
     for damping, exists in (("0.707", True), ("0.708", False)):
         bare = ("permanent-contact", "--damping-ratio", damping, "--frequency-ratio", "1e8")
         assert (ask(*bare)["minimum"] is not None) is exists
-    for model, says in (("corrected", "no corrected form"), ("restitution", "is Λ = 1 for")):
-        status, line = refused(*call, "6", "--model", model)
-        assert status == 2 and says in line
 
 
 def test_the_error_law_is_about_the_contacts_own_r(ask):

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 import bouncing_ball
+from bouncing_ball import calls
 from bouncing_ball.cli.options import meanings
 from bouncing_ball.contacts.laws import LAWS
-from bouncing_ball.orbits import calls
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = Path(sys.executable).with_name("bouncing-ball")

@@ -9,8 +9,8 @@ import xarray as xr
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
-from bouncing_ball.compare.folders import Artifact, Comparison, compare_folders
-from bouncing_ball.compare.parts import Part
+from bouncing_ball.compare.folders import compare_folders
+from bouncing_ball.compare.outcome import Whole
 from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -25,15 +25,15 @@ class Pair:
     record: Path
     new: Path
 
-    def compare(self) -> Comparison:
+    def compare(self) -> Whole:
         return compare_folders(self.record, self.new)
 
-    def artifact(self, name: str) -> Artifact:
-        (found,) = compare_folders(self.record, self.new, [name]).artifacts
+    def artifact(self, name: str) -> Whole:
+        (found,) = compare_folders(self.record, self.new, [name]).parts
         return found
 
-    def part(self, file: str) -> Part:
-        return next(part for part in self.artifact(Path(file).stem).parts if part.file == file)
+    def part(self, file: str) -> Whole:
+        return next(part for part in self.artifact(Path(file).stem).parts if part.name == file)
 
     def dataset(self, name: str) -> xr.Dataset:
         return read_dataset(self.record / "figures" / f"{name}.nc")
@@ -44,9 +44,9 @@ class Pair:
 
     def variable(self, name: str, variable: str):
         """The worst row of one variable, everything else being as it was."""
-        rows = self.part(f"figures/{name}.nc").rows
-        assert {row.where for row in rows if row.outcome != "identical"} <= {variable}
-        return next(row for row in rows if row.where == variable)
+        rows = self.part(f"figures/{name}.nc").moved
+        assert {row.name for row in rows} == {variable}
+        return rows[0]
 
     def rewrite(self, file: str, old: str, new: str) -> None:
         """Replace the first occurrence of a text in a new file."""

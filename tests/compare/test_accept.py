@@ -1,21 +1,18 @@
 """What may replace the accepted record, and what is copied."""
 
-import subprocess
-
 import pytest
 
 from bouncing_ball.compare import accept as module
 from bouncing_ball.compare.accept import RefusedError, accept
-from bouncing_ball.compare.folders import ComparisonError
 from bouncing_ball.datasets.netcdf import write_dataset
+from bouncing_ball.errors import ModelError
 from bouncing_ball.provenance.revision import UNKNOWN, Revision
 
 
 @pytest.fixture
 def run(pair, monkeypatch):
-    """``run(*names)``: accept in a committed checkout, for which Snakemake has nothing to do."""
+    """``run(*names)``: accept in a committed checkout."""
     monkeypatch.setattr(module, "revision", lambda _: Revision("1f0e", "no"))
-    monkeypatch.setattr(module, "jobs_left", lambda *_: 0)
     (pair.record / "config").mkdir()
     (pair.record / "config" / "config.yaml").write_text("release: force\n", encoding="utf-8")
     made = [str(path) for path in pair.new.glob("figures/*")]
@@ -62,44 +59,27 @@ def test_what_is_named_is_copied_and_nothing_else(pair, run, one_line):
     assert {*run("fig08", "paper")[:-1]} == {"copied figures/fig08.nc", "copied paper.md"}
     assert not pair.artifact("fig05").outcome.agrees
     before = contents(pair)
-    with pytest.raises(ComparisonError) as error:
+    with pytest.raises(ModelError) as error:
         run("fig05", "fig99")
     one_line(error, "unknown artifact fig99")
     assert contents(pair) == before
 
 
 @pytest.mark.parametrize(
-    ("state", "left", "config", "said"),
+    ("state", "config", "said"),
     [
-        (UNKNOWN, 0, "force", "the tree is not committed"),
-        (Revision("1f0e", "yes"), 0, "force", "the tree is not committed"),
-        (
-            Revision("1f0e", "no"),
-            0,
-            "displacement",
-            "other values than config/config.yaml",
-        ),
-        (Revision("1f0e", "no"), 3, "force", "Snakemake would still run 3 jobs"),
-        (Revision("1f0e", "no"), 0, "force", "fig17.png is not made by this workflow: remove it"),
+        (UNKNOWN, "force", "the tree is not committed"),
+        (Revision("1f0e", "yes"), "force", "the tree is not committed"),
+        (Revision("1f0e", "no"), "displacement", "other values than config/config.yaml"),
+        (Revision("1f0e", "no"), "force", "fig17.png is not made by this workflow: remove it"),
     ],
 )
-def test_a_refusal_changes_nothing(pair, run, monkeypatch, one_line, state, left, config, said):
+def test_a_refusal_changes_nothing(pair, run, monkeypatch, one_line, state, config, said):
     drift(pair)
     monkeypatch.setattr(module, "revision", lambda _: state)
-    monkeypatch.setattr(module, "jobs_left", lambda *_: left)
     (pair.new / "figures" / "fig17.png").touch()
     before = contents(pair)
     with pytest.raises(RefusedError) as error:
         run(config={"release": config})
     one_line(error, said)
     assert contents(pair) == before
-
-
-def test_a_dry_run_that_fails_is_no_licence(monkeypatch, tmp_path, one_line):
-    def failing(*_, **__):
-        return subprocess.CompletedProcess([], 1, "", "many\nwords\n")
-
-    monkeypatch.setattr(module.subprocess, "run", failing)
-    with pytest.raises(RefusedError) as error:
-        module.jobs_left(tmp_path, [])
-    one_line(error, "a dry run fails: words")

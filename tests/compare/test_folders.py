@@ -9,19 +9,18 @@ from PIL import Image, ImageDraw
 from PIL.PngImagePlugin import PngInfo
 
 from bouncing_ball.cli.main import main
-from bouncing_ball.compare import parts
 from bouncing_ball.compare.folders import compare_folders
 from bouncing_ball.compare.outcome import Outcome
 from bouncing_ball.compare.page import to_html
 from bouncing_ball.compare.pictures import BUDGET, compare_pictures
-from bouncing_ball.compare.terminal import to_terminal
+from bouncing_ball.compare.terminal import note, to_terminal
 from bouncing_ball.compare.texts import compare_texts
 
 
 def test_equal_folders_are_identical_and_every_file_is_compared(pair):
     comparison = pair.compare()
     assert comparison.outcome is Outcome.IDENTICAL and comparison.outcome.status == 0
-    compared = {part.file for found in comparison.artifacts for part in found.parts}
+    compared = {part.name for found in comparison.parts for part in found.parts}
     paths = (path for path in pair.record.rglob("*") if path.is_file())
     assert compared == {path.relative_to(pair.record).as_posix() for path in paths}
 
@@ -40,7 +39,7 @@ def test_equal_folders_are_identical_and_every_file_is_compared(pair):
 def test_a_falsified_word_or_number(pair, file, old, new):
     pair.rewrite(file, old, new)
     part = pair.part(file)
-    (row,) = part.rows
+    (row,) = part.parts
     assert row.outcome is Outcome.DRIFTED and pair.compare().outcome.status == 1
     assert old.strip("<!- $") in row.record and new.strip("<!- $") in row.new
 
@@ -62,7 +61,7 @@ def test_lines_that_are_new_or_gone():
     found = compare_texts(record, new, None)
     assert [(line.record, line.new) for line in found] == [(None, "new"), ("b 2", "b 2.5")]
     found = compare_texts(new, record, None)
-    assert [(line.where, line.record, line.new) for line in found] == [
+    assert [(line.name, line.record, line.new) for line in found] == [
         ("line 2", "new", None),
         ("line 3", "b 2.5", "b 2"),
     ]
@@ -79,11 +78,11 @@ def test_a_changed_label_and_a_swapped_picture(pair):
     figures = pair.new / "figures"
     shutil.copyfile(figures / "fig08.png", figures / "fig09.png")
     found = pair.part("figures/fig09.png")
-    assert found.outcome is Outcome.DRIFTED and found.share > 1 and not found.redrawn
+    assert found.outcome is Outcome.DRIFTED and found.share > 1
     assert all(picture.startswith(b"\x89PNG") for picture in found.pictures)
     # A glyph drawn in place of another, in a drawing.
     pair.rewrite("figures/fig05.svg", 'Regular-14"/>', 'Regular-15"/>')
-    assert pair.part("figures/fig05.svg").rows[0].new == "STIXGeneral-Regular-15"
+    assert pair.part("figures/fig05.svg").parts[0].new == "STIXGeneral-Regular-15"
     # And one in a picture of full size.
     for folder, label in ((pair.record, "0.5"), (pair.new, "0.6")):
         picture = Image.new("RGB", (1200, 900), "white")
@@ -110,15 +109,14 @@ def test_a_picture_by_another_matplotlib_is_only_reported(pair):
     assert pair.artifact("fig08").outcome is Outcome.DRIFTED
     save_png(path, turned, provenance_versions='{"matplotlib": "0.1"}')
     assert pair.artifact("fig08").outcome is Outcome.WITHIN
-    shown = to_terminal(pair.compare())
-    assert "(reported only)" in shown and "not judged: 1." in shown
+    assert "drawn by matplotlib 3." in to_terminal(pair.compare())
 
 
 def test_missing_and_extra(pair):
     (pair.new / "figures" / "fig08.png").unlink()
     (pair.record / "figures" / "fig05.svg").unlink()
     (pair.new / "paper.md").unlink()
-    outcomes = {found.name: str(found.outcome) for found in pair.compare().artifacts}
+    outcomes = {found.name: str(found.outcome) for found in pair.compare().parts}
     assert outcomes.pop("fig08") == outcomes.pop("paper") == "missing"
     assert outcomes.pop("fig05") == "extra" and set(outcomes.values()) == {"identical"}
 
@@ -138,12 +136,8 @@ def a_pipe(path):
     os.mkfifo(path)
 
 
-def large(path):
-    os.truncate(path, parts.MAX_BYTES + 1)
-
-
 def a_bomb(path):
-    save_png(path, Image.new("1", (40_000, 40_000)))
+    save_png(path, Image.new("1", (14_000, 13_000)))
 
 
 EVERY = ("figures/fig05.nc", "figures/fig05.png", "figures/table1.csv", "paper.md")
@@ -154,7 +148,6 @@ EVERY = ("figures/fig05.nc", "figures/fig05.png", "figures/table1.csv", "paper.m
     [
         *((linked, "a link", file) for file in EVERY),
         *((a_pipe, "not a regular file", file) for file in EVERY),
-        *((large, "larger than", file) for file in EVERY),
         *((damaged, "", file) for file in EVERY[:2]),
         (a_bomb, "exceeds limit", "figures/fig05.png"),
     ],
@@ -163,18 +156,11 @@ EVERY = ("figures/fig05.nc", "figures/fig05.png", "figures/table1.csv", "paper.m
 def test_what_cannot_be_read_could_not_be_compared(pair, change, why, file, side):
     change(getattr(pair, side) / file)
     part, comparison = pair.part(file), pair.compare()
-    assert part.outcome is Outcome.UNREADABLE and why in part.note and "\n" not in part.note
+    assert part.outcome is Outcome.UNREADABLE and why in note(part) and "\n" not in note(part)
     assert comparison.outcome.status == 2
     # The others are compared all the same.
-    others = {found.outcome for found in comparison.artifacts[1:]}
+    others = {found.outcome for found in comparison.parts[1:]}
     assert others <= {Outcome.IDENTICAL, Outcome.EXTRA, Outcome.MISSING}
-
-
-def test_a_folder_that_is_a_link(pair, one_line):
-    linked(pair.new / "figures")
-    with pytest.raises(ValueError) as error:
-        pair.compare()
-    one_line(error, "figures: a link; links are not followed")
 
 
 def test_nothing_is_printed_raw(pair, capsys):
@@ -194,7 +180,7 @@ def test_nothing_is_printed_raw(pair, capsys):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("record", "none"), "no folder"),
+        (("record", "none"), "nothing to compare in none: neither figures/ nor paper.md"),
         (("new/figures", "new"), "nothing to compare in"),
         (("record", "new", "fig99"), "unknown artifact fig99; known: fig01, fig05"),
     ],
@@ -215,12 +201,11 @@ def test_the_table_and_the_page(pair):
     comparison = pair.compare()
     lines = to_terminal(comparison).splitlines()
     assert lines[0].split() == ["artifact", "outcome", "of", "budget", "what"]
-    place = "phase at case = 1, frequency_ratio = 2.51189"
-    assert lines[1].startswith("fig05 ") and f"drifted: {place}: 1 of " in lines[1]
-    assert lines[2].startswith(f"  figures/fig05.nc, {place}: ") and " → " in lines[2]
-    assert lines[3].startswith("paper ")
-    assert "reproduced" in lines[4] and "contradicted" in lines[4]
-    assert lines[-1] == "2 drifted, 5 identical. The new artifacts differ from the record."
+    place = "figures/fig05.nc phase at case = 1, frequency_ratio = 2.51189: "
+    assert lines[1].startswith("fig05 ") and place in lines[1] and " → " in lines[1]
+    assert lines[1].endswith(": 1 of 1204 entries beyond the budget")
+    assert lines[2].startswith("paper ") and "drifted" in lines[2] and "line " in lines[2]
+    assert lines[3:] == ["2 drifted, 5 identical. The new artifacts differ from the record."]
     page = to_html(comparison)
     assert "<mark>contradicted</mark>" in page and "frequency_ratio = 2.51189" in page
     assert page.index('id="fig05"') < page.index('id="paper"') < page.index('id="fig01"')

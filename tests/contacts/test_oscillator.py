@@ -1,15 +1,15 @@
 """The oscillator's responses against their formulas in 130 digits.
 
-The reference adds 1e-45 to a and to q, so that the quotient for h is never
-0/0, and takes derivatives as central differences with a step of 1e-35: both
-leave more than 30 correct digits.
+The reference adds 1e-45 to a and to q, so that the quotient for h is never 0/0,
+and takes ∂h/∂ν by a central difference with a step of 1e-35: both leave more
+than 30 correct digits.
 """
 
 import mpmath
 import numpy as np
 import pytest
 
-from bouncing_ball.contacts.spring_damper import responses
+from bouncing_ball.contacts.oscillator import responses
 
 EPS = np.finfo(float).eps
 STEP, NUDGE = mpmath.mpf(10) ** -35, mpmath.mpf(10) ** -45
@@ -23,7 +23,7 @@ def free(s, a, q):
 
 
 def forced(nu):
-    def response(s, a, q):
+    def response(s, a, q, nu=nu):
         g, rate = free(s, a, q)
         h = (mpmath.exp(nu * s) - rate - (nu + 2 * a) * g) / (nu * nu + 2 * a * nu + q)
         return h, nu * h + g
@@ -31,33 +31,30 @@ def forced(nu):
     return response
 
 
+def slope(s, a, q):
+    """∂h/∂ν of the table's response."""
+    up, down = (forced(mpmath.mpc(step, 1))(s, a, q)[0] for step in (STEP, -STEP))
+    return ((up - down) / (2 * STEP),)
+
+
 def exact(function, s, omega, zeta):
     """The fields of a Response, in their order."""
     with mpmath.workdps(130):
         s, omega, zeta = mpmath.mpf(s), mpmath.mpf(omega), mpmath.mpf(zeta)
         a, q = zeta * omega + NUDGE, omega * omega + NUDGE / 3
-        by_a = zip(function(s, a + STEP, q), function(s, a - STEP, q), strict=True)
-        by_q = zip(function(s, a, q + STEP), function(s, a, q - STEP), strict=True)
-        (va, ra), (vq, rq) = (
-            [(up - down) / (2 * STEP) for up, down in pairs] for pairs in (by_a, by_q)
-        )
-        return np.array([complex(x) for x in (*function(s, a, q), va, vq, ra, rq)])
+        return np.array([complex(x) for x in function(s, a, q)])
 
 
 def sizes(name, s, omega, g):
-    """Natural sizes of the six fields: what a rounding of the phase is relative to.
+    """Natural sizes of the fields: what a rounding of the phase is relative to.
 
-    ``m`` is the shorter of the time and the oscillator's own time, ``norm``
-    the free oscillation left. A derivative by a or q costs a time (steady
-    part: m; free part: s) or its square.
+    ``m`` is the shorter of the time and the oscillator's own time, for the impulse times
+    the free oscillation left. The derivative by ν costs a time.
     """
-    norm = np.hypot(abs(g[1]), omega * abs(g[0]))
     if name == "impulse":
-        m = min(s, 1 / omega)
-        return norm * np.array([m, 1, s * m, s * m * m, s, s * m])
+        return np.hypot(abs(g[1]), omega * abs(g[0])) * np.array([min(s, 1 / omega), 1])
     m = min(s, 1 / omega) if name == "gravity" else min(s, 1 / max(omega, 1))
-    first, second = m**2 + s * m * norm, m**3 + s * m**2 * norm
-    return np.array([m * m, m, second, m * second, first, second])
+    return np.array([m * m * s]) if name == "by_table" else np.array([m * m, m])
 
 
 def random_contacts():
@@ -84,11 +81,16 @@ def random_contacts():
 
 @pytest.mark.parametrize(
     ("name", "function"),
-    [("impulse", free), ("gravity", forced(mpmath.mpf(0))), ("table", forced(mpmath.mpc(0, 1)))],
+    [
+        ("impulse", free),
+        ("gravity", forced(mpmath.mpf(0))),
+        ("table", forced(mpmath.mpc(0, 1))),
+        ("by_table", slope),
+    ],
 )
 def test_all_fields_against_high_precision(name, function):
     s, omega, zeta = random_contacts()
-    computed = np.array(getattr(responses(s, omega, zeta), name))
+    computed = np.atleast_2d(getattr(responses(s, omega, zeta), name))
     for k in range(len(s)):
         expected = exact(function, s[k], omega[k], zeta[k])
         g = expected if name == "impulse" else exact(free, s[k], omega[k], zeta[k])
@@ -110,24 +112,23 @@ def test_strong_damping_keeps_the_digits_of_the_slow_decay(zeta):
 
 def test_start_from_rest():
     for omega, zeta in ((0.5, 0.0), (3.0, 0.2), (3.0, 1.0), (3.0, 2.0)):
-        g, gravity, table = responses(0.0, omega, zeta)
+        g, gravity, table, by_table = responses(0.0, omega, zeta)
         assert (float(g.value), float(g.rate)) == (0.0, 1.0)
-        # Zero but for the mean over the circle, of radius 1e100 there.
-        for value in (gravity.value, gravity.rate, table.value, table.rate):
-            assert abs(complex(value)) < 1e-90
+        assert not np.any([*gravity, *table, by_table])
 
 
 def test_arrays_and_scalars_agree_and_broadcast():
-    # Some entries take the circle, some the quotient, some the series.
+    # Some entries are integrals, by nodes as many as the longest needs, and some quotients.
     s = np.array([[1e-3], [0.5], [4.0]])
     omega, zeta = np.array([1.0, 2.0, 300.0, 1e4]), np.array([0.0, 0.3, 1.0, 1.5])
-    many = responses(s, omega, zeta)
-    assert all(field.shape == (3, 4) for response in many for field in response)
+
+    def fields(at):
+        return [*at.impulse, *at.gravity, *at.table, at.by_table]
+
+    many = fields(responses(s, omega, zeta))
+    assert all(field.shape == (3, 4) for field in many)
     for i in range(3):
         for j in range(4):
-            one = responses(s[i, 0], omega[j], zeta[j])
-            for whole, single in zip(many, one, strict=True):
-                assert all(
-                    complex(x[i, j]) == pytest.approx(complex(y), rel=4 * EPS, abs=0)
-                    for x, y in zip(whole, single, strict=True)
-                )
+            one = fields(responses(s[i, 0], omega[j], zeta[j]))
+            for x, y in zip(many, one, strict=True):
+                assert complex(x[i, j]) == pytest.approx(complex(y), rel=20 * EPS, abs=0)

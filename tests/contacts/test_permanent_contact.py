@@ -11,7 +11,7 @@ from bouncing_ball.contacts.permanent_contact import (
     permanent_contact_minimum,
     permanent_contact_threshold,
 )
-from bouncing_ball.contacts.spring_damper import Release, SpringDamper, contact_flow
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError
 
 EPS = np.finfo(float).eps
@@ -38,7 +38,7 @@ def test_steady_oscillation_just_reaches_the_release(omega, zeta, release):
     slowest = omega * (zeta - np.sqrt(max(zeta**2 - 1, 0)))
     settled = 2 * np.pi * np.ceil(40 / slowest / (2 * np.pi))
     t = settled + np.linspace(0, 2 * np.pi, 20001)
-    flow = contact_flow(t, 0.0, 0.0, 0.0, lam, omega, zeta)
+    flow = SpringDamper(omega, zeta).flow(t, 0.0, 0.0, 0.0, lam)
     # In units of the weight, both oscillate about one with amplitude one; the
     # sample nearest to the extremum is within (2π/40000)²/2 of it.
     if release is Release.FORCE:

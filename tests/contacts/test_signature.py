@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from bouncing_ball.contacts.signature import LinearSignature
-from bouncing_ball.contacts.spring_damper import Release, SpringDamper, contact_flow
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError
-from bouncing_ball.motion.contact import simulate
+from bouncing_ball.motion.simulation import simulate
 
 RELEASES = list(Release)
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
@@ -25,7 +25,7 @@ def test_flights_continued_into_any_contact_meet_at_the_centroid_of_its_force():
             if not np.isfinite(end):
                 continue
             time = end * (NODES + 1) / 2
-            flow = contact_flow(time, 0.0, -speed, phase, lam, omega, zeta)
+            flow = SpringDamper(omega, zeta).flow(time, 0.0, -speed, phase, lam)
             force = contact.force(-flow.displacement, -flow.velocity)
             impulse = np.sum(WEIGHTS * force)
             centroid = np.sum(WEIGHTS * force * time) / impulse

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.continuation.corrector import NewtonSettings, newton, null_vector, plane, tangent
+from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane, tangent
 
 EPS = np.finfo(float).eps
 
@@ -123,13 +123,3 @@ def test_tangent_is_the_unit_null_vector_on_the_given_side():
         assert jacobian @ vector == pytest.approx(np.zeros(size), abs=1e-12)
         assert vector @ along > 0
         assert tangent(jacobian, -along) == pytest.approx(-vector, abs=1e-12)
-
-
-def test_null_vector_points_up_in_the_parameter():
-    rng = np.random.default_rng(4)
-    for size in (1, 2, 5) * 20:
-        jacobian = rng.normal(size=(size, size + 1))
-        vector = null_vector(jacobian)
-        assert vector[-1] > 0
-        assert np.linalg.norm(vector) == pytest.approx(1.0, abs=4 * EPS)
-        assert jacobian @ vector == pytest.approx(np.zeros(size), abs=1e-12)

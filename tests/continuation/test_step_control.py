@@ -13,24 +13,18 @@ CONTROL = StepControl(initial=0.02, smallest=1e-3, largest=1.0, target_iteration
     [(4, 1.0), (3, 2**0.5), (2, 2.0), (1, 2.0), (5, 2**-0.5), (6, 0.5), (8, 0.25), (12, 0.25)],
 )
 def test_iterations_set_the_step(iterations, factor):
-    assert CONTROL.after_success(0.1, iterations, 0.0) == pytest.approx(0.1 * factor, rel=1e-15)
+    assert CONTROL.after(0.1, iterations, 0.0) == pytest.approx(0.1 * factor, rel=1e-15)
 
 
 def test_the_angle_bounds_the_step():
     # Turning 0.3 in one step: the next is to turn 0.9 · 0.2.
-    assert CONTROL.after_success(0.1, 2, 0.3) == pytest.approx(0.1 * 0.6, rel=1e-15)
+    assert CONTROL.after(0.1, 2, 0.3) == pytest.approx(0.1 * 0.6, rel=1e-15)
     # A small angle leaves the iterations to decide.
-    assert CONTROL.after_success(0.1, 3, 1e-6) == pytest.approx(0.1 * 2**0.5, rel=1e-15)
+    assert CONTROL.after(0.1, 3, 1e-6) == pytest.approx(0.1 * 2**0.5, rel=1e-15)
     # Never below a quarter at once.
-    assert CONTROL.after_success(0.1, 2, 100.0) == pytest.approx(0.025, rel=1e-15)
+    assert CONTROL.after(0.1, 2, 100.0) == pytest.approx(0.025, rel=1e-15)
 
 
 def test_bounds():
-    assert CONTROL.after_success(0.9, 1, 0.0) == 1.0
-    assert CONTROL.after_success(2e-3, 12, 0.0) == 1e-3
-
-
-def test_failure_halves_until_the_smallest():
-    assert CONTROL.after_failure(0.1) == 0.05
-    assert CONTROL.after_failure(2e-3) == 1e-3
-    assert CONTROL.after_failure(1.9e-3) is None
+    assert CONTROL.after(0.9, 1, 0.0) == 1.0
+    assert CONTROL.after(2e-3, 12, 0.0) == 1e-3

@@ -22,9 +22,9 @@ from bouncing_ball.contacts.permanent_contact import permanent_contact, permanen
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import LawSignature, LinearSignature, free_impact
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.motion.contact import contact_cycle, simulate
 from bouncing_ball.motion.history import history
 from bouncing_ball.motion.sequence import Status
+from bouncing_ball.motion.simulation import next_impact, simulate
 
 
 @dataclass(frozen=True, repr=False)
@@ -216,7 +216,7 @@ def test_the_defaults_are_the_closed_forms(release):
         # hundreds.
         assert np.nanmedian(np.abs(a - b)) < 1e-12
         assert np.nanmax(np.abs(a - b)) < 1e-9
-    cycles = (contact_cycle(x, 1.5, phase[:20], velocity[:20]) for x in (exact, law))
+    cycles = (next_impact(x, 1.5, phase[:20], velocity[:20]) for x in (exact, law))
     np.testing.assert_allclose(*cycles, atol=1e-10)
     # The ball chatters at first.
     one, other = (simulate(x, 1.2, 0.4, -1.0, 6) for x in (exact, law))

@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bouncing_ball.compare.budgets import ARTIFACTS, BUDGETS, IGNORED
 from bouncing_ball.compare.data import compare_datasets
 from bouncing_ball.configuration.study import arguments, load, typed
 from bouncing_ball.configuration.yaml_file import read_yaml
-from bouncing_ball.datasets.variables import ARTIFACTS, IGNORED, ROUNDING, VARIABLES
 
 ROOT = Path(__file__).resolve().parents[2]
 RUN = read_yaml(ROOT / "config" / "config.yaml")
@@ -93,7 +93,7 @@ def results(stages):
                 continue
             again = on_the_old_grid(made(**varied), record).assign_attrs(record.attrs)
             for each in compare_datasets(artifact, record, again):
-                found.setdefault((artifact, each.where), []).append(each)
+                found.setdefault((artifact, each.name), []).append(each)
     return found
 
 
@@ -112,14 +112,12 @@ def test_what_should_not_matter_stays_within_the_budgets(results):
 def test_no_budget_is_wider_than_what_was_measured_asks_for(results):
     largest = {}
     for (artifact, name), found in results.items():
-        if name in VARIABLES and name not in ARTIFACTS.get(artifact, {}):
-            share = max(each.share or 0.0 for each in found)
+        if name in BUDGETS and name not in ARTIFACTS.get(artifact, {}):
+            share = max(each.share for each in found)
             largest[name] = max(share, largest.get(name, 0.0))
     # Ten times the change, and up to ten times more to the next power of ten; another
     # processor's rounding may be ten times smaller.
     wide = {
-        name: share
-        for name, share in largest.items()
-        if ROUNDING < VARIABLES[name].budget < IGNORED and share < 1e-3
+        name: share for name, share in largest.items() if BUDGETS[name] != IGNORED and share < 1e-3
     }
     assert wide.keys() <= OTHER_SOURCES

@@ -4,32 +4,26 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from bouncing_ball.datasets.variables import ARTIFACTS, VARIABLES, describe
+from bouncing_ball.compare.budgets import ARTIFACTS, BUDGETS
+from bouncing_ball.datasets.variables import VARIABLES, describe
 
 
 def test_every_entry_is_complete():
-    for name, variable in VARIABLES.items():
+    for name, entry in VARIABLES.items():
         assert name.isidentifier()
-        assert variable.long_name and variable.long_name == variable.long_name.strip()
-        assert variable.units in ("1", "rad")
-        # A scale is a number or a variable, and a budget a share of it.
-        assert variable.budget > 0
-        assert not isinstance(variable.scale, str) or variable.scale in VARIABLES
-        assert not variable.equation or variable.equation.startswith(("Eq", "Table"))
+        assert list(entry) == ["long_name", "symbol", "units", "equation"]
+        assert entry["units"] == ("rad" if name.endswith("phase") else "1")
+        assert entry["long_name"] and entry["long_name"] == entry["long_name"].strip()
+        assert not entry["equation"] or entry["equation"].startswith(("Eq", "Table"))
     # Two names must not mean the same.
-    pairs = [(v.long_name, v.symbol) for v in VARIABLES.values()]
+    pairs = [(entry["long_name"], entry["symbol"]) for entry in VARIABLES.values()]
     assert len(set(pairs)) == len(pairs)
 
 
-def test_angles_are_in_radians_and_nothing_else():
-    for name, variable in VARIABLES.items():
-        assert (variable.units == "rad") == name.endswith("phase"), name
-
-
-def test_the_budgets_of_artifacts_name_what_there_is():
-    for budgets in ARTIFACTS.values():
+def test_the_budgets_name_what_there_is():
+    for budgets in (BUDGETS, *ARTIFACTS.values()):
         for name, budget in budgets.items():
-            assert name in VARIABLES or name == "*"
+            assert budget.size > 0 and (name in VARIABLES or name == "*")
             assert budget.over in ("", *VARIABLES) and budget.scale in (None, 1.0, *VARIABLES)
 
 
@@ -37,14 +31,14 @@ def test_describe():
     data = xr.Dataset({"phase": ("point", [0.5, 1.0]), "special_kind": ("special", ["fold"])})
     result = describe(data.assign_coords(frequency_ratio=2.0))
     assert result.phase.attrs == {
-        "long_name": VARIABLES["phase"].long_name,
+        "long_name": VARIABLES["phase"]["long_name"],
         "units": "rad",
         "symbol": "φ",
         "equation": "Eqs. 6, 21",
     }
     # Coordinates and what is no number are described too.
     for name in ("special_kind", "special", "frequency_ratio"):
-        assert result[name].attrs["long_name"] == VARIABLES[name].long_name
+        assert result[name].attrs["long_name"] == VARIABLES[name]["long_name"]
         assert result[name].attrs["units"] == "1"
     # The data stay, and so does the argument.
     assert np.array_equal(result.phase, data.phase) and data.phase.attrs == {}

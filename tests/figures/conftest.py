@@ -10,7 +10,6 @@ from bouncing_ball.figures.article.render import render_article
 from bouncing_ball.figures.atlas.tables import shares
 from bouncing_ball.figures.tables import rows
 from bouncing_ball.figures.tables.formats import to_csv, to_latex, to_markdown
-from bouncing_ball.figures.tables.rows import law_table
 
 ROOT = Path(__file__).resolve().parents[2]
 TEMPLATES = ROOT / "workflow" / "report" / "paper"
@@ -33,8 +32,6 @@ def all_texts(data):
         for form in (to_csv, to_latex, to_markdown):
             made[name, form.__name__] = form(*table)
     texts = {name: made[name, "to_markdown"] for name in TABLES}
-    summary = (ROOT / "config" / "error_law.csv").read_text(encoding="utf-8")
-    texts["error_law"] = law_table(summary)
     data["atlas"] = read_dataset(ROOT / "config" / "atlas.nc")
     texts["atlas"] = to_markdown(*shares(data["atlas"]))
     made["article"] = render_article(TEMPLATES, data, texts)

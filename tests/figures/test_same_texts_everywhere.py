@@ -7,8 +7,8 @@ everything that is read from them is made again: evidence, verdicts, tables, tex
 import numpy as np
 import pytest
 
+from bouncing_ball.compare.budgets import ROUNDING
 from bouncing_ball.datasets.rounding import ROUNDING_SIZE
-from bouncing_ball.datasets.variables import ROUNDING
 
 
 def perturbed(data, rng):
@@ -23,7 +23,7 @@ def perturbed(data, rng):
             continue
         finite = np.isfinite(values.values)
         size = np.abs(values.values[finite]).max(initial=0.0)
-        noise = rng.uniform(-1, 1, values.shape) * ROUNDING * size
+        noise = rng.uniform(-1, 1, values.shape) * ROUNDING.size * size
         if name == "disagreement":
             budget = other.budget.broadcast_like(values).transpose(*values.dims).values
             rounding = (values.values <= budget) & (("worst" in other) | (budget <= ROUNDING_SIZE))

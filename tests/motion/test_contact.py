@@ -9,9 +9,9 @@ from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError
-from bouncing_ball.motion.contact import contact_cycle, simulate
 from bouncing_ball.motion.history import history
 from bouncing_ball.motion.sequence import Status
+from bouncing_ball.motion.simulation import next_impact, simulate
 from bouncing_ball.orbits.spring_damper_limits import Side, orbit_at
 
 CASES = [
@@ -99,9 +99,11 @@ def test_permanent_contact_begins_and_ends_at_its_threshold(omega, zeta, release
 
 
 def test_cycle_of_a_permanent_contact():
-    cycle = contact_cycle(SpringDamper(10.0, 0.1), 0.2, [0.0, 1.0], [0.0, -50.0])
+    cycle = next_impact(SpringDamper(10.0, 0.1), 0.2, [0.0, 1.0], [0.0, -50.0])
     assert np.isnan(cycle.phase[0]) and cycle.time[0] == np.inf
     assert np.isfinite(cycle.phase[1])
+    # Of no ball there is no impact.
+    assert next_impact(SpringDamper(10.0, 0.1), 0.2, [], []).phase.shape == (0,)
 
 
 @pytest.mark.parametrize("release", RELEASES)
@@ -129,7 +131,7 @@ def test_blocks_make_no_difference():
     assert many.phase.shape == (5, 2, 9000)
     few = simulate(contact, 1.5, phase[1, -3:], -4.0, 5)
     np.testing.assert_array_equal(many.phase[:, 1, -3:], few.phase)
-    cycle = contact_cycle(contact, 1.5, many.phase[0], many.relative_velocity[0])
+    cycle = next_impact(contact, 1.5, many.phase[0], many.relative_velocity[0])
     np.testing.assert_array_equal(cycle.phase, many.phase[1])
 
 
@@ -163,8 +165,6 @@ def test_the_ball_is_where_its_state_says(lam, omega, zeta, phase, speed, releas
 
 def test_errors_are_one_line(one_line):
     for arguments, part in (
-        ((SpringDamper(1.0, 1.0), 1.0, 0.0, -1.0, 2), "underdamped"),
-        ((SpringDamper(1.0, 0.0), 1.0, 0.0, -1.0, 2), "resonance"),
         ((SpringDamper(2.0, 0.1), -1.0, 0.0, -1.0, 2), "amplitude"),
         ((SpringDamper(2.0, 0.1), 1.0, 0.0, 1.5, 2), "rises"),
         ((SpringDamper(2.0, 0.1), 1.0, np.nan, 1.5, 2), "finite"),
@@ -192,7 +192,7 @@ def test_a_stiff_undamped_contact_ends_in_the_end():
 def test_nearly_critical_damping():
     """ζ → 1: the bound by half a free period is of no use, and not needed."""
     zeta = np.array([0.99, 0.99999, 1 - 1e-9])
-    cycle = contact_cycle(SpringDamper(3.0, zeta), 2.0, -0.5, -3.0)
+    cycle = next_impact(SpringDamper(3.0, zeta), 2.0, -0.5, -3.0)
     # A smooth limit: the cycle changes by as little as ζ, times 100.
     assert np.all(np.isfinite(cycle.time))
     assert abs(cycle.time[1] - cycle.time[2]) < 1e-3

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.contacts.spring_damper import Release, SpringDamper, contact_flow
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.motion.angles import table
-from bouncing_ball.motion.contact import contact_cycle, simulate
 from bouncing_ball.motion.landing import Flight, land
+from bouncing_ball.motion.simulation import next_impact, simulate
 
 # A gap function is known to about four units in the last place of its terms,
 # which are of order 10 here.
@@ -80,7 +80,7 @@ def peaks(release, seed=0):
         phase, s0 = rng.uniform(-np.pi, np.pi), rng.uniform(1.2, 6.0)
 
         def observed(u, lam, s=s0, phase=phase):
-            flow = contact_flow(s, 0.0, u, phase, lam, omega, zeta)
+            flow = SpringDamper(omega, zeta).flow(s, 0.0, u, phase, lam)
             d, v, a = flow.displacement, flow.velocity, flow.acceleration
             jerk = -2 * zeta * omega * a - omega**2 * v + lam * np.cos(s + phase)
             return d + lag * v, v + lag * a, a + lag * jerk
@@ -129,6 +129,6 @@ def test_a_ball_at_rest_on_the_table_starts_at_once():
     pressed, thrown = landing(2 * np.sin(phase), 2 * np.cos(phase), phase, 2.0)
     assert pressed == 0
     assert thrown > 1
-    cycle = contact_cycle(SpringDamper(10.0, 0.1), 2.0, 1.0, 0.0)
+    cycle = next_impact(SpringDamper(10.0, 0.1), 2.0, 1.0, 0.0)
     # The contact of no duration changes nothing.
     assert abs(float(cycle.time) - thrown) < 1e-12

@@ -6,7 +6,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from bouncing_ball.contacts.damping import damping_ratio
-from bouncing_ball.contacts.spring_damper import Release, SpringDamper, responses
+from bouncing_ball.contacts.oscillator import responses
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.spring_damper_branch import branch_point

@@ -6,7 +6,7 @@ import pytest
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane
-from bouncing_ball.motion.contact import contact_cycle
+from bouncing_ball.motion.simulation import next_impact
 from bouncing_ball.orbits import restitution_orbit as restitution
 from bouncing_ball.orbits.model import Absence
 from bouncing_ball.orbits.spring_damper_limits import orbit_at
@@ -81,7 +81,7 @@ def test_the_simulation_returns_to_the_admissible_ones(drawn):
     orbit = every[every.is_admissible()]
     assert orbit.size > every.size / 4
     u = orbit.relative_impact_velocity
-    cycle = contact_cycle(orbit.contact, orbit.amplitude, orbit.phase, u)
+    cycle = next_impact(orbit.contact, orbit.amplitude, orbit.phase, u)
     turn = np.angle(np.exp(1j * (cycle.phase - orbit.phase)))
     late = cycle.time - 2 * np.pi * orbit.n
     off = np.max(np.abs([turn, late, (cycle.relative_velocity - u)]), axis=0)

@@ -17,7 +17,7 @@ from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.laws import LAWS
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.motion.contact import simulate
+from bouncing_ball.motion.simulation import simulate
 from bouncing_ball.orbits.law_model import LawModel
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
 

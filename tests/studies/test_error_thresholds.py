@@ -61,7 +61,7 @@ def test_all_quantities(described):
     # With the r and the ζ of Eq. 16, exact over restitution model.
     contact = SpringDamper(data.frequency_ratio.values, float(damping_ratio(0.65)))
     exact, simple = SpringDamperModel(contact), RestitutionModel(0.65)
-    expected = modulus(relative_errors(exact, simple, 1, 1.0, Quantity))
+    expected = modulus(relative_errors(exact, [simple], 1, 1.0, tuple(Quantity))[0])
     np.testing.assert_allclose(data.relative_error, expected, rtol=1e-9)
     for k, tolerance in enumerate(PARAMETERS["tolerances"]):
         one = data.isel(tolerance=k)

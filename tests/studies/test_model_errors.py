@@ -14,9 +14,16 @@ ORBIT = {"n": 1, "restitution": 0.65, "amplitude": 1.0}
 RELEASES = list(Release)
 
 
-def test_the_table_of_the_error_law(described):
-    parameters = {**ORBIT, "tolerance": 0.01, "frequency_ratio": SPAN}
-    data = described(typed(study.error_law_table)(parameters, "displacement"))
+@pytest.fixture(scope="module", params=RELEASES)
+def orders(request):
+    random = {"seed": 3, "samples": 200, "stiff_frequency_ratio": 1000.0, "law_samples": 300}
+    parameters = {**ORBIT, "tolerance": 0.01, "frequency_ratio": SPAN, "random": random}
+    return typed(study.orders)(parameters, request.param)
+
+
+@pytest.mark.parametrize("orders", [Release.DISPLACEMENT], indirect=True)
+def test_the_table_of_the_error_law(described, orders):
+    data = described(orders)
     exact = data.error_threshold.sel(model="restitution")
     # The thresholds of the replication's own table.
     assert float(exact.sel(quantity="max_height")) == pytest.approx(82.177, abs=1e-3)
@@ -31,12 +38,8 @@ def test_the_table_of_the_error_law(described):
     assert float(data.error_zero.sel(quantity="period_doubling")) == pytest.approx(1.9, abs=0.1)
 
 
-@pytest.mark.parametrize("release", RELEASES)
-def test_orders_of_random_orbits(described, release):
-    random = {"seed": 3, "samples": 200, "stiff_frequency_ratio": 1000.0, "law_samples": 300}
-    data = described(
-        typed(study.orders)({**ORBIT, "frequency_ratio": SPAN, "random": random}, release)
-    )
+def test_orders_of_random_orbits(described, orders):
+    data = described(orders)
     middle = data.order.sel(quantity="max_height").median("sample")
     np.testing.assert_allclose(middle, [1, 2], atol=0.01)
     stated = data.small_parameter < STATED
@@ -54,20 +57,6 @@ def test_where_each_model_is_right(described):
     assert float(height.sel(model="restitution", restitution=0.8)) == pytest.approx(90, abs=10)
     # Beyond the period doubling there is no stable orbit to be right about.
     assert np.all(np.isnan(data.error_threshold.sel(amplitude_ratio=5.0, restitution=0.5)))
-
-
-@pytest.mark.parametrize("release", RELEASES)
-def test_the_flights_meet_at_the_centroid_of_the_force(described, release):
-    data = described(
-        typed(study.meeting_flights)({**ORBIT, "frequency_ratio": 4.0, "samples": 4001}, release)
-    )
-    force, time = data.contact_force.values, data.time.values
-    centroid = np.sum(force * time) / np.sum(force)
-    # The force starts with a jump, which a sum over samples sees to their distance.
-    assert float(data.meeting_time) == pytest.approx(centroid, abs=2 * (time[1] - time[0]))
-    height = np.interp(float(data.meeting_time), time, data.flight_after.values)
-    assert float(data.meeting_height) == pytest.approx(height, abs=1e-5)
-    assert float(data.delay) == pytest.approx(float(data.meeting_time), rel=0.05)
 
 
 def test_random_orbits_are_in_the_stable_range():

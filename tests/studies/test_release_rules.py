@@ -5,7 +5,7 @@ import pytest
 
 from bouncing_ball.configuration.study import typed
 from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
-from bouncing_ball.contacts.oscillator import impulse_response
+from bouncing_ball.contacts.oscillator import responses
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import saddle_node
@@ -50,11 +50,11 @@ def test_restitution_of_the_force_release_is_that_of_the_free_contact(zeta):
     low, high = 1e-9, np.pi / root
     for _ in range(100):
         middle = (low + high) / 2
-        g = impulse_response(middle, zeta, 1.0, root**2)
+        g = responses(middle, 1.0, zeta).impulse
         # Released once 2ζδ′ + δ < 0, with δ counted downwards as positive here.
         if 2 * zeta * g.rate + g.value > 0:
             low = middle
         else:
             high = middle
-    speed = -float(impulse_response(low, zeta, 1.0, root**2).rate)
+    speed = -float(responses(low, 1.0, zeta).impulse.rate)
     assert float(restitution_coefficient(zeta, Release.FORCE)) == pytest.approx(speed, rel=1e-13)

@@ -6,10 +6,12 @@ from scipy.integrate import solve_ivp
 
 from bouncing_ball.configuration.study import typed
 from bouncing_ball.contacts.damping import damping_ratio
-from bouncing_ball.studies.time_histories import both_histories, contact_history
+from bouncing_ball.studies.time_histories import both_histories, contact_history, meeting_flights
 
 # As the configuration gives them.
-both_histories, contact_history = map(typed, (both_histories, contact_history))
+both_histories, contact_history, meeting_flights = map(
+    typed, (both_histories, contact_history, meeting_flights)
+)
 
 ONE = {"n": 1, "restitution": 0.85, "amplitude": 1.0, "frequency_ratio": 4.0, "samples": 101}
 BOTH = {
@@ -85,3 +87,15 @@ def test_both_models(described, n, lam):
     # The stiffer contact is nearer to it.
     tops = data.ball.max("sample").values
     assert tops[0] < tops[1] < flight.max()
+
+
+@pytest.mark.parametrize("release", ["displacement", "force"])
+def test_the_flights_meet_at_the_centroid_of_the_force(described, release):
+    data = described(meeting_flights(ONE | {"restitution": 0.65, "samples": 4001}, release))
+    force, time = data.contact_force.values, data.time.values
+    centroid = np.sum(force * time) / np.sum(force)
+    # The force starts with a jump, which a sum over samples sees to their distance.
+    assert float(data.meeting_time) == pytest.approx(centroid, abs=2 * (time[1] - time[0]))
+    height = np.interp(float(data.meeting_time), time, data.flight_after.values)
+    assert float(data.meeting_height) == pytest.approx(height, abs=1e-5)
+    assert float(data.delay) == pytest.approx(float(data.meeting_time), rel=0.05)

@@ -206,11 +206,9 @@ def pristine(shared, cloned) -> Tree:
         # At the first: what was begun then is done twice.
         tree.interrupt(signal.SIGKILL, "--cores", "2", after=1, of="figures/[!.]*.nc")
         early = tree.checksums("results")
-        # Snakemake could not remove its lock; it says so and names this command.
-        locked = tree.run("--cores", "2", check=False).stderr
-        tree.run("--unlock")
-        last = tree.run("--cores", "2").stdout
-        found = json.dumps({"early": early, "locked": locked, "last": last})
+        # Snakemake could not remove its lock.
+        last = tree.run("--cores", "2", "--nolock").stdout
+        found = json.dumps({"early": early, "last": last})
         (shared / "resumed.json").write_text(found, encoding="utf-8")
 
     return made_once(shared / "pristine", make)

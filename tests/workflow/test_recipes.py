@@ -1,5 +1,7 @@
 """The recipes of CONTRIBUTING, each tried on a fresh clone with exactly the files that it names."""
 
+from bouncing_ball.provenance.origin import read_provenance
+
 BEYOND = "workflow/rules/beyond_the_paper.smk"
 CONFIG = "config/config.yaml"
 DRAWINGS = "src/bouncing_ball/figures/__init__.py"
@@ -42,8 +44,10 @@ def test_a_figure_with_its_own_parameters(fresh):
     changed = fresh.git("status", "--porcelain").splitlines()
     assert {line.split()[-1] for line in changed} == {BEYOND, CONFIG, FIGURE, DRAWINGS}
     fresh.run("--cores", "1", "ext_heights")
-    kinds = {path.suffix for path in (fresh.path / "results/figures").glob("ext_heights.*")}
-    assert kinds == {".nc", ".png", ".svg"}
+    made = list((fresh.path / "results/figures").glob("ext_heights.*"))
+    assert {path.suffix for path in made} == {".nc", ".png", ".svg"}
+    # The tree has changes that its commit has not.
+    assert {read_provenance(path)["dirty"] for path in made} == {"yes"}
 
 
 STUDY = '''"""A number from the curve of another stage."""

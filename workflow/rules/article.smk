@@ -8,7 +8,6 @@ rule paper:
         "Writing results/paper.md"
     input:
         templates=sorted(map(str, Path(ARTICLE).glob("*.md.j2"))),
-        error_law="config/error_law.csv",
         atlas="config/atlas.nc",
         references=[f"{ARTICLE}/references.yaml", f"{ARTICLE}/numbered.csl"],
         data=expand("results/figures/{name}.nc", name=STUDIES),

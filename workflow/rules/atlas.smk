@@ -1,7 +1,7 @@
 # The atlas: how stiff is stiff enough, everywhere. Not part of a run. Its summary is
 # accepted by hand, see docs/atlas.md, and the article takes its numbers from there.
 
-from bouncing_ball.pipeline.atlas import shard_minutes
+from bouncing_ball.pipeline.atlas import shard_minutes, shard_names
 
 # What the shards are made from.
 ATLAS = {key: part for key, part in config["atlas"].items() if key != "summary"}
@@ -36,7 +36,9 @@ rule atlas_merge:
     message:
         "Atlas: one file from its shards"
     input:
-        parts=shard_files,
+        parts=lambda wildcards: expand(
+            rules.atlas_shard.output.data, shard=[*shard_names(ATLAS), "limits"]
+        ),
         source=modules("atlas.shards", "pipeline.atlas"),
     output:
         data="results/atlas/atlas.nc",

@@ -29,7 +29,6 @@ if found.resolve() != HERE.resolve():
 
 from bouncing_ball.configuration.study import arguments
 from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
-from bouncing_ball.pipeline.atlas import discard_damaged, shard_names
 from bouncing_ball.pipeline.sources import sources
 
 # Two lines before every job, which say nothing of it.
@@ -51,11 +50,3 @@ def stage(studies):
 def modules(*names):
     files = sources("bouncing_ball.pipeline.job", *(f"bouncing_ball.{name}" for name in names))
     return [os.path.relpath(file) for file in files]
-
-
-# The shards of the atlas; one that is damaged is removed, and so made again.
-def shard_files(wildcards):
-    paths = [f"results/atlas/shards/{name}.nc" for name in [*shard_names(ATLAS), "limits"]]
-    if workflow.is_main_process:
-        discard_damaged(paths, logger.warning)
-    return paths

@@ -1,5 +1,6 @@
 # The accepted record, figures/ and paper.md, which git holds; its log is `git log figures/`.
-# Without outputs that Snakemake knows of, so that both look at the record at each call.
+# Both look at the results of a whole run, and at the record at each call: they have no outputs
+# that Snakemake knows of.
 
 from bouncing_ball.pipeline.conclusion import concluded
 
@@ -9,9 +10,10 @@ rule accept:
     localrule: True
     message:
         "Copying the results over the record in figures/ and paper.md"
+    input:
+        rules.all.input,
     params:
         record=ROOT,
-        files=lambda wildcards: sorted({str(file) for file in rules.all.input}),
     log:
         "results/logs/accept.log",
     script:

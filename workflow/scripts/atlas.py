@@ -18,7 +18,7 @@ with logged(snakemake), style():
     (path,) = snakemake.input.parts
     data = summary(AtlasParameters(**parameters), read_input(path))
     publish(snakemake, data, parameter_attributes(parameters), compressed=True)
-    metadata = provenance(snakemake).attributes()
+    metadata = provenance(snakemake)
     folder = Path(snakemake.output.shares).parent
     for name, figure in charts(data):
         save(figure, folder / f"{name}.png", metadata)

@@ -8,5 +8,5 @@ from bouncing_ball.pipeline.job import logged, provenance, read_input
 with logged(snakemake) as lines, style():
     draw = load(snakemake.params.drawing)
     data = map(read_input, snakemake.input.get("data", []))
-    save_all(draw(*data), snakemake.output, provenance(snakemake).attributes())
+    save_all(draw(*data), snakemake.output, provenance(snakemake))
     lines += snakemake.output

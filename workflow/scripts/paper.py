@@ -9,7 +9,6 @@ from bouncing_ball.figures import DRAWINGS
 from bouncing_ball.figures.article.render import render_article
 from bouncing_ball.figures.atlas.tables import shares
 from bouncing_ball.figures.tables.formats import to_markdown
-from bouncing_ball.figures.tables.rows import law_table
 from bouncing_ball.pipeline.job import logged, read_input
 
 
@@ -20,7 +19,6 @@ def text_of(path):
 with logged(snakemake) as lines:
     data = {Path(path).stem: read_input(path) for path in snakemake.input.data}
     tables = {Path(path).stem: text_of(path) for path in snakemake.input.tables}
-    tables["error_law"] = law_table(text_of(snakemake.input.error_law))
     data["atlas"] = read_dataset(snakemake.input.atlas)
     tables["atlas"] = to_markdown(*shares(data["atlas"]))
     folder = Path(snakemake.input.templates[0]).parent

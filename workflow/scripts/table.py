@@ -5,10 +5,9 @@ from pathlib import Path
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.figures.tables import rows
 from bouncing_ball.figures.tables.formats import texts
-from bouncing_ball.pipeline.job import logged, read_input, withdraw
+from bouncing_ball.pipeline.job import logged, read_input
 
 with logged(snakemake) as lines:
-    withdraw()
     name = Path(snakemake.output[0]).stem
     table = texts(*getattr(rows, name)(read_input(snakemake.input.data)))
     for path in snakemake.output:

@@ -4,7 +4,7 @@ The error of a quantity q is ``(q_SD - q)/q`` with q of the simple model: the
 restitution model, or the corrected one. It is signed; the paper's is its modulus.
 """
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -63,31 +63,32 @@ def modulus(error: ArrayLike) -> np.ndarray:
 
 def relative_errors(
     exact: ImpactModel,
-    simple: ImpactModel,
+    simple: Sequence[ImpactModel],
     n: ArrayLike,
     amplitude: ArrayLike,
-    quantities: Iterable[str] = OF_IMPACTS,
+    quantities: Sequence[str] = OF_IMPACTS,
 ) -> np.ndarray:
-    """Signed relative errors of a simple model, shape (quantity, ...).
+    """Signed relative errors of simple models, shape (model, quantity, ...).
 
     Examples
     --------
     Without damping, Λ_SD = 1 - 1/ϖ² above the resonance:
 
     >>> stiff = SpringDamperModel(SpringDamper.from_restitution(1.0, np.array([2.0])))
-    >>> relative_errors(stiff, RestitutionModel(1.0), 1, 1.0, ["permanent_contact"]).tolist()
-    [[-0.25]]
+    >>> relative_errors(stiff, [RestitutionModel(1.0)], 1, 1.0, ["permanent_contact"]).tolist()
+    [[[-0.25]]]
     """
-    asked = tuple(quantities)
-    pairs = zip(*(values(model, n, amplitude, asked) for model in (exact, simple)), strict=True)
-    return np.stack([relative(*pair) for pair in pairs])
+    shape = np.broadcast_shapes(exact.shape, np.shape(n), np.shape(amplitude))
+    wanted, *found = (values(model, n, amplitude, quantities) for model in (exact, *simple))
+    pairs = ([relative(*pair) for pair in zip(wanted, each, strict=True)] for each in found)
+    return np.stack([[np.broadcast_to(error, shape) for error in each] for each in pairs])
 
 
 def errors(
     contact: SpringDamper,
     n: ArrayLike,
     amplitude: ArrayLike,
-    quantities: Iterable[str] = OF_IMPACTS,
+    quantities: Sequence[str] = OF_IMPACTS,
 ) -> np.ndarray:
     """Signed relative errors of both simple models on contacts, (model, quantity, ...).
 
@@ -96,11 +97,8 @@ def errors(
     >>> errors(SpringDamper(100.0, 0.1), 1, 1.0, ["max_height"]).round(4).tolist()
     [[-0.0083], [-0.0]]
     """
-    asked = tuple(quantities)
-    shape = np.broadcast_shapes(contact.shape, np.shape(n), np.shape(amplitude))
-    exact, *simple = (values(model, n, amplitude, asked) for model in models(contact))
-    found = [[relative(*pair) for pair in zip(exact, each, strict=True)] for each in simple]
-    return np.stack([[np.broadcast_to(error, shape) for error in each] for each in found])
+    exact, *simple = models(contact)
+    return relative_errors(exact, simple, n, amplitude, quantities)
 
 
 def orbit_errors(orbit: SpringDamperOrbit) -> np.ndarray:
@@ -123,9 +121,6 @@ def orbit_errors(orbit: SpringDamperOrbit) -> np.ndarray:
         RestitutionModel(orbit.contact.restitution).orbit(n, lam),
         CorrectedOrbit.at(n, signature, lam, psi),
     )
-    found = np.empty((len(simple), len(OF_ORBITS), *np.shape(lam)))
-    for j, quantity in enumerate(OF_ORBITS):
-        exact = getattr(orbit, quantity)
-        for i, model in enumerate(simple):
-            found[i, j] = relative(exact, getattr(model, quantity))
-    return found
+    return np.stack(
+        [[relative(getattr(orbit, q), getattr(model, q)) for q in OF_ORBITS] for model in simple]
+    )

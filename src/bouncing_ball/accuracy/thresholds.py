@@ -6,7 +6,7 @@ within the range scanned. Where a model lacks the quantity, the error is infinit
 
 from collections.abc import Callable, Sequence
 from enum import StrEnum
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,9 +20,13 @@ from bouncing_ball.orbits.model import ImpactModel
 
 Numbered = Callable[[np.ndarray, np.ndarray], np.ndarray]
 """Values at ratios ϖ of the functions with given numbers; all three arrays of one shape."""
+Errors = Callable[[np.ndarray, np.ndarray, Sequence[str]], np.ndarray]
+"""Signed relative errors of quantities, shape (quantity, m), at ratios ϖ of rows, shape (m,)."""
 
 # Errors are bounded for the root finder: they may vanish, or be infinite.
 _SMALLEST, _LARGEST = 1e-300, 1e3
+# Of ln ϖ: the rounding of an error of 0.1 % moves its threshold by as much.
+_CLOSE = 1e-13
 
 
 class ThresholdStatus(StrEnum):
@@ -77,7 +81,10 @@ def last_crossing(function: Numbered, ratios: np.ndarray, scanned: np.ndarray) -
         bracket = np.log(ratios[last]), np.log(ratios[last + 1])
         with np.errstate(invalid="ignore"):  # of an interpolation that is then not taken
             root = find_root(
-                lambda x, k: function(np.exp(x), k.astype(int)), bracket, args=(which,)
+                lambda x, k: function(np.exp(x), k.astype(int)),
+                bracket,
+                args=(which,),
+                tolerances={"xatol": _CLOSE},
             )
         # On a sample rounding may turn the sign back: the root is that sample.
         values_at_ends = np.abs(root.f_bracket)
@@ -107,7 +114,7 @@ def thresholds(
     >>> thresholds(lambda ratio, _: 1 / ratio, grid, 1 / grid[np.newaxis], [0.01, 2.0]).ratio
     array([[100.,  nan]])
     """
-    level = np.asarray(tolerances, dtype=float)
+    level = np.atleast_1d(np.asarray(tolerances, dtype=float))
     size, tolerance = modulus(scanned)[:, np.newaxis], level[:, np.newaxis]
 
     def excess(error: np.ndarray, tolerance: np.ndarray) -> np.ndarray:
@@ -128,6 +135,28 @@ def thresholds(
         str(ThresholdStatus.FOUND),
     )
     return Thresholds(np.where(never, np.nan, found), status)
+
+
+def by_quantity(errors: Errors, quantities: Sequence[str], rows: int) -> Numbered:
+    """Errors of several quantities, numbered quantity by quantity, ``rows`` of each.
+
+    Those of an orbit are asked for together, as they are found by the same steps.
+    """
+    of_orbit = np.isin(quantities, OF_ORBITS)
+    groups = [np.flatnonzero(of_orbit), *np.flatnonzero(~of_orbit)[:, np.newaxis]]
+
+    def numbered(ratio: np.ndarray, number: np.ndarray) -> np.ndarray:
+        which, row = np.divmod(number, rows)
+        found = np.empty(ratio.shape)
+        for group in groups:
+            there = np.isin(which, group)
+            if there.any():
+                each = errors(ratio[there], row[there], [quantities[k] for k in group])
+                place = np.searchsorted(group, which[there])
+                found[there] = np.take_along_axis(each, place[np.newaxis], axis=0)[0]
+        return found
+
+    return numbered
 
 
 def model_thresholds(
@@ -159,15 +188,12 @@ def model_thresholds(
     if set(quantities) & set(OF_ORBITS):
         simple.require_orbit(n, amplitude)
 
-    scanned = relative_errors(exact(ratios), simple, n, amplitude, quantities)
-    found = []
-    for quantity, row in zip(quantities, scanned, strict=True):
+    def along(ratio: np.ndarray, _: Any, asked: Sequence[str]) -> np.ndarray:
+        return relative_errors(exact(ratio), [simple], n, amplitude, asked)[0]
 
-        def error(ratio: np.ndarray, _: np.ndarray, quantity=quantity) -> np.ndarray:
-            return relative_errors(exact(ratio), simple, n, amplitude, [quantity])[0]
-
-        found.append(thresholds(error, ratios, row[np.newaxis], tolerances))
-    return modulus(scanned), Thresholds(*map(np.concatenate, zip(*found, strict=True)))
+    scanned = along(ratios, None, quantities)
+    numbered = by_quantity(along, quantities, 1)
+    return modulus(scanned), thresholds(numbered, ratios, scanned, tolerances)
 
 
 class Search(NamedTuple):
@@ -196,24 +222,19 @@ def search(
     restitution model has the contact's own r.
     """
     damping, index, lam = (np.atleast_1d(x) for x in np.broadcast_arrays(zeta, n, amplitude))
-    along = SpringDamper(ratios[:, np.newaxis], damping, rule)
-    scanned = np.moveaxis(errors(along, index, lam, quantities), 2, -1)
-    found, zeros = [], []
-    for k, quantity in enumerate(quantities):
+    size = len(quantities), len(SIMPLE), lam.size
 
-        def error(ratio: np.ndarray, number: np.ndarray, quantity=quantity) -> np.ndarray:
-            model, orbit = np.divmod(number, lam.size)
-            contact = SpringDamper(ratio, damping[orbit], rule)
-            both = errors(contact, index[orbit], lam[orbit], [quantity])
-            return both[model, 0, np.arange(number.size)]
+    def along(ratio: np.ndarray, row: np.ndarray, asked: Sequence[str]) -> np.ndarray:
+        model, orbit = np.divmod(row, lam.size)
+        contact = SpringDamper(ratio, damping[orbit], rule)
+        return errors(contact, index[orbit], lam[orbit], asked)[model, :, np.arange(row.size)].T
 
-        rows = scanned[:, k].reshape(-1, ratios.size)
-        found.append(thresholds(error, ratios, rows, [tolerance]))
-        # The restitution model's errors come first.
-        zeros.append(last_crossing(error, ratios, rows[: lam.size]))
-    shape = len(SIMPLE), lam.size
-    ratio, status = (
-        np.stack([part.reshape(shape) for part in parts], axis=1)
-        for parts in zip(*found, strict=True)
-    )
-    return Search(ratio, status, np.array(zeros))
+    grid = SpringDamper(ratios[:, np.newaxis], damping, rule)
+    scanned = errors(grid, index, lam, quantities).transpose(1, 0, 3, 2)
+    every = scanned.reshape(-1, ratios.size)
+    found = thresholds(by_quantity(along, quantities, size[1] * size[2]), ratios, every, tolerance)
+    # The restitution model's errors come first.
+    own = scanned[:, 0].reshape(-1, ratios.size)
+    zero = last_crossing(by_quantity(along, quantities, lam.size), ratios, own)
+    ratio, status = (part.reshape(size).swapaxes(0, 1) for part in found)
+    return Search(ratio, status, zero.reshape(-1, lam.size))

@@ -4,11 +4,8 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-
 from bouncing_ball.accuracy.errors import models
 from bouncing_ball.contacts.laws.tsuji import Tsuji
-from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import Instant, LawSignature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits.corrected_model import CorrectedModel
@@ -16,9 +13,6 @@ from bouncing_ball.orbits.law_model import LawModel
 from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
-
-# Of a restitution coefficient: some hundred units in the last place of 1.
-_ROUNDING = 1e-13
 
 
 @dataclass(frozen=True)
@@ -65,41 +59,44 @@ class Table:
 
 @dataclass(frozen=True)
 class Case:
-    """A case to design for; its contact and its models are built once.
+    """A case to design for; its models are built once.
 
     Parameters
     ----------
     mass : float
         m in kg.
     table : Table
-    stiffness, damping : float
-        k in N/m and c in N s/m.
-    release : Release
-        What ends a contact.
+    contact : SpringDamper
+        ϖ, ζ and the release rule.
     law : Tsuji, optional
-        A Hertz contact; stiffness and damping are then those of the linear contact with
-        its restitution coefficient and its duration at the orbit's impact speed.
+        A Hertz contact; the linear one has then its restitution coefficient, and its
+        duration at the orbit's impact speed.
 
     Examples
     --------
-    >>> case = Case(1.0, Table(1.0, 1.0, 1.0), 100.0, 2.0, Release.DISPLACEMENT)
-    >>> float(case.contact.frequency_ratio), float(case.contact.damping_ratio)
-    (10.0, 0.1)
+    >>> case = Case(1.0, Table(1.0, 1.0, 1.0), SpringDamper(10.0, 0.1))
+    >>> case.stiffness, case.damping
+    (100.0, 2.0)
     """
 
     mass: float
     table: Table
-    stiffness: float
-    damping: float
-    release: Release
+    contact: SpringDamper
     law: Tsuji | None = None
 
-    @cached_property
-    def contact(self) -> SpringDamper:
-        """ϖ = √(k/m)/Ω, ζ = c/(2√(km)) and the release rule."""
-        ratio = math.sqrt(self.stiffness / self.mass) / self.table.angular_frequency
-        zeta = self.damping / (2 * math.sqrt(self.stiffness * self.mass))
-        return SpringDamper(ratio, zeta, self.release)
+    @property
+    def stiffness(self) -> float:
+        """k = mω² in N/m, ω = ϖΩ."""
+        return self.mass * self._frequency**2
+
+    @property
+    def damping(self) -> float:
+        """c = 2ζmω in N s/m."""
+        return 2 * float(self.contact.damping_ratio) * self.mass * self._frequency
+
+    @property
+    def _frequency(self) -> float:
+        return float(self.contact.frequency_ratio) * self.table.angular_frequency
 
     @cached_property
     def models(self) -> dict[str, ImpactModel]:
@@ -114,10 +111,9 @@ class Case:
 
     def instant(self, n: int) -> Instant:
         """The signature of the contact at the impact speed of the restitution model's orbit."""
-        found = self.models["corrected"].signature(rigid_speed(n, self.contact.restitution))
-        # Interpolated, that of an elastic Hertz contact is 1 but for rounding.
-        r = found.restitution
-        return found._replace(restitution=np.where(np.abs(1 - r) < _ROUNDING, 1.0, r))
+        r = self.contact.restitution
+        # That of a law is interpolated, and may be above 1 by rounding.
+        return self.models["corrected"].signature(rigid_speed(n, r))._replace(restitution=r)
 
     @property
     def contact_time(self) -> float:

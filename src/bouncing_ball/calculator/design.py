@@ -6,8 +6,8 @@ from typing import Annotated, Any, get_args
 
 from bouncing_ball.accuracy.quantities import OF_ORBITS, Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
-from bouncing_ball.calculator.case import Case, Table
-from bouncing_ball.calculator.contact_data import Given, case_of, loss, meant, table_of
+from bouncing_ball.calculator.case import Case
+from bouncing_ball.calculator.contact_data import case_of, loss, meant, table_of
 from bouncing_ball.calculator.families import families, finite
 from bouncing_ball.calculator.needed import RATIOS, needed
 from bouncing_ball.calculator.results import (
@@ -20,13 +20,14 @@ from bouncing_ball.calculator.results import (
     TimeStep,
 )
 from bouncing_ball.calculator.units import Unit, number, shown
-from bouncing_ball.calculator.verdict import Verdict, assessed, chosen, notes
+from bouncing_ball.calculator.verdict import assessed, chosen, notes
+from bouncing_ball.calls import Index, Rule
 from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError, require
-from bouncing_ball.orbits.calls import Index, Rule
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.signatures import Range
 
 STEPS = 50
 """Steps in one contact."""
@@ -37,12 +38,10 @@ STEP_RULE = (
 
 # Families looked at if none is asked for: as many as the paper shows, and some more.
 _FAMILIES = range(1, 9)
-_AT_MOST_ONE = "in (0, 1]"
-_LOSS = Unit("", "0.85", _AT_MOST_ONE)
 # Beyond, the squares of ϖ and Λ leave no digits; as on the rest of the command line.
 _LARGEST = 1e8
-# Of any quantity in SI units: products and powers of a few stay floating-point numbers.
-_SPAN = (1e-40, 1e40)
+_LOSS = Unit("", "0.85", Range(0, 1, "(]"))
+_NONE_TOO = Range(0, 1e40, "[]")
 
 
 def design(
@@ -58,8 +57,8 @@ def design(
     contact_time: Annotated[Any, Unit("s", "50 us")] = None,
     reduced_modulus: Annotated[Any, Unit("Pa", "115 GPa")] = None,
     radius: Annotated[Any, Unit("m", "5 mm")] = None,
-    damping: Annotated[Any, Unit("N*s/m", "10 N s/m", "≥ 0")] = None,
-    damping_ratio: Annotated[Any, Unit("", "0.05", "≥ 0")] = None,
+    damping: Annotated[Any, Unit("N*s/m", "10 N s/m", _NONE_TOO)] = None,
+    damping_ratio: Annotated[Any, Unit("", "0.05", _NONE_TOO)] = None,
     restitution: Annotated[Any, _LOSS] = None,
     measured_restitution: Annotated[Any, _LOSS] = None,
     drop_height: Annotated[Any, Unit("m", "1 m")] = None,
@@ -139,18 +138,23 @@ def design(
     table = table_of(given)
     if "mass" not in given:
         raise ModelError("mass is missing: give it, such as 20 g")
-    require(table.amplitude < _LARGEST, table.amplitude, "Λ", f"below {_LARGEST:g}")
-    asked = _FAMILIES if n is None else [n]
-    found_case = case_of(given, table, rule, asked)
-    if found_case is None:
-        return _choose(table, given, rule, asked, quantity, epsilon)
-    case, *remarks = found_case
+    lam, asked = table.amplitude, _FAMILIES if n is None else [n]
+    require(lam < _LARGEST, lam, "Λ", f"below {_LARGEST:g}")
+    case = case_of(given, table, rule, asked)
+    if case is None:
+        zeta = loss(given, rule)
+        index, need = _least(zeta, rule, asked, lam, quantity, epsilon)
+        ratio = need.frequency_ratio or float(RATIOS[0])
+        case = Case(given["mass"], table, SpringDamper(ratio, zeta, rule))
+        found = families(case, asked)
+        one = next((one for one in found if one.n == index), _judged(found))
+        return _design(case, found, one, need, *chosen(case, need, index))
     ratio = float(case.contact.frequency_ratio)
     require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
     found = families(case, asked)
     one = _judged(found)
-    need = needed(quantity, epsilon, case.contact, one.n, table.amplitude)
-    return _design(case, found, one, need, assessed(one, need, ratio), *remarks)
+    need = needed(quantity, epsilon, case.contact, one.n, lam)
+    return _design(case, found, one, need, *assessed(one, need, ratio))
 
 
 def quantities() -> dict[str, Unit]:
@@ -163,54 +167,41 @@ def _read(parameters: Mapping[str, Any]) -> dict[str, float]:
     """The quantities that are given, in SI units and in their ranges."""
     given = {}
     for name, kind in quantities().items():
-        if parameters[name] is None:
-            continue
-        given[name] = value = number(name, parameters[name], kind)
-        said = f"{name} = {value:g} {kind.name}".rstrip()
-        if kind.allowed == _AT_MOST_ONE:
-            require(0 < value <= 1, value, name, _AT_MOST_ONE)
-        elif value < 0 or (value == 0 and kind.allowed == "positive"):
-            raise ModelError(f"{said} is not {kind.allowed}")
-        if value and not _SPAN[0] <= value <= _SPAN[1]:
-            raise ModelError(f"{said} is not between {_SPAN[0]:g} and {_SPAN[1]:g}")
+        if parameters[name] is not None:
+            given[name] = value = number(name, parameters[name], kind)
+            if value not in kind.allowed:
+                said = f"{name} = {value:g} {kind.name}".rstrip()
+                raise ModelError(f"{said} is not {kind.allowed}")
     return given
 
 
-def _choose(
-    table: Table,
-    given: Given,
+def _least(
+    zeta: float,
     release: Release,
     asked: Sequence[int],
+    amplitude: float,
     quantity: str,
     tolerance: float,
-) -> Design:
-    """The most compliant contact for a tolerance.
+) -> tuple[int, Needed]:
+    """The family that a choice is about, and the least ϖ that it needs.
 
     Raises
     ------
     NoOrbitError
         If the restitution model has no orbit to be right about, or no contact will do.
     """
-    instead = ", which is missing; to choose a contact, give its restitution instead"
-    zeta = loss(given, release, instead)
     unit = SpringDamper(1.0, zeta, release)
-    r, lam = float(unit.restitution), table.amplitude
-    n = meant(asked, r, lam)
+    r = float(unit.restitution)
+    n = meant(asked, r, amplitude)
     if quantity in OF_ORBITS:
-        RestitutionModel(r).require_orbit(n, lam)
-    need = needed(quantity, tolerance, unit, n, lam)
+        RestitutionModel(r).require_orbit(n, amplitude)
+    need = needed(quantity, tolerance, unit, n, amplitude)
     if need.status == ThresholdStatus.NEVER_WITHIN:
         raise NoOrbitError(
             f"no contact up to ϖ = {RATIOS[-1]:g} has its {QUANTITIES[Quantity(quantity)]} within "
             f"{shown(tolerance, '%')} of the restitution model with r = {r:.4g}"
         )
-    ratio = RATIOS[0] if need.frequency_ratio is None else need.frequency_ratio
-    mass, omega = given["mass"], ratio * table.angular_frequency
-    case = Case(mass, table, mass * omega * omega, 2 * zeta * mass * omega, release)
-    found = families(case, asked)
-    one = next((one for one in found if one.n == n), _judged(found))
-    missed = f"at this Λ the contact that is chosen has no {n}-T orbit"
-    return _design(case, found, one, need, chosen(case, need, n), *([] if one.exists else [missed]))
+    return n, need
 
 
 def _judged(found: Sequence[Family]) -> Family:
@@ -223,8 +214,9 @@ def _design(
     found: tuple[Family, ...],
     one: Family,
     need: Needed,
-    verdict: Verdict,
-    *remarks: str,
+    is_good_enough: bool,
+    verdict: str,
+    reason: str,
 ) -> Design:
     """Everything that is known of a contact; `one` is the family of the verdict."""
     contact, table = case.contact, case.table
@@ -249,10 +241,10 @@ def _design(
         corrected=Corrected(delay * table.time, r, load * table.time),
         orbits=found,
         needed=need,
-        is_good_enough=verdict.is_good_enough,
-        verdict=verdict.sentence,
-        reason=verdict.reason,
-        notes=(*remarks, *notes(case, one)),
+        is_good_enough=is_good_enough,
+        verdict=verdict,
+        reason=reason,
+        notes=notes(case, one),
         case=case,
         n=one.n,
     )

@@ -2,11 +2,11 @@
 
 import numpy as np
 
+from bouncing_ball.accuracy.error_law import law_thresholds
 from bouncing_ball.accuracy.quantities import OF_ORBITS, Quantity
 from bouncing_ball.accuracy.thresholds import search
-from bouncing_ball.calculator.families import by_error_law, finite
+from bouncing_ball.calculator.families import finite
 from bouncing_ball.calculator.results import Needed
-from bouncing_ball.contacts.signature import LinearSignature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 
@@ -36,11 +36,8 @@ def needed(
     if quantity in OF_ORBITS and not simple.orbit(n, amplitude).exists:
         return Needed(quantity, tolerance, None, None, None, NO_ORBIT, NO_ORBIT)
     found = search(zeta, rule, n, amplitude, RATIOS, tolerance, (quantity,))
-    # The error law's K is the error at ϖ = 1, of second order for the permanent contact.
-    unit = SpringDamper(1.0, zeta, rule)
-    coefficient = by_error_law(LinearSignature(unit)(), unit, n, amplitude)[0][quantity]
-    by_law = None if coefficient is None else coefficient / tolerance
-    if by_law is not None and quantity == Quantity.PERMANENT_CONTACT:
-        by_law = by_law**0.5
+    # That of a limit does not depend on Λ, which may be too small for an orbit.
+    there = np.maximum(amplitude, simple.saddle_node(n).amplitude)
+    by_law = finite(law_thresholds(n, zeta, there, rule, tolerance)[Quantity(quantity)])
     ratio, corrected = map(finite, found.threshold[:, 0, 0])
     return Needed(quantity, tolerance, ratio, by_law, corrected, *map(str, found.status[:, 0, 0]))

@@ -24,7 +24,7 @@ def page(design: Design) -> xr.Dataset:
 
     Variables are NaN where there is no orbit or no threshold.
     """
-    table, rule = design.case.table, design.case.release
+    table, rule = design.case.table, design.case.contact.release
     # Below the first r the family does not exist at Λ; the contact's own r is shown.
     half, lam = design.n * np.pi, table.amplitude
     least = (half - lam) / (half + lam)

@@ -4,18 +4,19 @@ A text is one number and, after it, its unit: ``50 Hz``, ``0.5 mm``, ``2e6 N/m``
 A plain number is in SI units. Only the unit is given to pint, and never an
 expression: texts of a command line are not evaluated.
 
-Hertz and radians per second have the same dimension, and pint takes one for the
-other. Here cycles and radians are kept apart: ``rad/s``, ``rpm`` and ``deg/s``
-are angles over time, ``Hz`` counts cycles, and a bare ``1/s`` is refused.
+Here an angle has a dimension, and a hertz is a turn in a second: ``Hz``, ``rad/s``, ``rpm``
+and ``deg/s`` are of one kind, and a bare ``1/s``, which might be either, is of none.
 """
 
 import math
 import re
 import textwrap
 from functools import cache
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball.signatures import Range
 
 # A number, and what is left.
 _TEXT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
@@ -25,38 +26,14 @@ _UNIT = re.compile(r"(?:[^\W\d]|[ ·*/%°²³¹⁻]|\^-?\d(?![\d^])|_0|1(?= */))
 
 
 class Unit(NamedTuple):
-    """What a parameter is, as its annotation: its SI unit, an example, and its range."""
+    """What a parameter is, as its annotation: its SI unit, an example, and its range.
+
+    Products and powers of a few numbers in the default range stay floating-point numbers.
+    """
 
     name: str
     example: str
-    allowed: str = "positive"
-
-
-_CYCLES = {"hertz", "kilohertz", "megahertz", "millihertz", "counts_per_second"}
-# What one calls the standard acceleration of gravity; pint's g is the gram.
-_GRAVITY = {"g", "gn", "g_n", "g0", "g_0"}
-_DIMENSIONS = {
-    "kg": "a mass",
-    "Hz": "a frequency",
-    "rad/s": "an angular frequency",
-    "s": "a time",
-    "m": "a length",
-    "m/s": "a speed",
-    "m/s^2": "an acceleration",
-    "N/m": "a stiffness",
-    "N*s/m": "a damping",
-    "N": "a force",
-    "Pa": "a pressure",
-    "": "a number without dimension",
-}
-# Parameters that a quantity may have been meant for.
-_OWN = {
-    "a time": "period",
-    "a frequency": "frequency",
-    "an acceleration": "acceleration",
-    "a damping": "damping",
-}
-_OF_THE_TABLE = ("frequency", "angular_frequency", "period", "amplitude", "acceleration")
+    allowed: Range = Range(1e-40, 1e40, "[]")
 
 
 @cache
@@ -64,7 +41,11 @@ def _registry() -> Any:
     # Imported where it is needed: it takes half a second, and plain numbers do without.
     import pint
 
-    return pint.UnitRegistry()
+    registry: Any = pint.UnitRegistry(None, on_redefinition="ignore")
+    registry.load_definitions(Path(pint.__file__).with_name("default_en.txt"))
+    registry.define("radian = [angle] = rad")
+    registry.define("hertz = turn / second = Hz")
+    return registry
 
 
 def number(name: str, value: Any, kind: Unit) -> float:
@@ -94,8 +75,8 @@ def number(name: str, value: Any, kind: Unit) -> float:
     >>> number("frequency", "20 ms", frequency)
     Traceback (most recent call last):
     ...
-    bouncing_ball.errors.ModelError: frequency = 20 ms is a time: it needs a frequency, \
-such as 50 Hz; a period has its own parameter, period
+    bouncing_ball.errors.ModelError: frequency = 20 ms is of the dimension [time]: \
+write it as '50 Hz'
     """
     short = textwrap.shorten(str(value), 60, placeholder="…")
     given, unit = f"{name} = {short}", ""
@@ -112,50 +93,30 @@ such as 50 Hz; a period has its own parameter, period
         plain = float(value)
     except (TypeError, ValueError):
         raise ModelError(f"{name} = {value!r} is neither a number nor a text") from None
-    # To the last digit but one: the digits that a user wrote are kept.
-    found_value = float(f"{plain * _factor(name, given, unit, kind):.15g}") if unit else plain
+    found_value = _converted(given, plain, unit, kind) if unit else plain
     if not math.isfinite(found_value):
         raise ModelError(f"{given} is not a finite number")
     return found_value
 
 
-def _factor(name: str, given: str, unit: str, kind: Unit) -> float:
-    """What one unit is in SI units; cycles or radians in a second, whichever is asked for."""
+def _converted(given: str, value: float, unit: str, kind: Unit) -> float:
+    """A value in a unit as one in SI units; as an acceleration g is not the gram."""
     registry = _registry()
-    if kind.name == "m/s^2" and unit in _GRAVITY:
+    if (kind.name, unit) == ("m/s^2", "g"):
         unit = "standard_gravity"
     try:
         if not _UNIT.fullmatch(unit.replace("**", "^")):
             raise ValueError(unit)
-        one = registry.Quantity(1.0, registry.parse_units(unit))
-        # An offset scale, such as °C, has no factor.
-        linear = math.isclose((2 * one).to_root_units().m, 2 * one.to_root_units().m)
+        one = registry.Quantity(value, registry.parse_units(unit))
+        right = one.is_compatible_with(kind.name or "dimensionless")
+        # To the last digit but one: the digits that a user wrote are kept.
+        found = float(f"{one.m_as(kind.name):.15g}") if right else math.nan
     except Exception:  # pint raises whatever its tokenizer does
-        linear = False
-    if not linear:
-        raise ModelError(f"{given} has an unknown unit: write it as {kind.example!r}")
-    if not one.is_compatible_with(kind.name or "dimensionless"):
-        raise ModelError(_other_kind(name, given, one, kind))
-    if kind.name not in ("Hz", "rad/s"):
-        return float(one.to(kind.name or "dimensionless").m)
-    root, turn = one.to_root_units(), 2 * math.pi
-    if "radian" in str(root.units):
-        return float(root.m) / (1 if kind.name == "rad/s" else turn)
-    if not {str(unit) for unit, _ in one.unit_items()} <= _CYCLES:
-        raise ModelError(
-            f"{given} does not say whether it counts cycles or radians: write Hz or rad/s"
-        )
-    return float(root.m) * (turn if kind.name == "rad/s" else 1)
-
-
-def _other_kind(name: str, given: str, one: Any, kind: Unit) -> str:
-    found = [words for unit, words in _DIMENSIONS.items() if one.is_compatible_with(unit)]
-    what = found[0] if found else f"of dimension {one.dimensionality}"
-    text = f"{given} is {what}: it needs {_DIMENSIONS[kind.name]}, such as {kind.example}"
-    own = _OWN.get(what)
-    if own is None or name not in (("damping_ratio",) if own == "damping" else _OF_THE_TABLE):
-        return text
-    return f"{text}; a{'n' if own == 'acceleration' else ''} {own} has its own parameter, {own}"
+        raise ModelError(f"{given} has an unknown unit: write it as {kind.example!r}") from None
+    if not right:
+        dimension = one.dimensionality
+        raise ModelError(f"{given} is of the dimension {dimension}: write it as {kind.example!r}")
+    return found
 
 
 _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n"}

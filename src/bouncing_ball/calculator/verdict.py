@@ -9,6 +9,12 @@ from bouncing_ball.calculator.results import QUANTITIES, Family, Needed
 from bouncing_ball.calculator.units import shown
 from bouncing_ball.contacts.release import Release
 
+_OF_HERTZ = (
+    "the orbits are those of the Hertz contact with Tsuji's damping; stiffness, damping, ϖ, ζ and "
+    "the ϖ that is needed are those of the linear contact with its r, and its duration at the "
+    "impact speed of the restitution model's orbit"
+)
+
 
 class Verdict(NamedTuple):
     """Whether the restitution model is good enough, in one sentence, and the reason."""
@@ -84,23 +90,26 @@ def chosen(case: Case, needed: Needed, n: int) -> Verdict:
         f"{shown(case.damping, 'N s/m')} at that stiffness: {_subject(needed.quantity, n)} is "
         f"then within {tolerance} of the restitution model's."
     )
+    ratio = f"{float(case.contact.frequency_ratio):.4g}"
+    reason = f"the error crosses {tolerance} for the last time at the frequency ratio ϖ = {ratio}"
     if needed.status == ThresholdStatus.ALWAYS_WITHIN:
-        return Verdict(True, sentence, f"the error is {needed.status}")
-    ratio = float(case.contact.frequency_ratio)
-    where = f"for the last time at the frequency ratio ϖ = {ratio:.4g}"
-    return Verdict(True, sentence, f"the error crosses {tolerance} {where}")
+        reason = f"the error is {needed.status}"
+    return Verdict(True, sentence, reason)
 
 
 def notes(case: Case, family: Family) -> tuple[str, ...]:
     """What a user should know beside the verdict."""
-    found, contact = [], case.contact
-    if family.exists and not (family.is_stable and family.is_admissible):
+    found, contact, orbit = [], case.contact, f"{family.n}-T orbit"
+    if case.law is not None:
+        found.append(_OF_HERTZ)
+    if not family.exists:
+        found.append(f"at this Λ the contact has no {orbit}")
+    elif not (family.is_stable and family.is_admissible):
         what = "unstable" if family.is_admissible else "inadmissible: another impact comes first"
-        found.append(f"the {family.n}-T orbit is {what}, and no ball will keep to it")
-    if float(contact.frequency_ratio) < 1:
+        found.append(f"the {orbit} is {what}, and no ball will keep to it")
+    if contact.frequency_ratio < 1:
         found.append("the contact is slower than the table: no impact, but a ball on a spring")
-    pulls = case.release is Release.DISPLACEMENT and float(contact.damping_ratio) > 0
-    if case.law is None and pulls:
+    if case.law is None and contact.release is Release.DISPLACEMENT and contact.damping_ratio > 0:
         found.append(
             "the contact pulls before it is released at δ = 0; one that cannot pull has the other r"
         )

@@ -18,13 +18,8 @@ def restitution_law(before, table, restitution):
     return table - restitution * (before - table)
 
 
-def impact_velocity(time, start, velocity, gravity):
-    """Eq. 3: ẏ⁻ = -g (t₁ - t₀) + ẏ(t₀), just before the impact."""
-    return -gravity * (time - start) + velocity
-
-
 def free_flight(time, start, height, velocity):
-    """Eq. 4: height and velocity of the ball in flight since τ₀, from z₀ and z′₀."""
+    """Eq. 4, and Eq. 3 for the velocity: the ball in flight since τ₀, from z₀ and z′₀."""
     since = time - start
     return -(since**2) / 2 + since * velocity + height, -since + velocity
 
@@ -63,11 +58,6 @@ def period_doubling(n, restitution):
     return np.sqrt(1 + saddle_node(n, restitution) ** 2)
 
 
-def restitution_threshold():
-    """Eq. 9: the largest Λ of permanent contact, Λ_CR = 1."""
-    return 1.0
-
-
 def contact(time, frequency_ratio, damping_ratio, amplitude, phase, a, b):
     """Eqs. 12 and 13: height and velocity of the ball in contact.
 
@@ -90,9 +80,8 @@ def contact(time, frequency_ratio, damping_ratio, amplitude, phase, a, b):
 
 def flight(time, release_time, bounce_velocity, amplitude, phase):
     """Eqs. 14 and 15: height and velocity of the ball in flight since τ_b."""
-    since = time - release_time
-    start = amplitude * np.sin(release_time + phase)
-    return -(since**2) / 2 + since * bounce_velocity + start, -since + bounce_velocity
+    height = amplitude * np.sin(release_time + phase)
+    return free_flight(time, release_time, height, bounce_velocity)
 
 
 def damping_ratio(restitution):
@@ -123,11 +112,6 @@ def steady_displacement(time, frequency_ratio, damping_ratio, amplitude):
 def permanent_contact_threshold(frequency_ratio, damping_ratio):
     """Eq. 33: Λ_SD = √(1 + (4ζ² - 2)/ϖ² + 1/ϖ⁴)."""
     return np.sqrt(1 + (4 * damping_ratio**2 - 2) / frequency_ratio**2 + frequency_ratio**-4.0)
-
-
-def resonant_threshold(damping_ratio):
-    """After Eq. 33: Λ_SD = 2ζ at ϖ = 1."""
-    return 2 * damping_ratio
 
 
 def permanent_contact_frequency_ratio(threshold, damping_ratio, sign):

@@ -3,7 +3,7 @@
 A claim is a function whose docstring says what the paper claims, in our words, and which
 returns what decides it::
 
-    @statement("Abstract and Introduction", "text")
+    @claim("Abstract and Introduction")
     def contact_shortens(data):
         """the contact gets shorter as its stiffness increases
 
@@ -28,6 +28,8 @@ from bouncing_ball.claims.verdict import Finding, Verdict, against_print, at_mos
 from bouncing_ball.errors import ModelError
 
 Data = Mapping[str, Any]
+# Why claims are not reproduced: a text, its docstring, and checks that must hold for it.
+Explanation = Callable[[Data], Mapping[str, Finding]]
 
 
 def _answer(name: str, decide: Callable[[Data], Any], data: Data) -> Any:
@@ -38,31 +40,32 @@ def _answer(name: str, decide: Callable[[Data], Any], data: Data) -> Any:
         raise ModelError(f"{name!r}: {' '.join(str(error).split())}") from error
 
 
-def _paragraphs(function: Callable[..., Any]) -> dict[str, str]:
-    """The docstring of a claim: its statement, and its paragraphs by their first word."""
+def paragraphs(function: Callable[..., Any]) -> dict[str, Any]:
+    """A docstring: its statement, and its further paragraphs by their first word."""
     first, *others = inspect.getdoc(function).split("\n\n")  # type: ignore[union-attr]
     parts = (" ".join(other.split()).partition(": ") for other in others)
-    return {"statement": " ".join(first.split()), **{key: text for key, _, text in parts}}
+    return {"statement": " ".join(first.split()), **{key.lower(): text for key, _, text in parts}}
 
 
-@dataclass(frozen=True)
-class Explanation:
-    """Why claims are not reproduced, and the checks that must hold for it.
+def name_of(function: Callable[..., Any]) -> str:
+    """What a claim or an explanation is called, by default.
 
-    ``checks`` takes the datasets and returns conditions by what is checked.
+    Examples
+    --------
+    >>> name_of(name_of)
+    'name of'
     """
+    return function.__name__.replace("_", " ")
 
-    id: str
-    text: str
-    checks: Callable[[Data], Mapping[str, Finding]]
 
-    def check(self, data: Data) -> tuple[bool, Mapping[str, Finding] | str]:
-        """Whether all checks hold, and what they found, or why they were not made."""
-        try:
-            found = _answer(self.id, self.checks, PaperData(data))
-        except NotAsked as reason:
-            return False, str(reason)
-        return all(one.verdict is Verdict.REPRODUCED for one in found.values()), found
+def checked(explanation: Explanation, data: Data) -> tuple[bool, str]:
+    """Whether all checks hold, and each with its number, or why they were not made."""
+    try:
+        found = _answer(name_of(explanation), explanation, PaperData(data))
+    except NotAsked as reason:
+        return False, str(reason)
+    said = (f"{name}: {one} (required {one.required})" for name, one in found.items())
+    return all(one.verdict is Verdict.REPRODUCED for one in found.values()), "; ".join(said)
 
 
 @dataclass(frozen=True)
@@ -71,22 +74,19 @@ class Claim:
 
     Parameters
     ----------
-    id, kind, section, item, statement : str
-        Name; ``number``, ``formula`` or ``statement``; its place in the paper;
-        what it says, in our words.
+    id, kind, item, statement : str
+        Name; what it is counted as, ``number``, ``statement`` or ``restored formula``, the
+        signs of which had to be restored, so that the check shows that this form is right,
+        not that the paper printed it; its place in the paper; what it says, in our words.
     decide : callable
         A :class:`~bouncing_ball.claims.verdict.Finding` from the datasets, or a
         mapping of them by reading; numbers, where something is ``printed``.
     printed : str
         The number as printed, with its digits; empty if there is none.
-    unit : float, optional
-        Unit of its last significant digit, where the digits do not show it.
-    clear : bool
-        Legible as printed; else signs or letters had to be restored.
     condition, remark : str
         The decidable condition into which a statement is turned; how it was read.
-    explanation : Explanation, optional
-        Why it is not reproduced.
+    explanation : callable, optional
+        Why it is not reproduced: conditions from the datasets, by what is checked.
     restates : Claim, optional
         The claim that it says again; the tally counts it apart.
     table : str
@@ -95,102 +95,59 @@ class Claim:
 
     id: str
     kind: str
-    section: str
     item: str
     statement: str
     decide: Callable[[Data], Any]
     printed: str = ""
-    unit: float | None = None
-    clear: bool = True
     condition: str = ""
     remark: str = ""
     explanation: Explanation | None = None
     restates: "Claim | None" = None
     table: str = ""
 
-    @property
-    def group(self) -> str:
-        """What it is counted as.
-
-        A restatement apart from what stands alone, and a formula whose signs had
-        to be restored apart from a number: the check shows that the restored form
-        is right, not that the paper printed it.
-        """
-        if self.restates:
-            return "restatement"
-        if self.kind == "formula":
-            return "statement" if self.clear else "restored formula"
-        return self.kind
-
-    def verdict(self, data: Data) -> tuple[Finding, str, list[str]]:
-        """The finding, or why there is none, and the datasets that were used.
+    def verdict(self, data: PaperData) -> tuple[Finding, str]:
+        """The finding, and why there is none.
 
         Raises
         ------
         ModelError
             If a dataset, or what is needed of it, is missing.
         """
-        asked = PaperData(data)
         try:
-            found = _answer(self.id, self.decide, asked)
+            found = _answer(self.id, self.decide, data)
         except NotAsked as reason:
-            return Finding(np.nan, Verdict.NOT_ASKED, self.printed), str(reason), list(asked.used)
-        readings = found if isinstance(found, Mapping) else {"": found}
+            return Finding(np.nan, Verdict.NOT_ASKED, self.printed), str(reason)
         if self.printed:
-            readings = {
-                name: against_print(value, self.printed, self.unit)
-                for name, value in readings.items()
-            }
+            found = against_print(found, self.printed)
+        readings = {"": found} if isinstance(found, Finding) else found
         first, *others = readings.values()
         if all(other.verdict is first.verdict for other in others):
-            return first, "", list(asked.used)
-        words = "; ".join(f"{name}: {one.verdict}{_shown(one)}" for name, one in readings.items())
-        open_ = Finding(np.nan, Verdict.UNDECIDABLE, self.printed)
-        return open_, f"depends on the reading: {words}", list(asked.used)
+            return first, ""
+        words = "; ".join(f"{name}: {one.verdict} ({one})" for name, one in readings.items())
+        return Finding(np.nan, Verdict.UNDECIDABLE), f"depends on the reading: {words}"
 
 
-def _shown(finding: Finding) -> str:
-    """The number found, but where only its being rounding says anything."""
-    return "" if 0 < finding.limit <= 1e-8 else f" ({finding.found:.4g})"
+def claim(item: str, id: str = "", **given: Any) -> Callable[[Callable[[Data], Any]], Claim]:
+    """Makes a claim of a function, from its docstring; its id is the function's name by default.
 
-
-def claim(
-    kind: str, section: str, item: str, id: str = "", **given: Any
-) -> Callable[[Callable], Claim]:
-    """Makes a claim of a function, from its docstring; its id is the function's name by default."""
+    With a number as ``printed``, its digits as a text, the function returns the computed one.
+    """
+    kind = "number" if "printed" in given else "statement"
 
     def made(function: Callable[[Data], Any]) -> Claim:
-        said = _paragraphs(function)
-        return Claim(
-            *(id or function.__name__.replace("_", " "), kind, section, item),
-            *(said["statement"], function),
-            condition=said.get("Condition", ""),
-            remark=said.get("Remark", ""),
-            **given,
-        )
+        named = id or name_of(function)
+        return Claim(named, kind, item, decide=function, **paragraphs(function), **given)
 
     return made
 
 
-def statement(section: str, item: str = "text", **given: Any) -> Callable[[Callable], Claim]:
-    """A claim in words: the function returns a condition."""
-    return claim("statement", section, item, **given)
-
-
-def number(section: str, item: str, printed: str, **given: Any) -> Callable[[Callable], Claim]:
-    """A printed number, with its digits: the function returns the computed one."""
-    return claim("number", section, item, printed=printed, **given)
-
-
-def formula(
-    name: str, section: str, item: str, text: str, row: str = "", *, clear: bool = False, **given
-) -> Claim:
+def formula(name: str, item: str, text: str, row: str = "", **given: Any) -> Claim:
     """A printed formula, decided by a row of the dataset ``formulas``; by its item if not given."""
 
     def decide(data: Data) -> Finding:
         return of_formula(data, row or item)
 
-    return Claim(name, "formula", section, item, text, decide, clear=clear, **given)
+    return Claim(name, "restored formula", item, text, decide, **given)
 
 
 def of_formula(data: Data, row: str) -> Finding:
@@ -199,19 +156,9 @@ def of_formula(data: Data, row: str) -> Finding:
     return at_most(one.disagreement, one.budget)
 
 
-def explanation(name: str) -> Callable[[Callable[[Data], Mapping[str, Finding]]], Explanation]:
-    """Makes an explanation of a function that returns its checks; the docstring is its text."""
-
-    def made(function: Callable[[Data], Mapping[str, Finding]]) -> Explanation:
-        return Explanation(name, _paragraphs(function)["statement"], function)
-
-    return made
-
-
-def defined_in(module: ModuleType, kind: type) -> Iterator[Any]:
-    """The claims or explanations of a module in their order; lists of them are opened."""
-    for name, value in vars(module).items():
+def defined_in(module: ModuleType) -> Iterator[Claim]:
+    """The claims of a module in their order; lists of them are opened."""
+    for value in vars(module).values():
         for one in value if isinstance(value, list) else [value]:
-            # What is imported from elsewhere is not defined here.
-            if isinstance(one, kind) and not name.startswith("_"):
+            if isinstance(one, Claim):
                 yield one

@@ -27,14 +27,6 @@ PRINTED_DAMPING = 0.052
 # Samples of a branch along ε, up to so far from ε = 0 against the scale of the fold, 1/ϖ.
 _SAMPLES, _REACH = 2001, 12.0
 
-# An orbit of the contacts whose contact lasts (θ₀ + ε)/ϖ_d, by ε.
-OrbitAt = Callable[[np.ndarray, SpringDamper, np.ndarray], SpringDamperOrbit]
-Monodromy = Callable[[SpringDamperOrbit], np.ndarray]
-
-
-# A name, what the reading assumes, and both ends of each range, shape (ϖ, n, 2).
-Reading = tuple[str, str, np.ndarray]
-
 
 class WeightlessOrbit(SpringDamperOrbit):
     """n-T orbits whose contact knows no gravity; the flight does."""
@@ -78,9 +70,11 @@ def high_bounce_monodromy(orbit: SpringDamperOrbit) -> np.ndarray:
 
 @np.errstate(divide="ignore", invalid="ignore")  # where the ball grazes
 def altered_ends(
-    contact: SpringDamper, n: int, orbit_at: OrbitAt, monodromy: Monodromy
+    contact: SpringDamper, n: int, orbit_at: Callable, monodromy: Callable
 ) -> list[float]:
     """Λ at the saddle-node and the period doubling of a branch that no model has.
+
+    ``orbit_at`` is the orbit whose contact lasts (θ₀ + ε)/ϖ_d, of ε, the contact and n.
 
     The saddle-node is the minimum of Λ, whatever the linearisation says: no orbit has a
     smaller Λ. The period doubling is the root of 1 + tr + det next to it, on the side of
@@ -107,8 +101,13 @@ def altered_ends(
     return [float(node.fun), float(amplitude(root))]
 
 
-def readings() -> list[Reading]:
-    """The eight readings."""
+def readings() -> dict[str, np.ndarray]:
+    """Both ends of each range under the eight readings, shape (ϖ, n, 2).
+
+    "Equations as they stand" are Eqs. 11-26 and the linearised return map, of which digits
+    beyond the last printed one may be cut off; ζ to first order is -ln r/π; under "high-bounce
+    stability" the orbit is exact; "all rows from Eqs. 7-8" are what the stiffness changes.
+    """
     omega, n = np.meshgrid(AXES["frequency_ratio"], AXES["n"], indexing="ij")
     zeta = float(damping_ratio(RESTITUTION))
 
@@ -116,29 +115,23 @@ def readings() -> list[Reading]:
         model = SpringDamperModel(SpringDamper(omega, damping, release))
         return np.stack([x(n).amplitude for x in (model.saddle_node, model.period_doubling)], -1)
 
-    def altered(orbit_at: OrbitAt, monodromy: Monodromy) -> np.ndarray:
+    def altered(orbit_at: Callable, monodromy: Callable) -> np.ndarray:
         places = zip(omega.ravel(), n.ravel(), strict=True)
         ends = [altered_ends(SpringDamper(x, zeta), k, orbit_at, monodromy) for x, k in places]
         return np.reshape(ends, (*n.shape, 2))
 
-    plain, first_order = of_model(), -np.log(RESTITUTION) / np.pi
-    cut = np.floor(plain / LAST_DIGIT) * LAST_DIGIT
-    high = "the orbit is exact, but the linearised flight ignores the table's displacement"
-    holmes = altered(SpringDamperOrbit.on_branch, high_bounce_monodromy)
-    weightless = altered(WeightlessOrbit.at, WeightlessOrbit.monodromy)
-    forced = of_model(release=Release.FORCE)
+    plain = of_model()
     ends = [end(n, RESTITUTION) for end in (as_printed.saddle_node, as_printed.period_doubling)]
-    rigid = "every row is the restitution model's: what the stiffness changes"
-    return [
-        ("equations as they stand", "Eqs. 11-26, the linearised return map", plain),
-        ("digits cut off", "digits beyond the last printed one are cut off", cut),
-        ("damping as printed", f"ζ = {PRINTED_DAMPING}, as printed", of_model(PRINTED_DAMPING)),
-        ("damping to first order", "ζ = -ln r/π", of_model(first_order)),
-        ("force release", "the contact ends where its force vanishes", forced),
-        ("no gravity in contact", "Eq. 11 without gravity", weightless),
-        ("high-bounce stability", high, holmes),
-        ("all rows from Eqs. 7-8", rigid, np.stack(ends, axis=-1)),
-    ]
+    return {
+        "equations as they stand": plain,
+        "digits cut off": np.floor(plain / LAST_DIGIT) * LAST_DIGIT,
+        "damping as printed": of_model(PRINTED_DAMPING),
+        "damping to first order": of_model(-np.log(RESTITUTION) / np.pi),
+        "force release": of_model(release=Release.FORCE),
+        "no gravity in contact": altered(WeightlessOrbit.at, WeightlessOrbit.monodromy),
+        "high-bounce stability": altered(SpringDamperOrbit.on_branch, high_bounce_monodromy),
+        "all rows from Eqs. 7-8": np.stack(ends, axis=-1),
+    }
 
 
 def forensics() -> xr.Dataset:
@@ -152,10 +145,9 @@ def forensics() -> xr.Dataset:
         entries are reproduced; ``unreachable``, the saddle-nodes that are printed below
         the fold by more than the digits can hide, where no orbit exists.
     """
-    names, descriptions, ends = zip(*readings(), strict=True)
-    printed = printed_table()
-    axes = {"reading": list(names), **printed.coords}
-    computed = xr.DataArray(np.array(ends), axes, ("reading", *printed.dims))
+    found, printed = readings(), printed_table()
+    axes = {"reading": list(found), **printed.coords}
+    computed = xr.DataArray(np.array(list(found.values())), axes, ("reading", *printed.dims))
     difference = (computed - printed) / LAST_DIGIT
     below = difference.sel(bound="saddle-node", drop=True) > 0.5
     ratio = printed.frequency_ratio
@@ -174,12 +166,11 @@ def forensics() -> xr.Dataset:
             "reproduced": (abs(parts) <= 0.5).sum(over).transpose("reading", "rows"),
             "entries": parts.isel(reading=0, drop=True).count(over),
             "unreachable": below.sum(["frequency_ratio", "n"]),
-            "description": ("reading", list(descriptions)),
         }
     )
     distances = (data.rms_difference.sel(rows=name).values for name in ("all rows", "softer rows"))
     order = np.lexsort([levels(values) for values in distances])
-    ranked = data.isel(reading=order).assign(rank=("reading", 1 + np.arange(len(names))))
+    ranked = data.isel(reading=order).assign(rank=("reading", 1 + np.arange(len(found))))
     return describe(ranked).assign_attrs(
         last_digit=LAST_DIGIT, restitution=RESTITUTION, printed_damping_ratio=PRINTED_DAMPING
     )

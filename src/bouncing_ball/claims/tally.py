@@ -9,11 +9,6 @@ from bouncing_ball.claims.verdict import Verdict
 _GROUPS = ("restored formula", "number", "statement", "restatement")
 
 
-def _counts(verdicts: np.ndarray) -> str:
-    numbers = {verdict: int(np.sum(verdicts == str(verdict))) for verdict in Verdict}
-    return ", ".join(f"{number} {verdict}" for verdict, number in numbers.items() if number)
-
-
 def tally(claims: xr.Dataset, figures: int) -> str:
     """Figures made, claims and verdicts in one line, group by group.
 
@@ -34,7 +29,8 @@ def tally(claims: xr.Dataset, figures: int) -> str:
         own = verdicts[groups == group]
         if own.size:
             plural = "s" if own.size > 1 else ""
-            parts.append(f"{own.size} {group}{plural}: {_counts(own)}")
+            counts = [f"{np.sum(own == str(one))} {one}" for one in Verdict if str(one) in own]
+            parts.append(f"{own.size} {group}{plural}: {', '.join(counts)}")
     unexplained = int(np.sum(~claims.explained.values.astype(bool)))
     if unexplained:
         parts.append(f"{unexplained} without explanation")

@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from bouncing_ball.datasets.rounding import compared_text
 from bouncing_ball.errors import ModelError
 
 CLOSE_UNITS = 2
@@ -48,12 +49,16 @@ class Finding:
     deviation_units: float = np.nan
     deviation: float = np.nan
 
+    def __str__(self) -> str:
+        """The number found, or its bound where that is of the size of rounding."""
+        return compared_text(self.found, self.limit)
+
 
 def _finite(values: ArrayLike | xr.DataArray) -> np.ndarray:
     """The numbers, none of which may be missing: a missing one decides nothing."""
     numbers = np.asarray(values, dtype=float)
-    if not numbers.size or np.isnan(numbers).any():
-        missing = int(np.isnan(numbers).sum())
+    missing = int(np.isnan(numbers).sum())
+    if missing or not numbers.size:
         name = getattr(values, "name", None) or "the number that decides"
         raise ModelError(f"{name}: {missing} of {numbers.size} numbers missing")
     return numbers
@@ -110,24 +115,8 @@ def above(values, bound) -> Finding:
     return _condition(value, ">", limit, value > limit)
 
 
-def last_unit(text: str) -> float:
-    """Unit of the last digit of a number as printed.
-
-    Examples
-    --------
-    >>> last_unit("0.255"), last_unit("82")
-    (0.001, 1.0)
-    """
-    return float(f"1e-{len(text.partition('.')[2])}")
-
-
-def against_print(value: float, printed: str, unit: float | None = None) -> Finding:
+def against_print(value: float, printed: str) -> Finding:
     """A computed number judged by its distance from a printed one, in units of the last digit.
-
-    Parameters
-    ----------
-    unit : float, optional
-        Unit of the last significant digit, where the digits do not show it.
 
     Examples
     --------
@@ -136,7 +125,7 @@ def against_print(value: float, printed: str, unit: float | None = None) -> Find
     ['reproduced', 'close', 'contradicted']
     """
     value, wanted = largest(value), float(printed)
-    units = (value - wanted) / (unit or last_unit(printed))
+    units = (value - wanted) * 10.0 ** len(printed.partition(".")[2])
     if abs(units) <= 0.5 + _ROUNDING:
         verdict = Verdict.REPRODUCED
     elif abs(units) <= CLOSE_UNITS + _ROUNDING:

@@ -6,13 +6,11 @@ is taken from its dataset and met by all of them.
 """
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane
 from bouncing_ball.continuation.events import vanishing
@@ -49,10 +47,6 @@ _NEWTON = NewtonSettings(max_iterations=20)
 _UNSAID = {"admissible": True, "restitution_admissible": True}
 
 
-class CrossCheckError(ValueError):
-    """Two routes to one orbit disagree beyond their budget, or nothing is compared."""
-
-
 class Shown(NamedTuple):
     """Orbits of one model in a row, or bifurcations, as a dataset shows them.
 
@@ -63,12 +57,6 @@ class Shown(NamedTuple):
     orbit: Any
     bifurcation: Bifurcation | None = None
     admissible: Any = None
-
-    def name(self, k: int) -> str:
-        """What an orbit is called in messages."""
-        n, model = np.broadcast_to(self.orbit.n, self.orbit.shape)[k], self.model[k]
-        where = f"Λ = {self.orbit.amplitude[k]:.6g}, {model.label}, {model.name} model"
-        return f"{self.bifurcation or 'orbit'} of the {n}-T family at {where}"
 
 
 # The orbits of a dataset.
@@ -81,13 +69,17 @@ def _row(data: xr.Dataset, *names: str) -> Iterator[np.ndarray]:
     return (column[np.isfinite(flat[0])] for column in flat)
 
 
+def _contacts(data: xr.Dataset, *names: str) -> tuple[Any, ...]:
+    """The models of spring-damper orbits, their n, and variables of them."""
+    *values, r, omega, n = _row(data, *names, "restitution", "frequency_ratio", "n")
+    contact = SpringDamper.from_restitution(r, omega, data.attrs["release"])
+    return SpringDamperModel(contact), n, *values
+
+
 def contact_orbits(data: xr.Dataset) -> Iterator[Shown]:
     """The orbits of the spring-damper model along Λ or ϖ."""
     names = ("contact_duration", "phase", "impact_velocity", "amplitude", "admissible")
-    duration, phase, velocity, lam, admissible, r, omega, n = _row(
-        data, *names, "restitution", "frequency_ratio", "n"
-    )
-    model = SpringDamperModel(SpringDamper.from_restitution(r, omega, data.attrs["release"]))
+    model, n, duration, phase, velocity, lam, admissible = _contacts(data, *names)
     yield Shown(model, model.orbit_of(n, lam, phase, duration, velocity), None, admissible)
 
 
@@ -98,16 +90,14 @@ def restitution_orbits(data: xr.Dataset) -> Iterator[Shown]:
     phase, lam, admissible, r, n = _row(data, *names, "restitution", "n")
     model = RestitutionModel(r)
     yield Shown(model, model.orbit_of(n, lam, phase), None, admissible)
+    if "saddle_node_amplitude" not in data:
+        return
     n, first = np.unique(n, return_index=True)
     model = RestitutionModel(r[first])
+    exact = data.sel(impact_map="exact") if "impact_map" in data.dims else data
     for kind in Bifurcation:
-        name = kind.name.lower()
-        limit = getattr(model, name)(n)
-        if f"{name}_amplitude" in data:
-            exact = data.sel(impact_map="exact") if "impact_map" in data.dims else data
-            shown = (np.atleast_1d(exact[f"{name}_{x}"].values) for x in ("amplitude", "phase"))
-            limit = model.orbit_of(n, *shown)
-        yield Shown(model, limit, kind)
+        end = (exact[f"{kind.name.lower()}_{part}"].values for part in ("amplitude", "phase"))
+        yield Shown(model, model.orbit_of(n, *map(np.atleast_1d, end)), kind)
 
 
 def located(data: xr.Dataset) -> Iterator[Shown]:
@@ -118,23 +108,8 @@ def located(data: xr.Dataset) -> Iterator[Shown]:
         else:
             part = data.sel(bound=kind).rename(computed="place")
         names = ("place", "special_phase", "special_contact_duration")
-        lam, phase, duration, r, omega, n = _row(
-            part, *names, "restitution", "frequency_ratio", "n"
-        )
-        model = SpringDamperModel(SpringDamper.from_restitution(r, omega, data.attrs["release"]))
-        yield Shown(model, model.orbit_of(n, lam, phase, duration), kind)
-
-
-def along_frequency_ratio(data: xr.Dataset) -> Iterator[Shown]:
-    """Bifurcations of the formula, under each rule that ends a contact; Λ alone is shown."""
-    for rule in data.release.values:
-        for kind in Bifurcation:
-            part = data.sel(release=rule, bound=kind)
-            names = ("bifurcation_amplitude", "frequency_ratio", "damping_ratio", "n")
-            lam, omega, zeta, n = _row(part, *names)
-            model = SpringDamperModel(SpringDamper(omega, zeta, Release(rule)))
-            limit = getattr(model, kind.name.lower())(n)
-            yield Shown(model, replace(limit, amplitude=lam), kind)
+        model, n, *limit = _contacts(part, *names)
+        yield Shown(model, model.orbit_of(n, *limit), kind)
 
 
 # What each dataset shows.
@@ -145,7 +120,6 @@ SHOWN: dict[str, tuple[Callable[[xr.Dataset], Iterator[Shown]], ...]] = {
     **{f"fig{k}": (contact_orbits,) for k in (10, 12, 13, 14)},
     "fig15": (contact_orbits, restitution_orbits, located),
     "table1": (located,),
-    "ext_release": (along_frequency_ratio,),
 }
 
 
@@ -193,14 +167,11 @@ def _size(orbit: Orbit) -> np.ndarray:
 
 def simulation_returns(orbit: Orbit, cycles: int) -> np.ndarray:
     """How far the simulation is from orbits after some cycles: φ, δ′ and the last period."""
-    phase, speed = orbit.phase, orbit.relative_impact_velocity
+    start = orbit.phase, orbit.relative_impact_velocity
+    time, phase, speed = None, *start
     for _ in range(cycles):
         time, phase, speed = _next(orbit, phase, speed)
-    off = (
-        time - 2 * np.pi * orbit.n,
-        reduce_angle(phase - orbit.phase),
-        speed - orbit.relative_impact_velocity,
-    )
+    off = time - 2 * np.pi * orbit.n, reduce_angle(phase - start[0]), speed - start[1]
     return np.max(np.abs(off), axis=0) / _size(orbit)
 
 
@@ -224,49 +195,34 @@ def simulation_leaves(orbit: Orbit) -> np.ndarray:
     return np.abs(growth / values[every, which].real - 1)
 
 
-def comparisons(shown: Shown) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
-    """Each kind of comparison, the orbits compared and their disagreements.
+def comparisons(shown: Shown) -> Iterator[tuple[str, np.ndarray]]:
+    """Each kind of comparison, and the disagreements of the orbits compared.
 
     The simulation meets those that are orbits of the ball, as the dataset says.
     """
-    yield FORMULA, np.arange(shown.orbit.size), formula_and_equations(shown)
+    yield FORMULA, formula_and_equations(shown)
     if shown.bifurcation:
         return
-    moving = np.flatnonzero(shown.admissible.astype(bool) & shown.orbit.can_be_simulated())
-    orbit = shown.orbit[moving]
+    orbit = shown.orbit[shown.admissible.astype(bool)]
     tests = [kind.test(*orbit.trace_and_determinant()) for kind in Bifurcation]
-    stable, left = orbit.is_stable(), np.min(tests, axis=0) < _UNSTABLE
-    yield CLOSES, moving, simulation_returns(orbit, 1)
-    yield HOLDS, moving[stable], simulation_returns(orbit[stable], HELD_PERIODS)
-    yield LEAVES, moving[left], simulation_leaves(orbit[left])
+    yield CLOSES, simulation_returns(orbit, 1)
+    yield HOLDS, simulation_returns(orbit[orbit.is_stable()], HELD_PERIODS)
+    yield LEAVES, simulation_leaves(orbit[np.min(tests, axis=0) < _UNSTABLE])
 
 
 def _compared(name: str, data: xr.Dataset) -> tuple[list[float], list[int]]:
     """Largest disagreement of each kind in a dataset, NaN where there is none, and how many."""
-    worst, count = dict.fromkeys(BUDGETS, np.nan), dict.fromkeys(BUDGETS, 0)
-    if name not in SHOWN:
-        raise CrossCheckError(f"{name}: SHOWN in claims/witness.py does not say what it shows")
+    off: dict[str, list[float]] = {kind: [] for kind in BUDGETS}
     for find in SHOWN[name]:
-        try:
-            found = list(find(data))
-        except KeyError as error:
-            raise CrossCheckError(f"{name}: {find.__name__} needs {error.args[0]}") from None
-        if not any(shown.orbit.size for shown in found):
-            raise CrossCheckError(f"{name}: {find.__name__} compares nothing")
-        for shown in found:
-            for kind, which, off in comparisons(shown):
-                if not off.size:
-                    continue
-                values = np.where(np.isnan(off), np.inf, off)
-                largest, at = values.max(), which[values.argmax()]
-                if largest > BUDGETS[kind]:
-                    raise CrossCheckError(
-                        f"{name}: {kind} disagree by {largest:.1e}, more than "
-                        f"{BUDGETS[kind]:.0e}, at the {shown.name(at)}"
-                    )
-                worst[kind] = float(np.fmax(worst[kind], largest))
-                count[kind] += values.size
-    return list(worst.values()), list(count.values())
+        compared = [pair for shown in find(data) for pair in comparisons(shown)]
+        if not any(values.size for _, values in compared):
+            raise ModelError(f"{name}: {find.__name__} compares nothing")
+        for kind, values in compared:
+            # A route that has no orbit there is as far from it as can be.
+            off[kind] += np.nan_to_num(values, nan=np.inf).tolist()
+            if (worst := max(off[kind], default=0)) > (budget := BUDGETS[kind]):
+                raise ModelError(f"{name}: {kind} disagree by {worst:.1e}, more than {budget:.0e}")
+    return [max(values, default=np.nan) for values in off.values()], list(map(len, off.values()))
 
 
 def witness(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
@@ -279,18 +235,15 @@ def witness(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
 
     Raises
     ------
-    CrossCheckError
-        If a disagreement exceeds its budget, with the orbit named, or if a dataset does
-        not hold the orbits that it should show.
+    ModelError
+        If a disagreement exceeds its budget, or nothing is compared.
     """
-    if not data:
-        raise ModelError("no datasets to cross-check")
-    rows = [_compared(name, dataset) for name, dataset in data.items()]
+    worst, counts = zip(*(_compared(name, dataset) for name, dataset in data.items()), strict=True)
     dims = ("artifact", "comparison")
     return described(
         {
-            "disagreement": (dims, [worst for worst, _ in rows]),
-            "orbits": (dims, [count for _, count in rows]),
+            "disagreement": (dims, np.array(worst)),
+            "orbits": (dims, np.array(counts)),
             "budget": ("comparison", list(BUDGETS.values())),
         },
         coords={"artifact": list(data), "comparison": list(BUDGETS)},

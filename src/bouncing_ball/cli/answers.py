@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from bouncing_ball import calls
 from bouncing_ball.accuracy import error_law as error_laws
 from bouncing_ball.cli.readable import lines
 from bouncing_ball.contacts.contact_law import ContactLaw
@@ -15,9 +16,8 @@ from bouncing_ball.contacts.permanent_contact import permanent_contact_minimum
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import LawSignature, LinearSignature, free_impact
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.errors import NoOrbitError, ParameterError
+from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.motion.sequence import Status
-from bouncing_ball.orbits import calls
 from bouncing_ball.orbits.continued import restitution_speed
 from bouncing_ball.orbits.orbit import OBSERVABLES, Orbit
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
@@ -127,20 +127,11 @@ def _contact(**given: Any) -> SpringDamper:
 
 
 @takes(calls.model, "release", *calls.LOSS)
-def permanent_contact(*, frequency_ratio: calls.FrequencyRatio, model, **given: Any) -> Answer:
+def permanent_contact(*, frequency_ratio: calls.FrequencyRatio, **given: Any) -> Answer:
     """Threshold at ϖ, and its minimum over ϖ.
 
     The minimum is null where there is none (ζ ≥ 1/√2, displacement release).
     """
-    if model == "corrected":
-        raise ParameterError(
-            "permanent-contact has no corrected form: there is no impact to correct, and the "
-            "restitution model's Λ = 1 is right to second order in 1/ϖ already"
-        )
-    if model == "restitution":
-        raise ParameterError(
-            "permanent-contact is Λ = 1 for {model} restitution, whatever its r (Eq. 9)"
-        )
     contact = _contact(frequency_ratio=frequency_ratio, **given)
     answer: Answer = {
         "threshold": float(SpringDamperModel(contact).permanent_contact_threshold()),
@@ -160,19 +151,12 @@ def simulate(amplitude, phase, velocity, impacts, **impact: Any) -> Answer:
     """The sequence of impacts of one ball, as lists; null for what does not happen."""
     of = calls.model_of_impact(amplitude, phase, velocity, **impact)
     found = of.simulate(amplitude, phase, velocity, impacts)
-    columns = {
-        "time": found.time,
-        "phase": found.phase,
-        "impact_velocity": found.impact_velocity,
-        "contact_duration": found.contact_duration,
-        "bounce_velocity": found.release_velocity,
-    }
-    there = np.isfinite(found.time)
+    names = ("time", "phase", "impact_velocity", "contact_duration", "release_velocity")
+    columns = np.array([getattr(found, name) for name in names])
+    there = columns[:, np.isfinite(found.time)]
+    sequence = [[x if math.isfinite(x) else None for x in column] for column in there.tolist()]
     return {
         "status": Status(int(found.status)).name.lower().replace("_", " "),
         **_described(of.orbit_of(1, amplitude, phase).law, -float(found.relative_velocity[0])),
-        "sequence": {
-            name: [value if math.isfinite(value) else None for value in column[there].tolist()]
-            for name, column in columns.items()
-        },
+        "sequence": dict(zip((*names[:-1], "bounce_velocity"), sequence, strict=True)),
     }

@@ -1,9 +1,8 @@
 """``bouncing-ball design``: the calculator's answer, as JSON or to read."""
 
-import argparse
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 from bouncing_ball.accuracy.quantities import OF_IMPACTS, Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
@@ -16,30 +15,22 @@ from bouncing_ball.signatures import takes
 _DRAWINGS = (".pdf", ".png", ".svg")
 
 
-def drawing(text: str) -> Path:
-    """The file of a drawing, by its name.
-
-    Raises
-    ------
-    argparse.ArgumentTypeError
-        If the name ends otherwise.
-    """
-    path = Path(text)
-    # Of the text too: a path forgets the slash that makes it a folder's.
-    if path.suffix not in _DRAWINGS or not text.endswith(path.suffix):
-        raise argparse.ArgumentTypeError(f"{text!r} does not end in {' or '.join(_DRAWINGS)}")
-    return path
-
-
 @takes(calculator.design)
-def design(*, plot: Annotated[Path | None, drawing] = None, **given: Any) -> Design:
+def design(*, plot: Path | None = None, **given: Any) -> Design:
     """The calculator's answer, and the page to print.
 
     Parameters
     ----------
     plot
         A page to print: .pdf, .png or .svg.
+
+    Raises
+    ------
+    ModelError
+        If the page has another name or cannot be written.
     """
+    if plot is not None and plot.suffix not in _DRAWINGS:
+        raise ModelError(f"'{plot}' does not end in {' or '.join(_DRAWINGS)}")
     found = calculator.design(**given)
     if plot is not None:
         _draw(found, plot)
@@ -52,18 +43,12 @@ def _draw(found: Design, path: Path) -> None:
     from bouncing_ball.figures.files import save
     from bouncing_ball.figures.style import style
 
-    values = rows(found) + _orbit(found.judged)
     with style():
-        figure = draw(asdict(found), page(found), values)
+        figure = draw(asdict(found), page(found), rows(found) + rows(found.judged))
         try:
             save(figure, path, {"Title": "bouncing-ball design"})
         except OSError as error:
             raise ModelError(f"{path} cannot be written: {error.strerror}") from None
-
-
-def _orbit(one: Family) -> list[tuple[str, str]]:
-    """Lengths, times and forces of the orbit of the contact, if there is one."""
-    return rows(one) if one.exists else []
 
 
 def _line(name: str, *columns: str) -> str:
@@ -79,7 +64,8 @@ def _family_lines(one: Family) -> list[str]:
     lines = ["", f"{one.n}-T orbit", _line("", *one.standing)]
     for columns in zip(*map(rows, one.standing.values()), strict=True):
         lines.append(_line(f"  {columns[0][0]}", *(text for _, text in columns)))
-    lines += [_line(f"  {name}", text) for name, text in _orbit(one)]
+    if one.exists:
+        lines += [_line(f"  {name}", text) for name, text in rows(one)]
     holds = "error law" if one.law_holds else "law, not stated"
     lines.append(_line("  relative error", "restitution", holds, "corrected"))
     return lines + [_error(one, quantity) for quantity in OF_IMPACTS]
@@ -87,18 +73,11 @@ def _family_lines(one: Family) -> list[str]:
 
 def lines(found: Design) -> list[str]:
     """The answer to read, the verdict first."""
-    need = found.needed
-
-    def threshold(value: float | None, status: str) -> str:
-        return "any" if status == ThresholdStatus.ALWAYS_WITHIN else shown(value)
-
+    need, always = found.needed, ThresholdStatus.ALWAYS_WITHIN
     simple = "error law", "corrected"
     asked = f"ϖ for {shown(need.tolerance, '%')} in the {QUANTITIES[Quantity(need.quantity)]}"
-    ratios = (
-        threshold(need.frequency_ratio, need.status),
-        shown(need.by_law),
-        threshold(need.corrected, need.corrected_status),
-    )
+    exact = "any" if need.status == always else shown(need.frequency_ratio)
+    corrected = "any" if need.corrected_status == always else shown(need.corrected)
     return [
         found.verdict,
         f"Reason: {found.reason}.",
@@ -108,7 +87,7 @@ def lines(found: Design) -> list[str]:
         f"Time step: {found.time_step.rule}.",
         "",
         _line(asked, "exact", *simple),
-        _line("", *ratios),
+        _line("", exact, shown(need.by_law), corrected),
         *(line for one in found.orbits for line in _family_lines(one)),
         "",
         # That of the permanent contact is the same in all families.

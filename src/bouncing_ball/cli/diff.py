@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 from typing import NoReturn
 
-from bouncing_ball.cli.output import fail, print_lines
+from bouncing_ball.cli.output import fail, say
 from bouncing_ball.compare.folders import compare_folders
 from bouncing_ball.compare.page import to_html
 from bouncing_ball.compare.terminal import to_terminal
@@ -37,5 +37,5 @@ def diff(
     # 1 means that something differs, and a traceback would exit with it.
     except Exception as error:
         fail(" ".join(str(error).split()) or type(error).__name__, status=2)
-    print_lines(to_terminal(comparison).splitlines())
+    say(to_terminal(comparison).rstrip("\n"))
     sys.exit(comparison.outcome.status)

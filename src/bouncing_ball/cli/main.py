@@ -1,13 +1,15 @@
 """Entry point of ``bouncing-ball``."""
 
+import json
 import sys
 from collections.abc import Callable
+from dataclasses import asdict
 from importlib import import_module
 from typing import Any
 
 from bouncing_ball import __version__
 from bouncing_ball.cli.options import Parser, add_options, in_options, positional
-from bouncing_ball.cli.output import fail, flush, prepare, print_lines, to_json
+from bouncing_ball.cli.output import fail, say
 from bouncing_ball.errors import NoOrbitError, ParameterError
 
 # What each subcommand is for, and the module of its call. A module is imported when its
@@ -74,33 +76,28 @@ def main(arguments: list[str] | None = None) -> None:
 
     For ``diff`` see :mod:`bouncing_ball.cli.diff`.
     """
-    prepare()
     arguments = sys.argv[1:] if arguments is None else arguments
-    try:
-        top = parser(arguments)
-        given = vars(top.parse_args(arguments))
-        command = given.pop("command")
-        if command is None:
-            top.error(f"a command is missing, one of {', '.join(_COMMANDS)}")
-        _run(command, given)
-    finally:
-        flush()
-
-
-def _run(command: str, given: dict[str, Any]) -> None:
+    top = parser(arguments)
+    given = vars(top.parse_args(arguments))
+    command, as_json = given.pop("command"), given.pop("json", False)
+    if command is None:
+        top.error(f"a command is missing, one of {', '.join(_COMMANDS)}")
+    call = _call(command)
+    places = [given.pop(name) for name in positional(call)]
     import numpy as np
 
-    call, as_json = _call(command), given.pop("json", False)
-    arguments = [given.pop(name) for name in positional(call)]
     try:
         with np.errstate(all="ignore"):
-            answer = call(*arguments, **given)
+            answer = call(*places, **given)
     except ValueError as error:
         text = in_options(error.text) if isinstance(error, ParameterError) else str(error)
         if as_json:
-            print_lines([to_json({"error": text})])
+            say(json.dumps({"error": text}))
         fail(text, status=1 if isinstance(error, NoOrbitError) else 2)
-    print_lines([to_json(answer)] if as_json else _module(command).lines(answer))
+    if as_json:
+        say(json.dumps(answer if isinstance(answer, dict) else asdict(answer), allow_nan=False))
+    else:
+        say("\n".join(_module(command).lines(answer)))
 
 
 if __name__ == "__main__":

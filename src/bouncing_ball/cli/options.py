@@ -1,16 +1,17 @@
 """Options of a subcommand, from the signature and the docstring of its call."""
 
 import argparse
+import collections.abc
 import inspect
 import math
+import pathlib
 import re
 import sys
 import typing
-from collections.abc import Callable, Mapping
-from pathlib import Path
+from collections.abc import Callable
 from typing import Any, NoReturn
 
-from bouncing_ball.cli.output import print_lines
+from bouncing_ball.cli.output import say
 from bouncing_ball.errors import escaped
 from bouncing_ball.signatures import Range
 
@@ -31,7 +32,7 @@ class Parser(argparse.ArgumentParser):
     def _print_message(self, message: str, file: Any = None) -> None:
         # argparse itself says nothing where the help cannot be written.
         if file is sys.stdout:
-            print_lines(message.splitlines())
+            say(message.rstrip("\n"))
         else:
             super()._print_message(message, file)
 
@@ -70,27 +71,29 @@ def meanings(call: Callable) -> dict[str, str]:
     return found
 
 
-def _assignment(text: str) -> tuple[str, float]:
-    name, equals, value = text.partition("=")
+def _number(text: str, kind: Any = float) -> float:
+    """What a text says; not a number if it does not say one."""
     try:
-        if not (name and equals):
-            raise argparse.ArgumentTypeError
-        return name, _within(Range())(value)
-    except argparse.ArgumentTypeError:
-        example = "NAME=NUMBER, as stiffness=1000"
-        raise argparse.ArgumentTypeError(f"{text!r} is not {example}") from None
+        return int(text) if kind is int else float(text)
+    except ValueError:
+        return math.nan
 
 
-def _within(allowed: Range, kind: Any = float) -> Callable[[str], Any]:
+def _assignment(text: str) -> tuple[str, float]:
+    name, _, value = text.partition("=")
+    number = _number(value)
+    if not name or number not in Range():
+        raise argparse.ArgumentTypeError(f"{text!r} is not NAME=NUMBER, as stiffness=1000")
+    return name, number
+
+
+def _within(allowed: Range, kind: Any) -> Callable[[str], Any]:
     """A parser of numbers in a range, for ``type=``."""
+    whole = f"a whole number from {allowed.low:g} to {allowed.high:.0f}"
 
     def parse(text: str) -> Any:
-        try:
-            value = int(text) if kind is int else float(text)
-        except ValueError:
-            value = math.nan
+        value = _number(text, kind)
         if value not in allowed:
-            whole = f"a whole number from {allowed.low:g} to {allowed.high:.0f}"
             what = whole if kind is int else allowed
             raise argparse.ArgumentTypeError(f"{text!r} is not {what}")
         return value
@@ -100,22 +103,21 @@ def _within(allowed: Range, kind: Any = float) -> Callable[[str], Any]:
 
 def _reading(annotation: Any) -> dict[str, Any]:
     """How argparse reads a value of a type."""
-    # X | None is read as X is.
-    kinds = [each for each in typing.get_args(annotation) if each is not type(None)]
-    if type(None) in typing.get_args(annotation):
+    kinds = typing.get_args(annotation)
+    if type(None) in kinds:
+        # X | None is read as X is.
         return _reading(kinds[0])
-    origin = typing.get_origin(annotation)
-    if origin is typing.Annotated:
-        kind, how = kinds
-        if isinstance(how, Range):
-            return {"type": _within(how, kind), "metavar": "N" if kind is int else "X"}
-        # A parser of one's own, or a unit, which the call itself reads.
-        return {"type": how, "metavar": "FILE"} if callable(how) else {"metavar": "X"}
-    if origin is typing.Literal:
-        return {"choices": kinds}
-    if origin is Mapping:
-        return {"type": _assignment, "action": "append", "metavar": "NAME=NUMBER"}
-    return {"metavar": "X"} | ({"type": annotation} if annotation in (int, str, Path) else {})
+    match typing.get_origin(annotation) or annotation:
+        case typing.Annotated if isinstance(kinds[1], Range):
+            return {"type": _within(kinds[1], kinds[0]), "metavar": "N" if kinds[0] is int else "X"}
+        case typing.Literal:
+            return {"choices": kinds}
+        case collections.abc.Mapping:
+            return {"type": _assignment, "action": "append", "metavar": "NAME=NUMBER"}
+        case pathlib.Path:
+            return {"type": pathlib.Path, "metavar": "FILE"}
+    # A text, or a quantity with its unit, which the call itself reads.
+    return {"metavar": "X"}
 
 
 def positional(call: Callable) -> list[str]:

@@ -4,20 +4,12 @@ Characters that the stream's encoding lacks are escaped. A reader who goes away
 (``| head``) ends the output quietly, a device that is full ends it in one line.
 """
 
-import json
 import os
 import sys
 from contextlib import suppress
-from dataclasses import asdict
-from typing import Any, NoReturn
+from typing import NoReturn
 
 from bouncing_ball.errors import printable
-
-
-def prepare() -> None:
-    """Escape what the encoding of standard output has no character for."""
-    if hasattr(sys.stdout, "reconfigure"):
-        sys.stdout.reconfigure(errors="backslashreplace")
 
 
 def fail(message: str, status: int) -> NoReturn:
@@ -27,45 +19,13 @@ def fail(message: str, status: int) -> NoReturn:
     sys.exit(status)
 
 
-def flush() -> None:
-    """Hand over what is printed; exit with 2 if it cannot be written."""
-    if sys.stdout is None:
-        return
+def say(text: str) -> None:
+    """Print, and end quietly if nobody reads on; exit with 2 if it cannot be written."""
+    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
     try:
-        sys.stdout.flush()
+        print(text.encode(encoding, "backslashreplace").decode(encoding), flush=True)
     except OSError as error:
-        _abandon(error)
-
-
-def print_lines(lines: list[str]) -> None:
-    """Print, and end quietly if nobody reads on (``| head``)."""
-    try:
-        print("\n".join(lines))
-    except OSError as error:
-        _abandon(error)
-    flush()
-
-
-def _abandon(error: OSError) -> None:
-    """Print nothing more, and say why unless the reader has gone."""
-    # What is left in the buffer would fail again at the interpreter's exit.
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    if not isinstance(error, BrokenPipeError):
-        fail(f"the output cannot be written: {error.strerror}", status=2)
-
-
-def to_json(value: Any) -> str:
-    """One line of JSON, with its letters as they are if the stream has them.
-
-    Examples
-    --------
-    >>> to_json({"orbits": [1.5, None]})
-    '{"orbits": [1.5, null]}'
-    """
-    value = value if isinstance(value, dict) else asdict(value)
-    text = json.dumps(value, allow_nan=False, ensure_ascii=False)
-    try:
-        text.encode(getattr(sys.stdout, "encoding", None) or "ascii")
-    except UnicodeEncodeError:
-        return json.dumps(value, allow_nan=False)
-    return text
+        # What is left in the buffer would fail again at the interpreter's exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if not isinstance(error, BrokenPipeError):
+            fail(f"the output cannot be written: {error.strerror}", status=2)

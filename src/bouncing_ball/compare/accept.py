@@ -3,15 +3,13 @@
 The log of the record is that of git, ``git log figures/``.
 """
 
-import re
 import shutil
-import subprocess
-import sys
 from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
-from bouncing_ball.compare.folders import Artifact, compare_folders
+from bouncing_ball.compare.folders import compare_folders
+from bouncing_ball.compare.outcome import Whole
 from bouncing_ball.compare.terminal import to_terminal
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.files import replacing
@@ -24,29 +22,18 @@ class RefusedError(ModelError):
     """Results that must not become the record, with the reason why."""
 
 
-def jobs_left(repository: Path, files: Collection[str]) -> int:
-    """How many jobs Snakemake would still run for these files, by its own rerun triggers."""
-    command = [sys.executable, "-m", "snakemake", "--snakefile", str(repository / "Snakefile")]
-    options = ["--dry-run", "--nolock", "--cores", "1"]
-    done = subprocess.run([*command, *options, *files], capture_output=True, text=True)
-    if done.returncode:
-        raise RefusedError(f"a dry run fails: {done.stderr.strip().splitlines()[-1]}")
-    total = re.search(r"^total +(\d+)$", done.stdout + done.stderr, re.MULTILINE)
-    return int(total[1]) if total else 0
-
-
-def _copied(artifact: Artifact, record: Path, results: Path) -> list[str]:
+def _copied(artifact: Whole, record: Path, results: Path) -> list[str]:
     """Copy what an artifact has in the results, remove what it has no more; one line for each."""
     said = []
-    for part in artifact.parts:
-        old, new = record / part.file, results / part.file
+    for file in artifact.parts:
+        old, new = record / file.name, results / file.name
         if not new.exists():
             old.unlink()
-            said.append(f"removed {part.file}")
+            said.append(f"removed {file.name}")
         elif not old.is_file() or old.read_bytes() != new.read_bytes():
             with replacing(old) as temporary:
                 shutil.copyfile(new, temporary)
-            said.append(f"copied {part.file}")
+            said.append(f"copied {file.name}")
     return said
 
 
@@ -78,22 +65,20 @@ def accept(
     Raises
     ------
     RefusedError
-        If the tree is not committed, the configuration is not the committed one, or the
-        results are not those of this commit. Nothing is changed then.
-    ComparisonError
+        If the tree is not committed, the configuration is not the committed one, or there
+        is a result that no run makes. Nothing is changed then.
+    ModelError
         If there is no artifact of one of these names.
     """
     if revision(record).dirty != "no":
         raise RefusedError("the tree is not committed: commit first, then accept what it makes")
     if changed := changes(config, read_yaml(record / CONFIGURATION)):
         raise RefusedError(f"this run has other values than {CONFIGURATION}: {', '.join(changed)}")
-    if left := jobs_left(record, files):
-        raise RefusedError(f"Snakemake would still run {left} jobs: run it, and look at the diff")
     if foreign := sorted({*map(str, results.glob("figures/[!.]*"))} - {*files}):
         raise RefusedError(f"{foreign[0]} is not made by this workflow: remove it")
     comparison = compare_folders(record, results, only)
     print(to_terminal(comparison), end="", flush=True)
-    taken = [x for x in comparison.artifacts if only or not x.outcome.agrees]
+    taken = [each for each in comparison.parts if only or not each.outcome.agrees]
     said = [line for artifact in taken for line in _copied(artifact, record, results)]
     if not said:
         return ["Nothing to accept: the record says what the results say."]

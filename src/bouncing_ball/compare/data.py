@@ -2,28 +2,20 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.compare.budgets import IGNORED, Budget, budget_of
 from bouncing_ball.compare.drift import curve, pointwise, same, span
 from bouncing_ball.compare.outcome import Outcome, Row
 from bouncing_ball.compare.texts import compare_texts
-from bouncing_ball.datasets.variables import IGNORED, Budget, budget_of
-from bouncing_ball.errors import ModelError
+from bouncing_ball.errors import printable
 
 # How and with what a file was made, and words about it.
 _NOT_COMPARED = ("provenance_", "title", "references", "history")
 # Entries of a variable that a report names.
 _LARGEST = 5
-
-
-def _text(value: Any) -> str:
-    """A value in few characters, so that neighbouring numbers look different."""
-    value = value.tolist() if isinstance(value, np.ndarray | np.generic) else value
-    text = repr(value) if isinstance(value, float) else str(value)
-    return text if len(text) <= 60 else text[:57] + "..."
 
 
 def _form(variable: xr.DataArray) -> str:
@@ -59,13 +51,10 @@ def header(data: xr.Dataset) -> str:
 
 def _beside(data: xr.Dataset, name: str, other: str) -> np.ndarray:
     """Another variable of a dataset, in the shape of the first."""
-    if other not in data.variables or not {*data[other].dims} <= {*data[name].dims}:
-        raise ModelError(f"the budget of {name} needs {other}, on dimensions of {name}")
-    sizes = {dim: data.sizes[dim] for dim in data[name].dims}
-    return data[other].variable.set_dims(sizes).transpose(*sizes).values
+    return data[other].broadcast_like(data[name]).transpose(*data[name].dims).values
 
 
-def shares(name: str, record: xr.Dataset, new: xr.Dataset, budget: Budget | None) -> np.ndarray:
+def shares(name: str, record: xr.Dataset, new: xr.Dataset, budget: Budget) -> np.ndarray:
     """Drift of a variable over its budget, place by place; ∞ where nothing may change.
 
     Parameters
@@ -73,12 +62,12 @@ def shares(name: str, record: xr.Dataset, new: xr.Dataset, budget: Budget | None
     name : str
         A variable of both datasets, of the same shape and type.
     record, new : Dataset
-    budget : Budget or None
+    budget : Budget
         Of texts, counts, and yes or no only a budget over a curve counts.
 
     Raises
     ------
-    ModelError
+    KeyError, ValueError
         If the budget names a variable or a dimension that is not there.
 
     Examples
@@ -90,21 +79,18 @@ def shares(name: str, record: xr.Dataset, new: xr.Dataset, budget: Budget | None
     [0.5, 0.5, 0.5]
     """
     a, b = record[name], new[name]
-    if budget and budget.size == IGNORED:
+    if budget == IGNORED:
         return np.zeros(a.shape)
-    if budget and budget.over:
-        if "point" not in a.dims:
-            raise ModelError(f"the budget of {name} needs the dimension point")
+    if budget.over:
         axis = a.dims.index("point")
         x, new_x = (_beside(data, name, budget.over) for data in (record, new))
         pairs = [(x, span(x)), (a, span(a)), (new_x, span(x)), (b, span(a))]
         moved = (np.moveaxis(np.asarray(part) / scale, axis, -1) for part, scale in pairs)
         return np.moveaxis(curve(*moved), -1, axis) / budget.size
-    if budget is None or a.dtype.kind != "f":
+    if a.dtype.kind != "f":
         return np.where(same(a.values, b.values), 0.0, np.inf)
-    scale: Any = span(a) if budget.scale is None else budget.scale
-    if isinstance(scale, str):
-        scale = _beside(record, name, scale)
+    named = isinstance(budget.scale, str)
+    scale = _beside(record, name, str(budget.scale)) if named else budget.scale or span(a)
     return pointwise(a.values, b.values, scale) / budget.size
 
 
@@ -127,7 +113,7 @@ def _entries(artifact: str, name: str, record: xr.Dataset, new: xr.Dataset) -> I
     a, b = record[name], new[name]
     unmoved = same(a.values, b.values)
     if unmoved.all():
-        yield Row(name, Outcome.IDENTICAL, share=0.0)
+        yield Row(name, Outcome.IDENTICAL)
         return
     share = shares(name, record, new, budget_of(artifact, name))
     places = np.argwhere((share > 0) | ~unmoved)
@@ -136,8 +122,8 @@ def _entries(artifact: str, name: str, record: xr.Dataset, new: xr.Dataset) -> I
     note = f"{beyond} of {share.size} entries beyond the budget" if beyond else ""
     for at in (tuple(places[k]) for k in order[:_LARGEST]):
         outcome = Outcome.WITHIN if share[at] <= 1 else Outcome.DRIFTED
-        values = _text(a.values[at]), _text(b.values[at])
-        yield Row(name, outcome, *values, float(share[at]), _place(a, at), note)
+        old, now = (printable(side[at].item(), 60) for side in (a, b))
+        yield Row(name, outcome, old, now, float(share[at]), _place(a, at), note)
 
 
 def compare_datasets(artifact: str, record: xr.Dataset, new: xr.Dataset) -> list[Row]:
@@ -147,11 +133,11 @@ def compare_datasets(artifact: str, record: xr.Dataset, new: xr.Dataset) -> list
     --------
     >>> record = xr.Dataset({"residual": ("point", [0.0, 1.0])})
     >>> found = compare_datasets("fig", record, record + 2.0**-41)
-    >>> [(each.where, str(each.outcome), round(each.share, 3)) for each in found][:1]
+    >>> [(each.name, str(each.outcome), round(each.share, 3)) for each in found][:1]
     [('residual', 'within budget', 0.455)]
     """
     changed = compare_texts(header(record), header(new), None)
-    rows = [replace(row, where="header", outcome=Outcome.STRUCTURE) for row in changed]
+    rows = [replace(row, name="header", outcome=Outcome.STRUCTURE) for row in changed]
     for name in map(str, record.variables):
         if name in new.variables and _form(record[name]) == _form(new[name]):
             rows += _entries(artifact, name, record, new)

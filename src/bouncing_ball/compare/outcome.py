@@ -1,8 +1,9 @@
-"""The ladder of outcomes, from the best to the worst, and a place with its outcome."""
+"""The ladder of outcomes, from the best to the worst, and what has one: a place, and a whole."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Any
 
 
 class Outcome(StrEnum):
@@ -58,22 +59,58 @@ class Row:
 
     Parameters
     ----------
-    where : str
+    name : str
         A line's number, or a variable's name.
     outcome : Outcome
     record, new : str, optional
         What stands there; None where a side has nothing.
-    share : float, optional
-        Drift over its budget.
+    share : float
+        Drift over its budget; 0 where that is no number.
     at : str
         Coordinates of an entry of a variable.
     note : str
     """
 
-    where: str
+    name: str
     outcome: Outcome
     record: str | None = None
     new: str | None = None
-    share: float | None = None
+    share: float = 0.0
     at: str = ""
     note: str = ""
+
+
+@dataclass(frozen=True)
+class Whole:
+    """A file of rows, an artifact of files, or a folder of artifacts.
+
+    Parameters
+    ----------
+    name : str
+        Of a file its path relative to either folder.
+    parts : sequence
+        What was compared, worst first but for the files; of a file none where the bytes are
+        the same.
+    pictures : tuple
+        Of a PNG file the record's and the new bytes.
+    """
+
+    name: str
+    parts: tuple[Any, ...] = ()
+    pictures: tuple[bytes | None, bytes | None] = (None, None)
+
+    @property
+    def outcome(self) -> Outcome:
+        """The worst outcome of its parts."""
+        return worst(part.outcome for part in self.parts)
+
+    @property
+    def share(self) -> float:
+        """The largest share of a budget."""
+        return max((part.share for part in self.parts), default=0.0)
+
+    @property
+    def moved(self) -> list[Any]:
+        """The parts that are not identical, worst first."""
+        found = [part for part in self.parts if part.outcome is not Outcome.IDENTICAL]
+        return sorted(found, key=lambda part: (-part.outcome.rank, -part.share))

@@ -6,12 +6,9 @@ from difflib import SequenceMatcher
 from typing import Any
 from urllib.parse import quote
 
-from bouncing_ball.compare.folders import Comparison
-from bouncing_ball.compare.terminal import excerpts, remarks, sentence, share_text
+from bouncing_ball.compare.outcome import Whole
+from bouncing_ball.compare.terminal import note, sentence, share_text
 from bouncing_ball.errors import printable
-
-# Characters of a line; a longer one is shown from where it begins to differ.
-_LONGEST = 200
 
 
 def _plain(value: Any) -> Any:
@@ -33,8 +30,7 @@ def marked(record: str | None, new: str | None) -> tuple[_Words, _Words]:
     [(True, 'r, '), (False, '0.25'), (True, ', '), (False, 'ball')]
     [(True, 'r, '), (False, '0.27'), (True, ', '), (False, 'table')]
     """
-    sides = excerpts(record, new, _LONGEST)
-    old, now = (re.findall(r"[^\s,;|&]+|[\s,;|&]+", text) for text in sides)
+    old, now = (re.findall(r"[^\s,;|&]+|[\s,;|&]+", text or "") for text in (record, new))
     found: tuple[_Words, _Words] = ([], [])
     for kind, a, b, c, d in SequenceMatcher(None, old, now, autojunk=False).get_opcodes():
         found[0].append((kind == "equal", "".join(old[a:b])))
@@ -42,7 +38,7 @@ def marked(record: str | None, new: str | None) -> tuple[_Words, _Words]:
     return found
 
 
-def to_html(comparison: Comparison) -> str:
+def to_html(comparison: Whole) -> str:
     """The page: artifacts worst first; record and new of each picture.
 
     All pictures are part of the page; one that is the same on both sides is
@@ -50,7 +46,7 @@ def to_html(comparison: Comparison) -> str:
 
     Examples
     --------
-    >>> "<h1>Artifacts against the record</h1>" in to_html(Comparison(()))
+    >>> "<h1>Artifacts against the record</h1>" in to_html(Whole(""))
     True
     """
     # Imported here, as the short table needs none of it.
@@ -69,9 +65,9 @@ def to_html(comparison: Comparison) -> str:
         comparison=comparison,
         sentence=sentence(comparison),
         marked=marked,
+        note=note,
         # Half of a surrogate pair has no code to be quoted.
         anchor=lambda name: quote(printable(name, None)),
-        remarks=remarks,
         share=share_text,
         base64=lambda content: base64.b64encode(content).decode("ascii"),
     )

@@ -70,7 +70,7 @@ def compare_texts(record: str, new: str, data: Outcome | None) -> list[Row]:
     within budget
     drifted
     >>> line, = compare_texts("are right\\n", "are wrong\\n", Outcome.WITHIN)
-    >>> line.where, str(line.outcome), line.record, line.new
+    >>> line.name, str(line.outcome), line.record, line.new
     ('line 1', 'drifted', 'are right', 'are wrong')
     """
     before, after = record.split("\n"), new.split("\n")

@@ -4,7 +4,6 @@ The type of each section is that of the ``parameters`` of the study which takes 
 allowed, and why, stands beside the study.
 """
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any
@@ -14,6 +13,7 @@ from pydantic import BaseModel, ValidationError, create_model
 from bouncing_ball.atlas.plan import AtlasParameters
 from bouncing_ball.configuration.study import SECTIONS, section, taken
 from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
+from bouncing_ball.errors import printable
 from bouncing_ball.parameters import Parameters
 
 
@@ -124,53 +124,40 @@ def resolved(schema: Mapping[str, Any], root: Mapping[str, Any]) -> dict[str, An
     return {**(root["$defs"][reference] if reference else {}), **own}
 
 
-_MUST = {
-    "greater_than": "must be greater than {gt:g}",
-    "greater_than_equal": "must be at least {ge:g}",
-    "less_than": "must be less than {lt:g}",
-    "less_than_equal": "must be at most {le:g}",
-    "finite_number": "must be a finite number",
-    "too_short": "must have at least {min_length} items",
-    "float_type": "must be a number",
-    "int_type": "must be a whole number",
-    "tuple_type": "must be a list",
-    "enum": "must be {expected}",
-    "literal_error": "must be {expected}",
+# Words of pydantic, and those of a user of YAML.
+_WORDS = {
+    "Input should": "must",
+    "Tuple should": "must",
+    "greater than or equal to": "at least",
+    "less than or equal to": "at most",
+    "a valid tuple": "a list",
+    "a valid integer": "a whole number",
+    "a valid number": "a number (powers of ten are written 1.0e+4, with point and sign)",
 }
 
 
 def _sentence(model: type[BaseModel], error: Any) -> str:
     """What is wrong, where, what is allowed, and why."""
-    where = error["loc"]
     root = model.model_json_schema()
     schema = parent = resolved(root, root)
-    for part in where:
-        parent = schema
-        inner = schema.get("items", {}) if isinstance(part, int) else schema["properties"].get(part)
-        schema = resolved(inner or {}, root)
-    kind, value, name = error["type"], error["input"], place(where)
+    for part in error["loc"]:
+        parent, inner = schema, schema.get("items" if isinstance(part, int) else "properties", {})
+        schema = resolved(inner if isinstance(part, int) else inner.get(part, {}), root)
+    kind, name, description = error["type"], place(error["loc"]), schema.get("description")
+    given = f"{name} = {printable(repr(error['input']), 60)}"
     if kind == "extra_forbidden":
         known = list(parent["properties"])
-        close = get_close_matches(str(where[-1]), known, n=1)
+        close = get_close_matches(str(error["loc"][-1]), known, n=1)
         meant = f", did you mean {close[0]}?" if close else "."
-        allowed = f"{meant} Allowed here: {', '.join(known)}"
-        return f"unknown key {name} = {_shown(value)}{allowed}"
+        return f"unknown key {given}{meant} Allowed here: {', '.join(known)}"
     if kind == "missing":
-        return f"missing key {name}: {schema.get('description', schema.get('title'))}"
-    context = error.get("ctx", {})
+        return f"missing key {name}: {description or schema.get('title')}"
     if kind == "value_error":
-        text = str(context["error"])
-        return f"{name} = {_shown(value)} {text}" if text.startswith("must") else f"{name}: {text}"
+        text = str(error["ctx"]["error"])
+        return f"{given} {text}" if text.startswith("must") else f"{name}: {text}"
+    text = error["msg"]
     if kind.startswith("model"):
-        must = f"must be a mapping of the keys {', '.join(schema.get('properties', {}))}"
-    else:
-        must = _MUST[kind].format(**context) if kind in _MUST else error["msg"]
-    notes = [schema["description"]] if "description" in schema else []
-    if isinstance(value, str) and re.fullmatch(r"[-+]?\d+\.?\d*[eE][-+]?\d+", value):
-        notes.insert(0, "powers of ten are written 1.0e+4, with point and sign")
-    return f"{name} = {_shown(value)} {must}" + (f" ({'; '.join(notes)})" if notes else "")
-
-
-def _shown(value: Any) -> str:
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."
+        text = f"must be a mapping of the keys {', '.join(schema['properties'])}"
+    for theirs, ours in _WORDS.items():
+        text = text.replace(theirs, ours)
+    return f"{given} {text}" + (f" ({description})" if description else "")

@@ -27,26 +27,18 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
-from bouncing_ball.contacts.oscillator import Response, exponential_response, impulse_response
+from bouncing_ball.contacts.oscillator import responses
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import require
 
-ARGUMENTS = (
-    "time",
-    "displacement",
-    "velocity",
-    "phase",
-    "amplitude",
-    "frequency_ratio",
-    "damping_ratio",
-)
+ARGUMENTS = ("time", "displacement", "velocity", "phase", "amplitude", "frequency_ratio")
 """Order of the last axis of :attr:`ContactFlow.jacobian`."""
 
 
 class ContactFlow(NamedTuple):
     """State δ, δ′ after a time in contact, δ″, and the exact Jacobian.
 
-    ``jacobian`` has shape (..., 2, 7): rows (δ, δ′), columns as in
+    ``jacobian`` has shape (..., 2, 6): rows (δ, δ′), columns as in
     :data:`ARGUMENTS`.
     """
 
@@ -56,116 +48,11 @@ class ContactFlow(NamedTuple):
     jacobian: np.ndarray
 
 
-class Responses(NamedTuple):
-    """Impulse response g, response G to gravity and Q + iP to the table."""
-
-    impulse: Response
-    gravity: Response
-    table: Response
-
-
 def check_contact(frequency_ratio: ArrayLike, damping_ratio: ArrayLike) -> None:
     """Raise :class:`ModelError` unless ϖ > 0 and ζ ≥ 0, both finite."""
     omega, zeta = (np.asarray(x, dtype=float) for x in (frequency_ratio, damping_ratio))
     require((omega > 0) & np.isfinite(omega), omega, "frequency ratio ϖ", "finite and positive")
     require((zeta >= 0) & np.isfinite(zeta), zeta, "damping ratio ζ", "finite and ≥ 0")
-
-
-def responses(time: ArrayLike, frequency_ratio: ArrayLike, damping_ratio: ArrayLike) -> Responses:
-    """The three responses of the contact at a time (dimensionless, broadcast)."""
-    omega = np.asarray(frequency_ratio, dtype=float)
-    zeta = np.asarray(damping_ratio, dtype=float)
-    a, q = zeta * omega, omega * omega
-    g = impulse_response(time, a, q, q * (1 - zeta) * (1 + zeta))
-    return Responses(
-        impulse=g,
-        gravity=exponential_response(0, time, a, q, g),
-        table=exponential_response(1j, time, a, q, g),
-    )
-
-
-def _jacobian(rows, phase, amplitude, omega, zeta) -> np.ndarray:
-    """Derivatives of δ and δ′ by the :data:`ARGUMENTS`.
-
-    A row holds those by s, δ₀ and δ′₀, the response to the table, whose phase is φ
-    and whose size Λ, and the derivatives by a = ζϖ and q = ϖ².
-    """
-    cosine, sine = np.cos(phase), np.sin(phase)
-    x, y = amplitude * cosine, amplitude * sine
-    jacobian = np.empty((*phase.shape, 2, len(ARGUMENTS)))
-    for row, (by_time, by_d0, by_v0, forced, by_a, by_q) in enumerate(rows):
-        jacobian[..., row, 0] = by_time
-        jacobian[..., row, 1] = by_d0
-        jacobian[..., row, 2] = by_v0
-        jacobian[..., row, 3] = x * np.real(forced) - y * np.imag(forced)
-        jacobian[..., row, 4] = cosine * np.imag(forced) + sine * np.real(forced)
-        jacobian[..., row, 5] = zeta * by_a + 2 * omega * by_q
-        jacobian[..., row, 6] = omega * by_a
-    return jacobian
-
-
-def contact_flow(
-    time: ArrayLike,
-    displacement: ArrayLike,
-    velocity: ArrayLike,
-    phase: ArrayLike,
-    amplitude: ArrayLike,
-    frequency_ratio: ArrayLike,
-    damping_ratio: ArrayLike,
-) -> ContactFlow:
-    """Relative state of the ball a time ``s`` after (δ₀, δ′₀), in contact.
-
-    Parameters
-    ----------
-    time, displacement, velocity, phase : array_like
-        s, δ₀, δ′₀ and the table's phase φ at the start.
-    amplitude, frequency_ratio, damping_ratio : array_like
-        Λ, ϖ > 0 and ζ ≥ 0.
-
-    Returns
-    -------
-    ContactFlow
-        Shapes follow the broadcast of the arguments.
-
-    Raises
-    ------
-    ModelError
-        If ϖ or ζ is outside its range.
-
-    Examples
-    --------
-    Without table and damping, gravity and spring balance at δ = -1/ϖ²:
-
-    >>> flow = contact_flow(3.0, -0.25, 0.0, 0.0, 0.0, 2.0, 0.0)
-    >>> round(float(flow.displacement), 14), abs(round(float(flow.velocity), 14))
-    (-0.25, 0.0)
-    """
-    check_contact(frequency_ratio, damping_ratio)
-    args = (time, displacement, velocity, phase, amplitude, frequency_ratio, damping_ratio)
-    args = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in args))
-    s, d0, v0, phi, lam, omega, zeta = args
-    a, q = zeta * omega, omega * omega
-    g, G, h = responses(s, omega, zeta)
-    x, y = lam * np.cos(phi), lam * np.sin(phi)
-
-    def combine(free, push, weight, forced):
-        # forced is the complex response Q + iP: x P + y Q.
-        return d0 * free + v0 * push - weight + x * np.imag(forced) + y * np.real(forced)
-
-    d = combine(g.rate + 2 * a * g.value, g.value, G.value, h.value)
-    v = combine(-q * g.value, g.rate, G.rate, h.rate)
-    acc = -2 * a * v - q * d - 1 + lam * np.sin(s + phi)
-
-    d_a = combine(g.rate_d_a + 2 * g.value + 2 * a * g.d_a, g.d_a, G.d_a, h.d_a)
-    v_a = combine(-q * g.d_a, g.rate_d_a, G.rate_d_a, h.rate_d_a)
-    d_q = combine(g.rate_d_q + 2 * a * g.d_q, g.d_q, G.d_q, h.d_q)
-    v_q = combine(-g.value - q * g.d_q, g.rate_d_q, G.rate_d_q, h.rate_d_q)
-
-    rows = (
-        (v, g.rate + 2 * a * g.value, g.value, h.value, d_a, d_q),
-        (acc, -q * g.value, g.rate, h.rate, v_a, v_q),
-    )
-    return ContactFlow(d, v, acc, _jacobian(rows, phi, lam, omega, zeta))
 
 
 @dataclass(frozen=True, repr=False)
@@ -302,7 +189,45 @@ class SpringDamper(ContactLaw):
         phase: ArrayLike,
         amplitude: ArrayLike,
     ) -> ContactFlow:
-        """Relative state a time after (δ₀, δ′₀): :func:`contact_flow`."""
-        return contact_flow(
-            time, displacement, velocity, phase, amplitude, self.frequency_ratio, self.damping_ratio
-        )
+        """Relative state of the ball a time ``s`` after (δ₀, δ′₀), in contact.
+
+        Parameters
+        ----------
+        time, displacement, velocity, phase, amplitude : array_like
+            s, δ₀, δ′₀, the table's phase φ at the start, and Λ.
+
+        Returns
+        -------
+        ContactFlow
+            Shapes follow the broadcast of the arguments and of the contact.
+
+        Examples
+        --------
+        Without table and damping, gravity and spring balance at δ = -1/ϖ²:
+
+        >>> flow = SpringDamper(2.0, 0.0).flow(3.0, -0.25, 0.0, 0.0, 0.0)
+        >>> round(float(flow.displacement), 14), abs(round(float(flow.velocity), 14))
+        (-0.25, 0.0)
+        """
+        args = (time, displacement, velocity, phase, amplitude)
+        args = (*args, self.frequency_ratio, self.damping_ratio)
+        args = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in args))
+        s, d0, v0, phi, lam, omega, zeta = args
+        loss, stiffness = 2 * zeta * omega, omega * omega
+        g, G, h, by_nu = responses(s, omega, zeta)
+        turn = np.exp(1j * phi)
+        drive, free = lam * turn, g.rate + loss * g.value
+        d = d0 * free + v0 * g.value - G.value + np.imag(drive * h.value)
+        v = v0 * g.rate - d0 * stiffness * g.value - G.rate + np.imag(drive * h.rate)
+        acc = lam * np.sin(s + phi) - 1 - loss * v - stiffness * d
+        # ϖ² G and ϖ g depend on ϖs alone, and so does ϖ² h once ν is counted in ϖ.
+        table = np.imag(drive * (2 * h.value + 1j * by_nu))
+        table_rate = np.imag(drive * (2 * h.rate + 1j * h.value - by_nu))
+        by_omega = s * v - v0 * g.value + 2 * G.value - table
+        by_omega_rate = v + s * acc - v0 * g.rate + 2 * G.rate - table_rate
+        jacobian = [
+            [v, free, g.value, np.real(drive * h.value), np.imag(turn * h.value), by_omega / omega],
+            [acc, -stiffness * g.value, g.rate, np.real(drive * h.rate),
+             np.imag(turn * h.rate), by_omega_rate / omega],
+        ]  # fmt: skip
+        return ContactFlow(d, v, acc, np.moveaxis(np.array(jacobian), (0, 1), (-2, -1)))

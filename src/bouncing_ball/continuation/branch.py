@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.continuation.corrector import NewtonSettings, newton, null_vector, plane, tangent
+from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane, tangent
 from bouncing_ball.continuation.events import Event, LocationError, SpecialPoint, locate
 from bouncing_ball.continuation.problem import Problem
 from bouncing_ball.continuation.step_control import StepControl
@@ -19,7 +19,8 @@ class ContinuationError(RuntimeError):
 class End(NamedTuple):
     """An end of a branch: why, a sentence as which it prints, and whether that is the end of it.
 
-    Unfinished is a branch of as many points as were allowed.
+    Unfinished is a branch of as many points as were allowed, and one that broke off at an event
+    that could not be located, down to the smallest step.
     """
 
     sentence: str
@@ -85,32 +86,26 @@ def solve_at(
 
 
 class _Rejected(Exception):
-    """A step that must be shorter; ``end`` is why the branch ends if it cannot be.
+    """A step that must be shorter, with the :class:`End` of the branch if it cannot be."""
 
-    With a cause, an error that no shorter step has cured, that is raised instead.
+
+def _located(problem, events, values, left, right, settings):
+    """Events and points where test functions change sign on the way, up to a terminal one.
+
+    ``values`` are those of the test functions at both ends.
     """
-
-    def __init__(self, sentence: str, cause: Exception | None = None):
-        super().__init__(sentence)
-        self.end, self.cause = End(sentence), cause
-
-
-def _located(problem, events, y, point, values, settings, length):
-    """Events and points where test functions change sign between y and a point, up to the end."""
     located, failure = [], None
-    for event, (left, right) in zip(events, values, strict=True):
-        if (left >= 0) != (right >= 0):
+    for event, (before, after) in zip(events, values, strict=True):
+        if (before >= 0) != (after >= 0):
             try:
-                located.append((event, locate(problem, event, y, point, settings)))
+                located.append((event, locate(problem, event, left, right, settings)))
             except LocationError as error:
-                failure = event, error
-    located.sort(key=lambda pair: float((pair[1].point - y) @ (point - y)))
+                failure = End(event.reason or str(error), event.terminal)
+    located.sort(key=lambda pair: float((pair[1].point - left) @ (right - left)))
     ends = [k for k, (event, _) in enumerate(located) if event.terminal]
     if failure and not ends:
         # The step may have left the domain in which the event makes sense.
-        event, error = failure
-        sentence = f"{event.reason or event.name} (within {length:.0e})"
-        raise _Rejected(sentence, None if event.terminal else error)
+        raise _Rejected(*failure)
     return located[: ends[0] + 1] if ends else located
 
 
@@ -148,11 +143,9 @@ def continue_branch(
     ------
     ContinuationError
         If there is no solution near ``start``, or it lies outside the domain.
-    LocationError
-        If an announced event cannot be located, down to the smallest step.
     """
     y = solve_at(problem, np.asarray(start, dtype=float), settings)
-    direction = null_vector(problem.jacobian(y)) * (1.0 if increasing else -1.0)
+    direction = tangent(problem.jacobian(y), np.eye(y.size)[-1] * (1.0 if increasing else -1.0))
     values = [float(event.function(y)) for event in events]
     for event, value in zip(events, values, strict=True):
         if event.terminal and value < 0:
@@ -162,47 +155,39 @@ def continue_branch(
             )
     points, tangents = [y], [direction]
     special: list[SpecialPoint] = []
-    length, end = control.initial, End(f"reached the limit of {max_points} points", finished=False)
+    length, end = control.initial, None
 
     def step() -> tuple[np.ndarray, np.ndarray, list[float], list, float]:
         """Predict, correct, and locate the events on the way."""
-        predicted, small = y + length * direction, f"step too small ({length:.1e})"
+        predicted = y + length * direction
         found = newton(problem, predicted, plane(direction, predicted), settings)
         if not found.converged:
-            raise _Rejected(f"{small}: the corrector fails with residual {found.residual:.1e}")
+            raise _Rejected(f"the corrector fails with residual {found.residual:.1e}")
         ahead = tangent(problem.jacobian(found.point), direction)
         angle = float(np.arccos(np.clip(ahead @ direction, -1.0, 1.0)))
         if not angle <= control.max_angle:
-            raise _Rejected(f"{small}: the tangent turns by more than {control.max_angle} rad")
+            raise _Rejected(f"the tangent turns by more than {control.max_angle} rad")
         after = [float(event.function(found.point)) for event in events]
-        pairs = list(zip(values, after, strict=True))
-        passed = _located(problem, events, y, found.point, pairs, settings, length)
-        longer = control.after_success(length, found.iterations, angle)
-        return found.point, ahead, after, passed, longer
+        both = list(zip(values, after, strict=True))
+        passed = _located(problem, events, both, y, found.point, settings)
+        return found.point, ahead, after, passed, control.after(length, found.iterations, angle)
 
-    while len(points) < max_points:
+    while end is None and len(points) < max_points:
         try:
-            point, ahead, values, passed, length = step()
+            y, direction, values, passed, length = step()
         except _Rejected as rejected:
-            shorter = control.after_failure(length)
-            if shorter is not None:
-                length = shorter
-                continue
-            if rejected.cause:
-                raise rejected.cause from None
-            end = rejected.end
-            break
+            why, *finished = rejected.args
+            end = End(f"step too small ({length:.1e}): {why}", *finished)
+            length /= 2
+            end = None if length >= control.smallest else end
+            continue
         special.extend(where for _, where in passed)
-        last = passed[-1][0] if passed and passed[-1][0].terminal else None
-        if last:
-            point = special[-1].point
-            ahead = tangent(problem.jacobian(point), direction)
-            end = End(last.reason or last.name)
-        y, direction = point, ahead
+        if passed and passed[-1][0].terminal:
+            last, (_, y, _) = passed[-1]
+            direction, end = tangent(problem.jacobian(y), direction), End(last.reason or last.name)
         points.append(y)
         tangents.append(direction)
-        if last:
-            break
+    end = end or End(f"reached the limit of {max_points} points", finished=False)
     return Branch(np.array(points), np.array(tangents), tuple(special), STARTED, end)
 
 

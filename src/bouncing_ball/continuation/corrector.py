@@ -118,22 +118,14 @@ def plane(normal: np.ndarray, through: np.ndarray) -> Condition:
 def tangent(jacobian: np.ndarray, along: np.ndarray) -> np.ndarray:
     """Unit tangent of the solution curve, on the side of ``along``.
 
-    The null vector of the N × (N + 1) Jacobian from a bordered system, which
-    is regular at a fold too.
+    The null vector of the N × (N + 1) Jacobian, at a fold too. Shapes (..., N, N + 1) and
+    (..., N + 1).
 
     Examples
     --------
-    >>> tangent(np.array([[2.0, 0.0]]), np.array([0.0, -1.0])).tolist()
-    [0.0, -1.0]
+    >>> tangent(np.array([[1.0, 1.0]]), np.array([0.0, -1.0])).round(6).tolist()
+    [0.707107, -0.707107]
     """
-    matrix = np.concatenate([jacobian, along[..., np.newaxis, :]], axis=-2)
-    right = np.zeros((*along.shape, 1))
-    right[..., -1, 0] = 1.0
-    vector = np.linalg.solve(matrix, right)[..., 0]
-    return vector / np.linalg.norm(vector, axis=-1, keepdims=True)
-
-
-def null_vector(jacobian: np.ndarray) -> np.ndarray:
-    """Unit null vector of an N × (N + 1) matrix, with a positive last entry."""
-    vector = np.linalg.svd(jacobian)[2][-1]
-    return -vector if vector[-1] < 0 else vector
+    vector = np.linalg.svd(jacobian)[2][..., -1, :]
+    ahead = np.sum(vector * along, axis=-1, keepdims=True)
+    return np.where(ahead < 0, -vector, vector)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.continuation.corrector import Condition, NewtonSettings, newton, plane
+from bouncing_ball.continuation.corrector import Condition, NewtonSettings, newton
 from bouncing_ball.continuation.problem import Problem
 
 # Step of the central differences for ∇g, near the optimum ε^(1/3). It sets how
@@ -19,7 +19,8 @@ from bouncing_ball.continuation.problem import Problem
 _DIFFERENCE = 6e-6
 # A first-order gradient costs a few iterations more than the plain corrector.
 _EXTRA_ITERATIONS = 12
-_MAX_BISECTIONS = 40
+# How far beyond the bracket rounding may put a zero at its end, in parts of it.
+_SLACK = 1e-6
 
 
 @dataclass(frozen=True)
@@ -85,35 +86,20 @@ def vanishing(function: Callable[[np.ndarray], np.ndarray]) -> Condition:
 def locate(
     problem: Problem, event: Event, left: np.ndarray, right: np.ndarray, settings: NewtonSettings
 ) -> SpecialPoint:
-    """The zero of an event between two points of the branch.
+    """The zero of an event between two points of the branch, shape (N + 1,) each.
 
-    Newton's method on the extended system, from the secant estimate, confined
-    to the bracket; if it leaves the bracket, the bracket is halved on the
-    branch and it starts again.
+    Newton's method on the extended system, from the secant estimate.
 
     Raises
     ------
     LocationError
-        If that fails down to the shortest bracket.
+        If it leaves the bracket: a step of the continuation was too long, or there is no zero.
     """
-    values = [float(event.function(left)), float(event.function(right))]
+    values, chord = [float(event.function(y)) for y in (left, right)], right - left
+    guess = left + values[0] / (values[0] - values[1]) * chord
     patient = settings._replace(max_iterations=settings.max_iterations + _EXTRA_ITERATIONS)
-    for _ in range(_MAX_BISECTIONS):
-        if values[0] == 0.0:
-            return SpecialPoint(event.name, left, float(np.max(np.abs(problem.residual(left)))))
-        chord = right - left
-        share = values[0] / (values[0] - values[1])
-        found = newton(problem, left + share * chord, vanishing(event.function), patient)
-        progress = (found.point - left) @ chord / (chord @ chord)
-        if found.converged and -1e-6 <= progress <= 1 + 1e-6:
-            return SpecialPoint(event.name, found.point, float(found.residual))
-        middle = left + chord / 2
-        halved = newton(problem, middle, plane(chord / np.linalg.norm(chord), middle), settings)
-        if not halved.converged:
-            break
-        value = float(event.function(halved.point))
-        if (value >= 0) == (values[0] >= 0):
-            left, values[0] = halved.point, value
-        else:
-            right, values[1] = halved.point, value
-    raise LocationError(f"{event.name} announced near {left} could not be located")
+    found = newton(problem, guess, vanishing(event.function), patient)
+    progress = (found.point - left) @ chord / (chord @ chord)
+    if not (found.converged and -_SLACK <= progress <= 1 + _SLACK):
+        raise LocationError(f"{event.name} announced near {left} could not be located")
+    return SpecialPoint(event.name, found.point, float(found.residual))

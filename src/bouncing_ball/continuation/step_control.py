@@ -28,12 +28,12 @@ class StepControl:
     target_iterations: int = 4
     max_angle: float = 0.2
 
-    def after_success(self, step: float, iterations: int, angle: float) -> float:
+    def after(self, step: float, iterations: int, angle: float) -> float:
         """Next step after an accepted one.
 
         Examples
         --------
-        >>> StepControl(largest=1.0).after_success(0.1, iterations=4, angle=0.0)
+        >>> StepControl(largest=1.0).after(0.1, iterations=4, angle=0.0)
         0.1
         """
         factor = 2.0 ** ((self.target_iterations - iterations) / 2)
@@ -41,14 +41,3 @@ class StepControl:
             factor = min(factor, 0.9 * self.max_angle / angle)
         factor = min(max(factor, 0.25), 2.0)
         return min(max(step * factor, self.smallest), self.largest)
-
-    def after_failure(self, step: float) -> float | None:
-        """Next step after a rejected one, or None when it would be too small.
-
-        Examples
-        --------
-        >>> StepControl(smallest=0.1).after_failure(0.15) is None
-        True
-        """
-        shorter = step / 2
-        return shorter if shorter >= self.smallest else None

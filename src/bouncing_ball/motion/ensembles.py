@@ -1,10 +1,9 @@
 """Many balls as flat arrays, worked on in blocks."""
 
-from collections.abc import Sequence
 from itertools import pairwise
+from typing import Any, Self
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 # Balls computed at once, at most: as many as keep the arrays in the cache. Fewer
 # cost more, as a few late balls decide on the number of steps of each block.
@@ -23,33 +22,23 @@ def blocks(size: int, largest: int = BLOCK) -> list[slice]:
     return [slice(int(a), int(b)) for a, b in pairwise(edges)]
 
 
-def flatten(
-    parameters: Sequence[ArrayLike], states: Sequence[ArrayLike]
-) -> tuple[list[np.ndarray], list[np.ndarray], tuple[int, ...]]:
-    """Broadcast together: parameters flat or scalar, states flat, and the shape.
+class Row:
+    """What has a flat array, or a number for all, of each of its attributes."""
 
-    A parameter that is the same for all balls stays one number: less to compute.
+    def take(self, which: Any) -> Self:
+        """Those of some of the balls."""
+        part = object.__new__(type(self))
+        vars(part).update((name, pick(value, which)) for name, value in vars(self).items())
+        return part
 
-    Examples
-    --------
-    >>> parameters, states, shape = flatten([0.5], [[1, 2], 3])
-    >>> parameters, states, shape
-    ([array(0.5)], [array([1., 2.]), array([3., 3.])], (2,))
+
+def pick(value: Any, which: Any) -> Any:
+    """Some entries of a flat array, of a tuple of such, or of a :class:`Row`.
+
+    A number is that of all.
     """
-    arrays = [np.asarray(x, dtype=float) for x in (*parameters, *states)]
-    shape = np.broadcast_shapes(*(x.shape for x in arrays))
-
-    def flat(x):
-        return np.ascontiguousarray(np.broadcast_to(x, shape)).reshape(-1)
-
-    count = len(parameters)
-    return (
-        [flat(x) if x.ndim else x for x in arrays[:count]],
-        [flat(x) for x in arrays[count:]],
-        shape,
-    )
-
-
-def pick(value, which):
-    """Some entries of a flat array; a number is that of all."""
-    return value[which] if np.ndim(value) else value
+    if isinstance(value, np.ndarray):
+        return value[which] if value.ndim else value
+    if isinstance(value, tuple):
+        return type(value)(*(pick(x, which) for x in value))
+    return value.take(which) if isinstance(value, Row) else value

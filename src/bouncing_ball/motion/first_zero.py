@@ -22,11 +22,12 @@ zero. They are taken until
 Flight and contact are both *motions* of this kind, see :class:`Motion`.
 """
 
-from typing import NamedTuple, Protocol
+from abc import ABC, abstractmethod
+from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.motion.ensembles import pick
+from bouncing_ball.motion.ensembles import Row, pick
 
 # θ and κ above.
 _SIMPLE = 0.25
@@ -56,21 +57,19 @@ class State(NamedTuple):
     ended: np.ndarray | None = None
 
 
-class Motion(Protocol):
-    """An array of functions of time whose first upward zeros are wanted."""
+class Motion(Row, ABC):
+    """A row of functions of time whose first upward zeros are wanted."""
 
-    def __call__(self, time: np.ndarray) -> State: ...
-
-    def take(self, which: np.ndarray) -> "Motion":
-        """The motions at some positions of the array."""
-        ...
+    @abstractmethod
+    def __call__(self, time: np.ndarray) -> State:
+        """The functions at a time each."""
 
     def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
         """A later time up to which there is certainly no zero, or the time itself.
 
         ``steps`` have been taken before; costly bounds may be skipped for a few.
         """
-        ...
+        return time
 
 
 class Zero(NamedTuple):
@@ -96,9 +95,6 @@ class _Reading(NamedTuple):
     third: np.ndarray
     second_bound: np.ndarray
     fourth_bound: np.ndarray
-
-    def take(self, which: np.ndarray) -> "_Reading":
-        return _Reading(*(pick(x, which) for x in self))
 
     def root(self, bound):
         """Positive root of y + y′ h + (bound) h²/2; long if there is none."""
@@ -157,7 +153,7 @@ def _prolonged(first, reading: _Reading):
         if not further.size:
             return step
         which = further if which is None else which[further]
-        now, reading = now[further], reading.take(further)
+        now, reading = now[further], pick(reading, further)
 
 
 def first_zero(motion: Motion, start: np.ndarray) -> Zero:

@@ -14,11 +14,10 @@ import numpy as np
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.motion.angles import sine_and_versine
-from bouncing_ball.motion.ensembles import pick
-from bouncing_ball.motion.first_zero import State, Zero, first_zero
+from bouncing_ball.motion.first_zero import Motion, State, Zero, first_zero
 
 
-class Flight:
+class Flight(Motion):
     """The motion y = -δ, whose first upward zero is the landing.
 
     Parameters
@@ -34,11 +33,11 @@ class Flight:
     def __init__(self, displacement, velocity, x, y, amplitude):
         self.displacement, self.velocity = displacement, velocity
         self.x, self.y, self.amplitude = x, y, amplitude
-        self.thrown, self.gravity = velocity + x, 1 + amplitude
-        over = self.thrown * self.thrown + 2 * (displacement + (y - amplitude))
+        thrown = velocity + x
+        over = thrown * thrown + 2 * (displacement + (y - amplitude))
         root = np.sqrt(np.maximum(over, 0.0))
         # z > Λ between these two times; the second is the first or less if never.
-        self.above, self.below = self.thrown - root, self.thrown + root
+        self.above, self.below = thrown - root, thrown + root
 
     def gap(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """δ, δ′, δ″, δ‴ after a time of flight."""
@@ -57,41 +56,28 @@ class Flight:
         lam = self.amplitude
         return State(-displacement, -rate, -second, -third, 1 + lam, lam, lam)
 
-    def take(self, which: np.ndarray) -> "Flight":
-        part = object.__new__(Flight)
-        for name, value in vars(self).items():
-            setattr(part, name, pick(value, which))
-        return part
-
     def skip(self, time: np.ndarray, steps: int = 0) -> np.ndarray:
         return np.where((time >= self.above) & (time < self.below), self.below, time)
 
     def room(self) -> np.ndarray:
         """v² + 2(1 + Λ)δ_b: positive if the ball certainly comes above the table's level."""
-        return self.velocity * self.velocity + 2 * self.gravity * self.displacement
+        return self.velocity * self.velocity + 2 * (1 + self.amplitude) * self.displacement
 
     def sure(self) -> np.ndarray:
-        """A time by which the ball has not landed: the flight of a ball that is
-        thrown with v from δ_b against the strongest relative gravity, 1 + Λ."""
-        return (self.velocity + np.sqrt(np.maximum(self.room(), 0.0))) / self.gravity
+        """A time by which the ball has not landed.
 
-
-class Rise:
-    """The motion δ of a ball that was let go below the table's level, while it rises."""
-
-    def __init__(self, flight: Flight):
-        self.flight = flight
-
-    def __call__(self, time: np.ndarray) -> State:
-        displacement, rate, second, third = self.flight.gap(time)
-        lam = self.flight.amplitude
-        return State(displacement, rate, second, third, 1 + lam, lam, lam, rate <= 0)
-
-    def take(self, which: np.ndarray) -> "Rise":
-        return Rise(self.flight.take(which))
-
-    def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
-        return time
+        That is the flight of a ball that is thrown with v from δ_b against the strongest
+        relative gravity, 1 + Λ. From rest on a table that recedes, Y ≥ 1,
+        ``δ ≥ (Y - 1) s²/2 + X s³/6 - Λ s⁴/24``.
+        """
+        time = (self.velocity + np.sqrt(np.maximum(self.room(), 0.0))) / (1 + self.amplitude)
+        if np.all(self.velocity):
+            return time
+        x, top, excess = self.x, np.maximum(self.amplitude, 1.0), self.y - 1
+        rests = (self.velocity == 0) & (self.displacement == 0) & (excess >= 0)
+        lift = np.maximum(excess, 0.0)
+        steep = np.minimum(lift / np.maximum(np.abs(x), 1e-300), np.sqrt(3 * lift / top))
+        return np.where(rests, np.maximum(steep, 4 * x / top), time)
 
 
 def land(flight: Flight, start: np.ndarray) -> Zero:

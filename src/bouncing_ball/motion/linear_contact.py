@@ -15,17 +15,11 @@ Hence also the certificate that the contact never ends::
     R e^{-as} + ρ ≤ 1/ϖ²
 """
 
-from typing import NamedTuple
-
 import numpy as np
-from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.errors import ModelError
 from bouncing_ball.motion.angles import sine_and_versine
-from bouncing_ball.motion.ensembles import pick
-from bouncing_ball.motion.first_zero import State, Zero, first_zero
-from bouncing_ball.motion.starts import check_amplitude
+from bouncing_ball.motion.first_zero import Motion, State, Zero, first_zero
 
 # √γ below which the steady part has lost too many digits: ε/√γ remain.
 _RESONANCE = 1e-4
@@ -35,152 +29,105 @@ _PATIENCE = 12
 _ROUNDING = 8 * np.finfo(float).eps
 
 
-class Oscillator(NamedTuple):
-    """The constants of the contact, from ϖ, ζ, the release rule and Λ.
-
-    ``lag`` is κ; ``in_phase`` and ``quadrature`` the steady response to
-    Λ sin τ + κ Λ cos τ over Λ sin τ and Λ cos τ; ``half`` the half period
-    π/ϖ_d and ``growth`` e^{aπ/ϖ_d}.
-    """
-
-    amplitude: np.ndarray
-    stiffness: np.ndarray
-    omega: np.ndarray
-    decay: np.ndarray
-    damped: np.ndarray
-    lag: np.ndarray
-    in_phase: np.ndarray
-    quadrature: np.ndarray
-    steady: np.ndarray
-    forcing: np.ndarray
-    half: np.ndarray
-    growth: np.ndarray
-
-    def take(self, which) -> "Oscillator":
-        """The constants of some of the balls; scalars are those of all."""
-        return Oscillator(*(pick(x, which) for x in self))
+def _resistance(contact: SpringDamper):
+    """ϖ² - 1 and 2ζϖ, whose squares add up to γ."""
+    omega = np.asarray(contact.frequency_ratio, dtype=float)
+    return (omega - 1) * (omega + 1), 2 * np.asarray(contact.damping_ratio) * omega
 
 
-def oscillator(contact: SpringDamper, amplitude: ArrayLike) -> Oscillator:
-    """Constants of the contact of each ball; scalars stay scalars.
-
-    Raises
-    ------
-    ModelError
-        If ζ ≥ 1, or ζ and ϖ - 1 are so small that the steady part at the
-        resonance does not exist in floating point.
-    """
-    # By arrays of one element, so that one ball is computed as many are.
-    omega, zeta, lam = (
-        np.atleast_1d(np.asarray(x, dtype=float))
-        for x in (contact.frequency_ratio, contact.damping_ratio, amplitude)
-    )
-    if not np.all(zeta < 1):
-        raise ModelError(
-            f"damping ratio ζ = {contact.damping_ratio} is not below 1: "
-            "the simulation needs an underdamped contact"
-        )
-    check_amplitude(np.asarray(amplitude, dtype=float))
-    detuning, loss = (omega - 1) * (omega + 1), 2 * zeta * omega
-    gamma = detuning * detuning + loss * loss
-    if not np.all(np.sqrt(gamma) >= _RESONANCE):
-        raise ModelError(
-            f"undamped resonance: ϖ = {contact.frequency_ratio}, ζ = {contact.damping_ratio} "
-            "has no steady contact to simulate"
-        )
-    lag = np.atleast_1d(contact.lag)
-    damped = omega * np.sqrt((1 - zeta) * (1 + zeta))
-    half = np.pi / damped
-    in_phase = (detuning + lag * loss) / gamma
-    quadrature = (lag * detuning - loss) / gamma
-    constants = Oscillator(
-        amplitude=lam,
-        stiffness=omega * omega,
-        omega=omega,
-        decay=zeta * omega,
-        damped=damped,
-        lag=lag,
-        in_phase=in_phase,
-        quadrature=quadrature,
-        steady=lam * np.sqrt(in_phase * in_phase + quadrature * quadrature),
-        forcing=lam * np.sqrt(1 + lag * lag),
-        half=half,
-        # Nearly critical: any number so large excludes the bound that uses it.
-        growth=np.exp(np.minimum(zeta * omega * half, 690.0)),
-    )
-    return Oscillator(*(x[0] if x.size == 1 else x for x in constants))
+def has_closed_form(contact: SpringDamper) -> bool:
+    """Whether all contacts are underdamped and away from the undamped resonance."""
+    underdamped = np.all(np.asarray(contact.damping_ratio) < 1)
+    return bool(underdamped and np.all(np.hypot(*_resistance(contact)) >= _RESONANCE))
 
 
-class ContactMotion:
+class ContactMotion(Motion):
     """The motion y of balls in contact.
 
     Parameters
     ----------
-    constants : Oscillator
+    contact : SpringDamper
+        One for which :func:`has_closed_form`, or one for each ball.
+    amplitude : float or array
+        Λ.
     displacement, velocity : array
         δ and δ′ at the start.
     x, y : array
         Λ cos φ and Λ sin φ then.
     """
 
-    def __init__(self, constants: Oscillator, displacement, velocity, x, y):
-        self.constants = o = constants
+    def __init__(self, contact: SpringDamper, amplitude, displacement, velocity, x, y):
+        # By arrays of one element, so that one ball is computed as many are.
+        omega, zeta, lam, lag, detuning, loss = (
+            np.atleast_1d(np.asarray(value, dtype=float))
+            for value in (
+                contact.frequency_ratio,
+                contact.damping_ratio,
+                amplitude,
+                contact.lag,
+                *_resistance(contact),
+            )
+        )
+        gamma = detuning * detuning + loss * loss
+        # The steady response to Λ sin τ + κ Λ cos τ, over Λ sin τ and Λ cos τ.
+        in_phase, quadrature = (detuning + lag * loss) / gamma, (lag * detuning - loss) / gamma
+        self.omega, self.stiffness, self.decay, self.damped, self.lag, self.steady, self.forcing = (
+            value[0] if value.size == 1 else value
+            for value in (
+                omega,
+                omega * omega,
+                zeta * omega,
+                omega * np.sqrt((1 - zeta) * (1 + zeta)),
+                lag,
+                lam * np.sqrt(in_phase * in_phase + quadrature * quadrature),
+                lam * np.sqrt(1 + lag * lag),
+            )
+        )
+        self.sine, self.cosine = in_phase * x - quadrature * y, in_phase * y + quadrature * x
+        # The forcing now.
+        self.push = y + lag * x
         self.start, self.start_rate = self._observed(displacement, velocity, y)
-        self.sine = o.in_phase * x - o.quadrature * y
-        self.cosine = o.in_phase * y + o.quadrature * x
-        self.a = self.start + (1 / o.stiffness - self.cosine)
-        self.b = (self.start_rate - self.sine + o.decay * self.a) / o.damped
+        self.a = self.start + (1 / self.stiffness - self.cosine)
+        self.b = (self.start_rate - self.sine + self.decay * self.a) / self.damped
         self.envelope = np.sqrt(self.a * self.a + self.b * self.b)
-        # The forcing now, and how it may grow.
-        self.push = y + o.lag * x
 
     def _observed(self, displacement, velocity, y):
         """y and y′ from δ and δ′."""
-        o = self.constants
-        acceleration = (y - 1) - 2 * o.decay * velocity - o.stiffness * displacement
-        return displacement + o.lag * velocity, velocity + o.lag * acceleration
+        acceleration = (y - 1) - 2 * self.decay * velocity - self.stiffness * displacement
+        return displacement + self.lag * velocity, velocity + self.lag * acceleration
 
     def state(self, displacement_rate, y):
         """δ and δ′ at a release with rate y′, where Λ sin τ is ``y``."""
-        lag = self.constants.lag
+        lag = self.lag
         velocity = displacement_rate - lag * (y - 1)
         return -lag * velocity, velocity
 
     def __call__(self, time: np.ndarray) -> State:
-        o = self.constants
-        sine, versine = sine_and_versine(o.damped * time)
+        sine, versine = sine_and_versine(self.damped * time)
         cosine = 1 - versine
-        decay = np.exp(-o.decay * time)
+        decay = np.exp(-self.decay * time)
         a, b = self.a * decay, self.b * decay
         free = a * cosine + b * sine
-        free_rate = o.damped * (b * cosine - a * sine) - o.decay * free
-        free_second = -2 * o.decay * free_rate - o.stiffness * free
-        free_third = -2 * o.decay * free_second - o.stiffness * free_rate
+        free_rate = self.damped * (b * cosine - a * sine) - self.decay * free
+        free_second = -2 * self.decay * free_rate - self.stiffness * free
+        free_third = -2 * self.decay * free_second - self.stiffness * free_rate
         sine, versine = sine_and_versine(time)
         cosine = 1 - versine
         forced = self.sine * sine + self.cosine * cosine
         forced_rate = self.sine * cosine - self.cosine * sine
-        level = 1 / o.stiffness
+        level = 1 / self.stiffness
         envelope = self.envelope * decay
-        bound = o.stiffness * envelope
+        bound = self.stiffness * envelope
         return State(
             (free - level) + forced,
             free_rate + forced_rate,
             free_second - forced,
             free_third - forced_rate,
-            bound + o.steady,
-            o.omega * bound + o.steady,
-            o.stiffness * bound + o.steady,
-            envelope + (o.steady - level) <= _ROUNDING * level,
+            bound + self.steady,
+            self.omega * bound + self.steady,
+            self.stiffness * bound + self.steady,
+            envelope + (self.steady - level) <= _ROUNDING * level,
         )
-
-    def take(self, which: np.ndarray) -> "ContactMotion":
-        part = object.__new__(ContactMotion)
-        part.constants = self.constants.take(which)
-        for name, value in vars(self).items():
-            if name != "constants":
-                setattr(part, name, value[which])
-        return part
 
     def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
         """No zero while even the transient's envelope leaves y negative.
@@ -190,9 +137,8 @@ class ContactMotion:
         """
         if steps < _PATIENCE:
             return time
-        o = self.constants
-        level = 1 / o.stiffness - self.envelope * np.exp(-o.decay * time)
-        ratio = level / np.maximum(o.steady, 1e-300)
+        level = 1 / self.stiffness - self.envelope * np.exp(-self.decay * time)
+        ratio = level / np.maximum(self.steady, 1e-300)
         inside = np.abs(ratio) < 1
         rising = np.arcsin(np.where(inside, ratio, 0.0))
         now = time + np.arctan2(self.cosine, self.sine)
@@ -210,17 +156,19 @@ class ContactMotion:
         negative where ``A′ cos θ + B′ sin θ < -e^{aπ/ϖ_d} P/ϖ²``; once it is
         positive it stays so for longer than half a period.
         """
-        o = self.constants
-        forcing = np.minimum(self.push + o.forcing * o.half, o.forcing) - 1
-        level = np.maximum(forcing, 0.0) / o.stiffness
+        half = np.pi / self.damped
+        # Nearly critical: any number so large excludes the bound that uses it.
+        growth = np.exp(np.minimum(self.decay * half, 690.0))
+        forcing = np.minimum(self.push + self.forcing * half, self.forcing) - 1
+        level = np.maximum(forcing, 0.0) / self.stiffness
         a = self.start - level
-        b = (self.start_rate + o.decay * a) / o.damped
+        b = (self.start_rate + self.decay * a) / self.damped
         radius = np.sqrt(a * a + b * b)
-        depth = o.growth * level / np.maximum(radius, 1e-300)
+        depth = growth * level / np.maximum(radius, 1e-300)
         # atan2 of the point turned by half a turn, so that a < 0 gives no jump.
         angle = np.arctan2(-b, -a) + (np.pi / 2 - np.arcsin(np.minimum(depth, 1.0)))
         angle = np.where((depth < 1) & (angle > 0), angle, 0.0)
-        return angle / o.damped
+        return angle / self.damped
 
 
 def release(motion: ContactMotion) -> Zero:

@@ -4,23 +4,13 @@ It is at rest on the table while g = 1 - Λ sin τ > 0. It leaves at Λ sin τ =
 up, or at once where g ≤ 0 already, and never if Λ ≤ 1.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.motion.angles import reduce_angle, table
-
-
-class LiftOff(NamedTuple):
-    """The time until a ball leaves, the table's phase then with Λ cos and Λ sin of it, and
-    a time of flight by which the ball has not landed."""
-
-    wait: np.ndarray
-    phase: np.ndarray
-    x: np.ndarray
-    y: np.ndarray
-    flown: np.ndarray
+from bouncing_ball.motion.dynamics import Departure
+from bouncing_ball.motion.landing import Flight
+from bouncing_ball.motion.sequence import Status
 
 
 def lift_off_phase(amplitude: ArrayLike) -> np.ndarray:
@@ -40,27 +30,28 @@ def pressed(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return (y < 1) | ((y == 1) & (x <= 0))
 
 
-def lift_off(phase: np.ndarray, amplitude: np.ndarray) -> LiftOff:
-    """How a ball leaves that lies on the table at a phase, for Λ > 1.
+def stay(departure: Departure, rests: np.ndarray, amplitude: np.ndarray) -> Departure:
+    """Departures of which some, where ``rests``, are no more than a rest on the table.
 
-    From rest at Λ sin τ = y ≥ 1 with x = Λ cos τ, ``δ ≥ (y - 1) s²/2 + x s³/6 - Λ s⁴/24``.
-
-    Examples
-    --------
-    >>> leaving = lift_off(np.array(0.0), np.array(2.0))
-    >>> bool(np.isclose(leaving.wait, np.pi / 6)), float(leaving.y)
-    (True, 1.0)
+    These balls lie on the table from the departure's phase on, and leave it by their lift-off.
     """
-    x, y = table(phase, amplitude)
-    stays = pressed(x, y)
+    if not rests.any():
+        return departure
+    x, y = table(departure.phase, amplitude)
+    held, forever = pressed(x, y), rests & (amplitude <= 1)
     top = np.maximum(amplitude, 1.0)
     lift = np.arcsin(1 / top)
-    wait = np.where(stays, np.mod(reduce_angle(lift - phase), 2 * np.pi), 0.0)
+    wait = np.where(held, np.mod(reduce_angle(lift - departure.phase), 2 * np.pi), 0.0)
     # Rounding must not turn a lift-off that is due now into one a turn later.
     wait = np.where(wait > 2 * np.pi - 1e-9, 0.0, wait)
     # At lift-off Λ sin τ = 1 exactly.
-    away = np.sqrt((top - 1) * (top + 1))
-    x, y = np.where(stays, away, x), np.where(stays, 1.0, y)
-    excess = y - 1
-    steep = np.minimum(excess / np.maximum(np.abs(x), 1e-300), np.sqrt(3 * excess / top))
-    return LiftOff(wait, np.where(stays, lift, phase), x, y, np.maximum(steep, 4 * x / top))
+    x, y = np.where(held, np.sqrt((top - 1) * (top + 1)), x), np.where(held, 1.0, y)
+    still, own = np.where(forever, np.nan, 0.0), departure.flight
+    state = (own.displacement, still), (own.velocity, still), (own.x, x), (own.y, y)
+    displacement, velocity, x, y = (np.where(rests, rest, left) for left, rest in state)
+    return departure._replace(
+        phase=np.where(rests & held, lift, departure.phase),
+        duration=departure.duration + np.where(rests, np.where(forever, np.inf, wait), 0.0),
+        flight=Flight(displacement, velocity, x, y, amplitude),
+        status=np.where(forever, Status.PERMANENT_CONTACT, Status.BOUNCING),
+    )

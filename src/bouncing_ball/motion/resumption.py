@@ -18,16 +18,27 @@ table: that it does not return between two samples is not certified.
 import numpy as np
 
 from bouncing_ball.contacts.contact_law import ContactLaw
-from bouncing_ball.motion.ensembles import pick
-from bouncing_ball.motion.first_zero import State, first_zero
-from bouncing_ball.motion.landing import Flight, Rise
+from bouncing_ball.motion.first_zero import Motion, State, first_zero
+from bouncing_ball.motion.landing import Flight
 
 # Samples of the grip of a slow ball, and bisections of its return.
 _SAMPLES = 65
 _BISECTIONS = 60
 
 
-class _Unloaded:
+class _Rise(Motion):
+    """The motion δ of a ball that was let go below the table's level, while it rises."""
+
+    def __init__(self, flight: Flight):
+        self.flight = flight
+
+    def __call__(self, time: np.ndarray) -> State:
+        displacement, rate, second, third = self.flight.gap(time)
+        lam = self.flight.amplitude
+        return State(displacement, rate, second, third, 1 + lam, lam, lam, rate <= 0)
+
+
+class _Unloaded(Motion):
     """The motion -y in free flight; it ends where δ ≥ 0."""
 
     def __init__(self, flight: Flight, lag):
@@ -37,63 +48,59 @@ class _Unloaded:
     def __call__(self, time: np.ndarray) -> State:
         lag, forcing = self.lag, self.forcing
         displacement, rate, second, third = self.flight.gap(time)
-        # Fourth derivative of δ: minus that of the table.
-        fourth = -1 - second
-        y = displacement + lag * rate
         # Exactly zero at the release, which rounding must not turn into a zero.
-        y = np.where(time == 0, 0.0, y)
-        return State(
-            -y,
-            -(rate + lag * second),
-            -(second + lag * third),
-            -(third + lag * fourth),
-            1 + forcing,
-            forcing,
-            forcing,
-            displacement >= 0,
-        )
-
-    def take(self, which: np.ndarray) -> "_Unloaded":
-        return _Unloaded(self.flight.take(which), pick(self.lag, which))
-
-    def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
-        return time
+        y = np.where(time == 0, 0.0, displacement + lag * rate)
+        # The fourth derivative of δ is minus that of the table.
+        falls = -(rate + lag * second), -(second + lag * third), -(third - lag * (1 + second))
+        return State(-y, *falls, 1 + forcing, forcing, forcing, displacement >= 0)
 
 
-def leaves_fast(flight: Flight, law: ContactLaw) -> np.ndarray:
+def resumption(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.ndarray]:
+    """A time without landing of balls that were let go, and whether they are held again then."""
+    time, resumed = flight.sure(), np.zeros(flight.velocity.shape, dtype=bool)
+    if np.any(law.lag != 0):
+        slow = np.flatnonzero(~_leaves_fast(flight, law))
+        find = _sampled if law.lag is None else _certified
+        part = flight.take(slow)
+        time[slow], back = find(part, law.take(slow))
+        resumed[slow] = back & (part.gap(time[slow])[0] < 0)
+    return time, resumed
+
+
+def _leaves_fast(flight: Flight, law: ContactLaw) -> np.ndarray:
     """Whether δ certainly reaches 0 before the force can return."""
     lag = law.lag
     if lag is None:
         slopes = law.grip_slopes(-flight.displacement, -flight.velocity)
         lag = slopes.by_rate / slopes.by_penetration
     inside = flight.room()
-    return (inside > 0) & (np.sqrt(np.maximum(inside, 0.0)) >= lag * flight.gravity)
+    return (inside > 0) & (np.sqrt(np.maximum(inside, 0.0)) >= lag * (1 + flight.amplitude))
 
 
-def resumption(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.ndarray]:
-    """A time without landing of balls let go below the table's level, and whether they are
-    held again then."""
-    if law.lag is not None:
-        unloaded = _Unloaded(flight, law.lag)
-        found = first_zero(unloaded, np.zeros_like(flight.velocity))
-        return found.time, ~found.ended & (flight.gap(found.time)[0] < 0)
+def _certified(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.ndarray]:
+    """When y falls back to 0, or δ reaches it, and whether it is the former."""
+    found = first_zero(_Unloaded(flight, law.lag), np.zeros_like(flight.velocity))
+    return found.time, ~found.ended
+
+
+def _sampled(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.ndarray]:
+    """When the grip returns, or δ reaches 0, and whether it is the former."""
 
     def held(time):
         displacement, rate, _, _ = flight.gap(time)
         return law.grip(np.maximum(-displacement, 0.0), -rate) > 0
 
-    rise = first_zero(Rise(flight), np.zeros_like(flight.velocity))
-    # A ball that falls back into the table is held at its highest point at the latest.
-    back = rise.ended | (rise.rate <= 0)
+    rise = first_zero(_Rise(flight), np.zeros_like(flight.velocity))
     share = np.linspace(0, 1, _SAMPLES)[1:-1, np.newaxis]
     now = held(share * rise.time)
-    back |= now.any(axis=0)
+    found = now.any(axis=0)
     # The first sample that is held, and the one before it.
-    right = np.where(now.any(axis=0), share[now.argmax(axis=0), 0], 1.0) * rise.time
+    right = np.where(found, share[now.argmax(axis=0), 0], 1.0) * rise.time
     left = np.maximum(right - rise.time / (_SAMPLES - 1), 0.0)
     for _ in range(_BISECTIONS):
         middle = (left + right) / 2
         now = held(middle)
         left, right = np.where(now, left, middle), np.where(now, middle, right)
-    time = np.where(back, right, rise.time)
-    return time, back & (flight.gap(time)[0] < 0)
+    # A ball that falls back into the table is held at its highest point at the latest.
+    back = found | rise.ended | (rise.rate <= 0)
+    return np.where(back, right, rise.time), back

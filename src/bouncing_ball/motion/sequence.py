@@ -1,14 +1,20 @@
 """Sequences of impacts of many balls, as arrays."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
-from typing import NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
 from bouncing_ball.contacts.batch import in_words
-from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.motion.angles import reduce_angle
+
+RECORDED = (
+    *("time", "phase", "displacement", "relative_velocity", "contact_duration"),
+    *("release_displacement", "relative_release_velocity", "settling"),
+)
+"""The arrays of an :class:`ImpactSequence` with a row for each impact, in order."""
 
 
 class Status(IntEnum):
@@ -46,8 +52,8 @@ class ImpactSequence:
     ----------
     amplitude : array
         Λ of each ball.
-    contact : SpringDamper or None
-        The spring-damper, or None for the restitution model.
+    contact : ContactLaw or None
+        The contact's law, or None where an impact is an instant.
     time, phase : array
         Time of the impact since the first one, and the table's phase, in [-π, π].
     displacement, relative_velocity : array
@@ -60,13 +66,13 @@ class ImpactSequence:
         δ and δ′ when the ball leaves.
     status : array of int
         :class:`Status` of each ball.
-    settling : array or None
-        Restitution model: the part of ``contact_duration`` taken by the
-        infinitely many impacts that are left out before the ball sticks.
+    settling : array
+        The part of ``contact_duration`` taken by the infinitely many impacts of the restitution
+        model that are left out before a ball sticks; 0 for the other models.
     """
 
     amplitude: np.ndarray
-    contact: SpringDamper | None
+    contact: ContactLaw | None
     time: np.ndarray
     phase: np.ndarray
     displacement: np.ndarray
@@ -75,7 +81,7 @@ class ImpactSequence:
     release_displacement: np.ndarray
     relative_release_velocity: np.ndarray
     status: np.ndarray
-    settling: np.ndarray | None = None
+    settling: np.ndarray
 
     def __repr__(self) -> str:
         balls = f" of {self.status.size} balls" if self.status.ndim else ""
@@ -84,6 +90,20 @@ class ImpactSequence:
         names = ("time", "phase", "impact_velocity", "contact_duration", "release_velocity")
         values = (f"  {name:<22}{in_words(getattr(self, name))}" for name in names)
         return "\n".join([head, *values])
+
+    def __getitem__(self, balls: Any) -> Self:
+        """The impacts of one of the balls, or of some, along their first axis.
+
+        Examples
+        --------
+        >>> from bouncing_ball.motion.simulation import simulate
+        >>> simulate(1.0, 0.0, 0.0, [-1.0, -2.0], 2)[1].time.tolist()
+        [0.0, 4.0]
+        """
+        found = {name: value[:, balls] for name, value in vars(self).items() if name in RECORDED}
+        of_all = {"amplitude": self.amplitude[balls], "status": self.status[balls]}
+        law = None if self.contact is None else self.contact.take(balls)
+        return replace(self, contact=law, **of_all, **found)
 
     @property
     def impact_velocity(self) -> np.ndarray:
@@ -102,20 +122,6 @@ class ImpactSequence:
         return self.relative_release_velocity + self.amplitude * np.cos(self.release_phase)
 
     @property
-    def apparent_restitution(self) -> np.ndarray:
-        """r_a of each impact (Eq. 17)."""
-        return -self.relative_release_velocity / self.relative_velocity
-
-    @property
     def impacts(self) -> np.ndarray:
         """Number of recorded impacts of each ball."""
         return np.sum(np.isfinite(self.time), axis=0)
-
-    def section(self, skip: int = 0) -> tuple[np.ndarray, np.ndarray]:
-        """Poincaré section at the impacts: all (phase, relative velocity), flat.
-
-        Without the first ``skip`` impacts of each ball.
-        """
-        phase, velocity = self.phase[skip:], self.relative_velocity[skip:]
-        there = np.isfinite(phase)
-        return phase[there], velocity[there]

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.signature import Instant
 from bouncing_ball.continuation.branch import Branch, ContinuationError, continue_branch
 from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane
-from bouncing_ball.continuation.events import Event, LocationError, parameter_bound, vanishing
+from bouncing_ball.continuation.events import Event, parameter_bound, vanishing
 from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.orbits import corrected_branch as corrected
 from bouncing_ball.orbits.orbit import check_index
@@ -192,7 +192,7 @@ def continued(model: Any, n: int, amplitude: float, farther: float = _FARTHER) -
         return continue_branch(
             system, y, increasing=False, events=events, control=control, max_points=_POINTS
         )
-    except (ContinuationError, LocationError):
+    except ContinuationError:
         return None
 
 

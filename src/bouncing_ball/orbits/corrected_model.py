@@ -9,10 +9,8 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.contacts.signature import Instant, LinearSignature, Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.motion.corrected import simulate
-from bouncing_ball.motion.sequence import ImpactSequence
 from bouncing_ball.orbits import corrected_branch as formulas
-from bouncing_ball.orbits.corrected_orbit import CorrectedOrbit, CorrectedSystem
+from bouncing_ball.orbits.corrected_orbit import CorrectedOrbit
 from bouncing_ball.orbits.model import ImpactModel, Route
 from bouncing_ball.orbits.orbit import Orbit, check_index
 from bouncing_ball.orbits.stability import Side
@@ -52,16 +50,6 @@ class CorrectedModel(ImpactModel):
     def signature(self, speed: ArrayLike) -> Instant:
         """The law."""
         return self.law(speed)
-
-    def system(self, n: int | np.ndarray) -> CorrectedSystem:
-        """The equations of the orbits, continued in Λ."""
-        return CorrectedSystem(n, self.law)
-
-    def simulate(
-        self, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
-    ) -> ImpactSequence:
-        """Impacts from a first one at phase φ, with absolute velocity z′_i before it."""
-        return simulate(self.law, amplitude, phase, velocity, impacts)
 
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ = 1, as in the restitution model: no impact, nothing to correct."""

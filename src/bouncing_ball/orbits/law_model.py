@@ -19,8 +19,6 @@ from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.permanent_contact import permanent_contact
 from bouncing_ball.contacts.signature import Instant, free_impact
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.motion.contact import contact_cycle, simulate
-from bouncing_ball.motion.sequence import Cycle, ImpactSequence
 from bouncing_ball.orbits.continued import orbit_at, orbits_at
 from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.orbit import Orbit
@@ -106,10 +104,6 @@ class LawOrbit(Orbit):
         """exp(-∫ ∂f/∂p′ dt) over the contact: the flight keeps areas."""
         return self.contact.contraction
 
-    def cycle(self, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
-        """From impacts (φ, δ′) to the next, simulated."""
-        return contact_cycle(self.law, self.amplitude, phase, relative_velocity)
-
 
 @dataclass(frozen=True, repr=False)
 class LawModel(ImpactModel):
@@ -146,12 +140,6 @@ class LawModel(ImpactModel):
     def orbits(self, n: int, amplitude: float) -> LawOrbit:
         """All n-T orbits of one law at one Λ on the branch, in order of contact duration."""
         return orbits_at(self, n, amplitude)
-
-    def simulate(
-        self, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
-    ) -> ImpactSequence:
-        """Impacts from a first one at phase φ, with absolute velocity z′_i before it."""
-        return simulate(self.law, amplitude, phase, velocity, impacts)
 
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ up to which a steady contact is held all the time."""

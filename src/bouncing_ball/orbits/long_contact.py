@@ -28,7 +28,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError
-from bouncing_ball.motion.contact import simulate
+from bouncing_ball.motion.simulation import simulate
 from bouncing_ball.orbits import spring_damper_limits as limits
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit

@@ -28,6 +28,7 @@ from bouncing_ball.contacts.batch import Batch
 from bouncing_ball.contacts.signature import Instant
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence
+from bouncing_ball.motion.simulation import next_impact, simulate
 from bouncing_ball.orbits import continued
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.stability import Bifurcation, Side
@@ -78,12 +79,6 @@ class ImpactModel(Batch, ABC):
         """What an impact of speed v > 0 is to the outside, from which searches start."""
 
     @abstractmethod
-    def simulate(
-        self, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
-    ) -> ImpactSequence:
-        """Impacts from a first one at phase φ, with absolute velocity z′_i before it."""
-
-    @abstractmethod
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ up to which the ball stays on the table."""
 
@@ -130,9 +125,16 @@ class ImpactModel(Batch, ABC):
         """
         raise ModelError(f"the orbits of the {self.name} model have no closed form")
 
+    def simulate(
+        self, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
+    ) -> ImpactSequence:
+        """Impacts from a first one at phase φ, with absolute velocity z′_i before it:
+        :func:`bouncing_ball.motion.simulation.simulate`."""
+        return simulate(self._law, amplitude, phase, velocity, impacts)
+
     def cycle(self, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
         """The Poincaré map, from an impact (φ, δ′) to the next (route SIMULATION)."""
-        return self.orbit_of(1, amplitude, phase).cycle(phase, relative_velocity)
+        return next_impact(self._law, amplitude, phase, relative_velocity)
 
     @property
     def _law(self) -> Any:

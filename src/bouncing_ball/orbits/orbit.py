@@ -19,6 +19,7 @@ from bouncing_ball.errors import require
 from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.motion.ensembles import blocks
 from bouncing_ball.motion.sequence import Cycle
+from bouncing_ball.motion.simulation import next_impact
 from bouncing_ball.orbits import stability
 
 OBSERVABLES = (
@@ -113,6 +114,11 @@ class Orbit(Batch, ABC):
     # What a model's orbits add.
 
     @property
+    def unknowns(self) -> tuple[np.ndarray, ...]:
+        """(φ, z′_i), from which the contact follows."""
+        return self.phase, self.impact_velocity
+
+    @property
     def clock(self) -> ArrayLike:
         """Rate of the contact's own time against the table's; 1 without any."""
         return 1.0
@@ -136,10 +142,6 @@ class Orbit(Batch, ABC):
         """What a contact holds the ball by: negative until it vanishes at the release."""
         return self.contact_path(time)[0] - self.amplitude * np.sin(self.phase + time)
 
-    def can_be_simulated(self) -> np.ndarray:
-        """Whether :meth:`cycle` is defined for each orbit's parameters."""
-        return np.ones(self.shape, dtype=bool)
-
     @abstractmethod
     def residual(self) -> np.ndarray:
         """Defects of the model's equations, along the last axis."""
@@ -159,11 +161,11 @@ class Orbit(Batch, ABC):
         Their rounding would decide between stable and not without dissipation.
         """
 
-    @abstractmethod
+    # What follows from the law and the flight.
+
     def cycle(self, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
         """From impacts (φ, δ′) with these orbits' parameters to the next, simulated."""
-
-    # What follows from the flight.
+        return next_impact(self.law, self.amplitude, phase, relative_velocity)
 
     def flight_defects(
         self, displacement: ArrayLike, velocity: ArrayLike

@@ -11,9 +11,6 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.contacts.restitution_law import RestitutionLaw, rebound
 from bouncing_ball.contacts.signature import Instant
-from bouncing_ball.errors import ModelError
-from bouncing_ball.motion.restitution import simulate
-from bouncing_ball.motion.sequence import ImpactSequence
 from bouncing_ball.orbits import restitution_orbit as formulas
 from bouncing_ball.orbits.model import ImpactModel, Route
 from bouncing_ball.orbits.orbit import Orbit
@@ -36,24 +33,6 @@ class _Instants(ImpactModel):
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ_CR = 1 (Eq. 9)."""
         return np.full(self.shape, RESTITUTION_THRESHOLD)
-
-    def simulate(
-        self, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
-    ) -> ImpactSequence:
-        """Impacts from a first one at phase φ, with absolute velocity z′_i before it.
-
-        Raises
-        ------
-        ModelError
-            If the ball rises from the table.
-        """
-        velocity, table = np.asarray(velocity, dtype=float), np.asarray(amplitude) * np.cos(phase)
-        if np.any(velocity > table):
-            raise ModelError("a ball that rises from the table has no impact: z′ > w′")
-        r, _ = rebound(self._law, table - velocity)
-        after = -r * velocity + (1 + r) * table
-        law = self._law if isinstance(self._law, RestitutionLaw) else None
-        return simulate(r, amplitude, phase, after, impacts, law)
 
 
 @dataclass(frozen=True, repr=False)

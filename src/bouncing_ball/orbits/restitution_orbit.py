@@ -24,8 +24,6 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.restitution_law import RestitutionLaw, rebound
 from bouncing_ball.errors import NoOrbitError, require
-from bouncing_ball.motion.restitution import section_cycle
-from bouncing_ball.motion.sequence import Cycle
 from bouncing_ball.orbits.orbit import Orbit, check_index
 
 
@@ -220,8 +218,3 @@ class RestitutionOrbit(Orbit):
         r, slope = self._rebound()
         lift = self.amplitude * np.sin(self.phase)
         return 1 + r * slope - (1 + r) * (1 + slope) * lift, self.determinant()
-
-    def cycle(self, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
-        """From impacts (φ, δ′) to the next, simulated."""
-        r, _ = rebound(self.law, -np.asarray(relative_velocity, dtype=float))
-        return section_cycle(r, self.amplitude, phase, relative_velocity)

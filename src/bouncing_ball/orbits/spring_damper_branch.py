@@ -44,7 +44,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.spring_damper import SpringDamper, responses
+from bouncing_ball.contacts.oscillator import responses
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import require
 
 # Points computed at once: as many as keep the intermediate arrays in the cache.

@@ -11,8 +11,6 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.signature import Instant, LinearSignature
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.motion.contact import simulate
-from bouncing_ball.motion.sequence import ImpactSequence
 from bouncing_ball.orbits import spring_damper_limits as limits
 from bouncing_ball.orbits.model import Absence, ImpactModel, Route
 from bouncing_ball.orbits.orbit import Orbit
@@ -116,12 +114,6 @@ class SpringDamperModel(ImpactModel):
         return SpringDamperSystem(
             n, contact.damping_ratio, Parameter.AMPLITUDE, contact.frequency_ratio, contact.release
         )
-
-    def simulate(
-        self, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
-    ) -> ImpactSequence:
-        """Impacts from a first one at phase φ, with absolute velocity z′_i before it."""
-        return simulate(self.contact, amplitude, phase, velocity, impacts)
 
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ_SD(ϖ) or Λ_F(ϖ)."""

@@ -9,15 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.motion.contact import contact_cycle
-from bouncing_ball.motion.sequence import Cycle
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.spring_damper_branch import BranchPoint, branch_point
-
-# Near the undamped resonance the simulation has no steady part to work with;
-# the orbit is then sampled. Same measure as the simulation's own limit.
-_RESONANCE = 1e-4
-_SAMPLES = 4000
 
 
 class SpringDamperOrbit(Orbit):
@@ -98,49 +91,7 @@ class SpringDamperOrbit(Orbit):
         loss = np.asarray(self.contact.damping_ratio) * self.contact.frequency_ratio
         return np.exp(-2 * loss * self.contact_duration)
 
-    def cycle(self, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
-        """From impacts (φ, δ′) to the next, simulated."""
-        return contact_cycle(self.contact, self.amplitude, phase, relative_velocity)
-
     def holding(self, time: np.ndarray) -> np.ndarray:
         """δ + κ δ′ in contact."""
         displacement, velocity = self.contact_motion(time)
         return displacement + self.contact.lag * velocity
-
-    def can_be_simulated(self) -> np.ndarray:
-        """Whether each contact is away from the undamped resonance."""
-        omega, zeta = self.contact.frequency_ratio, self.contact.damping_ratio
-        detuning = np.hypot((omega - 1) * (omega + 1), 2 * zeta * omega)
-        return np.broadcast_to(detuning >= 2 * _RESONANCE, self.shape)
-
-    def is_admissible(self) -> np.ndarray:
-        """Whether each orbit is one of the ball; false where there is none.
-
-        Examples
-        --------
-        >>> from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
-        >>> model = SpringDamperModel(SpringDamper(10.0, 0.05))
-        >>> bool(model.orbit(1, 1.0).is_admissible())
-        True
-        >>> bool(model.orbit(1, 2.3, "unstable").is_admissible())
-        False
-        """
-        if not self.shape:
-            return self.ravel().is_admissible()[0]
-        simulated = self.can_be_simulated()
-        admissible = np.zeros(self.shape, dtype=bool)
-        admissible[simulated] = super(SpringDamperOrbit, self[simulated]).is_admissible()
-        for index in zip(*np.nonzero(~simulated), strict=True):
-            admissible[index] = self[index]._sampled()
-        return admissible
-
-    def _sampled(self) -> bool:
-        """Whether one orbit is admissible, from samples."""
-        possible = self.relative_impact_velocity < 0 < self.contact_duration
-        if not (possible and self.flight_time > 0):
-            return False
-        share = np.linspace(0.0, 1.0, _SAMPLES)[1:-1]
-        touching = self.holding(share * self.contact_duration)
-        time = self.contact_duration + share * self.flight_time
-        gap = self.flight_path(time)[0] - self.amplitude * np.sin(self.phase + time)
-        return bool(np.all(touching < 0) and np.all(gap > 0))

@@ -3,7 +3,8 @@ r"""The equations of n-T orbits, for a continuation.
 Where a contact follows from its start the unknowns are (φ, z′_i), the phase and the velocity
 at the impact, and the parameter is Λ. The contact that starts so gives its duration and its
 end, so that two equations are left: velocity and height of the flight that follows
-(Eqs. 24-25). All are of order one however short the contact is.
+(Eqs. 24-25). All are of order one however short the contact is. Of an impact in the
+corrected model the phase alone is unknown.
 """
 
 from abc import ABC, abstractmethod
@@ -74,7 +75,7 @@ class OrbitSystem(ABC):
 
 @dataclass(frozen=True)
 class ContactSystem(OrbitSystem):
-    """Those of orbits whose contact follows from its start; y = (φ, z′_i, Λ).
+    """Those of orbits whose contact follows from its start; y = (φ, z′_i, Λ), or (ψ, Λ).
 
     Parameters
     ----------
@@ -84,7 +85,7 @@ class ContactSystem(OrbitSystem):
     law : Batch
         The law of the impact.
     at : callable
-        The orbits ``at(n, law, Λ, φ, z′_i)`` with contacts that start so.
+        The orbits ``at(n, law, Λ, …)`` with these :attr:`~.Orbit.unknowns`.
 
     Examples
     --------
@@ -103,23 +104,23 @@ class ContactSystem(OrbitSystem):
     def _known(self) -> Callable:
         # A step along a branch asks for its residual, Jacobian and events in turn.
         def orbit(shape: tuple[int, ...], entries: bytes) -> Any:
-            phase, impact, amplitude = np.moveaxis(np.frombuffer(entries).reshape(shape), -1, 0)
-            return self.at(self.n, self.law, amplitude, phase, impact)
+            *unknowns, amplitude = np.moveaxis(np.frombuffer(entries).reshape(shape), -1, 0)
+            return self.at(self.n, self.law, amplitude, *unknowns)
 
         return lru_cache(maxsize=4)(orbit)
 
     def orbit(self, y: np.ndarray) -> Any:
-        """The orbits at points y = (φ, z′_i, Λ) of shape (..., 3)."""
+        """The orbits at points y of shape (..., N + 1)."""
         return self._known(y.shape, y.tobytes())
 
     def coordinates(self, orbit: Any) -> tuple[np.ndarray, ...]:
-        """(φ, z′_i, Λ)."""
-        return orbit.phase, orbit.impact_velocity, orbit.amplitude
+        """The orbit's unknowns, and Λ."""
+        return *orbit.unknowns, orbit.amplitude
 
     def residual(self, y: np.ndarray) -> np.ndarray:
-        """Velocity defect and landing defect, shape (..., 2)."""
-        return super().residual(y)[..., -2:]
+        """The last N defects: for a contact those of velocity and landing."""
+        return super().residual(y)[..., 1 - y.shape[-1] :]
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
-        """Exact Jacobian of the residual, shape (..., 2, 3)."""
+        """Exact Jacobian of the residual, shape (..., N, N + 1)."""
         return self.orbit(y).jacobian()

@@ -1,11 +1,10 @@
-"""What the rules of the atlas need: names and times of shards, and which are damaged.
+"""What the rules of the atlas need: names and times of shards.
 
 Every job of every rule reads the rules; so the plan is imported when it is asked for.
 """
 
 import math
-from collections.abc import Callable, Iterable, Mapping
-from pathlib import Path
+from collections.abc import Mapping
 from typing import Any
 
 # Processor time of an orbit on a slow machine, with some to spare.
@@ -36,15 +35,3 @@ def shard_minutes(parameters: Mapping[str, Any]) -> int:
     plan = Plan(**parameters)
     seconds = plan.orbits / len(plan.shard_rows()) * _SECONDS_PER_ORBIT
     return _LEAST_MINUTES + math.ceil(seconds / 60)
-
-
-def discard_damaged(paths: Iterable[str], say: Callable[[str], None]) -> None:
-    """Remove the files of those there that cannot be read whole, and say which."""
-    from bouncing_ball.datasets.netcdf import DatasetError, read_dataset
-
-    for path in filter(Path.is_file, map(Path, paths)):
-        try:
-            read_dataset(path)
-        except DatasetError:
-            path.unlink()
-            say(f"{path} is damaged: it is made again")

@@ -24,7 +24,7 @@ from bouncing_ball.datasets.netcdf import (
     read_dataset,
     write_dataset,
 )
-from bouncing_ball.provenance.origin import PREFIX, Provenance, gather
+from bouncing_ball.provenance.origin import gather
 
 REFERENCE = (
     "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient "
@@ -32,9 +32,6 @@ REFERENCE = (
 )
 
 HISTORY = "computed from the equations; the attributes provenance_* say by what and from what"
-
-ARTICLE = ("results/paper.md", "results/tally.txt")
-"""What is made from all datasets and tables."""
 
 
 @contextmanager
@@ -72,35 +69,22 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
             del sys.modules["pint"]
 
 
-def withdraw() -> None:
-    """Remove the article and the tally, as a job is about to change what they say.
-
-    A run that fails then leaves neither beside new datasets and tables.
-    """
-    for path in ARTICLE:
-        Path(path).unlink(missing_ok=True)
-
-
 def read_input(path: str) -> xr.Dataset:
     """A dataset that another job has made for this one.
 
     Raises
     ------
     DatasetError
-        If it is damaged, or is that of another artifact; with the command that makes it again.
+        If it is damaged, with the command that makes it again.
     """
-    again = f"make it again, snakemake --cores 2 --force {path}"
     try:
-        dataset = read_dataset(path)
+        return read_dataset(path)
     except DatasetError as error:
+        again = f"make it again, snakemake --cores 2 --force {path}"
         raise DatasetError(f"{error}: {again}") from error
-    target = dataset.attrs.get(PREFIX + "target")
-    if target != path:
-        raise DatasetError(f"{path} is the dataset of {target}: {again}")
-    return dataset
 
 
-def provenance(snakemake: Any) -> Provenance:
+def provenance(snakemake: Any) -> dict[str, str]:
     """The provenance of what the job writes.
 
     Gathered as a file is written: as a parameter of the job, a commit would run
@@ -120,7 +104,6 @@ def make_dataset(snakemake: Any) -> None:
     the study says itself what is worth recording, and so does the provenance.
     """
     with logged(snakemake) as lines:
-        withdraw()
         job = snakemake.params
         data = {Path(path).stem: read_input(path) for path in snakemake.input.data}
         given = dict(job.arguments)
@@ -144,6 +127,6 @@ def publish(
         "references": REFERENCE,
         "history": HISTORY,
         **parameters,
-        **provenance(snakemake).attributes(),
+        **provenance(snakemake),
     }
     write_dataset(dataset, snakemake.output.data, compressed=compressed)

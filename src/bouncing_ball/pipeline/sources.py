@@ -46,7 +46,7 @@ def _with_parents(module: str) -> list[str]:
 
 
 def sources(*modules: str) -> list[str]:
-    """Files of this package that importing the modules executes, sorted.
+    """Files of this package that importing the modules executes, and their tables, sorted.
 
     Raises
     ------
@@ -68,4 +68,5 @@ def sources(*modules: str) -> list[str]:
             if path is not None and path not in seen:
                 seen.add(path)
                 pending.extend(imports(path))
-    return sorted(str(path) for path in seen)
+    tables = (path.with_suffix(".csv") for path in seen)
+    return sorted(str(path) for path in [*seen, *filter(Path.is_file, tables)])

@@ -9,7 +9,6 @@ import json
 import os
 import platform
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, fields
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -31,28 +30,6 @@ _DESCRIPTION = "{http://purl.org/dc/elements/1.1/}description"
 
 class ProvenanceError(ModelError):
     """A file that does not say, or not readably, what it is made from."""
-
-
-@dataclass(frozen=True)
-class Provenance:
-    """What an artifact is made from."""
-
-    commit: str
-    """Full hash of the commit, or unknown."""
-    dirty: str
-    """Whether the tree had changes that the commit has not: yes, no or unknown."""
-    configuration: str
-    """JSON: what the run's configuration changes in config/config.yaml, nested alike."""
-    target: str
-    """What to ask Snakemake for to have the artifact made again."""
-    inputs: str
-    """JSON: the files that the artifact is made from."""
-    versions: str
-    """JSON: for Python and each library, its version."""
-
-    def attributes(self) -> dict[str, str]:
-        """The provenance as attributes of a dataset, or metadata of a picture."""
-        return {PREFIX + name: value for name, value in asdict(self).items()}
 
 
 def changes(config: Mapping[str, Any], written: Mapping[str, Any]) -> dict[str, Any]:
@@ -86,21 +63,31 @@ def versions() -> dict[str, str]:
 
 def gather(
     target: str, inputs: Iterable[str], repository: Path, config: Mapping[str, Any]
-) -> Provenance:
-    """The provenance of what a job writes now, in a checkout and with a configuration."""
+) -> dict[str, str]:
+    """The provenance of what a job writes now, in a checkout and with a configuration.
+
+    Returns
+    -------
+    dict of str
+        Attributes of a dataset, or metadata of a picture: the full hash of the commit, or
+        unknown; whether the tree had changes that the commit has not, yes, no or unknown; as
+        JSON what the run's configuration changes in config/config.yaml, nested alike; what to
+        ask Snakemake for to have the artifact made again; as JSON the files that it is made
+        from, and the versions of Python and the libraries.
+    """
     now = revision(repository)
+    written = read_yaml(repository / CONFIGURATION)
     # A run may be anywhere; files of the checkout are named from its top.
-    named = [os.path.relpath(path, repository) if ".." in path else path for path in inputs]
-    return Provenance(
-        commit=now.commit,
-        dirty=now.dirty,
-        configuration=json.dumps(
-            changes(config, read_yaml(repository / CONFIGURATION)), sort_keys=True
-        ),
-        target=target,
-        inputs=json.dumps(sorted(set(named))),
-        versions=json.dumps(versions()),
-    )
+    named = {os.path.relpath(path, repository) if ".." in path else path for path in inputs}
+    made = {
+        "commit": now.commit,
+        "dirty": now.dirty,
+        "configuration": json.dumps(changes(config, written), sort_keys=True),
+        "target": target,
+        "inputs": json.dumps(sorted(named)),
+        "versions": json.dumps(versions()),
+    }
+    return {PREFIX + name: text for name, text in made.items()}
 
 
 def read_attributes(path: Path) -> dict[str, Any]:
@@ -134,17 +121,18 @@ def read_attributes(path: Path) -> dict[str, Any]:
         raise ProvenanceError(f"{path} cannot be read: damaged, or not ours") from None
 
 
-def read_provenance(path: Path) -> Provenance:
-    """What a dataset or a picture carries.
+def read_provenance(path: Path) -> dict[str, Any]:
+    """What a dataset or a picture carries, by the names of :func:`gather` without the prefix.
 
     Raises
     ------
     ProvenanceError
-        As :func:`read_attributes`, or if a part of it is missing.
+        As :func:`read_attributes`, or if it carries no provenance.
     """
-    attributes = read_attributes(path)
-    try:
-        return Provenance(*(str(attributes[PREFIX + field.name]) for field in fields(Provenance)))
-    except KeyError as missing:
-        why = f"no attribute {missing.args[0]}"
-        raise ProvenanceError(f"{path} carries no provenance: {why}") from None
+    attributes = read_attributes(path).items()
+    found = {name.removeprefix(PREFIX): x for name, x in attributes if name.startswith(PREFIX)}
+    if not found:
+        raise ProvenanceError(f"{path} carries no provenance")
+    return found | {
+        name: json.loads(found[name]) for name in ("configuration", "inputs", "versions")
+    }

@@ -118,16 +118,19 @@ def along(name: str, orbit: OneOrbit, value: Callable[[Any], np.ndarray]) -> np.
     ratios = orbit.frequency_ratio.grid()
     models = cache(lambda first: own_models(name, orbit, ratios[first:]))
     # The stiffest one alone is taken as it is: without an orbit on it there is nothing to show.
-    first = bisect_left(range(len(ratios) - 1), True, key=lambda k: models(k) is not None)
+    first = 0
+    if models(first) is None:
+        first = bisect_left(range(len(ratios) - 1), True, key=lambda k: models(k) is not None)
     found = value(models(first))
     return np.concatenate([np.full((*found.shape[:-1], first), np.nan), found], axis=-1)
 
 
-def corrected_model(exact: Any) -> CorrectedModel:
-    """The corrected restitution model of one contact."""
+def corrected_values(exact: Any, *asked: Any) -> np.ndarray:
+    """What the corrected restitution models of contacts say, shape (quantity, ϖ)."""
     if isinstance(exact, SpringDamperModel):
-        return CorrectedModel.of_contact(exact.contact)
-    return CorrectedModel(LawSignature(exact.law))
+        return values(CorrectedModel.of_contact(exact.contact), *asked)
+    each = (CorrectedModel(LawSignature(exact.law.take(k))) for k in range(exact.law.size))
+    return np.stack([values(model, *asked) for model in each], axis=-1)
 
 
 def _errors(name: str, parameters: LawErrors) -> tuple[np.ndarray, float]:
@@ -138,8 +141,8 @@ def _errors(name: str, parameters: LawErrors) -> tuple[np.ndarray, float]:
 
     def both(exact: Any) -> np.ndarray:
         wanted, constant = values(exact, *asked), values(rigid, *asked)[:, np.newaxis]
-        each = [values(corrected_model(exact[k]), *asked) for k in range(len(exact))]
-        return np.abs([relative(x, wanted) for x in (constant, np.stack(each, axis=-1))])
+        repaired = corrected_values(exact, *asked)
+        return np.abs([relative(x, wanted) for x in (constant, repaired)])
 
     def height(ratio: np.ndarray, _: np.ndarray) -> np.ndarray:
         exact = own_models(name, parameters, ratio)

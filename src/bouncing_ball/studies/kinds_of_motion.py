@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.motion.regularity import Stretching, period, stretching
+from bouncing_ball.motion.regularity import period, stretching
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.parameters import Family, LossyRestitution, Many, Parameters, number
 from bouncing_ball.studies.parameters import OrbitAmplitude
@@ -63,13 +63,12 @@ def kinds_of_motion(parameters: Motions) -> xr.Dataset:
 
     periods = period(sequence, ensemble.longest_period, _SAME)
     shared = np.where(np.ptp(periods, axis=1) == 0, periods[:, 0], 0)
-    growth = stretching(sequence, r, ensemble.transient)
-    exponents = np.array([Stretching(*rows).exponent() for rows in zip(*growth, strict=True)])
+    exponent, error = stretching(sequence, r, ensemble.transient).exponent()
     return described(
         {
             "amplitude": ("case", amplitude[:, 0]),
             "motion_period": ("case", shared),
-            "lyapunov_exponent": ("case", exponents[:, 0]),
-            "lyapunov_error": ("case", exponents[:, 1]),
+            "lyapunov_exponent": ("case", exponent),
+            "lyapunov_error": ("case", error),
         }
     )

@@ -33,20 +33,8 @@ from bouncing_ball.parameters import (
     Tolerance,
     number,
 )
-from bouncing_ball.studies.law_distribution import law_errors
-from bouncing_ball.studies.parameters import (
-    MotionRatio,
-    OrbitErrors,
-    OrbitParameters,
-    OrbitsAlongRatio,
-)
+from bouncing_ball.studies.parameters import OrbitErrors
 from bouncing_ball.studies.random_orbits import random_orbits
-
-
-class ErrorLaw(OrbitErrors):
-    """One orbit, and the error tolerated."""
-
-    restitution: LossyRestitution
 
 
 class Sample(Parameters):
@@ -66,8 +54,8 @@ class Sample(Parameters):
     law_samples: Annotated[Samples, Field(description="random orbits on which the law is tried")]
 
 
-class Orders(OrbitsAlongRatio):
-    """One orbit along ϖ, and random ones."""
+class Orders(OrbitErrors):
+    """One orbit along ϖ, the error tolerated of it, and random orbits."""
 
     restitution: LossyRestitution
     random: Sample
@@ -87,13 +75,6 @@ class Validity(Parameters):
     frequency_ratio: Span
 
 
-class Meeting(OrbitParameters):
-    """One contact of one orbit."""
-
-    frequency_ratio: MotionRatio
-    samples: Samples
-
-
 _STIFF = 500.0
 """ϖ at which the second order is all of the corrected model's error, and rounding none of it."""
 
@@ -108,54 +89,56 @@ def _second_order(zeta: float, rule: Release, n, amplitude) -> np.ndarray:
     return 2 * twice - once
 
 
-def error_law_table(parameters: ErrorLaw, release: Release) -> xr.Dataset:
-    """K, and the ϖ for a tolerance: exact, by the law, corrected; shape (model, quantity)."""
+def _of_random_orbits(sample: Sample, span: Span, release: Release) -> dict[str, tuple]:
+    """Orders of both models, and what the law leaves of the restitution model's errors."""
+    n, zeta, lam, _ = random_orbits(sample.samples, sample.seed, release, (0.2, 0.95))
+    stiff = sample.stiff_frequency_ratio * np.array([[1.0], [2.0]])
+    once, twice = np.moveaxis(np.abs(errors(SpringDamper(stiff, zeta, release), n, lam)), 2, 0)
+    n, zeta, lam, rng = random_orbits(sample.law_samples, sample.seed + 1, release)
+    omega = np.exp(rng.uniform(*np.log([span.min, span.max]), sample.law_samples))
+    contact = SpringDamper(omega, zeta, release)
+    left = error_law.remainder(n, LinearSignature(contact)(), lam, errors(contact, n, lam)[0])
+    return {
+        "order": (("model", "quantity", "sample"), np.log2(once / twice)),
+        "law_remainder": (("quantity", "law_sample"), left.factor),
+        "small_parameter": ("law_sample", left.small),
+        "stated_below": ((), error_law.STATED),
+    }
+
+
+def orders(parameters: Orders, release: Release) -> xr.Dataset:
+    """Errors along ϖ for one orbit, their orders in 1/ϖ, and the error law.
+
+    Of the orbit: moduli of relative errors, shape (model, quantity, ϖ); K and C of the first two
+    orders, shape (quantity,); the ϖ for a tolerance, exact, shape (model, quantity), and by the
+    law, shape (quantity,), and where the restitution model's error passes through zero by
+    accident; the same of the permanent contact, which has no impact to correct. Of random
+    orbits: the measured order, shape (model, quantity, sample), and |error - K/ϖ|/(S δ), which
+    the law states to be below M, shape (quantity, law_sample), with δ.
+    """
     n, lam, tolerance = parameters.n, parameters.amplitude, parameters.tolerance
     # ζ of Eq. 16; the restitution model has the r that this contact really has.
     zeta = float(damping_ratio(parameters.restitution))
     ratios = parameters.frequency_ratio.grid()
+    curves = np.abs(errors(SpringDamper(ratios, zeta, release), n, lam))
     found = search(zeta, release, n, lam, ratios, tolerance, tuple(Quantity))
-    k = [float(x) for x in error_law.coefficients(n, zeta, lam, release).values()]
-    law = error_law.law_thresholds(n, zeta, lam, release, tolerance)
-    still = float(error_law.permanent_contact_coefficient(zeta, release))
-    return described(
-        {
-            "coefficient": ("quantity", k),
-            "law_threshold": ("quantity", [float(law[q]) for q in OF_IMPACTS]),
-            "error_threshold": (("model", "quantity"), found.threshold[:, :-1, 0]),
-            "threshold_status": (("model", "quantity"), found.status[:, :-1, 0]),
-            "error_zero": ("quantity", found.zero[:-1, 0]),
-            "second_order": ("quantity", _second_order(zeta, release, n, lam)),
-            "permanent_coefficient": ((), still),
-            "permanent_law": ((), float(law[Quantity.PERMANENT_CONTACT])),
-            "permanent_threshold": ((), found.threshold[0, -1, 0]),
-        },
-        coords={"model": list(SIMPLE), "quantity": list(OF_IMPACTS)},
-    )
-
-
-def orders(parameters: Orders, release: Release) -> xr.Dataset:
-    """Errors along ϖ for one orbit, shape (model, quantity, ϖ), and the orders of random ones."""
-    span, sample = parameters.frequency_ratio, parameters.random
-    exact = parameters.exact(span.grid(), release)
-    curves = np.abs(errors(exact.contact, parameters.n, parameters.amplitude))
-    n, zeta, lam, _ = random_orbits(sample.samples, sample.seed, release, (0.2, 0.95))
-    stiff = sample.stiff_frequency_ratio * np.array([[1.0], [2.0]])
-    once, twice = np.moveaxis(np.abs(errors(SpringDamper(stiff, zeta, release), n, lam)), 2, 0)
-    law = law_errors(sample.law_samples, sample.seed + 1, span, release)
+    k = error_law.coefficients(n, zeta, lam, release)
+    *law, still = error_law.law_thresholds(n, zeta, lam, release, tolerance).values()
     return described(
         {
             "relative_error": (("model", "quantity", "frequency_ratio"), curves),
-            "order": (("model", "quantity", "sample"), np.log2(once / twice)),
-            "law_remainder": (("quantity", "law_sample"), law.remainder.values),
-            "small_parameter": ("law_sample", law.small_parameter.values),
-            "stated_below": ((), error_law.STATED),
+            "coefficient": ("quantity", list(k.values())),
+            "second_order": ("quantity", _second_order(zeta, release, n, lam)),
+            "law_threshold": ("quantity", law),
+            "error_threshold": (("model", "quantity"), found.threshold[:, :-1, 0]),
+            "threshold_status": (("model", "quantity"), found.status[:, :-1, 0]),
+            "error_zero": ("quantity", found.zero[:-1, 0]),
+            "permanent_coefficient": error_law.permanent_contact_coefficient(zeta, release),
+            "permanent_law": still,
+            "permanent_threshold": found.threshold[0, -1, 0],
+            **_of_random_orbits(parameters.random, parameters.frequency_ratio, release),
         },
-        coords={
-            "model": list(SIMPLE),
-            "quantity": list(OF_IMPACTS),
-            "frequency_ratio": span.grid(),
-        },
+        coords={"model": list(SIMPLE), "quantity": list(OF_IMPACTS), "frequency_ratio": ratios},
     )
 
 
@@ -186,41 +169,4 @@ def validity(parameters: Validity, release: Release) -> xr.Dataset:
             "error_zero": (("quantity", *names), zero),
         },
         coords={"model": list(SIMPLE), "quantity": list(OF_IMPACTS), **axes},
-    )
-
-
-def meeting_flights(parameters: Meeting, release: Release) -> xr.Dataset:
-    """One contact, and the flights before and after it, continued into it; shape (time,).
-
-    Raises
-    ------
-    NoOrbitError
-        If the orbit does not exist.
-    """
-    exact = parameters.exact(parameters.frequency_ratio, release)
-    orbit = exact.require_orbit(parameters.n, parameters.amplitude)
-    end = float(orbit.contact_duration)
-    time = np.linspace(-0.6 * end, 1.6 * end, parameters.samples)
-    inside, within = (time >= 0) & (time <= end), np.clip(time, 0, end)
-    start, velocity = orbit.contact_path(np.zeros(()))
-    before, (after, _) = start + (velocity - time / 2) * time, orbit.flight_path(time)
-    touching, _ = orbit.contact_path(within)
-    force = exact.contact.force(*-np.array(orbit.contact_motion(within)))
-    # The meeting point of the two parabolas, exact; and where the signature has it.
-    jump = float(orbit.bounce_velocity + end - orbit.impact_velocity)
-    apart = float(orbit.bounce_height - (start + (velocity - end / 2) * end))
-    meeting = end - apart / jump
-    return described(
-        {
-            "ball": ("time", np.where(time < 0, before, np.where(inside, touching, after))),
-            "table": ("time", orbit.amplitude * np.sin(orbit.phase + time)),
-            "flight_before": ("time", before),
-            "flight_after": ("time", after),
-            "contact_force": ("time", inside * force),
-            "contact_duration": ((), end),
-            "meeting_time": ((), meeting),
-            "meeting_height": ((), float(start + (velocity - meeting / 2) * meeting)),
-            "delay": ((), float(LinearSignature(exact.contact)().delay)),
-        },
-        coords={"time": time},
     )

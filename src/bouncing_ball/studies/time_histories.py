@@ -1,10 +1,11 @@
-"""Time histories of orbits of the spring-damper model (Figs. 7 and 12)."""
+"""Time histories of orbits of the spring-damper model (Figs. 7 and 12, and its flights)."""
 
 import numpy as np
 import xarray as xr
 
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.datasets.variables import describe
+from bouncing_ball.contacts.signature import LinearSignature
+from bouncing_ball.datasets.variables import describe, described
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.parameters import Many, Samples
 from bouncing_ball.studies.parameters import MotionRatio, OrbitParameters
@@ -87,4 +88,41 @@ def both_histories(parameters: Histories, release: Release) -> xr.Dataset:
             time=("sample", time),
             restitution_phase=float(rigid.phase),
         )
+    )
+
+
+def meeting_flights(parameters: ContactHistory, release: Release) -> xr.Dataset:
+    """One contact, and the flights before and after it, continued into it; shape (time,).
+
+    Raises
+    ------
+    NoOrbitError
+        If the orbit does not exist.
+    """
+    exact = parameters.exact(parameters.frequency_ratio, release)
+    orbit = exact.require_orbit(parameters.n, parameters.amplitude)
+    end = float(orbit.contact_duration)
+    time = np.linspace(-0.6 * end, 1.6 * end, parameters.samples)
+    inside, within = (time >= 0) & (time <= end), np.clip(time, 0, end)
+    start, velocity = orbit.contact_path(np.zeros(()))
+    before, (after, _) = start + (velocity - time / 2) * time, orbit.flight_path(time)
+    touching, _ = orbit.contact_path(within)
+    force = exact.contact.force(*-np.array(orbit.contact_motion(within)))
+    # The meeting point of the two parabolas, exact; and where the signature has it.
+    jump = float(orbit.bounce_velocity + end - orbit.impact_velocity)
+    apart = float(orbit.bounce_height - (start + (velocity - end / 2) * end))
+    meeting = end - apart / jump
+    return described(
+        {
+            "ball": ("time", np.where(time < 0, before, np.where(inside, touching, after))),
+            "table": ("time", orbit.amplitude * np.sin(orbit.phase + time)),
+            "flight_before": ("time", before),
+            "flight_after": ("time", after),
+            "contact_force": ("time", inside * force),
+            "contact_duration": ((), end),
+            "meeting_time": ((), meeting),
+            "meeting_height": ((), float(start + (velocity - meeting / 2) * meeting)),
+            "delay": ((), float(LinearSignature(exact.contact)().delay)),
+        },
+        coords={"time": time},
     )

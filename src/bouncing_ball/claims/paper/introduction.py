@@ -1,13 +1,12 @@
 """Claims of the abstract and the introduction."""
 
 from bouncing_ball.claims import evidence
-from bouncing_ball.claims.claim import statement
-from bouncing_ball.claims.paper import explanations as why
+from bouncing_ball.claims.claim import claim
 from bouncing_ball.claims.parameters import TOLERANCE
-from bouncing_ball.claims.verdict import above, at_least, at_most, below
+from bouncing_ball.claims.verdict import at_least, at_most, below
 
 
-@statement("Abstract")
+@claim("Abstract")
 def stiff_limit(data):
     """for a high contact stiffness both models behave alike
 
@@ -16,7 +15,7 @@ def stiff_limit(data):
     return at_most(data["thresholds"].relative_error.isel(frequency_ratio=-1), TOLERANCE)
 
 
-@statement("Abstract")
+@claim("Abstract")
 def soft_divergence(data):
     """the models diverge when the stiffness decreases
 
@@ -27,7 +26,7 @@ def soft_divergence(data):
     return at_least(data["thresholds"].relative_error.isel(frequency_ratio=0), TOLERANCE)
 
 
-@statement("Introduction")
+@claim("Introduction")
 def kinds_of_motion(data):
     """periodic, subharmonic and chaotic motions can be observed
 
@@ -38,43 +37,10 @@ def kinds_of_motion(data):
     return at_least(evidence.motion_kinds(data), 3)
 
 
-@statement("Abstract and Introduction")
+@claim("Abstract and Introduction")
 def contact_shortens(data):
     """the contact gets shorter as its stiffness increases
 
     Condition: the contact duration falls from every contact of Fig. 13 to the next stiffer one
     """
     return below(data["fig13"].contact_duration.diff("frequency_ratio"), 0)
-
-
-@statement("Introduction", explanation=why.a_pull_is_assumed)
-def no_assumptions(data):
-    """the spring-damper model needs no assumptions
-
-    Condition: no contact of Figs. 5, 6 and 10 pulls at the ball when it lets it go
-
-    Remark: in weights of the ball
-    """
-    return at_most(evidence.release_pull(data), 0)
-
-
-@statement("Abstract", explanation=why.linear_at_fixed_duration)
-def needs_continuation(data):
-    """the spring-damper model needs numerical continuation
-
-    Condition: a formula without continuation misses some published orbit by more than rounding
-
-    Remark: that the equations are transcendental is another claim
-    """
-    return above(*evidence.route_disagreement(data))
-
-
-@statement("Introduction")
-def existence_changes(data):
-    """for a soft contact the existence conditions of the orbits change
-
-    Condition: every saddle-node of the softest row of Table 1 is at least 1 % from that of Eq. 7
-    """
-    table = data["table1"].sel(bound="saddle-node")
-    softest = table.computed.sel(frequency_ratio=table.frequency_ratio.min())
-    return at_least(abs(softest / table.restitution_range.sel(impact_map="exact") - 1), 0.01)

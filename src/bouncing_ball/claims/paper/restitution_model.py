@@ -1,41 +1,28 @@
 """Claims about the restitution model, Eqs. 1-9 and Fig. 3."""
 
-from functools import partial
-
 from bouncing_ball.claims import evidence
-from bouncing_ball.claims.claim import formula, statement
+from bouncing_ball.claims.claim import claim, formula
 from bouncing_ball.claims.paper import explanations as why
 from bouncing_ball.claims.verdict import at_most
 
-_SECTION = "Restitution model"
-_formula = partial(formula, section=_SECTION)
-
 MOTION = [
-    _formula("restitution law", item="Eq. 2", text="velocity of the ball after an impact"),
-    _formula("velocity before impact", item="Eq. 3", text="velocity of the ball before an impact"),
-    _formula(
-        "flight",
-        item="Eqs. 1 and 4",
-        text="flight of the ball, in physical and in dimensionless variables",
-        row="Eq. 4",
-    ),
-    _formula("impact map", item="Eq. 5", text="phase and velocity from one impact to the next"),
-    _formula("fixed point", item="Eq. 6", text="phase and velocity of the n-T orbit"),
+    formula("restitution law", "Eq. 2", "velocity of the ball after an impact"),
+    formula("flight", "Eqs. 1, 3 and 4", "flight of the ball", "Eq. 4"),
+    formula("impact map", "Eq. 5", "phase and velocity from one impact to the next"),
+    formula("fixed point", "Eq. 6", "phase and velocity of the n-T orbit"),
 ]
-saddle_node = _formula(
-    "saddle-node", item="Eq. 7", text="the n-T orbits appear at this amplitude, in a saddle-node"
-)
-period_doubling = _formula(
+saddle_node = formula("saddle-node", "Eq. 7", "the n-T orbits appear here, in a saddle-node")
+period_doubling = formula(
     "period doubling",
-    item="Eq. 8",
-    text="the n-T orbits lose stability in a period doubling at this amplitude",
+    "Eq. 8",
+    "the n-T orbits lose stability in a period doubling at this amplitude",
     remark="the paper refers to Holmes for the stability, and its introduction speaks of flights "
     "that are large compared with the excitation",
-    explanation=why.holmes_map,
+    explanation=why.approximate_map,
 )
 
 
-@statement(_SECTION, "Fig. 3")
+@claim("Fig. 3")
 def stable_between(data):
     """the orbits are stable from the saddle-node to the period doubling
 
@@ -44,4 +31,4 @@ def stable_between(data):
     return at_most(evidence.stability_exceptions(data), 0)
 
 
-sticking = _formula("sticking", item="Eq. 9", text="permanent contact for amplitudes up to 1")
+sticking = formula("sticking", "Eq. 9", "permanent contact for amplitudes up to 1")

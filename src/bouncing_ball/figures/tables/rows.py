@@ -3,18 +3,13 @@
 A table is its parts, one for each row, and its columns: see :mod:`.layout`.
 """
 
-import csv
-import io
-
 import numpy as np
 import xarray as xr
 
 from bouncing_ball.datasets.rounding import compared_text
 from bouncing_ball.datasets.selection import each
-from bouncing_ball.figures.tables.formats import Table, number, to_markdown, words
+from bouncing_ball.figures.tables.formats import Table, number
 from bouncing_ball.figures.tables.layout import Columns, at, quantity, table, text, value
-
-_SHOWN = ("orbits", "stated", "exceed", "exceed elsewhere", "largest M", "5 %", "50 %", "95 %")
 
 
 def table1(data: xr.Dataset) -> Table:
@@ -149,7 +144,7 @@ def deviation_text(claim: xr.Dataset) -> str:
     return "" if np.isnan(units) else f"{units:+.2f} ({100 * share:+.3g} %)"
 
 
-def ext_error_law(data: xr.Dataset) -> Table:
+def ext_orders(data: xr.Dataset) -> Table:
     """The error law by quantity; the permanent contact last, without a correction.
 
     C is the corrected model's error times ϖ²; the last column is the ϖ at which
@@ -174,28 +169,6 @@ def ext_error_law(data: xr.Dataset) -> Table:
     }
     header, body = table(each(data, "quantity"), columns)
     return header, body + table([data], permanent)[1]
-
-
-def law_table(summary: str) -> str:
-    r"""The error law on random orbits, over the whole range of ϖ, as Markdown.
-
-    Parameters
-    ----------
-    summary : str
-        The text of ``config/error_law.csv``, which is accepted by hand.
-
-    Examples
-    --------
-    >>> header = "release,quantity,from,to," + ",".join(_SHOWN)
-    >>> law_table(header + "\nforce,phase,1,10000,9,8,0,0,3.1,1,1,1\n").splitlines()[-1]
-    '| force | phase | 9 | 8 | 0 | 0 | 3.1 | 1 | 1 | 1 |'
-    """
-    body = [
-        [row["release"], words(row["quantity"]), *(row[name] for name in _SHOWN)]
-        for row in csv.DictReader(io.StringIO(summary))
-        if (row["from"], row["to"]) == ("1", "10000")
-    ]
-    return to_markdown(["release", "quantity", *_SHOWN], body)
 
 
 def ext_hertz(data: xr.Dataset) -> Table:

@@ -2,8 +2,8 @@
 
 A sample of single faults is put into copies of the tree, one at a time. The
 doctests of the module and the tests of its folder run first, then those of ``make quick``. A fault
-is noticed if one of them fails, or hangs. What survives is listed: it changes nothing, for which
-``equivalent.md`` has the reason, or a test is missing.
+is noticed if one of them fails, or hangs. What survives is listed: it changes nothing, or a
+test is missing.
 
 usage: python tests/mutants.py [--count 200] [--seed 2011] [--only PART ...]
 """

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.accuracy.errors import SIMPLE, orbit_errors
+from bouncing_ball.accuracy.errors import orbit_errors
 from bouncing_ball.accuracy.quantities import OF_ORBITS
 from bouncing_ball.accuracy.thresholds import ThresholdStatus, search
-from bouncing_ball.atlas.crossings import LastCrossings
+from bouncing_ball.atlas.crossings import last_crossings
 from bouncing_ball.atlas.walk import walk
 
 RATIOS = np.geomspace(1.0, 1e3, 61)
@@ -12,11 +12,8 @@ STEP = RATIOS[1] / RATIOS[0]
 
 
 def found(function, *tolerances, ratios=RATIOS):
-    crossings = LastCrossings(np.array(tolerances), (1,))
-    # At some ϖ together, the last time at fewer.
-    for part in np.split(ratios[::-1], range(4, len(ratios), 4)):
-        crossings.meet(part, np.array([[function(ratio)] for ratio in part]))
-    return crossings.thresholds()[:, 0]
+    errors = np.array([[function(ratio)] for ratio in ratios[::-1]])
+    return last_crossings(ratios[::-1], errors, np.array(tolerances))[:, 0]
 
 
 def test_a_power_is_closed_exactly():
@@ -61,23 +58,16 @@ def test_where_a_model_has_no_orbit_the_error_is_not_tolerated():
     assert found(lambda w: 1e-6, 0.01)[0] == RATIOS[0]
 
 
-@pytest.mark.parametrize("together", [2, 3, 8, 61])
-def test_how_many_ratios_are_met_together_does_not_change_a_threshold(together):
+def test_errors_side_by_side_have_the_thresholds_that_each_has_alone():
     # Errors that come and go, some of them with excursions, zeros and places without orbit.
     random = np.random.default_rng(6)
     waves = random.normal(size=(61, 200)).cumsum(axis=0) * random.uniform(0.001, 0.1, 200)
     errors = np.where(random.uniform(size=waves.shape) < 0.01, np.nan, waves)
     tolerances = np.array([0.3, 0.1, 0.01])
-
-    def met(size):
-        crossings = LastCrossings(tolerances, (200,))
-        for k in range(0, 61, size):
-            crossings.meet(RATIOS[::-1][k : k + size], errors[k : k + size])
-        return crossings.thresholds()
-
-    one_by_one = met(1)
-    assert np.array_equal(met(together), one_by_one)
-    assert len(np.unique(one_by_one)) > 300
+    together = last_crossings(RATIOS[::-1], errors, tolerances)
+    alone = [last_crossings(RATIOS[::-1], errors[:, [k]], tolerances) for k in range(200)]
+    assert np.array_equal(together, np.hstack(alone))
+    assert len(np.unique(together)) > 300
 
 
 @pytest.mark.slow
@@ -86,11 +76,11 @@ def test_thresholds_are_those_of_a_search(small):
     fine = np.geomspace(plan.ratios[0], plan.ratios[-1], 121)
     for _ in range(2):
         one = plan.nodes(random.choice(plan.rows), random.integers(plan.nodes_per_row, size=1))
-        crossings = LastCrossings(np.array(plan.tolerances), (len(SIMPLE), len(OF_ORBITS), 1))
-        for step in walk(one, plan.ratios):
-            crossings.meet(step.frequency_ratio, np.moveaxis(orbit_errors(step.orbit), 2, 0))
+        error = [np.moveaxis(orbit_errors(step.orbit), 2, 0) for step in walk(one, plan.ratios)]
+        tolerances = np.array(plan.tolerances)
+        thresholds = last_crossings(plan.ratios[::-1], np.concatenate(error), tolerances)
         arguments = one.damping_ratio, one.release, one.n, one.amplitude, fine
-        for ours, tolerance in zip(crossings.thresholds(), plan.tolerances, strict=True):
+        for ours, tolerance in zip(thresholds, plan.tolerances, strict=True):
             found = search(*arguments, tolerance, OF_ORBITS)
             ends = {
                 ThresholdStatus.ALWAYS_WITHIN: plan.ratios[0],

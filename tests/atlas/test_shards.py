@@ -6,7 +6,7 @@ import pytest
 from bouncing_ball.accuracy.errors import errors, modulus, orbit_errors
 from bouncing_ball.accuracy.quantities import OF_LIMITS
 from bouncing_ball.atlas import answers, shards
-from bouncing_ball.atlas.crossings import LastCrossings
+from bouncing_ball.atlas.crossings import last_crossings
 from bouncing_ball.atlas.walk import walk
 from bouncing_ball.errors import ModelError
 
@@ -89,12 +89,10 @@ def test_the_law_is_kept_where_it_is_stated(atlas):
 
 def test_the_limits_of_a_row_are_the_largest_of_its_r(small, limits):
     plan, found = small(), []
-    row = plan.rows[-1]
+    row, down = plan.rows[-1], plan.ratios[::-1]
     for r in plan.restitutions(row):
         one = plan.placed(row, np.array([r]), np.zeros(1))
-        crossings = LastCrossings(np.array(plan.tolerances), (2, 3, 1))
-        down = plan.ratios[::-1]
         error = errors(one.contact(down[:, np.newaxis]), one.n, one.amplitude, OF_LIMITS)
-        crossings.meet(down, np.moveaxis(error, 2, 0))
-        found.append(np.moveaxis(crossings.thresholds()[..., 0], 0, -1))
+        threshold = last_crossings(down, np.moveaxis(error, 2, 0), np.array(plan.tolerances))
+        found.append(np.moveaxis(threshold[..., 0], 0, -1))
     np.testing.assert_allclose(limits.limit_needed[-1], np.max(found, axis=0), rtol=1e-9)

@@ -79,8 +79,7 @@ SPAN = (*FIG05, "frequency_ratio")
         (("tables", "thresholds", "quantities"), ["height"], "'height' must be 'max_height', "),
         # What fits together.
         ((*SPAN, "max"), 1.0, "fig05.frequency_ratio: min = 1 must be less than max = 1"),
-        (("continuation", "initial_step"), 0.3, "continuation: initial_step = 0.3 must lie"),
-        (("continuation", "smallest_step"), 1e-4, ""),
+        (("continuation", "largest_step"), 0.01, "continuation.largest_step = 0.01 must be at lea"),
         (("atlas", "restitution", "max"), 0.05, "restitution: min = 0.05 must be less than max"),
         (("atlas", "examined", 0), 2.0, "atlas: examined = 2 must be from 3 to 100000"),
         (("atlas", "summary", "tolerance"), 0.3, "summary.tolerance = 0.3 must be one of"),
@@ -93,7 +92,7 @@ SPAN = (*FIG05, "frequency_ratio")
         ((*FIG08, "amplitude_max"), 0.25, "= 0.25 must be at least 0.254724, the saddle-node"),
         # Of several families the highest decides how far branches must reach, ...
         (("figures", "fig03", "amplitude_max"), 1.27, "= 1.27 must be at least 1.27362, the sadd"),
-        (("tables", "table1", "amplitude_max"), 1.39, "at least 1.39016, the period doubling"),
+        (("tables", "table1", "amplitude_max"), 0.76, "at least 0.764171, the saddle-node"),
         # ... and the lowest what can be shown at one Λ.
         (("extensions", "ext_basins", "amplitude", 0), 0.3, ""),
         (("extensions", "ext_basins", "amplitude", 0), 0.25, "at least 0.254724, the saddle-node"),

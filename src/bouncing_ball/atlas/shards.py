@@ -7,10 +7,9 @@ import xarray as xr
 
 from bouncing_ball.accuracy.errors import SIMPLE, errors
 from bouncing_ball.accuracy.quantities import OF_LIMITS, OF_ORBITS
-from bouncing_ball.atlas.answers import KEPT, row_answers, threshold_bins
-from bouncing_ball.atlas.crossings import LastCrossings
+from bouncing_ball.atlas.answers import row_answers, threshold_bins
+from bouncing_ball.atlas.crossings import last_crossings
 from bouncing_ball.atlas.plan import Plan
-from bouncing_ball.atlas.walk import TOGETHER
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.errors import ModelError
 
@@ -21,17 +20,15 @@ _PLACE = ("release", "n", "restitution")
 def shard(plan: Plan, index: int) -> xr.Dataset:
     """The answers of a shard's rows."""
     rows = plan.shard_rows()[index]
-    parts = [row_answers(plan, row) for row in rows]
-    data = {
-        name: (("row", "position", *dims), np.stack([part[name] for part in parts]))
-        for name, (dims, _) in KEPT.items()
-    }
+    found = xr.concat([row_answers(plan, row) for row in rows], "row")
     coords = {
         "quantity": [str(q) for q in OF_ORBITS],
         "frequency_ratio": np.sort(plan.examined),
         "threshold_bin": threshold_bins(plan.ratios),
     }
-    return _dataset(plan, rows, data, coords)
+    return described(
+        {str(name): part for name, part in found.items()}, _common(plan, rows) | coords
+    )
 
 
 def limit_shard(plan: Plan) -> xr.Dataset:
@@ -39,29 +36,21 @@ def limit_shard(plan: Plan) -> xr.Dataset:
 
     The largest threshold of the r of a row, interpolated as those of the orbits are.
     """
-    shape = len(SIMPLE), len(OF_LIMITS)
-    needed = np.empty((len(plan.rows), *shape, len(plan.tolerances)))
-    family, down = plan.rows // plan.restitution.tiles, plan.ratios[::-1]
-    for each in np.unique(family):
-        here = np.flatnonzero(family == each)
-        r = np.concatenate([plan.restitutions(row) for row in plan.rows[here]])
+    down, shape = plan.ratios[::-1], (len(SIMPLE), len(OF_LIMITS), len(plan.tolerances))
+    needed = np.empty((len(plan.rows), *shape))
+    for k, row in enumerate(plan.rows):
         # The limits do not depend on the position.
-        nodes = plan.placed(plan.rows[here[0]], r, np.zeros_like(r))
-        crossings = LastCrossings(np.array(plan.tolerances), (*shape, r.size))
-        for k in range(0, len(down), TOGETHER):
-            ratio = down[k : k + TOGETHER]
-            contact = nodes.contact(ratio[:, np.newaxis])
-            error = errors(contact, nodes.n, nodes.amplitude, OF_LIMITS)
-            crossings.meet(ratio, np.moveaxis(error, 2, 0))
-        largest = crossings.thresholds().reshape(-1, *shape, len(here), plan.restitution.samples)
-        needed[here] = np.moveaxis(largest.max(axis=-1), (0, -1), (-1, 0))
+        r = plan.restitutions(row)
+        nodes = plan.placed(row, r, np.zeros_like(r))
+        error = errors(nodes.contact(down[:, np.newaxis]), nodes.n, nodes.amplitude, OF_LIMITS)
+        threshold = last_crossings(down, np.moveaxis(error, 2, 0), np.array(plan.tolerances))
+        needed[k] = np.moveaxis(threshold.max(axis=-1), 0, -1)
     data = {"limit_needed": (("row", "model", "limit_quantity", "tolerance"), needed)}
-    return _dataset(plan, plan.rows, data, {"limit_quantity": [str(q) for q in OF_LIMITS]})
+    return described(data, _common(plan, plan.rows) | {"limit_quantity": list(map(str, OF_LIMITS))})
 
 
-def _dataset(plan: Plan, rows: np.ndarray, data: dict, coords: dict) -> xr.Dataset:
-    common = {"row": rows, "model": list(SIMPLE), "tolerance": np.array(plan.tolerances)}
-    return described(data, common | coords)
+def _common(plan: Plan, rows: np.ndarray) -> dict[str, object]:
+    return {"row": rows, "model": list(SIMPLE), "tolerance": np.array(plan.tolerances)}
 
 
 def merge(plan: Plan, shards: Iterable[xr.Dataset], limits: xr.Dataset) -> xr.Dataset:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
-from bouncing_ball.contacts.signature import Instant, LinearSignature
+from bouncing_ball.contacts.signature import Instant, Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits import spring_damper_limits as limits
 from bouncing_ball.orbits.model import Absence, ImpactModel, Route
@@ -54,7 +54,7 @@ class SpringDamperModel(ImpactModel):
 
     def signature(self, speed: ArrayLike) -> Instant:
         """The contact's own, the same at every speed."""
-        return LinearSignature(self.contact)(speed)
+        return Signature(self.contact)(speed)
 
     def orbit(
         self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE

@@ -13,7 +13,7 @@ from pydantic import AfterValidator, Field, ValidationInfo
 
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.orbits.restitution_orbit import period_doubling, saddle_node
+from bouncing_ball.orbits.restitution_orbit import saddle_node
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.parameters import (
     Amplitude,
@@ -41,14 +41,10 @@ def require_orbit(amplitude: float, n: int, restitution: float) -> float:
     1.0
     """
     lowest = float(saddle_node(n, restitution))
-    return _require(amplitude, lowest, "saddle-node", n, restitution)
-
-
-def _require(amplitude: float, lowest: float, what: str, n: int, restitution: float) -> float:
     if amplitude < lowest:
         raise ValueError(
-            f"must be at least {lowest:.6g}, the {what} of the {n}-T restitution orbit at "
-            f"r = {restitution:g} (Eqs. 7-8)"
+            f"must be at least {lowest:.6g}, the saddle-node of the {n}-T restitution orbit at "
+            f"r = {restitution:g} (Eq. 7)"
         )
     return amplitude
 
@@ -66,14 +62,6 @@ def _has_orbits(families: Callable[[np.ndarray], int]) -> AfterValidator:
         return amplitude
 
     return AfterValidator(check)
-
-
-def _has_all_ranges(amplitude: float, info: ValidationInfo) -> float:
-    if _known(info, "n", "restitution"):
-        n, r = max(info.data["n"]), info.data["restitution"]
-        lowest = 1.1 * float(period_doubling(n, r))
-        _require(amplitude, lowest, "period doubling, with a tenth to spare,", n, r)
-    return amplitude
 
 
 def _has_a_motion(ratio: float, info: ValidationInfo) -> float:
@@ -121,8 +109,6 @@ class OrbitErrors(OrbitsAlongRatio):
 
 BranchEnd = Annotated[AmplitudeMax, _has_orbits(max)]
 """Λ up to which branches are followed, above where the highest family begins."""
-RangeEnd = Annotated[AmplitudeMax, AfterValidator(_has_all_ranges)]
-"""Λ up to which branches are followed, above where the highest family loses its stability."""
 MotionRatio = Annotated[FrequencyRatio, AfterValidator(_has_a_motion)]
 """ϖ of a contact on which the orbit is a motion of the ball, which can be drawn over time."""
 Points = Annotated[

@@ -1,4 +1,4 @@
-"""The vocabulary of the datasets, ``variables.csv``: every variable, with symbol, equation and budget.
+"""The vocabulary of the datasets, ``variables.csv``: symbol, equation and budget of each variable.
 
 A name means the same in every dataset. All quantities are dimensionless:
 times are Ωt, lengths Ω²y/g, velocities Ωẏ/g, and phases and angles are in

@@ -180,11 +180,10 @@ def law_at_orbit(
     taken = np.asarray(duration, dtype=float)
     speed = np.full_like(taken, rigid_speed(n, restitution))
     before = missed_before = np.full_like(taken, np.nan)
-    orbit = None
     for _ in range(_ROUNDS):
         law = law_of_impact(kind, restitution, taken, speed)
         model = LawModel(law)
-        orbit = orbit_at(model, n, amplitude, side, orbit)
+        orbit = orbit_at(model, n, amplitude, side)
         lost = np.flatnonzero(~np.atleast_1d(orbit.exists))
         if lost.size:
             LawModel(law.take(lost[0])).require_orbit(n, amplitude, side)

@@ -5,7 +5,7 @@ from bouncing_ball.pipeline.atlas import shard_minutes, shard_names
 
 # What the shards are made from.
 ATLAS = {key: part for key, part in config["atlas"].items() if key != "summary"}
-CHARTS = ["max_height", "bounce_velocity", "phase", "apparent_restitution", "limits", "page"]
+CHARTS = ["max_height", "bounce_velocity", "phase", "apparent_restitution", "page"]
 
 
 rule atlas_shard:

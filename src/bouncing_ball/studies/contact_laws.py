@@ -21,7 +21,7 @@ from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.laws import LAWS
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.contacts.signature import LawSignature
+from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.errors import ModelError, NoOrbitError
@@ -116,7 +116,7 @@ def corrected_values(exact: Any, *asked: Any) -> np.ndarray:
     """What the corrected restitution models of contacts say, shape (quantity, ϖ)."""
     if isinstance(exact, SpringDamperModel):
         return values(CorrectedModel.of_contact(exact.contact), *asked)
-    each = (CorrectedModel(LawSignature(exact.law.take(k))) for k in range(exact.law.size))
+    each = (CorrectedModel(Signature(exact.law.take(k))) for k in range(exact.law.size))
     return np.stack([values(model, *asked) for model in each], axis=-1)
 
 

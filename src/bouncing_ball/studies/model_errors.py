@@ -17,7 +17,7 @@ from bouncing_ball.accuracy.errors import SIMPLE, errors
 from bouncing_ball.accuracy.quantities import OF_IMPACTS, Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus, search
 from bouncing_ball.contacts.damping import damping_ratio
-from bouncing_ball.contacts.signature import LinearSignature
+from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.orbits.restitution_model import RestitutionModel
@@ -91,7 +91,7 @@ def _of_random_orbits(sample: Sample, span: Span, release: Release) -> dict[str,
     n, zeta, lam, rng = random_orbits(sample.law_samples, sample.seed + 1, release)
     omega = np.exp(rng.uniform(*np.log([span.min, span.max]), sample.law_samples))
     contact = SpringDamper(omega, zeta, release)
-    left = error_law.remainder(n, LinearSignature(contact)(), lam, errors(contact, n, lam)[0])
+    left = error_law.remainder(n, Signature(contact)(), lam, errors(contact, n, lam)[0])
     return {
         "order": (("model", "quantity", "sample"), np.log2(once / twice)),
         "law_remainder": (("quantity", "law_sample"), left.factor),

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.contacts.signature import LinearSignature
+from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.datasets.variables import describe, described
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.parameters import FrequencyRatio, Many, Samples
@@ -122,7 +122,7 @@ def meeting_flights(parameters: ContactHistory, release: Release) -> xr.Dataset:
             "contact_duration": ((), end),
             "meeting_time": ((), meeting),
             "meeting_height": ((), float(start + (velocity - meeting / 2) * meeting)),
-            "delay": ((), float(LinearSignature(exact.contact)().delay)),
+            "delay": ((), float(Signature(exact.contact)().delay)),
         },
         coords={"time": time},
     )

@@ -4,7 +4,7 @@
 from bouncing_ball.pipeline.atlas import shard_minutes, shard_names
 
 ATLAS = config["atlas"]
-CHARTS = ["max_height", "bounce_velocity", "phase", "apparent_restitution", "limits", "page"]
+CHARTS = ["max_height", "bounce_velocity", "phase", "apparent_restitution", "page"]
 
 
 rule atlas_shard:

@@ -5,7 +5,7 @@ CONTINUATION = {
     "fig08": "studies.orbit_branches.orbit_branches",
     "fig09": "studies.orbit_branches.orbit_branches",
     "fig15": "studies.orbit_branches.both_domains",
-    "table1": "studies.stability_ranges.stability_ranges",
+    "table1": "studies.orbit_branches.stability_ranges",
 }
 
 

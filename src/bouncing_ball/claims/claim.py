@@ -89,8 +89,6 @@ class Claim:
         Why it is not reproduced: conditions from the datasets, by what is checked.
     restates : Claim, optional
         The claim that it says again; the tally counts it apart.
-    table : str
-        The printed table whose entry it is; empty if none.
     """
 
     id: str
@@ -103,7 +101,6 @@ class Claim:
     remark: str = ""
     explanation: Explanation | None = None
     restates: "Claim | None" = None
-    table: str = ""
 
     def verdict(self, data: PaperData) -> tuple[Finding, str]:
         """The finding, and why there is none.

@@ -18,7 +18,7 @@ from bouncing_ball.orbits.stability import Bifurcation
 Data = Mapping[str, xr.Dataset]
 BOUNDS = tuple(map(str, Bifurcation))
 # A logarithmic grid meets its round numbers, and a sample a bifurcation, but for rounding.
-_GRID = 1e-9
+GRID = 1e-9
 
 
 def curves(data: Data, *names: str) -> xr.Dataset:
@@ -43,7 +43,7 @@ def apparent(data: Data) -> xr.DataArray:
 
 def worst_when_stiff(values: xr.DataArray) -> xr.DataArray:
     """Largest value among contacts that the paper takes for stiff, NaN if there is none."""
-    stiff = values.frequency_ratio >= STIFF * (1 - _GRID)
+    stiff = values.frequency_ratio >= STIFF * (1 - GRID)
     return values.where(stiff).max("frequency_ratio")
 
 
@@ -89,12 +89,6 @@ def apparent_restitution_law_error(data: Data) -> xr.DataArray:
     return np.abs(measured - by_law).max()
 
 
-def spread_of_fig06(data: Data) -> xr.DataArray:
-    """By how much the curves are apart where they are farthest apart."""
-    curve = data["fig06"].apparent_restitution
-    return (curve.max("case") - curve.min("case")).max()
-
-
 @np.errstate(divide="ignore", invalid="ignore")  # the phase is 0 at the saddle-node
 def stiff_orbit_error(data: Data) -> xr.DataArray:
     """Figs. 5, 6 and 10: relative errors of the restitution model among stiff contacts.
@@ -116,29 +110,12 @@ def stiff_orbit_error(data: Data) -> xr.DataArray:
     return worst_when_stiff(abs(every)).transpose("orbit", "measure")
 
 
-def bounce_velocity_error(data: Data) -> xr.DataArray:
-    """Fig. 10: the distance of the bouncing-off velocity from nπ, as a share of it."""
-    sweep = data["fig10"]
-    return np.abs(sweep.bounce_velocity / sweep.restitution_bounce_velocity - 1)
-
-
 def spread(data: Data, left: float) -> xr.DataArray:
     """Fig. 10: how far its curves are apart from a ϖ on, at most, as a share of nπ."""
     sweep = data["fig10"]
-    velocity = sweep.bounce_velocity.where(sweep.frequency_ratio >= left * (1 - _GRID))
+    velocity = sweep.bounce_velocity.where(sweep.frequency_ratio >= left * (1 - GRID))
     apart = velocity.max("case") - velocity.min("case")
     return (apart / sweep.restitution_bounce_velocity).max()
-
-
-def stability_exceptions(data: Data) -> int:
-    """Orbits of Fig. 3 that are stable elsewhere than between both bifurcations."""
-    orbits = data["fig03"]
-    doubling = orbits.period_doubling_amplitude.sel(impact_map="exact")
-    node, lam = orbits.saddle_node_amplitude, orbits.amplitude
-    between = (orbits.phase > 0) & (lam > node) & (lam < doubling)
-    # At a bifurcation itself rounding decides.
-    beside = (np.abs(lam / node - 1) > _GRID) & (np.abs(lam / doubling - 1) > _GRID)
-    return int(((orbits.stable != between) & beside).sum())
 
 
 def inadmissible_orbits(data: Data) -> int:
@@ -214,15 +191,3 @@ def route_disagreement(data: Data) -> tuple[float, xr.DataArray]:
     """The largest disagreement of continuation and formula, and its budget."""
     both = data["witness"].sel(comparison="continuation and formula")
     return largest(both.disagreement), both.budget
-
-
-def motion_kinds(data: Data) -> int:
-    """Kinds of motion among those looked at, each counted once.
-
-    Chaotic is what has no period and an exponent that is positive beyond its sampling
-    error: by five standard errors, once in three million by chance.
-    """
-    motions = data["motions"]
-    length = motions.motion_period
-    chaotic = (length == 0) & (motions.lyapunov_exponent > 5 * motions.lyapunov_error)
-    return sum(bool(kind.any()) for kind in (length == 1, length > 1, chaotic))

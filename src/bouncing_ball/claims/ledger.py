@@ -45,7 +45,7 @@ def _row(claim: Claim, data: Mapping[str, xr.Dataset], holding: set[str]) -> dic
         "decided_by": ", ".join(asked.used),
         **asdict(finding),
         "reason": reason,
-        "printed_table": claim.table,
+        "printed_table": "Table 1" if claim.item == "Table 1" and claim.printed else "",
         "explained_by": why,
         "explained": finding.verdict not in (Verdict.CLOSE, Verdict.CONTRADICTED) or why in holding,
     }
@@ -90,9 +90,13 @@ def ledger(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
         their names. The attributes are the paper's limits and what counts as close.
     """
     printed = (
-        *(evidence.stiff_orbit_error, evidence.apparent_restitution_law_error),
-        *(evidence.short_of_lift, evidence.inadmissible_orbits, evidence.range_error),
-        *(evidence.printed_slight_move, evidence.period_doubling_lowest),
+        evidence.stiff_orbit_error,
+        evidence.apparent_restitution_law_error,
+        evidence.short_of_lift,
+        evidence.inadmissible_orbits,
+        evidence.range_error,
+        evidence.printed_slight_move,
+        evidence.period_doubling_lowest,
         evidence.permanent_contact_error,
     )
     numbers = {one.__name__: xr.DataArray(one(data)).reset_coords(drop=True) for one in printed}

@@ -12,7 +12,7 @@ from bouncing_ball import calls
 from bouncing_ball.accuracy import error_law as error_laws
 from bouncing_ball.cli.readable import lines
 from bouncing_ball.contacts.contact_law import ContactLaw
-from bouncing_ball.contacts.signature import LawSignature, LinearSignature, free_impact
+from bouncing_ball.contacts.signature import Signature, free_impact
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.motion.sequence import Status
@@ -43,7 +43,7 @@ def _described(of: Any, speed: float = math.nan) -> Answer:
                 "frequency_ratio": math.pi / float(impact.duration),
                 "at_impact_speed": speed,
             }
-        case LinearSignature(inner) | LawSignature(inner):
+        case Signature(inner):
             return _described(inner, speed)
     return {}
 

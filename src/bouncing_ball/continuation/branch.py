@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane, tangent
-from bouncing_ball.continuation.events import Event, LocationError, SpecialPoint, locate
+from bouncing_ball.continuation.events import Event, SpecialPoint, locate
 from bouncing_ball.continuation.problem import Problem
 from bouncing_ball.continuation.step_control import StepControl
 
@@ -97,10 +97,12 @@ def _located(problem, events, values, left, right, settings):
     located, failure = [], None
     for event, (before, after) in zip(events, values, strict=True):
         if (before >= 0) != (after >= 0):
-            try:
-                located.append((event, locate(problem, event, left, right, settings)))
-            except LocationError as error:
-                failure = End(event.reason or str(error), event.terminal)
+            special = locate(problem, event, left, right, settings)
+            if special:
+                located.append((event, special))
+            else:
+                why = f"{event.name} announced near {left} could not be located"
+                failure = End(event.reason or why, event.terminal)
     located.sort(key=lambda pair: float((pair[1].point - left) @ (right - left)))
     ends = [k for k, (event, _) in enumerate(located) if event.terminal]
     if failure and not ends:

@@ -53,10 +53,6 @@ class SpecialPoint(NamedTuple):
     residual: float
 
 
-class LocationError(RuntimeError):
-    """An announced event could not be located."""
-
-
 def fold(problem: Problem, name: str = "fold") -> Event:
     """Event at which ∂F/∂x is singular: the branch turns in the parameter."""
 
@@ -85,15 +81,11 @@ def vanishing(function: Callable[[np.ndarray], np.ndarray]) -> Condition:
 
 def locate(
     problem: Problem, event: Event, left: np.ndarray, right: np.ndarray, settings: NewtonSettings
-) -> SpecialPoint:
+) -> SpecialPoint | None:
     """The zero of an event between two points of the branch, shape (N + 1,) each.
 
-    Newton's method on the extended system, from the secant estimate.
-
-    Raises
-    ------
-    LocationError
-        If it leaves the bracket: a step of the continuation was too long, or there is no zero.
+    Newton's method on the extended system, from the secant estimate. None where it leaves the
+    bracket: a step of the continuation was too long, or there is no zero.
     """
     values, chord = [float(event.function(y)) for y in (left, right)], right - left
     guess = left + values[0] / (values[0] - values[1]) * chord
@@ -101,5 +93,5 @@ def locate(
     found = newton(problem, guess, vanishing(event.function), patient)
     progress = (found.point - left) @ chord / (chord @ chord)
     if not (found.converged and -_SLACK <= progress <= 1 + _SLACK):
-        raise LocationError(f"{event.name} announced near {left} could not be located")
+        return None
     return SpecialPoint(event.name, found.point, float(found.residual))

@@ -1,1 +1,1 @@
-"""Event-driven simulation of both models, from any initial state."""
+"""Event-driven simulation of every model, from any initial state."""

@@ -2,10 +2,10 @@ r"""Impacts of the corrected restitution model: instant, release, flight, landin
 
 The impact is that of :mod:`bouncing_ball.contacts.corrected_map`; the flight that
 follows is looked at from the end of the contact on, D - t_c after the
-instant. There the ball leaves if it rises so fast, v² + 2(1 + Λ) δ > 0, that it
-certainly comes above the table's level. If not, the impact was too weak for its load, v
-of the order of a D, and the ball stays: until the table recedes with more than gravity,
-at Λ sin τ = 1 on the way up, or for ever if Λ ≤ 1.
+instant. There the ball leaves if it rises and comes above the table's level.
+If not, the impact was too weak for its load, v of the order of a D, and the
+ball stays: until the table recedes with more than gravity, at Λ sin τ = 1 on
+the way up, or for ever if Λ ≤ 1.
 
 The landing on the table's level is found as in both other models, certified to
 be the first. From there to the instant, where the ball is h = v t_c(v) deep, a
@@ -23,7 +23,7 @@ import numpy as np
 from bouncing_ball.contacts import corrected_map
 from bouncing_ball.motion.angles import reduce_angle, table
 from bouncing_ball.motion.dynamics import Departure, Dynamics, Impact
-from bouncing_ball.motion.landing import Flight, land
+from bouncing_ball.motion.landing import Flight, emerge, land
 from bouncing_ball.motion.rest import stay
 
 # Newton steps from the landing to the instant: the start is right to the third
@@ -50,13 +50,15 @@ class Corrected(Dynamics):
         end = hit.phase + rest
         flight = Flight(displacement, velocity, *table(end, amplitude), amplitude)
         none = np.zeros_like(end)
-        departure = Departure(end, hit.instant.duration + none, flight, none)
-        return stay(departure, ~((velocity > 0) & (flight.room() > 0)), amplitude)
+        start, leaves = emerge(flight)
+        aloft = np.where(leaves, start, 0.0)
+        departure = Departure(end, hit.instant.duration + none, flight, none, aloft=aloft)
+        return stay(departure, ~leaves, amplitude)
 
     def fly(self, departure: Departure) -> tuple[Impact, np.ndarray]:
         """The start of the contact whose instant comes after the landing."""
         flight = departure.flight
-        landing = land(flight, flight.sure())
+        landing = land(flight, np.maximum(departure.aloft, flight.sure()))
         at_level = departure.phase + landing.time
         flown = landing.time + self._descent(at_level, -landing.rate)
         instant = reduce_angle(departure.phase + flown), flight.velocity + flight.x - flown

@@ -30,7 +30,8 @@ class Departure(NamedTuple):
     """Ends of contact: table phase, the contact's duration, the flight from then on and the
     :class:`~bouncing_ball.motion.sequence.Status`.
 
-    ``settling`` is the part of the duration in which the ball still bounces.
+    ``settling`` is the part of the duration in which the ball still bounces; ``aloft`` is a time
+    of flight by which the ball has not landed, where more is known than the flight itself says.
     """
 
     phase: np.ndarray
@@ -38,6 +39,7 @@ class Departure(NamedTuple):
     flight: Flight
     status: np.ndarray
     settling: np.ndarray | float = 0.0
+    aloft: np.ndarray | float = 0.0
 
 
 @dataclass(frozen=True, repr=False)

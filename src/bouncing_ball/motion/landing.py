@@ -80,6 +80,32 @@ class Flight(Motion):
         return np.where(rests, np.maximum(steep, 4 * x / top), time)
 
 
+class Rise(Motion):
+    """The motion δ of a ball that was let go below the table's level, while it rises."""
+
+    def __init__(self, flight: Flight):
+        self.flight = flight
+
+    def __call__(self, time: np.ndarray) -> State:
+        displacement, rate, second, third = self.flight.gap(time)
+        lam = self.flight.amplitude
+        return State(displacement, rate, second, third, 1 + lam, lam, lam, rate <= 0)
+
+
+def emerge(flight: Flight) -> tuple[np.ndarray, np.ndarray]:
+    """A time by which balls let go at the table's level or below it have not landed, and
+    whether they come above it."""
+    time, rising = flight.sure(), flight.velocity > 0
+    unsure = np.flatnonzero(rising & (flight.room() <= 0))
+    if unsure.size:
+        part = flight.take(unsure)
+        rise = first_zero(Rise(part), np.zeros(unsure.size))
+        rising[unsure] = ~(rise.ended | rise.undecided) & (rise.rate > 0)
+        # From the table's level on, against the strongest relative gravity.
+        time[unsure] = rise.time + 2 * rise.rate / (1 + part.amplitude)
+    return time, rising
+
+
 def land(flight: Flight, start: np.ndarray) -> Zero:
     """The landing after a time ``start`` by which there is none.
 

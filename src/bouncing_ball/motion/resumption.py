@@ -17,25 +17,13 @@ table: that it does not return between two samples is not certified.
 
 import numpy as np
 
-from bouncing_ball.contacts.contact_law import ContactLaw
+from bouncing_ball.contacts.contact_law import ContactLaw, slopes_of
 from bouncing_ball.motion.first_zero import Motion, State, first_zero
-from bouncing_ball.motion.landing import Flight
+from bouncing_ball.motion.landing import Flight, Rise
 
 # Samples of the grip of a slow ball, and bisections of its return.
 _SAMPLES = 65
 _BISECTIONS = 60
-
-
-class _Rise(Motion):
-    """The motion δ of a ball that was let go below the table's level, while it rises."""
-
-    def __init__(self, flight: Flight):
-        self.flight = flight
-
-    def __call__(self, time: np.ndarray) -> State:
-        displacement, rate, second, third = self.flight.gap(time)
-        lam = self.flight.amplitude
-        return State(displacement, rate, second, third, 1 + lam, lam, lam, rate <= 0)
 
 
 class _Unloaded(Motion):
@@ -71,7 +59,7 @@ def _leaves_fast(flight: Flight, law: ContactLaw) -> np.ndarray:
     """Whether δ certainly reaches 0 before the force can return."""
     lag = law.lag
     if lag is None:
-        slopes = law.grip_slopes(-flight.displacement, -flight.velocity)
+        slopes = slopes_of(law.grip, -flight.displacement, -flight.velocity)
         lag = slopes.by_rate / slopes.by_penetration
     inside = flight.room()
     return (inside > 0) & (np.sqrt(np.maximum(inside, 0.0)) >= lag * (1 + flight.amplitude))
@@ -90,7 +78,7 @@ def _sampled(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.ndarray]:
         displacement, rate, _, _ = flight.gap(time)
         return law.grip(np.maximum(-displacement, 0.0), -rate) > 0
 
-    rise = first_zero(_Rise(flight), np.zeros_like(flight.velocity))
+    rise = first_zero(Rise(flight), np.zeros_like(flight.velocity))
     share = np.linspace(0, 1, _SAMPLES)[1:-1, np.newaxis]
     now = held(share * rise.time)
     found = now.any(axis=0)

@@ -54,6 +54,8 @@ def simulate(
 ) -> ImpactSequence:
     """Follow balls from an impact through a number of impacts, the first included.
 
+    Everything is dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g.
+
     Parameters
     ----------
     law : ContactLaw, Signature, RestitutionLaw or array_like

@@ -189,11 +189,13 @@ def continued(model: Any, n: int, amplitude: float, farther: float = _FARTHER) -
     # Far above the fold Λ is most of the arclength.
     control = replace(_STEPS, largest=max(_STEPS.largest, _STRIDE * amplitude))
     try:
-        return continue_branch(
+        branch = continue_branch(
             system, y, increasing=False, events=events, control=control, max_points=_POINTS
         )
     except ContinuationError:
         return None
+    # One that broke off at an event may have others beyond.
+    return branch if branch.end.finished or len(branch.points) == _POINTS else None
 
 
 def orbits_at(model: Any, n: int, amplitude: float) -> Any:

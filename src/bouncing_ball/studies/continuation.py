@@ -4,10 +4,9 @@ From the restitution orbit at a very stiff contact, along ϖ to the contact want
 to both sides.
 """
 
-from typing import Annotated, Self
+from typing import Annotated
 
 import numpy as np
-from pydantic import model_validator
 
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
@@ -26,7 +25,7 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
-from bouncing_ball.orbits.spring_damper_system import Parameter, SpringDamperSystem
+from bouncing_ball.orbits.spring_damper_system import SpringDamperSystem
 from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.parameters import FrequencyRatio, Parameters, number
 
@@ -45,13 +44,6 @@ class Continuation(Parameters):
             le=1e-6,
         ),
     ]
-    max_newton_iterations: Annotated[
-        int, number("Newton iterations before a step is rejected", ge=5, le=50)
-    ]
-    initial_step: Annotated[float, number("first step in arclength", gt=0)]
-    smallest_step: Annotated[
-        float, number("step in arclength below which a branch is given up", ge=1e-12, le=1e-4)
-    ]
     largest_step: Annotated[
         float,
         number(
@@ -66,24 +58,13 @@ class Continuation(Parameters):
         number("ϖ at which the restitution orbit starts the continuation", ge=100, le=1e6),
     ]
 
-    @model_validator(mode="after")
-    def _in_order(self) -> Self:
-        if not self.smallest_step <= self.initial_step <= self.largest_step:
-            raise ValueError(
-                f"initial_step = {self.initial_step:g} must lie between smallest_step = "
-                f"{self.smallest_step:g} and largest_step = {self.largest_step:g}"
-            )
-        return self
-
     def step_control(self) -> StepControl:
         """Lengths of the steps."""
-        return StepControl(
-            self.initial_step, self.smallest_step, self.largest_step, max_angle=self.max_angle
-        )
+        return StepControl(largest=self.largest_step, max_angle=self.max_angle)
 
     def newton(self) -> NewtonSettings:
         """When Newton's method ends."""
-        return NewtonSettings(self.newton_tolerance, self.max_newton_iterations)
+        return NewtonSettings(self.newton_tolerance)
 
 
 def _on_the_way(
@@ -99,9 +80,7 @@ def _on_the_way(
     """
     omega, newton = float(contact.frequency_ratio), continuation.newton()
     stiff = max(continuation.stiff_frequency_ratio, omega)
-    towards = SpringDamperSystem(
-        n, contact.damping_ratio, Parameter.LOG_FREQUENCY_RATIO, amplitude, contact.release
-    )
+    towards = SpringDamperSystem(n, contact, amplitude)
     y = solve_at(towards, towards.guess(amplitude, stiff), newton)
     if omega == stiff:
         return y[:-1]
@@ -133,9 +112,8 @@ def _start(
     """A point of the branch along Λ of a contact, up to Λ = ``top``.
 
     Half way between the two bifurcations of the restitution orbit, or to the
-    end of the window; other ways are tried if that one is blocked. Where all
-    are, the branch is not connected with the restitution orbit at any of these
-    Λ, and the orbit of the closed form starts it.
+    end of the window. Where that way is blocked, the orbit of the closed form
+    starts the branch.
 
     Raises
     ------
@@ -144,15 +122,12 @@ def _start(
     """
     rigid = RestitutionModel(restitution)
     node, doubling = (float(x.amplitude) for x in (rigid.saddle_node(n), rigid.period_doubling(n)))
-    ways = [node + share * (min(doubling, top) - node) for share in (0.5, 0.25, 0.9, 1.3)]
-    ways = [way for way in ways if way <= top]
-    for amplitude in ways:
-        try:
-            return np.append(_on_the_way(n, contact, amplitude, continuation), amplitude)
-        except ContinuationError:
-            continue
-    model = SpringDamperModel(contact)
-    found = model.orbit(n, np.array([*ways, (node + top) / 2, top]))
+    way = (node + min(doubling, top)) / 2
+    try:
+        return np.append(_on_the_way(n, contact, way, continuation), way)
+    except ContinuationError:
+        model = SpringDamperModel(contact)
+        found = model.orbit(n, np.array([way, (node + top) / 2, top]))
     if not np.any(found.exists):
         raise NoOrbitError(
             f"neither the continuation from the restitution orbit nor the closed form finds a "
@@ -211,18 +186,15 @@ def first_limits(branch: Branch) -> np.ndarray:
     NoOrbitError
         If the branch has not both.
     """
-    limits: list[np.ndarray] = []
-    for special in branch.special:
-        if special.name == SADDLE_NODE:
-            limits = [special.point]
-        elif special.name == PERIOD_DOUBLING and len(limits) == 1:
-            limits.append(special.point)
-    if len(limits) < 2:
+    folds = [k for k, special in enumerate(branch.special) if special.name == SADDLE_NODE]
+    beyond = branch.special[folds[-1] :] if folds else ()
+    flips = [special for special in beyond if special.name == PERIOD_DOUBLING]
+    if not flips:
         raise NoOrbitError(
             f"the branch from {str(branch.start)!r} to {str(branch.end)!r} has no "
-            f"{PERIOD_DOUBLING if limits else SADDLE_NODE} to bound its stable range"
+            f"{PERIOD_DOUBLING if folds else SADDLE_NODE} to bound its stable range"
         )
-    return np.array(limits)
+    return np.array([beyond[0].point, flips[0].point])
 
 
 def missing(n: int, count: int) -> Orbit:

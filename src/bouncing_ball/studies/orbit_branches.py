@@ -1,6 +1,4 @@
-"""Existence and stability of n-T orbits by continuation (Figs. 8, 9 and 15)."""
-
-from typing import NamedTuple
+"""Existence and stability of n-T orbits by continuation (Figs. 8, 9 and 15, Table 1)."""
 
 import numpy as np
 import xarray as xr
@@ -11,7 +9,6 @@ from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.grazing import grazing_points
-from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.parameters import Family, FrequencyRatio, LossyRestitution, Many, Parameters
 from bouncing_ball.studies.columns import OBSERVED, PLACE, columns
@@ -20,59 +17,48 @@ from bouncing_ball.studies.continuation import (
     SADDLE_NODE,
     Continuation,
     branch_along_amplitude,
+    first_limits,
     missing,
 )
 from bouncing_ball.studies.parameters import BranchEnd, Points
+from bouncing_ball.studies.printed_table1 import printed_table
 
 GRAZING = "grazing"
 
 
-class Domains(Parameters):
-    """One family on several contacts, followed along Λ."""
+class Branches(Parameters):
+    """One family, followed along Λ."""
 
     n: Family
+    restitution: LossyRestitution
+    amplitude_max: BranchEnd
+    points: Points
+
+
+class Domains(Branches):
+    """On several contacts."""
+
+    frequency_ratio: Many[FrequencyRatio]
+
+
+class BothDomains(Branches):
+    """On one contact and in the restitution model."""
+
+    frequency_ratio: FrequencyRatio
+
+
+class Ranges(Parameters):
+    """Several families on several contacts, whose stable ranges are looked for along Λ."""
+
+    n: Many[Family]
     restitution: LossyRestitution
     frequency_ratio: Many[FrequencyRatio]
     amplitude_max: BranchEnd
-    points: Points
 
 
-class BothDomains(Parameters):
-    """One family on one contact and in the restitution model, followed along Λ."""
-
-    n: Family
-    restitution: LossyRestitution
-    frequency_ratio: FrequencyRatio
-    amplitude_max: BranchEnd
-    points: Points
-
-
-class _Row(NamedTuple):
-    """One branch: columns along it, its special points, and why it ends."""
-
-    columns: dict[str, np.ndarray]
-    kinds: list[str]
-    special: dict[str, np.ndarray]
-    reasons: list[str]
-
-
-def _along(orbit: Orbit) -> dict[str, np.ndarray]:
-    """What is published of the orbits of a branch."""
-    floquet = orbit.multipliers()
-    return {
-        **columns(orbit, "amplitude", *OBSERVED),
-        "multiplier_real": floquet.real,
-        "multiplier_imag": floquet.imag,
-        "residual": orbit.defect(),
-    }
-
-
-def _places(orbit: Orbit) -> dict[str, np.ndarray]:
-    """Where special orbits are."""
-    return {**{name: getattr(orbit, name) for name in PLACE}, "residual": orbit.defect()}
-
-
-def _row(ratio: float, parameters: Domains, release: Release, continuation: Continuation) -> _Row:
+def _branch(
+    ratio: float, parameters: Branches, release: Release, continuation: Continuation
+) -> xr.Dataset:
     """The branch of one contact; NaN, with the reason, where it cannot be followed."""
     n, count, newton = parameters.n, parameters.points, continuation.newton()
     try:
@@ -80,27 +66,34 @@ def _row(ratio: float, parameters: Domains, release: Release, continuation: Cont
             n, parameters.restitution, ratio, parameters.amplitude_max, release, continuation
         )
         y = resample(system, branch, count, newton)
+        chosen = [s for s in branch.special if s.name in (SADDLE_NODE, PERIOD_DOUBLING)]
+        grazing = grazing_points(system, lambda z: system.orbit(z).is_admissible(), y, newton)
+        kinds = [*(s.name for s in chosen), *[GRAZING] * len(grazing)]
+        points = np.array([*(s.point for s in chosen), *grazing]).reshape(-1, y.shape[-1])
+        orbit, special = system.orbit(y), system.orbit(points)
+        reasons = [str(branch.start), str(branch.end)]
     except (NoOrbitError, ContinuationError) as error:
-        none = missing(n, count)
-        return _Row(_along(none), [], _places(none[:0]), [str(error)] * 2)
-    chosen = [s for s in branch.special if s.name in (SADDLE_NODE, PERIOD_DOUBLING)]
-    grazing = grazing_points(system, lambda z: system.orbit(z).is_admissible(), y, newton)
-    points = np.array([*(s.point for s in chosen), *grazing]).reshape(-1, y.shape[-1])
-    return _Row(
-        _along(system.orbit(y)),
-        [*(s.name for s in chosen), *[GRAZING] * len(grazing)],
-        _places(system.orbit(points)),
-        [str(branch.start), str(branch.end)],
+        orbit, special = missing(n, count), missing(n, 0)
+        kinds, reasons = [], [str(error)] * 2
+    floquet = orbit.multipliers()
+    along = columns(orbit, "amplitude", *OBSERVED) | {"residual": orbit.defect()}
+    places = {name: getattr(special, name) for name in PLACE} | {"residual": special.defect()}
+    return xr.Dataset(
+        {
+            **{name: ("point", values) for name, values in along.items()},
+            "multiplier_real": (("point", "multiplier"), floquet.real),
+            "multiplier_imag": (("point", "multiplier"), floquet.imag),
+            "special_kind": ("special", np.array(kinds, dtype=object)),
+            **{f"special_{name}": ("special", values) for name, values in places.items()},
+            "end_reason": ("end", reasons),
+        },
+        coords={
+            "frequency_ratio": ratio,
+            # A branch with fewer special points than another has no more.
+            "special": np.arange(len(kinds)),
+            "end": ["unstable side", "stable side"],
+        },
     )
-
-
-def _ragged(rows, fill=np.nan):
-    """Rows of different lengths as one array, filled at the end."""
-    width = max(len(row) for row in rows)
-    out = np.full((len(rows), width), fill, dtype=object if isinstance(fill, str) else float)
-    for row, values in zip(out, rows, strict=True):
-        row[: len(values)] = values
-    return out.astype(str) if isinstance(fill, str) else out
 
 
 def orbit_branches(parameters: Domains, release: Release, continuation: Continuation) -> xr.Dataset:
@@ -111,17 +104,9 @@ def orbit_branches(parameters: Domains, release: Release, continuation: Continua
     why it ends.
     """
     ratios = parameters.frequency_ratio
-    rows = [_row(ratio, parameters, release, continuation) for ratio in ratios]
-    dims, special = ("frequency_ratio", "point"), ("frequency_ratio", "special")
-    dataset = xr.Dataset(coords={"frequency_ratio": np.array(ratios)})
-    for name in rows[0].columns:
-        own = (*dims, "multiplier") if name.startswith("multiplier") else dims
-        dataset[name] = (own, np.array([row.columns[name] for row in rows]))
-    dataset["special_kind"] = (special, _ragged([row.kinds for row in rows], ""))
-    for name in rows[0].special:
-        dataset[f"special_{name}"] = (special, _ragged([row.special[name] for row in rows]))
-    dataset["end_reason"] = (("frequency_ratio", "end"), np.array([row.reasons for row in rows]))
-    return describe(dataset.assign_coords(end=["unstable side", "stable side"]))
+    rows = [_branch(ratio, parameters, release, continuation) for ratio in ratios]
+    dataset = xr.concat(rows, "frequency_ratio", join="outer")
+    return describe(dataset.assign(special_kind=dataset.special_kind.fillna("").astype(str)))
 
 
 def both_domains(
@@ -139,16 +124,58 @@ def both_domains(
     contact = orbit_branches(Domains(**one), release, continuation)
     model = RestitutionModel(r)
     rigid = model.orbit_of(n, *restitution_orbits.branch(n, r, top, parameters.points))
-    node, doubling = model.saddle_node(n), model.period_doubling(n)
+    along = columns(rigid, "amplitude", "phase")
+    limits = {"saddle_node": model.saddle_node(n), "period_doubling": model.period_doubling(n)}
     return describe(
         contact.assign(
-            restitution_amplitude=("point", rigid.amplitude),
-            restitution_phase=("point", rigid.phase),
-            restitution_stable=("point", rigid.is_stable()),
-            restitution_admissible=("point", rigid.is_admissible()),
-            saddle_node_amplitude=((), float(node.amplitude)),
-            saddle_node_phase=((), float(node.phase)),
-            period_doubling_amplitude=((), float(doubling.amplitude)),
-            period_doubling_phase=((), float(doubling.phase)),
+            {f"restitution_{name}": ("point", values) for name, values in along.items()}
+            | {f"{kind}_amplitude": orbit.amplitude for kind, orbit in limits.items()}
+            | {f"{kind}_phase": orbit.phase for kind, orbit in limits.items()}
         )
     )
+
+
+def stability_ranges(
+    parameters: Ranges, release: Release, continuation: Continuation
+) -> xr.Dataset:
+    """Ranges of Λ in which the n-T orbits are stable, computed and printed (Table 1).
+
+    Shape (ϖ, n, bound), the bounds a saddle-node and a period doubling; phases in rad.
+
+    Where an orbit has no such range the entry is NaN, and ``absence`` says why.
+    """
+    families, ratios = parameters.n, parameters.frequency_ratio
+    r, top, shape = parameters.restitution, parameters.amplitude_max, (len(ratios), len(families))
+    found, absence = np.full((*shape, 2, len(PLACE)), np.nan), np.full(shape, "", dtype=object)
+    for at in np.ndindex(shape):
+        n, ratio = families[at[1]], ratios[at[0]]
+        try:
+            system, branch = branch_along_amplitude(n, r, ratio, top, release, continuation)
+            limits = system.orbit(first_limits(branch))
+            found[at] = np.stack([getattr(limits, name) for name in PLACE], axis=-1)
+        except (NoOrbitError, ContinuationError) as error:
+            absence[at] = str(error)
+    rigid, maps = RestitutionModel(r).saddle_node(np.array(families)), restitution_orbits.ImpactMap
+    doublings = [restitution_orbits.period_doubling(np.array(families), r, kind) for kind in maps]
+    dims = ("frequency_ratio", "n", "bound")
+    names = ("computed", "special_phase", "special_contact_duration")
+    dataset = xr.Dataset(
+        {
+            **{name: (dims, found[..., k]) for k, name in enumerate(names)},
+            # NaN where the paper has no entry.
+            "printed": printed_table().reindex(frequency_ratio=list(ratios), n=list(families)),
+            "restitution_range": (
+                ("impact_map", "n", "bound"),
+                np.array([np.stack([rigid.amplitude, each], axis=-1) for each in doublings]),
+            ),
+        },
+        coords={
+            "frequency_ratio": np.array(ratios),
+            "n": np.array(families),
+            "bound": [SADDLE_NODE, PERIOD_DOUBLING],
+            "impact_map": [str(kind) for kind in maps],
+        },
+    )
+    if np.any(absence != ""):
+        dataset["absence"] = (dims[:2], absence.astype(str))
+    return describe(dataset)

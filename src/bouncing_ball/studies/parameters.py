@@ -1,7 +1,6 @@
-"""Types of parameters that need an orbit: amplitudes at which there is one, contacts that have one.
+"""Types of parameters that need an orbit: amplitudes at which there is one.
 
-A type looks at the parameters that stand before it in its class: ``n`` and ``restitution``, and for
-a contact ``amplitude``.
+A type looks at the parameters that stand before it in its class: ``n`` and ``restitution``.
 """
 
 from collections.abc import Callable
@@ -12,14 +11,13 @@ from numpy.typing import ArrayLike
 from pydantic import AfterValidator, Field, ValidationInfo
 
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.orbits.restitution_orbit import period_doubling, saddle_node
+from bouncing_ball.orbits.restitution_orbit import saddle_node
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.parameters import (
     Amplitude,
     AmplitudeMax,
     Family,
-    FrequencyRatio,
+    Many,
     Parameters,
     Restitution,
     Span,
@@ -41,53 +39,23 @@ def require_orbit(amplitude: float, n: int, restitution: float) -> float:
     1.0
     """
     lowest = float(saddle_node(n, restitution))
-    return _require(amplitude, lowest, "saddle-node", n, restitution)
-
-
-def _require(amplitude: float, lowest: float, what: str, n: int, restitution: float) -> float:
     if amplitude < lowest:
         raise ValueError(
-            f"must be at least {lowest:.6g}, the {what} of the {n}-T restitution orbit at "
-            f"r = {restitution:g} (Eqs. 7-8)"
+            f"must be at least {lowest:.6g}, the saddle-node of the {n}-T restitution orbit at "
+            f"r = {restitution:g} (Eq. 7)"
         )
     return amplitude
 
 
-def _known(info: ValidationInfo, *names: str) -> bool:
-    """Whether the parameters before are right; if not, they are the mistake."""
-    return all(name in info.data for name in names)
-
-
 def _has_orbits(families: Callable[[np.ndarray], int]) -> AfterValidator:
     def check(amplitude: float, info: ValidationInfo) -> float:
-        if _known(info, "n", "restitution"):
+        # Without one of them that is the mistake.
+        if {"n", "restitution"} <= info.data.keys():
             n = families(np.atleast_1d(info.data["n"]))
             require_orbit(amplitude, n, info.data["restitution"])
         return amplitude
 
     return AfterValidator(check)
-
-
-def _has_all_ranges(amplitude: float, info: ValidationInfo) -> float:
-    if _known(info, "n", "restitution"):
-        n, r = max(info.data["n"]), info.data["restitution"]
-        lowest = 1.1 * float(period_doubling(n, r))
-        _require(amplitude, lowest, "period doubling, with a tenth to spare,", n, r)
-    return amplitude
-
-
-def _has_a_motion(ratio: float, info: ValidationInfo) -> float:
-    """The ϖ, if the orbit on this contact is a motion of the ball; asked with a release rule."""
-    if info.context and _known(info, "n", "restitution", "amplitude"):
-        given = info.data
-        contact = SpringDamper.from_restitution(
-            given["restitution"], ratio, info.context["release"]
-        )
-        try:
-            SpringDamperModel(contact).require_admissible(given["n"], given["amplitude"])
-        except NoOrbitError as error:
-            raise ValueError(str(error)) from None
-    return ratio
 
 
 OrbitAmplitude = Annotated[Amplitude, _has_orbits(min)]
@@ -121,13 +89,18 @@ class OrbitErrors(OrbitsAlongRatio):
 
 BranchEnd = Annotated[AmplitudeMax, _has_orbits(max)]
 """Λ up to which branches are followed, above where the highest family begins."""
-RangeEnd = Annotated[AmplitudeMax, AfterValidator(_has_all_ranges)]
-"""Λ up to which branches are followed, above where the highest family loses its stability."""
-MotionRatio = Annotated[FrequencyRatio, AfterValidator(_has_a_motion)]
-"""ϖ of a contact on which the orbit is a motion of the ball, which can be drawn over time."""
 Points = Annotated[
     int,
     Field(
         ge=11, le=20001, description="points along each branch; fewer than 11 do not show its shape"
     ),
 ]
+
+
+class FamilyBranches(Parameters):
+    """Several families, followed along Λ."""
+
+    n: Many[Family]
+    restitution: Restitution
+    amplitude_max: BranchEnd
+    points: Points

@@ -27,7 +27,8 @@ def depends_on_amplitude(data):
 
     Condition: the three curves are at least 1 % apart somewhere
     """
-    return at_least(evidence.spread_of_fig06(data), 0.01)
+    curve = data["fig06"].apparent_restitution
+    return at_least((curve.max("case") - curve.min("case")).max(), 0.01)
 
 
 @claim("Fig. 6", id="dip at 1.2", explanation=why.swapped_labels)

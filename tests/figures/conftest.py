@@ -9,7 +9,7 @@ from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.figures.article.render import render_article
 from bouncing_ball.figures.atlas.tables import shares
 from bouncing_ball.figures.tables import rows
-from bouncing_ball.figures.tables.formats import to_csv, to_latex, to_markdown
+from bouncing_ball.figures.tables.formats import to_csv, to_markdown
 
 ROOT = Path(__file__).resolve().parents[2]
 TEMPLATES = ROOT / "workflow" / "report" / "paper"
@@ -29,7 +29,7 @@ def all_texts(data):
     made = {}
     for name in TABLES:
         table = getattr(rows, name)(data[name])
-        for form in (to_csv, to_latex, to_markdown):
+        for form in (to_csv, to_markdown):
             made[name, form.__name__] = form(*table)
     texts = {name: made[name, "to_markdown"] for name in TABLES}
     data["atlas"] = read_dataset(ROOT / "config" / "atlas.nc")

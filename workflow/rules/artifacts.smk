@@ -4,7 +4,7 @@
 
 def files(name):
     kinds = ["nc"] * (name in STUDIES) + ["png", "svg"] * (name in DRAWINGS)
-    kinds += ["csv", "md", "tex"] * (name in TABLES) + ["html"] * (name == "explorer")
+    kinds += ["csv", "md"] * (name in TABLES) + ["html"] * (name == "explorer")
     return [f"results/figures/{name}.{kind}" for kind in kinds]
 
 

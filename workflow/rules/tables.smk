@@ -1,4 +1,4 @@
-# Datasets in, tables out: CSV, Markdown and LaTeX, each table from the dataset of its name.
+# Datasets in, tables out: CSV and Markdown, each table from the dataset of its name.
 
 TABLES = ["table1", "thresholds", "formulas", "forensics", "witness", "claims"]
 TABLES += ["ext_orders", "ext_validity", "ext_laws", "ext_hertz"]
@@ -13,7 +13,6 @@ rule set_table:
     output:
         csv="results/figures/{table}.csv",
         md="results/figures/{table}.md",
-        tex="results/figures/{table}.tex",
     wildcard_constraints:
         table="|".join(TABLES),
     log:

@@ -1,4 +1,4 @@
-"""One table as CSV, Markdown and LaTeX from its dataset."""
+"""One table as CSV and Markdown from its dataset."""
 
 from pathlib import Path
 

@@ -14,7 +14,7 @@ from bouncing_ball.errors import ModelError, printable
 
 _PAPER = "paper.md"
 # In the order in which they are compared: the data first, as the others lean on them.
-_SUFFIXES = (".nc", ".csv", ".png", ".svg", ".md", ".tex", ".html")
+_SUFFIXES = (".nc", ".csv", ".png", ".svg", ".md", ".html")
 
 
 def artifacts_in(*folders: Path) -> dict[str, set[str]]:

@@ -7,8 +7,6 @@ from typing import Any
 import matplotlib
 
 SETTINGS = Path(__file__).with_name("matplotlibrc")
-RESOLUTION = 300
-"""Of pixels, in dots per inch."""
 
 # The hues of Okabe and Ito, which colour-blind readers can distinguish, darkened to a
 # contrast of at least 3:1 with white, in an order in which neighbours differ in

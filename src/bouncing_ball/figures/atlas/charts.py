@@ -13,18 +13,12 @@ from matplotlib.patches import Patch
 
 from bouncing_ball.figures.canvas import WIDE, canvas, legend_below, panels
 from bouncing_ball.figures.labels import QUANTITIES
-from bouncing_ball.figures.style import COLOURS, CORRECTED, GUIDE, Look
+from bouncing_ball.figures.style import CORRECTED, GUIDE, Look
 
 LEVELS = (3, 5, 10, 20, 50, 100, 200, 500, 1000)
 """Bounds of the colours; the last colour is for what lies beyond."""
 _LAW_LEVELS = (20, 50, 100, 200, 500)
 _LAW: Look = {"colors": CORRECTED, "linewidths": 0.8, "linestyles": "--"}
-_LIMITS: dict[str, Look] = {
-    "restitution": {"linestyle": "-", "linewidth": 1.2},
-    "corrected": {"linestyle": (0, (4, 1.5)), "linewidth": 1.2},
-}
-# Three families, spread over those of the atlas, in three levels of grey.
-_BY_FAMILY = (COLOURS[0], COLOURS[3], COLOURS[4])
 NEAR = 1
 """Ranges of positions next to the saddle-node that the colours of the page leave out."""
 _RIGHT, _CORRECTED, _NEITHER = "#ffffff", "#b9d7ea", "#7f7f7f"
@@ -37,9 +31,8 @@ _BESIDE: dict[str, Look] = {
 
 
 def charts(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    """All charts by name: the page, the limits of the families, and a map for each quantity."""
+    """All charts by name: the page, and a map for each quantity."""
     yield "page", page(data)
-    yield "limits", limits(data)
     for quantity in data["quantity"].values:
         yield str(quantity), over_range(data, str(quantity))
 
@@ -76,33 +69,6 @@ def page(data: xr.Dataset, release: str = "displacement") -> Figure:
         f"{int(data.n.max())}, {release} release",
         fontsize=10,
     )
-    return figure
-
-
-def limits(data: xr.Dataset) -> Figure:
-    """Panels for the rules and the limits of a family: ϖ over r, line by model and colour by n."""
-    figure, slots = panels(5.0, 2, 3)
-    tolerance = float(data.summary_tolerance)
-    families = data.n.values[np.linspace(0, data.sizes["n"] - 1, 3).round().astype(int)]
-    asked = [(rule, q) for rule in data.release.values for q in data.limit_quantity.values]
-    for axes, (release, quantity) in zip(slots, asked, strict=True):
-        part = data.sel(release=release, limit_quantity=quantity)
-        r, smallest = part.restitution, float(part.limit_needed.min())
-        for n, colour in zip(families, _BY_FAMILY, strict=True):
-            one = part.sel(n=n)
-            for model, look in _LIMITS.items():
-                name = f"{model}, $n={n}$"
-                found = one.limit_needed.sel({"model": model, "tolerance": tolerance})
-                axes.plot(r, found, color=colour, label=name, **look)
-            law, name = one.limit_law_needed.clip(smallest), rf"law $|K|/\varepsilon$, $n={n}$"
-            axes.plot(r, law, color=colour, label=name, linestyle=":", linewidth=1.0)
-        axes.axhline(float(data.rule_of_thumb), **GUIDE)
-        axes.set(yscale="log", xlabel="restitution coefficient $r$")
-        axes.set_ylabel(rf"$\varpi$ for {100 * tolerance:g} %")
-        axes.label_outer()
-        axes.set_title(f"{QUANTITIES[str(quantity)]}, {release}", fontsize=8)
-    legend_below(figure, ncols=len(families))
-    figure.suptitle("limits of the families: how stiff a contact must be", fontsize=10)
     return figure
 
 

@@ -1,4 +1,4 @@
-"""Small tables as CSV, Markdown and LaTeX text."""
+"""Small tables as CSV and Markdown text."""
 
 import csv
 import io
@@ -6,8 +6,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-
-from bouncing_ball.errors import ModelError
 
 Rows = Sequence[Sequence[str]]
 Table = tuple[list[str], list[list[str]]]
@@ -71,65 +69,6 @@ def texts(header: Sequence[str], rows: Rows) -> dict[str, str]:
     Examples
     --------
     >>> list(texts(["n"], [["1"]]))
-    ['.csv', '.md', '.tex']
+    ['.csv', '.md']
     """
-    forms = {".csv": to_csv, ".md": to_markdown, ".tex": to_latex}
-    return {suffix: form(header, rows) for suffix, form in forms.items()}
-
-
-_LATEX = {
-    **{"%": r"\%", "&": r"\&", "_": r"\_", "#": r"\#", "<": "$<$", ">": "$>$"},
-    **{"≤": r"$\le$", "≥": r"$\ge$", "→": r"$\to$", "–": "--", "×": r"$\times$"},
-    **{"ϖ": r"$\varpi$", "Λ": r"$\Lambda$", "ζ": r"$\zeta$", "φ": r"$\varphi$"},
-    **{"π": r"$\pi$", "Ω": r"$\Omega$", "ω": r"$\omega$", "τ": r"$\tau$", "δ": r"$\delta$"},
-}
-
-
-def latex_text(text: str) -> str:
-    """Plain text for LaTeX, signs and Greek letters as mathematics.
-
-    Raises
-    ------
-    ModelError
-        If a character has no LaTeX here.
-
-    Examples
-    --------
-    >>> print(latex_text("ϖ ≤ 10 %"))
-    $\\varpi$ $\\le$ 10 \\%
-    """
-    parts = [_LATEX.get(character, character) for character in text]
-    for part in parts:
-        if not part.isascii():
-            raise ModelError(f"no LaTeX for {part!r} in {text!r}")
-    return "".join(parts)
-
-
-def to_latex(header: Sequence[str], rows: Rows) -> str:
-    """A tabular environment with rules of the booktabs package.
-
-    Examples
-    --------
-    >>> print(to_latex(["n"], [["1"]]), end="")
-    \\begin{tabular}{l}
-    \\toprule
-    $n$ \\\\
-    \\midrule
-    1 \\\\
-    \\bottomrule
-    \\end{tabular}
-    """
-    # A column that is called n is called by its symbol.
-    names = ["$n$" if cell == "n" else latex_text(cell) for cell in header]
-    cells = [names, *([latex_text(cell) for cell in line] for line in rows)]
-    body = [" & ".join(line) + r" \\" for line in cells]
-    lines = [
-        rf"\begin{{tabular}}{{{'l' * len(header)}}}",
-        r"\toprule",
-        body[0],
-        r"\midrule",
-        *body[1:],
-        r"\bottomrule",
-        r"\end{tabular}",
-    ]
-    return "".join(f"{line}\n" for line in lines)
+    return {".csv": to_csv(header, rows), ".md": to_markdown(header, rows)}

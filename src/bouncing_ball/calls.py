@@ -14,7 +14,7 @@ import numpy as np
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.law_choice import law_named, law_of_impact
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.contacts.signature import LawSignature
+from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError
 from bouncing_ball.motion.sequence import ImpactSequence
@@ -132,7 +132,7 @@ def _model(given: Mapping[str, Any], law_at: LawAt | None) -> ImpactModel:
     kind = given.get("model") or ("spring-damper" if "frequency_ratio" in given else "restitution")
     if "law" in given:
         law = _law(given, law_at)
-        return CorrectedModel(LawSignature(law)) if kind == "corrected" else LawModel(law)
+        return CorrectedModel(Signature(law)) if kind == "corrected" else LawModel(law)
     _refuse(given, ("parameters", "duration", "speed"), "needs {law}")
     names = " ".join(f"{{{name}}}" for name in LOSS)
     _demand(bool(losses), f"one of the arguments {names} is required")
@@ -188,7 +188,7 @@ def _law_of_parameters(kind: type[ContactLaw], given: Mapping[str, Any]) -> Cont
         _demand(name in named, f"{kind.name} needs {{parameters}} {name}=NUMBER as well")
     if "release" in given:
         why = f"the release is part of {kind.name}: {{release}} is for the linear law"
-        _demand(kind.chooses_release(), why)
+        _demand("release" in kind.__dataclass_fields__, why)
         named["release"] = Release.of(given["release"])
     return kind(**named)
 
@@ -239,7 +239,7 @@ def orbit(
       apparent_restitution  0.851132
       max_height            5.41098
     """
-    branch = Side.STABLE if side == "all" else Side.of(side)
+    branch = Side.STABLE if side == "all" else Side(side)
     of = _model(impact, lambda kind, r, d: law_at_orbit(kind, r, d, n, amplitude, branch))
     if side != "all" and index is None:
         return of.require_orbit(n, amplitude, branch)

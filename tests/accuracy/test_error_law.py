@@ -16,7 +16,7 @@ from bouncing_ball.accuracy.errors import errors
 from bouncing_ball.accuracy.quantities import OF_IMPACTS, Quantity
 from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
-from bouncing_ball.contacts.signature import LinearSignature
+from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits import restitution_orbit
@@ -86,7 +86,7 @@ def test_the_remainder_where_the_law_is_stated_to_hold(release):
     size, low = 2000, 0.05 if release is Release.DISPLACEMENT else 0.14
     n, zeta, lam, rng = sample(31, size, release, (low, 0.98))
     contact = SpringDamper(10 ** rng.uniform(0, 4, size), zeta, release)
-    instant, error = LinearSignature(contact)(), errors(contact, n, lam)[0]
+    instant, error = Signature(contact)(), errors(contact, n, lam)[0]
     left = remainder(n, instant, lam, error)
     np.testing.assert_array_equal(left.stated, np.isfinite(error) & (left.small < 0.3))
     assert left.stated.mean() > 0.5 and not np.any(left.stated & left.exceeded)
@@ -111,7 +111,7 @@ def test_the_height_of_nearly_elastic_orbits(release):
 @pytest.mark.parametrize("release", RELEASES)
 def test_the_law_takes_any_signature(release):
     """At ϖ the first-order errors are K/ϖ."""
-    instant = LinearSignature(SpringDamper(50.0, 0.2, release))()
+    instant = Signature(SpringDamper(50.0, 0.2, release))()
     law, k = first_order(2, instant, 2.0), coefficients(2, 0.2, 2.0, release)
     np.testing.assert_allclose(array(law), array(k) / 50, rtol=1e-13)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.contacts.signature import LinearSignature
+from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.orbits import corrected_branch
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
@@ -12,7 +12,7 @@ from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 def constants(contact):
     """τ₁, σ₂, μ and the delay of the release with the load."""
     omega, zeta, lag = contact.frequency_ratio, contact.damping_ratio, contact.lag
-    instant = LinearSignature(contact)()
+    instant = Signature(contact)()
     r, delay, duration = instant.restitution, instant.delay, instant.duration
     weight = (1 + r) / omega**2
     rho = lag - 2 * zeta * (1 + r) / omega
@@ -49,7 +49,7 @@ def test_it_is_of_third_order(n, zeta, release):
     errors = []
     for omega in (80.0, 160.0, 320.0):
         contact = SpringDamper(omega, zeta, release)
-        exact, instant = SpringDamperModel(contact), LinearSignature(contact)()
+        exact, instant = SpringDamperModel(contact), Signature(contact)()
         tau, squared, jerk, later = constants(contact)
         low = corrected_branch.saddle_node(n, instant)
         high, _ = corrected_branch.period_doubling(n, instant)

@@ -10,10 +10,7 @@ from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji, tsuji_damping
-from bouncing_ball.contacts.quadrature import scheme
 from bouncing_ball.errors import ModelError
-
-EPS = np.finfo(float).eps
 
 
 @pytest.mark.parametrize("law", [HuntCrossley(50.0, 0.0), Tsuji(50.0, 0.0), KuwabaraKono(50.0, 0)])
@@ -67,14 +64,3 @@ def test_what_a_law_cannot_do_is_said():
     for r in (0.95, 1.0):
         with pytest.raises(ModelError, match="pulling is given by its parameters, not by rest"):
             law_of_impact(_Pulling, r, 0.3, 1.0)
-
-
-@pytest.mark.parametrize("root", [1, 2, 4])
-def test_the_quadrature_is_exact_for_polynomials_in_its_variable(root):
-    s = scheme(16, root)
-    push = s.share**2
-    rate, depth = s.rate @ push, s.path @ push
-    rate[~s.early] += 1 / 3
-    depth[~s.early] += 1 / 12 - s.rest[~s.early] / 3
-    np.testing.assert_allclose(rate, s.share**3 / 3, atol=10 * EPS)
-    np.testing.assert_allclose(depth, s.share**4 / 12, atol=10 * EPS)

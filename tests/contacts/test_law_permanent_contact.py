@@ -15,7 +15,7 @@ from bouncing_ball.errors import ModelError
 @pytest.mark.parametrize("kind", [HuntCrossley, Tsuji, KuwabaraKono])
 def test_a_contact_below_the_threshold_is_held_and_above_it_is_not(kind):
     law = law_of_impact(kind, 0.65, 0.6, 3.8)
-    threshold = permanent_contact(law).amplitude
+    threshold = permanent_contact(law)
 
     def lowest(lam):
         """The least grip in the last period of a motion that has settled."""
@@ -38,7 +38,7 @@ def test_a_contact_below_the_threshold_is_held_and_above_it_is_not(kind):
 
 def test_it_tends_to_gravity_for_a_hard_contact():
     soft, hard = (
-        permanent_contact(law_of_impact(KuwabaraKono, 0.65, duration, 3.8)).amplitude
+        permanent_contact(law_of_impact(KuwabaraKono, 0.65, duration, 3.8))
         for duration in (0.4, 0.2)
     )
     assert 1 - hard < (1 - soft) / 2

@@ -84,7 +84,7 @@ def test_minimum_outside_its_range(zeta, one_line):
 def test_threshold_outside_its_range(one_line):
     with pytest.raises(ModelError) as error:
         permanent_contact_threshold(0.0, 0.1)
-    one_line(error, "ϖ = 0.0", "positive")
+    one_line(error, "ϖ = 0.0", "> 0")
     with pytest.raises(ModelError) as error:
         permanent_contact_threshold(1.0, -0.1)
     one_line(error, "ζ = -0.1", "≥ 0")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.contacts.signature import LinearSignature
+from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError
 from bouncing_ball.motion.simulation import simulate
@@ -41,7 +41,7 @@ def test_flights_continued_into_any_contact_meet_at_the_centroid_of_its_force():
 
 @pytest.mark.parametrize("release", RELEASES)
 def test_an_elastic_contact_is_symmetric(release):
-    instant = LinearSignature(SpringDamper(np.array([2.0, 50.0]), 0.0, release))()
+    instant = Signature(SpringDamper(np.array([2.0, 50.0]), 0.0, release))()
     np.testing.assert_array_equal(instant.delay, instant.duration / 2)
     np.testing.assert_array_equal(instant.restitution, 1.0)
     np.testing.assert_array_equal(instant.load, 0.0)
@@ -49,5 +49,5 @@ def test_an_elastic_contact_is_symmetric(release):
 
 def test_an_overdamped_contact_has_no_signature(one_line):
     with pytest.raises(ModelError) as error:
-        LinearSignature(SpringDamper(10.0, 1.0))
+        Signature(SpringDamper(10.0, 1.0))
     one_line(error, "damping ratio ζ = 1.0", "below 1")

@@ -122,7 +122,7 @@ def test_acceleration_satisfies_the_equation():
 def test_frequency_ratio_outside_its_range(omega, one_line):
     with pytest.raises(ModelError) as error:
         SpringDamper(omega, 0.1)
-    one_line(error, f"ϖ = {omega}", "positive")
+    one_line(error, f"ϖ = {omega}", "> 0")
 
 
 @pytest.mark.parametrize("zeta", [-1e-9, np.nan, np.inf])

@@ -20,7 +20,7 @@ from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji
 from bouncing_ball.contacts.permanent_contact import permanent_contact, permanent_contact_threshold
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.contacts.signature import LawSignature, LinearSignature, free_impact
+from bouncing_ball.contacts.signature import Signature, free_impact
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.history import history
 from bouncing_ball.motion.sequence import Status
@@ -149,12 +149,13 @@ def test_the_force_does_the_work_and_the_release_is_the_first(law):
 @every_law
 def test_slopes_are_the_derivatives(law):
     p, u = np.array([0.01, 0.3]), np.array([2.0, -0.5])
-    for exact, general in (
-        (law.slopes(p, u), slopes_of(law.force, p, u)),
-        (law.grip_slopes(p, u), slopes_of(law.grip, p, u)),
-    ):
-        np.testing.assert_allclose(exact.by_penetration, general.by_penetration, rtol=1e-13)
-        np.testing.assert_allclose(exact.by_rate, general.by_rate, rtol=1e-13)
+    steps, weights = 1e-3 * np.array([[-2.0], [-1.0], [1.0], [2.0]]), np.array([1, -8, 8, -1]) / 12
+    for function in (law.force, law.grip):
+        exact = slopes_of(function, p, u)
+        by_depth = weights @ function(p * (1 + steps), u) / (1e-3 * p)
+        np.testing.assert_allclose(exact.by_penetration, by_depth, rtol=1e-9, atol=1e-9)
+        by_rate = weights @ function(p, u + steps) / 1e-3
+        np.testing.assert_allclose(exact.by_rate, by_rate, rtol=1e-9, atol=1e-9)
 
 
 @every_law
@@ -179,7 +180,7 @@ def test_the_delay_and_the_load_are_those_of_the_continued_flights(law):
 @every_law
 def test_the_tabulated_signature_is_the_impact_itself(law):
     speed = np.array([1e-4, 0.3, 2.0, 7.9, 8.1, 30.0])
-    tabulated, itself = LawSignature(law)(speed), free_impact(law, speed)
+    tabulated, itself = Signature(law)(speed), free_impact(law, speed)
     for name in ("delay", "restitution", "duration"):
         np.testing.assert_allclose(getattr(tabulated, name), getattr(itself, name), rtol=1e-12)
     loads = np.array([tabulated.load, itself.load]) / itself.duration
@@ -193,17 +194,17 @@ def test_the_defaults_are_the_closed_forms(release):
     """Contact, signature, permanent contact, motion and history of the spring-damper."""
     exact, law = SpringDamper(20.0, 0.13, release), Spring(20.0, 0.13, release)
     for zeta in (0.0, 0.05, 0.4, 0.8):
-        closed = LinearSignature(SpringDamper(20.0, zeta, release))(1.0)
-        computed = LawSignature(Spring(20.0, zeta, release))([0.1, 3.3])
+        closed = Signature(SpringDamper(20.0, zeta, release))(1.0)
+        computed = Signature(Spring(20.0, zeta, release))([0.1, 3.3])
         for name in ("delay", "restitution", "duration"):
             np.testing.assert_allclose(getattr(computed, name), getattr(closed, name), rtol=1e-12)
         np.testing.assert_allclose(computed.load, closed.load, atol=1e-12 * float(closed.duration))
         for name in ("d_delay", "d_restitution", "d_load"):
             np.testing.assert_allclose(getattr(computed, name), 0.0, atol=1e-11)
     for omega in (1.0, 2.0, 10.0):
-        found = permanent_contact(Spring(omega, 0.136, release)).amplitude
+        found = permanent_contact(Spring(omega, 0.136, release))
         assert found == pytest.approx(
-            float(permanent_contact_threshold(omega, 0.136, release)), rel=1e-12
+            float(permanent_contact_threshold(omega, 0.136, release)), rel=1e-9
         )
     # Grazing and long contacts, and contacts that resume below the level, included.
     rng = np.random.default_rng(0)

@@ -14,7 +14,7 @@ import pytest
 
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji
-from bouncing_ball.contacts.signature import LawSignature
+from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.continuation.corrector import NewtonSettings, newton
 from bouncing_ball.continuation.events import vanishing
@@ -48,7 +48,7 @@ MODELS = {
     "undamped contact": SpringDamperModel(SpringDamper(10.0, 0.0)),
     "corrected": CorrectedModel.of_contact(STIFF),
     "corrected, force release": CorrectedModel.of_contact(PUSHING),
-    "corrected, kuwabara-kono": CorrectedModel(LawSignature(HERTZ["kuwabara-kono"])),
+    "corrected, kuwabara-kono": CorrectedModel(Signature(HERTZ["kuwabara-kono"])),
     **{name: LawModel(law) for name, law in HERTZ.items()},
     "one's own": OWN["MODEL"],
 }

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from bouncing_ball.contacts.signature import LinearSignature, Signature
+from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.motion.sequence import Status
 from bouncing_ball.motion.simulation import next_impact, simulate
@@ -18,7 +18,7 @@ BALLS = 400
 class Changed(Signature):
     """A signature with numbers multiplied, which tests must tell from the right one."""
 
-    law: LinearSignature
+    law: Signature
     delay: float = 1.0
     load: float = 1.0
     duration: float = 1.0
@@ -43,7 +43,7 @@ def errors(release, omega, change=lambda law: law):
     lam, phase, velocity, zeta = states(5)
     contact = SpringDamper(np.full(BALLS, omega), zeta, release)
     exact = next_impact(contact, lam, phase, velocity)
-    got = next_impact(change(LinearSignature(contact)), lam, phase, velocity)
+    got = next_impact(change(Signature(contact)), lam, phase, velocity)
     return np.hypot(got.time - exact.time, got.relative_velocity - exact.relative_velocity)
 
 
@@ -86,7 +86,7 @@ def test_every_observable_of_an_impact_is_of_second_order(release):
     for omega in (500.0, 1000.0):
         contact = SpringDamper(omega, 0.2, release)
         exact = simulate(contact, lam, phase, velocity, 1)
-        got = simulate(LinearSignature(contact), lam, phase, velocity, 1)
+        got = simulate(Signature(contact), lam, phase, velocity, 1)
         names = ("contact_duration", "relative_release_velocity", "release_displacement")
         found.append([np.abs(getattr(got, k)[0] - getattr(exact, k)[0]) for k in names])
     first, second = np.array(found)
@@ -95,7 +95,7 @@ def test_every_observable_of_an_impact_is_of_second_order(release):
 
 def test_without_delay_and_load_it_is_the_restitution_model():
     lam, phase, velocity, _ = states(7)
-    law = Changed(LinearSignature(SpringDamper(5.0, 0.2)), delay=0.0, load=0.0, duration=0.0)
+    law = Changed(Signature(SpringDamper(5.0, 0.2)), delay=0.0, load=0.0, duration=0.0)
     r = float(law(1.0).restitution)
     got = next_impact(law, lam, phase, velocity)
     known = next_impact(r, lam, phase, velocity)
@@ -107,7 +107,7 @@ def test_a_ball_above_the_table_at_every_landing():
     rng = np.random.default_rng(10)
     lam, phase = rng.uniform(0.3, 4, 300), rng.uniform(-3, 3, 300)
     velocity = lam * np.cos(phase) - rng.uniform(0.1, 6, 300)
-    run = simulate(LinearSignature(SpringDamper(20.0, 0.1)), lam, phase, velocity, 300)
+    run = simulate(Signature(SpringDamper(20.0, 0.1)), lam, phase, velocity, 300)
     there = np.isfinite(run.time)
     assert np.all(run.relative_velocity[there] <= 0)
     assert np.all(np.diff(run.time, axis=0)[there[1:]] > 0)
@@ -118,7 +118,7 @@ def test_a_ball_above_the_table_at_every_landing():
 
 def test_a_weak_impact_stays_and_lifts_off():
     """A ball set down gently stays until the table recedes with more than gravity."""
-    law = LinearSignature(SpringDamper(20.0, 0.3))
+    law = Signature(SpringDamper(20.0, 0.3))
     resting = simulate(law, 0.9, 0.0, 0.9 - 1e-3, 5)
     assert resting.status == Status.PERMANENT_CONTACT and resting.impacts == 1
     lifted = simulate(law, 1.5, 0.0, 1.5 - 1e-3, 2)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.contacts.signature import LinearSignature
+from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.orbits import corrected_branch
 from bouncing_ball.orbits import spring_damper_limits as limits
@@ -20,7 +20,7 @@ def test_multipliers_at_the_bifurcations(release):
         10 ** rng.uniform(1, 3, 200),
         rng.uniform(0.01, 0.6, 200),
     )
-    instant = LinearSignature(SpringDamper(omega, zeta, release))()
+    instant = Signature(SpringDamper(omega, zeta, release))()
     fold = corrected_branch.saddle_node(n, instant)
     psi = corrected_branch.instant_phase(n, instant, fold * (1 + 1e-15))
     trace, det = corrected_branch.trace_and_determinant(n, instant, fold, psi)
@@ -36,7 +36,7 @@ def test_multipliers_at_the_bifurcations(release):
 def test_elastic_orbits_hit_at_the_top_of_the_table(release):
     """r = 1: time reversal puts the instant at ψ = π/2 in the exact model too."""
     contact = SpringDamper(np.array([3.0, 10.0, 100.0]), 0.0, release)
-    instant = LinearSignature(contact)()
+    instant = Signature(contact)()
     psi = corrected_branch.instant_phase(1, instant, 0.8)
     np.testing.assert_allclose(psi, np.pi / 2, rtol=1e-15)
     np.testing.assert_array_equal(corrected_branch.saddle_node(1, instant), 0.0)

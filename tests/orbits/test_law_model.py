@@ -7,7 +7,7 @@ from bouncing_ball.contacts.law_choice import law_named, law_of_impact
 from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji
-from bouncing_ball.contacts.signature import LawSignature, free_impact
+from bouncing_ball.contacts.signature import Signature, free_impact
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.orbits.corrected_model import CorrectedModel
@@ -56,7 +56,7 @@ def test_the_corrected_model_is_of_second_order(kind):
     for duration in (0.1, 0.05):
         law = law_at_orbit(kind, 0.65, duration, 1, 1.0)
         orbit = LawModel(law).require_orbit(1, 1.0)
-        corrected = CorrectedModel(LawSignature(law)).require_orbit(1, 1.0)
+        corrected = CorrectedModel(Signature(law)).require_orbit(1, 1.0)
         first.append(float(rigid.max_height / orbit.max_height - 1))
         second.append(float(corrected.max_height / orbit.max_height - 1))
     # Halving D halves the one and quarters the other, but for the next order in D.

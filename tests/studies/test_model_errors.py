@@ -16,7 +16,7 @@ RELEASES = list(Release)
 
 @pytest.fixture(scope="module", params=RELEASES)
 def orders(request):
-    random = {"seed": 3, "samples": 200, "stiff_frequency_ratio": 1000.0, "law_samples": 300}
+    random = {"seed": 3, "samples": 200, "law_samples": 300}
     parameters = {**ORBIT, "tolerance": 0.01, "frequency_ratio": SPAN, "random": random}
     return typed(study.orders)(parameters, request.param)
 

@@ -43,7 +43,7 @@ def resumed(cloned, tmp_path_factory):
     shards = folder / "results/atlas/shards"
     found = tree.checksums("results/atlas/shards")
     early = dict(sorted(found.items(), key=lambda item: (shards / item[0]).stat().st_mtime_ns))
-    return tree, early, tree.run("--nolock", "--cores", "1", *ATLAS).stdout
+    return tree, early, tree.run("--cores", "1", *ATLAS).stdout
 
 
 def test_a_killed_atlas_is_resumed_without_loss(resumed):

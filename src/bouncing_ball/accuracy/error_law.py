@@ -51,7 +51,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.accuracy.quantities import OF_IMPACTS, Quantity
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.contacts.signature import Instant, LinearSignature
+from bouncing_ball.contacts.signature import Instant, Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits import restitution_orbit
 
@@ -228,7 +228,7 @@ def coefficients(
     -1.0
     """
     contact = SpringDamper(1.0, np.asarray(damping_ratio, dtype=float), release)
-    return first_order(n, LinearSignature(contact)(), amplitude)
+    return first_order(n, Signature(contact)(), amplitude)
 
 
 def law_thresholds(

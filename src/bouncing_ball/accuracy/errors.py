@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.accuracy.quantities import OF_IMPACTS, OF_ORBITS, values
-from bouncing_ball.contacts.signature import LinearSignature
+from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits import corrected_branch
 from bouncing_ball.orbits.corrected_model import CorrectedModel
@@ -114,7 +114,7 @@ def orbit_errors(orbit: SpringDamperOrbit) -> np.ndarray:
     >>> orbit_errors(orbit_at(SpringDamper(100.0, 0.1), 1, 1.0)).round(4)[:, 0].tolist()
     [-0.0083, -0.0]
     """
-    n, lam, signature = orbit.n, orbit.amplitude, LinearSignature(orbit.contact)
+    n, lam, signature = orbit.n, orbit.amplitude, Signature(orbit.contact)
     psi = corrected_branch.instant_phase(n, signature(), lam)
     # Below its own saddle-node, or without exact orbit, a model has no orbit at all.
     simple: tuple[Orbit, Orbit] = (

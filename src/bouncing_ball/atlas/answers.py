@@ -16,7 +16,7 @@ from bouncing_ball.accuracy.quantities import OF_ORBITS
 from bouncing_ball.atlas.crossings import last_crossings
 from bouncing_ball.atlas.plan import Plan
 from bouncing_ball.atlas.walk import walk
-from bouncing_ball.contacts.signature import LinearSignature
+from bouncing_ball.contacts.signature import Signature
 
 BLOCK = 1024
 """Nodes walked at once: as many as make long arrays, and keep the walk in the cache."""
@@ -45,7 +45,7 @@ def _of_nodes(plan: Plan, row: int, index: np.ndarray) -> dict[str, np.ndarray]:
     # ϖ came down; the examined ones increase.
     at = np.flatnonzero(np.isin(down, plan.examined))[::-1]
     examined = np.moveaxis(error[at], 0, 2)
-    signature = LinearSignature(nodes.contact(down[at, np.newaxis]))
+    signature = Signature(nodes.contact(down[at, np.newaxis]))
     left = remainder(nodes.n, signature(), nodes.amplitude, examined[0], OF_ORBITS)
     threshold = last_crossings(down, error, np.array(plan.tolerances))
     return {

@@ -6,7 +6,7 @@ from functools import cached_property
 
 from bouncing_ball.accuracy.errors import models
 from bouncing_ball.contacts.laws.tsuji import Tsuji
-from bouncing_ball.contacts.signature import Instant, LawSignature
+from bouncing_ball.contacts.signature import Instant, Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.law_model import LawModel
@@ -106,7 +106,7 @@ class Case:
         return {
             "hertz": LawModel(self.law),
             "restitution": RestitutionModel(self.contact.restitution),
-            "corrected": CorrectedModel(LawSignature(self.law)),
+            "corrected": CorrectedModel(Signature(self.law)),
         }
 
     def instant(self, n: int) -> Instant:

@@ -14,7 +14,7 @@ from bouncing_ball.cli.readable import lines
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.permanent_contact import permanent_contact_minimum
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.contacts.signature import LawSignature, LinearSignature, free_impact
+from bouncing_ball.contacts.signature import Signature, free_impact
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.motion.sequence import Status
@@ -45,7 +45,7 @@ def _described(of: Any, speed: float = math.nan) -> Answer:
                 "frequency_ratio": math.pi / float(impact.duration),
                 "at_impact_speed": speed,
             }
-        case LinearSignature(inner) | LawSignature(inner):
+        case Signature(inner):
             return _described(inner, speed)
     return {}
 

@@ -68,12 +68,12 @@ def check_configuration(
             raise ConfigurationError(f"{where}: {error}") from None
     try:
         model = configuration_model(studies, config)
-        check(model, config, release=config.get("release"))
+        check(model, config)
     except ConfigurationError as error:
         raise ConfigurationError(f"configuration: {error}") from None
 
 
-def check(model: type[BaseModel], config: Mapping[str, Any], **context: Any) -> None:
+def check(model: type[BaseModel], config: Mapping[str, Any]) -> None:
     """Raise on the first mistake.
 
     Raises
@@ -91,7 +91,7 @@ def check(model: type[BaseModel], config: Mapping[str, Any], **context: Any) -> 
 samples? Allowed here: min, max, samples
     """
     try:
-        model.model_validate(config, context=context)
+        model.model_validate(config)
     except ValidationError as error:
         # A mistyped key is missing as well: what is unknown says more.
         first = min(error.errors(), key=lambda each: each["type"] != "extra_forbidden")

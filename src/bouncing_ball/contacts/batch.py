@@ -5,7 +5,6 @@ is that of all elements, and stays a scalar.
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from typing import Any, Self
 
@@ -83,12 +82,6 @@ class Batch:
             raise IndexError(f"a single {type(self).__name__} cannot be indexed")
         return self._entries(self.shape, index)
 
-    def ravel(self) -> Self:
-        """All elements in one row."""
-        if not self.shape:
-            return self._entries_of(np.atleast_1d)
-        return self[np.unravel_index(np.arange(self.size), self.shape)]
-
     def flat(self, shape: tuple[int, ...]) -> Self:
         """One element for each entry of an array, in a row; a single one is that of all."""
         if not self.shape:
@@ -98,8 +91,3 @@ class Batch:
     def take(self, which: Any) -> Self:
         """Some elements of a row; a single one is that of all."""
         return self[which] if self.shape else self
-
-    def _entries_of(self, function: Callable[[Any], Any]) -> Self:
-        values = {f.name: getattr(self, f.name) for f in fields(self)}
-        numbers = {k: v if isinstance(v, Batch | str) else function(v) for k, v in values.items()}
-        return replace(self, **numbers)

@@ -27,9 +27,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.contact_law import ContactLaw
+from bouncing_ball.contacts.contact_law import ContactLaw, slopes_of
 from bouncing_ball.contacts.contact_scales import scales
-from bouncing_ball.contacts.quadrature import scheme
 from bouncing_ball.contacts.release import Release
 
 _NODES = 16
@@ -103,10 +102,12 @@ class _Rule(NamedTuple):
 
 @lru_cache(maxsize=1)
 def _rule() -> _Rule:
-    s = scheme(_NODES, 1)
-    inner = s.rate + np.outer(~s.early, s.gain)
+    legendre, degree = np.polynomial.legendre, np.arange(_NODES)
+    x, weight = legendre.leggauss(_NODES)
+    spectrum = (degree + 0.5)[:, np.newaxis] * legendre.legvander(x, _NODES - 1).T * weight
+    sums = legendre.legval(np.append(x, 1.0), legendre.legint(np.eye(_NODES), lbnd=-1)).T
     return _Rule(
-        s.node[:, np.newaxis], np.vstack([inner, s.gain]), s.spectrum[-_TAIL:], s.spectrum.sum(0)
+        (1 + x[:, np.newaxis]) / 2, sums / 2 @ spectrum, spectrum[-_TAIL:], spectrum.sum(0)
     )
 
 
@@ -170,7 +171,7 @@ def _grip_slopes(law: ContactLaw, m: int, root, rate):
     one = np.ones_like(root)
     if law.release is Release.DISPLACEMENT:
         return one, 0 * one
-    by = law.grip_slopes(root**m, rate)
+    by = slopes_of(law.grip, root**m, rate)
     by_root = by.by_penetration * _lever(m, root)
     return by_root if law.lag is None else np.where(law.lag == 0, one, by_root), by.by_rate
 
@@ -279,13 +280,13 @@ def _derivatives(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray):
     m, q, rate = law.root, panel.root[:-1].T, panel.rate[:-1].T
     angle = start.phase[:, np.newaxis] + panel.time[:-1].T
     lever, bend = _lever(m, q), m * (m - 1) * q ** max(m - 2, 0)
-    slopes = law.columns().slopes(q**m, rate)
+    slopes = slopes_of(law.force, panel.root[:-1] ** m, panel.rate[:-1])
 
     def column(rows):
         return rows[:, :, np.newaxis]
 
-    by_root = column(bend * panel.push.T / lever - lever * lever * slopes.by_penetration)
-    by_rate = column(-lever * slopes.by_rate)
+    by_root = column(bend * panel.push.T / lever - lever * lever * slopes.by_penetration.T)
+    by_rate = column(-lever * slopes.by_rate.T)
     by_time = column(-lever * start.amplitude[:, np.newaxis] * np.cos(angle))
     step = panel.step[:, np.newaxis, np.newaxis]
     whole = step * integral

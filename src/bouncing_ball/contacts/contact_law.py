@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.batch import Batch
+from bouncing_ball.contacts.instant import Instant
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import ModelError, require
 
@@ -78,15 +79,10 @@ class ContactLaw(Batch, ABC):
         lag = self.lag
         return self.force(penetration, rate) if lag is None else penetration + lag * rate
 
-    def slopes(self, penetration: np.ndarray, rate: np.ndarray) -> Slopes:
-        """Derivatives of the force."""
-        return slopes_of(self.force, penetration, rate)
-
-    def grip_slopes(self, penetration: np.ndarray, rate: np.ndarray) -> Slopes:
-        """Derivatives of the grip."""
-        if self.lag is None:
-            return self.slopes(penetration, rate)
-        return Slopes(np.ones_like(rate), self.lag + 0 * rate)
+    @property
+    def signature(self) -> Instant | None:
+        """What the contact is to the outside where that is known and the same at every speed."""
+        return None
 
     @classmethod
     def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
@@ -107,20 +103,10 @@ class ContactLaw(Batch, ABC):
         """The dissipation that has a restitution coefficient, if that has a closed form."""
         return None
 
-    def fields(self) -> list[Any]:
-        """What the law is made of, numbers and names, in order."""
-        values = (getattr(self, field.name) for field in fields(self))
-        return [x if isinstance(x, str) else float(x) for x in values]
-
     @classmethod
     def parameter_names(cls) -> list[str]:
         """Names of the numbers of the law."""
         return [field.name for field in fields(cls) if field.name != "release"]
-
-    @classmethod
-    def chooses_release(cls) -> bool:
-        """Whether the release is a parameter, and not part of the law."""
-        return "release" in (field.name for field in fields(cls))
 
     def parameters(self) -> dict[str, Any]:
         """Names and values of the numbers of the law."""
@@ -132,10 +118,6 @@ class ContactLaw(Batch, ABC):
         numbers = (f"{name.replace('_', ' ')} {float(x):.6g}" for name, x in
                    self.parameters().items())  # fmt: skip
         return f"{self.name} with {', '.join(numbers)}"
-
-    def columns(self) -> Self:
-        """The same laws, each for a row of states."""
-        return self._entries_of(lambda x: np.asarray(x)[..., np.newaxis] if np.ndim(x) else x)
 
 
 def check_positive(value: ArrayLike, name: str) -> None:

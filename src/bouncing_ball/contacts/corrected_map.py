@@ -53,9 +53,9 @@ def impact(signature: Signature, amplitude: ArrayLike, phase: ArrayLike, arrival
     --------
     An elastic ball on a table at rest, with a contact of duration 1:
 
-    >>> from bouncing_ball.contacts.signature import LinearSignature
+    >>> from bouncing_ball.contacts.signature import Signature
     >>> from bouncing_ball.contacts.spring_damper import SpringDamper
-    >>> hit = impact(LinearSignature(SpringDamper(np.pi, 0.0)), 0.0, 0.0, -2.0)
+    >>> hit = impact(Signature(SpringDamper(np.pi, 0.0)), 0.0, 0.0, -2.0)
     >>> float(hit.velocity), float(hit.depth)
     (2.0, 1.0)
     """
@@ -75,9 +75,9 @@ def meeting(
 
     Examples
     --------
-    >>> from bouncing_ball.contacts.signature import LinearSignature
+    >>> from bouncing_ball.contacts.signature import Signature
     >>> from bouncing_ball.contacts.spring_damper import SpringDamper
-    >>> psi, p = meeting(LinearSignature(SpringDamper(np.pi, 0.0)), 0.0, 0.25, -1.5)
+    >>> psi, p = meeting(Signature(SpringDamper(np.pi, 0.0)), 0.0, 0.25, -1.5)
     >>> float(psi), float(p)
     (0.75, -2.0)
     """

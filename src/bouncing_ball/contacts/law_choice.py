@@ -18,12 +18,9 @@ from bouncing_ball.errors import ModelError, require
 
 Law = TypeVar("Law", bound=ContactLaw)
 
-# Doublings of the group until r is below the one wanted, and steps of the search: a
-# secant that keeps its bracket.
-_DOUBLINGS = 8
-_STEPS = 60
-_FIRST = 0.25
-_SETTLED = 4e-16
+# Groups tried until r is below the one wanted, and the absolute error of the one that has it.
+_GROUPS = [0.25 * 2.0**k for k in range(8)]
+_SETTLED = 1e-15
 
 
 def law_named(name: str) -> type[ContactLaw]:
@@ -69,39 +66,21 @@ def reference(kind: type[ContactLaw], restitution: float) -> tuple[float, float]
 
 
 def _search(kind: type[ContactLaw], restitution: float) -> float:
+    from scipy.optimize import brentq
+
     def surplus(group):
         return np.log(_free(kind, group)[0] / restitution)
 
-    # A law that does not say how it is scaled is not taken for one that is damped too strongly.
-    kind.of_scales(_FIRST, 1.0, 1.0)
-    left, right, above = 0.0, _FIRST, -np.log(restitution)
     # A law that cannot be given by its impact says so itself.
-    kind.of_scales(right, 1.0, 1.0)
+    kind.of_scales(_GROUPS[0], 1.0, 1.0)
     try:
-        for _ in range(_DOUBLINGS):
-            below = surplus(right)
-            if below <= 0:
-                break
-            left, above, right = right, below, 2 * right
-        else:
-            raise ModelError("out of range")
-    except ModelError:
+        enough = next(group for group in _GROUPS if surplus(group) <= 0)
+    except (ModelError, StopIteration):
         raise ModelError(
             f"restitution coefficient r = {restitution:g} is too small: no {kind.name} contact "
             "with it was found; damped so strongly, the ball hardly leaves"
         ) from None
-    for _ in range(_STEPS):
-        # Illinois' rule: the end that stays counts half.
-        middle = right - below * (right - left) / (below - above)
-        value = surplus(middle)
-        if value == 0 or abs(middle - right) <= _SETTLED * middle:
-            return float(middle)
-        if value * below < 0:
-            left, above = right, below
-        else:
-            above /= 2
-        right, below = middle, value
-    return float(right)
+    return brentq(surplus, 0.0, enough, xtol=_SETTLED, rtol=4 * np.finfo(float).eps)
 
 
 def law_of_impact(

@@ -48,19 +48,18 @@ eight of the speed wide and computed when it is first asked for.
 All quantities are dimensionless; all functions broadcast.
 """
 
-from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.batch import Batch
 from bouncing_ball.contacts.collocation import contacts
 from bouncing_ball.contacts.contact_law import ContactLaw
-from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.errors import ModelError, require
+from bouncing_ball.contacts.instant import Instant
+from bouncing_ball.errors import ModelError
 
 # Width of a panel in ln v and its nodes: a pole of r(v) at ln v = x ± iπ, like that of
 # 1/(1 + C v), leaves 6⁻²⁴.
@@ -70,114 +69,8 @@ _NODES = 24
 _SLOWEST, _FASTEST = 1e-30, 1e30
 
 
-class Instant(NamedTuple):
-    """The signature at an impact speed v, and the derivatives along v.
-
-    ``delay`` t_c, ``restitution`` r, ``load`` σ and ``duration`` D; t_c, σ and D
-    are times, r is a number.
-    """
-
-    delay: np.ndarray
-    restitution: np.ndarray
-    load: np.ndarray
-    duration: np.ndarray
-    d_delay: np.ndarray | float = 0.0
-    d_restitution: np.ndarray | float = 0.0
-    d_load: np.ndarray | float = 0.0
-
-    def tangent(self, speed: ArrayLike, load: ArrayLike) -> "tuple[Instant, np.ndarray]":
-        """The constant signature that changes alike next to a speed v and load a.
-
-        Its restitution is ``b = ∂(r v + σ a)/∂v = r + r′ v + σ′ a`` and its delay
-        ``e = ∂(v t_c)/∂v = t_c + t_c′ v``; and what is left, ``(b - r) v``, so that
-        ``r_c v = b v + σ a - (b - r) v₀`` to first order. Itself and 0 for a constant one.
-
-        Examples
-        --------
-        >>> instant, rest = Instant(1.0, 0.5, 0.0, 2.0, d_restitution=-0.125).tangent(2.0, 0.0)
-        >>> float(instant.restitution), float(rest)
-        (0.25, -0.5)
-        """
-        v = np.asarray(speed, dtype=float)
-        slope = self.restitution + (self.d_restitution * v + self.d_load * np.asarray(load))
-        depth = self.delay + self.d_delay * v
-        return Instant(depth, slope, self.load, self.duration), (slope - self.restitution) * v
-
-
-class Signature(Batch, ABC):
-    """A contact law, seen from outside: a frozen dataclass of its parameters."""
-
-    @property
-    def is_constant(self) -> bool:
-        """Whether the impact speed changes nothing, as for a linear contact."""
-        return False
-
-    @property
-    def label(self) -> str:
-        """What the law is, in words; of a single one."""
-        instant = self(np.ones(self.shape))
-        return (
-            f"r = {float(instant.restitution):.4g}, t_c = {float(instant.delay):.4g}, "
-            f"σ = {float(instant.load):.4g}"
-        )
-
-    @abstractmethod
-    def __call__(self, speed: ArrayLike) -> Instant:
-        """The signature of impacts with speeds v > 0 at the instant."""
-
-
-@dataclass(frozen=True, repr=False)
-class LinearSignature(Signature):
-    """Signature of the spring-damper contact, in closed form.
-
-    Parameters
-    ----------
-    contact : SpringDamper
-        ϖ, ζ < 1 and the release rule.
-
-    Raises
-    ------
-    ModelError
-        If ζ ≥ 1: a free overdamped contact never ends.
-
-    Examples
-    --------
-    An elastic contact pushes symmetrically, and its load cancels:
-
-    >>> instant = LinearSignature(SpringDamper(2.0, 0.0))(1.0)
-    >>> float(instant.delay) == np.pi / 4, float(instant.restitution), float(instant.load)
-    (True, 1.0, 0.0)
-    """
-
-    contact: SpringDamper
-
-    def __post_init__(self):
-        zeta = np.asarray(self.contact.damping_ratio, dtype=float)
-        require(zeta < 1, zeta, "damping ratio ζ", "below 1: a free contact never ends")
-
-    @property
-    def is_constant(self) -> bool:
-        """A linear impact is the same at every speed."""
-        return True
-
-    def __call__(self, speed: ArrayLike = 1.0) -> Instant:
-        """The signature; the speed only gives the shape."""
-        contact, same = self.contact, np.ones(np.shape(speed))
-        r = same * contact.restitution
-        duration = same * contact.free_duration
-        # When the flight after the contact, continued, rises through δ = 0.
-        through = duration + contact.lag
-        loss = 2 * np.asarray(contact.damping_ratio) / contact.frequency_ratio
-        return Instant(
-            delay=r * through / (1 + r),
-            restitution=r,
-            load=(1 - r) * through - loss * (1 + r),
-            duration=duration,
-        )
-
-
 def free_impact(law: ContactLaw, speed: ArrayLike) -> Instant:
-    """The signature at impact speeds v > 0, each by its own collocation.
+    """The signature at impact speeds v > 0, each by its own collocation where it is not known.
 
     Its derivatives in v are left at zero but for that of r.
 
@@ -193,6 +86,9 @@ def free_impact(law: ContactLaw, speed: ArrayLike) -> Instant:
     (1.0, 0.0)
     """
     v = np.asarray(speed, dtype=float)
+    known = law.signature
+    if known is not None:
+        return Instant(*(x + 0 * v for x in known))
     end = contacts(law, v, weight=0.0)
     if not np.all(np.isfinite(end.duration)):
         lost = np.broadcast_to(v, end.duration.shape)[np.isnan(end.duration)][0]
@@ -210,33 +106,36 @@ def free_impact(law: ContactLaw, speed: ArrayLike) -> Instant:
 @lru_cache(maxsize=4096)
 def _panel(law_type: type[ContactLaw], values: tuple, number: int) -> np.ndarray:
     """Chebyshev coefficients of t_c, r, σ and D over a panel, shape (nodes, 4)."""
-    angle = np.pi * (np.arange(_NODES) + 0.5) / _NODES
-    log = (number + (np.cos(angle) + 1) / 2) * _WIDTH
-    instant = free_impact(law_type(*values), np.exp(log))
-    rows = np.stack([instant.delay, instant.restitution, instant.load, instant.duration], axis=1)
-    waves = np.cos(np.outer(np.arange(_NODES), angle)) * (2 / _NODES)
-    waves[0] /= 2
-    return waves @ rows
+    x = chebyshev.chebpts1(_NODES)
+    instant = free_impact(law_type(*values), np.exp((number + (x + 1) / 2) * _WIDTH))
+    return chebyshev.chebfit(x, np.stack(instant[:4], axis=1), _NODES - 1)
 
 
 @dataclass(frozen=True, repr=False)
-class LawSignature(Signature):
-    """The signature of any contact law, tabulated.
+class Signature(Batch):
+    """A contact law, seen from outside: tabulated, where the law does not know it.
 
     Parameters
     ----------
     law : ContactLaw
-        A single one.
+        A single one if it is tabulated.
 
     Raises
     ------
     ModelError
-        If the law has arrays of parameters, or does not let the ball go.
+        If the law does not let the ball go, or would be tabulated for arrays of parameters.
 
     Examples
     --------
+    An elastic contact pushes symmetrically, and its load cancels:
+
+    >>> from bouncing_ball.contacts.spring_damper import SpringDamper
+    >>> instant = Signature(SpringDamper(2.0, 0.0))()
+    >>> float(instant.delay) == np.pi / 4, float(instant.restitution), float(instant.load)
+    (True, 1.0, 0.0)
+
     >>> from bouncing_ball.contacts.laws.tsuji import Tsuji, tsuji_damping
-    >>> instant = LawSignature(Tsuji(50.0, tsuji_damping(0.7)))([1.0, 2.0, 3.0])
+    >>> instant = Signature(Tsuji(50.0, tsuji_damping(0.7)))([1.0, 2.0, 3.0])
     >>> instant.restitution.round(12).tolist()
     [0.7, 0.7, 0.7]
     """
@@ -244,27 +143,33 @@ class LawSignature(Signature):
     law: ContactLaw
 
     def __post_init__(self):
-        if self.law.shape:
+        if not self.is_constant and self.law.shape:
             raise ModelError("the signature of a contact law is tabulated for one law, not many")
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether the impact speed changes nothing, as for a linear contact."""
+        return self.law.signature is not None
 
     @property
     def label(self) -> str:
         """The law and its parameters."""
         return self.law.label
 
-    def __call__(self, speed: ArrayLike) -> Instant:
+    def __call__(self, speed: ArrayLike = 1.0) -> Instant:
         """The signature of impacts with speeds v > 0 at the instant."""
+        if self.is_constant:
+            return free_impact(self.law, speed)
         v = np.clip(np.asarray(speed, dtype=float), _SLOWEST, _FASTEST)
         log = np.log(v) / _WIDTH
         number = np.floor(np.where(np.isnan(log), 0.0, log)).astype(int)
-        values = np.full((4, *v.shape), np.nan)
-        slopes = np.full((4, *v.shape), np.nan)
-        key = tuple(self.law.fields())
+        values = np.full((2, 4, *v.shape), np.nan)
+        key = tuple(x if isinstance(x, str) else float(x) for x in vars(self.law).values())
         for panel in np.unique(number):
             coefficients = _panel(type(self.law), key, int(panel))
+            slopes = chebyshev.chebder(coefficients) * (2 / _WIDTH)
             here = number == panel
             x = 2 * (log[here] - panel) - 1
-            values[:, here] = np.polynomial.chebyshev.chebval(x, coefficients)
-            derived = np.polynomial.chebyshev.chebder(coefficients) * (2 / _WIDTH)
-            slopes[:, here] = np.polynomial.chebyshev.chebval(x, derived) / v[here]
-        return Instant(*values, *slopes[:3])
+            values[0, :, here] = chebyshev.chebval(x, coefficients).T
+            values[1, :, here] = (chebyshev.chebval(x, slopes) / v[here]).T
+        return Instant(*values[0], *values[1, :3])

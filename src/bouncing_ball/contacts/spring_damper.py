@@ -25,8 +25,9 @@ from typing import ClassVar, NamedTuple, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.contact_law import ContactLaw
+from bouncing_ball.contacts.contact_law import ContactLaw, check_damping, check_positive
 from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
+from bouncing_ball.contacts.instant import Instant
 from bouncing_ball.contacts.oscillator import responses
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import require
@@ -46,13 +47,6 @@ class ContactFlow(NamedTuple):
     velocity: np.ndarray
     acceleration: np.ndarray
     jacobian: np.ndarray
-
-
-def check_contact(frequency_ratio: ArrayLike, damping_ratio: ArrayLike) -> None:
-    """Raise :class:`ModelError` unless ϖ > 0 and ζ ≥ 0, both finite."""
-    omega, zeta = (np.asarray(x, dtype=float) for x in (frequency_ratio, damping_ratio))
-    require((omega > 0) & np.isfinite(omega), omega, "frequency ratio ϖ", "finite and positive")
-    require((zeta >= 0) & np.isfinite(zeta), zeta, "damping ratio ζ", "finite and ≥ 0")
 
 
 @dataclass(frozen=True, repr=False)
@@ -89,7 +83,8 @@ class SpringDamper(ContactLaw):
     root: ClassVar[int] = 1
 
     def __post_init__(self):
-        check_contact(self.frequency_ratio, self.damping_ratio)
+        check_positive(self.frequency_ratio, "frequency ratio ϖ")
+        check_damping(self.damping_ratio, "damping ratio ζ")
         object.__setattr__(self, "release", Release.of(self.release))
 
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
@@ -180,6 +175,22 @@ class SpringDamper(ContactLaw):
     def _require_underdamped(self) -> None:
         zeta = np.asarray(self.damping_ratio, dtype=float)
         require(zeta < 1, zeta, "damping ratio ζ", "below 1: the contact does not oscillate")
+
+    @property
+    def signature(self) -> Instant:
+        """In closed form; the speed changes nothing.
+
+        Raises
+        ------
+        ModelError
+            If ζ ≥ 1: a free overdamped contact never ends.
+        """
+        duration, r = self.free_duration, self.restitution
+        # When the flight after the contact, continued, rises through δ = 0.
+        through = duration + self.lag
+        loss = 2 * np.asarray(self.damping_ratio) / self.frequency_ratio
+        load = (1 - r) * through - loss * (1 + r)
+        return Instant(r * through / (1 + r), r + 0 * duration, load, duration)
 
     def flow(
         self,

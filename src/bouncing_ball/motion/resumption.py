@@ -17,7 +17,7 @@ table: that it does not return between two samples is not certified.
 
 import numpy as np
 
-from bouncing_ball.contacts.contact_law import ContactLaw
+from bouncing_ball.contacts.contact_law import ContactLaw, slopes_of
 from bouncing_ball.motion.first_zero import Motion, State, first_zero
 from bouncing_ball.motion.landing import Flight, Rise
 
@@ -59,7 +59,7 @@ def _leaves_fast(flight: Flight, law: ContactLaw) -> np.ndarray:
     """Whether δ certainly reaches 0 before the force can return."""
     lag = law.lag
     if lag is None:
-        slopes = law.grip_slopes(-flight.displacement, -flight.velocity)
+        slopes = slopes_of(law.grip, -flight.displacement, -flight.velocity)
         lag = slopes.by_rate / slopes.by_penetration
     inside = flight.room()
     return (inside > 0) & (np.sqrt(np.maximum(inside, 0.0)) >= lag * (1 + flight.amplitude))

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
-from bouncing_ball.contacts.signature import Instant, LinearSignature, Signature
+from bouncing_ball.contacts.signature import Instant, Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits import corrected_branch as formulas
 from bouncing_ball.orbits.corrected_orbit import CorrectedOrbit
@@ -40,7 +40,7 @@ class CorrectedModel(ImpactModel):
     @classmethod
     def of_contact(cls, contact: SpringDamper) -> "ConstantCorrectedModel":
         """The model of a spring-damper contact."""
-        return ConstantCorrectedModel(LinearSignature(contact))
+        return ConstantCorrectedModel(Signature(contact))
 
     @property
     def label(self) -> str:

@@ -25,9 +25,9 @@ class CorrectedOrbit(Orbit):
 
     Examples
     --------
-    >>> from bouncing_ball.contacts.signature import LinearSignature
+    >>> from bouncing_ball.contacts.signature import Signature
     >>> from bouncing_ball.contacts.spring_damper import SpringDamper
-    >>> orbit = CorrectedOrbit.at(1, LinearSignature(SpringDamper(np.pi, 0.0)), 0.8, np.pi / 2)
+    >>> orbit = CorrectedOrbit.at(1, Signature(SpringDamper(np.pi, 0.0)), 0.8, np.pi / 2)
     >>> float(orbit.bounce_velocity) == np.pi - 0.5, round(float(orbit.phase) - np.pi / 2, 12)
     (True, -0.5)
     """

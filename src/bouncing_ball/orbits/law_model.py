@@ -144,7 +144,7 @@ class LawModel(ImpactModel):
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ up to which a steady contact is held all the time."""
         laws = self.law.flat(self.law.shape)
-        found = [permanent_contact(laws.take(k)).amplitude for k in range(self.law.size)]
+        found = [permanent_contact(laws.take(k)) for k in range(self.law.size)]
         return np.array(found).reshape(self.law.shape)
 
 

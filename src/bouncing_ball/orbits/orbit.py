@@ -229,16 +229,12 @@ class Orbit(Batch, ABC):
         contact may lift it higher with the table.
         """
         rising = np.maximum(self.bounce_velocity, 0.0)
-        top = self.bounce_height + rising * rising / 2
-        low = np.broadcast_to((top < self.amplitude) & (self.contact_duration > 0), self.shape)
-        if not np.any(low):
-            return top
-        if not self.shape:
-            return np.maximum(top, self._contact_top())
-        top, lifted = np.array(np.broadcast_to(top, self.shape)), self[low]
+        top = np.array(np.broadcast_to(self.bounce_height + rising * rising / 2, self.shape))
+        low = np.flatnonzero((top < self.amplitude) & (self.contact_duration > 0))
         # The samples of all at once would be gigabytes.
-        parts = [lifted[part]._contact_top() for part in blocks(lifted.size, _BLOCK)]
-        top[low] = np.maximum(top[low], np.concatenate(parts))
+        for part in blocks(low.size, _BLOCK):
+            lifted = self.flat(self.shape).take(low[part])._contact_top()
+            top.flat[low[part]] = np.maximum(top.flat[low[part]], lifted)
         return top
 
     def _contact_top(self) -> np.ndarray:
@@ -338,14 +334,13 @@ class Orbit(Batch, ABC):
         No earlier release and no earlier landing: the simulation's next impact,
         whose events are certified, is the orbit's own. False where there is none.
         """
-        u = self.relative_impact_velocity
-        shape = np.shape(u)
-        possible = (u < 0) & (self.contact_duration >= 0) & (self.flight_time > 0)
-        admissible = np.zeros(shape, dtype=bool)
+        falls, lasts = self.relative_impact_velocity < 0, self.contact_duration >= 0
+        possible = falls & lasts & (self.flight_time > 0)
+        admissible = np.zeros(self.shape, dtype=bool)
         if np.any(possible):
-            part = self[possible] if shape else self
-            at, speed = part.phase, part.relative_impact_velocity
-            cycle = part.cycle(at, speed)
+            part = self[possible] if self.shape else self
+            speed = part.relative_impact_velocity
+            cycle = part.cycle(part.phase, speed)
             returned = np.abs(cycle.relative_velocity / speed - 1) < _SAME
             same = np.abs(cycle.time - 2 * np.pi * np.asarray(part.n)) < _SAME
             admissible[possible] = same & returned & (cycle.displacement == 0)

@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
-from bouncing_ball.contacts.signature import Instant, LinearSignature
+from bouncing_ball.contacts.signature import Instant, Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits import spring_damper_limits as limits
 from bouncing_ball.orbits.model import Absence, ImpactModel, Route
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.spring_damper_branch import nearest_excess
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
-from bouncing_ball.orbits.spring_damper_system import Parameter, SpringDamperSystem
+from bouncing_ball.orbits.spring_damper_system import SpringDamperSystem
 from bouncing_ball.orbits.stability import Side
 
 # Units in the last place of z′_i that rounding leaves of a Λ = 0; at most 3.9 were
@@ -54,7 +54,7 @@ class SpringDamperModel(ImpactModel):
 
     def signature(self, speed: ArrayLike) -> Instant:
         """The contact's own, the same at every speed."""
-        return LinearSignature(self.contact)(speed)
+        return Signature(self.contact)(speed)
 
     def orbit(
         self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE
@@ -110,10 +110,7 @@ class SpringDamperModel(ImpactModel):
 
     def system(self, n: int | np.ndarray) -> SpringDamperSystem:
         """The paper's equations, continued in Λ."""
-        contact = self.contact
-        return SpringDamperSystem(
-            n, contact.damping_ratio, Parameter.AMPLITUDE, contact.frequency_ratio, contact.release
-        )
+        return SpringDamperSystem(n, self.contact)
 
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ_SD(ϖ) or Λ_F(ϖ)."""

@@ -6,9 +6,8 @@ Hertz contact does not have, is π/D: that of the elastic linear contact of the
 same duration. Errors are relative to the value of the exact orbit on the contact.
 """
 
-from bisect import bisect_left
 from collections.abc import Callable
-from functools import cache
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -22,7 +21,7 @@ from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.laws import LAWS
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.contacts.signature import LawSignature
+from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.errors import ModelError, NoOrbitError
@@ -33,15 +32,8 @@ from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Side
-from bouncing_ball.parameters import (
-    Family,
-    FrequencyRatio,
-    LawRestitution,
-    Many,
-    Parameters,
-    Tolerance,
-)
-from bouncing_ball.studies.parameters import BranchEnd, OrbitsAlongRatio, Points
+from bouncing_ball.parameters import FrequencyRatio, LawRestitution, Many, Tolerance
+from bouncing_ball.studies.parameters import FamilyBranches, OrbitsAlongRatio
 
 HERTZ = ("hunt-crossley", "tsuji", "kuwabara-kono")
 LINEAR = {"linear": Release.DISPLACEMENT, "linear, force release": Release.FORCE}
@@ -62,14 +54,11 @@ class LawErrors(OneOrbit):
     tolerance: Tolerance
 
 
-class FiguresOfLaws(Parameters):
+class FiguresOfLaws(FamilyBranches):
     """Families whose branches are followed, and the orbit whose greatest height is shown."""
 
-    n: Many[Family]
     restitution: LawRestitution
     frequency_ratio: Many[FrequencyRatio]
-    amplitude_max: BranchEnd
-    points: Points
     heights: OneOrbit
 
 
@@ -99,37 +88,35 @@ def exact_model(
 def own_models(name: str, orbit: OneOrbit, ratios: np.ndarray) -> Any:
     """The exact models of contacts with r and π/D at their own orbits' speeds.
 
-    None if a contact has no such orbit: one that is longer than the cycle, for example.
+    Raises
+    ------
+    NoOrbitError, ModelError
+        If a contact has no such orbit: one that is longer than the cycle, for example.
     """
     r, duration = orbit.restitution, np.pi / ratios
     if name in LINEAR:
         return exact_model(name, r, duration, 1.0)
-    try:
-        return LawModel(law_at_orbit(LAWS[name], r, duration, orbit.n, orbit.amplitude))
-    except (ModelError, NoOrbitError):
-        return None
+    return LawModel(law_at_orbit(LAWS[name], r, duration, orbit.n, orbit.amplitude))
 
 
 def along(name: str, orbit: OneOrbit, value: Callable[[Any], np.ndarray]) -> np.ndarray:
-    """A value of the exact models along π/D, shape (..., ϖ), NaN below the first of their orbits.
+    """A value of the exact models along π/D, shape (..., ϖ).
 
-    The softest contact is found by bisection from which on all have their orbit.
+    NaN below the softest contact from which on all have their orbit.
     """
     ratios = orbit.frequency_ratio.grid()
-    models = cache(lambda first: own_models(name, orbit, ratios[first:]))
-    # The stiffest one alone is taken as it is: without an orbit on it there is nothing to show.
-    first = 0
-    if models(first) is None:
-        first = bisect_left(range(len(ratios) - 1), True, key=lambda k: models(k) is not None)
-    found = value(models(first))
-    return np.concatenate([np.full((*found.shape[:-1], first), np.nan), found], axis=-1)
+    for first in range(ratios.size):
+        with suppress(ModelError, NoOrbitError):
+            found = value(own_models(name, orbit, ratios[first:]))
+            return np.concatenate([np.full((*found.shape[:-1], first), np.nan), found], axis=-1)
+    raise NoOrbitError(f"no {name} contact has the {orbit.n}-T orbit at Λ = {orbit.amplitude:g}")
 
 
 def corrected_values(exact: Any, *asked: Any) -> np.ndarray:
     """What the corrected restitution models of contacts say, shape (quantity, ϖ)."""
     if isinstance(exact, SpringDamperModel):
         return values(CorrectedModel.of_contact(exact.contact), *asked)
-    each = (CorrectedModel(LawSignature(exact.law.take(k))) for k in range(exact.law.size))
+    each = (CorrectedModel(Signature(exact.law.take(k))) for k in range(exact.law.size))
     return np.stack([values(model, *asked) for model in each], axis=-1)
 
 
@@ -145,10 +132,8 @@ def _errors(name: str, parameters: LawErrors) -> tuple[np.ndarray, float]:
         return np.abs([relative(x, wanted) for x in (constant, repaired)])
 
     def height(ratio: np.ndarray, _: np.ndarray) -> np.ndarray:
-        exact = own_models(name, parameters, ratio)
-        if exact is None:
-            return np.full(ratio.shape, np.nan)
-        return relative(rigid.orbit(n, lam).max_height, exact.orbit(n, lam).max_height)
+        exact = own_models(name, parameters, ratio).orbit(n, lam)
+        return relative(rigid.orbit(n, lam).max_height, exact.max_height)
 
     errors, ratios = along(name, parameters, both), parameters.frequency_ratio.grid()
     found = thresholds(height, ratios, errors[0, :1], [parameters.tolerance])

@@ -25,7 +25,7 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
-from bouncing_ball.orbits.spring_damper_system import Parameter, SpringDamperSystem
+from bouncing_ball.orbits.spring_damper_system import SpringDamperSystem
 from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.parameters import FrequencyRatio, Parameters, number
 
@@ -80,9 +80,7 @@ def _on_the_way(
     """
     omega, newton = float(contact.frequency_ratio), continuation.newton()
     stiff = max(continuation.stiff_frequency_ratio, omega)
-    towards = SpringDamperSystem(
-        n, contact.damping_ratio, Parameter.LOG_FREQUENCY_RATIO, amplitude, contact.release
-    )
+    towards = SpringDamperSystem(n, contact, amplitude)
     y = solve_at(towards, towards.guess(amplitude, stiff), newton)
     if omega == stiff:
         return y[:-1]

@@ -6,11 +6,10 @@ permanent contact). The threshold for a tolerance is the ϖ above which the
 error stays below it, within the range scanned.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from typing import Annotated
 
-import numpy as np
 import xarray as xr
 from pydantic import Strict
 
@@ -19,9 +18,8 @@ from bouncing_ball.accuracy.thresholds import model_thresholds
 from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.parameters import Many, Span, Tolerance
+from bouncing_ball.parameters import Many, Tolerance
 from bouncing_ball.studies.parameters import OrbitErrors, OrbitsAlongRatio
 from bouncing_ball.studies.permanent_contact_curve import PermanentContact, permanent_contact
 
@@ -45,16 +43,21 @@ class PermanentContactError(PermanentContact):
 
 
 def thresholds_along(
-    exact: Callable[[np.ndarray], ImpactModel],
-    simple: RestitutionModel,
-    orbit: tuple[int, float],
-    span: Span,
+    one: OrbitsAlongRatio,
+    release: Release,
     quantities: Sequence[Quantity],
     tolerances: Sequence[float],
+    restitution: float | None = None,
 ) -> xr.Dataset:
-    """Errors along ϖ, shape (quantity, ϖ), and thresholds, shape (quantity, tolerance)."""
-    ratios = span.grid()
-    error, found = model_thresholds(exact, simple, *orbit, ratios, tolerances, quantities)
+    """Errors along ϖ, shape (quantity, ϖ), and thresholds, shape (quantity, tolerance).
+
+    Of the restitution model with the r of Eq. 16, if no other is given.
+    """
+    simple = RestitutionModel(restitution or one.restitution)
+    exact, ratios = partial(one.exact, release=release), one.frequency_ratio.grid()
+    error, found = model_thresholds(
+        exact, simple, one.n, one.amplitude, ratios, tolerances, quantities
+    )
     dims = ("quantity", "tolerance")
     return xr.Dataset(
         {
@@ -70,17 +73,6 @@ def thresholds_along(
     )
 
 
-def _of_orbit(
-    one: OrbitsAlongRatio,
-    release: Release,
-    quantities: Sequence[Quantity],
-    tolerances: Sequence[float],
-) -> xr.Dataset:
-    simple, orbit = RestitutionModel(one.restitution), (one.n, one.amplitude)
-    exact = partial(one.exact, release=release)
-    return thresholds_along(exact, simple, orbit, one.frequency_ratio, quantities, tolerances)
-
-
 def error_thresholds(parameters: ErrorThresholds, release: Release) -> xr.Dataset:
     """Errors along ϖ, shape (quantity, ϖ), and thresholds in ϖ, shape (quantity, tolerance).
 
@@ -89,7 +81,8 @@ def error_thresholds(parameters: ErrorThresholds, release: Release) -> xr.Datase
     NoOrbitError
         If the restitution model has no orbit at Λ to compare with.
     """
-    return describe(_of_orbit(parameters, release, parameters.quantities, parameters.tolerances))
+    asked = parameters.quantities, parameters.tolerances
+    return describe(thresholds_along(parameters, release, *asked))
 
 
 def height_error(parameters: OrbitErrors, release: Release) -> xr.Dataset:
@@ -101,7 +94,7 @@ def height_error(parameters: OrbitErrors, release: Release) -> xr.Dataset:
         If the restitution model has no orbit at Λ to compare with.
     """
     n, lam, ratios = parameters.n, parameters.amplitude, parameters.frequency_ratio.grid()
-    dataset = _of_orbit(parameters, release, [Quantity.MAX_HEIGHT], [parameters.tolerance])
+    dataset = thresholds_along(parameters, release, [Quantity.MAX_HEIGHT], [parameters.tolerance])
     orbit = parameters.exact(ratios, release).orbit(n, lam)
     for name in ("max_height", "phase", "contact_duration", "impact_velocity"):
         dataset[name] = ("frequency_ratio", getattr(orbit, name))
@@ -118,5 +111,5 @@ def permanent_contact_error(parameters: PermanentContactError, release: Release)
         n=1, amplitude=RESTITUTION_THRESHOLD, **dict(parameters)
     )
     asked = [Quantity.PERMANENT_CONTACT]
-    dataset = _of_orbit(nowhere, release, asked, [parameters.tolerance])
+    dataset = thresholds_along(nowhere, release, asked, [parameters.tolerance])
     return describe(dataset.merge(permanent_contact(parameters, release)))

@@ -17,7 +17,7 @@ from bouncing_ball.accuracy.errors import SIMPLE, errors
 from bouncing_ball.accuracy.quantities import OF_IMPACTS, Quantity
 from bouncing_ball.accuracy.thresholds import search
 from bouncing_ball.contacts.damping import damping_ratio
-from bouncing_ball.contacts.signature import LinearSignature
+from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.parameters import (
@@ -37,15 +37,6 @@ class Sample(Parameters):
 
     seed: Seed
     samples: Annotated[Samples, Field(description="random orbits whose orders are measured")]
-    stiff_frequency_ratio: Annotated[
-        float,
-        number(
-            "ϖ of the softer of two contacts for the order, the other having twice as much; below "
-            "100 further orders show, beyond 10⁴ rounding",
-            ge=100,
-            le=1e4,
-        ),
-    ]
     law_samples: Annotated[Samples, Field(description="random orbits on which the law is tried")]
 
 
@@ -58,6 +49,10 @@ class Orders(OrbitErrors):
 
 _STIFF = 500.0
 """ϖ at which the second order is all of the corrected model's error, and rounding none of it."""
+
+
+# For the order: below 100 further orders show, beyond 10⁴ rounding.
+_TWO_STIFF = np.array([[1000.0], [2000.0]])
 
 
 def _second_order(zeta: float, rule: Release, n, amplitude) -> np.ndarray:
@@ -73,12 +68,11 @@ def _second_order(zeta: float, rule: Release, n, amplitude) -> np.ndarray:
 def _of_random_orbits(sample: Sample, span: Span, release: Release) -> dict[str, tuple]:
     """Orders of both models, and what the law leaves of the restitution model's errors."""
     n, zeta, lam, _ = random_orbits(sample.samples, sample.seed, release, (0.2, 0.95))
-    stiff = sample.stiff_frequency_ratio * np.array([[1.0], [2.0]])
-    once, twice = np.moveaxis(np.abs(errors(SpringDamper(stiff, zeta, release), n, lam)), 2, 0)
+    once, twice = np.moveaxis(np.abs(errors(SpringDamper(_TWO_STIFF, zeta, release), n, lam)), 2, 0)
     n, zeta, lam, rng = random_orbits(sample.law_samples, sample.seed + 1, release)
     omega = np.exp(rng.uniform(*np.log([span.min, span.max]), sample.law_samples))
     contact = SpringDamper(omega, zeta, release)
-    left = error_law.remainder(n, LinearSignature(contact)(), lam, errors(contact, n, lam)[0])
+    left = error_law.remainder(n, Signature(contact)(), lam, errors(contact, n, lam)[0])
     return {
         "order": (("model", "quantity", "sample"), np.log2(once / twice)),
         "law_remainder": (("quantity", "law_sample"), left.factor),

@@ -15,7 +15,6 @@ from scipy.optimize.elementwise import find_minimum
 from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.parameters import Family, LossyRestitution, Many, Parameters, Span, Tolerance
@@ -36,13 +35,6 @@ class ReleaseRules(Parameters):
     restitution: LossyRestitution
     frequency_ratio: Span
     thresholds: RuleThresholds
-
-
-READINGS = (
-    (Release.DISPLACEMENT, "displacement release, r of Eq. 16"),
-    (Release.FORCE, "force release, r of Eq. 16"),
-    (Release.FORCE, "force release, its own r"),
-)
 
 
 def _lowest_doubling(
@@ -87,19 +79,20 @@ def _bifurcations(parameters: ReleaseRules, rule: Release) -> xr.Dataset:
 
 def _thresholds(wanted: RuleThresholds) -> xr.Dataset:
     """The ϖ above which each quantity is within the tolerance, reading by reading."""
-    r, orbit = wanted.restitution, (wanted.n, wanted.amplitude)
-    loss = float(damping_ratio(r))
-    own = float(restitution_coefficient(loss, Release.FORCE))
-    found = []
-    for rule, reading in READINGS:
-
-        def exact(ratio: np.ndarray, rule=rule) -> SpringDamperModel:
-            return SpringDamperModel(SpringDamper(ratio, loss, rule))
-
-        simple = RestitutionModel(own if reading.endswith("own r") else r)
-        asked = wanted.frequency_ratio, wanted.quantities, [wanted.tolerance]
-        one = thresholds_along(exact, simple, orbit, *asked).isel(tolerance=0, drop=True)
-        found.append(one.drop_dims("frequency_ratio").assign_coords(reading=reading))
+    r = wanted.restitution
+    own = float(restitution_coefficient(damping_ratio(r), Release.FORCE))
+    readings = {
+        "displacement release, r of Eq. 16": (Release.DISPLACEMENT, r),
+        "force release, r of Eq. 16": (Release.FORCE, r),
+        "force release, its own r": (Release.FORCE, own),
+    }
+    found = [
+        thresholds_along(wanted, rule, wanted.quantities, [wanted.tolerance], simple)
+        .isel(tolerance=0, drop=True)
+        .drop_dims("frequency_ratio")
+        .assign_coords(reading=reading)
+        for reading, (rule, simple) in readings.items()
+    ]
     return xr.concat(found, "reading").assign(force_restitution=own)
 
 

@@ -4,11 +4,11 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.contacts.signature import LinearSignature
+from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.datasets.variables import describe, described
 from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.parameters import Many, Samples
-from bouncing_ball.studies.parameters import MotionRatio, OrbitParameters
+from bouncing_ball.parameters import FrequencyRatio, Many, Samples
+from bouncing_ball.studies.parameters import OrbitParameters
 
 # What is published of each orbit.
 _STATE = ("phase", "contact_duration", "impact_velocity", "bounce_velocity")
@@ -17,14 +17,14 @@ _STATE = ("phase", "contact_duration", "impact_velocity", "bounce_velocity")
 class ContactHistory(OrbitParameters):
     """One cycle of one orbit."""
 
-    frequency_ratio: MotionRatio
+    frequency_ratio: FrequencyRatio
     samples: Samples
 
 
 class Histories(OrbitParameters):
     """One cycle on several contacts."""
 
-    frequency_ratio: Many[MotionRatio]
+    frequency_ratio: Many[FrequencyRatio]
     samples: Samples
 
 
@@ -122,7 +122,7 @@ def meeting_flights(parameters: ContactHistory, release: Release) -> xr.Dataset:
             "contact_duration": ((), end),
             "meeting_time": ((), meeting),
             "meeting_height": ((), float(start + (velocity - meeting / 2) * meeting)),
-            "delay": ((), float(LinearSignature(exact.contact)().delay)),
+            "delay": ((), float(Signature(exact.contact)().delay)),
         },
         coords={"time": time},
     )

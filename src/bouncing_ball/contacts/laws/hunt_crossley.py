@@ -15,21 +15,15 @@ sphere, and e = 1 - c v at low speed; its c is (2/3) λ).
 """
 
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.contact_law import (
-    ContactLaw,
-    Slopes,
-    check_damping,
-    check_positive,
-)
+from bouncing_ball.contacts.laws.hertz import Hertz
 
 
 @dataclass(frozen=True, repr=False)
-class HuntCrossley(ContactLaw):
+class HuntCrossley(Hertz):
     """Hertz contact with damping proportional to the elastic force.
 
     Parameters
@@ -43,28 +37,15 @@ class HuntCrossley(ContactLaw):
     24.0
     """
 
-    stiffness: float | np.ndarray
-    damping: float | np.ndarray
-
     name: ClassVar[str] = "hunt-crossley"
     formula: ClassVar[str] = "K p^1.5 (1 + C p′)"
-
-    def __post_init__(self):
-        check_positive(self.stiffness, "stiffness K")
-        check_damping(self.damping, "damping C")
 
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """K p^{3/2} (1 + C p′)."""
         elastic = self.stiffness * (penetration * np.sqrt(penetration))
         return elastic * (1 + self.damping * rate)
 
-    def slopes(self, penetration: np.ndarray, rate: np.ndarray) -> Slopes:
-        """Derivatives of the force."""
-        slope = self.stiffness * np.sqrt(penetration)
-        return Slopes(1.5 * slope * (1 + self.damping * rate), slope * penetration * self.damping)
-
-    @classmethod
-    def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
-        """K = v²/P^{5/2} and C = group/v."""
-        v = np.asarray(speed, dtype=float)
-        return cls(v * v / np.asarray(length) ** 2.5, group / v)
+    @staticmethod
+    def damping_unit(length: np.ndarray, speed: np.ndarray) -> np.ndarray:
+        """1/v."""
+        return 1 / speed

@@ -17,22 +17,16 @@ ChattAbhi/Approx-ViscoElastic-CoR.
 """
 
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.contact_law import (
-    ContactLaw,
-    Slopes,
-    check_damping,
-    check_positive,
-)
+from bouncing_ball.contacts.laws.hertz import Hertz
 from bouncing_ball.contacts.release import Release
 
 
 @dataclass(frozen=True, repr=False)
-class KuwabaraKono(ContactLaw):
+class KuwabaraKono(Hertz):
     """Viscoelastic Hertz contact that does not pull.
 
     Parameters
@@ -47,33 +41,20 @@ class KuwabaraKono(ContactLaw):
     (18.0, 0.0)
     """
 
-    stiffness: float | np.ndarray
-    damping: float | np.ndarray
-
     name: ClassVar[str] = "kuwabara-kono"
     formula: ClassVar[str] = "K (p^1.5 + C √p p′)"
     release = Release.FORCE
 
-    def __post_init__(self):
-        check_positive(self.stiffness, "stiffness K")
-        check_damping(self.damping, "damping C")
-
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """K √p (p + C p′)."""
         return self.stiffness * np.sqrt(penetration) * (penetration + self.damping * rate)
-
-    def slopes(self, penetration: np.ndarray, rate: np.ndarray) -> Slopes:
-        """Derivatives of the force."""
-        slope, drag = self.stiffness * np.sqrt(penetration), self.damping * rate
-        return Slopes(slope * (1.5 + 0.5 * drag / penetration), slope * self.damping)
 
     @property
     def lag(self) -> float | np.ndarray:
         """C: the force vanishes with p + C p′."""
         return self.damping
 
-    @classmethod
-    def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
-        """K = v²/P^{5/2} and C = group P/v."""
-        v, p = np.asarray(speed, dtype=float), np.asarray(length, dtype=float)
-        return cls(v * v / p**2.5, group * p / v)
+    @staticmethod
+    def damping_unit(length: np.ndarray, speed: np.ndarray) -> np.ndarray:
+        """P/v."""
+        return length / speed

@@ -20,17 +20,12 @@ and the formula for any power (abstract read).
 """
 
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.contact_law import (
-    ContactLaw,
-    Slopes,
-    check_damping,
-    check_positive,
-)
+from bouncing_ball.contacts.laws.hertz import Hertz
 from bouncing_ball.errors import require
 
 
@@ -47,7 +42,7 @@ def tsuji_damping(restitution: ArrayLike) -> np.ndarray:
 
 
 @dataclass(frozen=True, repr=False)
-class Tsuji(ContactLaw):
+class Tsuji(Hertz):
     """Hertz contact whose restitution coefficient is the same at every speed.
 
     Parameters
@@ -61,16 +56,12 @@ class Tsuji(ContactLaw):
     258.0
     """
 
-    stiffness: float | np.ndarray
-    damping: float | np.ndarray
-
     name: ClassVar[str] = "tsuji"
     formula: ClassVar[str] = "K p^1.5 + C √K p^0.25 p′"
     root: ClassVar[int] = 4
 
     def __post_init__(self):
-        check_positive(self.stiffness, "stiffness K")
-        check_damping(self.damping, "damping C")
+        super().__post_init__()
         c = np.asarray(self.damping, dtype=float)
         require(c < np.sqrt(5), c, "damping C", "below √5: with more the ball does not leave")
 
@@ -79,19 +70,6 @@ class Tsuji(ContactLaw):
         half = np.sqrt(penetration)
         loss = self.damping * np.sqrt(self.stiffness)
         return self.stiffness * penetration * half + loss * np.sqrt(half) * rate
-
-    def slopes(self, penetration: np.ndarray, rate: np.ndarray) -> Slopes:
-        """Derivatives of the force."""
-        half = np.sqrt(penetration)
-        loss = self.damping * np.sqrt(self.stiffness) * np.sqrt(half)
-        return Slopes(1.5 * self.stiffness * half + loss * rate / (4 * penetration), loss)
-
-    @classmethod
-    def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
-        """K = v²/P^{5/2} and C = group."""
-        v = np.asarray(speed, dtype=float)
-        stiffness = v * v / np.asarray(length) ** 2.5
-        return cls(stiffness, np.asarray(group, dtype=float) + 0 * stiffness)
 
     @classmethod
     def group_of(cls, restitution: float) -> float:

@@ -26,7 +26,6 @@ from bouncing_ball.parameters import (
     Samples,
     Seed,
     Span,
-    number,
 )
 from bouncing_ball.studies.parameters import OrbitErrors
 from bouncing_ball.studies.random_orbits import random_orbits

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from bouncing_ball.figures.canvas import WIDE, canvas, legend_below, logarithmic
 from bouncing_ball.figures.labels import QUANTITIES, number, parameters
-from bouncing_ball.figures.style import GUIDE, LAWS, MODELS, RESTITUTION
+from bouncing_ball.figures.style import GUIDE, LAWS, MODELS, RESTITUTION, Look
 
 # The linear contact, whose threshold is smooth, comes first.
 _SHAPES = ("", "o", "s", "^")
@@ -30,8 +30,8 @@ def orders(data: xr.Dataset) -> Figure:
             # A guide of the slope through the last point.
             axes.plot(ratio, error[-1] * (ratio[-1] / ratio) ** order, **GUIDE)
             name = f"order {float(part.order.median()):.2f}"
-            at = {"xy": (0.97, 1.04 - 0.11 * order), "xycoords": "axes fraction"}
-            axes.annotate(name, **at, color=look["color"], fontsize=8, ha="right", va="top")
+            place: Look = {"transform": axes.transAxes, "ha": "right", "va": "top"}
+            axes.text(0.97, 1.04 - 0.11 * order, name, color=look["color"], fontsize=8, **place)
         logarithmic(axes, yscale="log", xlim=(ratio[0], ratio[-1]), ylim=(1e-9, 3.0))
     figure.suptitle(
         f"{parameters(data, 'n', 'restitution', 'amplitude')}; orders of "

@@ -5,12 +5,12 @@ import pytest
 import xarray as xr
 
 from bouncing_ball.accuracy.error_law import coefficients
-from bouncing_ball.atlas.plan import AtlasParameters
+from bouncing_ball.atlas.plan import Plan
 from bouncing_ball.atlas.summary import summary
 from bouncing_ball.contacts.damping import damping_ratio
 
 RANGES = {"tiles": 2, "samples": 2}
-PLAN = AtlasParameters(
+PLAN = Plan(
     n=[2],
     release=["displacement"],
     restitution={"min": 0.5, "max": 0.9} | RANGES,
@@ -19,7 +19,6 @@ PLAN = AtlasParameters(
     tolerances=[0.01],
     examined=[10.0, 100.0],
     shards=1,
-    summary={"tolerance": 0.01, "rule_of_thumb": 100.0},
 )
 # Of four tiles with four nodes each, r by r; at two ϖ, or in five bins of thresholds.
 TWO, BINS = ("frequency_ratio",), ("threshold_bin",)

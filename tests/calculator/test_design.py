@@ -108,10 +108,10 @@ def test_permanent_contact(release):
     expected = math.sqrt((1 - x) ** 2 + 4 * zeta**2 * x)
     if release is Release.FORCE:
         expected /= math.sqrt(1 + 4 * zeta**2 * x)
-    assert found.permanent_contact.threshold == pytest.approx(expected, rel=1e-14)
+    assert found.permanent_contact == pytest.approx(expected, rel=1e-14)
     # Λ lies below, and the ball may stay down.
-    assert found.permanent_contact.margin == pytest.approx(1 - expected / 0.9, rel=1e-13)
-    assert found.permanent_contact.margin < 0
+    assert found.permanent_contact_margin == pytest.approx(1 - expected / 0.9, rel=1e-13)
+    assert found.permanent_contact_margin < 0
     assert found.orbits[0].errors["permanent_contact"] == pytest.approx(1 - expected, rel=1e-13)
     second = 1.0 if release is Release.FORCE else 1 - 2 * zeta**2
     law = found.orbits[0].law_errors["permanent_contact"]
@@ -178,7 +178,7 @@ def test_a_hertz_contact_is_judged_by_its_own_orbits():
     assert linear.frequency_ratio == pytest.approx(found.frequency_ratio, rel=1e-12)
     assert linear.orbits[0].errors["max_height"] != errors["max_height"]
     # What is not known of it is neither claimed nor judged.
-    assert found.permanent_contact.threshold is errors["permanent_contact"] is None
+    assert found.permanent_contact is errors["permanent_contact"] is None
     assert not found.is_good_enough and "no value to compare" in found.reason
     assert found.verdict == (
         "Whether the restitution model is good enough in the threshold of permanent contact "

@@ -81,8 +81,6 @@ SPAN = (*FIG05, "frequency_ratio")
         ((*SPAN, "max"), 1.0, "fig05.frequency_ratio: min = 1 must be less than max = 1"),
         (("continuation", "largest_step"), 0.01, "continuation.largest_step = 0.01 must be at lea"),
         (("atlas", "restitution", "max"), 0.05, "restitution: min = 0.05 must be less than max"),
-        (("atlas", "examined", 0), 2.0, "atlas: examined = 2 must be from 3 to 100000"),
-        (("atlas", "summary", "tolerance"), 0.3, "summary.tolerance = 0.3 must be one of"),
         # What the physics forbids.
         ((*FIG05, "cases", 3, "amplitude"), 1.0, "cases[3] = "),
         ((*FIG05, "cases", 3, "amplitude"), 2.57, "must be at least 2.57039, the saddle-node of"),

@@ -12,8 +12,6 @@ from bouncing_ball import calls
 from bouncing_ball.accuracy import error_law as error_laws
 from bouncing_ball.cli.readable import lines
 from bouncing_ball.contacts.contact_law import ContactLaw
-from bouncing_ball.contacts.permanent_contact import permanent_contact_minimum
-from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import Signature, free_impact
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import NoOrbitError
@@ -84,11 +82,7 @@ def limits(n=1, **impact: Any) -> Answer:
         orbit = getattr(of, name)(n)
         if not orbit.exists:
             what, branch = name.replace("_", " "), f"the branch of {n}-T orbits for {of.label}"
-            # Without a closed form only what is found is known.
-            closed = impact["law"] is None
-            raise NoOrbitError(
-                f"{branch} has no {what}" if closed else f"no {what} was found on {branch}"
-            )
+            raise NoOrbitError(f"no {what} was found on {branch}")
         found[name] = {key: float(getattr(orbit, key)) for key in OBSERVABLES[:3]}
         found[name]["is_admissible"] = bool(orbit.is_admissible())
     # The limits have two impact speeds; a law is described at the restitution model's.
@@ -128,22 +122,10 @@ def _contact(**given: Any) -> SpringDamper:
 
 @takes(calls.model, "release", *calls.LOSS)
 def permanent_contact(*, frequency_ratio: calls.FrequencyRatio, **given: Any) -> Answer:
-    """Threshold at ϖ, and its minimum over ϖ.
-
-    The minimum is null where there is none (ζ ≥ 1/√2, displacement release).
-    """
+    """The Λ up to which the ball stays on the table."""
     contact = _contact(frequency_ratio=frequency_ratio, **given)
-    answer: Answer = {
-        "threshold": float(SpringDamperModel(contact).permanent_contact_threshold()),
-        "minimum": None,
-        "at_frequency_ratio": None,
-    }
-    zeta = contact.damping_ratio
-    if contact.release is Release.FORCE or 2 * zeta * zeta < 1:
-        lowest = permanent_contact_minimum(zeta, contact.release)
-        answer["minimum"] = float(lowest.threshold)
-        answer["at_frequency_ratio"] = float(lowest.frequency_ratio)
-    return answer | _described(contact)
+    threshold = float(SpringDamperModel(contact).permanent_contact_threshold())
+    return {"threshold": threshold} | _described(contact)
 
 
 @takes(calls.simulate)

@@ -32,17 +32,6 @@ _COMMANDS = {
 }
 
 
-def _laws() -> str:
-    """The contact laws, with the force and the parameters of each."""
-    from bouncing_ball.contacts.laws import LAWS
-
-    listed = (
-        f"{law.name} {law.formula} ({', '.join(law.parameter_names()).replace('_', '-')})"
-        for law in LAWS.values()
-    )
-    return f"Laws, with the penetration p and a force over the ball's weight: {'; '.join(listed)}"
-
-
 def _module(command: str) -> Any:
     """The module of a subcommand: its call, and ``lines`` that make its answer readable."""
     return import_module(f"bouncing_ball.{_COMMANDS[command][1]}")
@@ -64,8 +53,7 @@ def parser(arguments: list[str]) -> Parser:
     for name, (text, _) in _COMMANDS.items():
         sub = commands.add_parser(name, help=text, description=text)
         if name in arguments:
-            names = add_options(sub, _call(name))
-            sub.epilog = _laws() if "law" in names else None
+            add_options(sub, _call(name))
             if hasattr(_module(name), "lines"):
                 sub.add_argument("--json", action="store_true", help="one JSON object")
     return top

@@ -10,7 +10,7 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError, create_model
 
-from bouncing_ball.atlas.plan import AtlasParameters
+from bouncing_ball.atlas.plan import Plan
 from bouncing_ball.configuration.study import SECTIONS, section, taken
 from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
 from bouncing_ball.errors import printable
@@ -37,7 +37,7 @@ def configuration_model(studies: Mapping[str, str], config: Mapping[str, Any]) -
         If a study is missing, or the parameters of an artifact.
     """
     places: dict[str, dict[str, Any]] = {name: {} for name in SECTIONS}
-    keys: dict[str, Any] = {"atlas": (AtlasParameters, ...)}
+    keys: dict[str, Any] = {"atlas": (Plan, ...)}
     for artifact, study in sorted(studies.items()):
         for name, kind in taken(study).items():
             if name == "parameters":

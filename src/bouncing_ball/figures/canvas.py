@@ -4,7 +4,6 @@ from collections.abc import Iterator
 from itertools import cycle
 from typing import Any
 
-import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -24,12 +23,6 @@ def canvas(
     """A figure of a size in inches and its axes, laid out without overlaps."""
     figure = Figure(figsize=(width, height), layout="constrained")
     return figure, figure.subplots(rows, columns, **options)
-
-
-def panels(height: float, rows: int, columns: int) -> tuple[Figure, list[Axes]]:
-    """A wide figure of equal panels that share their axes, row by row."""
-    figure, axes = canvas(WIDE, height, rows, columns, sharex=True, sharey=True)
-    return figure, list(np.ravel(axes))
 
 
 def legend_below(figure: Figure, handles: Any = None, labels: Any = None, **options: Any) -> None:

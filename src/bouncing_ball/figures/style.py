@@ -38,6 +38,13 @@ MARKS: dict[str, Look] = {
 """Special points of a branch."""
 END: Look = {"marker": "x", "markersize": 5, "linestyle": "none", "markeredgewidth": 1.2}
 
+MODELS: dict[str, Look] = {
+    "spring-damper": {"color": CONTACT, "linewidth": 2.2, "alpha": 0.75},
+    "restitution": {"color": RESTITUTION, "linewidth": 1.0},
+    "corrected": {"color": CORRECTED, "linewidth": 1.2, "linestyle": (0, (4, 1.5))},
+}
+"""How each model is drawn where they stand side by side; the contact is below the others."""
+
 # Contact laws differ by their dashes as well as by their colours.
 LAWS: dict[str, Look] = {
     "linear": {"color": COLOURS[0], "linestyle": "-"},

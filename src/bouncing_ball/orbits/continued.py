@@ -213,17 +213,12 @@ def bifurcation(model: Any, n: ArrayLike, kind: Bifurcation) -> Any:
         psi = corrected.saddle_node_phase(search.instant)
     else:
         lam, psi = corrected.period_doubling(index, search.instant)
-    guess = search.start(lam, psi)
-    y = np.full_like(guess, np.nan)
-    there = np.flatnonzero(np.all(np.isfinite(guess), axis=-1))
-    if there.size:
-        part = search.take(there)
-        system = part.model.system(part.n)
-        test = vanishing(lambda y: kind.test(*system.orbit(y).trace_and_determinant()))
-        found = newton(system, guess[there], test, _EXTENDED)
-        # A Λ of zero has no phase: the fold of an elastic contact.
-        good = found.converged & (found.point[:, -1] > _EXTENDED.tolerance)
-        y[there[good]] = found.point[good]
+    system = search.model.system(index)
+    test = vanishing(lambda y: kind.test(*system.orbit(y).trace_and_determinant()))
+    found = newton(system, search.start(lam, psi), test, _EXTENDED)
+    # A Λ of zero has no phase: the fold of an elastic contact.
+    good = found.converged & (found.point[:, -1] > _EXTENDED.tolerance)
+    y = np.where(good[:, np.newaxis], found.point, np.nan)
     low = (lam < _LOWEST) & (kind is Bifurcation.SADDLE_NODE)
     for k in np.flatnonzero(np.isnan(y[:, 0]) & ~low):
         own = search.take(k).model

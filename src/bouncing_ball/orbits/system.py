@@ -43,8 +43,8 @@ class OrbitSystem(ABC):
         """Exact Jacobian of the residual, shape (..., N, N + 1)."""
 
     def residual(self, y: np.ndarray) -> np.ndarray:
-        """Defects, shape (..., N)."""
-        return self.orbit(y).residual()
+        """The last N defects, shape (..., N): of a contact those of velocity and landing."""
+        return self.orbit(y).residual()[..., 1 - y.shape[-1] :]
 
     def events(self) -> tuple[Event, ...]:
         """Bifurcations, and the ends of the domain in which an orbit makes sense."""
@@ -118,10 +118,6 @@ class ContactSystem(OrbitSystem):
     def point(self, orbit: Any) -> np.ndarray:
         """The orbits' unknowns, and Λ."""
         return np.stack(np.broadcast_arrays(*orbit.unknowns, orbit.amplitude), axis=-1)
-
-    def residual(self, y: np.ndarray) -> np.ndarray:
-        """The last N defects: for a contact those of velocity and landing."""
-        return super().residual(y)[..., 1 - y.shape[-1] :]
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """Exact Jacobian of the residual, shape (..., N, N + 1)."""

@@ -64,8 +64,6 @@ ARTIFACTS: dict[str, dict[str, Budget]] = {
         "*": Budget(1e-11, scale="1"),
         "contact_force": Budget(1e-11, scale="frequency_ratio"),
     },
-    # Next to a saddle-node an error hardly falls with the frequency ratio.
-    "ext_validity": {"error_threshold": Budget(1e-9)},
     # The second order of a stiff contact is a small difference of large values.
     "ext_orders": {"relative_error": Budget(1e-11)},
     # Collocated orbits, each right to some 1e-13.

@@ -77,17 +77,20 @@ class _Search(NamedTuple):
     instant: Instant
 
     @classmethod
-    def of(cls, model: Any, n: np.ndarray) -> "_Search":
-        if model.shape:
-            return cls(model, n, restitution_speed(n, model)[1])
-        index, where = np.unique(n, return_inverse=True)
-        instant = restitution_speed(index, model)[1]
-        spread = (np.broadcast_to(x, index.shape)[where] for x in instant)
-        return cls(model, n, Instant(*spread))
+    def of(cls, model: Any, n: ArrayLike, *more: ArrayLike) -> tuple["_Search", Any, Any]:
+        """The search, everything else in a row as well, and the shape of the orbits."""
+        check_index(n)
+        instant = restitution_speed(n, model)[1]
+        arrays = (n, *instant, *more, np.zeros(model.shape))
+        columns = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in arrays))
+        shape = columns[0].shape
+        index, *rows = (x.reshape(-1) for x in columns[:-1])
+        size = len(instant)
+        return cls(model.flat(shape), index, Instant(*rows[:size])), rows[size:], shape
 
     def take(self, rows: Any) -> "_Search":
-        instant = (np.broadcast_to(x, self.n.shape)[rows] for x in self.instant)
-        return _Search(self.model.take(rows), self.n[rows], Instant(*instant))
+        instant = Instant(*(np.asarray(x)[rows] for x in self.instant))
+        return _Search(self.model.take(rows), self.n[rows], instant)
 
     def start(self, amplitude: np.ndarray, psi: np.ndarray) -> np.ndarray:
         """Points of the corrected model's orbits with instants at the phases ψ."""
@@ -114,43 +117,24 @@ class _Search(NamedTuple):
         return y
 
 
-def _rows(model: Any, n: ArrayLike, *more: ArrayLike):
-    """The models and everything else broadcast and in a row, and the shape."""
-    check_index(n)
-    arrays = (n, *more, np.zeros(model.shape))
-    *arrays, _ = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in arrays))
-    shape = arrays[0].shape
-    return model.flat(shape), [x.reshape(-1) for x in arrays], shape
-
-
 def _shaped(model: Any, n: ArrayLike, y: np.ndarray, shape: tuple[int, ...]) -> Any:
     return model.system(n).orbit(y.reshape(*shape, y.shape[-1]))
 
 
-def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side, near: Any = None) -> Any:
-    """The n-T orbits at Λ on a side of the saddle-node; NaN where none is found.
-
-    The search starts from ``near``, orbits of other models at Λ, where they are given.
-    """
-    row, (index, lam), shape = _rows(model, n, amplitude)
-    if near is None:
-        search = _Search.of(row, index)
-        psi = corrected.instant_phase(index, search.instant, lam, side is Side.STABLE)
-        # Next to the fold the start may lie below it.
-        psi = np.where(np.isnan(psi), corrected.saddle_node_phase(search.instant), psi)
-        guess = search.start(lam, psi)
-    else:
-        search = _Search(row, index, Instant(*np.zeros(4)))
-        points = model.system(n).point(near)
-        guess = points.reshape(-1, points.shape[-1])
-    y = search.solved(guess)
+def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Any:
+    """The n-T orbits at Λ on a side of the saddle-node; NaN where none is found."""
+    search, (lam,), shape = _Search.of(model, n, amplitude)
+    psi = corrected.instant_phase(search.n, search.instant, lam, side is Side.STABLE)
+    # Next to the fold the start may lie below it.
+    psi = np.where(np.isnan(psi), corrected.saddle_node_phase(search.instant), psi)
+    y = search.solved(search.start(lam, psi))
     found = _shaped(model, n, y, shape)
     test = Bifurcation.SADDLE_NODE.test(*found.trace_and_determinant())
     on_side = test > 0 if side is Side.STABLE else test < 0
     if np.all(on_side):
         return found
     for k in np.flatnonzero(~np.broadcast_to(on_side, shape)):
-        y[k] = _on_branch(row.take(k), int(index[k]), float(lam[k]), side)
+        y[k] = _on_branch(search.model.take(k), int(search.n[k]), float(lam[k]), side)
     return _shaped(model, n, y, shape)
 
 
@@ -173,7 +157,7 @@ def continued(model: Any, n: int, amplitude: float, farther: float = _FARTHER) -
 
     None where it cannot be started or followed.
     """
-    system, search = model.system(n), _Search.of(model, np.array([n]))
+    system, (search, _, _) = model.system(n), _Search.of(model, [n])
     fold = float(np.nan_to_num(corrected.saddle_node(n, search.instant)[0]))
     start = np.array([max(amplitude, fold) * _ABOVE])
     y = search.solved(search.start(start, corrected.instant_phase(n, search.instant, start)))[0]
@@ -222,8 +206,8 @@ def both_sides(model: Any, n: int, amplitude: float) -> Any:
 
 def bifurcation(model: Any, n: ArrayLike, kind: Bifurcation) -> Any:
     """The orbits at a bifurcation: next to the corrected model's, or the first on the branch."""
-    row, (index,), shape = _rows(model, n)
-    search = _Search.of(row, index)
+    search, _, shape = _Search.of(model, n)
+    index = search.n
     if kind is Bifurcation.SADDLE_NODE:
         lam = corrected.saddle_node(index, search.instant)
         psi = corrected.saddle_node_phase(search.instant)

@@ -102,9 +102,13 @@ class ImpactModel(Batch, ABC):
 
     def absence(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> np.ndarray:
         """The :class:`Absence` of each orbit that :meth:`orbit` looks for, as text."""
-        missing = ~self.orbit(n, amplitude, side).exists
-        below = np.asarray(amplitude) < self.saddle_node(n).amplitude
-        why = np.where(below, Absence.BELOW_SADDLE_NODE, Absence.NOT_FOUND)
+        missing, fold = ~self.orbit(n, amplitude, side).exists, self.saddle_node(n).amplitude
+        other = Absence.NOT_FOUND
+        if Route.FORMULA in self.routes:
+            # The search is complete.
+            no_fold = np.isnan(fold) & (side == Side.UNSTABLE)
+            other = np.where(no_fold, Absence.NO_OTHER_SIDE, Absence.NOT_REACHED)
+        why = np.where(np.asarray(amplitude) < fold, Absence.BELOW_SADDLE_NODE, other)
         return np.where(missing, why, Absence.NONE)
 
     def saddle_node(self, n: ArrayLike) -> Any:
@@ -141,16 +145,9 @@ class ImpactModel(Batch, ABC):
         (law,) = (getattr(self, field.name) for field in fields(self))
         return law
 
-    def orbit_of(
-        self,
-        n: ArrayLike,
-        amplitude: ArrayLike,
-        phase: ArrayLike,
-        contact_duration: ArrayLike = 0.0,
-        impact_velocity: ArrayLike | None = None,
-    ) -> Any:
-        """Orbits known by their numbers, as a dataset has them: :meth:`Orbit.of`."""
-        return self.orbit_type.of(n, self._law, amplitude, phase, contact_duration, impact_velocity)
+    def orbit_of(self, n: ArrayLike, amplitude: ArrayLike, *numbers: ArrayLike) -> Any:
+        """Orbits known by Λ, φ, D and z′_i, as a dataset has them: :meth:`Orbit.of`."""
+        return self.orbit_type.of(n, self._law, amplitude, *numbers)
 
     def require_admissible(self, n: int, amplitude: float, side: Side = Side.STABLE) -> Orbit:
         """:meth:`require_orbit`, if it is one of the ball.

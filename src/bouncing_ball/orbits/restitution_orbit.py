@@ -17,12 +17,12 @@ All quantities are dimensionless.
 """
 
 from enum import StrEnum
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.restitution_law import RestitutionLaw, rebound
+from bouncing_ball.contacts.restitution_law import rebound
 from bouncing_ball.errors import NoOrbitError, require
 from bouncing_ball.orbits.orbit import Orbit, check_index
 
@@ -177,16 +177,10 @@ class RestitutionOrbit(Orbit):
     """
 
     @classmethod
-    def at(
-        cls,
-        n: ArrayLike,
-        law: RestitutionLaw | ArrayLike,
-        amplitude: ArrayLike,
-        phase: ArrayLike,
-        impact_velocity: ArrayLike,
-    ) -> Self:
-        """The orbits whose impacts are such."""
-        return cls.of(n, law, amplitude, phase, 0.0, impact_velocity)
+    def at(cls, n: ArrayLike, law: Any, amplitude: ArrayLike, *start: ArrayLike) -> Self:
+        """The orbits with impacts at (φ, z′_i)."""
+        phase, velocity = start
+        return cls.of(n, law, amplitude, phase, 0.0, velocity)
 
     def _rebound(self) -> tuple[np.ndarray, np.ndarray]:
         """r and the slope of r v at the impact."""

@@ -93,18 +93,8 @@ class BranchPoint(NamedTuple):
         return self.x * self.d_x + self.y * self.d_y
 
 
-class _Responses(NamedTuple):
-    """g, g′, G, Q = Re h and P = Im h at the end of contact."""
-
-    g: np.ndarray
-    g_rate: np.ndarray
-    gravity: np.ndarray
-    q: np.ndarray
-    p: np.ndarray
-
-
 def _responses(duration, sin_angle, cos_angle, sin_d, cos_d, decay, omega, zeta, root):
-    """Responses at time D, from the sine and cosine of ϖ_d D and of D.
+    """g, g′, G, Q = Re h and P = Im h at time D, from the sine and cosine of ϖ_d D and of D.
 
     The closed quotients of :mod:`bouncing_ball.contacts.oscillator` in real
     arithmetic; where they lose digits (short or resonant contacts) the values
@@ -133,7 +123,7 @@ def _responses(duration, sin_angle, cos_angle, sin_d, cos_d, decay, omega, zeta,
         gravity, q, p = (np.array(np.broadcast_to(x, delicate.shape)) for x in (gravity, q, p))
         gravity[delicate] = exact.gravity.value
         q[delicate], p[delicate] = exact.table.value.real, exact.table.value.imag
-    return _Responses(g, g_rate, gravity, q, p)
+    return g, g_rate, gravity, q, p
 
 
 def _solve(rows, right):

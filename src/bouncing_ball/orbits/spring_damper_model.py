@@ -12,7 +12,7 @@ from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.signature import Instant, Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits import spring_damper_limits as limits
-from bouncing_ball.orbits.model import Absence, ImpactModel, Route
+from bouncing_ball.orbits.model import ImpactModel, Route
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.spring_damper_branch import nearest_excess
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
@@ -65,20 +65,6 @@ class SpringDamperModel(ImpactModel):
     def orbits(self, n: int, amplitude: float) -> SpringDamperOrbit:
         """All n-T orbits of one contact at one Λ, in order of contact duration."""
         return limits.orbits_at(self.contact, n, amplitude)
-
-    def absence(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> np.ndarray:
-        """Why :meth:`orbit` finds none: its search is complete.
-
-        Examples
-        --------
-        >>> model = SpringDamperModel(SpringDamper(10.0, 0.1))
-        >>> str(model.absence(1, 0.2))
-        'below the saddle-node'
-        """
-        why = super().absence(n, amplitude, side)
-        no_fold = np.isnan(self.saddle_node(n).amplitude) & (side == Side.UNSTABLE)
-        reason = np.where(no_fold, Absence.NO_OTHER_SIDE, Absence.NOT_REACHED)
-        return np.where(why == Absence.NOT_FOUND, reason, why)
 
     def saddle_node(self, n: ArrayLike) -> SpringDamperOrbit:
         """The orbits at the saddle-node; NaN where the branch has none.

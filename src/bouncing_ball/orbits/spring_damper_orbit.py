@@ -46,11 +46,6 @@ class SpringDamperOrbit(Orbit):
         """ϖ."""
         return self.contact.frequency_ratio
 
-    @property
-    def release_displacement(self) -> np.ndarray:
-        """δ_b = -κ δ′_b at release."""
-        return -self.contact.lag * self.relative_bounce_velocity
-
     def contact_flow(self, time: np.ndarray) -> Any:
         """The contact's motion and its derivatives at times 0 ≤ τ ≤ τ_b."""
         u = self.relative_impact_velocity
@@ -90,8 +85,3 @@ class SpringDamperOrbit(Orbit):
         """exp(-2ζϖ τ_b), exactly."""
         loss = np.asarray(self.contact.damping_ratio) * self.contact.frequency_ratio
         return np.exp(-2 * loss * self.contact_duration)
-
-    def holding(self, time: np.ndarray) -> np.ndarray:
-        """δ + κ δ′ in contact."""
-        displacement, velocity = self.contact_motion(time)
-        return displacement + self.contact.lag * velocity

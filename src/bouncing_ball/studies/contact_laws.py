@@ -62,26 +62,23 @@ class FiguresOfLaws(FamilyBranches):
     heights: OneOrbit
 
 
-def linear_contact(restitution: float, duration: ArrayLike, release: Release) -> SpringDamper:
-    """The spring-damper with r and D under a release rule, at every speed.
-
-    Examples
-    --------
-    >>> float(linear_contact(1.0, np.pi, Release.DISPLACEMENT).frequency_ratio)
-    1.0
-    """
-    unit = SpringDamper(1.0, damping_ratio(restitution, release), release)
-    omega = float(unit.free_duration) / np.asarray(duration, dtype=float)
-    return SpringDamper(omega, unit.damping_ratio, release)
-
-
 def exact_model(
     name: str, restitution: float, duration: ArrayLike, speed: ArrayLike
 ) -> ImpactModel:
-    """The exact models of contacts with r and D at their speeds, arrays of one shape."""
+    """The exact models of contacts with r and D at their speeds, arrays of one shape.
+
+    Examples
+    --------
+    A linear contact has them at every speed:
+
+    >>> float(exact_model("linear", 1.0, np.pi, 2.0).contact.frequency_ratio)
+    1.0
+    """
     duration, speed = np.broadcast_arrays(duration, speed)
     if name in LINEAR:
-        return SpringDamperModel(linear_contact(restitution, duration, LINEAR[name]))
+        unit = SpringDamper(1.0, damping_ratio(restitution, LINEAR[name]), LINEAR[name])
+        omega = unit.free_duration / duration
+        return SpringDamperModel(SpringDamper(omega, unit.damping_ratio, unit.release))
     return LawModel(law_of_impact(LAWS[name], restitution, duration, speed))
 
 

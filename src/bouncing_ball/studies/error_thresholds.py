@@ -7,14 +7,15 @@ error stays below it, within the range scanned.
 """
 
 from collections.abc import Sequence
-from functools import partial
-from typing import Annotated
+from typing import Annotated, Any
 
+import numpy as np
 import xarray as xr
 from pydantic import Strict
 
+from bouncing_ball.accuracy.errors import modulus, relative_errors
 from bouncing_ball.accuracy.quantities import Quantity
-from bouncing_ball.accuracy.thresholds import model_thresholds
+from bouncing_ball.accuracy.thresholds import by_quantity, thresholds
 from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.datasets.variables import describe
@@ -53,15 +54,18 @@ def thresholds_along(
 
     Of the restitution model with the r of Eq. 16, if no other is given.
     """
-    simple = RestitutionModel(restitution or one.restitution)
-    exact, ratios = partial(one.exact, release=release), one.frequency_ratio.grid()
-    error, found = model_thresholds(
-        exact, simple, one.n, one.amplitude, ratios, tolerances, quantities
-    )
+    simple, ratios = RestitutionModel(restitution or one.restitution), one.frequency_ratio.grid()
+
+    def along(ratio: np.ndarray, _: Any, asked: Sequence[str]) -> np.ndarray:
+        exact = one.exact(ratio, release)
+        return relative_errors(exact, [simple], one.n, one.amplitude, asked)[0]
+
+    scanned = along(ratios, None, quantities)
+    found = thresholds(by_quantity(along, quantities, 1), ratios, scanned, tolerances)
     dims = ("quantity", "tolerance")
     return xr.Dataset(
         {
-            "relative_error": (("quantity", "frequency_ratio"), error),
+            "relative_error": (("quantity", "frequency_ratio"), modulus(scanned)),
             "error_threshold": (dims, found.ratio),
             "threshold_status": (dims, found.status),
         },
@@ -74,25 +78,13 @@ def thresholds_along(
 
 
 def error_thresholds(parameters: ErrorThresholds, release: Release) -> xr.Dataset:
-    """Errors along ϖ, shape (quantity, ϖ), and thresholds in ϖ, shape (quantity, tolerance).
-
-    Raises
-    ------
-    NoOrbitError
-        If the restitution model has no orbit at Λ to compare with.
-    """
+    """Errors along ϖ, shape (quantity, ϖ), and thresholds in ϖ, shape (quantity, tolerance)."""
     asked = parameters.quantities, parameters.tolerances
     return describe(thresholds_along(parameters, release, *asked))
 
 
 def height_error(parameters: OrbitErrors, release: Release) -> xr.Dataset:
-    """Greatest height along ϖ in both models, and ϖ_h for the tolerance (Eq. 37, Fig. 14).
-
-    Raises
-    ------
-    NoOrbitError
-        If the restitution model has no orbit at Λ to compare with.
-    """
+    """Greatest height along ϖ in both models, and ϖ_h for the tolerance (Eq. 37, Fig. 14)."""
     n, lam, ratios = parameters.n, parameters.amplitude, parameters.frequency_ratio.grid()
     dataset = thresholds_along(parameters, release, [Quantity.MAX_HEIGHT], [parameters.tolerance])
     orbit = parameters.exact(ratios, release).orbit(n, lam)

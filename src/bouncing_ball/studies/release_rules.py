@@ -38,19 +38,23 @@ class ReleaseRules(Parameters):
 
 
 def _lowest_doubling(
-    ratios: np.ndarray, amplitude: np.ndarray, zeta: float, rule: Release, n: int
-) -> float:
-    """The ϖ at which the period doubling is lowest; NaN if that is an end of the scan."""
-    at = int(np.argmin(np.where(np.isnan(amplitude), np.inf, amplitude)))
-    if at in (0, len(ratios) - 1) or np.isnan(amplitude[at - 1 : at + 2]).any():
-        return np.nan
+    ratios: np.ndarray, amplitude: np.ndarray, zeta: float, rule: Release, n: np.ndarray
+) -> np.ndarray:
+    """The ϖ at which each period doubling is lowest; NaN if that is an end of the scan.
 
-    def doubling(log_ratio):
+    ``amplitude`` is that of the scan, shape (n, ϖ).
+    """
+
+    def doubling(log_ratio: np.ndarray, n: np.ndarray) -> np.ndarray:
         model = SpringDamperModel(SpringDamper(np.exp(log_ratio), zeta, rule))
         return model.period_doubling(n).amplitude
 
-    bracket = tuple(np.log(ratios[at + k]) for k in (-1, 0, 1))
-    return float(np.exp(find_minimum(doubling, bracket).x))
+    lowest = np.argmin(np.where(np.isnan(amplitude), np.inf, amplitude), axis=-1)
+    inside = np.clip(lowest, 1, ratios.size - 2)
+    # Three samples whose middle one is not the lowest are refused as a bracket.
+    bracket = tuple(np.log(ratios[inside + k]) for k in (-1, 0, 1))
+    found = find_minimum(doubling, bracket, args=(n,))
+    return np.where(found.success, np.exp(found.x), np.nan)
 
 
 def _bifurcations(parameters: ReleaseRules, rule: Release) -> xr.Dataset:
@@ -59,14 +63,13 @@ def _bifurcations(parameters: ReleaseRules, rule: Release) -> xr.Dataset:
     zeta = float(damping_ratio(parameters.restitution))
     model, n = SpringDamperModel(SpringDamper(ratios, zeta, rule)), families[:, np.newaxis]
     ends = np.stack([model.saddle_node(n).amplitude, model.period_doubling(n).amplitude], axis=-1)
-    turns = [
-        _lowest_doubling(ratios, row, zeta, rule, k)
-        for k, row in zip(parameters.n, ends[..., 1], strict=True)
-    ]
     return xr.Dataset(
         {
             "bifurcation_amplitude": (("n", "frequency_ratio", "bound"), ends),
-            "period_doubling_turn": ("n", turns),
+            "period_doubling_turn": (
+                "n",
+                _lowest_doubling(ratios, ends[..., 1], zeta, rule, families),
+            ),
         },
         coords={
             "n": families,

@@ -103,22 +103,20 @@ def meeting_flights(parameters: ContactHistory, release: Release) -> xr.Dataset:
     orbit = exact.require_orbit(parameters.n, parameters.amplitude)
     end = float(orbit.contact_duration)
     time = np.linspace(-0.6 * end, 1.6 * end, parameters.samples)
-    inside, within = (time >= 0) & (time <= end), np.clip(time, 0, end)
     start, velocity = orbit.contact_path(np.zeros(()))
     before, (after, _) = start + (velocity - time / 2) * time, orbit.flight_path(time)
-    touching, _ = orbit.contact_path(within)
-    force = exact.contact.force(*-np.array(orbit.contact_motion(within)))
+    force = exact.contact.force(*-np.array(orbit.contact_motion(np.clip(time, 0, end))))
     # The meeting point of the two parabolas, exact; and where the signature has it.
     jump = float(orbit.bounce_velocity + end - orbit.impact_velocity)
     apart = float(orbit.bounce_height - (start + (velocity - end / 2) * end))
     meeting = end - apart / jump
     return described(
         {
-            "ball": ("time", np.where(time < 0, before, np.where(inside, touching, after))),
+            "ball": ("time", orbit.path(time)[0]),
             "table": ("time", orbit.amplitude * np.sin(orbit.phase + time)),
             "flight_before": ("time", before),
             "flight_after": ("time", after),
-            "contact_force": ("time", inside * force),
+            "contact_force": ("time", np.where((time >= 0) & (time <= end), force, 0.0)),
             "contact_duration": ((), end),
             "meeting_time": ((), meeting),
             "meeting_height": ((), float(start + (velocity - meeting / 2) * meeting)),

@@ -11,16 +11,10 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter
 
 from bouncing_ball.figures.labels import QUANTITIES
-from bouncing_ball.figures.style import COLOURS, CONTACT, CORRECTED, RESTITUTION, TABLE, Look
+from bouncing_ball.figures.style import COLOURS, CONTACT, CORRECTED, MODELS, RESTITUTION, TABLE
 
 # A4 upright, in inches.
 _PAGE = 8.27, 11.69
-_LOOKS: dict[str, tuple[str, Look]] = {
-    "spring-damper": (CONTACT, {"linewidth": 2.2, "alpha": 0.75}),
-    "hertz": (CONTACT, {"linewidth": 2.2, "alpha": 0.75}),
-    "restitution": (RESTITUTION, {"linewidth": 1.0}),
-    "corrected": (CORRECTED, {"linewidth": 1.2, "linestyle": (0, (4, 2))}),
-}
 
 
 def draw(design: Mapping[str, Any], data: xr.Dataset, values: Sequence[tuple[str, str]]) -> Figure:
@@ -60,9 +54,7 @@ def _title(figure: Figure, design: Mapping[str, Any]) -> None:
 def _chart(axes: Axes, design: Mapping[str, Any], data: xr.Dataset) -> None:
     """From which ϖ on each simple model is right, over r; the case is the star."""
     for name in data["simple"].values:
-        colour, look = _LOOKS[str(name)]
-        needed = data.needed.sel(simple=name)
-        axes.plot(data["restitution"], needed, color=colour, label=name, **look)
+        axes.plot(data["restitution"], data.needed.sel(simple=name), label=name, **MODELS[name])
     ours = design["corrected"]["restitution"], design["frequency_ratio"]
     axes.plot(*ours, "*", color=CONTACT, markersize=13, label="this contact", clip_on=False)
     axes.set_yscale("log")
@@ -99,9 +91,10 @@ def _errors(axes: Axes, design: Mapping[str, Any]) -> None:
 def _curves(axes: Axes, time: xr.DataArray, heights: xr.DataArray) -> None:
     """All models over each other, in seconds and metres with a prefix."""
     for name in heights["model"].values:
-        colour, look = _LOOKS[str(name)]
         if heights.sel(model=name).notnull().any():
-            axes.plot(time, heights.sel(model=name), color=colour, label=name, **look)
+            # The contact may be of any law.
+            look = MODELS.get(name, MODELS["spring-damper"])
+            axes.plot(time, heights.sel(model=name), label=name, **look)
     axes.xaxis.set_major_formatter(EngFormatter("s"))
     axes.yaxis.set_major_formatter(EngFormatter("m"))
     axes.set(xlabel="time", ylabel="height")

@@ -18,16 +18,12 @@ _MARKS: dict[str, Look] = {
     "grazing in contact": {**MARKS["grazing"], "color": COLOURS[0]},
     "grazing in flight": {**MARKS["grazing"], "marker": "v", "color": COLOURS[2]},
 }
-# A mark at so many samples, in a run of windows that end alike.
+# A mark at so many of the windows that end alike.
 _EVERY = 8
 # In the order of the motions; five steps of grey.
 _FILLS = ("#ffffff", "#b9d7ea", "#b34a10", "#e0a030", "#000000")
 _RATIO = r"frequency ratio $\varpi$"
 _ORBITS = {1: "o", 2: "^"}
-_ORBIT: Look = {
-    **{"linestyle": "none", "color": "#000000", "markerfacecolor": "#ffffff"},
-    **{"markersize": 5, "zorder": 3},
-}
 
 
 def stable_windows(data: xr.Dataset) -> Figure:
@@ -57,8 +53,8 @@ def basins(data: xr.Dataset) -> Figure:
     for one, axes in zip(each(data, "case"), row[0], strict=True):
         axes.imshow(one.destination, **image)
         for k, mark in _ORBITS.items():
-            if np.isfinite(one.orbit_phase[k]):
-                axes.plot(one.orbit_phase[k] / np.pi, one.orbit_speed[k], marker=mark, **_ORBIT)
+            at = one.orbit_phase[k] / np.pi, one.orbit_speed[k]
+            axes.plot(*at, mark, color="#000000", markerfacecolor="#ffffff", markersize=5)
         # Not the attribute of this name, which is a list.
         amplitude = number(float(one["amplitude"]))
         axes.set(title=rf"$\Lambda={amplitude}$", xlabel=r"phase of impact $\varphi/\pi$")
@@ -86,10 +82,8 @@ def _draw_window(axes: Axes, window: xr.Dataset) -> None:
         axes.fill_between(ratio[run], low[run], high[run], color="#dcdcdc", linewidth=0)
         axes.plot(ratio[run], high[run], color=TABLE, linewidth=0.8)
     for kind, look in _MARKS.items():
-        runs = [run for run in _runs(kinds) if kinds[run[0]] == kind]
-        if runs:
-            # The ends of each run, and some in between.
-            there = np.unique(np.concatenate([[*run[::_EVERY], run[-1]] for run in runs]))
+        there = np.flatnonzero(kinds == kind)[::_EVERY]
+        if there.size:
             axes.plot(ratio[there], high[there], label=kind, **(look | {"markersize": 3.5}))
     axes.plot(ratio, low, color=CONTACT, linewidth=1.3, label=r"$\Lambda_{SD}$")
     axes.axhline(1.0, **GUIDE)

@@ -6,13 +6,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Rectangle
 
 from bouncing_ball.figures.canvas import canvas
-from bouncing_ball.figures.style import GUIDE, Look
+from bouncing_ball.figures.style import ARROW, GUIDE, Look
 
 _LINE: Look = {"color": "black", "linewidth": 1.0, "solid_capstyle": "round"}
-_ARROW: Look = {
-    **{"color": "black", "linewidth": 0.8, "mutation_scale": 8},
-    **{"shrinkA": 0, "shrinkB": 0},
-}
 
 
 def restitution_model() -> Figure:
@@ -51,7 +47,7 @@ def _scene(
         ((3.1, 0.55), (3.1, 1.25), "<|-|>", (3.25, 0.9, "left"), motion),
         ((0.75, low + 0.65), (0.75, low), "-|>", (0.65, low + 0.32, "right"), "$g$"),
     ):
-        axes.annotate("", xy=end, xytext=start, arrowprops={"arrowstyle": heads, **_ARROW})
+        axes.annotate("", xy=end, xytext=start, arrowprops=ARROW | {"arrowstyle": heads})
         axes.text(x, y, name, ha=side, va="center")
     return figure, axes
 

@@ -19,6 +19,8 @@ TABLE = "#8c8c8c"
 Look = dict[str, Any]
 """Keywords of a line or a marker."""
 
+ARROW: Look = {"arrowstyle": "-|>", "color": "black", "linewidth": 0.9, "mutation_scale": 9}
+ARROW |= {"shrinkA": 0, "shrinkB": 0}
 GUIDE: Look = {"color": "#8c8c8c", "linewidth": 0.7, "linestyle": (0, (1, 1.5))}
 
 LINES: dict[str, Look] = {

@@ -22,7 +22,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 # One thing after another: clean, run and compare share results/.
 .NOTPARALLEL:
-.PHONY: all setup lint test quick test-cluster test-long diff accept report clean ci setup-newest newest config-docs lock
+.PHONY: all setup lint test quick test-cluster test-long mutants diff accept report clean ci setup-newest newest config-docs lock
 
 all: $(SETUP)
 	$(BIN)/snakemake --cores 2 $(QUIETLY)
@@ -66,6 +66,10 @@ test-cluster: $(SETUP)
 # Whole runs on a processor without its fast paths, large samples; on schedule in CI.
 test-long: $(SETUP)
 	$(PYTEST) -m long --durations 20
+
+# Do the tests notice a wrong line? 200 single faults, one at a time.
+mutants: $(SETUP)
+	$(BIN)/python tests/mutants.py
 
 # The results against the accepted record; the page is results/diff/index.html.
 diff: $(SETUP)

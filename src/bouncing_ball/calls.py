@@ -239,7 +239,7 @@ def orbit(
       apparent_restitution  0.851132
       max_height            5.41098
     """
-    branch = Side.STABLE if side == "all" else Side.of(side)
+    branch = Side.STABLE if side == "all" else Side(side)
     of = _model(impact, lambda kind, r, d: law_at_orbit(kind, r, d, n, amplitude, branch))
     if side != "all" and index is None:
         return of.require_orbit(n, amplitude, branch)

@@ -67,10 +67,6 @@ LossyRestitution = Annotated[
     float,
     number(f"restitution coefficient r; at r = 1 no orbit attracts; {_HELD}", ge=0.05, le=0.999),
 ]
-OwnRestitution = Annotated[
-    float,
-    number("restitution coefficient r of either release: by force r > e⁻²", ge=0.15, le=0.999),
-]
 LawRestitution = Annotated[
     float, number("restitution coefficient r, one of contacts of any law", ge=0.3, le=0.99)
 ]
@@ -105,18 +101,25 @@ Tolerance = Annotated[float, number("relative error tolerated", gt=0, lt=1)]
 Seed = Annotated[int, number("seed of the random numbers", ge=0)]
 
 
-class Span(Parameters):
-    """A logarithmic grid of frequency ratios."""
+class Interval(Parameters):
+    """Two ends, of which the second is above the first."""
 
-    min: Annotated[FrequencyRatio, Field(description="smallest frequency ratio ϖ")]
-    max: Annotated[FrequencyRatio, Field(description="largest frequency ratio ϖ, above min")]
-    samples: Samples
+    min: float
+    max: float
 
     @model_validator(mode="after")
     def _increasing(self) -> Self:
         if self.min >= self.max:
             raise ValueError(f"min = {self.min:g} must be less than max = {self.max:g}")
         return self
+
+
+class Span(Interval):
+    """A logarithmic grid of frequency ratios."""
+
+    min: Annotated[FrequencyRatio, Field(description="smallest frequency ratio ϖ")]
+    max: Annotated[FrequencyRatio, Field(description="largest frequency ratio ϖ, above min")]
+    samples: Samples
 
     def grid(self) -> np.ndarray:
         """The frequency ratios, shape (samples,).

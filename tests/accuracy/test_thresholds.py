@@ -8,14 +8,10 @@ from bouncing_ball.accuracy.quantities import Quantity
 from bouncing_ball.accuracy.thresholds import (
     ThresholdStatus,
     last_crossing,
-    model_thresholds,
     search,
     thresholds,
 )
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 RATIOS = np.geomspace(1.0, 1e4, 41)
 FOUND, ALWAYS, NEVER = ThresholdStatus
@@ -67,34 +63,6 @@ def test_where_there_is_no_error_it_is_not_within_the_tolerance(absent):
     assert status == [FOUND] and ratio == pytest.approx(7.0, rel=1e-12)
     (ratio,), status = of(lambda x: np.where(x > 7, absent, 0.001), 0.01)
     assert status == [NEVER] and np.isnan(ratio)
-
-
-def test_a_threshold_at_the_end_of_the_bifurcation():
-    # r = 0.0893 and 1-T: contacts have a saddle-node from ϖ = 3.6 on only.
-    def exact(ratio):
-        return SpringDamperModel(SpringDamper.from_restitution(0.0893, ratio))
-
-    asked = [Quantity.SADDLE_NODE]
-    error, found = model_thresholds(exact, RestitutionModel(0.0893), 1, 3.0, RATIOS, [0.5], asked)
-    assert found.status.tolist() == [[FOUND]]
-    fine = np.geomspace(1.0, 10.0, 20001)
-    there = np.isfinite(exact(fine).saddle_node(1).amplitude)
-    first = int(np.argmax(there))
-    assert np.all(there[first:]) and fine[first - 1] <= found.ratio[0, 0] <= fine[first]
-    assert np.array_equal(np.isinf(error[0]), RATIOS < found.ratio[0, 0])
-
-
-def test_no_orbit_to_compare_with(one_line):
-    def exact(ratio):
-        return SpringDamperModel(SpringDamper(ratio, 0.1))
-
-    simple = RestitutionModel(0.65)
-    with pytest.raises(NoOrbitError) as error:
-        model_thresholds(exact, simple, 1, 0.3, RATIOS, [0.1], ["phase"])
-    one_line(error, "no 1-T orbit at Λ = 0.3")
-    # The bifurcations do not ask for Λ.
-    _, found = model_thresholds(exact, simple, 1, 0.3, RATIOS, [0.1], ["saddle_node"])
-    assert found.ratio.shape == (1, 1)
 
 
 @pytest.mark.parametrize("release", list(Release))

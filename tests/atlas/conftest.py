@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.atlas import shards
-from bouncing_ball.atlas.plan import AtlasParameters
+from bouncing_ball.atlas.plan import Plan
 
 SMALL = {
     "n": [1, 3],
@@ -15,14 +15,13 @@ SMALL = {
     "tolerances": [0.1, 0.01, 0.001],
     "examined": [10.0, 100.0],
     "shards": 3,
-    "summary": {"tolerance": 0.01, "rule_of_thumb": 100.0},
 }
 
 
 @pytest.fixture(scope="session")
 def small():
     """The small atlas, some of its parameters changed."""
-    return lambda **changed: AtlasParameters(**(SMALL | changed))
+    return lambda **changed: Plan(**(SMALL | changed))
 
 
 @pytest.fixture(scope="session")

@@ -1,5 +1,7 @@
 """What may replace the accepted record, and what is copied."""
 
+import subprocess
+
 import pytest
 
 from bouncing_ball.compare import accept as module
@@ -11,8 +13,9 @@ from bouncing_ball.provenance.revision import UNKNOWN, Revision
 
 @pytest.fixture
 def run(pair, monkeypatch):
-    """``run(*names)``: accept in a committed checkout."""
+    """``run(*names)``: accept in a committed checkout, for which Snakemake has nothing to do."""
     monkeypatch.setattr(module, "revision", lambda _: Revision("1f0e", "no"))
+    monkeypatch.setattr(module, "jobs_left", lambda *_: 0)
     (pair.record / "config").mkdir()
     (pair.record / "config" / "config.yaml").write_text("release: force\n", encoding="utf-8")
     made = [str(path) for path in pair.new.glob("figures/*")]
@@ -66,20 +69,33 @@ def test_what_is_named_is_copied_and_nothing_else(pair, run, one_line):
 
 
 @pytest.mark.parametrize(
-    ("state", "config", "said"),
+    ("state", "left", "config", "said"),
     [
-        (UNKNOWN, "force", "the tree is not committed"),
-        (Revision("1f0e", "yes"), "force", "the tree is not committed"),
-        (Revision("1f0e", "no"), "displacement", "other values than config/config.yaml"),
-        (Revision("1f0e", "no"), "force", "fig17.png is not made by this workflow: remove it"),
+        (UNKNOWN, 0, "force", "the tree is not committed"),
+        (Revision("1f0e", "yes"), 0, "force", "the tree is not committed"),
+        (Revision("1f0e", "no"), 0, "displacement", "other values than config/config.yaml"),
+        (Revision("1f0e", "no"), 3, "force", "Snakemake would still run 3 jobs"),
+        (Revision("1f0e", "no"), 0, "force", "fig17.png is not made by this workflow: remove it"),
     ],
 )
-def test_a_refusal_changes_nothing(pair, run, monkeypatch, one_line, state, config, said):
+def test_a_refusal_changes_nothing(pair, run, monkeypatch, one_line, state, left, config, said):
     drift(pair)
     monkeypatch.setattr(module, "revision", lambda _: state)
+    monkeypatch.setattr(module, "jobs_left", lambda *_: left)
     (pair.new / "figures" / "fig17.png").touch()
     before = contents(pair)
     with pytest.raises(RefusedError) as error:
         run(config={"release": config})
     one_line(error, said)
     assert contents(pair) == before
+
+
+def test_the_jobs_left_are_those_of_a_dry_run(monkeypatch, tmp_path, one_line):
+    ends = iter([(0, "job  count\nall 1\ntotal 4\n", ""), (0, "", ""), (1, "", "many\nwords\n")])
+    done = lambda *_, **__: subprocess.CompletedProcess([], *next(ends))  # noqa: E731
+    monkeypatch.setattr(module.subprocess, "run", done)
+    assert module.jobs_left(tmp_path, []) == 4
+    assert module.jobs_left(tmp_path, []) == 0
+    with pytest.raises(RefusedError) as error:
+        module.jobs_left(tmp_path, [])
+    one_line(error, "a dry run fails: words")

@@ -241,11 +241,13 @@ def test_nothing_happens_between_the_events(name, n, above, side):
     _, orbit = some_orbit(name, n, above, side)
     share = np.linspace(0, 1, 2001)[1:-1]
     if orbit.contact_duration > 0 and not name.startswith("corrected"):
-        assert np.all(orbit.holding(share * orbit.contact_duration) < 0)
+        depth, rate = (-x for x in orbit.contact_motion(share * orbit.contact_duration))
+        assert np.all(orbit.law.grip(depth, rate) > 0)
     time = float(orbit.contact_duration) + share * float(orbit.flight_time)
     gap = orbit.path(time)[0] - orbit.amplitude * np.sin(orbit.phase + time)
     rising = gap > 0
-    if orbit.release_displacement < 0:
+    end = orbit.contact_path(orbit.contact_duration)[0]
+    if end < orbit.amplitude * np.sin(orbit.release_phase):
         # Let go below the table's level: it crosses it once, upwards.
         rising = rising[np.argmax(rising) :]
         assert len(rising) > len(gap) / 2

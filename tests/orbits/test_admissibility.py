@@ -12,7 +12,7 @@ from bouncing_ball.orbits.restitution_orbit import RestitutionOrbit
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import Side, orbit_at
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
-from bouncing_ball.orbits.spring_damper_system import Parameter, SpringDamperSystem
+from bouncing_ball.orbits.spring_damper_system import SpringDamperSystem
 
 SHARES = np.linspace(0, 1, 2001)[1:-1, np.newaxis]
 
@@ -24,14 +24,14 @@ def landing_gap(s, phase, velocity, amplitude):
 
 def sampled(orbit):
     """The definition, on 2000 samples of contact and flight each."""
-    omega, zeta = orbit.contact.frequency_ratio, orbit.contact.damping_ratio
+    omega, zeta = orbit.law.frequency_ratio, orbit.law.damping_ratio
     u, lam = orbit.relative_impact_velocity, orbit.amplitude
     flow = SpringDamper(omega, zeta).flow(SHARES * orbit.contact_duration, 0.0, u, orbit.phase, lam)
     time = orbit.contact_duration + SHARES * orbit.flight_time
     height, velocity = orbit.flight_path(time)
     over = height - lam * np.sin(orbit.phase + time)
     signal = flow.displacement
-    if orbit.contact.release is Release.FORCE:
+    if orbit.law.release is Release.FORCE:
         signal = signal + 2 * zeta / omega * flow.velocity
         rate = velocity - lam * np.cos(orbit.phase + time)
         rising = np.logical_and.accumulate(over < 0, axis=0)
@@ -63,7 +63,7 @@ def test_random_orbits_against_samples(release):
 @pytest.mark.parametrize(("omega", "r_zeta", "release"), [(10.0, 0.05, r) for r in Release])
 def test_grazing_is_located(omega, r_zeta, release):
     # On the unstable side the table rises into the flight from Λ ≈ 2.1 on.
-    system = SpringDamperSystem(1, r_zeta, Parameter.AMPLITUDE, omega, release)
+    system = SpringDamperSystem(1, SpringDamper(omega, r_zeta, release))
     lam = np.linspace(1.9, 2.4, 6)
     orbit = orbit_at(SpringDamper(omega, r_zeta, release), 1, lam, Side.UNSTABLE)
     y = np.stack([orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration, lam], axis=-1)

@@ -10,7 +10,7 @@ from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Side
 
 RELEASES = list(Release)
-COMPARED = (*OBSERVABLES[1:], "release_displacement", "bounce_height")
+COMPARED = (*OBSERVABLES[1:], "bounce_height")
 
 
 def models(omega, zeta, release):

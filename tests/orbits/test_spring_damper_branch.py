@@ -13,7 +13,7 @@ from bouncing_ball.orbits.spring_damper_branch import branch_point, nearest_exce
 from bouncing_ball.orbits.spring_damper_limits import saddle_node
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
-from bouncing_ball.orbits.spring_damper_system import Parameter, SpringDamperSystem
+from bouncing_ball.orbits.spring_damper_system import SpringDamperSystem
 
 EPS = np.finfo(float).eps
 
@@ -42,7 +42,7 @@ def test_every_point_satisfies_the_papers_equations(log_omega, zeta, n, release,
     # end (where the three equations become dependent).
     excess = share * start if share < 0 else min(share, 0.95 * (omega_d * 2 * np.pi * n - start))
     point = branch_point(excess, contact, n)
-    system = SpringDamperSystem(n, zeta, Parameter.AMPLITUDE, contact.frequency_ratio, release)
+    system = SpringDamperSystem(n, contact)
     # A 3 × 3 solve: its condition costs about two digits.
     assert np.all(np.abs(scaled_residual(system, point, contact)) < 1e-13)
 

@@ -18,17 +18,18 @@ from bouncing_ball.continuation.events import fold, parameter_bound
 from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import orbit_at, period_doubling, saddle_node
-from bouncing_ball.orbits.spring_damper_system import Parameter, SpringDamperSystem
+from bouncing_ball.orbits.spring_damper_system import SpringDamperSystem
 
 releases = st.sampled_from(list(Release))
-parameters = st.sampled_from(list(Parameter))
+parameters = st.sampled_from(["amplitude", "log frequency ratio"])
 
 
 def build(n, zeta, parameter, omega, lam, release):
     """A system and the last entry of y that gives (ϖ, Λ)."""
-    if parameter is Parameter.AMPLITUDE:
-        return SpringDamperSystem(n, zeta, parameter, omega, release), lam
-    return SpringDamperSystem(n, zeta, parameter, lam, release), np.log(omega)
+    contact = SpringDamper(omega, zeta, release)
+    if parameter == "amplitude":
+        return SpringDamperSystem(n, contact), lam
+    return SpringDamperSystem(n, contact, lam), np.log(omega)
 
 
 anywhere = st.tuples(
@@ -97,7 +98,7 @@ def test_continuation_finds_the_bifurcations_of_the_closed_form(n, omega, releas
     lam = float(node.amplitude + doubling.amplitude) / 2
     orbit = orbit_at(contact, n, lam)
     start = np.array([orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration, lam])
-    system = SpringDamperSystem(n, zeta, Parameter.AMPLITUDE, omega, release)
+    system = SpringDamperSystem(n, contact)
     # Far enough to pass both; the window ends the stable side, and the
     # amplitude of the start the unstable one.
     top = 1.05 * float(doubling.amplitude)
@@ -131,7 +132,7 @@ def test_continuation_finds_the_bifurcations_of_the_closed_form(n, omega, releas
 @pytest.mark.parametrize(("n", "r", "lam"), [(1, 0.85, 0.7), (2, 0.65, 1.5)])
 def test_continuation_along_the_frequency_ratio(n, r, lam, release):
     zeta = float(damping_ratio(r))
-    system = SpringDamperSystem(n, zeta, Parameter.LOG_FREQUENCY_RATIO, lam, release)
+    system = SpringDamperSystem(n, SpringDamper(1e4, zeta, release), lam)
     start = solve_at(system, system.guess(lam, 1e4))
     target = parameter_bound(np.log(2.0), False, "there")
     way = continue_branch(system, start, increasing=False, events=(*system.events(), target))
@@ -148,9 +149,8 @@ def test_continuation_along_the_frequency_ratio(n, r, lam, release):
 
 
 def follow_unstable_side(n, omega, r, lam, largest=0.2):
-    zeta = float(damping_ratio(r))
-    system = SpringDamperSystem(n, zeta, Parameter.AMPLITUDE, omega)
-    orbit = orbit_at(SpringDamper(omega, zeta), n, lam)
+    contact = SpringDamper(omega, float(damping_ratio(r)))
+    system, orbit = SpringDamperSystem(n, contact), orbit_at(contact, n, lam)
     start = np.array([orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration, lam])
     events = (*system.events(), fold(system), parameter_bound(10.0, True, "window"))
     control = StepControl(largest=largest)
@@ -177,7 +177,7 @@ def test_the_branch_ends_in_permanent_contact(omega, r, largest, reasons):
     # Λ is off by the square of the flight left: up to 4e-5 at ϖ = 10, where
     # the impact velocity meets its margin of 1e-4.
     end = system.orbit(branch.points[-1])
-    expected = float(permanent_contact_threshold(omega, system.damping_ratio))
+    expected = float(permanent_contact_threshold(omega, system.contact.damping_ratio))
     assert branch.points[-1, 3] == pytest.approx(expected, abs=float(end.flight_time) ** 2 + 1e-12)
     assert float(end.flight_time) < 1e-2
     if str(branch.end) == CONTACT_LOST:
@@ -187,8 +187,8 @@ def test_the_branch_ends_in_permanent_contact(omega, r, largest, reasons):
 def test_flight_lost():
     # ϖ = 0.6, n = 2: a branch that reaches contacts as long as the cycle.
     zeta, n, omega = float(damping_ratio(0.3)), 2, 0.6
-    system = SpringDamperSystem(n, zeta, Parameter.AMPLITUDE, omega)
     contact = SpringDamper(omega, zeta)
+    system = SpringDamperSystem(n, contact)
     fill = (2 * np.pi * n - 0.1) * omega
     point = branch_point(fill * np.sqrt(1 - zeta**2) - np.pi, contact, n)
     start = np.array([point.phase, point.u + point.x, fill, point.amplitude])

@@ -80,3 +80,18 @@ def test_force_release():
     contact = SpringDamper(1e4, float(damping_ratio(0.65)), Release.FORCE)
     expected = float(orbit_at(contact, 1, 1.0).apparent_restitution) / 0.65 - 1
     assert float(dry.relative_error.sel(at)[-1]) == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_threshold_at_the_end_of_the_bifurcation():
+    # r = 0.0893 and 1-T: contacts have a saddle-node from ϖ = 3.6 on only.
+    span = {"min": 1.0, "max": 1e4, "samples": 101}
+    one = {"n": 1, "restitution": 0.0893, "amplitude": 3.0, "frequency_ratio": span}
+    asked = {"quantities": ["saddle_node"], "tolerances": [0.5]}
+    data = typed(error_thresholds)(one | asked, "displacement")
+    assert data.threshold_status.item() == ThresholdStatus.FOUND
+    fine, threshold = np.geomspace(1.0, 10.0, 20001), data.error_threshold.item()
+    exact = SpringDamperModel(SpringDamper.from_restitution(0.0893, fine))
+    there = np.isfinite(exact.saddle_node(1).amplitude)
+    first = int(np.argmax(there))
+    assert np.all(there[first:]) and fine[first - 1] <= threshold <= fine[first]
+    assert np.array_equal(np.isinf(data.relative_error[0]), data.frequency_ratio < threshold)

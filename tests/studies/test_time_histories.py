@@ -6,6 +6,7 @@ from scipy.integrate import solve_ivp
 
 from bouncing_ball.configuration.study import typed
 from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.studies.time_histories import both_histories, contact_history, meeting_flights
 
 # As the configuration gives them.
@@ -99,3 +100,10 @@ def test_the_flights_meet_at_the_centroid_of_the_force(described, release):
     height = np.interp(float(data.meeting_time), time, data.flight_after.values)
     assert float(data.meeting_height) == pytest.approx(height, abs=1e-5)
     assert float(data.delay) == pytest.approx(float(data.meeting_time), rel=0.05)
+
+
+def test_no_motion_is_no_history(one_line):
+    soft = {"n": 2, "restitution": 0.3, "amplitude": 50.0, "frequency_ratio": 0.8}
+    with pytest.raises(NoOrbitError) as error:
+        contact_history(ONE | soft, "displacement")
+    one_line(error, "is inadmissible: another impact")

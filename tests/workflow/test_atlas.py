@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from bouncing_ball.atlas.plan import AtlasParameters
+from bouncing_ball.atlas.plan import Plan
 from bouncing_ball.atlas.shards import shard
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.netcdf import read_dataset
@@ -43,7 +43,7 @@ def resumed(cloned, tmp_path_factory):
     shards = folder / "results/atlas/shards"
     found = tree.checksums("results/atlas/shards")
     early = dict(sorted(found.items(), key=lambda item: (shards / item[0]).stat().st_mtime_ns))
-    return tree, early, tree.run("--nolock", "--cores", "1", *ATLAS).stdout
+    return tree, early, tree.run("--cores", "1", *ATLAS).stdout
 
 
 def test_a_killed_atlas_is_resumed_without_loss(resumed):
@@ -58,7 +58,7 @@ def test_a_killed_atlas_is_resumed_without_loss(resumed):
 def test_the_files_hold_what_the_package_computes(resumed):
     tree, *_ = resumed
     section = read_yaml(tree.path / "config" / "config.yaml")["atlas"] | SMALL
-    plan = AtlasParameters(**section)
+    plan = Plan(**section)
     expected, found = shard(plan, 1), read_dataset(tree.path / SHARDS[1])
     for name in expected.variables:
         assert found[name].values.tobytes() == expected[name].values.tobytes(), name

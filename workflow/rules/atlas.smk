@@ -3,8 +3,7 @@
 
 from bouncing_ball.pipeline.atlas import shard_minutes, shard_names
 
-# What the shards are made from.
-ATLAS = {key: part for key, part in config["atlas"].items() if key != "summary"}
+ATLAS = config["atlas"]
 CHARTS = ["max_height", "bounce_velocity", "phase", "apparent_restitution", "page"]
 
 
@@ -66,7 +65,7 @@ rule atlas:
         worst="results/atlas/worst.md",
     params:
         title="The atlas in short",
-        parameters=config["atlas"],
+        parameters=ATLAS,
     log:
         "results/logs/atlas/charts.log",
     benchmark:

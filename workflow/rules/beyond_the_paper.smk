@@ -7,7 +7,6 @@ BEYOND_THE_PAPER = {
     "ext_basins": "studies.long_contacts.basins",
     "ext_instant": "studies.time_histories.meeting_flights",
     "ext_orders": "studies.model_errors.orders",
-    "ext_validity": "studies.model_errors.validity",
     "ext_laws": "studies.contact_laws.law_errors",
     "ext_hertz": "studies.contact_laws.figures_of_laws",
     "explorer": "studies.reference_orbits.reference_orbits",

@@ -9,10 +9,10 @@ from bouncing_ball.pipeline.conclusion import conclude
 from bouncing_ball.pipeline.job import logged
 
 with logged(snakemake) as lines:
-    record, results = Path(snakemake.params.record), Path("results")
+    given = snakemake.params
     only = os.environ.get("ONLY", "").replace(",", " ").split()
     try:
-        lines += accept(record, results, snakemake.input, snakemake.config, only)
+        lines += accept(Path(given.record), Path("results"), given.files, snakemake.config, only)
         print(*lines, sep="\n", flush=True)
     except ModelError as error:
         conclude(f"accept: {error}")

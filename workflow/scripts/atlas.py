@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from bouncing_ball.atlas.plan import AtlasParameters
+from bouncing_ball.atlas.plan import Plan
 from bouncing_ball.atlas.summary import summary
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.datasets.netcdf import parameter_attributes
@@ -16,7 +16,7 @@ from bouncing_ball.pipeline.job import logged, provenance, publish, read_input
 with logged(snakemake), style():
     parameters = snakemake.params.parameters
     (path,) = snakemake.input.parts
-    data = summary(AtlasParameters(**parameters), read_input(path))
+    data = summary(Plan(**parameters), read_input(path))
     publish(snakemake, data, parameter_attributes(parameters), compressed=True)
     metadata = provenance(snakemake)
     folder = Path(snakemake.output.shares).parent

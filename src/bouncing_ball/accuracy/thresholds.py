@@ -6,17 +6,16 @@ within the range scanned. Where a model lacks the quantity, the error is infinit
 
 from collections.abc import Callable, Sequence
 from enum import StrEnum
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize.elementwise import find_root
 
-from bouncing_ball.accuracy.errors import SIMPLE, errors, modulus, relative_errors
+from bouncing_ball.accuracy.errors import SIMPLE, errors, modulus
 from bouncing_ball.accuracy.quantities import OF_IMPACTS, OF_ORBITS
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.orbits.model import ImpactModel
 
 Numbered = Callable[[np.ndarray, np.ndarray], np.ndarray]
 """Values at ratios ϖ of the functions with given numbers; all three arrays of one shape."""
@@ -129,11 +128,8 @@ def thresholds(
     rows = excess(size, tolerance).reshape(-1, ratios.size)
     found = last_crossing(crossing, ratios, rows).reshape(outside.shape[:2])
     never, always = outside[..., -1], ~outside.any(axis=-1)
-    status = np.select(
-        [never, always],
-        [str(ThresholdStatus.NEVER_WITHIN), str(ThresholdStatus.ALWAYS_WITHIN)],
-        str(ThresholdStatus.FOUND),
-    )
+    within = np.where(always, ThresholdStatus.ALWAYS_WITHIN, ThresholdStatus.FOUND)
+    status = np.where(never, ThresholdStatus.NEVER_WITHIN, within)
     return Thresholds(np.where(never, np.nan, found), status)
 
 
@@ -157,43 +153,6 @@ def by_quantity(errors: Errors, quantities: Sequence[str], rows: int) -> Numbere
         return found
 
     return numbered
-
-
-def model_thresholds(
-    exact: Callable[[np.ndarray], ImpactModel],
-    simple: ImpactModel,
-    n: int,
-    amplitude: float,
-    ratios: np.ndarray,
-    tolerances: ArrayLike,
-    quantities: Sequence[str],
-) -> tuple[np.ndarray, Thresholds]:
-    """One simple model against exact ones along ϖ: moduli of the errors, and thresholds.
-
-    Parameters
-    ----------
-    exact : callable
-        The exact models at an array of ϖ.
-
-    Returns
-    -------
-    ndarray, shape (quantity, N)
-    Thresholds, shape (quantity, tolerance)
-
-    Raises
-    ------
-    NoOrbitError
-        If the simple model has no orbit at Λ to compare with.
-    """
-    if set(quantities) & set(OF_ORBITS):
-        simple.require_orbit(n, amplitude)
-
-    def along(ratio: np.ndarray, _: Any, asked: Sequence[str]) -> np.ndarray:
-        return relative_errors(exact(ratio), [simple], n, amplitude, asked)[0]
-
-    scanned = along(ratios, None, quantities)
-    numbered = by_quantity(along, quantities, 1)
-    return modulus(scanned), thresholds(numbered, ratios, scanned, tolerances)
 
 
 class Search(NamedTuple):

@@ -13,10 +13,10 @@ numbers do not depend on how many shards there are. All quantities are dimension
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, Self
+from typing import Annotated
 
 import numpy as np
-from pydantic import Field, Strict, model_validator
+from pydantic import Field, Strict
 
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.release import Release
@@ -25,6 +25,7 @@ from bouncing_ball.orbits import restitution_orbit
 from bouncing_ball.parameters import (
     Family,
     FrequencyRatio,
+    Interval,
     Many,
     Parameters,
     Restitution,
@@ -65,53 +66,24 @@ class Ranges(Parameters):
     samples: Annotated[int, number("even nodes in each range", ge=1, le=10000)]
 
 
-class RestitutionRanges(Ranges):
-    """Ranges of r."""
+class RestitutionRanges(Interval, Ranges):
+    """Ranges of r; those beyond a release rule's reach are left out."""
 
-    min: Annotated[
-        Restitution,
-        Field(description="smallest r, of which ranges beyond a release rule's reach are left out"),
-    ]
+    min: Annotated[Restitution, Field(description="smallest r, for rules that reach it")]
     max: Annotated[Restitution, Field(description="largest r, above min")]
-
-    @model_validator(mode="after")
-    def _increasing(self) -> Self:
-        if self.min >= self.max:
-            raise ValueError(f"min = {self.min:g} must be less than max = {self.max:g}")
-        return self
-
-
-class WalkedSpan(Span):
-    """The frequency ratios walked over, from the largest to the smallest."""
-
-    min: Annotated[
-        float,
-        number("smallest ϖ: a contact softer than 3 lasts a good part of the period", ge=3, le=1e6),
-    ]
 
 
 class Plan(Parameters):
-    """What the atlas is made from."""
+    """What the atlas is made from, the section ``atlas`` of the configuration."""
 
     n: Many[Family]
     release: Many[Annotated[Release, Strict(False)]]
     restitution: RestitutionRanges
     position: Ranges
-    frequency_ratio: WalkedSpan
+    frequency_ratio: Span
     tolerances: Many[Tolerance]
-    examined: Annotated[
-        Many[FrequencyRatio],
-        Field(description="the ϖ within frequency_ratio at which the errors are described"),
-    ]
+    examined: Annotated[Many[FrequencyRatio], Field(description="ϖ at which errors are described")]
     shards: Annotated[int, number("number of jobs, at most one for each row", ge=1, le=20000)]
-
-    @model_validator(mode="after")
-    def _examined_is_walked_over(self) -> Self:
-        low, high = self.frequency_ratio.min, self.frequency_ratio.max
-        for ratio in self.examined:
-            if not low <= ratio <= high:
-                raise ValueError(f"examined = {ratio:g} must be from {low:g} to {high:g}")
-        return self
 
     @cached_property
     def edges(self) -> np.ndarray:
@@ -168,17 +140,15 @@ class Plan(Parameters):
 
     def nodes(self, row: int, index: np.ndarray) -> Nodes:
         """Nodes of a row by their numbers, which go tile by tile, in each r by r."""
-        tile, within = np.divmod(index, self.nodes_per_tile)
-        along_r, along_p = np.divmod(within, self.position.samples)
         count = self.position.tiles * self.position.samples
-        p = _midpoint(tile * self.position.samples + along_p, 0.0, 1.0, count)
-        return self.placed(row, self.restitutions(row)[along_r], p)
+        p = _midpoints(0.0, 1.0, count).reshape(self.position.tiles, 1, -1)
+        each = np.broadcast_arrays(self.restitutions(row)[:, np.newaxis], p)
+        return self.placed(row, *(x.ravel()[index] for x in each))
 
     def restitutions(self, row: int) -> np.ndarray:
         """The r of a row."""
         low, high = self.edges[row % self.restitution.tiles :][:2]
-        count = self.restitution.samples
-        return _midpoint(np.arange(count), float(low), float(high), count)
+        return _midpoints(float(low), float(high), self.restitution.samples)
 
     def placed(self, row: int, r: np.ndarray, p: np.ndarray) -> Nodes:
         """Nodes at any r and p, for a row's rule and n."""
@@ -188,40 +158,12 @@ class Plan(Parameters):
         return Nodes(self.release[rule], n, r, low + p * (high - low))
 
 
-class Summary(Parameters):
-    """What the summary is asked."""
-
-    tolerance: Annotated[
-        Tolerance, Field(description="one of the tolerances: that of charts and tables")
-    ]
-    rule_of_thumb: Annotated[
-        FrequencyRatio,
-        Field(description="one of the ϖ examined, from which on the paper finds its model right"),
-    ]
-
-
-class AtlasParameters(Plan):
-    """The section ``atlas`` of the configuration."""
-
-    summary: Summary
-
-    @model_validator(mode="after")
-    def _among_the_rest(self) -> Self:
-        for key, allowed in (("tolerance", self.tolerances), ("rule_of_thumb", self.examined)):
-            if getattr(self.summary, key) not in allowed:
-                listed = ", ".join(f"{value:g}" for value in allowed)
-                raise ValueError(
-                    f"summary.{key} = {getattr(self.summary, key):g} must be one of {listed}"
-                )
-        return self
-
-
-def _midpoint(index: np.ndarray, low: float, high: float, count: int) -> np.ndarray:
-    """Midpoints of some of equal parts of an interval.
+def _midpoints(low: float, high: float, count: int) -> np.ndarray:
+    """Midpoints of equal parts of an interval.
 
     Examples
     --------
-    >>> _midpoint(np.arange(2), 0.0, 1.0, 2).tolist()
+    >>> _midpoints(0.0, 1.0, 2).tolist()
     [0.25, 0.75]
     """
-    return low + (index + 0.5) / count * (high - low)
+    return low + (np.arange(count) + 0.5) / count * (high - low)

@@ -51,11 +51,6 @@ class Table:
         """Unit of length, g/Ω², in m."""
         return self.gravity / self.angular_frequency**2
 
-    @property
-    def speed(self) -> float:
-        """Unit of velocity, g/Ω, in m/s."""
-        return self.gravity / self.angular_frequency
-
 
 @dataclass(frozen=True)
 class Case:
@@ -75,7 +70,7 @@ class Case:
     Examples
     --------
     >>> case = Case(1.0, Table(1.0, 1.0, 1.0), SpringDamper(10.0, 0.1))
-    >>> case.stiffness, case.damping
+    >>> case.in_si()["stiffness"], case.in_si()["damping"]
     (100.0, 2.0)
     """
 
@@ -83,20 +78,6 @@ class Case:
     table: Table
     contact: SpringDamper
     law: Tsuji | None = None
-
-    @property
-    def stiffness(self) -> float:
-        """k = mω² in N/m, ω = ϖΩ."""
-        return self.mass * self._frequency**2
-
-    @property
-    def damping(self) -> float:
-        """c = 2ζmω in N s/m."""
-        return 2 * float(self.contact.damping_ratio) * self.mass * self._frequency
-
-    @property
-    def _frequency(self) -> float:
-        return float(self.contact.frequency_ratio) * self.table.angular_frequency
 
     @cached_property
     def models(self) -> dict[str, ImpactModel]:
@@ -115,17 +96,21 @@ class Case:
         # That of a law is interpolated, and may be above 1 by rounding.
         return self.models["corrected"].signature(rigid_speed(n, r))._replace(restitution=r)
 
-    @property
-    def contact_time(self) -> float:
-        """Duration of a free impact, in s."""
-        return float(self.contact.free_duration) * self.table.time
+    def in_si(self) -> dict[str, float]:
+        """Stiffness k = mω² and damping c = 2ζmω, ω = ϖΩ; contact time; static deflection mg/k.
 
-    @property
-    def static_deflection(self) -> float:
-        """mg/k, in m; of a Hertz contact where K p^{3/2} = 1."""
+        Of a Hertz contact that is where K p^{3/2} = 1.
+        """
+        omega = float(self.contact.frequency_ratio) * self.table.angular_frequency
+        deflection = self.table.gravity / omega**2
         if self.law is not None:
-            return float(self.law.stiffness) ** (-2 / 3) * self.table.length
-        return self.mass * self.table.gravity / self.stiffness
+            deflection = float(self.law.stiffness) ** (-2 / 3) * self.table.length
+        return {
+            "stiffness": self.mass * omega**2,
+            "damping": 2 * float(self.contact.damping_ratio) * self.mass * omega,
+            "contact_time": float(self.contact.free_duration) * self.table.time,
+            "static_deflection": deflection,
+        }
 
     @cached_property
     def permanent_contact(self) -> float:

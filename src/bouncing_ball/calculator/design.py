@@ -10,19 +10,10 @@ from bouncing_ball.calculator.case import Case
 from bouncing_ball.calculator.contact_data import case_of, loss, meant, table_of
 from bouncing_ball.calculator.families import families, finite
 from bouncing_ball.calculator.needed import RATIOS, needed
-from bouncing_ball.calculator.results import (
-    QUANTITIES,
-    Corrected,
-    Design,
-    Family,
-    Needed,
-    PermanentContact,
-    TimeStep,
-)
+from bouncing_ball.calculator.results import QUANTITIES, Corrected, Design, Family, Needed, TimeStep
 from bouncing_ball.calculator.units import Unit, number, shown
-from bouncing_ball.calculator.verdict import assessed, chosen, notes
+from bouncing_ball.calculator.verdict import Verdict, assessed, chosen, notes
 from bouncing_ball.calls import Index, Rule
-from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError, require
@@ -31,10 +22,7 @@ from bouncing_ball.signatures import Range
 
 STEPS = 50
 """Steps in one contact."""
-STEP_RULE = (
-    f"a contact takes {STEPS} steps, the default of MFiX-Exa (mfix.tcoll_ratio = {STEPS}) and the "
-    "step of MercuryDPM's tutorials"
-)
+STEP_RULE = f"a contact takes {STEPS} steps, the default of MFiX-Exa (mfix.tcoll_ratio)"
 
 # Families looked at if none is asked for: as many as the paper shows, and some more.
 _FAMILIES = range(1, 9)
@@ -141,20 +129,29 @@ def design(
     lam, asked = table.amplitude, _FAMILIES if n is None else [n]
     require(lam < _LARGEST, lam, "Λ", f"below {_LARGEST:g}")
     case = case_of(given, table, rule, asked)
-    if case is None:
-        zeta = loss(given, rule)
-        index, need = _least(zeta, rule, asked, lam, quantity, epsilon)
-        ratio = need.frequency_ratio or float(RATIOS[0])
-        case = Case(given["mass"], table, SpringDamper(ratio, zeta, rule))
+    if case is not None:
+        ratio = float(case.contact.frequency_ratio)
+        require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
         found = families(case, asked)
-        one = next((one for one in found if one.n == index), _judged(found))
-        return _design(case, found, one, need, *chosen(case, need, index))
-    ratio = float(case.contact.frequency_ratio)
-    require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
+        one = _judged(found)
+        need = needed(quantity, epsilon, case.contact, one.n, lam)
+        return _design(case, found, one, need, assessed(one, need, ratio))
+    contact = SpringDamper(1.0, loss(given, rule), rule)
+    r = float(contact.restitution)
+    index = meant(asked, r, lam)
+    if quantity in OF_ORBITS:
+        RestitutionModel(r).require_orbit(index, lam)
+    need = needed(quantity, epsilon, contact, index, lam)
+    if need.status == ThresholdStatus.NEVER_WITHIN:
+        raise NoOrbitError(
+            f"no contact up to ϖ = {RATIOS[-1]:g} has its {QUANTITIES[Quantity(quantity)]} within "
+            f"{shown(epsilon, '%')} of the restitution model with r = {r:.4g}"
+        )
+    stiff = replace(contact, frequency_ratio=need.frequency_ratio or float(RATIOS[0]))
+    case = Case(given["mass"], table, stiff)
     found = families(case, asked)
-    one = _judged(found)
-    need = needed(quantity, epsilon, case.contact, one.n, lam)
-    return _design(case, found, one, need, *assessed(one, need, ratio))
+    one = next((one for one in found if one.n == index), _judged(found))
+    return _design(case, found, one, need, chosen(case.in_si(), need, index))
 
 
 def quantities() -> dict[str, Unit]:
@@ -175,75 +172,32 @@ def _read(parameters: Mapping[str, Any]) -> dict[str, float]:
     return given
 
 
-def _least(
-    zeta: float,
-    release: Release,
-    asked: Sequence[int],
-    amplitude: float,
-    quantity: str,
-    tolerance: float,
-) -> tuple[int, Needed]:
-    """The family that a choice is about, and the least ϖ that it needs.
-
-    Raises
-    ------
-    NoOrbitError
-        If the restitution model has no orbit to be right about, or no contact will do.
-    """
-    unit = SpringDamper(1.0, zeta, release)
-    r = float(unit.restitution)
-    n = meant(asked, r, amplitude)
-    if quantity in OF_ORBITS:
-        RestitutionModel(r).require_orbit(n, amplitude)
-    need = needed(quantity, tolerance, unit, n, amplitude)
-    if need.status == ThresholdStatus.NEVER_WITHIN:
-        raise NoOrbitError(
-            f"no contact up to ϖ = {RATIOS[-1]:g} has its {QUANTITIES[Quantity(quantity)]} within "
-            f"{shown(tolerance, '%')} of the restitution model with r = {r:.4g}"
-        )
-    return n, need
-
-
 def _judged(found: Sequence[Family]) -> Family:
     """The family that a verdict is about: the first stable one, or the first there is."""
     return max(found, key=lambda one: (one.exists, one.is_stable and one.is_admissible))
 
 
 def _design(
-    case: Case,
-    found: tuple[Family, ...],
-    one: Family,
-    need: Needed,
-    is_good_enough: bool,
-    verdict: str,
-    reason: str,
+    case: Case, found: tuple[Family, ...], one: Family, need: Needed, verdict: Verdict
 ) -> Design:
     """Everything that is known of a contact; `one` is the family of the verdict."""
     contact, table = case.contact, case.table
+    si: dict[str, Any] = case.in_si()
     delay, r, load = map(float, case.instant(one.n)[:3])
     return Design(
         frequency_ratio=float(contact.frequency_ratio),
         damping_ratio=float(contact.damping_ratio),
         amplitude=table.amplitude,
-        stiffness=case.stiffness,
-        damping=case.damping,
-        contact_time=case.contact_time,
-        time_step=TimeStep(case.contact_time / STEPS, STEP_RULE),
-        static_deflection=case.static_deflection,
+        **si,
+        time_step=TimeStep(si["contact_time"] / STEPS, STEP_RULE),
         restitution={
             str(rule): float(replace(contact, release=rule).restitution) for rule in Release
         },
-        permanent_contact=PermanentContact(
-            finite(case.permanent_contact),
-            RESTITUTION_THRESHOLD,
-            finite(1 - case.permanent_contact / table.amplitude),
-        ),
+        permanent_contact=finite(case.permanent_contact),
         corrected=Corrected(delay * table.time, r, load * table.time),
         orbits=found,
         needed=need,
-        is_good_enough=is_good_enough,
-        verdict=verdict,
-        reason=reason,
+        **verdict._asdict(),
         notes=notes(case, one),
         case=case,
         n=one.n,

@@ -124,19 +124,6 @@ class TimeStep:
 
 
 @dataclass(frozen=True)
-class PermanentContact:
-    """Λ up to which the ball stays down, in the contact and in the restitution model.
-
-    ``margin`` is the share by which Λ may fall to the threshold; below zero the ball may
-    stay down. None of a Hertz contact, whose stiffness at rest is that of its static deflection.
-    """
-
-    threshold: Annotated[float | None, Row("permanent contact up to Λ")]
-    restitution_threshold: Annotated[float, Row("  in the restitution model")]
-    margin: float | None
-
-
-@dataclass(frozen=True)
 class Corrected:
     """The three numbers of the corrected restitution model, in SI units.
 
@@ -155,7 +142,8 @@ class Design:
     """What an engineer needs to know of a contact; times in s, lengths in m, forces in N.
 
     ``frequency_ratio``, ``damping_ratio`` and ``amplitude`` are ϖ, ζ and Λ; ``restitution``
-    is that of a free impact by the release rule; ``n`` is the family of the verdict.
+    is that of a free impact by the release rule; ``n`` is the family of the verdict. Up to
+    ``permanent_contact`` a ball may stay down; it is None of a Hertz contact.
     """
 
     frequency_ratio: Annotated[float, Row("frequency ratio ϖ")]
@@ -171,7 +159,7 @@ class Design:
         Row("restitution, released at δ = 0"),
         Row("restitution, released without force"),
     ]
-    permanent_contact: PermanentContact
+    permanent_contact: Annotated[float | None, Row("permanent contact up to Λ")]
     corrected: Corrected
     orbits: tuple[Family, ...]
     needed: Needed

@@ -11,6 +11,7 @@ and ``deg/s`` are of one kind, and a bare ``1/s``, which might be either, is of 
 import math
 import re
 import textwrap
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -101,22 +102,17 @@ write it as '50 Hz'
 
 def _converted(given: str, value: float, unit: str, kind: Unit) -> float:
     """A value in a unit as one in SI units; as an acceleration g is not the gram."""
-    registry = _registry()
+    registry, why = _registry(), "has an unknown unit"
     if (kind.name, unit) == ("m/s^2", "g"):
         unit = "standard_gravity"
-    try:
-        if not _UNIT.fullmatch(unit.replace("**", "^")):
-            raise ValueError(unit)
-        one = registry.Quantity(value, registry.parse_units(unit))
-        right = one.is_compatible_with(kind.name or "dimensionless")
-        # To the last digit but one: the digits that a user wrote are kept.
-        found = float(f"{one.m_as(kind.name):.15g}") if right else math.nan
-    except Exception:  # pint raises whatever its tokenizer does
-        raise ModelError(f"{given} has an unknown unit: write it as {kind.example!r}") from None
-    if not right:
-        dimension = one.dimensionality
-        raise ModelError(f"{given} is of the dimension {dimension}: write it as {kind.example!r}")
-    return found
+    # pint raises whatever its tokenizer does.
+    with suppress(Exception):
+        if _UNIT.fullmatch(unit.replace("**", "^")):
+            one = registry.Quantity(value, registry.parse_units(unit))
+            why = f"is of the dimension {one.dimensionality}"
+            # To the last digit but one: the digits that a user wrote are kept.
+            return float(f"{one.m_as(kind.name):.15g}")
+    raise ModelError(f"{given} {why}: write it as {kind.example!r}")
 
 
 _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n"}

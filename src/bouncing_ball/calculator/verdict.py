@@ -1,26 +1,20 @@
 """The answer in one sentence, and why."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from bouncing_ball.accuracy.quantities import Quantity
-from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.calculator.case import Case
 from bouncing_ball.calculator.results import QUANTITIES, Family, Needed
 from bouncing_ball.calculator.units import shown
 from bouncing_ball.contacts.release import Release
-
-_OF_HERTZ = (
-    "the orbits are those of the Hertz contact with Tsuji's damping; stiffness, damping, ϖ, ζ and "
-    "the ϖ that is needed are those of the linear contact with its r, and its duration at the "
-    "impact speed of the restitution model's orbit"
-)
 
 
 class Verdict(NamedTuple):
     """Whether the restitution model is good enough, in one sentence, and the reason."""
 
     is_good_enough: bool
-    sentence: str
+    verdict: str
     reason: str
 
 
@@ -81,27 +75,29 @@ def _reason(needed: Needed, frequency_ratio: float, good: bool, tolerance: str) 
     return text
 
 
-def chosen(case: Case, needed: Needed, n: int) -> Verdict:
+def chosen(si: Mapping[str, float], needed: Needed, n: int) -> Verdict:
     """The verdict on the most compliant contact within the tolerance."""
     tolerance = shown(needed.tolerance, "%")
     sentence = (
-        f"A simulation needs a contact of at least {shown(case.stiffness, 'N/m')}, with a contact "
-        f"time of {shown(case.contact_time, 's')} or less and a damping of "
-        f"{shown(case.damping, 'N s/m')} at that stiffness: {_subject(needed.quantity, n)} is "
+        f"A simulation needs a contact of at least {shown(si['stiffness'], 'N/m')}, with a contact "
+        f"time of {shown(si['contact_time'], 's')} or less and a damping of "
+        f"{shown(si['damping'], 'N s/m')} at that stiffness: {_subject(needed.quantity, n)} is "
         f"then within {tolerance} of the restitution model's."
     )
-    ratio = f"{float(case.contact.frequency_ratio):.4g}"
-    reason = f"the error crosses {tolerance} for the last time at the frequency ratio ϖ = {ratio}"
-    if needed.status == ThresholdStatus.ALWAYS_WITHIN:
-        reason = f"the error is {needed.status}"
-    return Verdict(True, sentence, reason)
+    if needed.frequency_ratio is None:
+        return Verdict(True, sentence, f"the error is {needed.status}")
+    where = f"at the frequency ratio ϖ = {needed.frequency_ratio:.4g}"
+    return Verdict(True, sentence, f"the error crosses {tolerance} for the last time {where}")
 
 
 def notes(case: Case, family: Family) -> tuple[str, ...]:
     """What a user should know beside the verdict."""
     found, contact, orbit = [], case.contact, f"{family.n}-T orbit"
     if case.law is not None:
-        found.append(_OF_HERTZ)
+        found.append(
+            "stiffness, damping, ϖ and ζ, and the ϖ that is needed, are those of a linear contact: "
+            "it has the r of the Hertz contact with Tsuji's damping, and its duration at the impact"
+        )
     if not family.exists:
         found.append(f"at this Λ the contact has no {orbit}")
     elif not (family.is_stable and family.is_admissible):

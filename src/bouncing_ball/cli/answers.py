@@ -12,15 +12,12 @@ from bouncing_ball import calls
 from bouncing_ball.accuracy import error_law as error_laws
 from bouncing_ball.cli.readable import lines
 from bouncing_ball.contacts.contact_law import ContactLaw
-from bouncing_ball.contacts.permanent_contact import permanent_contact_minimum
-from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import Signature, free_impact
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.motion.sequence import Status
 from bouncing_ball.orbits.continued import restitution_speed
 from bouncing_ball.orbits.orbit import OBSERVABLES, Orbit
-from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.signatures import takes
 
 Answer = dict[str, Any]
@@ -84,11 +81,7 @@ def limits(n=1, **impact: Any) -> Answer:
         orbit = getattr(of, name)(n)
         if not orbit.exists:
             what, branch = name.replace("_", " "), f"the branch of {n}-T orbits for {of.label}"
-            # Without a closed form only what is found is known.
-            closed = impact["law"] is None
-            raise NoOrbitError(
-                f"{branch} has no {what}" if closed else f"no {what} was found on {branch}"
-            )
+            raise NoOrbitError(f"no {what} was found on {branch}")
         found[name] = {key: float(getattr(orbit, key)) for key in OBSERVABLES[:3]}
         found[name]["is_admissible"] = bool(orbit.is_admissible())
     # The limits have two impact speeds; a law is described at the restitution model's.
@@ -109,41 +102,25 @@ def error_law(n=1, **given: Any) -> Answer:
     """
     amplitude = given.pop("amplitude")
     # K is the error at ϖ = 1, continued by its law.
-    contact = _contact(frequency_ratio=1.0, **given)
+    of: Any = calls.model(model="spring-damper", frequency_ratio=1.0, **given)
+    contact = of.contact
     zeta, release = contact.damping_ratio, contact.release
     law = error_laws.coefficients(n, zeta, amplitude, release)
     signed = {str(name): float(k) if math.isfinite(k) else None for name, k in law.items()}
-    second = abs(float(error_laws.permanent_contact_coefficient(zeta, release)))
+    second = error_laws.permanent_contact_coefficient(zeta, release)
     return {
         "coefficients": {name: k if k is None else abs(k) for name, k in signed.items()},
         "signed": signed,
-        "second_order": {"permanent_contact": second},
+        "second_order": {"permanent_contact": abs(float(second))},
         **_described(contact),
     }
 
 
-def _contact(**given: Any) -> SpringDamper:
-    return calls.model(model="spring-damper", **given).contact  # type: ignore[attr-defined]
-
-
 @takes(calls.model, "release", *calls.LOSS)
 def permanent_contact(*, frequency_ratio: calls.FrequencyRatio, **given: Any) -> Answer:
-    """Threshold at ϖ, and its minimum over ϖ.
-
-    The minimum is null where there is none (ζ ≥ 1/√2, displacement release).
-    """
-    contact = _contact(frequency_ratio=frequency_ratio, **given)
-    answer: Answer = {
-        "threshold": float(SpringDamperModel(contact).permanent_contact_threshold()),
-        "minimum": None,
-        "at_frequency_ratio": None,
-    }
-    zeta = contact.damping_ratio
-    if contact.release is Release.FORCE or 2 * zeta * zeta < 1:
-        lowest = permanent_contact_minimum(zeta, contact.release)
-        answer["minimum"] = float(lowest.threshold)
-        answer["at_frequency_ratio"] = float(lowest.frequency_ratio)
-    return answer | _described(contact)
+    """The Λ up to which the ball stays on the table."""
+    of: Any = calls.model(model="spring-damper", frequency_ratio=frequency_ratio, **given)
+    return {"threshold": float(of.permanent_contact_threshold())} | _described(of.contact)
 
 
 @takes(calls.simulate)

@@ -20,27 +20,10 @@ _COMMANDS = {
     "error-law": ("error of the restitution model to first order, K/ϖ", "cli.answers"),
     "permanent-contact": ("the amplitude up to which the ball stays down", "cli.answers"),
     "simulate": ("a sequence of impacts from any initial impact", "cli.answers"),
-    "design": (
-        "a contact with units: is a restitution coefficient enough, or which contact is",
-        "cli.design",
-    ),
-    "explain": (
-        "where a figure, dataset or table comes from, and the command that makes it again",
-        "provenance.explain",
-    ),
+    "design": ("whether a restitution coefficient is enough, or which contact is", "cli.design"),
+    "explain": ("where an artifact comes from, and how it is made again", "provenance.explain"),
     "diff": ("whether two folders of artifacts say the same", "cli.diff"),
 }
-
-
-def _laws() -> str:
-    """The contact laws, with the force and the parameters of each."""
-    from bouncing_ball.contacts.laws import LAWS
-
-    listed = (
-        f"{law.name} {law.formula} ({', '.join(law.parameter_names()).replace('_', '-')})"
-        for law in LAWS.values()
-    )
-    return f"Laws, with the penetration p and a force over the ball's weight: {'; '.join(listed)}"
 
 
 def _module(command: str) -> Any:
@@ -64,8 +47,7 @@ def parser(arguments: list[str]) -> Parser:
     for name, (text, _) in _COMMANDS.items():
         sub = commands.add_parser(name, help=text, description=text)
         if name in arguments:
-            names = add_options(sub, _call(name))
-            sub.epilog = _laws() if "law" in names else None
+            add_options(sub, _call(name))
             if hasattr(_module(name), "lines"):
                 sub.add_argument("--json", action="store_true", help="one JSON object")
     return top

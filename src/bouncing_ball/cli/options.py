@@ -126,11 +126,8 @@ def positional(call: Callable) -> list[str]:
     return [p.name for p in found if p.kind is p.POSITIONAL_ONLY]
 
 
-def add_options(parser: argparse.ArgumentParser, call: Callable) -> list[str]:
-    """One option for each parameter, and arguments for those that are positional only.
-
-    Returns the names of the parameters.
-    """
+def add_options(parser: argparse.ArgumentParser, call: Callable) -> None:
+    """One option for each parameter, and arguments for those that are positional only."""
     texts, parameters = meanings(call), inspect.signature(call, eval_str=True).parameters
     for name, parameter in parameters.items():
         reading, text = _reading(parameter.annotation), texts.get(name, "")
@@ -152,4 +149,3 @@ def add_options(parser: argparse.ArgumentParser, call: Callable) -> list[str]:
             help=text.replace("%", "%%"),
             **reading,
         )
-    return list(parameters)

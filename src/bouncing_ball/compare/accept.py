@@ -3,7 +3,10 @@
 The log of the record is that of git, ``git log figures/``.
 """
 
+import re
 import shutil
+import subprocess
+import sys
 from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
@@ -20,6 +23,23 @@ from bouncing_ball.provenance.revision import revision
 
 class RefusedError(ModelError):
     """Results that must not become the record, with the reason why."""
+
+
+def jobs_left(repository: Path, files: Collection[str]) -> int:
+    """How many jobs Snakemake would still run for these files, by its own rerun triggers.
+
+    Raises
+    ------
+    RefusedError
+        If the dry run fails.
+    """
+    command = [sys.executable, "-m", "snakemake", "--snakefile", str(repository / "Snakefile")]
+    options = ["--dry-run", "--nolock", "--cores", "1"]
+    done = subprocess.run([*command, *options, *files], capture_output=True, text=True)
+    if done.returncode:
+        raise RefusedError(f"a dry run fails: {done.stderr.strip().splitlines()[-1]}")
+    total = re.search(r"^total +(\d+)$", done.stdout + done.stderr, re.MULTILINE)
+    return int(total[1]) if total else 0
 
 
 def _copied(artifact: Whole, record: Path, results: Path) -> list[str]:
@@ -65,8 +85,8 @@ def accept(
     Raises
     ------
     RefusedError
-        If the tree is not committed, the configuration is not the committed one, or there
-        is a result that no run makes. Nothing is changed then.
+        If the tree is not committed, the configuration is not the committed one, Snakemake
+        would still run something, or no run makes one of the results. Nothing is changed then.
     ModelError
         If there is no artifact of one of these names.
     """
@@ -74,6 +94,8 @@ def accept(
         raise RefusedError("the tree is not committed: commit first, then accept what it makes")
     if changed := changes(config, read_yaml(record / CONFIGURATION)):
         raise RefusedError(f"this run has other values than {CONFIGURATION}: {', '.join(changed)}")
+    if left := jobs_left(record, files):
+        raise RefusedError(f"Snakemake would still run {left} jobs: run it, and look at the diff")
     if foreign := sorted({*map(str, results.glob("figures/[!.]*"))} - {*files}):
         raise RefusedError(f"{foreign[0]} is not made by this workflow: remove it")
     comparison = compare_folders(record, results, only)

@@ -75,11 +75,11 @@ def shares(name: str, record: xr.Dataset, new: xr.Dataset, budget: Budget) -> np
     >>> record = xr.Dataset({"x": ("t", [0.0, 1.0, 2.0])})
     >>> shares("x", record, record + 0.5, Budget(0.25)).tolist()
     [1.0, 1.0, 1.0]
-    >>> shares("x", record, record + 0.5, Budget(0.25, scale=4.0)).tolist()
-    [0.5, 0.5, 0.5]
+    >>> shares("x", record, record + 0.5, Budget(0.25, scale="1")).tolist()
+    [2.0, 2.0, 2.0]
     """
     a, b = record[name], new[name]
-    if budget == IGNORED:
+    if budget.size == IGNORED:
         return np.zeros(a.shape)
     if budget.over:
         axis = a.dims.index("point")
@@ -89,8 +89,9 @@ def shares(name: str, record: xr.Dataset, new: xr.Dataset, budget: Budget) -> np
         return np.moveaxis(curve(*moved), -1, axis) / budget.size
     if a.dtype.kind != "f":
         return np.where(same(a.values, b.values), 0.0, np.inf)
-    named = isinstance(budget.scale, str)
-    scale = _beside(record, name, str(budget.scale)) if named else budget.scale or span(a)
+    scale = span(a) if not budget.scale else 1.0
+    if budget.scale not in ("", "1"):
+        scale = _beside(record, name, budget.scale)
     return pointwise(a.values, b.values, scale) / budget.size
 
 

@@ -67,6 +67,6 @@ def to_terminal(comparison: Whole) -> str:
     for artifact in comparison.moved:
         name = printable(artifact.name, 40)
         for file in artifact.moved:
-            what = f"{printable(file.name)} {note(file)}"
+            what = f"{printable(file.name)} {note(file)}".rstrip()
             lines.append(form(name, file.outcome, share_text(file.share), what))
     return "".join(f"{line}\n" for line in [*lines, sentence(comparison)])

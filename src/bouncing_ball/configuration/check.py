@@ -10,7 +10,7 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError, create_model
 
-from bouncing_ball.atlas.plan import AtlasParameters
+from bouncing_ball.atlas.plan import Plan
 from bouncing_ball.configuration.study import SECTIONS, section, taken
 from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
 from bouncing_ball.errors import printable
@@ -37,7 +37,7 @@ def configuration_model(studies: Mapping[str, str], config: Mapping[str, Any]) -
         If a study is missing, or the parameters of an artifact.
     """
     places: dict[str, dict[str, Any]] = {name: {} for name in SECTIONS}
-    keys: dict[str, Any] = {"atlas": (AtlasParameters, ...)}
+    keys: dict[str, Any] = {"atlas": (Plan, ...)}
     for artifact, study in sorted(studies.items()):
         for name, kind in taken(study).items():
             if name == "parameters":
@@ -68,12 +68,12 @@ def check_configuration(
             raise ConfigurationError(f"{where}: {error}") from None
     try:
         model = configuration_model(studies, config)
-        check(model, config, release=config.get("release"))
+        check(model, config)
     except ConfigurationError as error:
         raise ConfigurationError(f"configuration: {error}") from None
 
 
-def check(model: type[BaseModel], config: Mapping[str, Any], **context: Any) -> None:
+def check(model: type[BaseModel], config: Mapping[str, Any]) -> None:
     """Raise on the first mistake.
 
     Raises
@@ -91,7 +91,7 @@ def check(model: type[BaseModel], config: Mapping[str, Any], **context: Any) -> 
 samples? Allowed here: min, max, samples
     """
     try:
-        model.model_validate(config, context=context)
+        model.model_validate(config)
     except ValidationError as error:
         # A mistyped key is missing as well: what is unknown says more.
         first = min(error.errors(), key=lambda each: each["type"] != "extra_forbidden")

@@ -1,10 +1,8 @@
-"""The vocabulary of the datasets, ``variables.csv``: every variable, with symbol and equation.
+"""The vocabulary of the datasets, ``variables.csv``: symbol, equation and budget of each variable.
 
 A name means the same in every dataset. All quantities are dimensionless:
 times are Ωt, lengths Ω²y/g, velocities Ωẏ/g, and phases and angles are in
 radians of the table's motion. Units follow the CF conventions ("1", "rad").
-How far a variable may move from the accepted record stands in
-:mod:`bouncing_ball.compare.budgets`.
 """
 
 import csv
@@ -16,10 +14,17 @@ import numpy as np
 import xarray as xr
 
 _TABLE = Path(__file__).with_suffix(".csv")
+_ROWS = list(csv.DictReader(_TABLE.read_text(encoding="utf-8").splitlines()))
 VARIABLES: dict[str, dict[str, str]] = {
-    row.pop("name"): row for row in csv.DictReader(_TABLE.read_text(encoding="utf-8").splitlines())
+    row["name"]: {key: row[key] for key in ("long_name", "symbol", "units", "equation")}
+    for row in _ROWS
 }
 """The attributes of each variable; symbol and equation are empty where the paper has none."""
+BUDGETS: dict[str, tuple[float, str]] = {
+    row["name"]: (float(row["budget"]), row["scale"]) for row in _ROWS if row["budget"]
+}
+"""How far a variable may move from the accepted record, as a share of its scale: of 1, of another
+variable, or of its own range; see :mod:`bouncing_ball.compare.budgets`."""
 
 
 def describe(dataset: xr.Dataset) -> xr.Dataset:

@@ -26,7 +26,6 @@ DRAWINGS = {
     "ext_basins": "long_contacts.basins",
     "ext_instant": "histories.meeting_flights",
     "ext_orders": "model_errors.orders",
-    "ext_validity": "model_errors.validity",
     "ext_laws": "model_errors.contact_laws",
     "ext_hertz": "model_errors.figures_of_laws",
 }

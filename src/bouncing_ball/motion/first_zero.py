@@ -23,7 +23,7 @@ Flight and contact are both *motions* of this kind, see :class:`Motion`.
 """
 
 from abc import ABC, abstractmethod
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -84,28 +84,12 @@ class Zero(NamedTuple):
     undecided: np.ndarray
 
 
-class _Reading(NamedTuple):
-    """What the length of a step depends on."""
-
-    v: np.ndarray
-    rising: np.ndarray
-    square: np.ndarray
-    twice: np.ndarray
-    second: np.ndarray
-    third: np.ndarray
-    second_bound: np.ndarray
-    fourth_bound: np.ndarray
-
-    def root(self, bound):
-        """Positive root of y + y′ h + (bound) h²/2; long if there is none."""
-        root = np.sqrt(np.maximum(self.square + bound * self.twice, 0.0))
-        falling = (root - self.v) / np.maximum(bound, _TINY)
-        return np.where(self.rising, self.twice / (self.v + root + _TINY), falling)
-
-    def root_within(self, reach):
-        """The same with the bound that holds up to ``reach``."""
-        growth = np.maximum(self.third, 0.0) + 0.25 * self.fourth_bound * reach
-        return self.root(np.minimum(self.second + reach * growth * (1 / 3), self.second_bound))
+def _root(bound, v, rising, square, twice):
+    """Positive root of y + v h + (bound) h²/2, long if there is none; of v its sign and square,
+    and -2y."""
+    root = np.sqrt(np.maximum(square + bound * twice, 0.0))
+    falling = (root - v) / np.maximum(bound, _TINY)
+    return np.where(rising, twice / (v + root + _TINY), falling)
 
 
 def safe_step(state: State) -> tuple[np.ndarray, np.ndarray]:
@@ -120,40 +104,42 @@ def safe_step(state: State) -> tuple[np.ndarray, np.ndarray]:
     >>> step.tolist()
     [1.0]
     """
-    v, jerk = state.rate, state.third_bound
+    v, rising, square = state.rate, state.rate > 0, state.rate * state.rate
     # Rounding may put y above zero where it touches it from below.
     twice = -2 * np.minimum(state.value, 0.0)
-    reading = _Reading(
-        v, v > 0, v * v, twice, state.second, state.third, state.second_bound, state.fourth_bound
-    )
-    first = reading.root(state.second_bound)
-    step = _prolonged(first, reading)
+    start = v, rising, square, twice
+    first = _root(state.second_bound, *start)
+    step = _prolonged(first, start, state)
     # Falling faster and faster from y = y′ = 0: y ≤ y″ h²/2 + J h³/6.
-    sinking = -3 * state.second / (jerk + _TINY)
-    step = np.maximum(step, np.where(reading.rising, 0.0, sinking))
+    sinking = -3 * state.second / (state.third_bound + _TINY)
+    step = np.maximum(step, np.where(rising, 0.0, sinking))
     bend = (np.abs(state.third) + state.fourth_bound * first) * (first * first)
-    simple = state.second_bound * twice <= _SIMPLE * reading.square
-    return step, (bend <= _CLOSE * v) & simple & reading.rising
+    simple = state.second_bound * twice <= _SIMPLE * square
+    return step, (bend <= _CLOSE * v) & simple & rising
 
 
-def _prolonged(first, reading: _Reading):
+def _prolonged(first, start, state: State):
     """Steps at least as long as the certified ``first`` ones."""
-    step, which = first, None
-    now = first
+    step = now = first
+    which: Any = slice(None)
+    own = *start, state.second, state.third, state.second_bound, state.fourth_bound
     while True:
+        *start, second, third, second_bound, fourth_bound = own
         reach = _REACH * now
-        longer = np.minimum(reading.root_within(reach), reach)
+        growth = np.maximum(third, 0.0) + 0.25 * fourth_bound * reach
+        bound = np.minimum(second + reach * growth * (1 / 3), second_bound)
+        longer = np.minimum(_root(bound, *start), reach)
         # Where only the reach was in the way, it is worth another try.
         further = np.flatnonzero((longer == reach) & (longer > now))
         now = np.maximum(now, longer)
-        if which is None:
+        if step is first:
             step = now
         else:
             step[which] = now
         if not further.size:
             return step
-        which = further if which is None else which[further]
-        now, reading = now[further], pick(reading, further)
+        which = further if isinstance(which, slice) else which[further]
+        now, own = now[further], tuple(pick(x, further) for x in own)
 
 
 def first_zero(motion: Motion, start: np.ndarray) -> Zero:

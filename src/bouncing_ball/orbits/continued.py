@@ -7,6 +7,7 @@ equations extended by the stability's test function. What is not found so is loo
 the branch of each single model.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -14,9 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.signature import Instant
-from bouncing_ball.continuation.branch import Branch, ContinuationError, continue_branch
+from bouncing_ball.continuation.branch import ContinuationError, continue_branch
 from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane
-from bouncing_ball.continuation.events import Event, parameter_bound, vanishing
+from bouncing_ball.continuation.events import Event, SpecialPoint, parameter_bound, vanishing
 from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.orbits import corrected_branch as corrected
 from bouncing_ball.orbits.orbit import check_index
@@ -77,17 +78,16 @@ class _Search(NamedTuple):
     instant: Instant
 
     @classmethod
-    def of(cls, model: Any, n: np.ndarray) -> "_Search":
-        if model.shape:
-            return cls(model, n, restitution_speed(n, model)[1])
-        index, where = np.unique(n, return_inverse=True)
-        instant = restitution_speed(index, model)[1]
-        spread = (np.broadcast_to(x, index.shape)[where] for x in instant)
-        return cls(model, n, Instant(*spread))
-
-    def take(self, rows: Any) -> "_Search":
-        instant = (np.broadcast_to(x, self.n.shape)[rows] for x in self.instant)
-        return _Search(self.model.take(rows), self.n[rows], Instant(*instant))
+    def of(cls, model: Any, n: ArrayLike, *more: ArrayLike) -> tuple["_Search", Any, Any]:
+        """The search, everything else in a row as well, and the shape of the orbits."""
+        check_index(n)
+        instant = restitution_speed(n, model)[1]
+        arrays = (n, *instant, *more, np.zeros(model.shape))
+        columns = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in arrays))
+        shape = columns[0].shape
+        index, *rows = (x.reshape(-1) for x in columns[:-1])
+        size = len(instant)
+        return cls(model.flat(shape), index, Instant(*rows[:size])), rows[size:], shape
 
     def start(self, amplitude: np.ndarray, psi: np.ndarray) -> np.ndarray:
         """Points of the corrected model's orbits with instants at the phases ψ."""
@@ -105,52 +105,33 @@ class _Search(NamedTuple):
         for _ in range(_TRIES):
             if not todo.size:
                 break
-            part = self.take(todo)
+            system = self.model.take(todo).system(self.n[todo])
             at = plane(axis, point[todo])
-            found = newton(part.model.system(part.n), point[todo], at, _SETTINGS)
+            found = newton(system, point[todo], at, _SETTINGS)
             point[todo] = found.point
             y[todo[found.converged]] = found.point[found.converged]
             todo = todo[~found.converged & np.isfinite(found.step)]
         return y
 
 
-def _rows(model: Any, n: ArrayLike, *more: ArrayLike):
-    """The models and everything else broadcast and in a row, and the shape."""
-    check_index(n)
-    arrays = (n, *more, np.zeros(model.shape))
-    *arrays, _ = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in arrays))
-    shape = arrays[0].shape
-    return model.flat(shape), [x.reshape(-1) for x in arrays], shape
-
-
 def _shaped(model: Any, n: ArrayLike, y: np.ndarray, shape: tuple[int, ...]) -> Any:
     return model.system(n).orbit(y.reshape(*shape, y.shape[-1]))
 
 
-def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side, near: Any = None) -> Any:
-    """The n-T orbits at Λ on a side of the saddle-node; NaN where none is found.
-
-    The search starts from ``near``, orbits of other models at Λ, where they are given.
-    """
-    row, (index, lam), shape = _rows(model, n, amplitude)
-    if near is None:
-        search = _Search.of(row, index)
-        psi = corrected.instant_phase(index, search.instant, lam, side is Side.STABLE)
-        # Next to the fold the start may lie below it.
-        psi = np.where(np.isnan(psi), corrected.saddle_node_phase(search.instant), psi)
-        guess = search.start(lam, psi)
-    else:
-        search = _Search(row, index, Instant(*np.zeros(4)))
-        points = model.system(n).point(near)
-        guess = points.reshape(-1, points.shape[-1])
-    y = search.solved(guess)
+def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Any:
+    """The n-T orbits at Λ on a side of the saddle-node; NaN where none is found."""
+    search, (lam,), shape = _Search.of(model, n, amplitude)
+    psi = corrected.instant_phase(search.n, search.instant, lam, side is Side.STABLE)
+    # Next to the fold the start may lie below it.
+    psi = np.where(np.isnan(psi), corrected.saddle_node_phase(search.instant), psi)
+    y = search.solved(search.start(lam, psi))
     found = _shaped(model, n, y, shape)
     test = Bifurcation.SADDLE_NODE.test(*found.trace_and_determinant())
     on_side = test > 0 if side is Side.STABLE else test < 0
     if np.all(on_side):
         return found
     for k in np.flatnonzero(~np.broadcast_to(on_side, shape)):
-        y[k] = _on_branch(row.take(k), int(index[k]), float(lam[k]), side)
+        y[k] = _on_branch(search.model.take(k), int(search.n[k]), float(lam[k]), side)
     return _shaped(model, n, y, shape)
 
 
@@ -158,22 +139,25 @@ def _on_branch(model: Any, n: int, amplitude: float, side: Side) -> np.ndarray |
     """The point at Λ on a side of the fold that is next to it along the branch, or NaN."""
     if not amplitude >= float(model.saddle_node(n).amplitude):
         return np.nan
-    branch = continued(model, n, amplitude, farther=_ABOVE)
-    names = [special.name for special in branch.special] if branch else []
-    if branch is None or Bifurcation.SADDLE_NODE not in names:
+    found = continued(model, n, amplitude, farther=_ABOVE)
+    names = [special.name for special in found]
+    if Bifurcation.SADDLE_NODE not in names:
         return np.nan
     # The branch runs from the stable side over the fold.
     fold = names.index(Bifurcation.SADDLE_NODE)
-    beside = branch.special[:fold][::-1] if side is Side.STABLE else branch.special[fold:]
+    beside = found[:fold][::-1] if side is Side.STABLE else found[fold:]
     return next((special.point for special in beside if special.name == _HERE), np.nan)
 
 
-def continued(model: Any, n: int, amplitude: float, farther: float = _FARTHER) -> Branch | None:
-    """The branch of a single model through Λ, from its stable side down to the fold and on.
+def continued(
+    model: Any, n: int, amplitude: float, farther: float = _FARTHER
+) -> Sequence[SpecialPoint]:
+    """Bifurcations, and what is at Λ, on the branch of a single model.
 
-    None where it cannot be started or followed.
+    In the order from its stable side down to the fold and on; none where it cannot be started
+    or followed.
     """
-    system, search = model.system(n), _Search.of(model, np.array([n]))
+    system, (search, _, _) = model.system(n), _Search.of(model, [n])
     fold = float(np.nan_to_num(corrected.saddle_node(n, search.instant)[0]))
     start = np.array([max(amplitude, fold) * _ABOVE])
     y = search.solved(search.start(start, corrected.instant_phase(n, search.instant, start)))[0]
@@ -185,7 +169,7 @@ def continued(model: Any, n: int, amplitude: float, farther: float = _FARTHER) -
         parameter_bound(_LOWEST, upper=False, reason=f"Λ = {_LOWEST:g}"),
     )
     if np.any(np.isnan(y)):
-        return None
+        return ()
     # Far above the fold Λ is most of the arclength.
     control = replace(_STEPS, largest=max(_STEPS.largest, _STRIDE * amplitude))
     try:
@@ -193,17 +177,17 @@ def continued(model: Any, n: int, amplitude: float, farther: float = _FARTHER) -
             system, y, increasing=False, events=events, control=control, max_points=_POINTS
         )
     except ContinuationError:
-        return None
+        return ()
     # One that broke off at an event may have others beyond.
-    return branch if branch.end.finished or len(branch.points) == _POINTS else None
+    return branch.special if branch.end.finished or len(branch.points) == _POINTS else ()
 
 
 def orbits_at(model: Any, n: int, amplitude: float) -> Any:
     """The n-T orbits at one Λ on the branch of the stable side, by contact duration."""
     check_index(n)
     if amplitude >= float(model.saddle_node(n).amplitude):
-        branch = continued(model, int(n), float(amplitude))
-        points = branch.named(_HERE) if branch else []
+        special = continued(model, int(n), float(amplitude))
+        points = [each.point for each in special if each.name == _HERE]
         if points:
             found = model.system(n).orbit(np.array(points))
             return found[np.argsort(found.contact_duration)]
@@ -222,29 +206,24 @@ def both_sides(model: Any, n: int, amplitude: float) -> Any:
 
 def bifurcation(model: Any, n: ArrayLike, kind: Bifurcation) -> Any:
     """The orbits at a bifurcation: next to the corrected model's, or the first on the branch."""
-    row, (index,), shape = _rows(model, n)
-    search = _Search.of(row, index)
+    search, _, shape = _Search.of(model, n)
+    index = search.n
     if kind is Bifurcation.SADDLE_NODE:
         lam = corrected.saddle_node(index, search.instant)
         psi = corrected.saddle_node_phase(search.instant)
     else:
         lam, psi = corrected.period_doubling(index, search.instant)
-    guess = search.start(lam, psi)
-    y = np.full_like(guess, np.nan)
-    there = np.flatnonzero(np.all(np.isfinite(guess), axis=-1))
-    if there.size:
-        part = search.take(there)
-        system = part.model.system(part.n)
-        test = vanishing(lambda y: kind.test(*system.orbit(y).trace_and_determinant()))
-        found = newton(system, guess[there], test, _EXTENDED)
-        # A Λ of zero has no phase: the fold of an elastic contact.
-        good = found.converged & (found.point[:, -1] > _EXTENDED.tolerance)
-        y[there[good]] = found.point[good]
+    system = search.model.system(index)
+    test = vanishing(lambda y: kind.test(*system.orbit(y).trace_and_determinant()))
+    found = newton(system, search.start(lam, psi), test, _EXTENDED)
+    # A Λ of zero has no phase: the fold of an elastic contact.
+    good = found.converged & (found.point[:, -1] > _EXTENDED.tolerance)
+    y = np.where(good[:, np.newaxis], found.point, np.nan)
     low = (lam < _LOWEST) & (kind is Bifurcation.SADDLE_NODE)
     for k in np.flatnonzero(np.isnan(y[:, 0]) & ~low):
-        own = search.take(k).model
-        branch = continued(own, int(index[k]), float(np.nan_to_num(lam[k], nan=1.0)))
-        points = branch.named(kind) if branch else []
+        near = float(np.nan_to_num(lam[k], nan=1.0))
+        special = continued(search.model.take(k), int(index[k]), near)
+        points = [each.point for each in special if each.name == kind]
         if points:
             y[k] = points[0 if kind is Bifurcation.SADDLE_NODE else -1]
     return _shaped(model, n, y, shape)

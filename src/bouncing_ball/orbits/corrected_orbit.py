@@ -64,11 +64,6 @@ class CorrectedOrbit(Orbit):
         """Absolute height z_b of the ball at release, by the flight from the instant."""
         return self.hit.height + (self.bounce_velocity + self.after / 2) * self.after
 
-    @property
-    def release_displacement(self) -> np.ndarray:
-        """δ_b at release."""
-        return self.bounce_height - self.amplitude * np.sin(self.release_phase)
-
     def contact_path(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The two continued flights, before and after the instant."""
         since = np.asarray(time) - self.instant.delay

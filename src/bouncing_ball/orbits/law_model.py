@@ -43,16 +43,9 @@ class LawOrbit(Orbit):
     """
 
     @classmethod
-    def at(
-        cls,
-        n: ArrayLike,
-        law: ContactLaw,
-        amplitude: ArrayLike,
-        phase: ArrayLike,
-        impact_velocity: ArrayLike,
-    ) -> Self:
-        """The orbits whose contacts start so, with the duration they then have."""
-        columns = (np.asarray(x, dtype=float) for x in (amplitude, phase, impact_velocity))
+    def at(cls, n: ArrayLike, law: ContactLaw, amplitude: ArrayLike, *start: ArrayLike) -> Self:
+        """The orbits whose contacts start with (φ, z′_i), and last as long as they then do."""
+        columns = (np.asarray(x, dtype=float) for x in (amplitude, *start))
         lam, phi, velocity = np.broadcast_arrays(*columns, np.zeros(law.shape))[:3]
         found = contacts(law, lam * np.cos(phi) - velocity, phi, lam)
         orbit = cls(n, law, lam, phi, found.duration, velocity)
@@ -70,11 +63,6 @@ class LawOrbit(Orbit):
         """π/D, what ϖ is for the linear contact."""
         return np.pi / np.asarray(self.contact_duration)
 
-    @property
-    def release_displacement(self) -> np.ndarray:
-        """δ_b at release."""
-        return -self.contact.penetration
-
     def contact_motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ at times 0 ≤ τ ≤ τ_b in contact."""
         speed = -self.relative_impact_velocity
@@ -89,11 +77,6 @@ class LawOrbit(Orbit):
         found = self.contact
         late = (found.duration - self.contact_duration) * self.clock
         return np.stack([late, *self.flight_defects(-found.penetration, -found.rate)], axis=-1)
-
-    def holding(self, time: np.ndarray) -> np.ndarray:
-        """Minus the grip of the law."""
-        displacement, velocity = self.contact_motion(time)
-        return -self.law.grip(-displacement, -velocity)
 
     def contact_jacobian(self) -> np.ndarray:
         """Jacobian of (τ_b, δ_b, δ′_b) in (τ, δ′, Λ) at the impact, shape (..., 3, 3)."""
@@ -127,11 +110,6 @@ class LawModel(ImpactModel):
 
     name: ClassVar[str] = "contact-law"
     orbit_type: ClassVar[type[Orbit]] = LawOrbit
-
-    @property
-    def label(self) -> str:
-        """The law and its parameters."""
-        return self.law.label
 
     def signature(self, speed: ArrayLike) -> Instant:
         """That of a free impact."""
@@ -180,11 +158,10 @@ def law_at_orbit(
     taken = np.asarray(duration, dtype=float)
     speed = np.full_like(taken, rigid_speed(n, restitution))
     before = missed_before = np.full_like(taken, np.nan)
-    orbit = None
     for _ in range(_ROUNDS):
         law = law_of_impact(kind, restitution, taken, speed)
         model = LawModel(law)
-        orbit = orbit_at(model, n, amplitude, side, orbit)
+        orbit = orbit_at(model, n, amplitude, side)
         lost = np.flatnonzero(~np.atleast_1d(orbit.exists))
         if lost.size:
             LawModel(law.take(lost[0])).require_orbit(n, amplitude, side)

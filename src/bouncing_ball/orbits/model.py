@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.batch import Batch
+from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.contacts.signature import Instant
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence
@@ -70,17 +71,17 @@ class ImpactModel(Batch, ABC):
     orbit_type: ClassVar[type[Orbit]]
 
     @property
-    @abstractmethod
     def label(self) -> str:
         """Its parameters, in words; of a single model."""
+        return self._law.label
 
     @abstractmethod
     def signature(self, speed: ArrayLike) -> Instant:
         """What an impact of speed v > 0 is to the outside, from which searches start."""
 
-    @abstractmethod
     def permanent_contact_threshold(self) -> np.ndarray:
-        """Λ up to which the ball stays on the table."""
+        """Λ up to which the ball stays on the table: 1 where impacts are instants (Eq. 9)."""
+        return np.full(self.shape, RESTITUTION_THRESHOLD)
 
     # What follows.
 
@@ -102,9 +103,13 @@ class ImpactModel(Batch, ABC):
 
     def absence(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> np.ndarray:
         """The :class:`Absence` of each orbit that :meth:`orbit` looks for, as text."""
-        missing = ~self.orbit(n, amplitude, side).exists
-        below = np.asarray(amplitude) < self.saddle_node(n).amplitude
-        why = np.where(below, Absence.BELOW_SADDLE_NODE, Absence.NOT_FOUND)
+        missing, fold = ~self.orbit(n, amplitude, side).exists, self.saddle_node(n).amplitude
+        other = Absence.NOT_FOUND
+        if Route.FORMULA in self.routes:
+            # The search is complete.
+            no_fold = np.isnan(fold) & (side == Side.UNSTABLE)
+            other = np.where(no_fold, Absence.NO_OTHER_SIDE, Absence.NOT_REACHED)
+        why = np.where(np.asarray(amplitude) < fold, Absence.BELOW_SADDLE_NODE, other)
         return np.where(missing, why, Absence.NONE)
 
     def saddle_node(self, n: ArrayLike) -> Any:
@@ -141,16 +146,9 @@ class ImpactModel(Batch, ABC):
         (law,) = (getattr(self, field.name) for field in fields(self))
         return law
 
-    def orbit_of(
-        self,
-        n: ArrayLike,
-        amplitude: ArrayLike,
-        phase: ArrayLike,
-        contact_duration: ArrayLike = 0.0,
-        impact_velocity: ArrayLike | None = None,
-    ) -> Any:
-        """Orbits known by their numbers, as a dataset has them: :meth:`Orbit.of`."""
-        return self.orbit_type.of(n, self._law, amplitude, phase, contact_duration, impact_velocity)
+    def orbit_of(self, n: ArrayLike, amplitude: ArrayLike, *numbers: ArrayLike) -> Any:
+        """Orbits known by Λ, φ, D and z′_i, as a dataset has them: :meth:`Orbit.of`."""
+        return self.orbit_type.of(n, self._law, amplitude, *numbers)
 
     def require_admissible(self, n: int, amplitude: float, side: Side = Side.STABLE) -> Orbit:
         """:meth:`require_orbit`, if it is one of the ball.

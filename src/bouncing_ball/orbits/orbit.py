@@ -36,8 +36,9 @@ OBSERVABLES = (
 # An event that the equations do not know of shifts the next impact by a good
 # part of a period; rounding, amplified by one unstable cycle, by far less.
 _SAME = 1e-6
-# Samples of a contact among which its highest point is looked for, and steps from there: the
-# height is the square of the time's error. Orbits whose samples are in memory at once.
+# Samples of a contact among which its highest point is looked for, each time in two of the steps
+# before: the last are 16⁻⁵ of the first, and the height is the square of the time's error.
+# Orbits whose samples are in memory at once.
 _SAMPLES, _REFINEMENTS = 33, 6
 _BLOCK = 1024
 
@@ -123,11 +124,6 @@ class Orbit(Batch, ABC):
         """Rate of the contact's own time against the table's; 1 without any."""
         return 1.0
 
-    @property
-    def release_displacement(self) -> np.ndarray:
-        """δ_b at release."""
-        return np.zeros_like(self.contact_duration)
-
     def contact_motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ at times 0 ≤ τ ≤ τ_b in contact."""
         return np.zeros_like(time), np.zeros_like(time)
@@ -137,10 +133,6 @@ class Orbit(Batch, ABC):
         angle, (displacement, velocity) = self.phase + time, self.contact_motion(time)
         lift, pace = self.amplitude * np.sin(angle), self.amplitude * np.cos(angle)
         return displacement + lift, velocity + pace
-
-    def holding(self, time: np.ndarray) -> np.ndarray:
-        """What a contact holds the ball by: negative until it vanishes at the release."""
-        return self.contact_path(time)[0] - self.amplitude * np.sin(self.phase + time)
 
     @abstractmethod
     def residual(self) -> np.ndarray:
@@ -229,34 +221,25 @@ class Orbit(Batch, ABC):
         contact may lift it higher with the table.
         """
         rising = np.maximum(self.bounce_velocity, 0.0)
-        top = self.bounce_height + rising * rising / 2
-        low = np.broadcast_to((top < self.amplitude) & (self.contact_duration > 0), self.shape)
-        if not np.any(low):
-            return top
-        if not self.shape:
-            return np.maximum(top, self._contact_top())
-        top, lifted = np.array(np.broadcast_to(top, self.shape)), self[low]
+        top = np.array(np.broadcast_to(self.bounce_height + rising * rising / 2, self.shape))
+        low = np.flatnonzero((top < self.amplitude) & (self.contact_duration > 0))
         # The samples of all at once would be gigabytes.
-        parts = [lifted[part]._contact_top() for part in blocks(lifted.size, _BLOCK)]
-        top[low] = np.maximum(top[low], np.concatenate(parts))
+        for part in blocks(low.size, _BLOCK):
+            lifted = self.flat(self.shape).take(low[part])._contact_top()
+            top.flat[low[part]] = np.maximum(top.flat[low[part]], lifted)
         return top
 
     def _contact_top(self) -> np.ndarray:
-        """Greatest height in contact: its highest sample, refined by secants of the velocity."""
-        share = np.linspace(0.0, 1.0, _SAMPLES).reshape(-1, *(1,) * len(self.shape))
-        height, _ = self.contact_path(share * self.contact_duration)
-        step = self.contact_duration / (_SAMPLES - 1)
-        centre = np.argmax(np.where(np.isnan(height), -np.inf, height), axis=0) * step
-        low, high = np.maximum(centre - step, 0.0), np.minimum(centre + step, self.contact_duration)
-        before, time = np.where(centre > low, low, high), centre
-        rate = self.contact_path(before)[1]
+        """Greatest height in contact: its highest sample, among ever closer ones."""
+        steps = np.arange(_SAMPLES).reshape(-1, *(1,) * len(self.shape))
+        low, step = 0.0 * self.contact_duration, self.contact_duration / (_SAMPLES - 1)
         for _ in range(_REFINEMENTS):
-            rate_before, rate = rate, self.contact_path(time)[1]
-            run = time - before
-            slope = (rate - rate_before) / np.where(run == 0, np.inf, run)
-            moved = np.where(slope < 0, -rate / np.where(slope < 0, slope, -1.0), 0.0)
-            before, time = time, np.clip(time + moved, low, high)
-        return self.contact_path(time)[0]
+            height = self.contact_path(low + step * steps)[0]
+            highest = np.argmax(np.where(np.isnan(height), -np.inf, height), axis=0)
+            # On from one step before the highest to one after it, within the contact.
+            low = low + step * np.clip(highest - 1, 0, _SAMPLES - 3)
+            step = 2 * step / (_SAMPLES - 1)
+        return np.max(height, axis=0)
 
     def flight_path(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Absolute position and velocity at times τ_b ≤ τ ≤ τ_2 in flight (Eqs. 14-15)."""
@@ -338,14 +321,13 @@ class Orbit(Batch, ABC):
         No earlier release and no earlier landing: the simulation's next impact,
         whose events are certified, is the orbit's own. False where there is none.
         """
-        u = self.relative_impact_velocity
-        shape = np.shape(u)
-        possible = (u < 0) & (self.contact_duration >= 0) & (self.flight_time > 0)
-        admissible = np.zeros(shape, dtype=bool)
+        falls, lasts = self.relative_impact_velocity < 0, self.contact_duration >= 0
+        possible = falls & lasts & (self.flight_time > 0)
+        admissible = np.zeros(self.shape, dtype=bool)
         if np.any(possible):
-            part = self[possible] if shape else self
-            at, speed = part.phase, part.relative_impact_velocity
-            cycle = part.cycle(at, speed)
+            part = self[possible] if self.shape else self
+            speed = part.relative_impact_velocity
+            cycle = part.cycle(part.phase, speed)
             returned = np.abs(cycle.relative_velocity / speed - 1) < _SAME
             same = np.abs(cycle.time - 2 * np.pi * np.asarray(part.n)) < _SAME
             admissible[possible] = same & returned & (cycle.displacement == 0)

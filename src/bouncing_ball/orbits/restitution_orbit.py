@@ -17,12 +17,12 @@ All quantities are dimensionless.
 """
 
 from enum import StrEnum
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.restitution_law import RestitutionLaw, rebound
+from bouncing_ball.contacts.restitution_law import rebound
 from bouncing_ball.errors import NoOrbitError, require
 from bouncing_ball.orbits.orbit import Orbit, check_index
 
@@ -154,18 +154,6 @@ def branch(
     return np.hypot(level, lift), np.arctan2(lift, level)
 
 
-def max_height(n: ArrayLike, amplitude: ArrayLike, phase: ArrayLike) -> np.ndarray:
-    """Greatest absolute height of the ball, Λ sin φ + (nπ)²/2.
-
-    Examples
-    --------
-    >>> bool(max_height(2, 0.0, 0.0) == 2 * np.pi**2)
-    True
-    """
-    launch = np.asarray(n) * np.pi
-    return np.asarray(amplitude) * np.sin(phase) + launch * launch / 2
-
-
 class RestitutionOrbit(Orbit):
     """n-T orbits with instantaneous impacts; ``law`` is r, or a :class:`RestitutionLaw`.
 
@@ -177,16 +165,10 @@ class RestitutionOrbit(Orbit):
     """
 
     @classmethod
-    def at(
-        cls,
-        n: ArrayLike,
-        law: RestitutionLaw | ArrayLike,
-        amplitude: ArrayLike,
-        phase: ArrayLike,
-        impact_velocity: ArrayLike,
-    ) -> Self:
-        """The orbits whose impacts are such."""
-        return cls.of(n, law, amplitude, phase, 0.0, impact_velocity)
+    def at(cls, n: ArrayLike, law: Any, amplitude: ArrayLike, *start: ArrayLike) -> Self:
+        """The orbits with impacts at (φ, z′_i)."""
+        phase, velocity = start
+        return cls.of(n, law, amplitude, phase, 0.0, velocity)
 
     def _rebound(self) -> tuple[np.ndarray, np.ndarray]:
         """r and the slope of r v at the impact."""

@@ -47,6 +47,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.oscillator import responses
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import require
+from bouncing_ball.motion.ensembles import blocks, pick
 
 # Points computed at once: as many as keep the intermediate arrays in the cache.
 _BLOCK = 8192
@@ -93,18 +94,8 @@ class BranchPoint(NamedTuple):
         return self.x * self.d_x + self.y * self.d_y
 
 
-class _Responses(NamedTuple):
-    """g, g′, G, Q = Re h and P = Im h at the end of contact."""
-
-    g: np.ndarray
-    g_rate: np.ndarray
-    gravity: np.ndarray
-    q: np.ndarray
-    p: np.ndarray
-
-
 def _responses(duration, sin_angle, cos_angle, sin_d, cos_d, decay, omega, zeta, root):
-    """Responses at time D, from the sine and cosine of ϖ_d D and of D.
+    """g, g′, G, Q = Re h and P = Im h at time D, from the sine and cosine of ϖ_d D and of D.
 
     The closed quotients of :mod:`bouncing_ball.contacts.oscillator` in real
     arithmetic; where they lose digits (short or resonant contacts) the values
@@ -133,7 +124,7 @@ def _responses(duration, sin_angle, cos_angle, sin_d, cos_d, decay, omega, zeta,
         gravity, q, p = (np.array(np.broadcast_to(x, delicate.shape)) for x in (gravity, q, p))
         gravity[delicate] = exact.gravity.value
         q[delicate], p[delicate] = exact.table.value.real, exact.table.value.imag
-    return _Responses(g, g_rate, gravity, q, p)
+    return g, g_rate, gravity, q, p
 
 
 def _solve(rows, right):
@@ -193,13 +184,8 @@ def branch_point(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> Bran
         return _branch_point(*arguments)
     # Scalars stay scalars; the rest is run through in blocks.
     flat = [x if x.ndim == 0 else np.broadcast_to(x, shape).ravel() for x in arguments]
-    out = np.empty((len(BranchPoint._fields), size))
-    for start in range(0, size, _BLOCK):
-        part = slice(start, start + _BLOCK)
-        block = (x if x.ndim == 0 else x[part] for x in flat)
-        for row, values in zip(out, _branch_point(*block), strict=True):
-            row[part] = values
-    return BranchPoint(*(row.reshape(shape) for row in out))
+    parts = [_branch_point(*(pick(x, part) for x in flat)) for part in blocks(size, _BLOCK)]
+    return BranchPoint(*(np.concatenate(x).reshape(shape) for x in zip(*parts, strict=True)))
 
 
 def _branch_point(eps, omega, zeta, sine, n) -> BranchPoint:
@@ -250,7 +236,8 @@ def _branch_point(eps, omega, zeta, sine, n) -> BranchPoint:
     # Infinite or not a number where the ball grazes at impact or at release.
     with np.errstate(divide="ignore", invalid="ignore"):
         saddle = matrix * (x * d_x + y * d_y) / (u * along[0])
-    determinant = decay * decay + 0 * u
+    # Of the shape of all.
+    duration, determinant = duration + 0 * u, decay * decay + 0 * u
     return BranchPoint(duration, x, y, u, d_x * per_angle, d_y * per_angle, saddle, determinant)
 
 

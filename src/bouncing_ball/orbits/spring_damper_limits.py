@@ -11,12 +11,14 @@ fold. Entries for which the quantity does not exist are NaN.
 """
 
 from collections.abc import Callable
-from typing import NamedTuple
+from dataclasses import replace
+from operator import attrgetter
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.spring_damper import Release, SpringDamper
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.ensembles import blocks
 from bouncing_ball.orbits.orbit import check_index
 from bouncing_ball.orbits.spring_damper_branch import BranchPoint, branch_point
@@ -39,8 +41,12 @@ _FINE = 0.02
 _MOST = 200_000
 
 
-def _fold(point: BranchPoint) -> np.ndarray:
-    return point.fold
+# Functions of the branch's points.
+_saddle, _fold = attrgetter("saddle_node"), attrgetter("fold")
+
+
+def _doubling(point: BranchPoint) -> np.ndarray:
+    return Bifurcation.PERIOD_DOUBLING.test(point.trace, point.determinant)
 
 
 def _surplus(point: BranchPoint, amplitude: np.ndarray) -> np.ndarray:
@@ -50,65 +56,83 @@ def _surplus(point: BranchPoint, amplitude: np.ndarray) -> np.ndarray:
 class _Curves(NamedTuple):
     """Branches along ε, of contacts and families in a row."""
 
-    release: Release
-    omega: np.ndarray
-    zeta: np.ndarray
+    contact: SpringDamper
     n: np.ndarray
 
+    def take(self, which: Any) -> "_Curves":
+        return _Curves(self.contact[which], self.n[which])
+
     def point(self, excess: np.ndarray) -> BranchPoint:
-        return branch_point(excess, SpringDamper(self.omega, self.zeta, self.release), self.n)
+        return branch_point(excess, self.contact, self.n)
 
     def ends(self) -> tuple[np.ndarray, np.ndarray]:
         """ε at short contacts, where Λ is beyond any use, and at D → 2πn."""
-        contact = SpringDamper(self.omega, self.zeta, self.release)
-        start = contact.free_angle
-        high = contact.damped_frequency * 2 * np.pi * self.n * (1 - _FULL) - start
+        start = self.contact.free_angle
+        high = self.contact.damped_frequency * 2 * np.pi * self.n * (1 - _FULL) - start
         return np.minimum(-start * (1 - _SHORTEST), high), high
 
     def scan(self) -> np.ndarray:
         """Grid between the ends, geometric on both sides of 0, shape (points, ...)."""
         low, high = self.ends()
-        small = np.minimum(_SCAN_START / self.omega, -low / 2)
+        small = np.minimum(_SCAN_START / self.contact.frequency_ratio, -low / 2)
         steps = np.linspace(0, 1, _SCAN).reshape(-1, 1)
         down = -small * (-low / small) ** steps[::-1]
         up = small * np.maximum(high / small, 1.0) ** steps
         # A contact softer than the cycle is long ends before ε = 0.
         return np.minimum(np.concatenate([down, np.zeros((1, *low.shape)), up]), high)
 
-    def close(self, of: Callable, left, right, found, *more: np.ndarray) -> np.ndarray:
-        """Roots of a function of the branch's points in brackets, NaN where there is none."""
+    def root(
+        self, of: Callable, grid: np.ndarray, at: np.ndarray, found: Any, *more: np.ndarray
+    ) -> np.ndarray:
+        """Roots of a function of the branch's points in the grid's intervals ``at``.
+
+        NaN where none was found.
+        """
         # Imported here: it takes a third of a second, and not every run asks for limits.
         from scipy.optimize.elementwise import find_root
 
-        def function(excess, omega, zeta, n, *more):
-            return of(_Curves(self.release, omega, zeta, n).point(excess), *more)
+        def function(excess, which, *more):
+            return of(self.take(which).point(excess), *more)
 
-        result = np.full(found.shape, np.nan)
-        if np.any(found):
-            args = tuple(x[found] for x in (self.omega, self.zeta, self.n, *more))
+        result, which = np.full(at.shape, np.nan), np.flatnonzero(found)
+        if which.size:
+            bracket = grid[at[which], which], grid[at[which] + 1, which]
             # The default tolerance is four units in the last place of the root.
-            result[found] = find_root(function, (left[found], right[found]), args=args).x
+            args = (which, *(x[which] for x in more))
+            result[which] = find_root(function, bracket, args=args).x
         return result
 
     def zero(
-        self, test: Callable, grid: np.ndarray, points: BranchPoint, *, last: bool = False
+        self, test: Callable, grid: np.ndarray, values: np.ndarray, *, last: bool = False
     ) -> np.ndarray:
-        """First, or last, zero of a test function along a grid; NaN where there is none.
+        """First, or last, zero of a test function with known values along a grid, or NaN.
 
         A test function would change sign at a pole as well. Closed upon, its value
         is then larger than at both ends of the bracket, and at a zero smaller: no
         tolerance decides that it is one.
         """
-        values = test(points)
-        index, found = _bracket(values, last=last)
-        root = self.close(test, _at(grid, index), _at(grid, index + 1), found)
-        size = np.abs(values)
-        smallest = np.minimum(_at(size, index), _at(size, index + 1))
+        row = np.arange(self.n.size)
+        at, found = _bracket(values, last=last)
+        root = self.root(test, grid, at, found)
+        smallest = np.minimum(np.abs(values[at, row]), np.abs(values[at + 1, row]))
         return np.where(np.abs(test(self.point(root))) <= smallest, root, np.nan)
 
-    def fold(self, grid: np.ndarray, points: BranchPoint) -> np.ndarray:
-        """ε of the saddle-node, the first among the points of the scan's grid."""
-        return self.zero(lambda point: point.saddle_node, grid, points)
+    def fold(self) -> np.ndarray:
+        """ε of the saddle-node."""
+        grid = self.scan()
+        return self.zero(_saddle, grid, _saddle(self.point(grid)))
+
+    def stable_side(self, of: Callable, *more: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The scan's grid up to the fold, where what is beyond collapses, and a function there.
+
+        Without a fold Λ falls all the way, and the whole branch is this side.
+        """
+        grid = self.scan()
+        points = self.point(grid)
+        fold = self.zero(_saddle, grid, _saddle(points))
+        end = np.where(np.isnan(fold), grid[-1], fold)
+        values = np.where(grid < end, of(points, *more), of(self.point(end), *more))
+        return np.minimum(grid, end), values
 
 
 def _bracket(values, *, last=False):
@@ -121,20 +145,15 @@ def _bracket(values, *, last=False):
     return (len(change) - 1 - at if last else at), found
 
 
-def _at(grid, index):
-    return np.take_along_axis(grid, index[np.newaxis], axis=0)[0]
-
-
 def _searched(search: Callable, contact: SpringDamper, n: ArrayLike, *more: ArrayLike):
     """A search for many contacts, few at a time: the scan of each has 121 points."""
     check_index(n)
     arrays = (contact.frequency_ratio, contact.damping_ratio, n, *more)
     columns = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in arrays))
     omega, zeta, n, *rest = (np.ravel(column) for column in columns)
-    found = np.empty(omega.size)
+    curves, found = _Curves(SpringDamper(omega, zeta, contact.release), n), np.empty(omega.size)
     for part in blocks(found.size, _BLOCK):
-        curves = _Curves(contact.release, omega[part], zeta[part], n[part])
-        found[part] = search(curves, *(column[part] for column in rest))
+        found[part] = search(curves.take(part), *(column[part] for column in rest))
     return found.reshape(columns[0].shape)
 
 
@@ -156,12 +175,7 @@ def saddle_node(contact: SpringDamper, n: ArrayLike) -> np.ndarray:
     >>> bool(abs(branch_point(saddle_node(contact, 1), contact, 1).phase) < 1e-3)
     True
     """
-    return _searched(_saddle_node, contact, n)
-
-
-def _saddle_node(curves: _Curves) -> np.ndarray:
-    grid = curves.scan()
-    return curves.fold(grid, curves.point(grid))
+    return _searched(_Curves.fold, contact, n)
 
 
 def period_doubling(contact: SpringDamper, n: ArrayLike) -> np.ndarray:
@@ -169,50 +183,32 @@ def period_doubling(contact: SpringDamper, n: ArrayLike) -> np.ndarray:
 
     NaN where the stable side has none.
     """
-    return _searched(_period_doubling, contact, n)
 
+    def search(curves: _Curves) -> np.ndarray:
+        return curves.zero(_doubling, *curves.stable_side(_doubling), last=True)
 
-def _period_doubling(curves: _Curves) -> np.ndarray:
-    grid, fold = curves.scan(), _saddle_node(curves)
-    # The part of the scan on the stable side; its points beyond collapse there.
-    grid = np.minimum(grid, np.where(np.isnan(fold), grid[-1], fold))
-
-    def test(point: BranchPoint) -> np.ndarray:
-        return Bifurcation.PERIOD_DOUBLING.test(point.trace, point.determinant)
-
-    return curves.zero(test, grid, curves.point(grid), last=True)
+    return _searched(search, contact, n)
 
 
 def _stable_side(curves: _Curves, lam: np.ndarray) -> np.ndarray:
-    """ε of the orbit at Λ between short contacts and the saddle-node.
-
-    One scan brackets both: Λ falls along it.
-    """
-    grid = curves.scan()
-    points = curves.point(grid)
-    fold = curves.fold(grid, points)
-    # Without a fold Λ falls all the way, and the whole branch is this side.
-    end = np.where(np.isnan(fold), grid[-1], fold)
-    lowest = curves.point(end).amplitude
-    at, found = _bracket(lam - np.where(grid < end, points.amplitude, lowest))
-    left, right = (np.minimum(_at(grid, k), end) for k in (at, at + 1))
-    return curves.close(_surplus, left, right, found, lam)
+    """ε of the orbit at Λ between short contacts and the saddle-node: Λ falls along it."""
+    grid, surplus = curves.stable_side(_surplus, lam)
+    return curves.root(_surplus, grid, *_bracket(-surplus), lam)
 
 
 def _unstable_side(curves: _Curves, lam: np.ndarray) -> np.ndarray:
     """ε of the orbit at Λ beyond the saddle-node that is nearest to it."""
-    fold, (_, high) = _saddle_node(curves), curves.ends()
-    scale = _SCAN_START / curves.omega
+    fold, (_, high) = curves.fold(), curves.ends()
+    scale = _SCAN_START / curves.contact.frequency_ratio
     steps = np.linspace(0, 1, _SCAN).reshape(-1, 1)
     outward = fold + scale * np.maximum((high - fold) / scale, 1.0) ** steps
     grid = np.minimum(np.concatenate([fold[np.newaxis], outward]), high)
     # The next turn of Λ is a point of the grid, so that no orbit next to it
     # is missed between two points.
     turn, turns = _bracket(curves.point(grid[1:]).fold)
-    summit = curves.close(_fold, _at(grid[1:], turn), _at(grid[1:], turn + 1), turns)
+    summit = curves.root(_fold, grid[1:], turn, turns)
     grid = np.sort(np.concatenate([grid, np.where(turns, summit, high)[np.newaxis]]), axis=0)
-    index, found = _bracket(_surplus(curves.point(grid), lam))
-    return curves.close(_surplus, _at(grid, index), _at(grid, index + 1), found, lam)
+    return curves.root(_surplus, grid, *_bracket(_surplus(curves.point(grid), lam)), lam)
 
 
 def orbit_at(
@@ -256,8 +252,8 @@ def orbits_at(contact: SpringDamper, n: int, amplitude: float) -> SpringDamperOr
     ([1.601, 2.249, 5.193], [True, False, True])
     """
     check_index(n)
-    omega, zeta = float(contact.frequency_ratio), float(contact.damping_ratio)
-    one = _Curves(contact.release, *(np.array([x]) for x in (omega, zeta, float(n))))
+    omega = np.atleast_1d(contact.frequency_ratio)
+    one = _Curves(replace(contact, frequency_ratio=omega), np.array([float(n)]))
     low, high = (float(x[0]) for x in one.ends())
     step = _FINE * min(1.0, float(contact.damped_frequency))
     fine = np.arange(low, min(high, low + _MOST * step), step)
@@ -266,11 +262,9 @@ def orbits_at(contact: SpringDamper, n: int, amplitude: float) -> SpringDamperOr
 
     def roots(of: Callable, grid: np.ndarray, *more: float) -> np.ndarray:
         values = of(one.point(grid), *more)
-        at = np.nonzero((values[:-1] < 0) != (values[1:] < 0))[0]
-        every = (np.full(at.shape, x) for x in (omega, zeta, float(n)))
-        rest = (np.full(at.shape, x) for x in more)
-        curves, found = _Curves(contact.release, *every), np.full(at.shape, True)
-        return curves.close(of, grid[at], grid[at + 1], found, *rest)
+        at = np.flatnonzero((values[:-1] < 0) != (values[1:] < 0))
+        first, rest = np.zeros_like(at), (np.full(at.shape, x) for x in more)
+        return one.take(first).root(of, np.stack([grid[at], grid[at + 1]]), first, at >= 0, *rest)
 
     grid = np.sort(np.concatenate([grid, roots(_fold, grid)]))
     found = SpringDamperOrbit.on_branch(roots(_surplus, grid, amplitude), contact, n)

@@ -12,11 +12,11 @@ from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.signature import Instant, Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits import spring_damper_limits as limits
-from bouncing_ball.orbits.model import Absence, ImpactModel, Route
+from bouncing_ball.orbits.model import ImpactModel, Route
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.spring_damper_branch import nearest_excess
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
-from bouncing_ball.orbits.spring_damper_system import Parameter, SpringDamperSystem
+from bouncing_ball.orbits.spring_damper_system import SpringDamperSystem
 from bouncing_ball.orbits.stability import Side
 
 # Units in the last place of z′_i that rounding leaves of a Λ = 0; at most 3.9 were
@@ -66,20 +66,6 @@ class SpringDamperModel(ImpactModel):
         """All n-T orbits of one contact at one Λ, in order of contact duration."""
         return limits.orbits_at(self.contact, n, amplitude)
 
-    def absence(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> np.ndarray:
-        """Why :meth:`orbit` finds none: its search is complete.
-
-        Examples
-        --------
-        >>> model = SpringDamperModel(SpringDamper(10.0, 0.1))
-        >>> str(model.absence(1, 0.2))
-        'below the saddle-node'
-        """
-        why = super().absence(n, amplitude, side)
-        no_fold = np.isnan(self.saddle_node(n).amplitude) & (side == Side.UNSTABLE)
-        reason = np.where(no_fold, Absence.NO_OTHER_SIDE, Absence.NOT_REACHED)
-        return np.where(why == Absence.NOT_FOUND, reason, why)
-
     def saddle_node(self, n: ArrayLike) -> SpringDamperOrbit:
         """The orbits at the saddle-node; NaN where the branch has none.
 
@@ -103,17 +89,14 @@ class SpringDamperModel(ImpactModel):
 
     def nearest(self, orbit: SpringDamperOrbit) -> SpringDamperOrbit:
         """The orbits of the closed form nearest to given ones in (Λ cos φ, Λ sin φ, ε)."""
-        contact, n = orbit.contact, orbit.n
+        contact, n = orbit.law, orbit.n
         duration = orbit.contact_duration * contact.damped_frequency - contact.free_angle
         x, y = orbit.amplitude * np.cos(orbit.phase), orbit.amplitude * np.sin(orbit.phase)
         return SpringDamperOrbit.on_branch(nearest_excess(contact, n, x, y, duration), contact, n)
 
     def system(self, n: int | np.ndarray) -> SpringDamperSystem:
         """The paper's equations, continued in Λ."""
-        contact = self.contact
-        return SpringDamperSystem(
-            n, contact.damping_ratio, Parameter.AMPLITUDE, contact.frequency_ratio, contact.release
-        )
+        return SpringDamperSystem(n, self.contact)
 
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ_SD(ϖ) or Λ_F(ϖ)."""

@@ -9,24 +9,14 @@ the contact's own time, which keeps it of order one.
 The continuation parameter is Λ, or ln ϖ at a fixed Λ.
 """
 
-from dataclasses import dataclass
-from enum import StrEnum
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.continuation.events import Event
-from bouncing_ball.orbits import restitution_orbit as restitution_orbits
+from bouncing_ball.orbits import restitution_orbit
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.system import OrbitSystem
-
-
-class Parameter(StrEnum):
-    """Continuation parameter, the last entry of y."""
-
-    AMPLITUDE = "amplitude"
-    LOG_FREQUENCY_RATIO = "log_frequency_ratio"
 
 
 @dataclass(frozen=True)
@@ -36,60 +26,53 @@ class SpringDamperSystem(OrbitSystem):
     Parameters
     ----------
     n : int
-        Index of the family. It, ζ and the fixed parameter may be arrays along
-        the leading axis of y, to solve for many systems at once.
-    damping_ratio : float
-        ζ.
-    parameter : Parameter
-        What the last entry of y = (φ, z′_i, ϖ τ_b, p) is.
-    fixed : float
-        The other of (Λ, ϖ), held constant.
-    release : Release
-        What ends the contact.
+        Index of the family. It, the contact and Λ may be arrays along the leading axis of y,
+        to solve for many systems at once.
+    contact : SpringDamper
+        ϖ, ζ and the release rule.
+    amplitude : float, optional
+        Λ, at which the orbits are followed along ln ϖ. By default the parameter is Λ.
     """
 
     n: int | np.ndarray
-    damping_ratio: float | np.ndarray
-    parameter: Parameter
-    fixed: float | np.ndarray
-    release: Release = Release.DISPLACEMENT
+    contact: SpringDamper
+    amplitude: float | np.ndarray | None = None
 
     def orbit(self, y: np.ndarray) -> SpringDamperOrbit:
-        """The orbits at points y of shape (..., 4)."""
+        """The orbits at points y = (φ, z′_i, ϖ τ_b, p), shape (..., 4)."""
         phase, impact, angle, p = np.moveaxis(y, -1, 0)
-        # Where there is no orbit p is NaN, and the contact is a contact all the same.
-        fixed, zeta = (np.broadcast_to(x, p.shape) for x in (self.fixed, self.damping_ratio))
-        by_amplitude = self.parameter is Parameter.AMPLITUDE
-        amplitude, omega = (p, fixed) if by_amplitude else (fixed, np.exp(p))
-        contact = SpringDamper(omega, zeta, self.release)
-        return SpringDamperOrbit(self.n, contact, amplitude, phase, angle / omega, impact)
+        lam, contact = p, self.contact
+        if self.amplitude is not None:
+            lam = np.broadcast_to(self.amplitude, p.shape)
+            contact = replace(contact, frequency_ratio=np.exp(p))
+        duration = angle / contact.frequency_ratio
+        return SpringDamperOrbit(self.n, contact, lam, phase, duration, impact)
 
-    def coordinates(self, orbit: SpringDamperOrbit) -> tuple[np.ndarray, ...]:
+    def point(self, orbit: SpringDamperOrbit) -> np.ndarray:
         """(φ, z′_i, ϖ τ_b, p)."""
-        omega = np.asarray(orbit.contact.frequency_ratio)
-        by_amplitude = self.parameter is Parameter.AMPLITUDE
-        parameter = orbit.amplitude if by_amplitude else np.log(omega)
-        return orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration, parameter
+        omega = np.asarray(orbit.law.frequency_ratio)
+        parameter = orbit.amplitude if self.amplitude is None else np.log(omega)
+        angle = omega * orbit.contact_duration
+        entries = np.broadcast_arrays(orbit.phase, orbit.impact_velocity, angle, parameter)
+        return np.stack(entries, axis=-1)
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """Exact Jacobian of the residual, shape (..., 3, 4)."""
-        o, by_amplitude = self.orbit(y), self.parameter is Parameter.AMPLITUDE
-        lam, omega = o.amplitude, o.contact.frequency_ratio
-        flow = o.contact_flow(o.contact_duration)
-        # Derivatives of (τ, δ, δ′, φ, Λ, ϖ) of the flow with respect to (φ, z′_i, ϖ τ_b, p).
-        inner = np.zeros((*y.shape[:-1], 6, 4))
-        inner[..., 0, 2] = 1 / omega
-        inner[..., 2, 0], inner[..., 2, 1] = lam * np.sin(o.phase), 1
-        inner[..., 3, 0] = 1
-        if by_amplitude:
-            inner[..., 2, 3], inner[..., 4, 3] = -np.cos(o.phase), 1
-        else:
-            inner[..., 0, 3], inner[..., 5, 3] = -o.contact_duration, omega
+        o = self.orbit(y)
+        omega, flow = o.law.frequency_ratio, o.contact_flow(o.contact_duration)
+        # Derivatives of (τ, δ, δ′, φ, Λ, ϖ) of the flow with respect to
+        # (φ, z′_i, ϖ τ_b, Λ, ln ϖ), of which the last or the last but one is a constant.
+        inner = np.zeros((*y.shape[:-1], 6, 5))
+        inner[..., 0, 2], inner[..., 0, 4] = 1 / omega, -o.contact_duration
+        inner[..., 2, 0], inner[..., 2, 1] = o.amplitude * np.sin(o.phase), 1
+        inner[..., 2, 3] = -np.cos(o.phase)
+        inner[..., 3, 0] = inner[..., 4, 3] = 1
+        inner[..., 5, 4] = omega
+        inner = np.delete(inner, 4 if self.amplitude is None else 3, axis=-1)
         d_duration, _, _, d_phase, d_lam, d_omega = np.moveaxis(inner, -2, 0)
         ends = np.moveaxis(flow.jacobian[..., :6] @ inner, -2, 0)
         scale, sine, displacement = (
-            np.asarray(x)[..., np.newaxis]
-            for x in (omega, o.contact.release_sine, flow.displacement)
+            np.asarray(x)[..., np.newaxis] for x in (omega, o.law.release_sine, flow.displacement)
         )
         release = scale * ends[0] + displacement * d_omega + 2 * sine * ends[1]
         start = d_phase, np.eye(4)[1], d_lam
@@ -100,20 +83,7 @@ class SpringDamperSystem(OrbitSystem):
 
         Close to a solution for ϖ ≫ 1 only.
         """
-        contact = SpringDamper(frequency_ratio, self.damping_ratio, self.release)
-        r = float(contact.restitution)
-        phase = float(restitution_orbits.phase(self.n, r, amplitude))
-        angle = float(contact.free_duration * contact.frequency_ratio)
-        p = amplitude if self.parameter is Parameter.AMPLITUDE else np.log(frequency_ratio)
-        return np.array([phase, -self.n * np.pi, angle, p])
-
-    def events(self) -> tuple[Event, ...]:
-        """Those of every contact, and the loss of a release that leaves the table."""
-        *bifurcations, contact, flight = super().events()
-        release = Event(
-            "release lost",
-            lambda y: self.orbit(y).relative_bounce_velocity,
-            terminal=True,
-            reason="release lost: the ball no longer leaves the table as the contact ends",
-        )
-        return *bifurcations, contact, release, flight
+        contact = replace(self.contact, frequency_ratio=frequency_ratio)
+        phase = restitution_orbit.phase(self.n, contact.restitution, amplitude)
+        duration = contact.free_duration
+        return self.point(SpringDamperOrbit.of(self.n, contact, amplitude, phase, duration))

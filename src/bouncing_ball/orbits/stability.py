@@ -35,25 +35,15 @@ def multipliers(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
 
 
 class Side(StrEnum):
-    """Side of the saddle-node on which an orbit lies."""
+    """Side of the saddle-node on which an orbit lies; ModelError for another name."""
 
     STABLE = "stable"
     """The side that is stable next to the fold: the shorter contact."""
     UNSTABLE = "unstable"
 
     @classmethod
-    def of(cls, side: str) -> "Side":
-        """The side of a name; ModelError for another.
-
-        Examples
-        --------
-        >>> Side.of("stable")
-        <Side.STABLE: 'stable'>
-        """
-        try:
-            return cls(side)
-        except ValueError:
-            raise ModelError(f"unknown side {side!r}: one of {', '.join(cls)}") from None
+    def _missing_(cls, value: object) -> "Side":
+        raise ModelError(f"unknown side {value!r}: one of {', '.join(cls)}")
 
 
 class Bifurcation(StrEnum):

@@ -19,7 +19,7 @@ def shard_names(parameters: Mapping[str, Any]) -> list[str]:
     --------
     >>> from bouncing_ball.configuration.yaml_file import read_yaml
     >>> section = read_yaml("config/config.yaml")["atlas"]
-    >>> shard_names({key: part for key, part in section.items() if key != "summary"})[:2]
+    >>> shard_names(section)[:2]
     ['0000-of-0020', '0001-of-0020']
     """
     from bouncing_ball.atlas.plan import Plan

@@ -6,9 +6,8 @@ Hertz contact does not have, is π/D: that of the elastic linear contact of the
 same duration. Errors are relative to the value of the exact orbit on the contact.
 """
 
-from bisect import bisect_left
 from collections.abc import Callable
-from functools import cache
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -33,15 +32,8 @@ from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Side
-from bouncing_ball.parameters import (
-    Family,
-    FrequencyRatio,
-    LawRestitution,
-    Many,
-    Parameters,
-    Tolerance,
-)
-from bouncing_ball.studies.parameters import BranchEnd, OrbitsAlongRatio, Points
+from bouncing_ball.parameters import FrequencyRatio, LawRestitution, Many, Tolerance
+from bouncing_ball.studies.parameters import FamilyBranches, OrbitsAlongRatio
 
 HERTZ = ("hunt-crossley", "tsuji", "kuwabara-kono")
 LINEAR = {"linear": Release.DISPLACEMENT, "linear, force release": Release.FORCE}
@@ -62,67 +54,59 @@ class LawErrors(OneOrbit):
     tolerance: Tolerance
 
 
-class FiguresOfLaws(Parameters):
+class FiguresOfLaws(FamilyBranches):
     """Families whose branches are followed, and the orbit whose greatest height is shown."""
 
-    n: Many[Family]
     restitution: LawRestitution
     frequency_ratio: Many[FrequencyRatio]
-    amplitude_max: BranchEnd
-    points: Points
     heights: OneOrbit
-
-
-def linear_contact(restitution: float, duration: ArrayLike, release: Release) -> SpringDamper:
-    """The spring-damper with r and D under a release rule, at every speed.
-
-    Examples
-    --------
-    >>> float(linear_contact(1.0, np.pi, Release.DISPLACEMENT).frequency_ratio)
-    1.0
-    """
-    unit = SpringDamper(1.0, damping_ratio(restitution, release), release)
-    omega = float(unit.free_duration) / np.asarray(duration, dtype=float)
-    return SpringDamper(omega, unit.damping_ratio, release)
 
 
 def exact_model(
     name: str, restitution: float, duration: ArrayLike, speed: ArrayLike
 ) -> ImpactModel:
-    """The exact models of contacts with r and D at their speeds, arrays of one shape."""
+    """The exact models of contacts with r and D at their speeds, arrays of one shape.
+
+    Examples
+    --------
+    A linear contact has them at every speed:
+
+    >>> float(exact_model("linear", 1.0, np.pi, 2.0).contact.frequency_ratio)
+    1.0
+    """
     duration, speed = np.broadcast_arrays(duration, speed)
     if name in LINEAR:
-        return SpringDamperModel(linear_contact(restitution, duration, LINEAR[name]))
+        unit = SpringDamper(1.0, damping_ratio(restitution, LINEAR[name]), LINEAR[name])
+        omega = unit.free_duration / duration
+        return SpringDamperModel(SpringDamper(omega, unit.damping_ratio, unit.release))
     return LawModel(law_of_impact(LAWS[name], restitution, duration, speed))
 
 
 def own_models(name: str, orbit: OneOrbit, ratios: np.ndarray) -> Any:
     """The exact models of contacts with r and π/D at their own orbits' speeds.
 
-    None if a contact has no such orbit: one that is longer than the cycle, for example.
+    Raises
+    ------
+    NoOrbitError, ModelError
+        If a contact has no such orbit: one that is longer than the cycle, for example.
     """
     r, duration = orbit.restitution, np.pi / ratios
     if name in LINEAR:
         return exact_model(name, r, duration, 1.0)
-    try:
-        return LawModel(law_at_orbit(LAWS[name], r, duration, orbit.n, orbit.amplitude))
-    except (ModelError, NoOrbitError):
-        return None
+    return LawModel(law_at_orbit(LAWS[name], r, duration, orbit.n, orbit.amplitude))
 
 
 def along(name: str, orbit: OneOrbit, value: Callable[[Any], np.ndarray]) -> np.ndarray:
-    """A value of the exact models along π/D, shape (..., ϖ), NaN below the first of their orbits.
+    """A value of the exact models along π/D, shape (..., ϖ).
 
-    The softest contact is found by bisection from which on all have their orbit.
+    NaN below the softest contact from which on all have their orbit.
     """
     ratios = orbit.frequency_ratio.grid()
-    models = cache(lambda first: own_models(name, orbit, ratios[first:]))
-    # The stiffest one alone is taken as it is: without an orbit on it there is nothing to show.
-    first = 0
-    if models(first) is None:
-        first = bisect_left(range(len(ratios) - 1), True, key=lambda k: models(k) is not None)
-    found = value(models(first))
-    return np.concatenate([np.full((*found.shape[:-1], first), np.nan), found], axis=-1)
+    for first in range(ratios.size):
+        with suppress(ModelError, NoOrbitError):
+            found = value(own_models(name, orbit, ratios[first:]))
+            return np.concatenate([np.full((*found.shape[:-1], first), np.nan), found], axis=-1)
+    raise NoOrbitError(f"no {name} contact has the {orbit.n}-T orbit at Λ = {orbit.amplitude:g}")
 
 
 def corrected_values(exact: Any, *asked: Any) -> np.ndarray:
@@ -145,10 +129,8 @@ def _errors(name: str, parameters: LawErrors) -> tuple[np.ndarray, float]:
         return np.abs([relative(x, wanted) for x in (constant, repaired)])
 
     def height(ratio: np.ndarray, _: np.ndarray) -> np.ndarray:
-        exact = own_models(name, parameters, ratio)
-        if exact is None:
-            return np.full(ratio.shape, np.nan)
-        return relative(rigid.orbit(n, lam).max_height, exact.orbit(n, lam).max_height)
+        exact = own_models(name, parameters, ratio).orbit(n, lam)
+        return relative(rigid.orbit(n, lam).max_height, exact.max_height)
 
     errors, ratios = along(name, parameters, both), parameters.frequency_ratio.grid()
     found = thresholds(height, ratios, errors[0, :1], [parameters.tolerance])
@@ -200,15 +182,6 @@ def _domains(name: str, parameters: FiguresOfLaws) -> np.ndarray:
     return np.array([amplitudes, np.hstack([left[:, ::-1], fold.phase, right])])
 
 
-def _held(name: str, restitution: float, ratio: float) -> float:
-    """Threshold of permanent contact; NaN where no contact that just touches was found."""
-    try:
-        model = exact_model(name, restitution, np.pi / ratio, rigid_speed(1, restitution))
-        return float(model.permanent_contact_threshold())
-    except ModelError:
-        return np.nan
-
-
 def figures_of_laws(parameters: FiguresOfLaws) -> xr.Dataset:
     """Table 1 and Figs. 8, 14 and 16 on contacts of the same r and duration.
 
@@ -221,7 +194,12 @@ def figures_of_laws(parameters: FiguresOfLaws) -> xr.Dataset:
     bounds = [_bounds(name, parameters) for name in names]
     branches = np.array([_domains(name, parameters) for name in names])
     height = [along(name, one, lambda exact: exact.orbit(n, lam).max_height) for name in names]
-    held = [[_held(name, r, x) for x in ratios] for name in names]
+    # NaN where no contact that just touches was found.
+    held = np.full((len(names), ratios.size), np.nan)
+    for place in np.ndindex(held.shape):
+        with suppress(ModelError):
+            model = exact_model(names[place[0]], r, np.pi / ratios[place[1]], rigid_speed(1, r))
+            held[place] = model.permanent_contact_threshold()
     return described(
         {
             "bifurcation_amplitude": (("law", "bound", "shown_ratio", "n"), np.array(bounds)),
@@ -229,7 +207,7 @@ def figures_of_laws(parameters: FiguresOfLaws) -> xr.Dataset:
             "phase": (("law", "shown_ratio", "point"), branches[:, 1]),
             "max_height": (("law", "duration_ratio"), np.array(height)),
             "restitution_max_height": ((), float(RestitutionModel(r).orbit(n, lam).max_height)),
-            "threshold_amplitude": (("law", "duration_ratio"), np.array(held)),
+            "threshold_amplitude": (("law", "duration_ratio"), held),
         },
         coords={
             "law": list(names),

@@ -6,22 +6,20 @@ permanent contact). The threshold for a tolerance is the ϖ above which the
 error stays below it, within the range scanned.
 """
 
-from collections.abc import Callable, Sequence
-from functools import partial
-from typing import Annotated
+from collections.abc import Sequence
+from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
 from pydantic import Strict
 
+from bouncing_ball.accuracy.errors import modulus, relative_errors
 from bouncing_ball.accuracy.quantities import Quantity
-from bouncing_ball.accuracy.thresholds import model_thresholds
-from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
+from bouncing_ball.accuracy.thresholds import by_quantity, thresholds
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.parameters import Many, Span, Tolerance
+from bouncing_ball.parameters import Many, Tolerance
 from bouncing_ball.studies.parameters import OrbitErrors, OrbitsAlongRatio
 from bouncing_ball.studies.permanent_contact_curve import PermanentContact, permanent_contact
 
@@ -45,20 +43,28 @@ class PermanentContactError(PermanentContact):
 
 
 def thresholds_along(
-    exact: Callable[[np.ndarray], ImpactModel],
-    simple: RestitutionModel,
-    orbit: tuple[int, float],
-    span: Span,
+    one: OrbitsAlongRatio,
+    release: Release,
     quantities: Sequence[Quantity],
     tolerances: Sequence[float],
+    restitution: float | None = None,
 ) -> xr.Dataset:
-    """Errors along ϖ, shape (quantity, ϖ), and thresholds, shape (quantity, tolerance)."""
-    ratios = span.grid()
-    error, found = model_thresholds(exact, simple, *orbit, ratios, tolerances, quantities)
+    """Errors along ϖ, shape (quantity, ϖ), and thresholds, shape (quantity, tolerance).
+
+    Of the restitution model with the r of Eq. 16, if no other is given.
+    """
+    simple, ratios = RestitutionModel(restitution or one.restitution), one.frequency_ratio.grid()
+
+    def along(ratio: np.ndarray, _: Any, asked: Sequence[str]) -> np.ndarray:
+        exact = one.exact(ratio, release)
+        return relative_errors(exact, [simple], one.n, one.amplitude, asked)[0]
+
+    scanned = along(ratios, None, quantities)
+    found = thresholds(by_quantity(along, quantities, 1), ratios, scanned, tolerances)
     dims = ("quantity", "tolerance")
     return xr.Dataset(
         {
-            "relative_error": (("quantity", "frequency_ratio"), error),
+            "relative_error": (("quantity", "frequency_ratio"), modulus(scanned)),
             "error_threshold": (dims, found.ratio),
             "threshold_status": (dims, found.status),
         },
@@ -70,38 +76,16 @@ def thresholds_along(
     )
 
 
-def _of_orbit(
-    one: OrbitsAlongRatio,
-    release: Release,
-    quantities: Sequence[Quantity],
-    tolerances: Sequence[float],
-) -> xr.Dataset:
-    simple, orbit = RestitutionModel(one.restitution), (one.n, one.amplitude)
-    exact = partial(one.exact, release=release)
-    return thresholds_along(exact, simple, orbit, one.frequency_ratio, quantities, tolerances)
-
-
 def error_thresholds(parameters: ErrorThresholds, release: Release) -> xr.Dataset:
-    """Errors along ϖ, shape (quantity, ϖ), and thresholds in ϖ, shape (quantity, tolerance).
-
-    Raises
-    ------
-    NoOrbitError
-        If the restitution model has no orbit at Λ to compare with.
-    """
-    return describe(_of_orbit(parameters, release, parameters.quantities, parameters.tolerances))
+    """Errors along ϖ, shape (quantity, ϖ), and thresholds in ϖ, shape (quantity, tolerance)."""
+    asked = parameters.quantities, parameters.tolerances
+    return describe(thresholds_along(parameters, release, *asked))
 
 
 def height_error(parameters: OrbitErrors, release: Release) -> xr.Dataset:
-    """Greatest height along ϖ in both models, and ϖ_h for the tolerance (Eq. 37, Fig. 14).
-
-    Raises
-    ------
-    NoOrbitError
-        If the restitution model has no orbit at Λ to compare with.
-    """
+    """Greatest height along ϖ in both models, and ϖ_h for the tolerance (Eq. 37, Fig. 14)."""
     n, lam, ratios = parameters.n, parameters.amplitude, parameters.frequency_ratio.grid()
-    dataset = _of_orbit(parameters, release, [Quantity.MAX_HEIGHT], [parameters.tolerance])
+    dataset = thresholds_along(parameters, release, [Quantity.MAX_HEIGHT], [parameters.tolerance])
     orbit = parameters.exact(ratios, release).orbit(n, lam)
     for name in ("max_height", "phase", "contact_duration", "impact_velocity"):
         dataset[name] = ("frequency_ratio", getattr(orbit, name))
@@ -114,9 +98,7 @@ def height_error(parameters: OrbitErrors, release: Release) -> xr.Dataset:
 def permanent_contact_error(parameters: PermanentContactError, release: Release) -> xr.Dataset:
     """Permanent contact along ϖ in both models, and ϖ_PC for the tolerance (Eq. 38, Fig. 16)."""
     # The threshold of permanent contact knows neither orbit nor amplitude.
-    nowhere = OrbitsAlongRatio.model_construct(
-        n=1, amplitude=RESTITUTION_THRESHOLD, **dict(parameters)
-    )
+    nowhere = OrbitsAlongRatio.model_construct(n=1, amplitude=1.0, **dict(parameters))
     asked = [Quantity.PERMANENT_CONTACT]
-    dataset = _of_orbit(nowhere, release, asked, [parameters.tolerance])
+    dataset = thresholds_along(nowhere, release, asked, [parameters.tolerance])
     return describe(dataset.merge(permanent_contact(parameters, release)))

@@ -9,16 +9,14 @@ from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.motion.regularity import period
-from bouncing_ball.orbits.basins import ELSEWHERE, PERMANENT, Destinations, destinations
+from bouncing_ball.orbits.basins import ELSEWHERE, Destinations, destinations
 from bouncing_ball.orbits.long_contact import joining_ratio, stable_window, stiff_limit
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
-from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.parameters import (
     Family,
     FrequencyRatio,
     LossyRestitution,
     Many,
-    OwnRestitution,
     Parameters,
     Span,
     number,
@@ -29,7 +27,7 @@ from bouncing_ball.studies.parameters import OrbitAmplitude
 class Windows(Parameters):
     """Contacts whose stable windows are looked for, of several r and along ϖ."""
 
-    restitution: Many[OwnRestitution]
+    restitution: Many[LossyRestitution]
     frequency_ratio: Span
 
 
@@ -87,28 +85,19 @@ def stable_windows(parameters: Windows, release: Release) -> xr.Dataset:
     if release is Release.DISPLACEMENT:
         stiff = np.array([stiff_limit(z) for z in zeta])
         joining = joining_ratio(zeta, release, *_PARTING)
-    along = {
-        "threshold_amplitude": SpringDamperModel(law).permanent_contact_threshold(),
-        "window_amplitude": window.amplitude,
-        "window_flight": window.flight_time,
-        "window_end": window.end,
-    }
+    threshold = SpringDamperModel(law).permanent_contact_threshold()
     dims, shape = ("restitution", "frequency_ratio"), (zeta.size, ratio.size)
     return described(
         {
-            **{name: (dims, values.reshape(shape)) for name, values in along.items()},
+            "threshold_amplitude": (dims, threshold.reshape(shape)),
+            "window_amplitude": (dims, window.amplitude.reshape(shape)),
+            "window_flight": (dims, window.flight_time.reshape(shape)),
+            "window_end": (dims, window.end.reshape(shape)),
             "stiff_window": ("restitution", stiff),
             "joining_ratio": ("restitution", joining),
         },
         coords={"restitution": restitution, "frequency_ratio": ratio},
     )
-
-
-def _motion(orbit: SpringDamperOrbit) -> int:
-    """Index of its kind among :data:`MOTIONS`."""
-    if int(orbit.n) > 1:
-        return 3
-    return 2 if float(orbit.contact_duration) > np.pi else 1
 
 
 def _shared_period(model: SpringDamperModel, amplitude: float, ends: Destinations) -> int:
@@ -139,30 +128,28 @@ def basins(parameters: Basins, release: Release) -> xr.Dataset:
     middle = (np.arange(count) + 0.5) / count
     phase, speed = 2 * np.pi * middle - np.pi, parameters.velocity_max * middle
     shape = (len(amplitudes), count, count)
-    ends = np.empty(shape, dtype=np.int8)
-    periods = np.zeros(len(amplitudes), dtype=int)
+    ends, periods = np.empty(shape, dtype=np.int8), np.zeros(len(amplitudes), dtype=int)
     places = np.full((2, len(amplitudes), len(MOTIONS)), np.nan)
     start, velocity = (np.ravel(x) for x in np.meshgrid(phase, -speed))
     for k, lam in enumerate(amplitudes):
-        orbits = [
-            found[k]
-            for found in (model.orbits(n, lam) for n in parameters.n)
-            for k in np.flatnonzero(found.is_stable() & found.is_admissible())
-        ]
-        reached = destinations(model, lam, orbits, start, velocity, parameters.impacts)
-        kinds = np.array([*map(_motion, orbits), *(0, 0)], dtype=np.int8)
-        kinds[ELSEWHERE], kinds[PERMANENT] = len(MOTIONS) - 1, 0
-        ends[k] = kinds[reached.orbit].reshape(count, count)
-        periods[k] = _shared_period(model, lam, reached)
-        for orbit in orbits:
+        all_orbits = [model.orbits(n, lam) for n in parameters.n]
+        stable = [found[found.is_stable() & found.is_admissible()] for found in all_orbits]
+        orbits = [found[k] for found in stable for k in range(found.size)]
+        kinds = [3 if x.n > 1 else 1 + int(x.contact_duration > np.pi) for x in orbits]
+        for orbit, kind in zip(orbits, kinds, strict=True):
             if orbit.n == 1:
-                places[:, k, _motion(orbit)] = (orbit.phase, -orbit.relative_impact_velocity)
-    shares = [[(part == kind).mean() for kind in range(len(MOTIONS))] for part in ends]
+                places[:, k, kind] = orbit.phase, -orbit.relative_impact_velocity
+        reached = destinations(model, lam, orbits, start, velocity, parameters.impacts)
+        # Indices from the end, ELSEWHERE and PERMANENT, are those of no orbit.
+        kind_of = np.array([*kinds, len(MOTIONS) - 1, 0], dtype=np.int8)
+        ends[k] = kind_of[reached.orbit].reshape(count, count)
+        periods[k] = _shared_period(model, lam, reached)
+    shares = [(ends == kind).mean(axis=(1, 2)) for kind in range(len(MOTIONS))]
     return described(
         {
-            "amplitude": ("case", np.array(amplitudes, dtype=float)),
+            "amplitude": ("case", np.array(amplitudes)),
             "destination": (("case", "start_speed", "start_phase"), ends),
-            "basin_share": (("case", "motion"), np.array(shares)),
+            "basin_share": (("case", "motion"), np.stack(shares, axis=-1)),
             "orbit_phase": (("case", "motion"), places[0]),
             "orbit_speed": (("case", "motion"), places[1]),
             "other_period": ("case", periods),

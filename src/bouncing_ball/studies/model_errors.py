@@ -15,68 +15,31 @@ from pydantic import Field
 from bouncing_ball.accuracy import error_law
 from bouncing_ball.accuracy.errors import SIMPLE, errors
 from bouncing_ball.accuracy.quantities import OF_IMPACTS, Quantity
-from bouncing_ball.accuracy.thresholds import ThresholdStatus, search
+from bouncing_ball.accuracy.thresholds import search
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.parameters import (
-    Family,
-    LossyRestitution,
-    Many,
-    OwnRestitution,
-    Parameters,
-    Samples,
-    Seed,
-    Span,
-    Tolerance,
-    number,
-)
+from bouncing_ball.parameters import LossyRestitution, Samples, Seed
 from bouncing_ball.studies.parameters import OrbitErrors
 from bouncing_ball.studies.random_orbits import random_orbits
 
 
-class Sample(Parameters):
-    """Random orbits of the whole stable range."""
-
-    seed: Seed
-    samples: Annotated[Samples, Field(description="random orbits whose orders are measured")]
-    stiff_frequency_ratio: Annotated[
-        float,
-        number(
-            "ϖ of the softer of two contacts for the order, the other having twice as much; below "
-            "100 further orders show, beyond 10⁴ rounding",
-            ge=100,
-            le=1e4,
-        ),
-    ]
-    law_samples: Annotated[Samples, Field(description="random orbits on which the law is tried")]
-
-
 class Orders(OrbitErrors):
-    """One orbit along ϖ, the error tolerated of it, and random orbits."""
+    """One orbit along ϖ, the error tolerated of it, and random orbits of the whole stable range."""
 
     restitution: LossyRestitution
-    random: Sample
-
-
-class Validity(Parameters):
-    """Orbits over n, Λ/Λ_SN and r, and the error tolerated."""
-
-    n: Many[Family]
-    restitution: Many[OwnRestitution]
-    amplitude_ratio: Many[
-        Annotated[
-            float, number("amplitude over that of the saddle-node, above 1", ge=1.001, le=100)
-        ]
-    ]
-    tolerance: Tolerance
-    frequency_ratio: Span
+    seed: Seed
+    samples: Annotated[Samples, Field(description="random orbits whose orders are measured")]
+    law_samples: Annotated[Samples, Field(description="random orbits on which the law is tried")]
 
 
 _STIFF = 500.0
 """ϖ at which the second order is all of the corrected model's error, and rounding none of it."""
+
+
+# For the order: below 100 further orders show, beyond 10⁴ rounding.
+_TWO_STIFF = np.array([[1000.0], [2000.0]])
 
 
 def _second_order(zeta: float, rule: Release, n, amplitude) -> np.ndarray:
@@ -89,12 +52,12 @@ def _second_order(zeta: float, rule: Release, n, amplitude) -> np.ndarray:
     return 2 * twice - once
 
 
-def _of_random_orbits(sample: Sample, span: Span, release: Release) -> dict[str, tuple]:
+def _of_random_orbits(sample: Orders, release: Release) -> dict[str, tuple]:
     """Orders of both models, and what the law leaves of the restitution model's errors."""
     n, zeta, lam, _ = random_orbits(sample.samples, sample.seed, release, (0.2, 0.95))
-    stiff = sample.stiff_frequency_ratio * np.array([[1.0], [2.0]])
-    once, twice = np.moveaxis(np.abs(errors(SpringDamper(stiff, zeta, release), n, lam)), 2, 0)
+    once, twice = np.moveaxis(np.abs(errors(SpringDamper(_TWO_STIFF, zeta, release), n, lam)), 2, 0)
     n, zeta, lam, rng = random_orbits(sample.law_samples, sample.seed + 1, release)
+    span = sample.frequency_ratio
     omega = np.exp(rng.uniform(*np.log([span.min, span.max]), sample.law_samples))
     contact = SpringDamper(omega, zeta, release)
     left = error_law.remainder(n, Signature(contact)(), lam, errors(contact, n, lam)[0])
@@ -136,37 +99,7 @@ def orders(parameters: Orders, release: Release) -> xr.Dataset:
             "permanent_coefficient": error_law.permanent_contact_coefficient(zeta, release),
             "permanent_law": still,
             "permanent_threshold": found.threshold[0, -1, 0],
-            **_of_random_orbits(parameters.random, parameters.frequency_ratio, release),
+            **_of_random_orbits(parameters, release),
         },
         coords={"model": list(SIMPLE), "quantity": list(OF_IMPACTS), "frequency_ratio": ratios},
-    )
-
-
-def validity(parameters: Validity, release: Release) -> xr.Dataset:
-    """The ϖ from which each simple model is right, over n, Λ/Λ_SN and r.
-
-    Shape (model, quantity, n, Λ/Λ_SN, r); NaN where the restitution model has no stable orbit,
-    or the error is too large at the largest ϖ. Beside it, where the restitution model's error
-    passes through zero by accident.
-    """
-    ratios, names = parameters.frequency_ratio.grid(), ("n", "amplitude_ratio", "restitution")
-    axes = {name: np.array(getattr(parameters, name)) for name in names}
-    n, places, r = np.meshgrid(*axes.values(), indexing="ij")
-    model = RestitutionModel(r)
-    lam = places * model.saddle_node(n).amplitude
-    # Outside the stable range of the restitution model there is nothing to be right about.
-    there = lam <= model.period_doubling(n).amplitude
-    zeta = SpringDamper.from_restitution(r[there], 1.0, release, measured=True).damping_ratio
-    found = search(zeta, release, n[there], lam[there], ratios, parameters.tolerance)
-    threshold = np.full((len(SIMPLE), len(OF_IMPACTS), *r.shape), np.nan)
-    zero = np.full(threshold.shape[1:], np.nan)
-    always = found.status == ThresholdStatus.ALWAYS_WITHIN
-    threshold[..., there] = np.where(always, ratios[0], found.threshold)
-    zero[..., there] = found.zero
-    return described(
-        {
-            "error_threshold": (("model", "quantity", *names), threshold),
-            "error_zero": (("quantity", *names), zero),
-        },
-        coords={"model": list(SIMPLE), "quantity": list(OF_IMPACTS), **axes},
     )

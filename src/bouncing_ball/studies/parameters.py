@@ -1,7 +1,6 @@
-"""Types of parameters that need an orbit: amplitudes at which there is one, contacts that have one.
+"""Types of parameters that need an orbit: amplitudes at which there is one.
 
-A type looks at the parameters that stand before it in its class: ``n`` and ``restitution``, and for
-a contact ``amplitude``.
+A type looks at the parameters that stand before it in its class: ``n`` and ``restitution``.
 """
 
 from collections.abc import Callable
@@ -12,14 +11,13 @@ from numpy.typing import ArrayLike
 from pydantic import AfterValidator, Field, ValidationInfo
 
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits.restitution_orbit import saddle_node
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.parameters import (
     Amplitude,
     AmplitudeMax,
     Family,
-    FrequencyRatio,
+    Many,
     Parameters,
     Restitution,
     Span,
@@ -49,33 +47,15 @@ def require_orbit(amplitude: float, n: int, restitution: float) -> float:
     return amplitude
 
 
-def _known(info: ValidationInfo, *names: str) -> bool:
-    """Whether the parameters before are right; if not, they are the mistake."""
-    return all(name in info.data for name in names)
-
-
 def _has_orbits(families: Callable[[np.ndarray], int]) -> AfterValidator:
     def check(amplitude: float, info: ValidationInfo) -> float:
-        if _known(info, "n", "restitution"):
+        # Without one of them that is the mistake.
+        if {"n", "restitution"} <= info.data.keys():
             n = families(np.atleast_1d(info.data["n"]))
             require_orbit(amplitude, n, info.data["restitution"])
         return amplitude
 
     return AfterValidator(check)
-
-
-def _has_a_motion(ratio: float, info: ValidationInfo) -> float:
-    """The ϖ, if the orbit on this contact is a motion of the ball; asked with a release rule."""
-    if info.context and _known(info, "n", "restitution", "amplitude"):
-        given = info.data
-        contact = SpringDamper.from_restitution(
-            given["restitution"], ratio, info.context["release"]
-        )
-        try:
-            SpringDamperModel(contact).require_admissible(given["n"], given["amplitude"])
-        except NoOrbitError as error:
-            raise ValueError(str(error)) from None
-    return ratio
 
 
 OrbitAmplitude = Annotated[Amplitude, _has_orbits(min)]
@@ -109,11 +89,18 @@ class OrbitErrors(OrbitsAlongRatio):
 
 BranchEnd = Annotated[AmplitudeMax, _has_orbits(max)]
 """Λ up to which branches are followed, above where the highest family begins."""
-MotionRatio = Annotated[FrequencyRatio, AfterValidator(_has_a_motion)]
-"""ϖ of a contact on which the orbit is a motion of the ball, which can be drawn over time."""
 Points = Annotated[
     int,
     Field(
         ge=11, le=20001, description="points along each branch; fewer than 11 do not show its shape"
     ),
 ]
+
+
+class FamilyBranches(Parameters):
+    """Several families, followed along Λ."""
+
+    n: Many[Family]
+    restitution: Restitution
+    amplitude_max: BranchEnd
+    points: Points

@@ -15,7 +15,6 @@ from scipy.optimize.elementwise import find_minimum
 from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.parameters import Family, LossyRestitution, Many, Parameters, Span, Tolerance
@@ -25,7 +24,6 @@ from bouncing_ball.studies.error_thresholds import ErrorsAlongRatio, thresholds_
 class RuleThresholds(ErrorsAlongRatio):
     """One orbit, the quantities compared on it, and the error tolerated."""
 
-    restitution: LossyRestitution
     tolerance: Tolerance
 
 
@@ -38,27 +36,24 @@ class ReleaseRules(Parameters):
     thresholds: RuleThresholds
 
 
-READINGS = (
-    (Release.DISPLACEMENT, "displacement release, r of Eq. 16"),
-    (Release.FORCE, "force release, r of Eq. 16"),
-    (Release.FORCE, "force release, its own r"),
-)
-
-
 def _lowest_doubling(
-    ratios: np.ndarray, amplitude: np.ndarray, zeta: float, rule: Release, n: int
-) -> float:
-    """The ϖ at which the period doubling is lowest; NaN if that is an end of the scan."""
-    at = int(np.argmin(np.where(np.isnan(amplitude), np.inf, amplitude)))
-    if at in (0, len(ratios) - 1) or np.isnan(amplitude[at - 1 : at + 2]).any():
-        return np.nan
+    ratios: np.ndarray, amplitude: np.ndarray, zeta: float, rule: Release, n: np.ndarray
+) -> np.ndarray:
+    """The ϖ at which each period doubling is lowest; NaN if that is an end of the scan.
 
-    def doubling(log_ratio):
+    ``amplitude`` is that of the scan, shape (n, ϖ).
+    """
+
+    def doubling(log_ratio: np.ndarray, n: np.ndarray) -> np.ndarray:
         model = SpringDamperModel(SpringDamper(np.exp(log_ratio), zeta, rule))
         return model.period_doubling(n).amplitude
 
-    bracket = tuple(np.log(ratios[at + k]) for k in (-1, 0, 1))
-    return float(np.exp(find_minimum(doubling, bracket).x))
+    lowest = np.argmin(np.where(np.isnan(amplitude), np.inf, amplitude), axis=-1)
+    inside = np.clip(lowest, 1, ratios.size - 2)
+    # Three samples whose middle one is not the lowest are refused as a bracket.
+    bracket = tuple(np.log(ratios[inside + k]) for k in (-1, 0, 1))
+    found = find_minimum(doubling, bracket, args=(n,))
+    return np.where(found.success, np.exp(found.x), np.nan)
 
 
 def _bifurcations(parameters: ReleaseRules, rule: Release) -> xr.Dataset:
@@ -67,10 +62,7 @@ def _bifurcations(parameters: ReleaseRules, rule: Release) -> xr.Dataset:
     zeta = float(damping_ratio(parameters.restitution))
     model, n = SpringDamperModel(SpringDamper(ratios, zeta, rule)), families[:, np.newaxis]
     ends = np.stack([model.saddle_node(n).amplitude, model.period_doubling(n).amplitude], axis=-1)
-    turns = [
-        _lowest_doubling(ratios, row, zeta, rule, k)
-        for k, row in zip(parameters.n, ends[..., 1], strict=True)
-    ]
+    turns = _lowest_doubling(ratios, ends[..., 1], zeta, rule, families)
     return xr.Dataset(
         {
             "bifurcation_amplitude": (("n", "frequency_ratio", "bound"), ends),
@@ -87,19 +79,20 @@ def _bifurcations(parameters: ReleaseRules, rule: Release) -> xr.Dataset:
 
 def _thresholds(wanted: RuleThresholds) -> xr.Dataset:
     """The ϖ above which each quantity is within the tolerance, reading by reading."""
-    r, orbit = wanted.restitution, (wanted.n, wanted.amplitude)
-    loss = float(damping_ratio(r))
-    own = float(restitution_coefficient(loss, Release.FORCE))
-    found = []
-    for rule, reading in READINGS:
-
-        def exact(ratio: np.ndarray, rule=rule) -> SpringDamperModel:
-            return SpringDamperModel(SpringDamper(ratio, loss, rule))
-
-        simple = RestitutionModel(own if reading.endswith("own r") else r)
-        asked = wanted.frequency_ratio, wanted.quantities, [wanted.tolerance]
-        one = thresholds_along(exact, simple, orbit, *asked).isel(tolerance=0, drop=True)
-        found.append(one.drop_dims("frequency_ratio").assign_coords(reading=reading))
+    r = wanted.restitution
+    own = float(restitution_coefficient(damping_ratio(r), Release.FORCE))
+    readings = {
+        "displacement release, r of Eq. 16": (Release.DISPLACEMENT, r),
+        "force release, r of Eq. 16": (Release.FORCE, r),
+        "force release, its own r": (Release.FORCE, own),
+    }
+    found = [
+        thresholds_along(wanted, rule, wanted.quantities, [wanted.tolerance], simple)
+        .isel(tolerance=0, drop=True)
+        .drop_dims("frequency_ratio")
+        .assign_coords(reading=reading)
+        for reading, (rule, simple) in readings.items()
+    ]
     return xr.concat(found, "reading").assign(force_restitution=own)
 
 

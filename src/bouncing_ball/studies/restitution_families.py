@@ -5,21 +5,14 @@ from typing import Annotated
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.continuation.corrector import NewtonSettings
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.orbits import restitution_orbit as orbits
+from bouncing_ball.orbits.grazing import grazing_points
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import ImpactMap, RestitutionOrbit
-from bouncing_ball.parameters import Family, Many, Parameters, Restitution, Samples, number
-from bouncing_ball.studies.parameters import BranchEnd, OrbitParameters, Points
-
-
-class RestitutionDomains(Parameters):
-    """Families of the restitution model, followed along Λ."""
-
-    n: Many[Family]
-    restitution: Restitution
-    amplitude_max: BranchEnd
-    points: Points
+from bouncing_ball.parameters import Samples, number
+from bouncing_ball.studies.parameters import FamilyBranches, OrbitParameters
 
 
 class RestitutionHistory(OrbitParameters):
@@ -29,25 +22,15 @@ class RestitutionHistory(OrbitParameters):
     samples: Samples
 
 
-def _grazing(n: int, r: float, top: float) -> tuple[float, float]:
-    """Λ and φ at which the unstable orbit grazes the table, NaN beyond ``top``.
-
-    Bisection of Λ on the unstable side, down to neighbouring numbers.
-    """
-    low, high = float(orbits.saddle_node(n, r)), top
-
-    def admissible(amplitude):
-        phase = orbits.phase(n, r, amplitude, stable_side=False)
-        return bool(RestitutionOrbit.of(n, r, amplitude, phase).is_admissible())
-
-    if admissible(high):
-        return np.nan, np.nan
-    while low < (middle := (low + high) / 2) < high:
-        low, high = (middle, high) if admissible(middle) else (low, middle)
-    return low, float(orbits.phase(n, r, low, stable_side=False))
+def _grazing(orbits: RestitutionOrbit) -> np.ndarray:
+    """φ and Λ at which the unstable orbits of one family graze the table, NaN beyond the branch."""
+    system = RestitutionModel(orbits.law).system(int(orbits.n[0]))
+    at = system.point(orbits)
+    found = grazing_points(system, lambda y: system.orbit(y).is_admissible(), at, NewtonSettings())
+    return found[0, [0, -1]] if len(found) else np.full(2, np.nan)
 
 
-def restitution_orbits(parameters: RestitutionDomains) -> xr.Dataset:
+def restitution_orbits(parameters: FamilyBranches) -> xr.Dataset:
     """φ in rad against Λ for several families, shape (n, point), with their special orbits.
 
     The branch of each family runs from the unstable side to the stable one,
@@ -63,8 +46,7 @@ def restitution_orbits(parameters: RestitutionDomains) -> xr.Dataset:
     fold = orbits.saddle_node(n, r)
     amplitude, phase = orbits.branch(n, r, top, parameters.points)
     shown = RestitutionOrbit.of(n[:, np.newaxis], r, amplitude, phase)
-    stable, admissible = shown.is_stable(), shown.is_admissible()
-    grazing = np.array([_grazing(int(k), r, top) for k in n])
+    grazing = np.array([_grazing(shown[k]) for k in range(n.size)])
     maps = list(ImpactMap)
     doubling = np.array([orbits.period_doubling(n, r, kind) for kind in maps])
     lift = np.array([[float(orbits.period_doubling_lift(r, kind))] for kind in maps])
@@ -72,10 +54,10 @@ def restitution_orbits(parameters: RestitutionDomains) -> xr.Dataset:
         {
             "amplitude": (("n", "point"), amplitude),
             "phase": (("n", "point"), phase),
-            "stable": (("n", "point"), stable),
-            "admissible": (("n", "point"), admissible),
-            "grazing_amplitude": ("n", grazing[:, 0]),
-            "grazing_phase": ("n", grazing[:, 1]),
+            "stable": (("n", "point"), shown.is_stable()),
+            "admissible": (("n", "point"), shown.is_admissible()),
+            "grazing_amplitude": ("n", grazing[:, 1]),
+            "grazing_phase": ("n", grazing[:, 0]),
             "saddle_node_amplitude": ("n", fold),
             "saddle_node_phase": ("n", np.zeros_like(fold)),
             "period_doubling_amplitude": (("impact_map", "n"), doubling),

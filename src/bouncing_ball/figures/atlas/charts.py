@@ -1,17 +1,14 @@
 """The charts of the atlas: the ϖ from which on each model is right, from the summary."""
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
-from bouncing_ball.figures.canvas import WIDE, canvas, legend_below, panels
+from bouncing_ball.figures.canvas import WIDE, canvas, legend_below
 from bouncing_ball.figures.labels import QUANTITIES
 from bouncing_ball.figures.style import CORRECTED, GUIDE, Look
 
@@ -24,10 +21,8 @@ NEAR = 1
 _RIGHT, _CORRECTED, _NEITHER = "#ffffff", "#b9d7ea", "#7f7f7f"
 _SPAN = 3.0, 1e3
 # Not dotted, as the rule of thumb is.
-_BESIDE: dict[str, Look] = {
-    "restitution": {"color": "black", "linestyle": "--", "linewidth": 0.8},
-    "corrected": {"color": "black", "linestyle": "-.", "linewidth": 0.8},
-}
+_BESIDE = {"restitution": "--", "corrected": "-."}
+_LINE: Look = {"color": "black", "linewidth": 0.8}
 
 
 def charts(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
@@ -43,15 +38,17 @@ def page(data: xr.Dataset, release: str = "displacement") -> Figure:
     Right for all families and all positions, but for the one range next to the
     saddle-node; a line shows what that range needs.
     """
-    figure, slots = panels(9.2, 4, 2)
+    figure, grid = canvas(WIDE, 9.2, 4, 2, sharex=True, sharey=True)
+    slots = list(grid.flat)
     tolerance = float(data.summary_tolerance)
     one = data.sel({"release": release, "tolerance": tolerance})
     for axes, quantity in zip(slots, data["quantity"].values, strict=False):
         needed = one.needed.sel(quantity=quantity).max("n")
         _draw_simplest(axes, needed.isel(position=slice(NEAR, None)).max("position"))
         near = needed.isel(position=slice(NEAR)).max("position")
-        for model, look in _BESIDE.items():
-            axes.plot(near.restitution, near.sel(model=model).clip(*_SPAN), **look)
+        for model, dashes in _BESIDE.items():
+            line = near.sel(model=model).clip(*_SPAN)
+            axes.plot(near.restitution, line, linestyle=dashes, **_LINE)
         axes.set_title(QUANTITIES[str(quantity)])
     for axes, limit in zip(slots[4:], data.limit_quantity.values, strict=False):
         _draw_simplest(axes, one.limit_needed.sel(limit_quantity=limit).max("n"))
@@ -98,35 +95,30 @@ def over_range(data: xr.Dataset, quantity: str, n: int = 1) -> Figure:
     bar.set_label(rf"$\varpi$ from which the error is below {100 * tolerance:g} %")
     figure.suptitle(rf"{QUANTITIES[quantity]}: how stiff a contact must be, $n={n}$", fontsize=10)
     name = r"error law, $|K|/\varepsilon$"
-    law_line = Line2D([], [], color=CORRECTED, linestyle="--", linewidth=0.8, label=name)
-    legend_below(figure, [law_line])
+    legend_below(figure, lines.legend_elements()[0][:1], labels=[name])
     return figure
 
 
 def _draw_simplest(axes: Axes, needed: xr.DataArray) -> None:
     """The regions of (r, ϖ) in which the restitution or the corrected model will do."""
-    r, (low, high) = needed.restitution.values, _SPAN
-    simple, corrected = (
-        needed.sel(model=model).clip(low, high).values for model in ("restitution", "corrected")
-    )
-    axes.fill_between(r, low, high, color=_RIGHT)
+    r, low = needed.restitution.values, _SPAN[0]
+    simple, corrected = (needed.sel(model=model).clip(*_SPAN).values for model in _BESIDE)
+    axes.set_facecolor(_RIGHT)
     axes.fill_between(r, low, simple, color=_CORRECTED, linewidth=0)
     axes.fill_between(r, low, np.minimum(simple, corrected), color=_NEITHER, linewidth=0)
-    axes.plot(r, simple, color="black", linewidth=0.8)
+    axes.plot(r, simple, **_LINE)
     axes.set(yscale="log", ylim=_SPAN, xlim=(r.min(), r.max()))
 
 
 def _explain_page(axes: Axes, data: xr.Dataset) -> None:
     axes.set_axis_off()
     share = 100 * float(data.position_edge[NEAR])
-    handles: list[Any] = [
-        Patch(facecolor=_RIGHT, edgecolor="black", linewidth=0.5, label="restitution model"),
-        Patch(facecolor=_CORRECTED, label="corrected model"),
-        Patch(facecolor=_NEITHER, label="compute the contact"),
-    ]
-    for model, look in _BESIDE.items():
-        handles.append(Line2D([], [], label=f"{model} model, next to the saddle-node", **look))
-    rule = rf"rule of thumb, $\varpi={float(data.rule_of_thumb):g}$"
-    none = f"(first {share:g} % of the stable range)"
-    handles += [Line2D([], [], linestyle="none", label=none), Line2D([], [], **GUIDE, label=rule)]
-    axes.legend(handles=handles, loc="center", title="the simplest that is right")
+    fills = {"restitution model": _RIGHT, "corrected model": _CORRECTED}
+    for name, fill in {**fills, "compute the contact": _NEITHER}.items():
+        axes.fill_between([], [], facecolor=fill, edgecolor="black", linewidth=0.5, label=name)
+    for model, dashes in _BESIDE.items():
+        name = f"{model} model, next to the saddle-node"
+        axes.plot([], [], linestyle=dashes, label=name, **_LINE)
+    axes.plot([], [], linestyle="none", label=f"(first {share:g} % of the stable range)")
+    axes.plot([], [], label=rf"rule of thumb, $\varpi={float(data.rule_of_thumb):g}$", **GUIDE)
+    axes.legend(loc="center", title="the simplest that is right")

@@ -26,14 +26,12 @@ def table1(data: xr.Dataset) -> Table:
         "printed": value("printed", ".3f", ""),
         "difference": lambda part: number(part.computed - part.printed, "+.5f", ""),
     }
-    maps: Columns = {
-        "map": lambda part: f"restitution ({part.impact_map.item()} map)",
-        **ends,
-        "computed": value("restitution_range", ".5f"),
-        **dict.fromkeys(("printed", "difference"), lambda part: ""),
-    }
     header, body = table(each(data, "frequency_ratio", *ends), contacts)
-    return header, body + table(each(data, "impact_map", *ends), maps)[1]
+    for part in each(data, "impact_map", *ends):
+        place = [column(part) for column in ends.values()]
+        name = f"restitution ({part.impact_map.item()} map)"
+        body.append([name, *place, number(part.restitution_range, ".5f"), "", ""])
+    return header, body
 
 
 def thresholds(data: xr.Dataset) -> Table:
@@ -159,16 +157,10 @@ def ext_orders(data: xr.Dataset) -> Table:
         **{str(model): at(found, model=model) for model in data.model.values},
         "error zero at": value("error_zero", ".3g"),
     }
-    permanent: Columns = {
-        "quantity": lambda part: "permanent contact, second order",
-        "K": value("permanent_coefficient", ".4f"),
-        "C": lambda part: "–",
-        "law": value("permanent_law", ".4g"),
-        "restitution": value("permanent_threshold", ".4g"),
-        **dict.fromkeys(("corrected", "error zero at"), lambda part: "–"),
-    }
     header, body = table(each(data, "quantity"), columns)
-    return header, body + table([data], permanent)[1]
+    k, law, exact = (data[f"permanent_{name}"] for name in ("coefficient", "law", "threshold"))
+    numbers = [number(k, ".4f"), "–", number(law, ".4g"), number(exact, ".4g"), "–", "–"]
+    return header, [*body, ["permanent contact, second order", *numbers]]
 
 
 def ext_hertz(data: xr.Dataset) -> Table:
@@ -198,52 +190,3 @@ def ext_laws(data: xr.Dataset) -> Table:
         number(part.error_threshold, ".4g") if part["quantity"] == "max_height" else "–"
     )
     return table(each(data, "quantity", "law"), columns)
-
-
-def ext_validity(data: xr.Dataset) -> Table:
-    """The ϖ from which each model is right, over r, n and Λ/Λ_SN.
-
-    A star marks a restitution model whose error passes through zero above that ϖ:
-    by accident, so that it looks better there than it is. A dash is outside the
-    stable range of the restitution model. The limits of a family are the same at every Λ.
-    """
-    low, high = (data.attrs[f"frequency_ratio__{end}"] for end in ("min", "max"))
-
-    def entry(part: xr.Dataset) -> str:
-        if not part.within:
-            return "–"
-        found = float(part.error_threshold)
-        # The end of the range itself, but for rounding.
-        shown = f"< {low:g}" if found <= low * (1 + 1e-6) else number(found, ".3g", f"> {high:g}")
-        return shown + "*" * bool(part.model == "restitution" and part.accident)
-
-    there = data.error_threshold.notnull().any(("model", "quantity"))
-    data = data.assign(within=there, accident=accidental(data))
-    limits = data["quantity"].isin(("saddle_node", "period_doubling"))
-    columns: Columns = {
-        "quantity": quantity,
-        "n": text("n"),
-        "model": text("model"),
-        "Λ/Λ_SN": lambda part: "any" if part.limits else number(part.amplitude_ratio, "g"),
-        **{f"r = {r:g}": at(entry, restitution=r) for r in data.restitution.values},
-    }
-    parts = each(data.assign(limits=limits), "quantity", "n", "model", "amplitude_ratio")
-    first = data.amplitude_ratio[0]
-    return table((one for one in parts if not one.limits or one.amplitude_ratio == first), columns)
-
-
-def accidental(data: xr.Dataset) -> xr.DataArray:
-    """Whether its error passes through zero above the ϖ from which it is within the tolerance.
-
-    The restitution model's error then changes its sign there, and would be beyond the tolerance
-    otherwise.
-
-    Examples
-    --------
-    >>> data = xr.Dataset(
-    ...     {"error_threshold": (("model", "restitution"), [[3.0, 80.0]]),
-    ...      "error_zero": ("restitution", [9.0, 2.0])}, coords={"model": ["restitution"]})
-    >>> accidental(data).values.tolist()
-    [True, False]
-    """
-    return data.error_zero > data.error_threshold.sel(model="restitution", drop=True)

@@ -159,7 +159,7 @@ def limit_errors(n, r, omega, release):
             orbit.impact_velocity + n * np.pi,
             orbit.bounce_velocity - n * np.pi,
             orbit.apparent_restitution - r,
-            orbit.max_height - restitution_orbits.max_height(n, lam, phi),
+            orbit.max_height - (lam * np.sin(phi) + (n * np.pi) ** 2 / 2),
             orbit.contact_duration,
         ],
         dtype=float,

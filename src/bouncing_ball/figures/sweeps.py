@@ -50,8 +50,7 @@ def bounce_velocity(data: xr.Dataset) -> Figure:
     figure, axes = canvas(height=2.6)
     limit = float(data.restitution_bounce_velocity)
     axes.axhline(limit, **GUIDE)
-    name = rf"${round(limit / np.pi)}\pi$" if limit > 1.5 * np.pi else r"$\pi$"
-    note(axes, name, (float(data.frequency_ratio[0]), limit), (4, 3), fontsize=8)
+    note(axes, r"$n\pi$", (float(data.frequency_ratio[0]), limit), (4, 3), fontsize=8)
     _draw_amplitudes(axes, data, "bounce_velocity", r"bouncing-off velocity $z′_b$")
     axes.legend(loc="lower right", title=parameters(data, "n", "restitution"))
     return figure

@@ -95,7 +95,7 @@ def over_range(data: xr.Dataset, quantity: str, n: int = 1) -> Figure:
     bar.set_label(rf"$\varpi$ from which the error is below {100 * tolerance:g} %")
     figure.suptitle(rf"{QUANTITIES[quantity]}: how stiff a contact must be, $n={n}$", fontsize=10)
     name = r"error law, $|K|/\varepsilon$"
-    legend_below(figure, lines.legend_elements()[0][:1], [name])
+    legend_below(figure, lines.legend_elements()[0][:1], labels=[name])
     return figure
 
 

@@ -31,7 +31,7 @@ def test_one_cycle_by_numerical_integration(case):
     """The orbit, integrated from its start alone, closes after 2πn."""
     n, _, omega, lam, release = case
     orbit = build(case)
-    zeta, phase = float(orbit.contact.damping_ratio), float(orbit.phase)
+    zeta, phase = float(orbit.law.damping_ratio), float(orbit.phase)
 
     def table(t):
         return lam * np.sin(t + phase), lam * np.cos(t + phase)

@@ -43,10 +43,6 @@ class Continuation(Parameters):
         number("ϖ at which the restitution orbit starts the continuation", ge=100, le=1e6),
     ]
 
-    def step_control(self) -> StepControl:
-        """Lengths of the steps."""
-        return StepControl(largest=self.largest_step)
-
 
 def _on_the_way(
     n: int, contact: SpringDamper, amplitude: float, continuation: Continuation
@@ -76,7 +72,7 @@ def _on_the_way(
         y,
         increasing=False,
         events=(*ends, turn, target),
-        control=continuation.step_control(),
+        control=StepControl(largest=continuation.largest_step),
     )
     if way.end != _REACHED:
         raise ContinuationError(
@@ -143,7 +139,7 @@ def branch_along_amplitude(
         system,
         _start(n, contact, restitution, amplitude_max, continuation),
         events=(*system.events(), *windows),
-        control=continuation.step_control(),
+        control=StepControl(largest=continuation.largest_step),
     )
     for end in (branch.start, branch.end):
         if not end.finished:

@@ -20,11 +20,7 @@ from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.parameters import (
-    LossyRestitution,
-    Samples,
-    Seed,
-)
+from bouncing_ball.parameters import LossyRestitution, Samples, Seed
 from bouncing_ball.studies.parameters import OrbitErrors
 from bouncing_ball.studies.random_orbits import random_orbits
 

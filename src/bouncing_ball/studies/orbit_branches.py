@@ -179,6 +179,7 @@ def stability_ranges(
             absence[at] = str(error)
     rigid, maps = RestitutionModel(r).saddle_node(np.array(families)), restitution_orbits.ImpactMap
     doublings = [restitution_orbits.period_doubling(np.array(families), r, kind) for kind in maps]
+    rigid_ranges = np.array([np.stack([rigid.amplitude, each], axis=-1) for each in doublings])
     dims = ("frequency_ratio", "n", "bound")
     names = ("computed", "special_phase", "special_contact_duration")
     dataset = xr.Dataset(
@@ -186,10 +187,7 @@ def stability_ranges(
             **{name: (dims, found[..., k]) for k, name in enumerate(names)},
             # NaN where the paper has no entry.
             "printed": printed_table().reindex(frequency_ratio=list(ratios), n=list(families)),
-            "restitution_range": (
-                ("impact_map", "n", "bound"),
-                np.array([np.stack([rigid.amplitude, each], axis=-1) for each in doublings]),
-            ),
+            "restitution_range": (("impact_map", "n", "bound"), rigid_ranges),
         },
         coords={
             "frequency_ratio": np.array(ratios),

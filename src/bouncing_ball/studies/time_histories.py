@@ -62,9 +62,8 @@ def contact_history(parameters: ContactHistory, release: Release) -> xr.Dataset:
     NoOrbitError
         If the orbit does not exist or is inadmissible.
     """
-    return describe(
-        _cycle(parameters, parameters.frequency_ratio, release).drop_vars("table_phase")
-    )
+    cycle = _cycle(parameters, parameters.frequency_ratio, release)
+    return describe(cycle.drop_vars("table_phase"))
 
 
 def both_histories(parameters: Histories, release: Release) -> xr.Dataset:
@@ -77,10 +76,9 @@ def both_histories(parameters: Histories, release: Release) -> xr.Dataset:
     """
     cycles = [_cycle(parameters, ratio, release) for ratio in sorted(parameters.frequency_ratio)]
     dataset = xr.concat([x.set_coords("frequency_ratio") for x in cycles], "frequency_ratio")
-    rigid = RestitutionModel(parameters.restitution).require_orbit(
-        parameters.n, parameters.amplitude
-    )
-    time = np.linspace(0.0, 2 * np.pi * parameters.n, parameters.samples)
+    n, lam = parameters.n, parameters.amplitude
+    rigid = RestitutionModel(parameters.restitution).require_orbit(n, lam)
+    time = np.linspace(0.0, 2 * np.pi * n, parameters.samples)
     height, _ = rigid.path(np.minimum(time, time[-1] * (1 - 1e-15)))
     return describe(
         dataset[["table_phase", "ball", "contact", *_STATE]].assign(

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from bouncing_ball.figures.canvas import WIDE, canvas, coloured, legend_below
 from bouncing_ball.figures.labels import number, parameters
-from bouncing_ball.figures.style import COLOURS, END, LINES, MARKS
+from bouncing_ball.figures.style import COLOURS, LINES, MARKS
 
 
 def restitution_families(data: xr.Dataset) -> Figure:
@@ -23,8 +23,7 @@ def restitution_families(data: xr.Dataset) -> Figure:
     for family, colour in coloured(data, "n"):
         _draw_branch(axes, family, family.phase, colour)
         _draw_named_points(axes, family.sel(impact_map="exact"), colour)
-    title = parameters(data, "restitution")
-    _name_axes(axes, data, r"phase $\varphi/\pi$", title)
+    _name_axes(axes, data, r"phase $\varphi/\pi$", parameters(data, "restitution"))
     legend_below(figure, ncols=5, columnspacing=1.0)
     return figure
 
@@ -70,13 +69,10 @@ def up_to_second_saddle_node(curve: xr.Dataset) -> xr.Dataset:
     if len(durations) < 2:
         return curve
     longest = np.sort(durations)[1]
-    part = curve.isel(
+    return curve.isel(
         point=curve.contact_duration.values <= longest,
         special=curve.special_contact_duration.values <= longest,
     )
-    # Cut there, it does not end there.
-    stable_side = part.end_reason.values[-1]
-    return part.assign(end_reason=("end", ["left the window of the figure", stable_side]))
 
 
 def draw_curve(axes: Axes, x: Any, y: Any, admissible: Any, **look: Any) -> None:
@@ -110,26 +106,25 @@ def _draw_branch(axes: Axes, curve: xr.Dataset, phase: xr.DataArray, colour: str
 
 def _draw_named_points(axes: Axes, data: xr.Dataset, colour: str) -> None:
     """The bifurcations and grazings of the restitution model that a dataset has by name."""
-    for kind, mark in MARKS.items():
+    for kind in MARKS:
         name = kind.replace("-", "_").replace(" ", "_")
-        if f"{name}_phase" in data and data[f"{name}_phase"].notnull().any():
-            at = data[f"{name}_amplitude"], data[f"{name}_phase"] / np.pi
-            axes.plot(*at, color=colour, zorder=4, label=kind, **mark)
+        if f"{name}_phase" in data:
+            _mark(axes, kind, data[f"{name}_amplitude"], data[f"{name}_phase"], colour)
 
 
 def _draw_spring_damper(axes: Axes, curve: xr.Dataset, start: str, end: str) -> None:
-    """The phases at the start and at the end of contact, with special points and ends."""
+    """The phases at the start and at the end of contact, with special points."""
     for phase, place, colour in (
         (curve.phase, curve.special_phase, start),
         (curve.release_phase, curve.special_phase + curve.special_contact_duration, end),
     ):
         _draw_branch(axes, curve, phase, colour)
-        for kind, mark in MARKS.items():
-            at = curve.special_kind.values == kind
-            if at.any():
-                x, y = curve.special_amplitude[at], place[at] / np.pi
-                axes.plot(x, y, color=colour, zorder=4, label=kind, **mark)
-        for point, reason in zip((0, -1), curve.end_reason.values, strict=True):
-            if not reason.startswith("left the window"):
-                x, y = curve.amplitude[point], phase[point] / np.pi
-                axes.plot(x, y, color=colour, label="end of branch", **END)
+        for kind in MARKS:
+            there = place.where(curve.special_kind == kind)
+            _mark(axes, kind, curve.special_amplitude, there, colour)
+
+
+def _mark(axes: Axes, kind: str, x: xr.DataArray, phase: xr.DataArray, colour: str) -> None:
+    """The special points of a kind, if there are any."""
+    if phase.notnull().any():
+        axes.plot(x, phase / np.pi, color=colour, zorder=4, label=kind, **MARKS[kind])

@@ -24,8 +24,7 @@ def restitution_history(data: xr.Dataset) -> Figure:
     axes.plot(periods, data.table, color=TABLE, label="table $w$")
     title = parameters(data, "n", "restitution", "amplitude")
     axes.set(xlabel=r"time $\tau/2\pi$", ylabel="$z$, $w$", title=title)
-    axes.set_xlim(0, float(periods[-1]))
-    axes.set_ylim(top=1.25 * float(data.ball.max()))
+    axes.set(xlim=(0, float(periods[-1])), ylim=(None, 1.25 * float(data.ball.max())))
     axes.legend(loc="upper center", ncols=2)
     return figure
 
@@ -58,14 +57,13 @@ def contact_history(data: xr.Dataset) -> Figure:
         note(axes, name, (instant, low), (0, -2), ha="center", va="top")
     top, dip = int(np.argmax(ball)), int(np.argmin(table))
     note(axes, "ball $z$", (time[top], ball[top]), (0, 5), ha="center", color=CONTACT)
-    place = {"ha": "center", "va": "bottom", "color": "#5f5f5f"}
-    note(axes, "table $w$", (time[dip], table[dip]), (0, 4), **place)
+    note(axes, "table $w$", (time[dip], table[dip]), (0, 4), ha="center", color="#5f5f5f")
     middle = (duration / 2, ball[touching].min())
     note(axes, "contact", middle, (0, -9), ha="center", va="top", fontsize=8)
     axes.annotate("flight", (time[top], 0.62 * ball[top]), ha="center", fontsize=8)
     title = parameters(data, "n", "restitution", "amplitude", "frequency_ratio")
-    axes.set(ylabel="$z$, $w$", xticks=[], title=title)
-    axes.set(xlim=(-0.16 * end, 1.12 * end), ylim=(low, 1.15 * ball.max()))
+    axes.set(xlim=(-0.16 * end, 1.12 * end), ylim=(low, 1.15 * ball.max()), xticks=[], title=title)
+    axes.set_ylabel("$z$, $w$")
     axes.set_xlabel(r"time $\tau$", labelpad=16)
     return figure
 
@@ -113,18 +111,15 @@ def meeting_flights(data: xr.Dataset) -> Figure:
     meeting, low = float(data.meeting_time), float(data.meeting_height)
     top.plot(meeting, low, "o", color="black", markersize=5, zorder=5)
     force = data.contact_force.values[touching]
-    below.fill_between(time[touching], force, color=CONTACT, alpha=0.25, linewidth=0)
-    below.plot(time[touching], force, color=CONTACT)
-    below.axhline(0.0, color="black", linewidth=0.5)
+    below.fill_between(time[touching], force, facecolor="#bfdbec", edgecolor=CONTACT)
     for axes in (top, below):
         axes.axvline(meeting, **GUIDE)
     note(below, "$t_c$", (meeting, 0), (3, 3), fontsize=9)
     margin = float(data.table.values[touching].max()) - low
     title = parameters(data, "n", "restitution", "amplitude", "frequency_ratio")
     top.set(ylabel="height", ylim=(low - 0.12 * margin, low + 1.6 * margin), title=title)
-    span = (float(time[0]), float(time[-1]))
-    since = r"time since the start of contact $\tau$"
-    below.set(xlabel=since, ylabel="contact force", xlim=span)
+    below.set(xlabel=r"time since the start of contact $\tau$", ylabel="contact force")
+    top.margins(x=0)
     legend_below(figure, ncols=2)
     return figure
 

@@ -86,11 +86,8 @@ def figures_of_laws(data: xr.Dataset) -> Figure:
     branches.set(xlabel=r"$\Lambda$", ylabel=r"phase $\varphi/\pi$")
     branches.set_title(rf"{parameters(data, 'restitution')}, $\pi/D$ = {listed}", fontsize=8)
     title = parameters(data, "restitution", of="heights__")
-    for axes, name in (
-        (heights, QUANTITIES["max_height"]),
-        (held, "threshold of permanent contact"),
-    ):
-        logarithmic(axes, xlabel=r"$\pi/D$", ylabel=name)
+    for axes, quantity in ((heights, "max_height"), (held, "permanent_contact")):
+        logarithmic(axes, xlabel=r"$\pi/D$", ylabel=QUANTITIES[quantity])
         axes.set_title(title, fontsize=8)
     legend_below(figure, marked, labels=data["law"].values, ncols=len(marked))
     return figure

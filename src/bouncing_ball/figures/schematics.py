@@ -52,12 +52,11 @@ def _scene(
     return figure, axes
 
 
-def _spring(axes: Axes, x: float, y0: float, y1: float, coils: int = 5) -> None:
-    lead, width = 0.15 * (y1 - y0), 0.16
-    zigzag = np.linspace(y0 + lead, y1 - lead, 2 * coils + 1)
-    offset = np.where(np.arange(2 * coils + 1) % 2 == 0, -width, width)
-    offset[0] = offset[-1] = 0.0
-    axes.plot([x, *(x + offset), x], [y0, *zigzag, y1], **_LINE)
+def _spring(axes: Axes, x: float, y0: float, y1: float) -> None:
+    lead = 0.15 * (y1 - y0)
+    zigzag = np.linspace(y0 + lead, y1 - lead, 11)
+    offset = 0.16 * np.array([0, 0, *[1, -1] * 4, 1, 0, 0])
+    axes.plot(x + offset, [y0, *zigzag, y1], **_LINE)
 
 
 def _damper(axes: Axes, x: float, y0: float, y1: float) -> None:

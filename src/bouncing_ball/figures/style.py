@@ -38,7 +38,6 @@ MARKS: dict[str, Look] = {
     "grazing": {"marker": "^", "markersize": 4.5, "linestyle": "none"},
 }
 """Special points of a branch."""
-END: Look = {"marker": "x", "markersize": 5, "linestyle": "none", "markeredgewidth": 1.2}
 
 MODELS: dict[str, Look] = {
     "spring-damper": {"color": CONTACT, "linewidth": 2.2, "alpha": 0.75},

@@ -49,8 +49,10 @@ class Claims:
         ``group`` is what they are counted as: ``independent`` for all but
         restatements, ``all``, or one group.
         """
+        groups = {claim.group for claim in self._claims.values()} - {"restatement"}
+        counted = {"independent": groups, "all": groups | {"restatement"}}.get(group, {group})
         return sum(
-            group in ("all", claim.group, _counted_as(claim))
+            claim.group in counted
             and verdict in ("", claim.verdict)
             and table in ("", claim.printed_table)
             for claim in self._claims.values()
@@ -79,10 +81,6 @@ class Claims:
                 said = {part: one[f"explanation_{part}"].item() for part in parts}
                 found.append({"name": one.explanation.item(), "claims": about, **said})
         return found
-
-
-def _counted_as(claim: Any) -> str:
-    return "restatement" if claim.group == "restatement" else "independent"
 
 
 def places(text: str) -> set[str]:

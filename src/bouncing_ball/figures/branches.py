@@ -120,9 +120,8 @@ def _draw_spring_damper(axes: Axes, curve: xr.Dataset, start: str, end: str) -> 
     ):
         _draw_branch(axes, curve, phase, colour)
         for kind in MARKS:
-            _mark(
-                axes, kind, curve.special_amplitude, place.where(curve.special_kind == kind), colour
-            )
+            there = place.where(curve.special_kind == kind)
+            _mark(axes, kind, curve.special_amplitude, there, colour)
 
 
 def _mark(axes: Axes, kind: str, x: xr.DataArray, phase: xr.DataArray, colour: str) -> None:

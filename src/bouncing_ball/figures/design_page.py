@@ -61,9 +61,8 @@ def _chart(axes: Axes, design: Mapping[str, Any], data: xr.Dataset) -> None:
         axes.plot(data["restitution"], data.needed.sel(simple=name), label=name, **MODELS[name])
     ours = design["corrected"]["restitution"], design["frequency_ratio"]
     axes.plot(*ours, "*", color=CONTACT, markersize=13, label="this contact", clip_on=False)
-    axes.set_yscale("log")
     need = design["needed"]
-    axes.set(xlabel="restitution coefficient $r$", ylabel=r"frequency ratio $\varpi$")
+    axes.set(xlabel="restitution coefficient $r$", ylabel=r"frequency ratio $\varpi$", yscale="log")
     axes.set_title(
         f"right to {100 * need['tolerance']:g} % above the line:\n{QUANTITIES[need['quantity']]}, "
         rf"$n={design['n']}$, $\Lambda={design['amplitude']:.3g}$"
@@ -84,9 +83,8 @@ def _errors(axes: Axes, design: Mapping[str, Any]) -> None:
         values = [error or np.nan for error in one[key].values()]
         axes.plot(values, names, marker, color=colour, label=name, markersize=size)
     axes.axvline(design["needed"]["tolerance"], color=TABLE, linewidth=0.8, linestyle="--")
-    axes.set_xscale("log")
     axes.invert_yaxis()
-    axes.set_title(f"relative error, {design['n']}-T orbit (dashed: tolerance)")
+    axes.set(xscale="log", title=f"relative error, {design['n']}-T orbit (dashed: tolerance)")
     axes.grid(visible=True, axis="x", linewidth=0.3)
     axes.legend(loc="upper center", bbox_to_anchor=(0.35, -0.1), ncols=3, columnspacing=1.0)
 

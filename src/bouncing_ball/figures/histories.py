@@ -24,8 +24,7 @@ def restitution_history(data: xr.Dataset) -> Figure:
     axes.plot(periods, data.table, color=TABLE, label="table $w$")
     title = parameters(data, "n", "restitution", "amplitude")
     axes.set(xlabel=r"time $\tau/2\pi$", ylabel="$z$, $w$", title=title)
-    axes.set_xlim(0, float(periods[-1]))
-    axes.set_ylim(top=1.25 * float(data.ball.max()))
+    axes.set(xlim=(0, float(periods[-1])), ylim=(None, 1.25 * float(data.ball.max())))
     axes.legend(loc="upper center", ncols=2)
     return figure
 
@@ -63,8 +62,8 @@ def contact_history(data: xr.Dataset) -> Figure:
     note(axes, "contact", middle, (0, -9), ha="center", va="top", fontsize=8)
     axes.annotate("flight", (time[top], 0.62 * ball[top]), ha="center", fontsize=8)
     title = parameters(data, "n", "restitution", "amplitude", "frequency_ratio")
-    axes.set(ylabel="$z$, $w$", xticks=[], title=title)
-    axes.set(xlim=(-0.16 * end, 1.12 * end), ylim=(low, 1.15 * ball.max()))
+    axes.set(xlim=(-0.16 * end, 1.12 * end), ylim=(low, 1.15 * ball.max()), xticks=[], title=title)
+    axes.set_ylabel("$z$, $w$")
     axes.set_xlabel(r"time $\tau$", labelpad=16)
     return figure
 

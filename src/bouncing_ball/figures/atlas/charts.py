@@ -117,8 +117,7 @@ def _explain_page(axes: Axes, data: xr.Dataset) -> None:
     for name, fill in {**fills, "compute the contact": _NEITHER}.items():
         axes.fill_between([], [], facecolor=fill, edgecolor="black", linewidth=0.5, label=name)
     for model, dashes in _BESIDE.items():
-        name = f"{model} model, next to the saddle-node"
+        name = f"{model} model, first {share:g} % of the stable range"
         axes.plot([], [], linestyle=dashes, label=name, **_LINE)
-    axes.plot([], [], linestyle="none", label=f"(first {share:g} % of the stable range)")
     axes.plot([], [], label=rf"rule of thumb, $\varpi={float(data.rule_of_thumb):g}$", **GUIDE)
     axes.legend(loc="center", title="the simplest that is right")

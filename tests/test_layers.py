@@ -26,6 +26,8 @@ ALLOWED = {
         {"datasets", "contacts", "continuation", "motion", "orbits", "accuracy"},
         {"numpy", "scipy", "xarray", "pydantic"},
     ),
+    # No engine is imported.
+    "engines": ({"contacts"}, {"numpy"}),
     # Units are parsed at the edge, and pint is imported there when it is asked for.
     "calculator": ({"contacts", "orbits", "calls", "accuracy"}, {"numpy", "xarray", "pint"}),
     "atlas": ({"datasets", "contacts", "orbits", "accuracy"}, {"numpy", "xarray", "pydantic"}),

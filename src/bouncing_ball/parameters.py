@@ -67,10 +67,6 @@ LossyRestitution = Annotated[
     float,
     number(f"restitution coefficient r; at r = 1 no orbit attracts; {_HELD}", ge=0.05, le=0.999),
 ]
-OwnRestitution = Annotated[
-    float,
-    number("restitution coefficient r of either release: by force r > e⁻²", ge=0.15, le=0.999),
-]
 LawRestitution = Annotated[
     float, number("restitution coefficient r, one of contacts of any law", ge=0.3, le=0.99)
 ]

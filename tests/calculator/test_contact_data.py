@@ -60,7 +60,7 @@ def test_the_hertz_contact_is_that_of_the_energy():
     # x = deepest (1 - s²) takes the root out of the integrand.
     integral, _ = quad(lambda s: 2 * s / math.sqrt(1 - (1 - s * s) ** 2.5), 0, 1)
     law = hertz(m, modulus, radius, 1.0, TABLE)
-    time = float(free_impact(law, v / TABLE.speed).duration) * TABLE.time
+    time = float(free_impact(law, v * TABLE.time / TABLE.length).duration) * TABLE.time
     assert time == pytest.approx(2 * deepest / v * integral, rel=1e-9)
 
 

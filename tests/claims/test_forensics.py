@@ -29,7 +29,7 @@ def study(described):
 
 def cycle(phase, u, orbit, reference, *, weight, rise):
     """One altered cycle, its events closed by Brent's method."""
-    omega, zeta = float(orbit.contact.frequency_ratio), float(orbit.contact.damping_ratio)
+    omega, zeta = float(orbit.law.frequency_ratio), float(orbit.law.damping_ratio)
     lam, duration = float(orbit.amplitude), float(orbit.contact_duration)
     flight = float(orbit.flight_time)
 

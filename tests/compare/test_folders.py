@@ -9,12 +9,14 @@ from PIL import Image, ImageDraw
 from PIL.PngImagePlugin import PngInfo
 
 from bouncing_ball.cli.main import main
+from bouncing_ball.compare import parts
 from bouncing_ball.compare.folders import compare_folders
 from bouncing_ball.compare.outcome import Outcome
 from bouncing_ball.compare.page import to_html
 from bouncing_ball.compare.pictures import BUDGET, compare_pictures
 from bouncing_ball.compare.terminal import note, to_terminal
 from bouncing_ball.compare.texts import compare_texts
+from bouncing_ball.errors import ModelError
 
 
 def test_equal_folders_are_identical_and_every_file_is_compared(pair):
@@ -138,6 +140,10 @@ def a_pipe(path):
     os.mkfifo(path)
 
 
+def large(path):
+    os.truncate(path, parts.MAX_BYTES + 1)
+
+
 def a_bomb(path):
     save_png(path, Image.new("1", (14_000, 13_000)))
 
@@ -150,6 +156,7 @@ EVERY = ("figures/fig05.nc", "figures/fig05.png", "figures/table1.csv", "paper.m
     [
         *((linked, "a link", file) for file in EVERY),
         *((a_pipe, "not a regular file", file) for file in EVERY),
+        *((large, "larger than", file) for file in EVERY),
         *((damaged, "", file) for file in EVERY[:2]),
         (a_bomb, "exceeds limit", "figures/fig05.png"),
     ],
@@ -163,6 +170,13 @@ def test_what_cannot_be_read_could_not_be_compared(pair, change, why, file, side
     # The others are compared all the same.
     others = {found.outcome for found in comparison.parts[1:]}
     assert others <= {Outcome.IDENTICAL, Outcome.EXTRA, Outcome.MISSING}
+
+
+def test_a_folder_that_is_a_link(pair, one_line):
+    linked(pair.new / "figures")
+    with pytest.raises(ModelError) as error:
+        pair.compare()
+    one_line(error, "figures: a link; links are not followed")
 
 
 def test_nothing_is_printed_raw(pair, capsys):

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
+from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import ModelError
 
 EPS = np.finfo(float).eps
@@ -19,19 +20,21 @@ def test_damping_ratio_against_fifty_digits(r):
     assert float(damping_ratio(r)) == pytest.approx(exact, rel=3 * EPS, abs=0)
 
 
-def test_elastic_contact_is_exactly_undamped():
-    zeta = float(damping_ratio(1.0))
+@pytest.mark.parametrize("release", Release)
+def test_elastic_contact_is_exactly_undamped(release):
+    zeta = float(damping_ratio(1.0, release))
     assert zeta == 0.0
     assert np.copysign(1.0, zeta) == 1.0
-    assert float(restitution_coefficient(0.0)) == 1.0
+    assert float(restitution_coefficient(0.0, release)) == 1.0
 
 
-def test_inverse_of_each_other():
-    r = np.concatenate([np.geomspace(1e-8, 1.0, 40), [0.5, 0.85]])
-    zeta = damping_ratio(r)
-    # dr/r = π dζ/(1 - ζ²)^(3/2): a rounding of ζ is amplified by that much.
+@pytest.mark.parametrize(("release", "least"), [("displacement", 1e-8), ("force", 0.1354)])
+def test_inverse_of_each_other(release, least):
+    r = np.concatenate([np.geomspace(least, 1.0, 40), [0.5, 0.85]])
+    release, zeta = Release(release), damping_ratio(r, Release(release))
+    # d(ln r)/dζ is at most π/(1 - ζ²)^(3/2): a rounding of ζ is amplified by that much.
     slope = np.pi * zeta / ((1 - zeta) * (1 + zeta)) ** 1.5
-    error = np.abs(restitution_coefficient(zeta) / r - 1)
+    error = np.abs(restitution_coefficient(zeta, release) / r - 1)
     assert np.all(error <= 4 * EPS * (1 + slope))
 
 
@@ -40,6 +43,13 @@ def test_restitution_outside_its_range(r, one_line):
     with pytest.raises(ModelError) as error:
         damping_ratio(r)
     one_line(error, f"r = {r}", "(0, 1]")
+
+
+@pytest.mark.parametrize("r", [np.exp(-2), 0.1])
+def test_no_contact_released_at_zero_force_has_so_little_restitution(r, one_line):
+    with pytest.raises(ModelError) as error:
+        damping_ratio(r, Release.FORCE)
+    one_line(error, f"r = {r}", "(e⁻², 1]")
 
 
 @pytest.mark.parametrize("zeta", [1.0, -1e-9, 2.0, np.nan])

@@ -74,6 +74,15 @@ def test_the_zero_inside_the_bracket_is_found():
     assert found.point == pytest.approx(np.ones(2), abs=1e-14)
 
 
+@pytest.mark.parametrize("end", [0.99, 0.9999])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_zero_beyond_the_bracket_is_not_the_one_that_was_announced(end, sign):
+    # Of p³ - p the zero inside is 0; from the secant's estimate, above 0.9, Newton goes to 1.
+    event = Event("cubic", lambda y: y[..., 1] ** 3 - y[..., 1])
+    for ends in ((-0.6, end), (end, -0.6)):
+        assert locate(Line(), event, *(np.full(2, sign * p) for p in ends), SETTINGS) is None
+
+
 @pytest.mark.parametrize(
     "function",
     [

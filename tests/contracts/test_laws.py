@@ -204,7 +204,7 @@ def test_the_defaults_are_the_closed_forms(release):
     for omega in (1.0, 2.0, 10.0):
         found = permanent_contact(Spring(omega, 0.136, release))
         assert found == pytest.approx(
-            float(permanent_contact_threshold(omega, 0.136, release)), rel=1e-9
+            float(permanent_contact_threshold(omega, 0.136, release)), rel=1e-12
         )
     # Grazing and long contacts, and contacts that resume below the level, included.
     rng = np.random.default_rng(0)

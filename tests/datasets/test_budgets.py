@@ -40,9 +40,7 @@ def tighter(given):
     if "continuation" not in given:
         return given
     settings = given["continuation"]
-    half = {key: settings[key] / 2 for key in ("largest_step", "max_angle")}
-    tight = {**settings, **half, "newton_tolerance": settings["newton_tolerance"] / 10}
-    return given | {"continuation": tight}
+    return given | {"continuation": settings | {"largest_step": settings["largest_step"] / 2}}
 
 
 def finer(given):

@@ -23,7 +23,7 @@ def perturbed(data, rng):
             continue
         finite = np.isfinite(values.values)
         size = np.abs(values.values[finite]).max(initial=0.0)
-        noise = rng.uniform(-1, 1, values.shape) * ROUNDING.size * size
+        noise = rng.uniform(-1, 1, values.shape) * ROUNDING * size
         if name == "disagreement":
             budget = other.budget.broadcast_like(values).transpose(*values.dims).values
             rounding = (values.values <= budget) & (("worst" in other) | (budget <= ROUNDING_SIZE))

@@ -1,5 +1,7 @@
 """Traps and destinations against plain simulation."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -29,15 +31,41 @@ def test_no_ball_leaves_a_trap_and_all_come_to_the_orbit(model, amplitude):
         assert disk.radius > 0.01
         phase = disk.phase + rng.uniform(-0.5, 0.5, 4000)
         velocity = np.minimum(disk.velocity + rng.uniform(-0.5, 0.5, 4000), -1e-3)
-        inside = disk.holds(phase, velocity)
+        inside = disk.distance(phase, velocity) < disk.radius
         assert inside.sum() > 10
         phase, velocity = phase[inside], velocity[inside]
         for _ in range(150):
             cycle = model.cycle(amplitude, phase, velocity)
             phase, velocity = cycle.phase, cycle.relative_velocity
-            assert disk.holds(phase, velocity).all()
+            assert (disk.distance(phase, velocity) < disk.radius).all()
             assert (abs(cycle.time - 2 * np.pi * orbit.n) < 2.0).all()
         assert disk.distance(phase, velocity).max() < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("velocity", "grows", "radius"),
+    [(-0.5, (9.0, 9.0), 0.5), (-5.0, (0.1, 0.2), 0.1), (-5.0, (9.0, 9.0), 4.0)],
+    ids=["balls that rise", "a ring that grows", "the greatest"],
+)
+def test_the_radius_of_a_trap(velocity, grows, radius):
+    """A map that halves the distance from its fixed point, but in a ring where it grows.
+
+    The trap ends where the ring begins, though the map shrinks wider circles again; and where
+    states begin that are no impacts, δ′ > 0.
+    """
+
+    def cycle(amplitude, phase, speed):
+        here = np.hypot(phase, speed - velocity)
+        factor = np.where((grows[0] < here) & (here < grows[1]), 1.5, 0.5)
+        return SimpleNamespace(
+            phase=factor * phase, relative_velocity=velocity + factor * (speed - velocity)
+        )
+
+    orbit = SimpleNamespace(
+        amplitude=1.0, phase=0.0, relative_impact_velocity=velocity, monodromy=lambda: np.eye(2) / 2
+    )
+    # The next smaller of the radii that are tried, at steps of a quarter of an octave.
+    assert radius / 2**0.26 < trap(SimpleNamespace(cycle=cycle), orbit).radius < radius
 
 
 @pytest.mark.parametrize("amplitude", [0.72, 0.9])

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from scipy.optimize import minimize_scalar
 
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.oscillator import responses
@@ -158,7 +159,7 @@ def limit_errors(n, r, omega, release):
             orbit.impact_velocity + n * np.pi,
             orbit.bounce_velocity - n * np.pi,
             orbit.apparent_restitution - r,
-            orbit.max_height - restitution_orbits.max_height(n, lam, phi),
+            orbit.max_height - (lam * np.sin(phi) + (n * np.pi) ** 2 / 2),
             orbit.contact_duration,
         ],
         dtype=float,
@@ -254,3 +255,19 @@ def test_just_above_the_fold_there_are_two_orbits_and_just_below_none(n, omega, 
         assert model.orbits(n, fold * (1 + excess)).size >= 2
     below = model.orbit(n, fold * (1 - 1e-10))
     assert not below.exists
+
+
+def test_just_below_the_turn_of_the_unstable_side_its_first_orbit_is_found():
+    # Two orbits next to the top of Λ, between two points of any grid; above it there is none.
+    contact = SpringDamper(2.0, float(damping_ratio(0.85)))
+    turn = minimize_scalar(
+        lambda excess: -float(branch_point(excess, contact, 1).amplitude),
+        bounds=(2.5, 3.5),
+        method="bounded",
+        options={"xatol": 1e-9},
+    )
+    below, above = orbit_at(contact, 1, -turn.fun * (1 + np.array([-1e-9, 1e-9])), Side.UNSTABLE)
+    assert not above.exists
+    # On the fold's side of the turn, by a root of 1e-9 times a number of order one.
+    excess = below.contact_duration * contact.damped_frequency - contact.free_angle
+    assert -1e-3 < excess - turn.x < 0

@@ -61,7 +61,7 @@ def test_every_missing_orbit_has_its_reason(drawn):
 def test_newton_on_the_full_system_agrees(drawn):
     every = drawn[-1]
     orbit = every[every.exists]
-    system = SpringDamperModel(orbit.contact).system(orbit.n)
+    system = SpringDamperModel(orbit.law).system(orbit.n)
     y = system.point(orbit)
     # Off the branch by a thousandth, back onto it in the plane across it: at a
     # fixed Λ the fold would amplify rounding to its square root.
@@ -81,7 +81,7 @@ def test_the_simulation_returns_to_the_admissible_ones(drawn):
     orbit = every[every.is_admissible()]
     assert orbit.size > every.size / 4
     u = orbit.relative_impact_velocity
-    cycle = next_impact(orbit.contact, orbit.amplitude, orbit.phase, u)
+    cycle = next_impact(orbit.law, orbit.amplitude, orbit.phase, u)
     turn = np.angle(np.exp(1j * (cycle.phase - orbit.phase)))
     late = cycle.time - 2 * np.pi * orbit.n
     off = np.max(np.abs([turn, late, (cycle.relative_velocity - u)]), axis=0)

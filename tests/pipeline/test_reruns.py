@@ -25,7 +25,7 @@ CONFIG = read_yaml(ROOT / "config" / "config.yaml")
         (("figures", "fig08", "points"), 101, {"fig08"}),
         (("studies", "formulas", "seed"), 1, {"formulas"}),
         (
-            ("continuation", "max_angle"),
+            ("continuation", "largest_step"),
             0.1,
             {"fig08", "fig09", "fig15", "table1"},
         ),

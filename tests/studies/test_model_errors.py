@@ -19,7 +19,7 @@ RELEASES = list(Release)
 @pytest.fixture(scope="module", params=RELEASES)
 def orders(request):
     random = {"seed": 3, "samples": 200, "law_samples": 300}
-    parameters = {**ORBIT, "tolerance": 0.01, "frequency_ratio": SPAN, "random": random}
+    parameters = {**ORBIT, "tolerance": 0.01, "frequency_ratio": SPAN, **random}
     return typed(study.orders)(parameters, request.param)
 
 

@@ -12,14 +12,15 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import period_doubling, saddle_node
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
-from bouncing_ball.studies.continuation import (
+from bouncing_ball.studies.continuation import _on_the_way, branch_along_amplitude
+from bouncing_ball.studies.orbit_branches import (
     PERIOD_DOUBLING,
     SADDLE_NODE,
-    _on_the_way,
-    branch_along_amplitude,
+    both_domains,
     first_limits,
+    orbit_branches,
+    stability_ranges,
 )
-from bouncing_ball.studies.orbit_branches import both_domains, orbit_branches, stability_ranges
 
 # As the configuration gives them.
 both_domains, orbit_branches, stability_ranges = map(
@@ -46,15 +47,6 @@ def bifurcations(n, r, omega, release="displacement"):
 @pytest.fixture(scope="module")
 def figure_8(continuation_settings):
     return orbit_branches(FIGURE_8, "displacement", continuation_settings)
-
-
-def test_settings_reach_the_parts(continuation_settings):
-    changed = {"largest_step": 0.07, "newton_tolerance": 1e-11}
-    settings = continuation_settings.model_copy(update=changed)
-    control, newton = settings.step_control(), settings.newton()
-    reached = control.initial, control.smallest, control.largest, control.max_angle
-    assert reached == (0.02, 1e-8, 0.07, 0.2)
-    assert newton[:2] == (1e-11, 8)
 
 
 def test_branches_are_described(figure_8, described):

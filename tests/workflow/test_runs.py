@@ -18,7 +18,7 @@ def test_a_run_makes_every_figure_and_table(pristine, stages):
     pictures = {f"figures/{name}.{kind}" for name in DRAWINGS for kind in ("png", "svg")}
     data = {f"figures/{name}.nc" for name in stages}
     recorded = {path.stem for path in (ROOT / "figures").glob("*.csv")}
-    texts = {f"figures/{name}.{kind}" for name in recorded for kind in ("csv", "md", "tex")}
+    texts = {f"figures/{name}.{kind}" for name in recorded for kind in ("csv", "md")}
     pages = {"figures/explorer.html", "paper.md", "tally.txt"}
     assert made == pictures | data | texts | pages
 
@@ -57,9 +57,10 @@ def test_two_figures_by_name_interrupted_and_resumed_elsewhere(pristine, tmp_pat
         found.append(elsewhere.contents("results"))
     elsewhere.run(*run)
     found.append(elsewhere.contents("results"))
-    assert found[0].keys() < found[1].keys() < found[2].keys()
     kinds = ("nc", "png", "svg")
-    assert {*found[2]} == {f"figures/{name}.{kind}" for name in run[-2:] for kind in kinds}
+    whole = {f"figures/{name}.{kind}" for name in run[-2:] for kind in kinds}
+    # What the job that was stopped had just written, Snakemake removes.
+    assert found[0].keys() < whole and found[1].keys() < whole and found[2].keys() == whole
     assert [name for made in found for name in made if made[name] != expected[name]] == []
 
 

@@ -114,11 +114,11 @@ def orbit_errors(orbit: SpringDamperOrbit) -> np.ndarray:
     >>> orbit_errors(orbit_at(SpringDamper(100.0, 0.1), 1, 1.0)).round(4)[:, 0].tolist()
     [-0.0083, -0.0]
     """
-    n, lam, signature = orbit.n, orbit.amplitude, Signature(orbit.contact)
+    n, lam, signature = orbit.n, orbit.amplitude, Signature(orbit.law)
     psi = corrected_branch.instant_phase(n, signature(), lam)
     # Below its own saddle-node, or without exact orbit, a model has no orbit at all.
     simple: tuple[Orbit, Orbit] = (
-        RestitutionModel(orbit.contact.restitution).orbit(n, lam),
+        RestitutionModel(orbit.law.restitution).orbit(n, lam),
         CorrectedOrbit.at(n, signature, lam, psi),
     )
     return np.stack(

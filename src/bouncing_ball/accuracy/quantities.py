@@ -53,13 +53,10 @@ def values(
     orbit = cache(lambda: model.orbit(n, amplitude))
 
     def value(quantity: str) -> np.ndarray:
-        match quantity:
-            case Quantity.SADDLE_NODE:
-                return model.saddle_node(n).amplitude
-            case Quantity.PERIOD_DOUBLING:
-                return model.period_doubling(n).amplitude
-            case Quantity.PERMANENT_CONTACT:
-                return model.permanent_contact_threshold()
+        if quantity == Quantity.PERMANENT_CONTACT:
+            return model.permanent_contact_threshold()
+        if quantity in OF_LIMITS:
+            return getattr(model, quantity)(n).amplitude
         return getattr(orbit(), quantity)
 
     return np.stack(np.broadcast_arrays(*map(value, quantities)))

@@ -128,11 +128,8 @@ def thresholds(
     rows = excess(size, tolerance).reshape(-1, ratios.size)
     found = last_crossing(crossing, ratios, rows).reshape(outside.shape[:2])
     never, always = outside[..., -1], ~outside.any(axis=-1)
-    status = np.select(
-        [never, always],
-        [str(ThresholdStatus.NEVER_WITHIN), str(ThresholdStatus.ALWAYS_WITHIN)],
-        str(ThresholdStatus.FOUND),
-    )
+    within = np.where(always, ThresholdStatus.ALWAYS_WITHIN, ThresholdStatus.FOUND)
+    status = np.where(never, ThresholdStatus.NEVER_WITHIN, within)
     return Thresholds(np.where(never, np.nan, found), status)
 
 

@@ -5,13 +5,11 @@ errors at the examined ϖ. The answers of a tile, of which the files are made, a
 them and counts: they do not grow with the number of nodes.
 """
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
 
 from bouncing_ball.accuracy.error_law import remainder
-from bouncing_ball.accuracy.errors import modulus, orbit_errors
+from bouncing_ball.accuracy.errors import orbit_errors
 from bouncing_ball.accuracy.quantities import OF_ORBITS
 from bouncing_ball.atlas.crossings import last_crossings
 from bouncing_ball.atlas.plan import Plan
@@ -36,8 +34,8 @@ def threshold_bins(ratios: np.ndarray) -> np.ndarray:
     return np.array([0.0, *10 ** (np.arange(low, high + 1) / PER_DECADE), np.inf])
 
 
-def _of_nodes(plan: Plan, row: int, index: np.ndarray) -> dict[str, np.ndarray]:
-    """What is kept of some nodes of a row, the last axis."""
+def _of_nodes(plan: Plan, row: int, index: np.ndarray) -> xr.Dataset:
+    """What is kept of some nodes of a row."""
     nodes, down = plan.nodes(row, index), plan.ratios[::-1]
     steps = list(walk(nodes, plan.ratios))
     error = np.concatenate([np.moveaxis(orbit_errors(step.orbit), 2, 0) for step in steps])
@@ -47,61 +45,54 @@ def _of_nodes(plan: Plan, row: int, index: np.ndarray) -> dict[str, np.ndarray]:
     examined = np.moveaxis(error[at], 0, 2)
     signature = Signature(nodes.contact(down[at, np.newaxis]))
     left = remainder(nodes.n, signature(), nodes.amplitude, examined[0], OF_ORBITS)
-    threshold = last_crossings(down, error, np.array(plan.tolerances))
-    return {
-        "threshold": np.moveaxis(threshold, 0, 2),
-        "error": examined,
-        "stated": left.stated,
-        "exceeded": left.stated & left.exceeded,
-        "unstable": ~stable[at],
-        "sought": sum(step.sought.sum(axis=0) for step in steps),
-        "restitution": nodes.restitution,
-        "amplitude": nodes.amplitude,
-    }
+    ratio = "frequency_ratio"
+    return xr.Dataset(
+        {
+            "threshold": (
+                ("tolerance", "model", "quantity", "node"),
+                last_crossings(down, error, np.array(plan.tolerances)),
+            ),
+            "error": (("model", "quantity", ratio, "node"), examined),
+            "stated": (("quantity", ratio, "node"), left.stated),
+            "exceeded": (("quantity", ratio, "node"), left.stated & left.exceeded),
+            "unstable": ((ratio, "node"), ~stable[at]),
+            "sought": ("node", sum(step.sought.sum(axis=0) for step in steps)),
+            "restitution": ("node", nodes.restitution),
+            "amplitude": ("node", nodes.amplitude),
+        }
+    )
 
 
 def row_answers(plan: Plan, row: int) -> xr.Dataset:
     """The answers of the tiles of a row, which are its positions."""
-    every = np.arange(plan.nodes_per_row)
+    every, bins = np.arange(plan.nodes_per_row), threshold_bins(plan.ratios)
     blocks = [_of_nodes(plan, row, every[k : k + BLOCK]) for k in range(0, len(every), BLOCK)]
-    # The last two axes are the tiles and the nodes in each.
-    node: dict[str, np.ndarray] = {}
-    for name in blocks[0]:
-        joined = np.concatenate([block[name] for block in blocks], axis=-1)
-        node[name] = joined.reshape(*joined.shape[:-1], plan.position.tiles, -1)
-    threshold, error, bins = node["threshold"], node["error"], threshold_bins(plan.ratios)
-    size = np.where(np.isfinite(error), np.abs(error), -np.inf)
+    tiles = xr.concat(blocks, "node").coarsen(node=plan.nodes_per_tile)
+    each = tiles.construct(node=("position", "own"))
+    size = abs(each.error).where(np.isfinite(each.error), -np.inf)
     # The first of the nodes with the largest error; none where no error is finite.
-    largest, worst = size.max(axis=-1), size.argmax(axis=-1)
-    worst_of = {
-        name: np.where(largest >= 0, node[name][np.arange(plan.position.tiles), worst], np.nan)
-        for name in ("restitution", "amplitude")
+    largest, worst = size.max("own"), each.isel(own=size.argmax("own"))
+    # A bin is open at its upper end, but the first one closed: there all ϖ will do.
+    place = np.searchsorted(bins, each.threshold, side="right") - 1
+    place = np.where(each.threshold <= plan.ratios[0] * (1 + 1e-12), 0, place)
+    in_bins = np.stack([np.sum(place == k, axis=-1) for k in range(len(bins))])
+    examined = xr.Variable("frequency_ratio", sorted(plan.examined))
+    tolerances = xr.Variable("tolerance", list(plan.tolerances))
+    counts = {
+        "threshold_counts": (("threshold_bin", *each.threshold.dims[:-1]), in_bins),
+        "holding": (each.threshold <= examined).sum("own"),
+        "exceeding": (abs(each.error).fillna(np.inf) > tolerances).sum("own"),
+        "law_stated": each.stated.sum("own"),
+        "law_exceeding": each.exceeded.sum("own"),
+        "unstable": each.unstable.sum("own"),
+        "sought": each.sought.sum("own"),
     }
-    place = np.searchsorted(bins, threshold, side="right") - 1
-    place = np.where(threshold <= plan.ratios[0] * (1 + 1e-12), 0, place)
-    exceeding = modulus(error)[:, :, np.newaxis] > np.reshape(plan.tolerances, (-1, 1, 1, 1))
-    holding = [threshold <= ratio for ratio in sorted(plan.examined)]
-    of_error, of_threshold = ("model", "quantity"), ("model", "quantity", "tolerance")
-    ratio, tile = "frequency_ratio", "position"
-
-    def total(which: np.ndarray) -> np.ndarray:
-        return which.sum(axis=-1, dtype=np.int32)
-
-    data: dict[str, Any] = {
-        "largest_threshold": ((*of_threshold, tile), threshold.max(axis=-1)),
-        "threshold_counts": (
-            ("threshold_bin", *of_threshold, tile),
-            np.stack([total(place == k) for k in range(len(bins))]),
-        ),
-        "holding": ((ratio, *of_threshold, tile), total(np.stack(holding))),
-        "exceeding": ((*of_threshold, ratio, tile), total(exceeding)),
-        "largest_error": ((*of_error, ratio, tile), largest),
-        "worst_restitution": ((*of_error, ratio, tile), worst_of["restitution"]),
-        "worst_amplitude": ((*of_error, ratio, tile), worst_of["amplitude"]),
-        "law_stated": (("quantity", ratio, tile), total(node["stated"])),
-        "law_exceeding": (("quantity", ratio, tile), total(node["exceeded"])),
-        "unstable": ((ratio, tile), total(node["unstable"])),
-        "sought": ((tile,), total(node["sought"])),
+    extremes = {
+        "largest_threshold": each.threshold.max("own"),
+        "largest_error": largest,
+        "worst_restitution": worst.restitution.where(largest >= 0),
+        "worst_amplitude": worst.amplitude.where(largest >= 0),
     }
-    order = (tile, *of_threshold, "threshold_bin", ratio)
-    return xr.Dataset(data).transpose(*order, missing_dims="ignore")
+    found = xr.Dataset(counts).astype(np.int32).assign(extremes)
+    order = ("position", "model", "quantity", "tolerance", "threshold_bin", "frequency_ratio")
+    return found.transpose(*order)

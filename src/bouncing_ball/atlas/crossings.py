@@ -55,7 +55,7 @@ def last_crossings(ratios: np.ndarray, errors: np.ndarray, tolerances: np.ndarra
         # Which ϖ is the first beyond the tolerance.
         first = np.count_nonzero(largest <= tolerance, axis=0)
         crosses = np.nonzero(first < len(x))
-        one[crosses] = _crossing(x, errors, first[crosses], crosses, tolerance)
+        one[crosses] = _crossing(x, errors, (first[crosses], *crosses), tolerance)
         # Of several excursions before it the first one counts: it is written last.
         seen = (inside <= tolerance) & (tolerance < height) & (step <= first[entry])
         seen = np.flatnonzero(seen)[::-1]
@@ -65,17 +65,12 @@ def last_crossings(ratios: np.ndarray, errors: np.ndarray, tolerances: np.ndarra
     return np.exp(found)
 
 
-def _crossing(
-    x: np.ndarray,
-    errors: np.ndarray,
-    step: np.ndarray,
-    entry: tuple[np.ndarray, ...],
-    tolerance: float,
-) -> np.ndarray:
-    """ln ϖ at which errors reach their tolerance, within the step before the one given."""
+def _crossing(x: np.ndarray, errors: np.ndarray, at: tuple, tolerance: float) -> np.ndarray:
+    """ln ϖ at which errors reach their tolerance, within the step before the place given."""
+    step, *entry = at
     # Nothing is known beyond the largest ϖ.
     start = step == 0
-    left, right = np.where(start, 1.0, errors[step - 1, *entry]), errors[step, *entry]
+    left, right = np.where(start, 1.0, errors[step - 1, *entry]), errors[at]
     turned = (left * right < 0) & np.isfinite(right)
     level = np.log(np.minimum(np.abs(right), _LARGEST) / tolerance)
     before = np.log(np.maximum(np.abs(left), _SMALLEST) / tolerance)

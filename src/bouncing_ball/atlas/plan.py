@@ -67,22 +67,10 @@ class Ranges(Parameters):
 
 
 class RestitutionRanges(Interval, Ranges):
-    """Ranges of r."""
+    """Ranges of r; those beyond a release rule's reach are left out."""
 
-    min: Annotated[
-        Restitution,
-        Field(description="smallest r, of which ranges beyond a release rule's reach are left out"),
-    ]
+    min: Annotated[Restitution, Field(description="smallest r, for rules that reach it")]
     max: Annotated[Restitution, Field(description="largest r, above min")]
-
-
-class WalkedSpan(Span):
-    """The frequency ratios walked over, from the largest to the smallest."""
-
-    min: Annotated[
-        float,
-        number("smallest ϖ: a contact softer than 3 lasts a good part of the period", ge=3, le=1e6),
-    ]
 
 
 class Plan(Parameters):
@@ -92,12 +80,9 @@ class Plan(Parameters):
     release: Many[Annotated[Release, Strict(False)]]
     restitution: RestitutionRanges
     position: Ranges
-    frequency_ratio: WalkedSpan
+    frequency_ratio: Span
     tolerances: Many[Tolerance]
-    examined: Annotated[
-        Many[FrequencyRatio],
-        Field(description="the ϖ at which the errors are described"),
-    ]
+    examined: Annotated[Many[FrequencyRatio], Field(description="ϖ at which errors are described")]
     shards: Annotated[int, number("number of jobs, at most one for each row", ge=1, le=20000)]
 
     @cached_property

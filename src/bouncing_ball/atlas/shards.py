@@ -10,7 +10,7 @@ from bouncing_ball.accuracy.quantities import OF_LIMITS, OF_ORBITS
 from bouncing_ball.atlas.answers import row_answers, threshold_bins
 from bouncing_ball.atlas.crossings import last_crossings
 from bouncing_ball.atlas.plan import Plan
-from bouncing_ball.datasets.variables import described
+from bouncing_ball.datasets.variables import describe, described
 from bouncing_ball.errors import ModelError
 
 _PLACE = ("release", "n", "restitution")
@@ -26,9 +26,7 @@ def shard(plan: Plan, index: int) -> xr.Dataset:
         "frequency_ratio": np.sort(plan.examined),
         "threshold_bin": threshold_bins(plan.ratios),
     }
-    return described(
-        {str(name): part for name, part in found.items()}, _common(plan, rows) | coords
-    )
+    return describe(found.assign_coords(_common(plan, rows) | coords))
 
 
 def limit_shard(plan: Plan) -> xr.Dataset:

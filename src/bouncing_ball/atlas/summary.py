@@ -7,8 +7,8 @@ which a rule of thumb holds; the worst orbits; and how the error law fares.
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.accuracy.error_law import coefficients, law_thresholds
-from bouncing_ball.accuracy.quantities import OF_LIMITS, OF_ORBITS
+from bouncing_ball.accuracy.error_law import coefficients
+from bouncing_ball.accuracy.quantities import OF_ORBITS
 from bouncing_ball.atlas.plan import Plan
 from bouncing_ball.datasets.variables import described
 
@@ -45,15 +45,14 @@ def summary(plan: Plan, atlas: xr.Dataset) -> xr.Dataset:
         "worst_error": there.largest_error.isel(worst, drop=True),
         "worst_restitution": there.worst_restitution.isel(worst, drop=True),
         "worst_amplitude": there.worst_amplitude.isel(worst, drop=True),
-        **_law(plan, tolerance),
+        "law_coefficient": _law(plan),
         "orbits": plan.orbits,
         "sought_orbits": int(atlas.sought.sum()),
         "resolution": plan.resolution,
         "summary_tolerance": tolerance,
         "rule_of_thumb": rule,
     }
-    edges = {"restitution_edge": plan.edges, "position_edge": plan.positions}
-    return described(data, edges)
+    return described(data, {"restitution_edge": plan.edges, "position_edge": plan.positions})
 
 
 def _share(atlas: xr.Dataset, name: str) -> xr.DataArray:
@@ -82,21 +81,13 @@ def _reach(edges: np.ndarray, exceeding: xr.DataArray, along: str) -> xr.DataArr
     return ends.where(fails, 0.0).max(along)
 
 
-def _law(plan: Plan, tolerance: float) -> dict[str, xr.Variable]:
-    """For the charts: the error law in the middles of the tiles."""
+def _law(plan: Plan) -> xr.Variable:
+    """For the charts: the error law's K in the middles of the tiles."""
     middle_r, middle_p = ((edges[1:] + edges[:-1]) / 2 for edges in (plan.edges, plan.positions))
     law = np.full((*plan.shape, len(middle_p), len(OF_ORBITS)), np.nan, "f4")
-    limit = np.full((*plan.shape, len(OF_LIMITS)), np.nan)
     for row in plan.rows:
         place = np.unravel_index(row, plan.shape)
         nodes = plan.placed(row, np.full_like(middle_p, middle_r[place[-1]]), middle_p)
-        orbits = nodes.n, nodes.damping_ratio, nodes.amplitude, nodes.release
-        k, needed = coefficients(*orbits), law_thresholds(*orbits, tolerance)
+        k = coefficients(nodes.n, nodes.damping_ratio, nodes.amplitude, nodes.release)
         law[place] = np.abs([k[q] for q in OF_ORBITS]).T
-        # The limits are the same for all positions.
-        limit[place] = [needed[q][0] for q in OF_LIMITS]
-    dims = ("release", "n", "restitution")
-    return {
-        "law_coefficient": xr.Variable((*dims, "position", "quantity"), law),
-        "limit_law_needed": xr.Variable((*dims, "limit_quantity"), limit),
-    }
+    return xr.Variable(("release", "n", *_TILES, "quantity"), law)

@@ -51,11 +51,6 @@ class Table:
         """Unit of length, g/Ω², in m."""
         return self.gravity / self.angular_frequency**2
 
-    @property
-    def speed(self) -> float:
-        """Unit of velocity, g/Ω, in m/s."""
-        return self.gravity / self.angular_frequency
-
 
 @dataclass(frozen=True)
 class Case:

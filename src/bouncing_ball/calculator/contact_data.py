@@ -82,10 +82,8 @@ def _oscillating(zeta: float, release: Release) -> float:
     return zeta
 
 
-def hertz(
-    mass: float, reduced_modulus: float, radius: float, restitution: float, table: Table
-) -> Tsuji:
-    """The law of a Hertz contact, dimensionless: K = k √g/(mΩ³), C of the restitution.
+def hertz(mass: float, modulus: float, radius: float, restitution: float, table: Table) -> Tsuji:
+    """The law of a Hertz contact with E* and R, dimensionless: K = k √g/(mΩ³), C of r.
 
     Examples
     --------
@@ -93,7 +91,7 @@ def hertz(
     >>> float(law.stiffness), float(law.damping)
     (2.0, 0.0)
     """
-    stiffness = 4 / 3 * reduced_modulus * math.sqrt(radius)
+    stiffness = 4 / 3 * modulus * math.sqrt(radius)
     unit = mass * table.angular_frequency**3 / math.sqrt(table.gravity)
     return Tsuji(stiffness / unit, float(tsuji_damping(restitution)))
 

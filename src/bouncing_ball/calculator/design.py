@@ -22,10 +22,7 @@ from bouncing_ball.signatures import Range
 
 STEPS = 50
 """Steps in one contact."""
-STEP_RULE = (
-    f"a contact takes {STEPS} steps, the default of MFiX-Exa (mfix.tcoll_ratio = {STEPS}) and the "
-    "step of MercuryDPM's tutorials"
-)
+STEP_RULE = f"a contact takes {STEPS} steps, the default of MFiX-Exa (mfix.tcoll_ratio)"
 
 # Families looked at if none is asked for: as many as the paper shows, and some more.
 _FAMILIES = range(1, 9)
@@ -184,7 +181,8 @@ def _design(
     case: Case, found: tuple[Family, ...], one: Family, need: Needed, verdict: Verdict
 ) -> Design:
     """Everything that is known of a contact; `one` is the family of the verdict."""
-    contact, table, si = case.contact, case.table, case.in_si()
+    contact, table = case.contact, case.table
+    si: dict[str, Any] = case.in_si()
     delay, r, load = map(float, case.instant(one.n)[:3])
     return Design(
         frequency_ratio=float(contact.frequency_ratio),
@@ -196,13 +194,10 @@ def _design(
             str(rule): float(replace(contact, release=rule).restitution) for rule in Release
         },
         permanent_contact=finite(case.permanent_contact),
-        permanent_contact_margin=finite(1 - case.permanent_contact / table.amplitude),
         corrected=Corrected(delay * table.time, r, load * table.time),
         orbits=found,
         needed=need,
-        is_good_enough=verdict.is_good_enough,
-        verdict=verdict.sentence,
-        reason=verdict.reason,
+        **verdict._asdict(),
         notes=notes(case, one),
         case=case,
         n=one.n,

@@ -131,7 +131,7 @@ def _family(case: Case, n: int, orbits: Sequence[Any], values: np.ndarray) -> Fa
         is_admissible=standing[0].is_admissible,
         standing=dict(zip(case.models, standing, strict=True)),
         max_height=finite(orbit.max_height * unit.length),
-        impact_speed=finite(-orbit.relative_impact_velocity * unit.speed),
+        impact_speed=finite(-orbit.relative_impact_velocity * unit.length / unit.time),
         contact_duration=finite(orbit.contact_duration * unit.time),
         greatest_compression=finite(depth * unit.length),
         peak_force=finite(force * case.mass * unit.gravity),

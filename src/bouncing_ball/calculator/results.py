@@ -142,9 +142,8 @@ class Design:
     """What an engineer needs to know of a contact; times in s, lengths in m, forces in N.
 
     ``frequency_ratio``, ``damping_ratio`` and ``amplitude`` are ϖ, ζ and Λ; ``restitution``
-    is that of a free impact by the release rule; ``n`` is the family of the verdict. The margin
-    of the permanent contact is the share by which Λ may fall to its threshold; below zero the
-    ball may stay down. Both are None of a Hertz contact.
+    is that of a free impact by the release rule; ``n`` is the family of the verdict. Up to
+    ``permanent_contact`` a ball may stay down; it is None of a Hertz contact.
     """
 
     frequency_ratio: Annotated[float, Row("frequency ratio ϖ")]
@@ -161,7 +160,6 @@ class Design:
         Row("restitution, released without force"),
     ]
     permanent_contact: Annotated[float | None, Row("permanent contact up to Λ")]
-    permanent_contact_margin: float | None
     corrected: Corrected
     orbits: tuple[Family, ...]
     needed: Needed

@@ -14,7 +14,7 @@ class Verdict(NamedTuple):
     """Whether the restitution model is good enough, in one sentence, and the reason."""
 
     is_good_enough: bool
-    sentence: str
+    verdict: str
     reason: str
 
 

@@ -12,7 +12,6 @@ import xarray as xr
 from bouncing_ball.claims import as_printed as printed
 from bouncing_ball.claims.parameters import PERMANENT_CONTACT, STIFF
 from bouncing_ball.claims.verdict import largest
-from bouncing_ball.orbits import restitution_orbit
 from bouncing_ball.orbits.stability import Bifurcation
 
 Data = Mapping[str, xr.Dataset]
@@ -100,7 +99,7 @@ def stiff_orbit_error(data: Data) -> xr.DataArray:
     n, r, lam = sweep.n, sweep.restitution, sweep.amplitude
     phase, velocity = printed.fixed_point(n, r, lam)
     errors = {
-        "max_height": sweep.max_height / restitution_orbit.max_height(n, lam, phase) - 1,
+        "max_height": sweep.max_height / (lam * np.sin(phase) + velocity**2 / 2) - 1,
         "bounce_velocity": sweep.bounce_velocity / velocity - 1,
         "apparent_restitution": sweep.apparent_restitution / r - 1,
         "phase": sweep.phase / phase - 1,

@@ -47,7 +47,7 @@ class WeightlessOrbit(SpringDamperOrbit):
         return orbit(*np.moveaxis(solved, -1, 0))
 
     def contact_flow(self, time: np.ndarray):
-        flow, sag = super().contact_flow(time), self.contact.flow(time, 0.0, 0.0, 0.0, 0.0)
+        flow, sag = super().contact_flow(time), self.law.flow(time, 0.0, 0.0, 0.0, 0.0)
         jacobian = flow.jacobian.copy()
         jacobian[..., 0] -= sag.jacobian[..., 0]
         return type(flow)(*(x - y for x, y in zip(flow[:3], sag[:3], strict=True)), jacobian)

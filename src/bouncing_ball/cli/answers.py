@@ -18,7 +18,6 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.motion.sequence import Status
 from bouncing_ball.orbits.continued import restitution_speed
 from bouncing_ball.orbits.orbit import OBSERVABLES, Orbit
-from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.signatures import takes
 
 Answer = dict[str, Any]
@@ -103,29 +102,25 @@ def error_law(n=1, **given: Any) -> Answer:
     """
     amplitude = given.pop("amplitude")
     # K is the error at ϖ = 1, continued by its law.
-    contact = _contact(frequency_ratio=1.0, **given)
+    of: Any = calls.model(model="spring-damper", frequency_ratio=1.0, **given)
+    contact = of.contact
     zeta, release = contact.damping_ratio, contact.release
     law = error_laws.coefficients(n, zeta, amplitude, release)
     signed = {str(name): float(k) if math.isfinite(k) else None for name, k in law.items()}
-    second = abs(float(error_laws.permanent_contact_coefficient(zeta, release)))
+    second = error_laws.permanent_contact_coefficient(zeta, release)
     return {
         "coefficients": {name: k if k is None else abs(k) for name, k in signed.items()},
         "signed": signed,
-        "second_order": {"permanent_contact": second},
+        "second_order": {"permanent_contact": abs(float(second))},
         **_described(contact),
     }
-
-
-def _contact(**given: Any) -> SpringDamper:
-    return calls.model(model="spring-damper", **given).contact  # type: ignore[attr-defined]
 
 
 @takes(calls.model, "release", *calls.LOSS)
 def permanent_contact(*, frequency_ratio: calls.FrequencyRatio, **given: Any) -> Answer:
     """The Λ up to which the ball stays on the table."""
-    contact = _contact(frequency_ratio=frequency_ratio, **given)
-    threshold = float(SpringDamperModel(contact).permanent_contact_threshold())
-    return {"threshold": threshold} | _described(contact)
+    of: Any = calls.model(model="spring-damper", frequency_ratio=frequency_ratio, **given)
+    return {"threshold": float(of.permanent_contact_threshold())} | _described(of.contact)
 
 
 @takes(calls.simulate)

@@ -67,10 +67,7 @@ ARTIFACTS: dict[str, dict[str, Budget]] = {
     # The second order of a stiff contact is a small difference of large values.
     "ext_orders": {"relative_error": Budget(1e-11)},
     # Collocated orbits, each right to some 1e-13.
-    "ext_hertz": {
-        **_each("bifurcation_amplitude phase", Budget(1e-12)),
-        "threshold_amplitude": Budget(1e-8),
-    },
+    "ext_hertz": _each("bifurcation_amplitude phase", Budget(1e-12)),
     # Saddle-nodes are found as minima here, and some readings are ill-conditioned.
     "forensics": {"computed": Budget(1e-8)},
 }

@@ -23,10 +23,12 @@ def artifacts_in(*folders: Path) -> dict[str, set[str]]:
     Raises
     ------
     ModelError
-        If there is no artifact in one of the folders.
+        If there is no artifact in one of the folders, or its figures/ is a link.
     """
     found: dict[str, set[str]] = {}
     for folder in folders:
+        if (folder / "figures").is_symlink():
+            raise ModelError(f"{printable(folder / 'figures')}: a link; links are not followed")
         # Files that begin with a point are halfway written.
         paths = [*folder.glob("figures/[!.]*"), *folder.glob(_PAPER)]
         files = [path.relative_to(folder) for path in paths if path.suffix in _SUFFIXES]

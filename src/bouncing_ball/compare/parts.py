@@ -4,7 +4,7 @@ Data by their budgets, texts, tables and the words of SVG files line by line, PN
 their pixels. Every file is judged alone: whatever is wrong with one, it could not be
 compared, with the reason, and the others are compared all the same.
 
-A folder of artifacts may come from anywhere. Nothing in it is run, no link to a file is
+A folder of artifacts may come from anywhere. Nothing in it is run, no link is
 followed, and what is printed of it passes through :func:`bouncing_ball.errors.printable`.
 """
 
@@ -20,6 +20,9 @@ from bouncing_ball.compare.pictures import compare_pictures, read_picture
 from bouncing_ball.compare.texts import compare_texts, words_of
 from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.errors import ModelError, printable
+
+MAX_BYTES = 16 * 2**20
+"""The largest file that is read; the largest of the record has half a megabyte."""
 
 
 def redrawn(record: bytes, new: bytes) -> str:
@@ -38,9 +41,11 @@ def redrawn(record: bytes, new: bytes) -> str:
 
 
 def _content(path: Path) -> bytes | None:
-    """The bytes of a regular file; None if there is none."""
+    """The bytes of a regular file of a bounded size; None if there is none."""
     if path.is_symlink() or (path.exists() and not path.is_file()):
         raise ModelError("a link, or not a regular file")
+    if path.exists() and path.stat().st_size > MAX_BYTES:
+        raise ModelError(f"larger than {MAX_BYTES} bytes")
     return path.read_bytes() if path.exists() else None
 
 

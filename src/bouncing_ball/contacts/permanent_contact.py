@@ -16,12 +16,14 @@ For any other law there is no closed form. At the threshold the steady contact j
 touches its release once in a period. It is then a contact of duration 2π that starts and
 ends in the same state (p₀, p′₀), at which the grip g vanishes together with its rate of change::
 
-    p″ = 1 - Λ sin(φ + t) - f(p, p′),   (p, p′)(0) = (p, p′)(2π)
+    B = 2π [1 - Λ sin(φ + 2π S) - f],   gain B = 0,   p′₀ + lift B = 0
     g(p₀, p′₀) = 0,   ∂g/∂p p′₀ + ∂g/∂p′ (1 - Λ sin φ - f) = 0
 
-with φ and Λ unknown too; for a release at p = 0 the last two are p₀ = p′₀ = 0. Next to the
-touch p goes as t². In x with t = 2π S(x) and S′ ∝ [x (1 - x)]^{m-1}, m half the roots of the
-law, the contact is smooth.
+with φ and Λ unknown too; for a release at p = 0 the last two are p₀ = p′₀ = 0. The nodes
+are those of :mod:`bouncing_ball.contacts.quadrature`. Next to the touch p goes as
+t², so that half as many roots as in an impact make the contact smooth. Newton's method
+starts from the contact that follows its load slowly; the nodes are doubled until
+the Legendre coefficients have fallen.
 
 All quantities are dimensionless.
 """
@@ -33,13 +35,17 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.contact_law import ContactLaw, check_damping, check_positive, slopes_of
 from bouncing_ball.contacts.contact_scales import depth
+from bouncing_ball.contacts.quadrature import Scheme, scheme
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import ModelError, require
 
+_LEVELS = (48, 96, 192, 384)
 _PERIOD = 2 * np.pi
-# Residual over the right side: the threshold's relative error is a tenth of it or less. And nodes:
-# more would follow the oscillations of a contact that rings.
-_TOLERANCE, _FIRST, _NODES = 1e-8, 129, 50_000
+_ITERATIONS = 25
+# Last step of φ and Λ, their longest step, and the last coefficients over the largest:
+# the threshold's error falls twice as fast.
+_SETTLED, _LONGEST, _SPECTRUM = 1e-11, 0.3, 1e-5
+_TAIL = 3
 _TINY = 1e-300
 
 RESTITUTION_THRESHOLD = 1.0
@@ -105,6 +111,83 @@ def permanent_contact_minimum(
     return Minimum(permanent_contact_threshold(omega, zeta, release), omega)
 
 
+def _start(s: Scheme, law: ContactLaw) -> np.ndarray:
+    """Unknowns (B, p₀, p′₀, φ, Λ) of a contact whose depth follows 1 - cos t."""
+    one = np.ones(1)
+    mean = depth(law, 0 * one, 0.0, one)[0]
+    push = _PERIOD * mean * np.cos(_PERIOD * s.share)
+    return np.concatenate([push, [0.0, 0.0, np.pi / 2, 1.0]])
+
+
+def _touch(law: ContactLaw, unknowns: np.ndarray):
+    """The two conditions at the touch and their rows for (p₀, p′₀, φ, Λ)."""
+    p, u, phase, lam = unknowns
+    if law.release is Release.DISPLACEMENT:
+        return np.array([p, u]), np.eye(2, 4)
+    inside = np.maximum(p, _TINY)
+    by, force = slopes_of(law.grip, inside, u), slopes_of(law.force, inside, u)
+    push = 1 - lam * np.sin(phase) - law.force(inside, u)
+    value = np.array([law.grip(p, u), by.by_penetration * u + by.by_rate * push])
+    # The slopes of the grip themselves are taken as constant.
+    rows = np.array(
+        [
+            [by.by_penetration, by.by_rate, 0.0, 0.0],
+            [
+                -by.by_rate * force.by_penetration,
+                by.by_penetration - by.by_rate * force.by_rate,
+                -by.by_rate * lam * np.cos(phase),
+                -by.by_rate * np.sin(phase),
+            ],
+        ]
+    )
+    return value, rows
+
+
+def _equations(s: Scheme, law: ContactLaw, z: np.ndarray):
+    """Residual, Jacobian, and p and p′ at the nodes."""
+    n = len(s.node)
+    push, (p0, u0, phase, lam) = z[:n], z[n:]
+    side = np.where(s.early, s.share, -s.rest)
+    u = u0 + s.rate @ push
+    depths = p0 + _PERIOD * (u0 * side + s.path @ push)
+    p = np.maximum(depths, _TINY)
+    by, angle = slopes_of(law.force, p, u), phase + _PERIOD * s.share
+    residual, jacobian = np.empty(n + 4), np.zeros((n + 4, n + 4))
+    residual[:n] = push - _PERIOD * (1 - lam * np.sin(angle) - law.force(p, u))
+    deep = _PERIOD * by.by_penetration
+    jacobian[:n, :n] = np.eye(n) + _PERIOD * (
+        deep[:, np.newaxis] * s.path + by.by_rate[:, np.newaxis] * s.rate
+    )
+    jacobian[:n, n] = deep
+    jacobian[:n, n + 1] = _PERIOD * (deep * side + by.by_rate)
+    jacobian[:n, n + 2] = _PERIOD * lam * np.cos(angle)
+    jacobian[:n, n + 3] = _PERIOD * np.sin(angle)
+    residual[n], jacobian[n, :n] = s.gain @ push, s.gain
+    residual[n + 1], jacobian[n + 1, :n] = u0 + s.lift @ push, s.lift
+    jacobian[n + 1, n + 1] = 1
+    residual[n + 2 :], jacobian[n + 2 :, n:] = _touch(law, z[n:])
+    return residual, jacobian, depths, u
+
+
+def _solved(s: Scheme, law: ContactLaw, z: np.ndarray) -> np.ndarray | None:
+    """The unknowns, if Newton's method converges from z to a contact that is held."""
+    n = len(s.node)
+    for _ in range(_ITERATIONS):
+        residual, jacobian, depths, u = _equations(s, law, z)
+        if not (np.all(np.isfinite(residual)) and np.all(np.isfinite(jacobian))):
+            return None
+        try:
+            step = np.linalg.solve(jacobian, residual)
+        except np.linalg.LinAlgError:
+            return None
+        size = np.max(np.abs(step[n + 2 :]))
+        z = z - min(1.0, _LONGEST / max(size, _TINY)) * step
+        if size <= _SETTLED:
+            held = np.all(depths > 0) and np.all(law.grip(depths, u) > 0)
+            return z if held and z[-1] > 0 else None
+    return None
+
+
 def permanent_contact(law: ContactLaw) -> float:
     """The threshold of one law.
 
@@ -118,42 +201,18 @@ def permanent_contact(law: ContactLaw) -> float:
     Λ_SD = √13/4 for ϖ = 2 and ζ = 1/2:
 
     >>> from bouncing_ball.contacts.spring_damper import SpringDamper
-    >>> round(permanent_contact(SpringDamper(2.0, 0.5)) / 13**0.5, 9)
+    >>> round(permanent_contact(SpringDamper(2.0, 0.5)) / 13**0.5, 12)
     0.25
     """
-    from scipy.integrate import solve_bvp
-    from scipy.special import beta, betainc
-
-    roots = max(1, law.root // 2)
-
-    def change(time, state, unknown):
-        """p″, where p may be a little off the table."""
-        (depth, rate), (phase, amplitude) = state, unknown
-        return 1 - amplitude * np.sin(phase + time) - law.force(np.maximum(depth, _TINY), rate)
-
-    def rates(x, state, unknown):
-        pace = np.stack([state[1], change(_PERIOD * betainc(roots, roots, x), state, unknown)])
-        return _PERIOD / beta(roots, roots) * (x * (1 - x)) ** (roots - 1) * pace
-
-    def touch(start, end, unknown):
-        if law.release is Release.DISPLACEMENT:
-            return np.concatenate([start, end])
-        by = slopes_of(law.grip, np.maximum(start[0], _TINY), start[1])
-        turns = by.by_penetration * start[1] + by.by_rate * change(0.0, start, unknown)
-        return np.array([*(end - start), law.grip(*start), turns])
-
-    # The contact that follows its load slowly.
-    x = np.linspace(0, 1, _FIRST)
-    time, unknown = _PERIOD * betainc(roots, roots, x), [np.pi / 2, 1.0]
-    path = depth(law, 0 * x, 0.0, np.maximum(1 - np.cos(time), 1e-9))
-    guess = np.stack([path, np.gradient(path, time)])
     with np.errstate(all="ignore"):
-        found = solve_bvp(rates, touch, x, guess, unknown, tol=_TOLERANCE, max_nodes=_NODES)
-        inside = found.y[:, 1:-1]
-        held = np.all(inside[0] > 0) and np.all(law.grip(*inside) > 0)
-    if not (found.success and held and found.p[1] > 0):
-        raise ModelError(
-            f"no steady contact that just touches its release was found for {law.label}: "
-            "weakly damped, it rings"
-        )
-    return float(found.p[1])
+        for count in _LEVELS:
+            s = scheme(count, max(1, law.root // 2))
+            z = _solved(s, law, _start(s, law))
+            if z is not None:
+                legendre = np.abs(s.spectrum @ z[:count])
+                if np.max(legendre[-_TAIL:]) <= _SPECTRUM * np.max(legendre):
+                    return float(z[-1])
+    raise ModelError(
+        f"no steady contact that just touches its release was found for {law.label}: "
+        "weakly damped, it rings"
+    )

@@ -9,7 +9,7 @@ DRAWINGS = {
     "fig02": "histories.restitution_history",
     "fig03": "branches.restitution_families",
     "fig04": "schematics.spring_damper_model",
-    "fig05": "sweeps.apparent_restitution_of_cases",
+    "fig05": "sweeps.apparent_restitution",
     "fig06": "sweeps.apparent_restitution",
     "fig07": "histories.contact_history",
     "fig08": "branches.domains",

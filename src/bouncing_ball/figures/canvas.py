@@ -25,12 +25,12 @@ def canvas(
     return figure, figure.subplots(rows, columns, **options)
 
 
-def legend_below(figure: Figure, handles: Any = None, labels: Any = None, **options: Any) -> None:
-    """A legend under all panels; that of the first panel, if no handles are given."""
+def legend_below(figure: Figure, handles: Any = None, **options: Any) -> None:
+    """A legend under all panels; of the names in the first panel, each once, if none are given."""
     if handles is None:
-        handles, labels = figure.axes[0].get_legend_handles_labels()
-    labels = [handle.get_label() for handle in handles] if labels is None else labels
-    figure.legend(handles, labels, loc="outside lower center", **options)
+        drawn, names = figure.axes[0].get_legend_handles_labels()
+        handles = [handle for k, handle in enumerate(drawn) if names[k] not in names[:k]]
+    figure.legend(handles=handles, loc="outside lower center", **options)
 
 
 def logarithmic(axes: Axes, ratio: xr.DataArray | None = None, **settings: Any) -> None:

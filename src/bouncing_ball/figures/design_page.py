@@ -11,16 +11,10 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter
 
 from bouncing_ball.figures.labels import QUANTITIES
-from bouncing_ball.figures.style import COLOURS, CONTACT, CORRECTED, RESTITUTION, TABLE, Look
+from bouncing_ball.figures.style import COLOURS, CONTACT, CORRECTED, MODELS, RESTITUTION, TABLE
 
 # A4 upright, in inches.
 _PAGE = 8.27, 11.69
-_LOOKS: dict[str, tuple[str, Look]] = {
-    "spring-damper": (CONTACT, {"linewidth": 2.2, "alpha": 0.75}),
-    "hertz": (CONTACT, {"linewidth": 2.2, "alpha": 0.75}),
-    "restitution": (RESTITUTION, {"linewidth": 1.0}),
-    "corrected": (CORRECTED, {"linewidth": 1.2, "linestyle": (0, (4, 2))}),
-}
 
 
 def draw(design: Mapping[str, Any], data: xr.Dataset, values: Sequence[tuple[str, str]]) -> Figure:
@@ -43,8 +37,12 @@ def draw(design: Mapping[str, Any], data: xr.Dataset, values: Sequence[tuple[str
     _title(figure, design)
     _chart(figure.add_subplot(grid[0, 0]), design, data)
     _errors(figure.add_subplot(grid[0, 1]), design)
-    _motion(figure.add_subplot(grid[1, :]), design, data)
-    _contact(figure.add_subplot(grid[2, 0]), data)
+    motion, contact = figure.add_subplot(grid[1, :]), figure.add_subplot(grid[2, 0])
+    _curves(motion, data.time, data.ball, f"the {design['n']}-T orbit")
+    motion.plot(data.time, data.table, color=TABLE, label="table")
+    motion.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=4)
+    _curves(contact, data.since, data.gap, "one contact: height above the table")
+    contact.axhline(0.0, color=TABLE, linewidth=0.8)
     _numbers(figure.add_subplot(grid[2, 1]), values)
     return figure
 
@@ -60,14 +58,11 @@ def _title(figure: Figure, design: Mapping[str, Any]) -> None:
 def _chart(axes: Axes, design: Mapping[str, Any], data: xr.Dataset) -> None:
     """From which ϖ on each simple model is right, over r; the case is the star."""
     for name in data["simple"].values:
-        colour, look = _LOOKS[str(name)]
-        needed = data.needed.sel(simple=name)
-        axes.plot(data["restitution"], needed, color=colour, label=name, **look)
+        axes.plot(data["restitution"], data.needed.sel(simple=name), label=name, **MODELS[name])
     ours = design["corrected"]["restitution"], design["frequency_ratio"]
     axes.plot(*ours, "*", color=CONTACT, markersize=13, label="this contact", clip_on=False)
-    axes.set_yscale("log")
     need = design["needed"]
-    axes.set(xlabel="restitution coefficient $r$", ylabel=r"frequency ratio $\varpi$")
+    axes.set(xlabel="restitution coefficient $r$", ylabel=r"frequency ratio $\varpi$", yscale="log")
     axes.set_title(
         f"right to {100 * need['tolerance']:g} % above the line:\n{QUANTITIES[need['quantity']]}, "
         rf"$n={design['n']}$, $\Lambda={design['amplitude']:.3g}$"
@@ -79,45 +74,31 @@ def _chart(axes: Axes, design: Mapping[str, Any], data: xr.Dataset) -> None:
 def _errors(axes: Axes, design: Mapping[str, Any]) -> None:
     """The errors of the case, quantity by quantity."""
     one = next(each for each in design["orbits"] if each["n"] == design["n"])
-    names = list(one["errors"])
-    places = np.arange(len(names))[::-1]
+    names = [each.replace("_", " ") for each in one["errors"]]
     for key, name, marker, colour, size in (
         ("errors", "restitution", "o", RESTITUTION, 5),
         ("corrected_errors", "corrected", "D", CORRECTED, 5),
         ("law_errors", "error law", "|", COLOURS[2], 13),
     ):
-        values = [one[key][each] or np.nan for each in names]
-        axes.plot(values, places, marker, color=colour, label=name, markersize=size)
+        values = [error or np.nan for error in one[key].values()]
+        axes.plot(values, names, marker, color=colour, label=name, markersize=size)
     axes.axvline(design["needed"]["tolerance"], color=TABLE, linewidth=0.8, linestyle="--")
-    axes.set_xscale("log")
-    axes.set_yticks(places, [each.replace("_", " ") for each in names])
-    axes.set_title(f"relative error, {design['n']}-T orbit (dashed: tolerance)")
+    axes.invert_yaxis()
+    axes.set(xscale="log", title=f"relative error, {design['n']}-T orbit (dashed: tolerance)")
     axes.grid(visible=True, axis="x", linewidth=0.3)
     axes.legend(loc="upper center", bbox_to_anchor=(0.35, -0.1), ncols=3, columnspacing=1.0)
 
 
-def _curves(axes: Axes, time: xr.DataArray, heights: xr.DataArray) -> None:
+def _curves(axes: Axes, time: xr.DataArray, heights: xr.DataArray, title: str) -> None:
     """All models over each other, in seconds and metres with a prefix."""
     for name in heights["model"].values:
-        colour, look = _LOOKS[str(name)]
         if heights.sel(model=name).notnull().any():
-            axes.plot(time, heights.sel(model=name), color=colour, label=name, **look)
+            # The contact may be of any law.
+            look = MODELS.get(name, MODELS["spring-damper"])
+            axes.plot(time, heights.sel(model=name), label=name, **look)
     axes.xaxis.set_major_formatter(EngFormatter("s"))
     axes.yaxis.set_major_formatter(EngFormatter("m"))
-    axes.set(xlabel="time", ylabel="height")
-
-
-def _motion(axes: Axes, design: Mapping[str, Any], data: xr.Dataset) -> None:
-    _curves(axes, data.time, data.ball)
-    axes.plot(data.time, data.table, color=TABLE, label="table")
-    axes.set_title(f"the {design['n']}-T orbit")
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=4)
-
-
-def _contact(axes: Axes, data: xr.Dataset) -> None:
-    _curves(axes, data.since, data.gap)
-    axes.axhline(0.0, color=TABLE, linewidth=0.8)
-    axes.set_title("one contact: height above the table")
+    axes.set(xlabel="time", ylabel="height", title=title)
 
 
 def _numbers(axes: Axes, values: Sequence[tuple[str, str]]) -> None:

@@ -1,23 +1,18 @@
 """Motion of ball and table over time (Figs. 2, 7, 12 and the instant of an impact)."""
 
-from itertools import cycle, islice
+from itertools import cycle
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bouncing_ball.datasets.selection import each
-from bouncing_ball.figures.canvas import WIDE, canvas, legend_below
+from bouncing_ball.figures.canvas import WIDE, canvas, coloured, legend_below
 from bouncing_ball.figures.labels import note, number, parameters
-from bouncing_ball.figures.style import COLOURS, CONTACT, CORRECTED, GUIDE, RESTITUTION, TABLE, Look
+from bouncing_ball.figures.style import ARROW, COLOURS, CONTACT, GUIDE, TABLE, Look
 
-_ARROW = {
-    **{"arrowstyle": "-|>", "color": "black", "linewidth": 0.9},
-    **{"shrinkA": 0, "shrinkB": 0, "mutation_scale": 9},
-}
-# From the softest contact to the stiffest.
-_DASHES = ((0, (1, 1)), (0, (3, 1, 1, 1)), (0, (5, 1.5)), (0, (8, 1.5)), "-", "-")
+# From the stiffest contact to the softest.
+_DASHES = ("-", (0, (8, 1.5)), (0, (5, 1.5)), (0, (3, 1, 1, 1)), (0, (1, 1)))
 _RIGID = "#b3b3b3"
 
 
@@ -25,12 +20,11 @@ def restitution_history(data: xr.Dataset) -> Figure:
     """Fig. 2: ball and table against time in periods of the table, restitution model."""
     figure, axes = canvas(height=2.4)
     periods = data.time / (2 * np.pi)
-    axes.plot(periods, data.ball, color=RESTITUTION, label="ball $z$")
+    axes.plot(periods, data.ball, color=COLOURS[0], label="ball $z$")
     axes.plot(periods, data.table, color=TABLE, label="table $w$")
     title = parameters(data, "n", "restitution", "amplitude")
     axes.set(xlabel=r"time $\tau/2\pi$", ylabel="$z$, $w$", title=title)
-    axes.set_xlim(0, float(periods[-1]))
-    axes.set_ylim(top=1.25 * float(data.ball.max()))
+    axes.set(xlim=(0, float(periods[-1])), ylim=(None, 1.25 * float(data.ball.max())))
     axes.legend(loc="upper center", ncols=2)
     return figure
 
@@ -57,20 +51,19 @@ def contact_history(data: xr.Dataset) -> Figure:
         side = np.copysign(reach, velocity)
         here, far = (instant, height), (instant + side, height + side * velocity)
         head, tail = (here, far) if velocity < 0 else (far, here)
-        axes.annotate("", xy=head, xytext=tail, arrowprops=_ARROW)
+        axes.annotate("", xy=head, xytext=tail, arrowprops=ARROW)
         offset, ha = ((4, 1), "left") if velocity < 0 else ((-4, 1), "right")
         note(axes, symbol, far, offset, ha=ha, va="center")
         note(axes, name, (instant, low), (0, -2), ha="center", va="top")
     top, dip = int(np.argmax(ball)), int(np.argmin(table))
     note(axes, "ball $z$", (time[top], ball[top]), (0, 5), ha="center", color=CONTACT)
-    place = {"ha": "center", "va": "bottom", "color": "#5f5f5f"}
-    note(axes, "table $w$", (time[dip], table[dip]), (0, 4), **place)
+    note(axes, "table $w$", (time[dip], table[dip]), (0, 4), ha="center", color="#5f5f5f")
     middle = (duration / 2, ball[touching].min())
     note(axes, "contact", middle, (0, -9), ha="center", va="top", fontsize=8)
     axes.annotate("flight", (time[top], 0.62 * ball[top]), ha="center", fontsize=8)
     title = parameters(data, "n", "restitution", "amplitude", "frequency_ratio")
-    axes.set(ylabel="$z$, $w$", xticks=[], title=title)
-    axes.set(xlim=(-0.16 * end, 1.12 * end), ylim=(low, 1.15 * ball.max()))
+    axes.set(xlim=(-0.16 * end, 1.12 * end), ylim=(low, 1.15 * ball.max()), xticks=[], title=title)
+    axes.set_ylabel("$z$, $w$")
     axes.set_xlabel(r"time $\tau$", labelpad=16)
     return figure
 
@@ -107,31 +100,26 @@ def meeting_flights(data: xr.Dataset) -> Figure:
     figure, (top, below) = canvas(4.2, 3.6, rows=2, sharex=True, height_ratios=(2.2, 1.0))
     time, end = data.time.values, float(data.contact_duration)
     touching, near = (time >= 0) & (time <= end), (time > -0.15 * end) & (time < 1.15 * end)
-    flights = (("before", COLOURS[2], time >= 0), ("after", CORRECTED, time <= end))
+    flights = (("before", COLOURS[2], time >= 0), ("after", COLOURS[3], time <= end))
     for name, colour, continued in flights:
-        shown = continued & near
-        flight = data[f"flight_{name}"].values[shown]
-        top.plot(time[shown], flight, "--", color=colour, linewidth=1.1)
+        flight = data[f"flight_{name}"].where(continued & near)
+        look: Look = {"color": colour, "linestyle": "--", "linewidth": 1.1}
+        top.plot(time, flight, label=f"flight {name}, continued", **look)
     top.plot(time, data.table, color=TABLE, label="table")
     top.plot(time, data.ball, color=CONTACT, label="ball")
     top.plot(time[touching], data.ball.values[touching], color=CONTACT, linewidth=2.6)
-    for name, colour, _ in flights:
-        top.plot([], [], "--", color=colour, label=f"flight {name}, continued")
     meeting, low = float(data.meeting_time), float(data.meeting_height)
     top.plot(meeting, low, "o", color="black", markersize=5, zorder=5)
     force = data.contact_force.values[touching]
-    below.fill_between(time[touching], force, color=CONTACT, alpha=0.25, linewidth=0)
-    below.plot(time[touching], force, color=CONTACT)
-    below.axhline(0.0, color="black", linewidth=0.5)
+    below.fill_between(time[touching], force, facecolor="#bfdbec", edgecolor=CONTACT)
     for axes in (top, below):
         axes.axvline(meeting, **GUIDE)
     note(below, "$t_c$", (meeting, 0), (3, 3), fontsize=9)
     margin = float(data.table.values[touching].max()) - low
     title = parameters(data, "n", "restitution", "amplitude", "frequency_ratio")
     top.set(ylabel="height", ylim=(low - 0.12 * margin, low + 1.6 * margin), title=title)
-    span = (float(time[0]), float(time[-1]))
-    since = r"time since the start of contact $\tau$"
-    below.set(xlabel=since, ylabel="contact force", xlim=span)
+    below.set(xlabel=r"time since the start of contact $\tau$", ylabel="contact force")
+    top.margins(x=0)
     legend_below(figure, ncols=2)
     return figure
 
@@ -141,13 +129,11 @@ def _draw_both_models(axes: Axes, data: xr.Dataset, period: float) -> None:
     phase = data.time.values + float(data.restitution_phase)
     rigid = _three_cycles(phase, data.restitution_ball.values, period)
     axes.plot(*rigid, color=_RIGID, label="restitution", linewidth=3.5)
-    # The stiffest contact is black, solid and drawn last, whatever their number.
-    colours = list(islice(cycle(COLOURS), data.sizes["frequency_ratio"]))[::-1]
-    for curve, colour, dashes in zip(each(data, "frequency_ratio"), colours, cycle(_DASHES)):
+    # The stiffest contact is black, solid and above the others, whatever their number.
+    stiffest_first = coloured(data.sortby("frequency_ratio", ascending=False), "frequency_ratio")
+    for k, ((curve, colour), dashes) in enumerate(zip(stiffest_first, cycle(_DASHES))):
         flight = _three_cycles(curve.table_phase.values, curve.ball.values, period)
-        look: Look = {"color": colour, "linestyle": dashes, "linewidth": 1.3}
-        if curve.frequency_ratio == data.frequency_ratio[-1]:
-            look |= {"linestyle": "-", "linewidth": 0.9}
+        look: Look = {"color": colour, "linestyle": dashes, "linewidth": 1.0, "zorder": 3 - k / 10}
         axes.plot(*flight, label=rf"$\varpi={number(curve.frequency_ratio.item())}$", **look)
 
 

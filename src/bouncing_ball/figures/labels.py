@@ -35,15 +35,15 @@ def number(value: float) -> str:
 _SYMBOLS = {"n": "n", "restitution": "r", "amplitude": r"\Lambda", "frequency_ratio": r"\varpi"}
 
 
-def parameters(data: xr.Dataset, *names: str) -> str:
-    """Parameters of a dataset, as a title shows them.
+def parameters(data: xr.Dataset, *names: str, of: str = "") -> str:
+    """Parameters of a dataset, as a title shows them; ``of`` begins their attributes' names.
 
     Examples
     --------
     >>> parameters(xr.Dataset(attrs={"n": 1, "restitution": 0.85}), "n", "restitution")
     '$n=1$, $r=0.85$'
     """
-    return ", ".join(f"${_SYMBOLS[name]}={number(data.attrs[name])}$" for name in names)
+    return ", ".join(f"${_SYMBOLS[name]}={number(data.attrs[of + name])}$" for name in names)
 
 
 def note(axes: Axes, text: str, point: Any, offset: Any, **look: Any) -> None:

@@ -10,7 +10,7 @@ from matplotlib.patches import Patch
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.figures.canvas import WIDE, canvas, coloured, legend_below, logarithmic
 from bouncing_ball.figures.labels import number
-from bouncing_ball.figures.style import COLOURS, CONTACT, GUIDE, MARKS, TABLE, Look
+from bouncing_ball.figures.style import COLOURS, CONTACT, GUIDE, MARKS, Look
 
 _MARKS: dict[str, Look] = {
     "saddle-node": {**MARKS["saddle-node"], "color": COLOURS[1]},
@@ -18,16 +18,12 @@ _MARKS: dict[str, Look] = {
     "grazing in contact": {**MARKS["grazing"], "color": COLOURS[0]},
     "grazing in flight": {**MARKS["grazing"], "marker": "v", "color": COLOURS[2]},
 }
-# A mark at so many samples, in a run of windows that end alike.
+# A mark at so many of the windows that end alike.
 _EVERY = 8
 # In the order of the motions; five steps of grey.
 _FILLS = ("#ffffff", "#b9d7ea", "#b34a10", "#e0a030", "#000000")
 _RATIO = r"frequency ratio $\varpi$"
 _ORBITS = {1: "o", 2: "^"}
-_ORBIT: Look = {
-    **{"linestyle": "none", "color": "#000000", "markerfacecolor": "#ffffff"},
-    **{"markersize": 5, "zorder": 3},
-}
 
 
 def stable_windows(data: xr.Dataset) -> Figure:
@@ -37,14 +33,13 @@ def stable_windows(data: xr.Dataset) -> Figure:
     ratio = data.frequency_ratio.values
     for one, colour in coloured(data.sortby("restitution"), "restitution"):
         width = ratio**2 * (one.window_amplitude - one.threshold_amplitude).values
-        for run in _runs(one.window_end.values):
-            right.plot(ratio[run], width[run], marker="." if run.size == 1 else "", color=colour)
-        right.plot([], [], color=colour, label=number(float(one.restitution)))
+        name = number(float(one.restitution))
+        right.plot(ratio, width, ".", color=colour, markersize=2.5, label=name)
         right.plot(ratio[-1], one.stiff_window, marker=5, color=colour, clip_on=False)
     ylabel = r"$\varpi^2\,(\Lambda_{\mathrm{end}}-\Lambda_{SD})$"
     title = r"its width for each $r$, and the limit for $\varpi\to\infty$"
     logarithmic(right, xlabel=_RATIO, yscale="log", ylabel=ylabel, title=title)
-    right.legend(loc="lower right", title="$r$, from above")
+    right.legend(loc="lower right", title="$r$, from above", markerscale=3)
     return figure
 
 
@@ -57,8 +52,8 @@ def basins(data: xr.Dataset) -> Figure:
     for one, axes in zip(each(data, "case"), row[0], strict=True):
         axes.imshow(one.destination, **image)
         for k, mark in _ORBITS.items():
-            if np.isfinite(one.orbit_phase[k]):
-                axes.plot(one.orbit_phase[k] / np.pi, one.orbit_speed[k], marker=mark, **_ORBIT)
+            at = one.orbit_phase[k] / np.pi, one.orbit_speed[k]
+            axes.plot(*at, mark, color="#000000", markerfacecolor="#ffffff", markersize=5)
         # Not the attribute of this name, which is a list.
         amplitude = number(float(one["amplitude"]))
         axes.set(title=rf"$\Lambda={amplitude}$", xlabel=r"phase of impact $\varphi/\pi$")
@@ -72,24 +67,14 @@ def basins(data: xr.Dataset) -> Figure:
     return figure
 
 
-def _runs(kinds: np.ndarray) -> list[np.ndarray]:
-    """Indices of neighbours whose window ends in the same way: the end jumps in between."""
-    edges = np.flatnonzero(kinds[1:] != kinds[:-1]) + 1
-    return np.split(np.arange(kinds.size), edges)
-
-
 def _draw_window(axes: Axes, window: xr.Dataset) -> None:
     """The window of one r, its upper end marked by what ends it."""
     ratio, kinds = window.frequency_ratio.values, window.window_end.values
     low, high = window.threshold_amplitude.values, window.window_amplitude.values
-    for run in _runs(kinds):
-        axes.fill_between(ratio[run], low[run], high[run], color="#dcdcdc", linewidth=0)
-        axes.plot(ratio[run], high[run], color=TABLE, linewidth=0.8)
+    axes.fill_between(ratio, low, high, color="#dcdcdc", linewidth=0)
     for kind, look in _MARKS.items():
-        runs = [run for run in _runs(kinds) if kinds[run[0]] == kind]
-        if runs:
-            # The ends of each run, and some in between.
-            there = np.unique(np.concatenate([[*run[::_EVERY], run[-1]] for run in runs]))
+        there = np.flatnonzero(kinds == kind)[::_EVERY]
+        if there.size:
             axes.plot(ratio[there], high[there], label=kind, **(look | {"markersize": 3.5}))
     axes.plot(ratio, low, color=CONTACT, linewidth=1.3, label=r"$\Lambda_{SD}$")
     axes.axhline(1.0, **GUIDE)

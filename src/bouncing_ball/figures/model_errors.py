@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bouncing_ball.figures.canvas import WIDE, canvas, legend_below, logarithmic
-from bouncing_ball.figures.labels import QUANTITIES, number, parameters
+from bouncing_ball.figures.labels import QUANTITIES, parameters
 from bouncing_ball.figures.style import GUIDE, LAWS, MODELS, RESTITUTION, Look
 
 # The linear contact, whose threshold is smooth, comes first.
@@ -85,14 +85,11 @@ def figures_of_laws(data: xr.Dataset) -> Figure:
     listed = ", ".join(f"{x:g}" for x in data.shown_ratio.values)
     branches.set(xlabel=r"$\Lambda$", ylabel=r"phase $\varphi/\pi$")
     branches.set_title(rf"{parameters(data, 'restitution')}, $\pi/D$ = {listed}", fontsize=8)
-    title = rf"$r={number(data.attrs['heights__restitution'])}$"
-    for axes, name in (
-        (heights, QUANTITIES["max_height"]),
-        (held, "threshold of permanent contact"),
-    ):
-        logarithmic(axes, xlabel=r"$\pi/D$", ylabel=name)
+    title = parameters(data, "restitution", of="heights__")
+    for axes, quantity in ((heights, "max_height"), (held, "permanent_contact")):
+        logarithmic(axes, xlabel=r"$\pi/D$", ylabel=QUANTITIES[quantity])
         axes.set_title(title, fontsize=8)
-    legend_below(figure, marked, data["law"].values, ncols=len(marked))
+    legend_below(figure, marked, labels=data["law"].values, ncols=len(marked))
     return figure
 
 

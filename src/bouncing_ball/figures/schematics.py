@@ -6,13 +6,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Rectangle
 
 from bouncing_ball.figures.canvas import canvas
-from bouncing_ball.figures.style import GUIDE, Look
+from bouncing_ball.figures.style import ARROW, GUIDE, Look
 
 _LINE: Look = {"color": "black", "linewidth": 1.0, "solid_capstyle": "round"}
-_ARROW: Look = {
-    **{"color": "black", "linewidth": 0.8, "mutation_scale": 8},
-    **{"shrinkA": 0, "shrinkB": 0},
-}
 
 
 def restitution_model() -> Figure:
@@ -51,17 +47,16 @@ def _scene(
         ((3.1, 0.55), (3.1, 1.25), "<|-|>", (3.25, 0.9, "left"), motion),
         ((0.75, low + 0.65), (0.75, low), "-|>", (0.65, low + 0.32, "right"), "$g$"),
     ):
-        axes.annotate("", xy=end, xytext=start, arrowprops={"arrowstyle": heads, **_ARROW})
+        axes.annotate("", xy=end, xytext=start, arrowprops=ARROW | {"arrowstyle": heads})
         axes.text(x, y, name, ha=side, va="center")
     return figure, axes
 
 
-def _spring(axes: Axes, x: float, y0: float, y1: float, coils: int = 5) -> None:
-    lead, width = 0.15 * (y1 - y0), 0.16
-    zigzag = np.linspace(y0 + lead, y1 - lead, 2 * coils + 1)
-    offset = np.where(np.arange(2 * coils + 1) % 2 == 0, -width, width)
-    offset[0] = offset[-1] = 0.0
-    axes.plot([x, *(x + offset), x], [y0, *zigzag, y1], **_LINE)
+def _spring(axes: Axes, x: float, y0: float, y1: float) -> None:
+    lead = 0.15 * (y1 - y0)
+    zigzag = np.linspace(y0 + lead, y1 - lead, 11)
+    offset = 0.16 * np.array([0, 0, *[1, -1] * 4, 1, 0, 0])
+    axes.plot(x + offset, [y0, *zigzag, y1], **_LINE)
 
 
 def _damper(axes: Axes, x: float, y0: float, y1: float) -> None:

@@ -19,6 +19,8 @@ TABLE = "#8c8c8c"
 Look = dict[str, Any]
 """Keywords of a line or a marker."""
 
+ARROW: Look = {"arrowstyle": "-|>", "color": "black", "linewidth": 0.9, "mutation_scale": 9}
+ARROW |= {"shrinkA": 0, "shrinkB": 0}
 GUIDE: Look = {"color": "#8c8c8c", "linewidth": 0.7, "linestyle": (0, (1, 1.5))}
 
 LINES: dict[str, Look] = {
@@ -36,7 +38,6 @@ MARKS: dict[str, Look] = {
     "grazing": {"marker": "^", "markersize": 4.5, "linestyle": "none"},
 }
 """Special points of a branch."""
-END: Look = {"marker": "x", "markersize": 5, "linestyle": "none", "markeredgewidth": 1.2}
 
 MODELS: dict[str, Look] = {
     "spring-damper": {"color": CONTACT, "linewidth": 2.2, "alpha": 0.75},

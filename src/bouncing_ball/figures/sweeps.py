@@ -19,29 +19,14 @@ _NAMED_UP_TO = 10.0
 _LIMIT: Look = {"markersize": 9, "zorder": 5, "linestyle": "none", "color": RESTITUTION}
 
 
-def apparent_restitution_of_cases(data: xr.Dataset) -> Figure:
-    """Fig. 5: a curve for each (r, Λ), named at its restitution coefficient."""
-    figure, axes = canvas(height=2.8)
-    ratio = data.frequency_ratio
-    for curve, colour in coloured(data, "case"):
-        r, lam = float(curve.restitution), float(curve.amplitude)
-        axes.axhline(r, **GUIDE)
-        draw_curve(axes, ratio, curve.apparent_restitution, curve.admissible, color=colour)
-        name = rf"$r={number(r)}$, $\Lambda={number(lam)}$"
-        note(axes, name, (float(ratio[-1]), r), (0, -3), ha="right", va="top", fontsize=8)
-    title = parameters(data, "n")
-    logarithmic(axes, ratio, ylabel="apparent restitution $r_a$", ylim=(0, 1.05), title=title)
-    return figure
-
-
 def apparent_restitution(data: xr.Dataset) -> Figure:
-    """Fig. 6: a curve for each Λ, with the restitution coefficient as a guide."""
-    figure, axes = canvas(height=2.6)
-    values = sorted(set(data.restitution.values.tolist()))
-    for restitution in values:
+    """Figs. 5 and 6: a curve for each (r, Λ), with the restitution coefficients as guides."""
+    figure, axes = canvas(height=2.8)
+    for restitution in data.restitution.values:
         axes.axhline(restitution, **GUIDE)
-    _draw_amplitudes(axes, data, "apparent_restitution", "apparent restitution $r_a$")
-    axes.legend(title=f"{parameters(data, 'n')}, $r={', '.join(map(number, values))}$")
+    _draw_cases(axes, data, "apparent_restitution", "apparent restitution $r_a$")
+    # Between the lowest curve and the next, if they are far apart.
+    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.12), title=parameters(data, "n"))
     return figure
 
 
@@ -50,10 +35,9 @@ def bounce_velocity(data: xr.Dataset) -> Figure:
     figure, axes = canvas(height=2.6)
     limit = float(data.restitution_bounce_velocity)
     axes.axhline(limit, **GUIDE)
-    name = rf"${round(limit / np.pi)}\pi$" if limit > 1.5 * np.pi else r"$\pi$"
-    note(axes, name, (float(data.frequency_ratio[0]), limit), (4, 3), fontsize=8)
-    _draw_amplitudes(axes, data, "bounce_velocity", r"bouncing-off velocity $z′_b$")
-    axes.legend(loc="lower right", title=parameters(data, "n", "restitution"))
+    note(axes, r"$n\pi$", (float(data.frequency_ratio[0]), limit), (4, 3), fontsize=8)
+    _draw_cases(axes, data, "bounce_velocity", r"bouncing-off velocity $z′_b$")
+    axes.legend(loc="lower right", title=parameters(data, "n"))
     return figure
 
 
@@ -77,17 +61,17 @@ def poincare_map(data: xr.Dataset) -> Figure:
     axes.plot([], [], "*", label="restitution model", **_LIMIT)
     axes.set(xlabel=r"phase of the table over $\pi$", ylabel=r"velocity of the ball, $z′/\pi$")
     axes.margins(x=0.14)
-    axes.axhline(0.0, color="#8c8c8c", linewidth=0.5)
     legend_below(figure, ncols=2)
     amplitudes = [rf"$\Lambda={number(x)}$" for x in data["amplitude"].values]
     axes.set_title(", ".join([parameters(data, "n", "restitution"), *amplitudes]))
     return figure
 
 
-def _draw_amplitudes(axes: Axes, data: xr.Dataset, name: str, ylabel: str) -> None:
-    """One curve of a variable for each case, labelled by its Λ."""
+def _draw_cases(axes: Axes, data: xr.Dataset, name: str, ylabel: str) -> None:
+    """One curve of a variable for each case, named by its r and Λ."""
     for (one, colour), dashes in zip(coloured(data, "case"), cycle(_DASHES), strict=False):
-        label = rf"$\Lambda={number(float(one.amplitude))}$"
+        r, lam = (number(float(one[parameter])) for parameter in ("restitution", "amplitude"))
+        label = rf"$r={r}$, $\Lambda={lam}$"
         look: Look = {"color": colour, "linestyle": dashes, "label": label}
         draw_curve(axes, one.frequency_ratio, one[name], one.admissible, **look)
     logarithmic(axes, data.frequency_ratio, ylabel=ylabel)
@@ -99,11 +83,10 @@ def _draw_trace(axes: Axes, curve: xr.Dataset, phase, velocity, label, look: Loo
     Of a curve with a label the small values are named; the next one's would overlap.
     """
     x, y = phase.values / np.pi, velocity.values / np.pi
+    marked = np.flatnonzero(curve.labelled.values)
+    look |= {"label": label, "marker": "o", "markersize": 4, "markevery": marked.tolist()}
     draw_curve(axes, x, y, curve.admissible, **look)
-    mark: Look = {"marker": "o", "markersize": 4, **look}
-    axes.plot([], [], label=label, **mark)
-    for k, at in enumerate(np.flatnonzero(curve.labelled.values)):
-        axes.plot(x[at], y[at], **mark)
+    for k, at in enumerate(marked):
         ratio = float(curve.frequency_ratio[at])
         if label and ratio <= _NAMED_UP_TO:
             # Neighbours on both sides of the curve.

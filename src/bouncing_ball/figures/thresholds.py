@@ -10,14 +10,12 @@ from matplotlib.figure import Figure
 
 from bouncing_ball.figures.branches import draw_curve
 from bouncing_ball.figures.canvas import WIDE, canvas, coloured, legend_below, logarithmic
-from bouncing_ball.figures.labels import note, parameters
-from bouncing_ball.figures.style import CONTACT, GUIDE, RESTITUTION, TABLE, Look
-from bouncing_ball.figures.tables.formats import words
+from bouncing_ball.figures.labels import QUANTITIES, note, parameters
+from bouncing_ball.figures.style import CONTACT, GUIDE, MODELS, Look
 
-_RIGID: Look = {"color": RESTITUTION, "linewidth": 1.0, "linestyle": "--"}
+_RIGID: Look = MODELS["restitution"] | {"linestyle": "--"}
 _DASHES = {"saddle-node": "-", "period doubling": (0, (4, 1.5))}
 _MARKS = ("o", "x", "s")
-_NAMES = {"saddle_node": "saddle-node", "bounce_velocity": "bouncing-off velocity"}
 
 
 def permanent_contact(data: xr.Dataset) -> Figure:
@@ -48,45 +46,38 @@ def height_error(data: xr.Dataset) -> Figure:
 def permanent_contact_error(data: xr.Dataset) -> Figure:
     """Fig. 16: Λ_SD and the restitution model's Λ_CR; below, the relative error."""
     figure, (axes, below) = canvas(height=4.2, rows=2, sharex=True)
-    name = _draw_threshold(axes, data)
-    high = axes.get_xlim()[1]
+    _draw_threshold(axes, data)
     limit = float(data.restitution_threshold)
-    axes.axhline(limit, **_RIGID)
-    note(axes, r"$\Lambda_{CR}$", (high, limit), (0, 3), ha="right", fontsize=8)
-    # Named where it has left the line of the restitution model behind.
-    ratio, curve = data.frequency_ratio.values, data.threshold_amplitude.values
-    at = int(np.argmin(np.abs(np.log(ratio / ratio[int(np.argmin(curve))]) - 0.7)))
-    note(axes, name, (ratio[at], curve[at]), (4, -9), color=CONTACT, fontsize=8)
+    axes.axhline(limit, label=r"restitution, $\Lambda_{CR}$", **_RIGID)
     axes.set(xlabel="", ylabel=r"threshold amplitude $\Lambda$")
+    axes.legend(loc="upper right")
     _draw_error(below, data, "PC", digits=2)
     below.set_xlabel(r"frequency ratio $\varpi$")
     return figure
 
 
 def release_rules(data: xr.Dataset) -> Figure:
-    """Shift of the bifurcations (left) and thresholds of each quantity (right)."""
+    """Shift of the bifurcations (left) and thresholds of each quantity (right): ext_release."""
     figure, (left, right) = canvas(WIDE, 3.8, columns=2, width_ratios=(1.0, 1.25))
     _draw_shifts(left, data)
     _draw_by_quantity(right, data)
-    # What the arrows mean, in the colour of none of the readings.
-    right.plot([], [], ">", color=TABLE, markersize=6, label="never within the range")
-    legend_below(figure, *right.get_legend_handles_labels(), ncols=4)
+    legend_below(figure, right.get_legend_handles_labels()[0], ncols=3)
     return figure
 
 
-def _draw_threshold(axes: Axes, data: xr.Dataset) -> str:
-    """Λ_SD, or Λ_F of the force release, with its minimum; its symbol."""
+def _draw_threshold(axes: Axes, data: xr.Dataset) -> None:
+    """Λ_SD, or Λ_F of the force release, with its minimum."""
     high, minimum = float(data.frequency_ratio[-1]), float(data.minimum_threshold)
-    axes.plot(data.frequency_ratio, data.threshold_amplitude, color=CONTACT)
-    axes.axhline(minimum, **GUIDE)
     force = data.attrs.get("release") == "force"
+    symbol = r"$\Lambda_{F}$" if force else r"$\Lambda_{SD}$"
+    name = f"spring-damper, {symbol}"
+    axes.plot(data.frequency_ratio, data.threshold_amplitude, color=CONTACT, label=name)
+    axes.axhline(minimum, **GUIDE)
     name = "minimum" if force else r"$2\zeta\sqrt{1-\zeta^2}$"
     note(axes, name, (high, minimum), (0, 3), ha="right", fontsize=8)
-    symbol = r"$\Lambda_{F}$" if force else r"$\Lambda_{SD}$"
     ylabel = f"threshold amplitude {symbol}"
     title = rf"{parameters(data, 'restitution')}, $\zeta={float(data.damping_ratio):.4f}$"
     logarithmic(axes, data.frequency_ratio, ylabel=ylabel, ylim=(0, 2), title=title)
-    return symbol
 
 
 def _draw_error(axes: Axes, data: xr.Dataset, name: str, digits: int) -> None:
@@ -111,37 +102,27 @@ def _draw_shifts(axes: Axes, data: xr.Dataset) -> None:
     for family, colour in coloured(data, "n"):
         for bound, dashes in _DASHES.items():
             amplitude = family.bifurcation_amplitude.sel(bound=bound)
-            shift = amplitude.sel(release="force") - amplitude.sel(release="displacement")
+            shift = amplitude.diff("release").squeeze()
             label = f"$n={family.n:d}$, {bound}"
             axes.plot(data.frequency_ratio, shift, color=colour, linestyle=dashes, label=label)
     axes.axhline(0.0, **GUIDE)
     ylabel, title = r"shift of $\Lambda$, force minus displacement", parameters(data, "restitution")
     logarithmic(axes, data.frequency_ratio, ylabel=ylabel, title=title)
-    spacing: Look = {"columnspacing": 0.7, "handlelength": 1.6, "handletextpad": 0.4}
-    axes.legend(fontsize=6, loc="lower right", bbox_to_anchor=(1.0, 0.1), ncols=2, **spacing)
+    axes.legend(fontsize=6, loc="lower right", bbox_to_anchor=(1, 0.1), ncols=2, columnspacing=0.5)
 
 
 def _draw_by_quantity(axes: Axes, data: xr.Dataset) -> None:
-    """Threshold of each quantity, one mark for each reading; an arrow where there is none.
-
-    The marks of a quantity stand below one another, in the order of the legend.
-    """
-    rows = np.arange(data.sizes["quantity"])[::-1]
-    prefix = "thresholds__"
-    own = [name for name in data.attrs if str(name).startswith(prefix)]
-    given = xr.Dataset(attrs={name.removeprefix(prefix): data.attrs[name] for name in own})
-    limit = given.attrs["frequency_ratio__max"]
-    for k, ((one, colour), mark) in enumerate(zip(coloured(data, "reading"), _MARKS, strict=False)):
-        face, places = "none" if mark == "s" else colour, rows + 0.24 * (1 - k)
-        look: Look = {"color": colour, "markerfacecolor": face, "markersize": 5}
-        axes.plot(one.error_threshold, places, mark, label=one.reading.item(), **look)
-        never = one.threshold_status.str.startswith("outside").values
-        at_the_end = np.full(never.sum(), limit / 1.25)
-        axes.plot(at_the_end, places[never], ">", color=colour, markersize=6)
-    for row in rows[:-1]:
-        axes.axhline(row - 0.5, **GUIDE)
-    axes.set_yticks(rows, [_NAMES.get(name, words(name)) for name in data.quantity.values])
-    xlabel = rf"$\varpi$ for an error of {100 * given.attrs['tolerance']:g} %"
-    title = parameters(given, "n", "restitution", "amplitude")
-    ylim = -0.7, len(rows) - 0.3
-    logarithmic(axes, xlabel=xlabel, xlim=(1, limit), ylim=ylim, title=title)
+    """Threshold of each quantity, one mark for each reading; an arrow where there is none."""
+    limit = data.attrs["thresholds__frequency_ratio__max"]
+    names = np.array([QUANTITIES[name] for name in data["quantity"].values])
+    for (one, colour), mark in zip(coloured(data, "reading"), _MARKS, strict=False):
+        look: Look = {"color": colour, "linestyle": "none", "markerfacecolor": "none"}
+        axes.plot(one.error_threshold, names, marker=mark, label=one.reading.item(), **look)
+        never = names[one.error_threshold.isnull()]
+        axes.plot(np.full(never.size, limit / 1.25), never, marker=">", **look)
+    axes.invert_yaxis()
+    axes.grid(axis="y", **GUIDE)
+    tolerance = f"{100 * data.attrs['thresholds__tolerance']:g} %"
+    title = parameters(data, "n", "restitution", "amplitude", of="thresholds__")
+    xlabel = rf"$\varpi$ for an error of {tolerance}; arrows: never within it"
+    logarithmic(axes, xlabel=xlabel, xlim=(1, limit), title=title)

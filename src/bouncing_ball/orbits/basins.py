@@ -53,10 +53,6 @@ class Trap:
         a, b = (abs(row[0] * turned + row[1] * faster) for row in self.frame)
         return np.hypot(a, b)
 
-    def holds(self, phase: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-        """Whether states are in the disk."""
-        return self.distance(phase, velocity) < self.radius
-
 
 def trap(model: ImpactModel, orbit: Orbit) -> Trap:
     """The largest disk that shrinks, and all smaller ones with it, by its boundary.
@@ -69,7 +65,7 @@ def trap(model: ImpactModel, orbit: Orbit) -> Trap:
     >>> from bouncing_ball.orbits.restitution_model import RestitutionModel
     >>> model = RestitutionModel(0.5)
     >>> disk = trap(model, model.require_orbit(1, 1.2))
-    >>> disk.radius > 0, bool(disk.holds(disk.phase + 2 * np.pi, disk.velocity))
+    >>> disk.radius > 0, bool(disk.distance(disk.phase + 2 * np.pi, disk.velocity) < 1e-12)
     (True, True)
     """
     _, vectors = np.linalg.eig(orbit.monodromy())
@@ -127,7 +123,7 @@ def destinations(
     for _ in range(impacts):
         here = last[:, alive]
         for index, disk in enumerate(traps):
-            found[alive[disk.holds(*here)]] = index
+            found[alive[disk.distance(*here) < disk.radius]] = index
         alive = alive[found[alive] == ELSEWHERE]
         if not alive.size:
             break

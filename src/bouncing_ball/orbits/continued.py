@@ -7,6 +7,7 @@ equations extended by the stability's test function. What is not found so is loo
 the branch of each single model.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -14,9 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.signature import Instant
-from bouncing_ball.continuation.branch import Branch, ContinuationError, continue_branch
+from bouncing_ball.continuation.branch import ContinuationError, continue_branch
 from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane
-from bouncing_ball.continuation.events import Event, parameter_bound, vanishing
+from bouncing_ball.continuation.events import Event, SpecialPoint, parameter_bound, vanishing
 from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.orbits import corrected_branch as corrected
 from bouncing_ball.orbits.orbit import check_index
@@ -88,10 +89,6 @@ class _Search(NamedTuple):
         size = len(instant)
         return cls(model.flat(shape), index, Instant(*rows[:size])), rows[size:], shape
 
-    def take(self, rows: Any) -> "_Search":
-        instant = Instant(*(np.asarray(x)[rows] for x in self.instant))
-        return _Search(self.model.take(rows), self.n[rows], instant)
-
     def start(self, amplitude: np.ndarray, psi: np.ndarray) -> np.ndarray:
         """Points of the corrected model's orbits with instants at the phases ψ."""
         t_c = self.instant.delay
@@ -108,9 +105,9 @@ class _Search(NamedTuple):
         for _ in range(_TRIES):
             if not todo.size:
                 break
-            part = self.take(todo)
+            system = self.model.take(todo).system(self.n[todo])
             at = plane(axis, point[todo])
-            found = newton(part.model.system(part.n), point[todo], at, _SETTINGS)
+            found = newton(system, point[todo], at, _SETTINGS)
             point[todo] = found.point
             y[todo[found.converged]] = found.point[found.converged]
             todo = todo[~found.converged & np.isfinite(found.step)]
@@ -142,20 +139,23 @@ def _on_branch(model: Any, n: int, amplitude: float, side: Side) -> np.ndarray |
     """The point at Λ on a side of the fold that is next to it along the branch, or NaN."""
     if not amplitude >= float(model.saddle_node(n).amplitude):
         return np.nan
-    branch = continued(model, n, amplitude, farther=_ABOVE)
-    names = [special.name for special in branch.special] if branch else []
-    if branch is None or Bifurcation.SADDLE_NODE not in names:
+    found = continued(model, n, amplitude, farther=_ABOVE)
+    names = [special.name for special in found]
+    if Bifurcation.SADDLE_NODE not in names:
         return np.nan
     # The branch runs from the stable side over the fold.
     fold = names.index(Bifurcation.SADDLE_NODE)
-    beside = branch.special[:fold][::-1] if side is Side.STABLE else branch.special[fold:]
+    beside = found[:fold][::-1] if side is Side.STABLE else found[fold:]
     return next((special.point for special in beside if special.name == _HERE), np.nan)
 
 
-def continued(model: Any, n: int, amplitude: float, farther: float = _FARTHER) -> Branch | None:
-    """The branch of a single model through Λ, from its stable side down to the fold and on.
+def continued(
+    model: Any, n: int, amplitude: float, farther: float = _FARTHER
+) -> Sequence[SpecialPoint]:
+    """Bifurcations, and what is at Λ, on the branch of a single model.
 
-    None where it cannot be started or followed.
+    In the order from its stable side down to the fold and on; none where it cannot be started
+    or followed.
     """
     system, (search, _, _) = model.system(n), _Search.of(model, [n])
     fold = float(np.nan_to_num(corrected.saddle_node(n, search.instant)[0]))
@@ -169,7 +169,7 @@ def continued(model: Any, n: int, amplitude: float, farther: float = _FARTHER) -
         parameter_bound(_LOWEST, upper=False, reason=f"Λ = {_LOWEST:g}"),
     )
     if np.any(np.isnan(y)):
-        return None
+        return ()
     # Far above the fold Λ is most of the arclength.
     control = replace(_STEPS, largest=max(_STEPS.largest, _STRIDE * amplitude))
     try:
@@ -177,17 +177,17 @@ def continued(model: Any, n: int, amplitude: float, farther: float = _FARTHER) -
             system, y, increasing=False, events=events, control=control, max_points=_POINTS
         )
     except ContinuationError:
-        return None
+        return ()
     # One that broke off at an event may have others beyond.
-    return branch if branch.end.finished or len(branch.points) == _POINTS else None
+    return branch.special if branch.end.finished or len(branch.points) == _POINTS else ()
 
 
 def orbits_at(model: Any, n: int, amplitude: float) -> Any:
     """The n-T orbits at one Λ on the branch of the stable side, by contact duration."""
     check_index(n)
     if amplitude >= float(model.saddle_node(n).amplitude):
-        branch = continued(model, int(n), float(amplitude))
-        points = branch.named(_HERE) if branch else []
+        special = continued(model, int(n), float(amplitude))
+        points = [each.point for each in special if each.name == _HERE]
         if points:
             found = model.system(n).orbit(np.array(points))
             return found[np.argsort(found.contact_duration)]
@@ -213,22 +213,17 @@ def bifurcation(model: Any, n: ArrayLike, kind: Bifurcation) -> Any:
         psi = corrected.saddle_node_phase(search.instant)
     else:
         lam, psi = corrected.period_doubling(index, search.instant)
-    guess = search.start(lam, psi)
-    y = np.full_like(guess, np.nan)
-    there = np.flatnonzero(np.all(np.isfinite(guess), axis=-1))
-    if there.size:
-        part = search.take(there)
-        system = part.model.system(part.n)
-        test = vanishing(lambda y: kind.test(*system.orbit(y).trace_and_determinant()))
-        found = newton(system, guess[there], test, _EXTENDED)
-        # A Λ of zero has no phase: the fold of an elastic contact.
-        good = found.converged & (found.point[:, -1] > _EXTENDED.tolerance)
-        y[there[good]] = found.point[good]
+    system = search.model.system(index)
+    test = vanishing(lambda y: kind.test(*system.orbit(y).trace_and_determinant()))
+    found = newton(system, search.start(lam, psi), test, _EXTENDED)
+    # A Λ of zero has no phase: the fold of an elastic contact.
+    good = found.converged & (found.point[:, -1] > _EXTENDED.tolerance)
+    y = np.where(good[:, np.newaxis], found.point, np.nan)
     low = (lam < _LOWEST) & (kind is Bifurcation.SADDLE_NODE)
     for k in np.flatnonzero(np.isnan(y[:, 0]) & ~low):
-        own = search.take(k).model
-        branch = continued(own, int(index[k]), float(np.nan_to_num(lam[k], nan=1.0)))
-        points = branch.named(kind) if branch else []
+        near = float(np.nan_to_num(lam[k], nan=1.0))
+        special = continued(search.model.take(k), int(index[k]), near)
+        points = [each.point for each in special if each.name == kind]
         if points:
             y[k] = points[0 if kind is Bifurcation.SADDLE_NODE else -1]
     return _shaped(model, n, y, shape)

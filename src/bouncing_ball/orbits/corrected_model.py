@@ -6,7 +6,6 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.contacts.signature import Instant, Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits import corrected_branch as formulas
@@ -42,18 +41,9 @@ class CorrectedModel(ImpactModel):
         """The model of a spring-damper contact."""
         return ConstantCorrectedModel(Signature(contact))
 
-    @property
-    def label(self) -> str:
-        """The law's own."""
-        return self.law.label
-
     def signature(self, speed: ArrayLike) -> Instant:
         """The law."""
         return self.law(speed)
-
-    def permanent_contact_threshold(self) -> np.ndarray:
-        """Λ = 1, as in the restitution model: no impact, nothing to correct."""
-        return np.full(self.shape, RESTITUTION_THRESHOLD)
 
 
 class ConstantCorrectedModel(CorrectedModel):

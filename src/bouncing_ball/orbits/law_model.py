@@ -111,11 +111,6 @@ class LawModel(ImpactModel):
     name: ClassVar[str] = "contact-law"
     orbit_type: ClassVar[type[Orbit]] = LawOrbit
 
-    @property
-    def label(self) -> str:
-        """The law and its parameters."""
-        return self.law.label
-
     def signature(self, speed: ArrayLike) -> Instant:
         """That of a free impact."""
         return free_impact(self.law, speed)

@@ -24,13 +24,12 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq, minimize_scalar
+from scipy.optimize import brentq
 
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError
 from bouncing_ball.motion.simulation import simulate
-from bouncing_ball.orbits import spring_damper_limits as limits
-from bouncing_ball.orbits.spring_damper_branch import branch_point
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.stability import Bifurcation
 
@@ -52,6 +51,9 @@ _TO_SIDE = 1e-3
 _CLOSE = 1e-8
 # What has happened is seen so far beyond an end, past all rounding.
 _BEYOND = 1e-8
+# Samples of an oscillation, and once more next to the highest: of the height the square of the
+# last step is left, 1e-15. And what is returned where it has none.
+_FINE, _FAR_BELOW = 20_001, -1e3
 # A contact that opens on the way is shorter by a good part of an oscillation.
 _SHORTER = 1e-6
 
@@ -86,9 +88,8 @@ def orbit_with_flight(contact: SpringDamper, flight_time: ArrayLike) -> SpringDa
     >>> float(orbit.flight_time.round(12)), bool(orbit.is_stable())
     (1.0, True)
     """
-    angle = (2 * np.pi - np.asarray(flight_time)) * contact.frequency_ratio
-    zeta, sine = contact.damping_ratio, contact.release_sine
-    excess = angle * np.sqrt((1 - zeta) * (1 + zeta)) - 2 * np.arccos(sine)
+    duration = 2 * np.pi - np.asarray(flight_time)
+    excess = duration * contact.damped_frequency - contact.free_angle
     return SpringDamperOrbit.on_branch(excess, contact, 1)
 
 
@@ -139,31 +140,22 @@ def stable_window(contact: SpringDamper) -> Window:
     >>> window.end.tolist()
     ['saddle-node', 'period doubling', 'grazing in contact']
     """
-    ratio = np.asarray(contact.frequency_ratio, dtype=float)
-    zeta = np.broadcast_to(contact.damping_ratio, ratio.shape)
-    each = SpringDamper(ratio, zeta, contact.release)
-    start = _SHORT / np.maximum(ratio, _SOFT)
+    start = _SHORT / np.maximum(contact.frequency_ratio, _SOFT)
     grid = start * (_LONG / start) ** np.linspace(0.0, 1.0, _SAMPLES)[:, np.newaxis]
-    last = np.zeros(ratio.shape, dtype=int)
-    going = np.arange(ratio.size)
+    last, going = np.zeros(start.size, dtype=int), np.arange(start.size)
     # Contact by contact until its first end; most windows end early.
     for row in range(_SAMPLES):
-        good = _usual(each[going], grid[row, going])
-        going = going[good]
-        if not going.size:
-            break
+        going = going[_usual(contact[going], grid[row, going])]
         last[going] = row + 1
     found = np.flatnonzero((last > 0) & (last < _SAMPLES))
-    part = each[found]
+    part = contact[found]
     inside, outside = grid[last[found] - 1, found], grid[last[found], found]
     inside, outside = _bisected(lambda time: _usual(part, time), inside, outside, _BISECTIONS)
-    amplitude, flight = np.full((2, *ratio.shape), np.nan)
-    end = np.full(ratio.shape, str(End.NONE), dtype="<U18")
-    if found.size:
-        amplitude[found] = orbit_with_flight(part, inside).amplitude
-        flight[found] = inside
-        end[found] = _kind(part, outside)
-    return Window(amplitude, flight, end)
+    none = np.full(start.size, np.nan)
+    window = Window(none, none.copy(), np.full(none.shape, End.NONE, dtype="<U18"))
+    window.amplitude[found] = orbit_with_flight(part, inside).amplitude
+    window.flight_time[found], window.end[found] = inside, _kind(part, outside)
+    return window
 
 
 def joined(contact: SpringDamper) -> np.ndarray:
@@ -172,16 +164,12 @@ def joined(contact: SpringDamper) -> np.ndarray:
     Then the unstable side of the branch with a short contact leads to the orbits
     with a long one. False where the branch has no saddle-node.
     """
-    ratio, zeta = np.broadcast_arrays(
-        *np.atleast_1d(contact.frequency_ratio, contact.damping_ratio)
-    )
-    each = SpringDamper(ratio, zeta, contact.release)
-    node = branch_point(limits.saddle_node(each, 1), each, 1).contact_duration
+    node = SpringDamperModel(contact).saddle_node(1).contact_duration
     found = np.isfinite(node)
     if found.any():
         longest = 2 * np.pi - node[found] - _TO_SIDE
         times = np.linspace(longest, _SHORT / _SOFT, _JOINT_SAMPLES)
-        found[found] = orbit_with_flight(each[found], times).is_admissible().all(axis=0)
+        found[found] = orbit_with_flight(contact[found], times).is_admissible().all(axis=0)
     return found
 
 
@@ -239,15 +227,13 @@ def _highest_after_landing(excess: float, zeta: float) -> float:
         return excess - (after + time) ** 2 / 2 + free
 
     # The only maximum that can matter is the first; later p is far below.
-    time = np.linspace(0.0, 3 * np.pi / omega, 301)
-    sampled = displacement(time)
-    rising = np.flatnonzero((sampled[1:-1] > sampled[:-2]) & (sampled[1:-1] >= sampled[2:]))
-    if not rising.size:
-        return -math.inf
-    peak = rising[np.argmax(sampled[1:-1][rising])] + 1
-    bounds = (time[peak - 1], time[peak + 1])
-    best = minimize_scalar(lambda t: -displacement(t), bounds=bounds, method="bounded")
-    return max(float(-best.fun), float(sampled[peak]))
+    time = np.linspace(0.0, 3 * np.pi / omega, _FINE)
+    x = displacement(time)
+    peaks = 1 + np.flatnonzero((x[1:-1] > x[:-2]) & (x[1:-1] >= x[2:]))
+    if not peaks.size:
+        return _FAR_BELOW
+    top = peaks[np.argmax(x[peaks])]
+    return float(displacement(np.linspace(time[top - 1], time[top + 1], _FINE)).max())
 
 
 def stiff_limit(damping_ratio: float) -> float:
@@ -270,8 +256,4 @@ def stiff_limit(damping_ratio: float) -> float:
     low, high = 1e-3, 1.0
     while _highest_after_landing(high, zeta) < 0:
         low, high = high, 1.25 * high
-
-    def lowest(excess):
-        return max(_highest_after_landing(excess, zeta), -1e3)
-
-    return float(brentq(lowest, low, high, xtol=1e-12))
+    return float(brentq(_highest_after_landing, low, high, args=(zeta,), xtol=1e-12))

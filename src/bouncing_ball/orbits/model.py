@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.batch import Batch
+from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.contacts.signature import Instant
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence
@@ -70,17 +71,17 @@ class ImpactModel(Batch, ABC):
     orbit_type: ClassVar[type[Orbit]]
 
     @property
-    @abstractmethod
     def label(self) -> str:
         """Its parameters, in words; of a single model."""
+        return self._law.label
 
     @abstractmethod
     def signature(self, speed: ArrayLike) -> Instant:
         """What an impact of speed v > 0 is to the outside, from which searches start."""
 
-    @abstractmethod
     def permanent_contact_threshold(self) -> np.ndarray:
-        """Λ up to which the ball stays on the table."""
+        """Λ up to which the ball stays on the table: 1 where impacts are instants (Eq. 9)."""
+        return np.full(self.shape, RESTITUTION_THRESHOLD)
 
     # What follows.
 

@@ -8,7 +8,6 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.contacts.restitution_law import RestitutionLaw, rebound
 from bouncing_ball.contacts.signature import Instant
 from bouncing_ball.orbits import restitution_orbit as formulas
@@ -29,10 +28,6 @@ class _Instants(ImpactModel):
         r, slope = rebound(self._law, v)
         none = np.zeros_like(v)
         return Instant(none, r + none, none, none, d_restitution=(slope - r) / v)
-
-    def permanent_contact_threshold(self) -> np.ndarray:
-        """Λ_CR = 1 (Eq. 9)."""
-        return np.full(self.shape, RESTITUTION_THRESHOLD)
 
 
 @dataclass(frozen=True, repr=False)

@@ -154,18 +154,6 @@ def branch(
     return np.hypot(level, lift), np.arctan2(lift, level)
 
 
-def max_height(n: ArrayLike, amplitude: ArrayLike, phase: ArrayLike) -> np.ndarray:
-    """Greatest absolute height of the ball, Λ sin φ + (nπ)²/2.
-
-    Examples
-    --------
-    >>> bool(max_height(2, 0.0, 0.0) == 2 * np.pi**2)
-    True
-    """
-    launch = np.asarray(n) * np.pi
-    return np.asarray(amplitude) * np.sin(phase) + launch * launch / 2
-
-
 class RestitutionOrbit(Orbit):
     """n-T orbits with instantaneous impacts; ``law`` is r, or a :class:`RestitutionLaw`.
 

@@ -47,6 +47,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.oscillator import responses
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import require
+from bouncing_ball.motion.ensembles import blocks, pick
 
 # Points computed at once: as many as keep the intermediate arrays in the cache.
 _BLOCK = 8192
@@ -183,13 +184,8 @@ def branch_point(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> Bran
         return _branch_point(*arguments)
     # Scalars stay scalars; the rest is run through in blocks.
     flat = [x if x.ndim == 0 else np.broadcast_to(x, shape).ravel() for x in arguments]
-    out = np.empty((len(BranchPoint._fields), size))
-    for start in range(0, size, _BLOCK):
-        part = slice(start, start + _BLOCK)
-        block = (x if x.ndim == 0 else x[part] for x in flat)
-        for row, values in zip(out, _branch_point(*block), strict=True):
-            row[part] = values
-    return BranchPoint(*(row.reshape(shape) for row in out))
+    parts = [_branch_point(*(pick(x, part) for x in flat)) for part in blocks(size, _BLOCK)]
+    return BranchPoint(*(np.concatenate(x).reshape(shape) for x in zip(*parts, strict=True)))
 
 
 def _branch_point(eps, omega, zeta, sine, n) -> BranchPoint:
@@ -240,7 +236,8 @@ def _branch_point(eps, omega, zeta, sine, n) -> BranchPoint:
     # Infinite or not a number where the ball grazes at impact or at release.
     with np.errstate(divide="ignore", invalid="ignore"):
         saddle = matrix * (x * d_x + y * d_y) / (u * along[0])
-    determinant = decay * decay + 0 * u
+    # Of the shape of all.
+    duration, determinant = duration + 0 * u, decay * decay + 0 * u
     return BranchPoint(duration, x, y, u, d_x * per_angle, d_y * per_angle, saddle, determinant)
 
 

@@ -12,6 +12,7 @@ fold. Entries for which the quantity does not exist are NaN.
 
 from collections.abc import Callable
 from dataclasses import replace
+from operator import attrgetter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -40,16 +41,12 @@ _FINE = 0.02
 _MOST = 200_000
 
 
-def _saddle(point: BranchPoint) -> np.ndarray:
-    return point.saddle_node
+# Functions of the branch's points.
+_saddle, _fold = attrgetter("saddle_node"), attrgetter("fold")
 
 
 def _doubling(point: BranchPoint) -> np.ndarray:
     return Bifurcation.PERIOD_DOUBLING.test(point.trace, point.determinant)
-
-
-def _fold(point: BranchPoint) -> np.ndarray:
-    return point.fold
 
 
 def _surplus(point: BranchPoint, amplitude: np.ndarray) -> np.ndarray:

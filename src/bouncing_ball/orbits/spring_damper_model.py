@@ -89,7 +89,7 @@ class SpringDamperModel(ImpactModel):
 
     def nearest(self, orbit: SpringDamperOrbit) -> SpringDamperOrbit:
         """The orbits of the closed form nearest to given ones in (Λ cos φ, Λ sin φ, ε)."""
-        contact, n = orbit.contact, orbit.n
+        contact, n = orbit.law, orbit.n
         duration = orbit.contact_duration * contact.damped_frequency - contact.free_angle
         x, y = orbit.amplitude * np.cos(orbit.phase), orbit.amplitude * np.sin(orbit.phase)
         return SpringDamperOrbit.on_branch(nearest_excess(contact, n, x, y, duration), contact, n)

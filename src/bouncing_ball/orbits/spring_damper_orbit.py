@@ -37,19 +37,14 @@ class SpringDamperOrbit(Orbit):
         return cls.from_branch(branch_point(excess, contact, n), contact, n)
 
     @property
-    def contact(self) -> SpringDamper:
-        """ϖ, ζ and the release rule."""
-        return self.law
-
-    @property
     def clock(self) -> ArrayLike:
         """ϖ."""
-        return self.contact.frequency_ratio
+        return self.law.frequency_ratio
 
     def contact_flow(self, time: np.ndarray) -> Any:
         """The contact's motion and its derivatives at times 0 ≤ τ ≤ τ_b."""
         u = self.relative_impact_velocity
-        return self.contact.flow(time, 0.0, u, self.phase, self.amplitude)
+        return self.law.flow(time, 0.0, u, self.phase, self.amplitude)
 
     def contact_motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ at times 0 ≤ τ ≤ τ_b in contact."""
@@ -61,7 +56,7 @@ class SpringDamperOrbit(Orbit):
 
         The first is ϖ (δ_b + κ δ′_b), of the order of a velocity as the second.
         """
-        flow, contact = self.contact_flow(self.contact_duration), self.contact
+        flow, contact = self.contact_flow(self.contact_duration), self.law
         release = contact.frequency_ratio * flow.displacement
         release = release + 2 * contact.release_sine * flow.velocity
         return np.stack([release, *self.flight_defects(flow.displacement, flow.velocity)], axis=-1)
@@ -74,7 +69,7 @@ class SpringDamperOrbit(Orbit):
         # Rows δ, δ′; columns (τ, δ′, Λ) of the start, and the time.
         jacobian = self.contact_flow(self.contact_duration).jacobian
         state, by_time = jacobian[..., [3, 2, 4]], jacobian[..., 0]
-        lag = np.asarray(self.contact.lag)
+        lag = np.asarray(self.law.lag)
         released = state[..., 0, :] + lag[..., np.newaxis] * state[..., 1, :]
         pace = by_time[..., 0] + lag * by_time[..., 1]
         duration = -released / pace[..., np.newaxis]
@@ -83,5 +78,5 @@ class SpringDamperOrbit(Orbit):
 
     def determinant(self) -> np.ndarray:
         """exp(-2ζϖ τ_b), exactly."""
-        loss = np.asarray(self.contact.damping_ratio) * self.contact.frequency_ratio
+        loss = np.asarray(self.law.damping_ratio) * self.law.frequency_ratio
         return np.exp(-2 * loss * self.contact_duration)

@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.continuation.events import Event
 from bouncing_ball.orbits import restitution_orbit
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.system import OrbitSystem
@@ -49,16 +48,18 @@ class SpringDamperSystem(OrbitSystem):
         duration = angle / contact.frequency_ratio
         return SpringDamperOrbit(self.n, contact, lam, phase, duration, impact)
 
-    def coordinates(self, orbit: SpringDamperOrbit) -> tuple[np.ndarray, ...]:
+    def point(self, orbit: SpringDamperOrbit) -> np.ndarray:
         """(φ, z′_i, ϖ τ_b, p)."""
-        omega = np.asarray(orbit.contact.frequency_ratio)
+        omega = np.asarray(orbit.law.frequency_ratio)
         parameter = orbit.amplitude if self.amplitude is None else np.log(omega)
-        return orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration, parameter
+        angle = omega * orbit.contact_duration
+        entries = np.broadcast_arrays(orbit.phase, orbit.impact_velocity, angle, parameter)
+        return np.stack(entries, axis=-1)
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """Exact Jacobian of the residual, shape (..., 3, 4)."""
         o = self.orbit(y)
-        omega, flow = o.contact.frequency_ratio, o.contact_flow(o.contact_duration)
+        omega, flow = o.law.frequency_ratio, o.contact_flow(o.contact_duration)
         # Derivatives of (τ, δ, δ′, φ, Λ, ϖ) of the flow with respect to
         # (φ, z′_i, ϖ τ_b, Λ, ln ϖ), of which the last or the last but one is a constant.
         inner = np.zeros((*y.shape[:-1], 6, 5))
@@ -71,8 +72,7 @@ class SpringDamperSystem(OrbitSystem):
         d_duration, _, _, d_phase, d_lam, d_omega = np.moveaxis(inner, -2, 0)
         ends = np.moveaxis(flow.jacobian[..., :6] @ inner, -2, 0)
         scale, sine, displacement = (
-            np.asarray(x)[..., np.newaxis]
-            for x in (omega, o.contact.release_sine, flow.displacement)
+            np.asarray(x)[..., np.newaxis] for x in (omega, o.law.release_sine, flow.displacement)
         )
         release = scale * ends[0] + displacement * d_omega + 2 * sine * ends[1]
         start = d_phase, np.eye(4)[1], d_lam
@@ -87,14 +87,3 @@ class SpringDamperSystem(OrbitSystem):
         phase = restitution_orbit.phase(self.n, contact.restitution, amplitude)
         duration = contact.free_duration
         return self.point(SpringDamperOrbit.of(self.n, contact, amplitude, phase, duration))
-
-    def events(self) -> tuple[Event, ...]:
-        """Those of every contact, and the loss of a release that leaves the table."""
-        *bifurcations, contact, flight = super().events()
-        release = Event(
-            "release lost",
-            lambda y: self.orbit(y).relative_bounce_velocity,
-            terminal=True,
-            reason="release lost: the ball no longer leaves the table as the contact ends",
-        )
-        return *bifurcations, contact, release, flight

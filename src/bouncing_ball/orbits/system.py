@@ -35,20 +35,16 @@ class OrbitSystem(ABC):
         """The orbits at points y, with all their observables."""
 
     @abstractmethod
-    def coordinates(self, orbit: Any) -> tuple[np.ndarray, ...]:
-        """The entries of y of given orbits."""
+    def point(self, orbit: Any) -> np.ndarray:
+        """y of given orbits."""
 
     @abstractmethod
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """Exact Jacobian of the residual, shape (..., N, N + 1)."""
 
     def residual(self, y: np.ndarray) -> np.ndarray:
-        """Defects, shape (..., N)."""
-        return self.orbit(y).residual()
-
-    def point(self, orbit: Any) -> np.ndarray:
-        """y of given orbits."""
-        return np.stack(np.broadcast_arrays(*self.coordinates(orbit)), axis=-1)
+        """The last N defects, shape (..., N): of a contact those of velocity and landing."""
+        return self.orbit(y).residual()[..., 1 - y.shape[-1] :]
 
     def events(self) -> tuple[Event, ...]:
         """Bifurcations, and the ends of the domain in which an orbit makes sense."""
@@ -63,6 +59,12 @@ class OrbitSystem(ABC):
                 lambda y: -self.orbit(y).relative_impact_velocity - _MARGIN,
                 terminal=True,
                 reason="contact lost: the ball no longer closes in on the table at impact",
+            ),
+            Event(
+                "release lost",
+                lambda y: self.orbit(y).relative_bounce_velocity,
+                terminal=True,
+                reason="release lost: the ball no longer leaves the table as the contact ends",
             ),
             Event(
                 "flight lost",
@@ -113,13 +115,9 @@ class ContactSystem(OrbitSystem):
         """The orbits at points y of shape (..., N + 1)."""
         return self._known(y.shape, y.tobytes())
 
-    def coordinates(self, orbit: Any) -> tuple[np.ndarray, ...]:
-        """The orbit's unknowns, and Λ."""
-        return *orbit.unknowns, orbit.amplitude
-
-    def residual(self, y: np.ndarray) -> np.ndarray:
-        """The last N defects: for a contact those of velocity and landing."""
-        return super().residual(y)[..., 1 - y.shape[-1] :]
+    def point(self, orbit: Any) -> np.ndarray:
+        """The orbits' unknowns, and Λ."""
+        return np.stack(np.broadcast_arrays(*orbit.unknowns, orbit.amplitude), axis=-1)
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """Exact Jacobian of the residual, shape (..., N, N + 1)."""

@@ -182,15 +182,6 @@ def _domains(name: str, parameters: FiguresOfLaws) -> np.ndarray:
     return np.array([amplitudes, np.hstack([left[:, ::-1], fold.phase, right])])
 
 
-def _held(name: str, restitution: float, ratio: float) -> float:
-    """Threshold of permanent contact; NaN where no contact that just touches was found."""
-    try:
-        model = exact_model(name, restitution, np.pi / ratio, rigid_speed(1, restitution))
-        return float(model.permanent_contact_threshold())
-    except ModelError:
-        return np.nan
-
-
 def figures_of_laws(parameters: FiguresOfLaws) -> xr.Dataset:
     """Table 1 and Figs. 8, 14 and 16 on contacts of the same r and duration.
 
@@ -203,7 +194,12 @@ def figures_of_laws(parameters: FiguresOfLaws) -> xr.Dataset:
     bounds = [_bounds(name, parameters) for name in names]
     branches = np.array([_domains(name, parameters) for name in names])
     height = [along(name, one, lambda exact: exact.orbit(n, lam).max_height) for name in names]
-    held = [[_held(name, r, x) for x in ratios] for name in names]
+    # NaN where no contact that just touches was found.
+    held = np.full((len(names), ratios.size), np.nan)
+    for place in np.ndindex(held.shape):
+        with suppress(ModelError):
+            model = exact_model(names[place[0]], r, np.pi / ratios[place[1]], rigid_speed(1, r))
+            held[place] = model.permanent_contact_threshold()
     return described(
         {
             "bifurcation_amplitude": (("law", "bound", "shown_ratio", "n"), np.array(bounds)),
@@ -211,7 +207,7 @@ def figures_of_laws(parameters: FiguresOfLaws) -> xr.Dataset:
             "phase": (("law", "shown_ratio", "point"), branches[:, 1]),
             "max_height": (("law", "duration_ratio"), np.array(height)),
             "restitution_max_height": ((), float(RestitutionModel(r).orbit(n, lam).max_height)),
-            "threshold_amplitude": (("law", "duration_ratio"), np.array(held)),
+            "threshold_amplitude": (("law", "duration_ratio"), held),
         },
         coords={
             "law": list(names),

@@ -18,53 +18,30 @@ from bouncing_ball.continuation.branch import (
     continue_branch,
     solve_at,
 )
-from bouncing_ball.continuation.corrector import NewtonSettings
 from bouncing_ball.continuation.events import Event, fold, parameter_bound
 from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_system import SpringDamperSystem
-from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.parameters import FrequencyRatio, Parameters, number
 
-SADDLE_NODE, PERIOD_DOUBLING = Bifurcation
 _REACHED = End("target reached")
 
 
 class Continuation(Parameters):
-    """Steps of the continuation, and Newton's method in each."""
+    """Where the continuation starts, and how long its steps are."""
 
-    newton_tolerance: Annotated[
-        float,
-        number(
-            "relative length of the last Newton step; 1.0e-13 is what rounding lets it reach",
-            ge=1e-13,
-            le=1e-6,
-        ),
-    ]
     largest_step: Annotated[
         float,
         number(
             "largest step in arclength; a longer one may pass two bifurcations", ge=0.02, le=0.5
         ),
     ]
-    max_angle: Annotated[
-        float, number("largest angle between neighbouring tangents", "rad", ge=0.05, le=0.5)
-    ]
     stiff_frequency_ratio: Annotated[
         FrequencyRatio,
         number("ϖ at which the restitution orbit starts the continuation", ge=100, le=1e6),
     ]
-
-    def step_control(self) -> StepControl:
-        """Lengths of the steps."""
-        return StepControl(largest=self.largest_step, max_angle=self.max_angle)
-
-    def newton(self) -> NewtonSettings:
-        """When Newton's method ends."""
-        return NewtonSettings(self.newton_tolerance)
 
 
 def _on_the_way(
@@ -78,10 +55,10 @@ def _on_the_way(
         If there is no orbit near that of the restitution model, or if the branch turns back to
         stiffer contacts or leaves the domain of the equations before ``contact``.
     """
-    omega, newton = float(contact.frequency_ratio), continuation.newton()
+    omega = float(contact.frequency_ratio)
     stiff = max(continuation.stiff_frequency_ratio, omega)
     towards = SpringDamperSystem(n, contact, amplitude)
-    y = solve_at(towards, towards.guess(amplitude, stiff), newton)
+    y = solve_at(towards, towards.guess(amplitude, stiff))
     if omega == stiff:
         return y[:-1]
     target = parameter_bound(np.log(omega), False, _REACHED.sentence)
@@ -95,8 +72,7 @@ def _on_the_way(
         y,
         increasing=False,
         events=(*ends, turn, target),
-        control=continuation.step_control(),
-        settings=newton,
+        control=StepControl(largest=continuation.largest_step),
     )
     if way.end != _REACHED:
         raise ContinuationError(
@@ -163,8 +139,7 @@ def branch_along_amplitude(
         system,
         _start(n, contact, restitution, amplitude_max, continuation),
         events=(*system.events(), *windows),
-        control=continuation.step_control(),
-        settings=continuation.newton(),
+        control=StepControl(largest=continuation.largest_step),
     )
     for end in (branch.start, branch.end):
         if not end.finished:
@@ -173,30 +148,3 @@ def branch_along_amplitude(
                 f"followed to its end: {end}"
             )
     return system, branch
-
-
-def first_limits(branch: Branch) -> np.ndarray:
-    """The saddle-node and the period doubling that bound the first stable range, (2, N + 1).
-
-    The branch's last saddle-node in its order, from the unstable to the stable
-    side, and the first period doubling after it.
-
-    Raises
-    ------
-    NoOrbitError
-        If the branch has not both.
-    """
-    folds = [k for k, special in enumerate(branch.special) if special.name == SADDLE_NODE]
-    beyond = branch.special[folds[-1] :] if folds else ()
-    flips = [special for special in beyond if special.name == PERIOD_DOUBLING]
-    if not flips:
-        raise NoOrbitError(
-            f"the branch from {str(branch.start)!r} to {str(branch.end)!r} has no "
-            f"{PERIOD_DOUBLING if folds else SADDLE_NODE} to bound its stable range"
-        )
-    return np.array([beyond[0].point, flips[0].point])
-
-
-def missing(n: int, count: int) -> Orbit:
-    """Orbits that do not exist."""
-    return SpringDamperModel(SpringDamper(1.0, 0.0)).system(n).orbit(np.full((count, 4), np.nan))

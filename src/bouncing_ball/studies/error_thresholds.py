@@ -16,7 +16,6 @@ from pydantic import Strict
 from bouncing_ball.accuracy.errors import modulus, relative_errors
 from bouncing_ball.accuracy.quantities import Quantity
 from bouncing_ball.accuracy.thresholds import by_quantity, thresholds
-from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.orbits.restitution_model import RestitutionModel
@@ -99,9 +98,7 @@ def height_error(parameters: OrbitErrors, release: Release) -> xr.Dataset:
 def permanent_contact_error(parameters: PermanentContactError, release: Release) -> xr.Dataset:
     """Permanent contact along ϖ in both models, and ϖ_PC for the tolerance (Eq. 38, Fig. 16)."""
     # The threshold of permanent contact knows neither orbit nor amplitude.
-    nowhere = OrbitsAlongRatio.model_construct(
-        n=1, amplitude=RESTITUTION_THRESHOLD, **dict(parameters)
-    )
+    nowhere = OrbitsAlongRatio.model_construct(n=1, amplitude=1.0, **dict(parameters))
     asked = [Quantity.PERMANENT_CONTACT]
     dataset = thresholds_along(nowhere, release, asked, [parameters.tolerance])
     return describe(dataset.merge(permanent_contact(parameters, release)))

@@ -17,7 +17,6 @@ from bouncing_ball.parameters import (
     FrequencyRatio,
     LossyRestitution,
     Many,
-    OwnRestitution,
     Parameters,
     Span,
     number,
@@ -28,7 +27,7 @@ from bouncing_ball.studies.parameters import OrbitAmplitude
 class Windows(Parameters):
     """Contacts whose stable windows are looked for, of several r and along ϖ."""
 
-    restitution: Many[OwnRestitution]
+    restitution: Many[LossyRestitution]
     frequency_ratio: Span
 
 
@@ -86,16 +85,14 @@ def stable_windows(parameters: Windows, release: Release) -> xr.Dataset:
     if release is Release.DISPLACEMENT:
         stiff = np.array([stiff_limit(z) for z in zeta])
         joining = joining_ratio(zeta, release, *_PARTING)
-    along = {
-        "threshold_amplitude": SpringDamperModel(law).permanent_contact_threshold(),
-        "window_amplitude": window.amplitude,
-        "window_flight": window.flight_time,
-        "window_end": window.end,
-    }
+    threshold = SpringDamperModel(law).permanent_contact_threshold()
     dims, shape = ("restitution", "frequency_ratio"), (zeta.size, ratio.size)
     return described(
         {
-            **{name: (dims, values.reshape(shape)) for name, values in along.items()},
+            "threshold_amplitude": (dims, threshold.reshape(shape)),
+            "window_amplitude": (dims, window.amplitude.reshape(shape)),
+            "window_flight": (dims, window.flight_time.reshape(shape)),
+            "window_end": (dims, window.end.reshape(shape)),
             "stiff_window": ("restitution", stiff),
             "joining_ratio": ("restitution", joining),
         },

@@ -20,30 +20,18 @@ from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.parameters import (
-    LossyRestitution,
-    Parameters,
-    Samples,
-    Seed,
-    Span,
-)
+from bouncing_ball.parameters import LossyRestitution, Samples, Seed
 from bouncing_ball.studies.parameters import OrbitErrors
 from bouncing_ball.studies.random_orbits import random_orbits
 
 
-class Sample(Parameters):
-    """Random orbits of the whole stable range."""
+class Orders(OrbitErrors):
+    """One orbit along ϖ, the error tolerated of it, and random orbits of the whole stable range."""
 
+    restitution: LossyRestitution
     seed: Seed
     samples: Annotated[Samples, Field(description="random orbits whose orders are measured")]
     law_samples: Annotated[Samples, Field(description="random orbits on which the law is tried")]
-
-
-class Orders(OrbitErrors):
-    """One orbit along ϖ, the error tolerated of it, and random orbits."""
-
-    restitution: LossyRestitution
-    random: Sample
 
 
 _STIFF = 500.0
@@ -64,11 +52,12 @@ def _second_order(zeta: float, rule: Release, n, amplitude) -> np.ndarray:
     return 2 * twice - once
 
 
-def _of_random_orbits(sample: Sample, span: Span, release: Release) -> dict[str, tuple]:
+def _of_random_orbits(sample: Orders, release: Release) -> dict[str, tuple]:
     """Orders of both models, and what the law leaves of the restitution model's errors."""
     n, zeta, lam, _ = random_orbits(sample.samples, sample.seed, release, (0.2, 0.95))
     once, twice = np.moveaxis(np.abs(errors(SpringDamper(_TWO_STIFF, zeta, release), n, lam)), 2, 0)
     n, zeta, lam, rng = random_orbits(sample.law_samples, sample.seed + 1, release)
+    span = sample.frequency_ratio
     omega = np.exp(rng.uniform(*np.log([span.min, span.max]), sample.law_samples))
     contact = SpringDamper(omega, zeta, release)
     left = error_law.remainder(n, Signature(contact)(), lam, errors(contact, n, lam)[0])
@@ -110,7 +99,7 @@ def orders(parameters: Orders, release: Release) -> xr.Dataset:
             "permanent_coefficient": error_law.permanent_contact_coefficient(zeta, release),
             "permanent_law": still,
             "permanent_threshold": found.threshold[0, -1, 0],
-            **_of_random_orbits(parameters.random, parameters.frequency_ratio, release),
+            **_of_random_orbits(parameters, release),
         },
         coords={"model": list(SIMPLE), "quantity": list(OF_IMPACTS), "frequency_ratio": ratios},
     )

@@ -3,26 +3,23 @@
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.contacts.release import Release
-from bouncing_ball.continuation.branch import ContinuationError, resample
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
+from bouncing_ball.continuation.branch import Branch, ContinuationError, resample
+from bouncing_ball.continuation.corrector import NewtonSettings
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.grazing import grazing_points
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.parameters import Family, FrequencyRatio, LossyRestitution, Many, Parameters
 from bouncing_ball.studies.columns import OBSERVED, PLACE, columns
-from bouncing_ball.studies.continuation import (
-    PERIOD_DOUBLING,
-    SADDLE_NODE,
-    Continuation,
-    branch_along_amplitude,
-    first_limits,
-    missing,
-)
+from bouncing_ball.studies.continuation import Continuation, branch_along_amplitude
 from bouncing_ball.studies.parameters import BranchEnd, Points
 from bouncing_ball.studies.printed_table1 import printed_table
 
+SADDLE_NODE, PERIOD_DOUBLING = Bifurcation
 GRAZING = "grazing"
 
 
@@ -60,12 +57,12 @@ def _branch(
     ratio: float, parameters: Branches, release: Release, continuation: Continuation
 ) -> xr.Dataset:
     """The branch of one contact; NaN, with the reason, where it cannot be followed."""
-    n, count, newton = parameters.n, parameters.points, continuation.newton()
+    n, count, newton = parameters.n, parameters.points, NewtonSettings()
     try:
         system, branch = branch_along_amplitude(
             n, parameters.restitution, ratio, parameters.amplitude_max, release, continuation
         )
-        y = resample(system, branch, count, newton)
+        y = resample(system, branch, count)
         chosen = [s for s in branch.special if s.name in (SADDLE_NODE, PERIOD_DOUBLING)]
         grazing = grazing_points(system, lambda z: system.orbit(z).is_admissible(), y, newton)
         kinds = [*(s.name for s in chosen), *[GRAZING] * len(grazing)]
@@ -73,7 +70,10 @@ def _branch(
         orbit, special = system.orbit(y), system.orbit(points)
         reasons = [str(branch.start), str(branch.end)]
     except (NoOrbitError, ContinuationError) as error:
-        orbit, special = missing(n, count), missing(n, 0)
+        missing = (
+            SpringDamperModel(SpringDamper(1.0, 0.0)).system(n).orbit(np.full((count, 4), np.nan))
+        )
+        orbit, special = missing, missing[:0]
         kinds, reasons = [], [str(error)] * 2
     floquet = orbit.multipliers()
     along = columns(orbit, "amplitude", *OBSERVED) | {"residual": orbit.defect()}
@@ -135,6 +135,28 @@ def both_domains(
     )
 
 
+def first_limits(branch: Branch) -> np.ndarray:
+    """The saddle-node and the period doubling that bound the first stable range, (2, N + 1).
+
+    The branch's last saddle-node in its order, from the unstable to the stable
+    side, and the first period doubling after it.
+
+    Raises
+    ------
+    NoOrbitError
+        If the branch has not both.
+    """
+    folds = [k for k, special in enumerate(branch.special) if special.name == SADDLE_NODE]
+    beyond = branch.special[folds[-1] :] if folds else ()
+    flips = [special for special in beyond if special.name == PERIOD_DOUBLING]
+    if not flips:
+        raise NoOrbitError(
+            f"the branch from {str(branch.start)!r} to {str(branch.end)!r} has no "
+            f"{PERIOD_DOUBLING if folds else SADDLE_NODE} to bound its stable range"
+        )
+    return np.array([beyond[0].point, flips[0].point])
+
+
 def stability_ranges(
     parameters: Ranges, release: Release, continuation: Continuation
 ) -> xr.Dataset:
@@ -157,6 +179,7 @@ def stability_ranges(
             absence[at] = str(error)
     rigid, maps = RestitutionModel(r).saddle_node(np.array(families)), restitution_orbits.ImpactMap
     doublings = [restitution_orbits.period_doubling(np.array(families), r, kind) for kind in maps]
+    rigid_ranges = np.array([np.stack([rigid.amplitude, each], axis=-1) for each in doublings])
     dims = ("frequency_ratio", "n", "bound")
     names = ("computed", "special_phase", "special_contact_duration")
     dataset = xr.Dataset(
@@ -164,10 +187,7 @@ def stability_ranges(
             **{name: (dims, found[..., k]) for k, name in enumerate(names)},
             # NaN where the paper has no entry.
             "printed": printed_table().reindex(frequency_ratio=list(ratios), n=list(families)),
-            "restitution_range": (
-                ("impact_map", "n", "bound"),
-                np.array([np.stack([rigid.amplitude, each], axis=-1) for each in doublings]),
-            ),
+            "restitution_range": (("impact_map", "n", "bound"), rigid_ranges),
         },
         coords={
             "frequency_ratio": np.array(ratios),

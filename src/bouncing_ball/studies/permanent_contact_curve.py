@@ -33,13 +33,11 @@ def permanent_contact(parameters: PermanentContact, release: Release) -> xr.Data
     """
     ratios = parameters.frequency_ratio.grid()
     zeta = float(damping_ratio(parameters.restitution))
+    curve = permanent_contact_threshold(ratios, zeta, release)
     lowest = permanent_contact_minimum(zeta, release)
     return described(
         {
-            "threshold_amplitude": (
-                "frequency_ratio",
-                permanent_contact_threshold(ratios, zeta, release),
-            ),
+            "threshold_amplitude": ("frequency_ratio", curve),
             "minimum_threshold": ((), float(lowest.threshold)),
             "minimum_frequency_ratio": ((), float(lowest.frequency_ratio)),
             "restitution_threshold": ((), RESTITUTION_THRESHOLD),

@@ -24,7 +24,6 @@ from bouncing_ball.studies.error_thresholds import ErrorsAlongRatio, thresholds_
 class RuleThresholds(ErrorsAlongRatio):
     """One orbit, the quantities compared on it, and the error tolerated."""
 
-    restitution: LossyRestitution
     tolerance: Tolerance
 
 
@@ -63,13 +62,11 @@ def _bifurcations(parameters: ReleaseRules, rule: Release) -> xr.Dataset:
     zeta = float(damping_ratio(parameters.restitution))
     model, n = SpringDamperModel(SpringDamper(ratios, zeta, rule)), families[:, np.newaxis]
     ends = np.stack([model.saddle_node(n).amplitude, model.period_doubling(n).amplitude], axis=-1)
+    turns = _lowest_doubling(ratios, ends[..., 1], zeta, rule, families)
     return xr.Dataset(
         {
             "bifurcation_amplitude": (("n", "frequency_ratio", "bound"), ends),
-            "period_doubling_turn": (
-                "n",
-                _lowest_doubling(ratios, ends[..., 1], zeta, rule, families),
-            ),
+            "period_doubling_turn": ("n", turns),
         },
         coords={
             "n": families,

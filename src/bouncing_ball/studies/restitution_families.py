@@ -25,12 +25,8 @@ class RestitutionHistory(OrbitParameters):
 def _grazing(orbits: RestitutionOrbit) -> np.ndarray:
     """φ and Λ at which the unstable orbits of one family graze the table, NaN beyond the branch."""
     system = RestitutionModel(orbits.law).system(int(orbits.n[0]))
-    found = grazing_points(
-        system,
-        lambda y: system.orbit(y).is_admissible(),
-        system.point(orbits),
-        NewtonSettings(),
-    )
+    at = system.point(orbits)
+    found = grazing_points(system, lambda y: system.orbit(y).is_admissible(), at, NewtonSettings())
     return found[0, [0, -1]] if len(found) else np.full(2, np.nan)
 
 
@@ -50,7 +46,6 @@ def restitution_orbits(parameters: FamilyBranches) -> xr.Dataset:
     fold = orbits.saddle_node(n, r)
     amplitude, phase = orbits.branch(n, r, top, parameters.points)
     shown = RestitutionOrbit.of(n[:, np.newaxis], r, amplitude, phase)
-    stable, admissible = shown.is_stable(), shown.is_admissible()
     grazing = np.array([_grazing(shown[k]) for k in range(n.size)])
     maps = list(ImpactMap)
     doubling = np.array([orbits.period_doubling(n, r, kind) for kind in maps])
@@ -59,8 +54,8 @@ def restitution_orbits(parameters: FamilyBranches) -> xr.Dataset:
         {
             "amplitude": (("n", "point"), amplitude),
             "phase": (("n", "point"), phase),
-            "stable": (("n", "point"), stable),
-            "admissible": (("n", "point"), admissible),
+            "stable": (("n", "point"), shown.is_stable()),
+            "admissible": (("n", "point"), shown.is_admissible()),
             "grazing_amplitude": ("n", grazing[:, 1]),
             "grazing_phase": ("n", grazing[:, 0]),
             "saddle_node_amplitude": ("n", fold),

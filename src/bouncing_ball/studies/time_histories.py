@@ -62,9 +62,8 @@ def contact_history(parameters: ContactHistory, release: Release) -> xr.Dataset:
     NoOrbitError
         If the orbit does not exist or is inadmissible.
     """
-    return describe(
-        _cycle(parameters, parameters.frequency_ratio, release).drop_vars("table_phase")
-    )
+    cycle = _cycle(parameters, parameters.frequency_ratio, release)
+    return describe(cycle.drop_vars("table_phase"))
 
 
 def both_histories(parameters: Histories, release: Release) -> xr.Dataset:
@@ -77,10 +76,9 @@ def both_histories(parameters: Histories, release: Release) -> xr.Dataset:
     """
     cycles = [_cycle(parameters, ratio, release) for ratio in sorted(parameters.frequency_ratio)]
     dataset = xr.concat([x.set_coords("frequency_ratio") for x in cycles], "frequency_ratio")
-    rigid = RestitutionModel(parameters.restitution).require_orbit(
-        parameters.n, parameters.amplitude
-    )
-    time = np.linspace(0.0, 2 * np.pi * parameters.n, parameters.samples)
+    n, lam = parameters.n, parameters.amplitude
+    rigid = RestitutionModel(parameters.restitution).require_orbit(n, lam)
+    time = np.linspace(0.0, 2 * np.pi * n, parameters.samples)
     height, _ = rigid.path(np.minimum(time, time[-1] * (1 - 1e-15)))
     return describe(
         dataset[["table_phase", "ball", "contact", *_STATE]].assign(
@@ -103,22 +101,20 @@ def meeting_flights(parameters: ContactHistory, release: Release) -> xr.Dataset:
     orbit = exact.require_orbit(parameters.n, parameters.amplitude)
     end = float(orbit.contact_duration)
     time = np.linspace(-0.6 * end, 1.6 * end, parameters.samples)
-    inside, within = (time >= 0) & (time <= end), np.clip(time, 0, end)
     start, velocity = orbit.contact_path(np.zeros(()))
     before, (after, _) = start + (velocity - time / 2) * time, orbit.flight_path(time)
-    touching, _ = orbit.contact_path(within)
-    force = exact.contact.force(*-np.array(orbit.contact_motion(within)))
+    force = exact.contact.force(*-np.array(orbit.contact_motion(np.clip(time, 0, end))))
     # The meeting point of the two parabolas, exact; and where the signature has it.
     jump = float(orbit.bounce_velocity + end - orbit.impact_velocity)
     apart = float(orbit.bounce_height - (start + (velocity - end / 2) * end))
     meeting = end - apart / jump
     return described(
         {
-            "ball": ("time", np.where(time < 0, before, np.where(inside, touching, after))),
+            "ball": ("time", orbit.path(time)[0]),
             "table": ("time", orbit.amplitude * np.sin(orbit.phase + time)),
             "flight_before": ("time", before),
             "flight_after": ("time", after),
-            "contact_force": ("time", inside * force),
+            "contact_force": ("time", np.where((time >= 0) & (time <= end), force, 0.0)),
             "contact_duration": ((), end),
             "meeting_time": ((), meeting),
             "meeting_height": ((), float(start + (velocity - meeting / 2) * meeting)),

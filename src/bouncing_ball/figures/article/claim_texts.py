@@ -1,7 +1,7 @@
 """Claims and their verdicts as an article needs them."""
 
 import re
-from types import SimpleNamespace
+from typing import Any
 
 import xarray as xr
 
@@ -9,31 +9,29 @@ from bouncing_ball.datasets.selection import each
 from bouncing_ball.errors import ModelError
 from bouncing_ball.figures.tables.rows import found_text
 
-# One claim: the dataset's variables over ``claim`` by name, its ``id``, and
-# ``found`` as in the table of claims.
-ClaimRow = SimpleNamespace
-
 
 class Claims:
-    """Access to the claims of a dataset by name, by place and by verdict."""
+    """Access to the claims of a dataset by name, by place and by verdict.
+
+    A claim has the dataset's variables over ``claim`` by name, its ``id``, and ``found`` as in the
+    table of claims.
+    """
 
     def __init__(self, data: xr.Dataset) -> None:
         self._data = data
         self._shown: set[str] = set()
-        columns = [name for name, values in data.data_vars.items() if values.dims == ("claim",)]
-        self._claims: dict[str, ClaimRow] = {}
-        for row in each(data[columns], "claim"):
-            texts = {str(name): row[name].item() for name in columns}
-            name = row.claim.item()
-            self._claims[name] = ClaimRow(**texts | {"id": name, "found": found_text(row)})
+        rows = data[[name for name, values in data.items() if values.dims == ("claim",)]]
+        found = [found_text(row) for row in each(rows, "claim")]
+        frame = rows.assign(found=("claim", found)).to_dataframe().rename_axis("id").reset_index()
+        self._claims: dict[str, Any] = {row.id: row for row in frame.itertuples()}
 
-    def __call__(self, name: str) -> ClaimRow:
+    def __call__(self, name: str) -> Any:
         """A claim by its id."""
         if name not in self._claims:
             raise ModelError(f"no claim {name!r} in the ledger")
         return self._claims[name]
 
-    def about(self, *items: str) -> list[ClaimRow]:
+    def about(self, *items: str) -> list[Any]:
         """The claims about a figure or equation, each only the first time; entries of
         tables are left out."""
         found = [
@@ -51,8 +49,10 @@ class Claims:
         ``group`` is what they are counted as: ``independent`` for all but
         restatements, ``all``, or one group.
         """
+        groups = {claim.group for claim in self._claims.values()} - {"restatement"}
+        counted = {"independent": groups, "all": groups | {"restatement"}}.get(group, {group})
         return sum(
-            group in ("all", claim.group, _counted_as(claim))
+            claim.group in counted
             and verdict in ("", claim.verdict)
             and table in ("", claim.printed_table)
             for claim in self._claims.values()
@@ -81,10 +81,6 @@ class Claims:
                 said = {part: one[f"explanation_{part}"].item() for part in parts}
                 found.append({"name": one.explanation.item(), "claims": about, **said})
         return found
-
-
-def _counted_as(claim: ClaimRow) -> str:
-    return "restatement" if claim.group == "restatement" else "independent"
 
 
 def places(text: str) -> set[str]:

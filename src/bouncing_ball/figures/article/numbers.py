@@ -4,13 +4,12 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
 from bouncing_ball.datasets.selection import index_of
 from bouncing_ball.errors import ModelError
 
-FORMATS = ("decimal", "largest", "listed", "pairs", "percent", "short")
+FORMATS = ("decimal", "listed", "pairs", "percent", "short")
 """What templates know of this module."""
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -69,17 +68,6 @@ def listed(values, word: str = "and") -> str:
     """
     texts = [value if isinstance(value, str) else short(value) for value in values]
     return texts[0] if len(texts) == 1 else f"{', '.join(texts[:-1])} {word} {texts[-1]}"
-
-
-def largest(values: xr.DataArray) -> float:
-    """The largest absolute entry that is finite.
-
-    Examples
-    --------
-    >>> largest(xr.DataArray([1.0, -3.0, np.nan, np.inf]))
-    3.0
-    """
-    return float(np.abs(values.where(np.isfinite(values))).max())
 
 
 def pairs(left: Iterable[float], right: Iterable[float]) -> list[str]:

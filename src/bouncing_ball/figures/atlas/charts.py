@@ -95,7 +95,7 @@ def over_range(data: xr.Dataset, quantity: str, n: int = 1) -> Figure:
     bar.set_label(rf"$\varpi$ from which the error is below {100 * tolerance:g} %")
     figure.suptitle(rf"{QUANTITIES[quantity]}: how stiff a contact must be, $n={n}$", fontsize=10)
     name = r"error law, $|K|/\varepsilon$"
-    legend_below(figure, lines.legend_elements()[0][:1], [name])
+    legend_below(figure, lines.legend_elements()[0][:1], labels=[name])
     return figure
 
 
@@ -117,8 +117,7 @@ def _explain_page(axes: Axes, data: xr.Dataset) -> None:
     for name, fill in {**fills, "compute the contact": _NEITHER}.items():
         axes.fill_between([], [], facecolor=fill, edgecolor="black", linewidth=0.5, label=name)
     for model, dashes in _BESIDE.items():
-        name = f"{model} model, next to the saddle-node"
+        name = f"{model} model, first {share:g} % of the stable range"
         axes.plot([], [], linestyle=dashes, label=name, **_LINE)
-    axes.plot([], [], linestyle="none", label=f"(first {share:g} % of the stable range)")
     axes.plot([], [], label=rf"rule of thumb, $\varpi={float(data.rule_of_thumb):g}$", **GUIDE)
     axes.legend(loc="center", title="the simplest that is right")

@@ -34,16 +34,15 @@ def shares(data: xr.Dataset) -> Table:
             # Every n has as many nodes.
             holding, error = float(simple.holding_share.mean()), float(simple.worst_error.max())
             most = [simple.needed_quantile.sel(share=share).max() for share in (0.5, 0.99)]
-            needed = [_ratio(x) for x in (*most, simple.needed.max(), corrected.needed.max())]
-            cells = [f"{100 * holding:.2f} %", f"{100 * error:.3g} %", *needed]
-            body.append([one.release.item(), quantity(part), *cells])
+            needed = (*most, simple.needed.max(), corrected.needed.max())
+            cells = [quantity(part), f"{100 * holding:.2f} %", f"{100 * error:.3g} %"]
+            body.append([one.release.item(), *cells, *map(_ratio, needed)])
         for part in each(one, "limit_quantity"):
             simple, corrected = (part.limit_needed.sel(model=x).values for x in _MODELS)
             there = simple[np.isfinite(simple)]
-            most = [np.quantile(there, share) for share in (0.5, 0.99, 1.0)]
-            needed = [_ratio(x) for x in (*most, np.nanmax(corrected))]
-            cells = [f"{100 * np.mean(there <= rule):.2f} %", "", *needed]
-            body.append([one.release.item(), words(part.limit_quantity.item()), *cells])
+            needed = (*np.quantile(there, (0.5, 0.99, 1.0)), np.nanmax(corrected))
+            cells = [words(part.limit_quantity.item()), f"{100 * np.mean(there <= rule):.2f} %", ""]
+            body.append([one.release.item(), *cells, *map(_ratio, needed)])
     return header, body
 
 

@@ -26,14 +26,12 @@ def table1(data: xr.Dataset) -> Table:
         "printed": value("printed", ".3f", ""),
         "difference": lambda part: number(part.computed - part.printed, "+.5f", ""),
     }
-    maps: Columns = {
-        "map": lambda part: f"restitution ({part.impact_map.item()} map)",
-        **ends,
-        "computed": value("restitution_range", ".5f"),
-        **dict.fromkeys(("printed", "difference"), lambda part: ""),
-    }
     header, body = table(each(data, "frequency_ratio", *ends), contacts)
-    return header, body + table(each(data, "impact_map", *ends), maps)[1]
+    for part in each(data, "impact_map", *ends):
+        place = [column(part) for column in ends.values()]
+        name = f"restitution ({part.impact_map.item()} map)"
+        body.append([name, *place, number(part.restitution_range, ".5f"), "", ""])
+    return header, body
 
 
 def thresholds(data: xr.Dataset) -> Table:
@@ -159,16 +157,10 @@ def ext_orders(data: xr.Dataset) -> Table:
         **{str(model): at(found, model=model) for model in data.model.values},
         "error zero at": value("error_zero", ".3g"),
     }
-    permanent: Columns = {
-        "quantity": lambda part: "permanent contact, second order",
-        "K": value("permanent_coefficient", ".4f"),
-        "C": lambda part: "–",
-        "law": value("permanent_law", ".4g"),
-        "restitution": value("permanent_threshold", ".4g"),
-        **dict.fromkeys(("corrected", "error zero at"), lambda part: "–"),
-    }
     header, body = table(each(data, "quantity"), columns)
-    return header, body + table([data], permanent)[1]
+    k, law, exact = (data[f"permanent_{name}"] for name in ("coefficient", "law", "threshold"))
+    numbers = [number(k, ".4f"), "–", number(law, ".4g"), number(exact, ".4g"), "–", "–"]
+    return header, [*body, ["permanent contact, second order", *numbers]]
 
 
 def ext_hertz(data: xr.Dataset) -> Table:

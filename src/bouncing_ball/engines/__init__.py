@@ -1,0 +1,36 @@
+"""Physics engines: their contact parameters from k, c and m, and what comes out of them.
+
+None of them is imported here, and none needs to be installed.
+"""
+
+from bouncing_ball.engines.drake import Drake
+from bouncing_ball.engines.engine import Engine
+from bouncing_ball.engines.generic import Generic
+from bouncing_ball.engines.lammps import Lammps, Liggghts
+from bouncing_ball.engines.mercurydpm import MercuryDPM
+from bouncing_ball.engines.mujoco import MuJoCo
+from bouncing_ball.engines.pybullet import PyBullet
+from bouncing_ball.errors import ModelError
+
+_ALL = (Generic(), MuJoCo(), Lammps(), Liggghts(), PyBullet(), Drake(), MercuryDPM())
+
+ENGINES: dict[str, Engine] = {engine.name: engine for engine in _ALL}
+"""The engines by name."""
+
+
+def engine_named(name: str) -> Engine:
+    """The engine of a name.
+
+    Raises
+    ------
+    ModelError
+        If there is none, with those that there are.
+
+    Examples
+    --------
+    >>> engine_named("mujoco").releases
+    (<Release.FORCE: 'force'>,)
+    """
+    if name not in ENGINES:
+        raise ModelError(f"unknown engine {name!r}: one of {', '.join(ENGINES)}")
+    return ENGINES[name]

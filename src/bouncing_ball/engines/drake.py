@@ -1,0 +1,53 @@
+"""Drake: point contact with the relaxation time τ = c/k, f = k (p + τ p′) ≥ 0."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.engines.engine import Engine, Parameters, Physical
+from bouncing_ball.engines.scheme import Scheme
+from bouncing_ball.errors import require
+
+
+class Drake(Engine):
+    """Discrete plant with the approximation "sap", whose contact is the linear spring-damper.
+
+    Two bodies are combined: their springs in series, their relaxation times summed. With the
+    same numbers on ball and table these are 2k in N/m and τ/2 = c/(2k) in s. The other
+    approximations, and ``hunt_crossley_dissipation``, are another contact law.
+
+    Examples
+    --------
+    >>> found = Drake().parameters(Physical(mass=2.0, stiffness=200.0, damping=4.0))
+    >>> found
+    {'point_contact_stiffness': 400.0, 'relaxation_time': 0.01}
+    >>> Drake().read(found, 2.0)
+    Physical(mass=2.0, stiffness=200.0, damping=4.0)
+    """
+
+    name = "drake"
+    releases = (Release.FORCE,)
+    scheme = Scheme.IMPLICIT
+
+    def parameters(self, contact: Physical) -> Parameters:
+        time = contact.damping / contact.stiffness / 2
+        return {"point_contact_stiffness": 2 * contact.stiffness, "relaxation_time": time}
+
+    def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
+        names = ("point_contact_stiffness", "relaxation_time")
+        m, double, half_time = self._given(parameters, mass, *names)
+        require(double > 0, double, names[0], "positive")
+        return Physical(m, double / 2, double * half_time)
+
+    def snippet(self, contact: Physical, release: Release, time_step: float) -> str:
+        stiffness, time = self.parameters(contact).values()
+        return f"""\
+plant = MultibodyPlant(time_step={time_step!r})  # s
+plant.set_contact_model(ContactModel.kPoint)
+plant.set_discrete_contact_approximation(DiscreteContactApproximation.kSap)
+# Of ball ({contact.mass!r} kg) and table alike, in N/m and s.
+properties = ProximityProperties()
+AddContactMaterial(
+    point_stiffness={stiffness!r}, friction=CoulombFriction(0, 0), properties=properties
+)
+properties.AddProperty("material", "relaxation_time", {time!r})"""

@@ -1,0 +1,116 @@
+r"""MuJoCo: ``solref`` and ``solimp``, a spring-damper of accelerations that is weighed by d.
+
+A contact's acceleration is ``a₁ = (1 - d) a₀ - d (b v + κ x)``, with a₀ that of all other forces,
+x < 0 in contact and the impedance d of ``solimp`` (dmin at the surface, dmax from the depth
+``width`` on). From a ``solref`` of two negative numbers (-K, -B), the direct form, MuJoCo takes
+``κ = K d/dmax²`` and ``b = B/dmax``; from two positive ones, the time constant T and the damping
+ratio ζ, ``κ = d/(dmax² T² ζ²)`` and ``b = 2/(dmax T)``. Where d = dmax, the impedance is out of
+it, and the contact has ::
+
+    k/m = K = 1/(T² ζ²),   c/m = B = 2/T,   c/(2√(km)) = ζ
+
+per unit of mass. What d is left in is the load: gravity, and the table that accelerates, push in
+contact with their (1 - d)-th part. A spring and a damper have d = 0, and MuJoCo's least is 10⁻⁴.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.engines.engine import Engine, Physical
+from bouncing_ball.engines.scheme import Scheme
+from bouncing_ball.errors import ModelError
+
+# dmin, dmax, width in m, midpoint and power of MuJoCo's default.
+_DEFAULT = (0.9, 0.95, 0.001, 0.5, 2.0)
+# MuJoCo's own limits of an impedance.
+_LEAST, _MOST = 1e-4, 0.9999
+
+
+def _numbers(name: str, value: str | Sequence[float], counts: range) -> list[float]:
+    """The numbers of an attribute, as XML or as a sequence has them."""
+    parts = value.split() if isinstance(value, str) else list(value)
+    allowed = f"{counts[0]} numbers" if len(counts) == 1 else f"{counts[0]} to {counts[-1]} numbers"
+    try:
+        found = [float(part) for part in parts]
+    except (TypeError, ValueError):
+        found = []
+    if len(found) not in counts or not np.all(np.isfinite(found)):
+        shown = value if isinstance(value, str) else " ".join(map(str, value))
+        raise ModelError(f"{name} = {shown!r} is not {allowed}")
+    return found
+
+
+def impedance(solimp: str | Sequence[float] = ()) -> list[float]:
+    """dmin, dmax, width, midpoint and power, with MuJoCo's defaults for those not given.
+
+    Raises
+    ------
+    ModelError
+        If they are not up to five numbers, or an impedance is not between 0 and 1.
+
+    Examples
+    --------
+    >>> impedance("1e-4 1e-4")
+    [0.0001, 0.0001, 0.001, 0.5, 2.0]
+    """
+    given = _numbers("solimp", solimp, range(6))
+    for value in given[:2]:
+        if not 0 <= value <= 1:
+            raise ModelError(f"solimp has the impedance {value:g}, which is not in [0, 1]")
+    found = given + list(_DEFAULT[len(given) :])
+    return [float(np.clip(d, _LEAST, _MOST)) for d in found[:2]] + found[2:]
+
+
+class MuJoCo(Engine):
+    """The direct form of ``solref``, and the least impedance.
+
+    Examples
+    --------
+    >>> contact = Physical(mass=0.5, stiffness=5e4, damping=10.0)
+    >>> MuJoCo().parameters(contact)
+    {'solref': [-100000.0, -20.0], 'solimp': [0.0001, 0.0001, 0.001]}
+    >>> MuJoCo().read(MuJoCo().parameters(contact), 0.5) == contact
+    True
+
+    The form of positive numbers, 20 ms and critical damping by default:
+
+    >>> MuJoCo().read({"solref": "0.02 0.5"}, 1.0)
+    Physical(mass=1.0, stiffness=10000.0, damping=100.0)
+    """
+
+    name = "mujoco"
+    releases = (Release.FORCE,)
+    scheme = Scheme.SEMI_IMPLICIT
+
+    def parameters(self, contact: Physical) -> dict[str, list[float]]:
+        per_mass = [-contact.stiffness / contact.mass, -contact.damping / contact.mass]
+        return {"solref": per_mass, "solimp": [_LEAST, _LEAST, 0.001]}
+
+    def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
+        values = {name: value for name, value in parameters.items() if value is not None}
+        impedance(values.pop("solimp", ()))
+        if "solref" not in values:
+            raise ModelError("solref is missing: give it, such as '-10000 -20'")
+        first, second = _numbers("solref", values.pop("solref"), range(2, 3))
+        (m,) = self._given(values, mass)
+        if first < 0 and second <= 0:
+            return Physical(m, -first * m, -second * m)
+        if first > 0 and second > 0:
+            return Physical(m, m / (first * second) ** 2, 2 * m / first)
+        raise ModelError(
+            f"solref = '{first:g} {second:g}' is neither two negative numbers, -k/m and -c/m, nor "
+            "two positive ones, a time constant and a damping ratio"
+        )
+
+    def snippet(self, contact: Physical, release: Release, time_step: float) -> str:
+        found = self.parameters(contact)
+        solref, solimp = (" ".join(map(repr, found[name])) for name in ("solref", "solimp"))
+        return f"""\
+<option timestep="{time_step!r}"/>  <!-- s -->
+<default>
+  <!-- Of ball ({contact.mass!r} kg) and table alike: -k/m in 1/s^2, -c/m in 1/s; shares, m -->
+  <geom condim="1" solref="{solref}" solimp="{solimp}"/>
+</default>"""

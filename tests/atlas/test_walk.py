@@ -35,12 +35,6 @@ def test_the_walk_gives_the_orbits_that_root_finding_gives(small, every_node):
                 assert np.array_equal(found.is_stable(), step.stable[k])
 
 
-def test_each_ratio_of_the_plan_is_met_once(small, every_node):
-    plan = small()
-    met = [step.frequency_ratio for step in walk(every_node(plan, plan.rows[0]), plan.ratios)]
-    assert np.array_equal(np.concatenate(met), plan.ratios[::-1])
-
-
 def test_what_the_walk_loses_is_looked_for(small, every_node, monkeypatch):
     plan = small(examined=COMPARED)
     nodes, few = every_node(plan, plan.rows[0]), plan.ratios[-3:]

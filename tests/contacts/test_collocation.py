@@ -10,6 +10,7 @@ from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji, tsuji_damping
+from bouncing_ball.contacts.signature import free_impact
 from bouncing_ball.errors import ModelError
 
 
@@ -58,7 +59,18 @@ class _Pulling(ContactLaw):
         return -penetration
 
 
+class _Sinking(ContactLaw):
+    """Overdamped: a free ball comes back to the table's level after an infinite time."""
+
+    name = "sinking"
+
+    def force(self, penetration, rate):
+        return penetration + 4 * rate
+
+
 def test_what_a_law_cannot_do_is_said():
+    with pytest.raises(ModelError, match="sinking: no end of a free impact of speed 2 was found"):
+        free_impact(_Sinking(), 2.0)
     with pytest.raises(ModelError, match="pulling does not stop the ball"):
         contacts(_Pulling(), 1.0)
     for r in (0.95, 1.0):

@@ -9,7 +9,10 @@ from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError
+from bouncing_ball.motion.angles import table
 from bouncing_ball.motion.history import history
+from bouncing_ball.motion.landing import Flight, land
+from bouncing_ball.motion.resumption import resumption
 from bouncing_ball.motion.sequence import Status
 from bouncing_ball.motion.simulation import next_impact, simulate
 from bouncing_ball.orbits.spring_damper_limits import Side, orbit_at
@@ -69,6 +72,46 @@ def test_contacts_that_resume_below_the_level(omega, zeta, factor, taylor_ball):
         np.testing.assert_allclose(b, a, rtol=0, atol=1e-11)
 
 
+class _Unknown(SpringDamper):
+    """A spring-damper of which the release is known by its force alone."""
+
+    lag = None
+
+    def grip(self, penetration, rate):
+        return self.force(penetration, rate)
+
+
+def test_what_comes_first_after_a_release_below_the_level():
+    """A ball that is let go comes up to the level, or the force returns before."""
+    rng = np.random.default_rng(1)
+    size = 4000
+    omega, zeta, lam = (
+        10 ** rng.uniform(-0.5, 1, size),
+        *rng.uniform(0.05, [[0.95], [4]], (2, size)),
+    )
+    x, y = table(rng.uniform(-np.pi, np.pi, size), lam)
+    contact, rate = SpringDamper(omega, zeta, Release.FORCE), 10 ** rng.uniform(-3, 0.7, size)
+    let_go = rate + contact.lag * (y - 1) > 0
+    contact, size = contact[let_go], let_go.sum()
+    flight = Flight(*(z[let_go] for z in (-2 * zeta / omega * rate, rate, x, y, lam)))
+    time, resumed = resumption(flight, contact)
+    assert 0.1 < resumed.mean() < 0.9
+    end = np.where(resumed, time, land(flight, time).time)
+    # Between the samples of a flight it may come up and be unloaded: none of these does.
+    height, speed, _, _ = flight.gap(np.linspace(0, 1, 801)[1:-1, np.newaxis] * end)
+    below = np.logical_and.accumulate(height < 0)
+    assert below[:, resumed].all() and not below[-1, ~resumed].any()
+    assert np.min(height + contact.lag * speed, initial=0, where=below) > -1e-13
+    height, speed, _, _ = flight.gap(time)
+    assert np.all(height[resumed] < 0)
+    assert np.abs(height + contact.lag * speed)[resumed].max() < 1e-12
+    # Samples of the grip find the same, and miss a force that returns for a moment.
+    law = _Unknown(contact.frequency_ratio, contact.damping_ratio, Release.FORCE)
+    other, back = resumption(flight, law)
+    assert np.mean(back != resumed) < 0.001
+    assert np.abs(other - time)[back & resumed].max() < 1e-9
+
+
 def test_an_elastic_ball_on_a_table_at_rest_keeps_its_energy():
     """The only exact answer with many impacts: equal velocities and equal times."""
     omega, speed = 7.0, 1.5
@@ -88,8 +131,8 @@ def test_an_elastic_ball_on_a_table_at_rest_keeps_its_energy():
 def test_permanent_contact_begins_and_ends_at_its_threshold(omega, zeta, release):
     contact = SpringDamper(omega, zeta, release)
     threshold = float(permanent_contact_threshold(omega, zeta, release))
-    below, above = threshold * (1 - 1e-9), threshold * (1 + 1e-6)
-    lam = np.array([below, above])
+    # Of the threshold some roundings are unknown.
+    lam = threshold * np.array([1 - 1e-12, 1 + 1e-12])
     sequence = simulate(contact, lam, 0.2, lam * np.cos(0.2) - 1e-3, 300)
     assert sequence.status.tolist() == [Status.PERMANENT_CONTACT, Status.BOUNCING]
     last = sequence.impacts[0] - 1
@@ -166,7 +209,7 @@ def test_the_ball_is_where_its_state_says(lam, omega, zeta, phase, speed, releas
 def test_errors_are_one_line(one_line):
     for arguments, part in (
         ((SpringDamper(2.0, 0.1), -1.0, 0.0, -1.0, 2), "amplitude"),
-        ((SpringDamper(2.0, 0.1), 1.0, 0.0, 1.5, 2), "rises"),
+        ((SpringDamper(2.0, 0.1), 1.0, 0.0, 1 + 1e-12, 2), "rises"),
         ((SpringDamper(2.0, 0.1), 1.0, np.nan, 1.5, 2), "finite"),
     ):
         with pytest.raises(ModelError) as error:
@@ -187,6 +230,17 @@ def test_a_stiff_undamped_contact_ends_in_the_end():
     free = -start * np.cos(omega * s) - rate / omega * np.sin(omega * s)
     # In units of the static compression; the phase ϖ s is known to 1e-12.
     assert np.all((steady + free) * omega**2 < 1e-11)
+
+
+@pytest.mark.parametrize("detuning", [0.0, 1e-9, 1e-6, 1e-3])
+def test_next_to_the_undamped_resonance(detuning):
+    """There the steady part is infinite, and near it all digits are lost against the transient."""
+    contact = SpringDamper(1 + detuning, 0.0)
+    impact = simulate(contact, 1.2, 0.4, 1.2 * np.cos(0.4) - 3, 1)
+    # The flow keeps its digits at the resonance too.
+    end = contact.flow(impact.contact_duration[0], 0.0, -3.0, 0.4, 1.2)
+    assert abs(end.displacement) < 1e-12
+    assert abs(end.velocity - impact.relative_release_velocity[0]) < 1e-12
 
 
 def test_nearly_critical_damping():

@@ -120,7 +120,7 @@ def test_errors_are_one_line(one_line):
         ((0.0, 1.0, 0.0, 3.0, 2), "(0, 1]"),
         ((0.5, -1.0, 0.0, 3.0, 2), "amplitude"),
         ((0.5, np.inf, 0.0, 3.0, 2), "amplitude"),
-        ((0.5, 1.0, 0.0, 1.5, 2), "rises"),
+        ((0.5, 1.0, 0.0, 1 + 1e-12, 2), "rises"),
         ((0.5, 1.0, np.inf, 0.5, 2), "finite"),
     ):
         with pytest.raises(ModelError) as error:

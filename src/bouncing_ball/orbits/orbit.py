@@ -330,7 +330,8 @@ class Orbit(Batch, ABC):
             cycle = part.cycle(part.phase, speed)
             returned = np.abs(cycle.relative_velocity / speed - 1) < _SAME
             same = np.abs(cycle.time - 2 * np.pi * np.asarray(part.n)) < _SAME
-            admissible[possible] = same & returned & (cycle.displacement == 0)
+            # A contact that resumes below the table's level starts with a rising ball.
+            admissible[possible] = same & returned
         return admissible
 
     def defect(self) -> np.ndarray:

@@ -19,12 +19,15 @@ from bouncing_ball.figures.style import COLOURS, LINES, MARKS
 def restitution_families(data: xr.Dataset) -> Figure:
     """Fig. 3: the restitution model's branch for each family."""
     figure, axes = canvas(4.6, height=3.6)
-    _name_curves(axes, [f"$n={n}$" for n in data.n.values])
     for family, colour in coloured(data, "n"):
         _draw_branch(axes, family, family.phase, colour)
         _draw_named_points(axes, family.sel(impact_map="exact"), colour)
+        # At the branch itself, because five colours are not told apart in grey.
+        top = family.isel(point=family.phase.fillna(-np.inf).argmax("point"))
+        end, name = (top.amplitude, top.phase / np.pi), f"$n={family.n.item()}$"
+        axes.annotate(name, end, (3, 0), textcoords="offset points", va="center", color=colour)
     _name_axes(axes, data, r"phase $\varphi/\pi$", parameters(data, "restitution"))
-    legend_below(figure, ncols=5, columnspacing=1.0)
+    legend_below(figure, ncols=4)
     return figure
 
 

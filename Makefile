@@ -57,7 +57,7 @@ test: $(SETUP)
 # What computes: no run of the pipeline, no comparison with the record, no picture, and
 # nothing that takes seconds.
 quick: $(SETUP)
-	$(PYTEST) $(addprefix --ignore=tests/,workflow record figures) -m "not long and not slow and not cluster"
+	$(PYTEST) $(addprefix --ignore=tests/,workflow figures) -m "not long and not slow and not cluster"
 
 # The atlas on a Slurm of its own: mostly waiting, and skipped without one.
 test-cluster: $(SETUP)

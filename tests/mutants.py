@@ -5,7 +5,7 @@ doctests of the module and the tests of its folder run first, then those of ``ma
 is noticed if one of them fails, or hangs. What survives is listed: it changes nothing, or a
 test is missing.
 
-usage: python tests/mutants.py [--count 200] [--seed 2011] [--only PART ...]
+usage: python tests/mutants.py [--count 200] [--seed 2011] [--workers 2] [--only PART ...]
 """
 
 import argparse
@@ -17,6 +17,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -99,8 +100,10 @@ def _computing(node: ast.AST) -> Iterator[ast.AST]:
             continue
         for child in value if isinstance(value, list) else [value]:
             if isinstance(child, ast.AST) and not isinstance(child, ast.JoinedStr):
-                yield child
-                yield from _computing(child)
+                # What is zipped has one length: strict=False changes nothing.
+                if not (isinstance(child, ast.keyword) and child.arg == "strict"):
+                    yield child
+                    yield from _computing(child)
 
 
 def _wrong(node: ast.AST) -> Iterator[ast.expr]:
@@ -150,18 +153,18 @@ def sample(count: int, seed: int) -> list[tuple[Path, Fault]]:
     The order is that of a checksum of the fault itself, so that an edit elsewhere leaves
     the sample as it is.
     """
-    every = [
-        (path.relative_to(ROOT), fault)
-        for layer in LAYERS
-        for path in sorted((ROOT / PACKAGE / layer).rglob("*.py"))
-        for fault in faults(path.read_text())
-    ]
-
-    def order(drawn: tuple[Path, Fault]) -> bytes:
-        path, fault = drawn
-        return hashlib.sha256(f"{seed} {path} {fault.before} {fault.after}".encode()).digest()
-
-    return sorted(every, key=order)[:count]
+    every = []
+    for layer in LAYERS:
+        for path in sorted((ROOT / PACKAGE / layer).rglob("*.py")):
+            # Equal faults of a module are told apart by their number, or they come together.
+            seen: Counter[str] = Counter()
+            for fault in faults(path.read_text()):
+                name = path.relative_to(ROOT)
+                text = f"{seed} {name} {fault.before} {fault.after}"
+                seen[text] += 1
+                order = hashlib.sha256(f"{text} {seen[text]}".encode()).digest()
+                every.append((order, name, fault))
+    return [(name, fault) for _, name, fault in sorted(every)[:count]]
 
 
 def passes(tree: Path, *tests: str) -> bool:
@@ -181,15 +184,14 @@ def passes(tree: Path, *tests: str) -> bool:
 def survives(tree: Path, path: Path, fault: Fault) -> bool:
     """Whether no test notices a fault."""
     layer = path.relative_to(PACKAGE).parts[0]
-    near = [str(path), f"tests/{layer}", *(["tests/contracts"] if layer in CONTRACTS else [])]
+    folders = [f"tests/{layer}", *(["tests/contracts"] if layer in CONTRACTS else [])]
+    own = [name for name in [f"{folders[0]}/test_{path.stem}.py"] if (tree / name).exists()]
+    before = [*folders, "tests/workflow", "tests/figures"]
     right = (tree / path).read_text()
     (tree / path).write_text(fault.source)
     try:
-        return passes(tree, *near) and passes(
-            tree,
-            "src",
-            "tests",
-            *(f"--ignore=tests/{x}" for x in ("workflow", "record", "figures")),
+        return passes(tree, str(path), *own, *folders) and passes(
+            tree, "src", "tests", *(f"--ignore={folder}" for folder in before)
         )
     finally:
         (tree / path).write_text(right)
@@ -200,6 +202,7 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--seed", type=int, default=2011)
     parser.add_argument("--only", nargs="*", default=[""], help="parts of the paths of modules")
+    parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
     options = parser.parse_args()
     drawn = [
         (path, fault)
@@ -208,8 +211,7 @@ def main() -> None:
     ]
     trees: queue.SimpleQueue[Path] = queue.SimpleQueue()
     with tempfile.TemporaryDirectory() as folder:
-        workers = os.cpu_count() or 1
-        for worker in range(workers):
+        for worker in range(options.workers):
             tree = Path(folder) / str(worker)
             tracked = subprocess.run(
                 ["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=True, text=True
@@ -229,7 +231,7 @@ def main() -> None:
                 trees.put(tree)
 
         survived = 0
-        with ThreadPoolExecutor(workers) as pool:
+        with ThreadPoolExecutor(options.workers) as pool:
             for (path, fault), alive in zip(drawn, pool.map(tried, drawn), strict=True):
                 survived += alive
                 state = "SURVIVED" if alive else "noticed "

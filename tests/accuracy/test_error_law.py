@@ -16,7 +16,7 @@ from bouncing_ball.accuracy.errors import errors
 from bouncing_ball.accuracy.quantities import OF_IMPACTS, Quantity
 from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
-from bouncing_ball.contacts.signature import Signature
+from bouncing_ball.contacts.signature import Instant, Signature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits import restitution_orbit
@@ -97,6 +97,26 @@ def test_the_remainder_where_the_law_is_stated_to_hold(release):
     assert array(REMAINDER).tolist() == [2, 2, 4, 2, 2, 2]
     far = left.law + 1.001 * array(REMAINDER)[:, np.newaxis] * size
     assert np.all(remainder(n, instant, lam, far).exceeded[np.isfinite(size)])
+
+
+def test_the_scales_by_hand():
+    """Λ sin ψ₀ = 0.4, so that a₀ = 0.6 and the line turns ψ by σ a₀/((1 + r) Λ sin ψ₀) = 0.1."""
+    half, delay, r, load, duration = 2 * np.pi, 0.05, 0.5, 0.1, 0.1
+    fold, speed, lift = half / 3, 2 * half / 1.5, 0.4
+    instant, lam = Instant(delay, r, load, duration), np.hypot(fold, lift)
+    node, whole = load / (half * (1 - r)), duration * (1 + 0.6) / (r * speed)
+    expected = [
+        (fold * 0.1 + (half + fold) * delay) / (lift + half**2 / 2),
+        (duration - delay) / half,
+        (0.1 + delay) / np.arctan2(lift, fold),
+        whole,
+        node,
+        node + delay / half,
+    ]
+    np.testing.assert_allclose(array(scale(2, instant, lam)), expected, rtol=1e-13)
+    # δ_SN + δ_load + δ_period.
+    small = 0.1 * lam / lift + whole + duration * lam
+    assert small_parameter(2, instant, lam) == pytest.approx(small, rel=1e-13)
 
 
 @pytest.mark.parametrize("release", RELEASES)

@@ -44,6 +44,8 @@ def test_a_power_is_closed_to_the_last_digit(sign):
     ratio, status = of(lambda x: sign * x**-2.0, 0.01, 0.0004, 2.0, 1e-9)
     assert ratio == pytest.approx([10.0, 50.0, np.nan, np.nan], rel=1e-14, nan_ok=True)
     assert status == [FOUND, FOUND, ALWAYS, NEVER]
+    # The tolerance itself is within the tolerance.
+    assert of(lambda x: np.full_like(x, sign * 0.01), 0.01)[1] == [ALWAYS]
 
 
 def test_the_last_of_several_crossings_counts():

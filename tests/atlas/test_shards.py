@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.accuracy.errors import errors, modulus, orbit_errors
-from bouncing_ball.accuracy.quantities import OF_LIMITS
+from bouncing_ball.accuracy import error_law
+from bouncing_ball.accuracy.errors import errors
+from bouncing_ball.accuracy.quantities import OF_LIMITS, OF_ORBITS
 from bouncing_ball.atlas import answers, shards
 from bouncing_ball.atlas.crossings import last_crossings
 from bouncing_ball.atlas.walk import walk
+from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.errors import ModelError
 
 
@@ -38,29 +40,64 @@ def test_a_shard_too_few_or_too_many_is_refused(small, parts, limits, one_line, 
     one_line(error, "of the atlas is in", "shards, not in one")
 
 
-def test_the_answers_are_those_of_all_errors_at_once(small, atlas, every_node):
-    # Without any piece: the errors of all nodes of a row kept, and asked directly.
+def test_the_answers_are_those_of_all_errors_at_once(small, every_node, monkeypatch):
+    # Without any piece: the errors of all nodes of a row kept, and asked directly. As if the
+    # models had no orbit at some Λ, and with so small an M that the law is exceeded.
+    def with_gaps(orbit):
+        return np.where(orbit.amplitude < np.median(orbit.amplitude), errors_of(orbit), np.nan)
+
+    errors_of, bound, counted = answers.orbit_errors, 0.05, []
+    monkeypatch.setattr(answers, "orbit_errors", with_gaps)
+    monkeypatch.setattr(error_law, "REMAINDER", dict.fromkeys(OF_ORBITS, bound))
     plan = small()
     row = plan.rows[4]
-    rule, family, tile = np.unravel_index(row, plan.shape)
-    there = atlas.isel(release=rule, n=family, restitution=tile)
     nodes = every_node(plan, row)
     steps = list(walk(nodes, plan.ratios))
     ratios = np.concatenate([step.frequency_ratio for step in steps])
-    found = np.concatenate([orbit_errors(step.orbit) for step in steps], axis=2)
+    found = np.concatenate([with_gaps(step.orbit) for step in steps], axis=2)
     stable = np.concatenate([step.stable for step in steps])
-    for ratio in plan.examined:
-        k, at = int(np.flatnonzero(ratios == ratio)[0]), there.sel(frequency_ratio=ratio)
-        tiles = modulus(found[:, :, k]).reshape(*found.shape[:2], 3, -1)
-        assert np.array_equal(at.largest_error.values, np.moveaxis(tiles.max(-1), -1, 0))
+    # One tolerance is an error itself, which is then within it.
+    at_ten = found[0, 0, ratios == 10.0][0]
+    plan = small(tolerances=[0.1, float(np.nanmax(np.abs(at_ten))), 0.001])
+    there = answers.row_answers(plan, row)
+    law = error_law.coefficients(nodes.n, nodes.damping_ratio, nodes.amplitude, nodes.release)
+    for place, ratio in enumerate(plan.examined):
+        k, at = int(np.flatnonzero(ratios == ratio)[0]), there.isel(frequency_ratio=place)
+        tiles = found[:, :, k].reshape(2, 4, 3, -1)
+        finite, size = np.isfinite(tiles), np.where(np.isfinite(tiles), np.abs(tiles), -np.inf)
+        assert not finite.all() and finite.any()
+        assert np.array_equal(at.largest_error, np.moveaxis(size.max(-1), -1, 0))
         for m, limit in enumerate(plan.tolerances):
-            count = np.moveaxis((tiles > limit).sum(-1), -1, 0)
-            assert np.array_equal(at.exceeding.values[..., m], count)
+            beyond = ~finite | (np.abs(tiles) > limit)
+            assert np.array_equal(at.exceeding[..., m], np.moveaxis(beyond.sum(-1), -1, 0))
+            if m == 1:  # The threshold is an examined ϖ itself, but for rounding.
+                continue
+            # It holds from there on if the error is within the tolerance at every larger ϖ.
+            right = np.all(np.abs(found[:, :, : k + 1]) <= limit, axis=2).reshape(tiles.shape)
+            assert np.array_equal(at.holding[..., m], np.moveaxis(right.sum(-1), -1, 0))
         assert np.array_equal(at.unstable, (~stable[k]).reshape(3, -1).sum(-1))
         for name in ("restitution", "amplitude"):
             values = np.broadcast_to(getattr(nodes, name).reshape(3, -1), tiles.shape)
-            worst = np.take_along_axis(values, tiles.argmax(-1)[..., np.newaxis], -1)[..., 0]
-            assert np.array_equal(at[f"worst_{name}"].values, np.moveaxis(worst, -1, 0))
+            worst = np.take_along_axis(values, size.argmax(-1)[..., np.newaxis], -1)[..., 0]
+            worst = np.where(finite.any(-1), worst, np.nan)
+            assert np.array_equal(at[f"worst_{name}"], np.moveaxis(worst, -1, 0), equal_nan=True)
+        # |error - K/ϖ| > M S δ where δ < 0.3.
+        own = nodes.n, Signature(nodes.contact(ratio))(), nodes.amplitude
+        small_number, whole = error_law.small_parameter(*own), error_law.scale(*own)
+        stated = np.isfinite(found[0, :, k]) & (small_number < 0.3)
+        off = [np.abs(found[0, j, k] - law[q] / ratio) / whole[q] for j, q in enumerate(OF_ORBITS)]
+        beyond = stated & (np.array(off) > bound * small_number)
+        counted += [(stated & ~beyond).sum(), beyond.sum(), (~stated).sum()]
+        for name, which in (("law_stated", stated), ("law_exceeding", beyond)):
+            assert np.array_equal(at[name].T, which.reshape(4, 3, -1).sum(-1)), name
+    assert np.all(np.sum(np.reshape(counted, (-1, 3)), axis=0) > 0)
+
+
+def test_the_orbits_that_were_looked_for_are_counted(small, monkeypatch):
+    monkeypatch.setattr("bouncing_ball.atlas.walk.REACHED", -1.0)
+    plan = small()
+    found = answers.row_answers(plan, plan.rows[0]).sought
+    assert found.values.tolist() == 3 * [plan.nodes_per_tile * len(plan.ratios)]
 
 
 def test_counts_add_up(small, atlas):
@@ -78,6 +115,9 @@ def test_counts_add_up(small, atlas):
     assert np.all(bins[last] <= largest)
     above = largest >= np.append(bins[1:], np.inf)[last]
     assert np.all(~above | (last == len(bins) - 1) | (last == 0))
+    # The first bin has what is within the tolerance at every ϖ scanned.
+    always = atlas.threshold_counts.isel(threshold_bin=0).values[reached] == plan.nodes_per_tile
+    assert np.array_equal(always, np.isclose(largest, 3.0, rtol=1e-9)) and always.any()
     # What is tolerated from a ϖ on is tolerated there, and from any larger one on.
     assert int((atlas.holding + atlas.exceeding).max()) == plan.nodes_per_tile
     assert np.all(atlas.holding.diff("frequency_ratio") >= 0)

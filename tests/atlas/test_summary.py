@@ -11,7 +11,7 @@ from bouncing_ball.contacts.damping import damping_ratio
 
 RANGES = {"tiles": 2, "samples": 2}
 PLAN = Plan(
-    n=[2],
+    n=[2, 3],
     release=["displacement"],
     restitution={"min": 0.5, "max": 0.9} | RANGES,
     position=RANGES,
@@ -48,13 +48,14 @@ EXPECTED = {
     "failing_restitution": 0.7,
     "failing_position": 1.0,
     "unstable_share": [2 / 16, 4 / 16],
-    "law_stated": [3, 10],
-    "law_exceeding": [2, 0],
+    # Of both families.
+    "law_stated": [6, 20],
+    "law_exceeding": [4, 0],
     "worst_error": 0.02,
     "worst_restitution": 0.7,
     "worst_amplitude": 4.0,
-    "sought_orbits": 5,
-    "orbits": 16 * 5,
+    "sought_orbits": 10,
+    "orbits": 2 * 16 * 5,
     "restitution_edge": [0.5, 0.7, 0.9],
     "position_edge": [0.0, 0.5, 1.0],
 }
@@ -73,14 +74,14 @@ def made():
     data["limit_needed"] = limit, np.reshape([7.0, 8.0], (1, 1, 2, 1, 1, 1))
     coords = {"tolerance": [0.01], "frequency_ratio": [10.0, 100.0], "position": [0.25, 0.75]}
     coords |= {"restitution": [0.6, 0.8], "threshold_bin": [0.0, 1.0, 10.0, 100.0]}
-    # The same for all quantities.
-    atlas = xr.Dataset(data, coords).isel(quantity=[0] * 4, limit_quantity=[0] * 3)
+    # The same for all quantities, and for both families.
+    atlas = xr.Dataset(data, coords).isel(quantity=[0] * 4, limit_quantity=[0] * 3, n=[0, 0])
     return summary(PLAN, atlas)
 
 
 @pytest.mark.parametrize("name", EXPECTED)
 def test_by_hand(made, name):
-    one = made[name].isel(quantity=0, limit_quantity=0, missing_dims="ignore")
+    one = made[name].isel(quantity=0, limit_quantity=0, n=0, missing_dims="ignore")
     assert np.allclose(np.squeeze(one.values), EXPECTED[name], rtol=1e-7)
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.atlas.walk import REACHED, stiff_start, walk
+from bouncing_ball.atlas.walk import REACHED, extrapolated, stiff_start, walk
 from bouncing_ball.orbits import spring_damper_limits as limits
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_branch import branch_point
@@ -35,12 +35,6 @@ def test_the_walk_gives_the_orbits_that_root_finding_gives(small, every_node):
                 assert np.array_equal(found.is_stable(), step.stable[k])
 
 
-def test_each_ratio_of_the_plan_is_met_once(small, every_node):
-    plan = small()
-    met = [step.frequency_ratio for step in walk(every_node(plan, plan.rows[0]), plan.ratios)]
-    assert np.array_equal(np.concatenate(met), plan.ratios[::-1])
-
-
 def test_what_the_walk_loses_is_looked_for(small, every_node, monkeypatch):
     plan = small(examined=COMPARED)
     nodes, few = every_node(plan, plan.rows[0]), plan.ratios[-3:]
@@ -50,6 +44,18 @@ def test_what_the_walk_loses_is_looked_for(small, every_node, monkeypatch):
     (step,) = walk(nodes, few)
     assert np.all(step.sought) and not np.any(expected.sought)
     assert np.max(step.orbit.distance(expected.orbit)) < 1e-8
+
+
+def test_an_orbit_that_is_not_at_its_node_to_six_digits_is_lost(small, every_node, monkeypatch):
+    # An extrapolation so bad that one correction leaves some orbits farther off, and others not.
+    monkeypatch.setattr("bouncing_ball.atlas.walk.extrapolated", lambda *x: 0.8 * extrapolated(*x))
+    plan = small()
+    for row in rows(plan, 4):
+        nodes = every_node(plan, row)
+        steps = list(walk(nodes, plan.ratios))
+        off = [np.max(np.abs(step.orbit.amplitude / nodes.amplitude - 1)) for step in steps]
+        assert max(off) <= 1e-6
+        assert any(np.any(step.sought) for step in steps)
 
 
 @pytest.mark.parametrize("ratio", [1e5, 1e7])

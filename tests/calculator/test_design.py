@@ -10,7 +10,7 @@ from bouncing_ball import design
 from bouncing_ball.accuracy import error_law
 from bouncing_ball.accuracy.errors import errors
 from bouncing_ball.accuracy.quantities import Quantity
-from bouncing_ball.calculator.verdict import assessed
+from bouncing_ball.calculator.verdict import assessed, notes
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
@@ -178,6 +178,7 @@ def test_a_hertz_contact_is_judged_by_its_own_orbits():
     # What is not known of it is neither claimed nor judged.
     assert found.permanent_contact is errors["permanent_contact"] is None
     assert not found.is_good_enough and "no value to compare" in found.reason
+    assert not any("pulls before it is released" in note for note in found.notes)
     assert found.verdict == (
         "Whether the restitution model is good enough in the threshold of permanent contact "
         "is not known."
@@ -234,11 +235,33 @@ def test_the_verdict_is_about_the_first_stable_family():
     assert design(**STEEL | {"acceleration": "1.1 g"}, restitution=0.85).n == 2
 
 
+def test_a_stable_orbit_on_which_another_impact_comes_first_is_not_preferred():
+    # In the contact of this 2-T orbit the ball would rise above the table: it is released before.
+    parameters = UNIT | {"n": None, "restitution": 0.15}
+    found = design(**parameters, acceleration=3.5, stiffness=1.0, quantity="permanent_contact")
+    one, two = found.orbits[:2]
+    orbit = SpringDamperModel(SpringDamper.from_restitution(0.15, 1.0)).orbit(2, 3.5)
+    inside = np.linspace(0.0, float(orbit.contact_duration), 200)
+    assert np.max(orbit.contact_motion(inside)[0]) > 0.7
+    assert two.is_stable and not two.is_admissible and not one.is_stable and found.n == 1
+    (note,) = [x for x in notes(found.case, two) if "2-T" in x]
+    assert note.startswith("the 2-T orbit is inadmissible: another impact comes first")
+
+
+@pytest.mark.parametrize(
+    ("change", "pulls"),
+    # At the release the force is -2ζϖδ′, or none.
+    [({}, True), ({"release": "force"}, False), ({"restitution": 1.0}, False)],
+)
+def test_a_damped_contact_released_at_the_table_pulls(change, pulls):
+    found = design(**STEEL | {"restitution": 0.85, "n": 1} | change)
+    assert any("pulls before it is released" in note for note in found.notes) is pulls
+
+
 @pytest.mark.parametrize(("ratio", "noted"), [(0.999, True), (1.001, False)])
 def test_a_contact_slower_than_the_table_is_noted(ratio, noted):
     found = design(**UNIT, stiffness=ratio**2, acceleration=0.9, quantity="permanent_contact")
     assert any("slower than the table" in note for note in found.notes) is noted
-    assert any("pulls before it is released" in note for note in found.notes)
 
 
 def test_the_error_law_holds_up_to_its_small_parameter():

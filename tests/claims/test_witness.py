@@ -1,5 +1,7 @@
 """The cross-check: what the accepted datasets show agrees, and what is wrong is seen."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,8 +12,11 @@ from bouncing_ball.claims.witness import (
     HOLDS,
     LEAVES,
     SHOWN,
+    formula_and_equations,
+    located,
     witness,
 )
+from bouncing_ball.continuation.corrector import newton
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import ModelError
 from bouncing_ball.figures.tables.rows import witness as rows
@@ -56,6 +61,7 @@ def test_all_routes_agree_on_all_that_is_shown(result, recorded):
         ("fig15", "restitution_amplitude"),
         ("fig15", "phase"),
         ("table1", "computed"),
+        ("table1", "special_contact_duration"),
     ],
 )
 def test_a_number_that_is_off_is_seen(recorded, name, variable, one_line):
@@ -100,6 +106,26 @@ def test_formula_and_equations_each_see_what_is_off(recorded, monkeypatch, blind
             patch.setattr("bouncing_ball.claims.witness._by_equations", lambda _, near: near)
         with pytest.raises(ModelError, match=FORMULA):
             witness({"fig05": data})
+
+
+def test_the_phase_of_a_bifurcation_is_compared_itself(recorded, monkeypatch):
+    # The nearest point of the branch alone does not see what is off across the branch.
+    shown = next(located(recorded["table1"]))
+    near = shown.model.nearest(shown.orbit)
+    monkeypatch.setattr(SpringDamperModel, "nearest", lambda self, orbit: near)
+    off = replace(shown.orbit, phase=shown.orbit.phase + 1e-9)
+    expected = 1e-9 / np.maximum(off.n, off.amplitude)
+    assert formula_and_equations(shown._replace(orbit=off)) == pytest.approx(expected, rel=0.01)
+
+
+def test_what_newtons_method_has_not_found_is_no_orbit(recorded, monkeypatch):
+    def stuck(*arguments):
+        found = newton(*arguments)
+        return found._replace(converged=found.converged & False, residual=found.residual + 2e-11)
+
+    monkeypatch.setattr("bouncing_ball.claims.witness.newton", stuck)
+    with pytest.raises(ModelError, match="disagree by inf"):
+        witness({"fig05": recorded["fig05"]})
 
 
 @pytest.mark.parametrize(

@@ -152,6 +152,12 @@ def test_a_drift_is_the_move_over_the_scale(values, k, scale):
     assert not np.delete(found, k).any()
 
 
+def test_a_curve_with_another_gap_is_another_curve():
+    x, y, gap = [0.0, 1.0, 2.0], [0.0, 0.0, 0.0], [0.0, np.nan, 0.0]
+    for other in ((x, gap), (gap, y)):
+        assert curve(x, y, *other)[1] == curve(*other, x, y)[1] == np.inf
+
+
 @given(st.floats(-3, 3), st.floats(-0.4, 0.4))
 def test_a_curve_moved_across_is_off_by_its_distance(slope, shift):
     # y = sx moved up by d is d/√(1 + s²) away from itself, less than two samples on.

@@ -53,6 +53,9 @@ def test_a_last_digit_moves_only_with_its_data(pair):
     pair.write("table1", data)
     assert pair.part("figures/table1.md").outcome is Outcome.WITHIN
     assert pair.artifact("table1").outcome is Outcome.WITHIN
+    # The article is made from all datasets.
+    pair.rewrite("paper.md", "0.25471", "0.25472")
+    assert pair.part("paper.md").outcome is Outcome.WITHIN
     pair.rewrite("figures/table1.md", "1.03831", "1.03833")
     assert pair.artifact("table1").outcome is Outcome.DRIFTED
 
@@ -179,7 +182,7 @@ def test_a_folder_that_is_a_link(pair, one_line):
 def test_nothing_is_printed_raw(pair, capsys):
     name = "fig\x1b[2J\n.md"
     (pair.new / "figures" / name).write_text("\x1b]0;\x07", encoding="utf-8")
-    (pair.new / "paper.md").write_text("\x1b[2J\u202e\n", encoding="utf-8")
+    (pair.new / "paper.md").write_text("\x1b[2J\u202e<script>\n", encoding="utf-8")
     page = pair.new / "page.html"
     with pytest.raises(SystemExit) as exit_:
         main(["diff", str(pair.record), str(pair.new), "--html", str(page)])

@@ -3,13 +3,27 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.accuracy.thresholds import search
 from bouncing_ball.configuration.study import typed
 from bouncing_ball.contacts.collocation import contacts
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
-from bouncing_ball.studies.contact_laws import LINEAR, NAMES, exact_model, law_errors
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.orbits.stability import Side
+from bouncing_ball.studies.contact_laws import (
+    LINEAR,
+    NAMES,
+    FiguresOfLaws,
+    LawErrors,
+    _domains,
+    _errors,
+    exact_model,
+    law_errors,
+)
 
-pytestmark = pytest.mark.slow
+slow = pytest.mark.slow
 
 # A first trial, r = 0.65, n = 1, Λ = 1, by a separate integration, to two digits: relative
 # errors of the greatest height of the restitution model and of the corrected one, at D = 0.3, 0.1
@@ -23,11 +37,37 @@ TRIED = {
 }
 
 
+ONE = {"n": 1, "restitution": 0.65, "amplitude": 1.0}
+
+
 @pytest.fixture(scope="module")
 def errors():
     span = {"min": np.pi / 0.1, "max": np.pi / 0.03, "samples": 2}
-    one = {"n": 1, "restitution": 0.65, "amplitude": 1.0, "tolerance": 0.01}
-    return typed(law_errors)(one | {"frequency_ratio": span})
+    return typed(law_errors)(ONE | {"tolerance": 0.01, "frequency_ratio": span})
+
+
+def test_the_linear_law_is_that_of_the_paper():
+    span, zeta = {"min": 20.0, "max": 200.0, "samples": 5}, float(damping_ratio(0.65))
+    relative, threshold = _errors("linear", LawErrors(**ONE, tolerance=0.01, frequency_ratio=span))
+    # π/D = ϖ√(1 - ζ²); 1 % of the contact's own height is 1/101 of the restitution model's.
+    root, ratios = np.sqrt(1 - zeta**2), np.geomspace(20.0, 200.0, 5)
+    asked = zeta, Release.DISPLACEMENT, 1, 1.0, ratios, 1 / 101, ["max_height"]
+    assert threshold / root == pytest.approx(search(*asked).threshold[0, 0, 0], rel=1e-9)
+    model = SpringDamperModel(SpringDamper(ratios / root, zeta))
+    rigid = RestitutionModel(0.65).orbit(1, 1.0)
+    expected = abs(rigid.max_height / model.orbit(1, 1.0).max_height - 1)
+    np.testing.assert_allclose(relative[0, 0], expected, rtol=1e-9)
+    # Along its branch Λ comes down to the saddle-node and goes up again, on either side.
+    ends = {"amplitude_max": 1.15, "points": 11, "frequency_ratio": [10.0]}
+    of = {"n": [1], "restitution": 0.65, "heights": ONE | {"frequency_ratio": span}}
+    drawn = FiguresOfLaws(**ends, **of)
+    ((lam,), (phase,)) = _domains("linear", drawn)
+    model = SpringDamperModel(SpringDamper(10.0 / root, zeta))
+    node = model.saddle_node(1)
+    assert [lam[0], lam.min(), lam[-1]] == pytest.approx([1.15, float(node.amplitude), 1.15])
+    fold = int(np.argmin(lam))
+    for side, part in ((Side.UNSTABLE, slice(fold)), (Side.STABLE, slice(fold + 1, None))):
+        np.testing.assert_allclose(phase[part], model.orbit(1, lam[part], side).phase, rtol=1e-9)
 
 
 def law_at_rigid_speed(name, duration):
@@ -54,6 +94,7 @@ def height_by_one_impact(law):
     return np.sin(psi) - below + np.pi**2 / 2
 
 
+@slow
 @pytest.mark.parametrize("name", TRIED)
 def test_the_errors_are_those_of_the_trial(name):
     rigid = float(RestitutionModel(0.65).orbit(1, 1.0).max_height)
@@ -72,24 +113,28 @@ def unit(value):
     return 10.0 ** (np.floor(np.log10(value)) - 1)
 
 
+@slow
 def test_the_signature_leaves_half_as_much_again(errors):
     # It is linear in the load, and the trial's impact is not: at D = 0.1 4.0e-5 to 5.4e-5.
     found = errors.relative_error.sel(model="corrected", quantity="max_height")[:, 0]
     assert 3.9e-5 < float(found.min()) and float(found.max()) < 5.5e-5
 
 
+@slow
 def test_the_corrected_model_is_of_second_order_in_all_quantities(errors):
     corrected = errors.relative_error.sel(model="corrected")
     order = np.log(corrected[..., 0] / corrected[..., 1]) / np.log(0.1 / 0.03)
     np.testing.assert_allclose(order, 2, atol=0.1)
 
 
+@slow
 def test_the_thresholds_lie_together(errors):
     threshold = errors.error_threshold
     assert threshold.sizes["law"] == len(NAMES)
     assert float(threshold.max() / threshold.min()) < 1.2
 
 
+@slow
 def test_a_constant_restitution_misses_the_period_doubling_of_a_law_that_falls(errors):
     rigid = errors.relative_error.sel(model="restitution", quantity="period_doubling")
     falling, constant = rigid.sel(law="hunt-crossley"), rigid.sel(law="tsuji")

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from bouncing_ball.accuracy.error_law import STATED
+from bouncing_ball.accuracy.errors import errors
 from bouncing_ball.configuration.study import typed
+from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.studies import model_errors as study
 from bouncing_ball.studies.random_orbits import random_orbits
@@ -34,6 +36,10 @@ def test_the_table_of_the_error_law(described, orders):
     assert np.all(np.abs(data.law_threshold / exact - 1)[stiff] < 0.01)
     corrected = data.error_threshold.sel(model="corrected")
     assert np.all(corrected < exact) and float(corrected.sel(quantity="max_height")) < 3
+    # The second order at a contact ten times as stiff, but for the third, of 1/ϖ beside it.
+    contact = SpringDamper(5000.0, float(damping_ratio(0.65)))
+    stiff = 5000.0**2 * errors(contact, 1, 1.0)[1]
+    np.testing.assert_allclose(data.second_order, stiff, rtol=2e-3)
     # The accident that makes the restitution model look better than it is.
     assert float(data.error_zero.sel(quantity="period_doubling")) == pytest.approx(1.9, abs=0.1)
 

@@ -99,6 +99,12 @@ def test_the_flights_meet_at_the_centroid_of_the_force(described, release):
     assert float(data.meeting_time) == pytest.approx(centroid, abs=2 * (time[1] - time[0]))
     height = np.interp(float(data.meeting_time), time, data.flight_after.values)
     assert float(data.meeting_height) == pytest.approx(height, abs=1e-5)
+    # The ball is below the table while it touches, and above it before.
+    gap, inside = (
+        (data.ball - data.table).values,
+        (time > 0) & (time < data.contact_duration.item()),
+    )
+    assert np.all(gap[inside] < 0) and np.all(gap[time < 0] > 0)
     assert float(data.delay) == pytest.approx(float(data.meeting_time), rel=0.05)
 
 

@@ -22,8 +22,8 @@ def _same_to_the_last_digit(old: str, new: str) -> bool:
     (True, False)
     >>> _same_to_the_last_digit("99.99", "100"), _same_to_the_last_digit("7", "8")
     (True, False)
-    >>> _same_to_the_last_digit("-4.5e-13", "-4.6e-13")
-    True
+    >>> _same_to_the_last_digit("-4.5e-13", "-4.6e-13"), _same_to_the_last_digit("0.25", "0.3")
+    (True, False)
     """
     if old == new:
         return True

@@ -29,7 +29,10 @@ ALLOWED = {
     # No engine is imported.
     "engines": ({"contacts"}, {"numpy"}),
     # Units are parsed at the edge, and pint is imported there when it is asked for.
-    "calculator": ({"contacts", "orbits", "calls", "accuracy"}, {"numpy", "xarray", "pint"}),
+    "calculator": (
+        {"contacts", "orbits", "calls", "accuracy", "engines"},
+        {"numpy", "xarray", "pint"},
+    ),
     "atlas": ({"datasets", "contacts", "orbits", "accuracy"}, {"numpy", "xarray", "pydantic"}),
     # Studies are imported by name when they are run.
     "configuration": ({"atlas"}, {"yaml", "pydantic"}),
@@ -57,6 +60,7 @@ ALLOWED = {
             "orbits",
             "calls",
             "accuracy",
+            "engines",
             "calculator",
             "configuration",
             "figures",

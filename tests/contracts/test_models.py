@@ -224,13 +224,11 @@ def test_the_path_is_continuous_and_closed(name, n, above, side):
     for end in (duration, period):
         before, after = (orbit.path(end + s * 1e-9)[0] for s in (-1, 1))
         assert abs(before - after) < 1e-7
-    # The flight keeps its energy.
+    # The flight keeps its energy, and is what lifts these balls highest.
     flying = np.linspace(duration, period, 50)[1:-1]
     z, v = orbit.path(flying)
-    np.testing.assert_allclose(v * v / 2 + z, v[0] ** 2 / 2 + z[0], rtol=100 * EPS)
-    # A sampled parabola misses its top by half of the step squared at most, next to an end.
-    top = max(z.max(), orbit.path(np.linspace(0, duration, 500))[0].max())
-    assert top - 1e-12 <= orbit.max_height <= top + (flying[1] - flying[0]) ** 2 / 2
+    assert v[0] > 0
+    np.testing.assert_allclose(v * v / 2 + z, orbit.max_height, rtol=100 * EPS)
 
 
 @every_side

@@ -10,6 +10,7 @@ from bouncing_ball.contacts.laws.tsuji import Tsuji
 from bouncing_ball.contacts.signature import Signature, free_impact
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.orbits.continued import restitution_speed
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.law_model import LawModel, law_at_orbit
 from bouncing_ball.orbits.orbit import OBSERVABLES
@@ -19,6 +20,17 @@ from bouncing_ball.orbits.stability import Side
 
 KINDS = [SpringDamper, HuntCrossley, Tsuji, KuwabaraKono]
 every_kind = pytest.mark.parametrize("kind", KINDS, ids=[kind.name for kind in KINDS])
+
+
+@pytest.mark.parametrize(
+    "law", [HuntCrossley(1e3, 0.08), HuntCrossley(1e3, 0.5), KuwabaraKono(2e3, 0.008)]
+)
+def test_the_speed_of_the_restitution_models_orbits(law):
+    model, n = LawModel(law), np.array([1, 2, 5])
+    speed, _ = restitution_speed(n, model)
+    # The last step of Newton's method is below 1e-3, and leaves its square.
+    period = (1 + model.signature(speed).restitution) * speed
+    np.testing.assert_allclose(period, 2 * np.pi * n, rtol=1e-6)
 
 
 @pytest.mark.parametrize("release", ["displacement", "force"])

@@ -26,9 +26,9 @@ from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
 
 # What says how stiff a contact is; a modulus goes with a radius.
-_STIFF = ("stiffness", "contact_time", "reduced_modulus")
+STIFF = ("stiffness", "contact_time", "reduced_modulus")
 # What says how much it loses; the height of a rebound goes with that of the drop.
-_LOSSY = ("damping", "damping_ratio", "restitution", "measured_restitution", "rebound_height")
+LOSSY = ("damping", "damping_ratio", "restitution", "measured_restitution", "rebound_height")
 _PAIRS = {"reduced_modulus": "radius", "rebound_height": "drop_height"}
 
 Given = Mapping[str, float]
@@ -62,7 +62,7 @@ def loss(given: Given, release: Release) -> float:
     0.0
     """
     ways = "damping, damping_ratio, restitution, measured_restitution, or drop_height and"
-    name = _one_of(given, _LOSSY, "how much the contact loses", f"one of {ways} rebound_height")
+    name = _one_of(given, LOSSY, "how much the contact loses", f"one of {ways} rebound_height")
     if name == "damping":
         raise ModelError("damping needs stiffness, which is missing; a restitution does not")
     if name == "damping_ratio":
@@ -131,12 +131,14 @@ def case_of(given: Given, table: Table, release: Release, asked: Sequence[int]) 
     for first, second in _PAIRS.items():
         if (first in given) != (second in given):
             raise ModelError(f"{first} and {second} are needed together")
-    stiff, mass = _one_of(given, _STIFF, "how stiff the contact is"), given["mass"]
+    if "mass" not in given:
+        raise ModelError("mass is missing: give it, such as 20 g")
+    stiff, mass = _one_of(given, STIFF, "how stiff the contact is"), given["mass"]
     if not stiff:
         return None
     if stiff == "stiffness":
         omega = math.sqrt(given["stiffness"] / mass)
-        if _one_of(given, _LOSSY, "how much the contact loses") == "damping":
+        if _one_of(given, LOSSY, "how much the contact loses") == "damping":
             zeta = _oscillating(given["damping"] / (2 * mass * omega), release)
         else:
             zeta = loss(given, release)

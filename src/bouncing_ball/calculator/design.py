@@ -6,16 +6,26 @@ from typing import Annotated, Any, get_args
 
 from bouncing_ball.accuracy.quantities import OF_ORBITS, Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
-from bouncing_ball.calculator.case import Case
-from bouncing_ball.calculator.contact_data import case_of, loss, meant, table_of
+from bouncing_ball.calculator.case import Case, Table
+from bouncing_ball.calculator.contact_data import STANDARD_GRAVITY, case_of, loss, meant, table_of
 from bouncing_ball.calculator.families import families, finite
 from bouncing_ball.calculator.needed import RATIOS, needed
-from bouncing_ball.calculator.results import QUANTITIES, Corrected, Design, Family, Needed, TimeStep
+from bouncing_ball.calculator.results import (
+    QUANTITIES,
+    Contact,
+    Corrected,
+    Design,
+    Family,
+    Needed,
+    TimeStep,
+)
 from bouncing_ball.calculator.units import Unit, number, shown
 from bouncing_ball.calculator.verdict import Verdict, assessed, chosen, notes
 from bouncing_ball.calls import Index, Rule
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.engines import engine_named
+from bouncing_ball.engines.engine import ERROR, Physical
 from bouncing_ball.errors import ModelError, NoOrbitError, require
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.signatures import Range
@@ -52,9 +62,11 @@ def design(
     drop_height: Annotated[Any, Unit("m", "1 m")] = None,
     rebound_height: Annotated[Any, Unit("m", "70 cm")] = None,
     n: Index | None = None,
-    release: Rule = "displacement",
+    release: Rule | None = None,
     quantity: str = "max_height",
     tolerance: Annotated[Any, Unit("", "1 %")] = 0.01,
+    engine: str | None = None,
+    restitution_error: Annotated[Any, Unit("", "0.001", Range(0, 1))] = ERROR,
 ) -> Design:
     """Assess a contact, or choose one.
 
@@ -86,7 +98,7 @@ def design(
     damping_ratio
         Damping ratio ζ.
     restitution
-        Restitution coefficient r by Eq. 16.
+        Restitution coefficient r by Eq. 16; for an engine, r under its release.
     measured_restitution
         Restitution coefficient that a free impact has under the release rule.
     drop_height
@@ -96,12 +108,17 @@ def design(
     n
         Index of the family; by default the first eight, and a verdict on the first stable one.
     release
-        "displacement" or "force": what ends a contact.
+        "displacement", the default without an engine, or "force": what ends a contact.
     quantity
         What must be right: max_height, bounce_velocity, phase, apparent_restitution,
         saddle_node, period_doubling or permanent_contact.
     tolerance
         How far it may be off.
+    engine
+        The engine whose contact this is: generic, mujoco, lammps, liggghts, pybullet, drake or
+        mercurydpm. Its release is that of the contact, and a restitution is met under it.
+    restitution_error
+        What the engine's time step may leave of error in the restitution of a free impact.
 
     Raises
     ------
@@ -118,14 +135,13 @@ def design(
     (71.176, True, False)
     """
     given = _read(locals())
-    rule, epsilon = Release.of(release), given.pop("tolerance")
+    question = given | {"n": n, "release": release, "quantity": quantity, "engine": engine}
+    rule, epsilon = _under(engine, release, given), given.pop("tolerance")
     if quantity not in QUANTITIES:
         raise ModelError(f"unknown quantity {quantity!r}: one of {', '.join(QUANTITIES)}")
     if n is not None and (n != int(n) or n < 1):
         raise ModelError(f"index of the family n = {n} is not a positive integer")
     table = table_of(given)
-    if "mass" not in given:
-        raise ModelError("mass is missing: give it, such as 20 g")
     lam, asked = table.amplitude, _FAMILIES if n is None else [n]
     require(lam < _LARGEST, lam, "Λ", f"below {_LARGEST:g}")
     case = case_of(given, table, rule, asked)
@@ -135,7 +151,7 @@ def design(
         found = families(case, asked)
         one = _judged(found)
         need = needed(quantity, epsilon, case.contact, one.n, lam)
-        return _design(case, found, one, need, assessed(one, need, ratio))
+        return _design(case, found, one, need, assessed(one, need, ratio), question)
     contact = SpringDamper(1.0, loss(given, rule), rule)
     r = float(contact.restitution)
     index = meant(asked, r, lam)
@@ -151,7 +167,55 @@ def design(
     case = Case(given["mass"], table, stiff)
     found = families(case, asked)
     one = next((one for one in found if one.n == index), _judged(found))
-    return _design(case, found, one, need, chosen(case.in_si(), need, index))
+    return _design(case, found, one, need, chosen(case.in_si(), need, index), question)
+
+
+def contact(
+    *, engine: str | None = None, release: Rule | None = None, **parameters: Any
+) -> Contact:
+    """A contact without a table, for an engine, from the parameters of :func:`design`.
+
+    Raises
+    ------
+    ModelError
+        In one line, if something is missing, contradictory or of the wrong kind.
+
+    Examples
+    --------
+    >>> found = contact(engine="mujoco", mass=0.5, stiffness="50 kN/m", restitution=0.75)
+    >>> round(found.engine.restitution, 6), found.engine.release
+    (0.75, 'force')
+    """
+    given = _read(parameters)
+    rule, error = _under(engine, release, given), given.get("restitution_error", ERROR)
+    # At 1 rad/s the frequency ratio is the contact's own frequency.
+    case = case_of(given, Table(1.0, 1.0, STANDARD_GRAVITY), rule, [1])
+    if case is None:
+        raise ModelError("how stiff the contact is is missing: give stiffness, or contact_time")
+    if case.law is not None:
+        raise ModelError("a Hertz contact needs a table: its duration depends on the speed")
+    si, linear = case.in_si(), case.contact
+    physical = Physical(case.mass, si["stiffness"], si["damping"])
+    return Contact(
+        *physical,
+        float(linear.damping_ratio),
+        si["contact_time"],
+        str(rule),
+        float(linear.restitution),
+        engine_named(engine).settings(physical, rule, error) if engine else None,
+    )
+
+
+def _under(engine: str | None, release: str | None, given: dict[str, float]) -> Release:
+    """The release of a contact; a restitution is then that under the release of the engine."""
+    if engine is None:
+        return Release.of(release or Release.DISPLACEMENT)
+    rule = engine_named(engine).release(release)
+    if "reduced_modulus" in given:
+        raise ModelError(f"a Hertz contact is not written for {engine}: give stiffness")
+    if "measured_restitution" not in given and "restitution" in given:
+        given["measured_restitution"] = given.pop("restitution")
+    return rule
 
 
 def quantities() -> dict[str, Unit]:
@@ -164,7 +228,7 @@ def _read(parameters: Mapping[str, Any]) -> dict[str, float]:
     """The quantities that are given, in SI units and in their ranges."""
     given = {}
     for name, kind in quantities().items():
-        if parameters[name] is not None:
+        if parameters.get(name) is not None:
             given[name] = value = number(name, parameters[name], kind)
             if value not in kind.allowed:
                 said = f"{name} = {value:g} {kind.name}".rstrip()
@@ -178,7 +242,12 @@ def _judged(found: Sequence[Family]) -> Family:
 
 
 def _design(
-    case: Case, found: tuple[Family, ...], one: Family, need: Needed, verdict: Verdict
+    case: Case,
+    found: tuple[Family, ...],
+    one: Family,
+    need: Needed,
+    verdict: Verdict,
+    question: dict[str, Any],
 ) -> Design:
     """Everything that is known of a contact; `one` is the family of the verdict."""
     contact, table = case.contact, case.table
@@ -193,6 +262,7 @@ def _design(
         restitution={
             str(rule): float(replace(contact, release=rule).restitution) for rule in Release
         },
+        measured_restitution=float(contact.restitution),
         permanent_contact=finite(case.permanent_contact),
         corrected=Corrected(delay * table.time, r, load * table.time),
         orbits=found,
@@ -201,4 +271,5 @@ def _design(
         notes=notes(case, one),
         case=case,
         n=one.n,
+        question=question,
     )

@@ -3,12 +3,14 @@
 JSON has all of them under their names; the text and the page list those that have words.
 """
 
-from dataclasses import dataclass, is_dataclass
+from dataclasses import dataclass, is_dataclass, replace
 from typing import Annotated, Any, NamedTuple, get_type_hints
 
 from bouncing_ball.accuracy.quantities import Quantity
 from bouncing_ball.calculator.case import Case
 from bouncing_ball.calculator.units import shown
+from bouncing_ball.engines import engine_named
+from bouncing_ball.engines.engine import EngineSettings, Physical
 
 Errors = dict[str, float | None]
 """Relative errors by quantity; None where there is nothing to compare, or to divide by."""
@@ -138,11 +140,27 @@ class Corrected:
 
 
 @dataclass(frozen=True)
+class Contact:
+    """A contact without a table, in SI units; ``engine`` has the settings that it asks for."""
+
+    mass: Annotated[float, Row("mass in kg")]
+    stiffness: Annotated[float, Row("stiffness", "N/m")]
+    damping: Annotated[float, Row("damping", "N s/m")]
+    damping_ratio: Annotated[float, Row("damping ratio ζ")]
+    contact_time: Annotated[float, Row("contact time", "s")]
+    release: str
+    measured_restitution: Annotated[float, Row("restitution of a free impact")]
+    engine: EngineSettings | None = None
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class Design:
     """What an engineer needs to know of a contact; times in s, lengths in m, forces in N.
 
     ``frequency_ratio``, ``damping_ratio`` and ``amplitude`` are ϖ, ζ and Λ; ``restitution``
-    is that of a free impact by the release rule; ``n`` is the family of the verdict. Up to
+    is that of a free impact by the release rule, ``measured_restitution`` that by the rule of
+    this contact; ``n`` is the family of the verdict and ``question`` what was asked. Up to
     ``permanent_contact`` a ball may stay down; it is None of a Hertz contact.
     """
 
@@ -159,6 +177,7 @@ class Design:
         Row("restitution, released at δ = 0"),
         Row("restitution, released without force"),
     ]
+    measured_restitution: float
     permanent_contact: Annotated[float | None, Row("permanent contact up to Λ")]
     corrected: Corrected
     orbits: tuple[Family, ...]
@@ -169,6 +188,39 @@ class Design:
     notes: tuple[str, ...]
     case: Case
     n: int
+    question: dict[str, Any]
+
+    def engine(self, name: str, release: str | None = None) -> EngineSettings:
+        """What to write into an engine, see :mod:`bouncing_ball.engines`, and what it will do.
+
+        A restitution that was asked for is met under the engine's own release, whichever that
+        of this design is.
+
+        Raises
+        ------
+        ModelError
+            If there is no such engine, or it has no such release or no such contact.
+        NoOrbitError
+            If the contact that the engine then has is in no orbit.
+        """
+        # It makes designs of this class.
+        from bouncing_ball.calculator.design import design
+
+        asked = {"engine": name} | ({"release": release} if release else {})
+        found = self if self.question.items() >= asked.items() else design(**self.question | asked)
+        return found.engine_settings()
+
+    def engine_settings(self) -> EngineSettings:
+        """The settings of the engine that this design was asked for."""
+        contact = Physical(self.case.mass, self.stiffness, self.damping)
+        engine, one = engine_named(self.question["engine"]), self.judged
+        rule, error = self.case.contact.release, self.question["restitution_error"]
+        return replace(
+            engine.settings(contact, rule, error),
+            max_height=one.max_height,
+            contact_duration=one.contact_duration,
+            penetration=one.greatest_compression,
+        )
 
     @property
     def judged(self) -> Family:

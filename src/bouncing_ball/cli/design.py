@@ -1,28 +1,52 @@
 """``bouncing-ball design``: the calculator's answer, as JSON or to read."""
 
-from dataclasses import asdict
+from collections.abc import Mapping
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 from bouncing_ball.accuracy.quantities import OF_IMPACTS, Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.calculator import design as calculator
-from bouncing_ball.calculator.results import QUANTITIES, Design, Family, rows
-from bouncing_ball.calculator.units import shown
-from bouncing_ball.errors import ModelError
+from bouncing_ball.calculator.contact_data import LOSSY, STIFF
+from bouncing_ball.calculator.results import QUANTITIES, Contact, Design, Family, rows
+from bouncing_ball.calculator.units import number, shown
+from bouncing_ball.engines import engine_named
+from bouncing_ball.engines.engine import EngineSettings
+from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.signatures import takes
 
 _DRAWINGS = (".pdf", ".png", ".svg")
 
 
+# What says that there is a table; for an engine there need not be one.
+_TABLE = ("frequency", "angular_frequency", "period", "amplitude", "acceleration")
+
+
 @takes(calculator.design)
-def design(*, plot: Path | None = None, **given: Any) -> Design:
-    """The calculator's answer, and the page to print.
+def design(
+    *,
+    plot: Path | None = None,
+    from_engine: str | None = None,
+    solref: str | None = None,
+    solimp: str | None = None,
+    parameters: Mapping[str, float] | None = None,
+    **given: Any,
+) -> Design | Contact:
+    """The calculator's answer, and the page to print; of an engine's contact without a table.
 
     Parameters
     ----------
     plot
         A page to print: .pdf, .png or .svg.
+    from_engine
+        The engine whose parameters are given, in place of stiffness and loss.
+    solref
+        Of MuJoCo: "-K -B" per unit of mass, or "TIMECONST DAMPRATIO".
+    solimp
+        Of MuJoCo: "DMIN DMAX WIDTH".
+    parameters
+        Of another engine: its parameter, such as kn=1e5.
 
     Raises
     ------
@@ -31,10 +55,44 @@ def design(*, plot: Path | None = None, **given: Any) -> Design:
     """
     if plot is not None and plot.suffix not in _DRAWINGS:
         raise ModelError(f"'{plot}' does not end in {' or '.join(_DRAWINGS)}")
+    notes: tuple[str, ...] = ()
+    values = {"solref": solref, "solimp": solimp, **dict(parameters or {})}
+    values = {name: value for name, value in values.items() if value is not None}
+    if from_engine is not None:
+        given, notes = _read(from_engine, values, given)
+    elif values:
+        name = next(iter(values))
+        what = f"{{{name}}}" if name in ("solref", "solimp") else f"{{parameters}} {name}"
+        raise ParameterError(f"{what} needs {{from_engine}}, the engine that has it")
+    if (from_engine or given.get("engine")) and all(given.get(name) is None for name in _TABLE):
+        if plot is not None:
+            raise ParameterError("{plot} needs a table, such as {frequency} and {acceleration}")
+        names = {"engine", "release", *calculator.quantities()}
+        alone = {name: value for name, value in given.items() if name in names}
+        return replace(calculator.contact(**alone), notes=notes)
     found = calculator.design(**given)
     if plot is not None:
         _draw(found, plot)
-    return found
+    return replace(found, notes=(*notes, *found.notes))
+
+
+def _read(
+    name: str, parameters: Mapping[str, Any], given: Mapping[str, Any]
+) -> tuple[dict[str, Any], tuple[str, ...]]:
+    """An engine's parameters as k and c, and what else is to be said of them."""
+    engine = engine_named(name)
+    for other in (*STIFF, *LOSSY):
+        if given.get(other) is not None:
+            raise ParameterError(f"{{{other}}} does not go with {{from_engine}}, which says it")
+    mass = given.get("mass")
+    contact = engine.read(
+        parameters, None if mass is None else number("mass", mass, calculator.quantities()["mass"])
+    )
+    found = {"stiffness": contact.stiffness, "damping": contact.damping}
+    # For another engine it is that one's release.
+    rule = given.get("release")
+    rule = rule if given.get("engine") else str(engine.release(rule))
+    return {**given, **found, "release": rule}, engine.remarks(parameters)
 
 
 def _draw(found: Design, path: Path) -> None:
@@ -71,8 +129,40 @@ def _family_lines(one: Family) -> list[str]:
     return lines + [_error(one, quantity) for quantity in OF_IMPACTS]
 
 
-def lines(found: Design) -> list[str]:
+def document(found: Design | Contact) -> dict[str, Any]:
+    """The answer as JSON has it, with the settings of the engine that it is for."""
+    answer = asdict(found)
+    if isinstance(found, Design) and found.question["engine"]:
+        answer["engine"] = asdict(found.engine_settings())
+    return answer
+
+
+def _engine_lines(engine: EngineSettings) -> list[str]:
+    expected = [
+        ("greatest height", engine.max_height, "m"),
+        ("duration of contact", engine.contact_duration, "s"),
+        ("penetration", engine.penetration, "m"),
+    ]
+    return [
+        "",
+        f"For {engine.name}, whose contacts end by {engine.release} "
+        f"(r = {engine.restitution:.4g}, within {engine.error:g} in {engine.steps} steps of "
+        f"{engine.scheme} in a contact):",
+        "",
+        *(f"    {line}".rstrip() for line in engine.snippet.splitlines()),
+        "",
+        _line("time step", shown(engine.time_step, "s")),
+        *(_line(f"orbit, {words}", shown(x, unit)) for words, x, unit in expected if x is not None),
+    ]
+
+
+def lines(found: Design | Contact) -> list[str]:
     """The answer to read, the verdict first."""
+    if isinstance(found, Contact):
+        about = [_line(*row) for row in rows(replace(found, engine=None))]
+        about += [_line("release", found.release), *(f"Note: {note}." for note in found.notes)]
+        return about + (_engine_lines(found.engine) if found.engine else [])
+    engine = _engine_lines(found.engine_settings()) if found.question["engine"] else []
     need, always = found.needed, ThresholdStatus.ALWAYS_WITHIN
     simple = "error law", "corrected"
     asked = f"ϖ for {shown(need.tolerance, '%')} in the {QUANTITIES[Quantity(need.quantity)]}"
@@ -82,6 +172,7 @@ def lines(found: Design) -> list[str]:
         found.verdict,
         f"Reason: {found.reason}.",
         *(f"Note: {note}." for note in found.notes),
+        *engine,
         "",
         *(_line(*row) for row in rows(found)),
         f"Time step: {found.time_step.rule}.",

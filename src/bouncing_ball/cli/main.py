@@ -35,6 +35,11 @@ def _call(command: str) -> Callable[..., Any]:
     return getattr(_module(command), command.replace("-", "_"))
 
 
+def _document(answer: Any) -> dict[str, Any]:
+    """An answer as JSON has it, where its module does not say it otherwise."""
+    return answer if isinstance(answer, dict) else asdict(answer)
+
+
 def parser(arguments: list[str]) -> Parser:
     """The parser of all subcommands, with the options of those that are named."""
     top = Parser(
@@ -70,16 +75,18 @@ def main(arguments: list[str] | None = None) -> None:
 
     try:
         with np.errstate(all="ignore"):
-            answer = call(*places, **given)
+            answer, module = call(*places, **given), _module(command)
+            if as_json:
+                found = getattr(module, "document", _document)(answer)
+                text = json.dumps(found, allow_nan=False)
+            else:
+                text = "\n".join(module.lines(answer))
     except ValueError as error:
         text = in_options(error.text) if isinstance(error, ParameterError) else str(error)
         if as_json:
             say(json.dumps({"error": text}))
         fail(text, status=1 if isinstance(error, NoOrbitError) else 2)
-    if as_json:
-        say(json.dumps(answer if isinstance(answer, dict) else asdict(answer), allow_nan=False))
-    else:
-        say("\n".join(_module(command).lines(answer)))
+    say(text)
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ from bouncing_ball.cli.output import say
 from bouncing_ball.errors import escaped
 from bouncing_ball.signatures import Range
 
-_OTHER_NAMES = {"parameters": "set"}
+_OTHER_NAMES = {"parameters": "set", "from_engine": "from"}
 
 
 class Parser(argparse.ArgumentParser):

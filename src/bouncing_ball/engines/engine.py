@@ -106,6 +106,10 @@ class Engine(ABC):
     def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
         """The contact of parameters in the engine's own units and of a mass in kg."""
 
+    def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
+        """What a spring and a damper would do otherwise than the engine with these parameters."""
+        return ()
+
     def release(self, asked: str | None = None) -> Release:
         """The release that is asked for, or that of the engine's default.
 
@@ -133,9 +137,11 @@ class Engine(ABC):
             If the engine has no such release, or the contact does not bounce.
         """
         rule = self.release(release)
+        # To twelve digits: those of a product are not written.
+        contact = Physical(*(float(f"{value:.12g}") for value in contact))
         restitution = contact.restitution(rule)
         steps = steps_for(self.scheme, contact.damping_ratio, rule, error)
-        step = contact.contact_time(rule) / steps
+        step = float(f"{contact.contact_time(rule) / steps:.12g}")
         text = self.snippet(contact, rule, step)
         found = self.parameters(contact)
         return EngineSettings(

@@ -105,6 +105,21 @@ class MuJoCo(Engine):
             "two positive ones, a time constant and a damping ratio"
         )
 
+    def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
+        least, most, width = impedance(parameters.get("solimp", ()))[:3]
+        found = []
+        if most > 0.01:
+            found.append(
+                f"with the impedance {most:g} a contact feels {1 - most:.2g} of the load (gravity, "
+                'table), and a spring and a damper all of it: solimp = "1e-4 1e-4 0.001"'
+            )
+        if least != most:
+            found.append(
+                f"this is the contact below the depth of {width:g} m; at the surface the spring is "
+                f"{(least / most) ** 2:.2g} and the damper {least / most:.2g} of it"
+            )
+        return tuple(found)
+
     def snippet(self, contact: Physical, release: Release, time_step: float) -> str:
         found = self.parameters(contact)
         solref, solimp = (" ".join(map(repr, found[name])) for name in ("solref", "solimp"))

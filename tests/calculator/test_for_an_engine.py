@@ -1,0 +1,85 @@
+"""Designs for an engine: its release, its parameters, and the orbit that it will show."""
+
+import pytest
+
+from bouncing_ball import design
+from bouncing_ball.calculator.design import contact
+from bouncing_ball.errors import ModelError
+
+TABLE = {"mass": 0.5, "frequency": "20 Hz", "acceleration": "0.8 g", "n": 1}
+STIFF = TABLE | {"stiffness": 1e6}
+
+
+@pytest.mark.parametrize(
+    ("name", "release", "has"),
+    [("mujoco", None, "force"), ("lammps", None, "displacement"), ("lammps", "force", "force")],
+)
+def test_a_restitution_that_is_asked_for_is_met_under_the_engines_release(name, release, has):
+    settings = design(**STIFF, restitution=0.75).engine(name, release)
+    assert (settings.name, settings.release) == (name, has)
+    assert settings.restitution == pytest.approx(0.75, rel=1e-12)
+    # It is what a design for this engine has, whose orbit is that of this contact.
+    asked = design(**STIFF, restitution=0.75, engine=name, release=release)
+    assert asked.engine(name) == settings
+    same = design(**STIFF, measured_restitution=0.75, release=has)
+    assert asked.orbits == same.orbits and asked.measured_restitution == same.measured_restitution
+    one = same.judged
+    expected = (one.max_height, one.contact_duration, one.greatest_compression)
+    found = (settings.max_height, settings.contact_duration, settings.penetration)
+    assert found == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_drop_test_and_a_contact_time_are_met():
+    drop = {"contact_time": "2 ms", "drop_height": 1.0, "rebound_height": 0.49}
+    settings = design(**TABLE, **drop).engine("drake")
+    assert settings.restitution == pytest.approx(0.7, rel=1e-9)
+    assert settings.time_step * settings.steps == pytest.approx(2e-3, rel=1e-9)
+
+
+def test_a_damper_is_kept_and_its_restitution_is_the_engines():
+    settings = design(**STIFF, damping=100.0).engine("mujoco")
+    assert settings.parameters["solref"] == [-2e6, -200.0]
+    own = design(**STIFF, damping=100.0)
+    assert settings.restitution == pytest.approx(own.restitution["force"], rel=1e-10)
+    assert own.measured_restitution == own.restitution["displacement"] < settings.restitution
+
+
+def test_a_contact_that_is_chosen_has_settings_too():
+    chosen = design(**TABLE, restitution=0.75, tolerance="5 %", engine="lammps")
+    assert chosen.engine("lammps").parameters["kn"] == pytest.approx(chosen.stiffness, rel=1e-11)
+
+
+def test_a_contact_without_a_table_is_that_of_one_with_it():
+    asked = {"restitution": 0.75, "engine": "mujoco", "restitution_error": "1 %"}
+    alone = contact(mass=0.5, stiffness=1e6, **asked)
+    with_table = design(**STIFF, **asked).engine("mujoco")
+    assert alone.engine.parameters["solref"] == pytest.approx(with_table.parameters["solref"])
+    assert alone.engine.steps == with_table.steps
+    assert alone.engine.error == 0.01 and alone.engine.max_height is None
+    finer = contact(mass=0.5, stiffness=1e6, **asked | {"restitution_error": 0.001}).engine
+    assert finer.steps > 9 * alone.engine.steps
+    assert alone.measured_restitution == pytest.approx(0.75)
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [
+        ({"engine": "unreal"}, "unknown engine 'unreal': one of generic, mujoco"),
+        ({"release": "displacement"}, "mujoco has no displacement release"),
+        ({"mass": None}, "mass is missing"),
+        ({"stiffness": None}, "how stiff the contact is is missing"),
+        ({"restitution": None}, "how much the contact loses is missing"),
+        ({"measured_restitution": 0.7}, "contradict each other"),
+        ({"restitution": 0.1}, "the range of the force release"),
+        ({"restitution_error": 0.0}, "restitution_error = 0 is not a number in (0, 1)"),
+        ({"stiffness": None, "reduced_modulus": 1e9, "radius": 0.01}, "is not written for mujoco"),
+        (
+            {"stiffness": None, "reduced_modulus": 1e9, "radius": 0.01, "engine": None},
+            "a Hertz contact needs a table",
+        ),
+    ],
+)
+def test_mistakes(given, says, one_line):
+    with pytest.raises(ModelError) as error:
+        contact(**{"engine": "mujoco", "mass": 1.0, "stiffness": 1e5, "restitution": 0.8} | given)
+    one_line(error, says)

@@ -1,0 +1,108 @@
+"""``bouncing-ball design --engine`` and ``--from``."""
+
+import json
+import math
+from dataclasses import asdict
+
+import pytest
+
+from bouncing_ball import design
+from bouncing_ball.engines import ENGINES
+
+BALL = ("design", "--mass", "0.5")
+STIFF = (*BALL, "--stiffness", "100 kN/m", "--restitution", "0.75")
+SHAKEN = ("--frequency", "20 Hz", "--acceleration", "0.8 g", "--n", "1")
+FROM = ("design", "--from", "mujoco", "--solref", "-284244 -68.8", "--solimp", "0.9 0.95 0.001")
+OTHER = ("--from", "lammps", "--set", "kn=1e5")
+
+
+@pytest.mark.parametrize("table", [(), SHAKEN])
+def test_the_settings_are_in_the_answer(ask, table):
+    found = ask(*STIFF, *table, "--engine", "mujoco")
+    engine = found["engine"]
+    assert engine["name"] == "mujoco" and engine["release"] == "force"
+    assert engine["restitution"] == pytest.approx(0.75)
+    assert found["measured_restitution"] == pytest.approx(0.75)
+    stiffness, damping = engine["parameters"]["solref"]
+    assert stiffness == pytest.approx(-2e5) and len(engine["parameters"]["solimp"]) == 3
+    zeta = -damping / (2 * math.sqrt(-stiffness))
+    assert found["damping_ratio"] == pytest.approx(zeta)
+    assert engine["time_step"] == pytest.approx(found["contact_time"] / engine["steps"])
+    assert (engine["max_height"] is None) is (not table)
+
+
+def test_json_is_the_answer_of_the_call(ask):
+    given = {"mass": 0.5, "stiffness": 1e5, "restitution": 0.75, "n": 1}
+    found = design(**given, frequency=20, acceleration="0.8 g", engine="lammps")
+    expected = asdict(found) | {"engine": asdict(found.engine("lammps"))}
+    assert ask(*STIFF, *SHAKEN, "--engine", "lammps") == json.loads(json.dumps(expected))
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_the_snippet_is_what_the_text_shows(said, ask, name):
+    arguments = (*STIFF, "--engine", name, "--restitution-error", "2 %")
+    snippet = ask(*arguments)["engine"]["snippet"].splitlines()
+    text = [line.strip() for line in said(*arguments).splitlines()]
+    first = text.index(snippet[0])
+    assert text[first : first + len(snippet)] == [line.strip() for line in snippet]
+
+
+def test_the_text_with_a_table_has_what_to_expect(said):
+    text = said(*STIFF, *SHAKEN, "--engine", "mujoco")
+    words = ("orbit, greatest height", "orbit, duration of contact", "orbit, penetration")
+    assert all(word in text for word in ("<option timestep", "time step", *words))
+
+
+def test_what_a_solref_means_needs_no_table(ask, said):
+    found = ask(*FROM, "--mass", "500 g")
+    assert found["stiffness"] == pytest.approx(142122) and found["engine"] is None
+    assert found["damping"] == pytest.approx(34.4)
+    assert found["damping_ratio"] == pytest.approx(0.0645, abs=5e-5)
+    assert found["measured_restitution"] == pytest.approx(0.8231, abs=1e-4)
+    # The default impedance is told what it costs.
+    text = said(*FROM, "--mass", "500 g")
+    assert "0.95 a contact feels 0.05 of the load" in text
+    assert "at the surface the spring is 0.9 and the damper 0.95" in text
+    positive = ask(*BALL, "--from", "mujoco", "--solref", "0.02 0.3", "--solimp", "1e-4 1e-4")
+    assert positive["damping_ratio"] == pytest.approx(0.3) and positive["notes"] == []
+
+
+def test_with_a_table_it_is_a_design(ask):
+    found = ask(*FROM, "--mass", "0.5", *SHAKEN)
+    omega = math.sqrt(284244) / (40 * math.pi)
+    assert found["frequency_ratio"] == pytest.approx(omega)
+    assert found["measured_restitution"] == pytest.approx(0.8231, abs=1e-4)
+    assert "feels 0.05 of the load" in found["notes"][0]
+
+
+def test_from_one_engine_to_another(ask):
+    found = ask(*BALL, *OTHER, "--set", "gamma_n=20", "--engine", "mujoco")
+    assert found["engine"]["parameters"]["solref"] == pytest.approx([-2e5, -20])
+    # The damper pulled in LAMMPS, and does not in MuJoCo.
+    pulls = ask(*BALL, *OTHER, "--set", "gamma_n=20")
+    assert pulls["release"] == "displacement" and found["release"] == "force"
+    assert pulls["measured_restitution"] < found["measured_restitution"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        ((*STIFF, "--engine", "unreal"), "unknown engine 'unreal': one of generic, mujoco"),
+        ((*STIFF, "--engine", "drake", "--release", "displacement"), "drake has no displacement"),
+        (FROM, "the mass is missing: mujoco's parameters do not have it"),
+        ((*FROM, "--mass", "5 m"), "mass = 5 m is of the dimension [length]"),
+        (("design", *OTHER), "the mass is missing"),
+        ((*BALL, *OTHER), "gamma_n of lammps is missing"),
+        ((*BALL, "--from", "mujoco"), "solref is missing"),
+        ((*BALL, "--from", "mujoco", "--solref", "-1"), "solref = '-1' is not 2 numbers"),
+        ((*BALL, "--from", "mujoco", "--solref", "0.02 1"), "1, the critical damping"),
+        ((*BALL, "--from", "unreal"), "unknown engine 'unreal'"),
+        ((*BALL, "--solref", "-1 -1"), "--solref needs --from, the engine that has it"),
+        ((*BALL, "--set", "kn=1"), "--set kn needs --from"),
+        ((*FROM, "--stiffness", "1"), "--stiffness does not go with --from, which says it"),
+        ((*STIFF, "--engine", "mujoco", "--plot", "a.png"), "--plot needs a table"),
+    ],
+)
+def test_mistakes_are_one_line(refused, arguments, says):
+    status, line = refused(*arguments)
+    assert status == 2 and says in line

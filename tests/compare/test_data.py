@@ -6,7 +6,7 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bouncing_ball.compare.budgets import budget_of
+from bouncing_ball.compare.budgets import ARTIFACTS, budget_of
 from bouncing_ball.compare.data import compare_datasets
 from bouncing_ball.compare.drift import curve, pointwise, span
 from bouncing_ball.compare.outcome import Outcome
@@ -56,6 +56,13 @@ def test_counts_words_and_choices_are_exact(values, other):
     (found,) = compare_datasets("fig", record, new)
     assert found.outcome is Outcome.DRIFTED and found.share == np.inf
     assert (found.record, found.new) == (str(values[1]), str(other[1]))
+
+
+def test_no_budget_hides_what_a_reader_sees():
+    # A tenth of a pixel of a picture of a thousand, but where rounding decides a whole sample.
+    budgets = [budget for own in ARTIFACTS.values() for budget in own.values()]
+    assert len(budgets) > 20
+    assert all(budget.size <= 1e-4 or budget.over == "point" for budget in budgets)
 
 
 def test_what_another_dataset_holds_is_not_compared():

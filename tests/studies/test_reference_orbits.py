@@ -29,7 +29,3 @@ def test_they_satisfy_the_equations_of_the_contact():
         assert 0.5 < stable.mean() < 1
         # The force in the middle of the contact pushes.
         assert np.nanmin(part.contact_force) > 0
-
-
-def test_the_same_seed_gives_the_same_orbits():
-    assert typed(reference_orbits)(GIVEN).identical(typed(reference_orbits)(GIVEN))

@@ -125,7 +125,7 @@ def shown(value: float | None, unit: str = "") -> str:
     --------
     >>> shown(1.25e-5, "s"), shown(2e7, "N/m"), shown(None, "m"), shown(1.25e-5)
     ('12.5 µs', '20 MN/m', 'none', '1.25e-05')
-    >>> [shown(share, "%") for share in (0.0123, 2.5e-5, 1e-9, 0.996)]
+    >>> [shown(share, "%") for share in (0.0123, 2.5e-5, 1e-9, 0.995)]
     ['1.2 %', '0.0025 %', 'less than 0.001 %', '100 %']
     """
     if value is None:

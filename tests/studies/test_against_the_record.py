@@ -1,0 +1,43 @@
+"""Every study again, with the parameters of the run, against the accepted datasets."""
+
+import inspect
+from pathlib import Path
+
+import pytest
+
+from bouncing_ball.claims.witness import SHOWN
+from bouncing_ball.compare.data import compare_datasets
+from bouncing_ball.configuration.study import arguments, load, typed
+from bouncing_ball.configuration.yaml_file import read_yaml
+from bouncing_ball.datasets.variables import describe
+
+RUN = read_yaml(Path(__file__).parents[2] / "config" / "config.yaml")
+
+
+# More than two seconds each.
+SLOW = {"ext_basins", "ext_hertz", "ext_laws"}
+
+
+def drifts(stages, recorded, artifacts):
+    """The rows of the comparison that do not agree."""
+    found = []
+    for artifact in sorted(artifacts):
+        study = stages[artifact]
+        given = arguments(study, artifact, RUN)
+        if "data" in inspect.signature(load(study)).parameters:
+            names = SHOWN if artifact == "witness" else recorded
+            given["data"] = {name: recorded[name] for name in names}
+        record = recorded[artifact]
+        again = describe(typed(load(study))(**given)).assign_attrs(record.attrs)
+        rows = compare_datasets(artifact, record, again)
+        found += [f"{artifact}: {row}" for row in rows if not row.outcome.agrees]
+    return found
+
+
+def test_the_studies_give_the_accepted_datasets(stages, recorded):
+    assert len(stages) > 20 and drifts(stages, recorded, stages.keys() - SLOW) == []
+
+
+@pytest.mark.slow
+def test_the_slow_studies_give_the_accepted_datasets(stages, recorded):
+    assert drifts(stages, recorded, SLOW) == []

@@ -117,8 +117,9 @@ def test_no_parting_where_it_is_not_looked_for():
     zeta = float(damping_ratio(0.85))
     for low, high in ((1.5, 1.9), (2.1, 4.0)):
         assert np.isnan(joining_ratio(zeta, Release.DISPLACEMENT, low, high))
-    # No saddle-node, so that there is nothing to join.
-    assert not joined(contact(0.3, np.array([1.2])))
+    # No saddle-node, so that there is nothing to join; and one beside it that is apart.
+    both = SpringDamper(np.array([1.2, 3.0]), damping_ratio(np.array([0.3, 0.85])))
+    assert joined(both).tolist() == [False, False]
 
 
 def test_the_other_release_is_an_answer_too():

@@ -49,11 +49,15 @@ def test_each_end_is_what_it_is_called(window):
     steps = np.array([-1e-4, 0.0, 1e-4])
     near = orbit_with_flight(contact(0.85, 1.2), window.flight_time[0] + steps).amplitude
     assert near[1] > near[0] and near[1] > near[2]
-    grazing = orbit[3]
-    time = np.linspace(0, float(grazing.contact_duration), 20_001)[200:-200]
-    gap = grazing.contact_path(time)[0] - grazing.amplitude * np.sin(grazing.phase + time)
-    depth = -gap.min()
-    assert -1e-6 * depth < gap.max() < 1e-9 * depth
+    # Weakly damped, where both multipliers are far from 0.
+    weak = contact(0.99, np.array([6.0]))
+    end = stable_window(weak)
+    assert end.end.tolist() == [End.CONTACT]
+    for grazing in (orbit[3], orbit_with_flight(weak, end.flight_time)[0]):
+        time = np.linspace(0, float(grazing.contact_duration), 20_001)[200:-200]
+        gap = grazing.contact_path(time)[0] - grazing.amplitude * np.sin(grazing.phase + time)
+        depth = -gap.min()
+        assert -1e-6 * depth < gap.max() < 1e-9 * depth
 
 
 def test_balls_find_the_orbit_inside_the_window_and_none_beyond(window):

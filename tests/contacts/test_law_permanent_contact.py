@@ -47,3 +47,11 @@ def test_it_tends_to_gravity_for_a_hard_contact():
 def test_a_contact_that_rings_is_refused():
     with pytest.raises(ModelError, match="weakly damped, it rings"):
         permanent_contact(Tsuji(1e9, 1e-3))
+
+
+@pytest.mark.parametrize("law", [Tsuji(10.0, 0.3), Tsuji(100.0, 0.03), KuwabaraKono(1e3, 0.03)])
+def test_more_nodes_change_nothing(law, monkeypatch):
+    found = permanent_contact(law)
+    monkeypatch.setattr("bouncing_ball.contacts.permanent_contact._LEVELS", (192,))
+    # The square of what is left of the path, 1e-5, would be 1e-10.
+    assert found == pytest.approx(permanent_contact(law), rel=5e-12)

@@ -26,7 +26,7 @@ from bouncing_ball.motion.sequence import Status
 
 
 @dataclass(frozen=True, repr=False)
-class Contacts(Dynamics):
+class ContactDynamics(Dynamics):
     """Those of any :class:`~bouncing_ball.contacts.contact_law.ContactLaw`."""
 
     # The collocation has blocks of its own; fewer here share the few contacts that last long.
@@ -59,7 +59,7 @@ class Contacts(Dynamics):
 
 
 @dataclass(frozen=True, repr=False)
-class LinearContacts(Contacts):
+class LinearContactDynamics(ContactDynamics):
     """Those of an underdamped :class:`~bouncing_ball.contacts.spring_damper.SpringDamper`."""
 
     block: ClassVar[int] = BLOCK

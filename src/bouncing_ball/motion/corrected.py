@@ -32,7 +32,7 @@ _DESCENT = 4
 
 
 @dataclass(frozen=True, repr=False)
-class Corrected(Dynamics):
+class CorrectedDynamics(Dynamics):
     """Those of the corrected model; ``law`` is the
     :class:`~bouncing_ball.contacts.signature.Signature`."""
 

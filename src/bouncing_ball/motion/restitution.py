@@ -28,7 +28,7 @@ _INSTANT = np.finfo(float).eps
 
 
 @dataclass(frozen=True, repr=False)
-class Instants(Dynamics):
+class RestitutionDynamics(Dynamics):
     """Those of the restitution model; ``law`` is r, or a law r(v)."""
 
     def depart(self, impact: Impact) -> Departure:

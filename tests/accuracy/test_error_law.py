@@ -79,6 +79,10 @@ def test_the_remainder_where_the_law_is_stated_to_hold(release):
     size = array(scale(n, instant, lam)) * small_parameter(n, instant, lam)
     off = np.abs(error - array(first_order(n, instant, lam))) / size
     np.testing.assert_allclose(left.factor, off, rtol=1e-12)
+    # M is no larger than it must be: that of the height and of the phase comes near.
+    largest = np.max(left.factor, axis=1, where=left.stated, initial=0) / array(REMAINDER)
+    if release is Release.DISPLACEMENT:
+        assert np.all(largest[[0, 2]] > 0.6)
     # The bounds are those of docs/error-law.md; an error of twice the law is beyond them.
     assert array(REMAINDER).tolist() == [2, 2, 4, 2, 2, 2]
     far = left.law + 1.001 * array(REMAINDER)[:, np.newaxis] * size

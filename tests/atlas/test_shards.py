@@ -115,6 +115,9 @@ def test_counts_add_up(small, atlas):
     assert np.all(bins[last] <= largest)
     above = largest >= np.append(bins[1:], np.inf)[last]
     assert np.all(~above | (last == len(bins) - 1) | (last == 0))
+    # Three ranges from 0.05 to 0.95, and from 0 to 1: their middles.
+    assert atlas.restitution.values == pytest.approx([0.2, 0.5, 0.8])
+    assert atlas.position.values == pytest.approx([1 / 6, 0.5, 5 / 6])
     # The first bin has what is within the tolerance at every ϖ scanned.
     always = atlas.threshold_counts.isel(threshold_bin=0).values[reached] == plan.nodes_per_tile
     assert np.array_equal(always, np.isclose(largest, 3.0, rtol=1e-9)) and always.any()

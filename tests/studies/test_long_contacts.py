@@ -46,11 +46,13 @@ def test_basins_of_one_contact(described):
     assert (short > 0.4).all() and (longer > 0.1).all()
     assert (other > 0.1).tolist() == [False, False, True]
     assert found.other_period.values.tolist() == [0, 0, 3]
-    # The orbits lie in their own basins.
+    # The 1-T orbits lie in their own basins, and each has one.
+    assert np.isnan(found.orbit_phase.isel(motion=[0, 3, 4])).all()
     for case in range(3):
         for kind, name in enumerate(MOTIONS[1:3], start=1):
             place = found.sel(case=case, motion=name)
-            if np.isfinite(place.orbit_phase):
+            assert np.isfinite(place.orbit_phase) == (shares[case, kind] > 0)
+            if shares[case, kind] > 0:
                 near = found.destination.sel(case=case).sel(
                     start_phase=place.orbit_phase, start_speed=place.orbit_speed, method="nearest"
                 )

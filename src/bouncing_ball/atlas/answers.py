@@ -29,6 +29,8 @@ def threshold_bins(ratios: np.ndarray) -> np.ndarray:
     --------
     >>> threshold_bins(np.array([3.0, 4.0])).round(3).tolist()
     [0.0, 2.512, 3.162, 3.981, inf]
+    >>> threshold_bins(np.array([10.0, 12.0])).tolist()
+    [0.0, 10.0, inf]
     """
     low, high = (np.floor(PER_DECADE * np.log10(ratios[k]) + 1e-9) for k in (0, -1))
     return np.array([0.0, *10 ** (np.arange(low, high + 1) / PER_DECADE), np.inf])

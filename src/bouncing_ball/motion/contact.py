@@ -27,7 +27,7 @@ from bouncing_ball.motion.sequence import Status
 
 @dataclass(frozen=True, repr=False)
 class ContactDynamics(Dynamics):
-    """Those of any :class:`~bouncing_ball.contacts.contact_law.ContactLaw`."""
+    """Contacts of any :class:`~bouncing_ball.contacts.contact_law.ContactLaw`, and flights."""
 
     # The collocation has blocks of its own; fewer here share the few contacts that last long.
     block: ClassVar[int] = 1 << 16
@@ -60,7 +60,7 @@ class ContactDynamics(Dynamics):
 
 @dataclass(frozen=True, repr=False)
 class LinearContactDynamics(ContactDynamics):
-    """Those of an underdamped :class:`~bouncing_ball.contacts.spring_damper.SpringDamper`."""
+    """The same of an underdamped :class:`~bouncing_ball.contacts.spring_damper.SpringDamper`."""
 
     block: ClassVar[int] = BLOCK
 

@@ -33,7 +33,7 @@ _DESCENT = 4
 
 @dataclass(frozen=True, repr=False)
 class CorrectedDynamics(Dynamics):
-    """Those of the corrected model; ``law`` is the
+    """Impacts and flights of the corrected model; ``law`` is the
     :class:`~bouncing_ball.contacts.signature.Signature`."""
 
     def depart(self, impact: Impact) -> Departure:

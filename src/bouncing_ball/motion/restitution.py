@@ -29,7 +29,7 @@ _INSTANT = np.finfo(float).eps
 
 @dataclass(frozen=True, repr=False)
 class RestitutionDynamics(Dynamics):
-    """Those of the restitution model; ``law`` is r, or a law r(v)."""
+    """Impacts and flights of the restitution model; ``law`` is r, or a law r(v)."""
 
     def depart(self, impact: Impact) -> Departure:
         """The flight after each impact, or the rest on the table after the last."""

@@ -1,0 +1,20 @@
+"""MuJoCo was asked for r = 0.75 and gave 0.820: what its parameters meant."""
+
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.engines import ENGINES
+from bouncing_ball.engines.engine import Physical
+
+MASS, STIFFNESS = 0.5, 284244.0  # kg, N/m
+OMEGA = (STIFFNESS / MASS) ** 0.5
+mujoco = ENGINES["mujoco"]
+
+# k and c were multiplied by the mass; MuJoCo's numbers are k/m and c/m.
+written = mujoco.read({"solref": "-284244 -68.8"}, MASS)
+print(f"written: zeta = {written.damping_ratio:.4f}, r = {written.restitution(Release.FORCE):.4f}")
+
+for release in (Release.DISPLACEMENT, Release.FORCE):
+    zeta = float(damping_ratio(0.75, release))
+    contact = Physical(MASS, STIFFNESS, 2 * zeta * MASS * OMEGA)
+    r = contact.restitution(Release.FORCE)
+    print(f"zeta of 0.75 by the {release} release: {zeta:.4f}, MuJoCo's r = {r:.4f}")

@@ -1,0 +1,32 @@
+"""The commands and the scripts of docs/engines.md print what the page says."""
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "engines.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"```\n\$ (.*)\n([^`]*)```", PAGE)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("command", "printed"), BLOCKS)
+def test_a_command_prints_what_the_page_says(command, printed):
+    program, *arguments = shlex.split(command)
+    run = [Path(sys.executable).with_name(program), *arguments]
+    env = os.environ | {"PYTHONIOENCODING": "utf-8"}
+    found = subprocess.run(
+        run, cwd=ROOT, env=env, capture_output=True, encoding="utf-8", check=True
+    ).stdout
+    assert found.rstrip() == printed.rstrip()
+
+
+def test_every_script_is_on_the_page():
+    scripts = {f"python docs/engines/{path.name}" for path in (ROOT / "docs/engines").glob("*.py")}
+    assert scripts <= {command for command, _ in BLOCKS}
+    assert len(BLOCKS) == 7

@@ -206,7 +206,8 @@ def _browse(folder, url, *options):
         ],
         capture_output=True,
         text=True,
-        timeout=120,
+        # A hang, whatever else the machine does.
+        timeout=600,
     )
     assert done.returncode == 0, done.stderr
     return done.stdout

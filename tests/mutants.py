@@ -18,8 +18,9 @@ import subprocess
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
@@ -147,7 +148,7 @@ def _with(source: str, node: ast.AST, wrong: ast.expr) -> str:
     return (source.encode()[:start] + text.encode() + source.encode()[end:]).decode()
 
 
-def sample(count: int, seed: int) -> list[tuple[Path, Fault]]:
+def sample(count: int, seed: int, only: Sequence[str] = ("",)) -> list[tuple[Path, Fault]]:
     """Faults drawn from all modules of the layers, each as likely as another.
 
     The order is that of a checksum of the fault itself, so that an edit elsewhere leaves
@@ -164,7 +165,8 @@ def sample(count: int, seed: int) -> list[tuple[Path, Fault]]:
                 seen[text] += 1
                 order = hashlib.sha256(f"{text} {seen[text]}".encode()).digest()
                 every.append((order, name, fault))
-    return [(name, fault) for _, name, fault in sorted(every)[:count]]
+    asked = (each for each in sorted(every) if any(part in str(each[1]) for part in only))
+    return [(name, fault) for _, name, fault in islice(asked, count)]
 
 
 def passes(tree: Path, *tests: str) -> bool:
@@ -204,11 +206,7 @@ def main() -> None:
     parser.add_argument("--only", nargs="*", default=[""], help="parts of the paths of modules")
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
     options = parser.parse_args()
-    drawn = [
-        (path, fault)
-        for path, fault in sample(options.count, options.seed)
-        if any(part in str(path) for part in options.only)
-    ]
+    drawn = sample(options.count, options.seed, options.only)
     trees: queue.SimpleQueue[Path] = queue.SimpleQueue()
     with tempfile.TemporaryDirectory() as folder:
         for worker in range(options.workers):

@@ -105,16 +105,3 @@ def test_layer_imports_only_what_it_may(layer):
     # The package's docstring has the layers in their order: each imports only what lies above.
     order = [line.split("``")[1] for line in bouncing_ball.__doc__.splitlines() if "``" in line[:2]]
     assert ALLOWED[layer][0] <= set(order[: order.index(layer)])
-
-
-@pytest.mark.parametrize(
-    ("layer", "source"),
-    [
-        ("contacts", "import xarray"),
-        ("contacts", "from bouncing_ball import orbits"),
-        ("continuation", "def f():\n    from bouncing_ball.contacts import damping"),
-        ("figures", "import bouncing_ball.orbits.spring_damper_limits as limits"),
-    ],
-)
-def test_the_check_sees_violations(layer, source):
-    assert violations(layer, source)

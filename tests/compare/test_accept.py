@@ -73,7 +73,7 @@ def test_what_is_named_is_copied_and_nothing_else(pair, run, one_line):
     [
         (UNKNOWN, 0, "force", "the tree is not committed"),
         (Revision("1f0e", "yes"), 0, "force", "the tree is not committed"),
-        (Revision("1f0e", "no"), 0, "displacement", "other values than config/config.yaml"),
+        (Revision("1f0e", "no"), 0, "displacement", "config.yaml: {'release': 'displacement'}"),
         (Revision("1f0e", "no"), 3, "force", "Snakemake would still run 3 jobs"),
         (Revision("1f0e", "no"), 0, "force", "fig17.png is not made by this workflow: remove it"),
     ],

@@ -76,3 +76,6 @@ def test_what_a_law_cannot_do_is_said():
     for r in (0.95, 1.0):
         with pytest.raises(ModelError, match="pulling is given by its parameters, not by rest"):
             law_of_impact(_Pulling, r, 0.3, 1.0)
+    for value in (0.0, -1.0, np.inf):
+        with pytest.raises(ModelError, match=r"contact duration D = .* is not a finite number > 0"):
+            law_of_impact(HuntCrossley, 0.65, value, 3.8)

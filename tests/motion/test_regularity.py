@@ -59,6 +59,8 @@ def test_what_comes_after_sticking_is_not_counted():
     assert 0 <= stuck < 20
     assert stretching(sequence, 0.2, 0).impacts.item() == stuck
     assert np.isnan(stretching(sequence, 0.2, 29).exponent()).all()
+    # On a table at rest a ball that is late stays as late, from the first impact on.
+    assert abs(stretching(simulate(0.5, 0.0, 0.0, [-8.0], 3), 0.5, 0).logarithm.item()) < 1e-15
 
 
 def test_the_error_of_the_mean_is_that_of_independent_balls():

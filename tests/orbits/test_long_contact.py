@@ -49,11 +49,15 @@ def test_each_end_is_what_it_is_called(window):
     steps = np.array([-1e-4, 0.0, 1e-4])
     near = orbit_with_flight(contact(0.85, 1.2), window.flight_time[0] + steps).amplitude
     assert near[1] > near[0] and near[1] > near[2]
-    grazing = orbit[3]
-    time = np.linspace(0, float(grazing.contact_duration), 20_001)[200:-200]
-    gap = grazing.contact_path(time)[0] - grazing.amplitude * np.sin(grazing.phase + time)
-    depth = -gap.min()
-    assert -1e-6 * depth < gap.max() < 1e-9 * depth
+    # Weakly damped, where both multipliers are far from 0.
+    weak = contact(0.99, np.array([6.0]))
+    end = stable_window(weak)
+    assert end.end.tolist() == [End.CONTACT]
+    for grazing in (orbit[3], orbit_with_flight(weak, end.flight_time)[0]):
+        time = np.linspace(0, float(grazing.contact_duration), 20_001)[200:-200]
+        gap = grazing.contact_path(time)[0] - grazing.amplitude * np.sin(grazing.phase + time)
+        depth = -gap.min()
+        assert -1e-6 * depth < gap.max() < 1e-9 * depth
 
 
 def test_balls_find_the_orbit_inside_the_window_and_none_beyond(window):
@@ -117,8 +121,9 @@ def test_no_parting_where_it_is_not_looked_for():
     zeta = float(damping_ratio(0.85))
     for low, high in ((1.5, 1.9), (2.1, 4.0)):
         assert np.isnan(joining_ratio(zeta, Release.DISPLACEMENT, low, high))
-    # No saddle-node, so that there is nothing to join.
-    assert not joined(contact(0.3, np.array([1.2])))
+    # No saddle-node, so that there is nothing to join; and one beside it that is apart.
+    both = SpringDamper(np.array([1.2, 3.0]), damping_ratio(np.array([0.3, 0.85])))
+    assert joined(both).tolist() == [False, False]
 
 
 def test_the_other_release_is_an_answer_too():

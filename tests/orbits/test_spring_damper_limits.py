@@ -271,3 +271,10 @@ def test_just_below_the_turn_of_the_unstable_side_its_first_orbit_is_found():
     # On the fold's side of the turn, by a root of 1e-9 times a number of order one.
     excess = below.contact_duration * contact.damped_frequency - contact.free_angle
     assert -1e-3 < excess - turn.x < 0
+
+
+def test_every_orbit_at_an_amplitude_comes_in_and_leaves():
+    # Far up, half of the points of the branch have balls that rise at impact, or fall at release.
+    found = SpringDamperModel(SpringDamper(3.3, 0.1)).orbits(1, 4.0)
+    assert found.size == 2
+    assert np.all(found.relative_impact_velocity < 0) and np.all(found.apparent_restitution > 0)

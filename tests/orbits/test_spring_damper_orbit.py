@@ -1,11 +1,14 @@
 """What is read from an orbit of the spring-damper model."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import orbit_at
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
@@ -42,3 +45,11 @@ def test_distance_is_the_largest_difference():
         moved = base | {name: base[name] + 1e-3}
         found = SpringDamperOrbit(**moved).distance(orbit)
         assert float(found) == pytest.approx(size * 1e-3, rel=1e-9)
+
+
+@pytest.mark.parametrize("top", [0.0, 0.01, 0.5, 0.99, 1.0])
+def test_the_highest_point_of_a_contact_may_be_next_to_its_ends(top):
+    contact = SimpleNamespace(
+        shape=(), contact_duration=np.array(1.0), contact_path=lambda time: (-((time - top) ** 2),)
+    )
+    assert abs(Orbit._contact_top(contact)) < 1e-13

@@ -37,6 +37,8 @@ def test_limits_are_those_of_the_papers_release():
 
 def test_basins_of_one_contact(described):
     found = described(typed(basins)(BASINS, "displacement"))
+    # The starts are the middles of even cells.
+    assert [found.start_phase.mean(), found.start_speed.mean()] == pytest.approx([0, 4], abs=1e-12)
     shares = found.basin_share.values
     assert shares.sum(axis=1) == pytest.approx([1, 1, 1], abs=1e-15)
     permanent, short, long, longer, other = shares.T

@@ -61,7 +61,7 @@ start() {
     write_configuration
     slurmctld -c -f "$conf"
     slurmd -c -f "$conf"
-    for _ in $(seq 100); do
+    for _ in $(seq 3000); do
         if "$folder/bin/sinfo" --noheader --format %T 2>/dev/null | grep -q '^idle'; then
             return
         fi

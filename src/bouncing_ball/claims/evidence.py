@@ -29,7 +29,7 @@ def curves(data: Data, *names: str) -> xr.Dataset:
         sweep = data[name].reset_coords()[read + axes].rename(case="orbit")
         pairs = zip(*(sweep[axis].values for axis in axes), strict=True)
         # The digits that rounding leaves, so that no two are called alike.
-        labels = [f"{name} r={r:.12g} Λ={lam:.12g}" for r, lam in pairs]
+        labels = [f"{name} r={r:.6g} Λ={lam:.6g}" for r, lam in pairs]
         parts.append(sweep.assign(n=data[name].attrs["n"]).assign_coords(orbit=labels))
     return xr.concat(parts, "orbit", data_vars="all")
 

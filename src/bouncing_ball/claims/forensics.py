@@ -149,7 +149,7 @@ def forensics() -> xr.Dataset:
     axes = {"reading": list(found), **printed.coords}
     computed = xr.DataArray(np.array(list(found.values())), axes, ("reading", *printed.dims))
     difference = (computed - printed) / LAST_DIGIT
-    below = difference.sel(bound="saddle-node", drop=True) > 0.5
+    below = difference.sel(bound=Bifurcation.SADDLE_NODE, drop=True) > 0.5
     ratio = printed.frequency_ratio
     groups = {"all rows": ratio > 0, "softer rows": ratio < ratio.max()}
     groups |= {f"ϖ = {float(value):g}": ratio == value for value in ratio}

@@ -93,7 +93,7 @@ def accept(
     if revision(record).dirty != "no":
         raise RefusedError("the tree is not committed: commit first, then accept what it makes")
     if changed := changes(config, read_yaml(record / CONFIGURATION)):
-        raise RefusedError(f"this run has other values than {CONFIGURATION}: {', '.join(changed)}")
+        raise RefusedError(f"this run has other values than {CONFIGURATION}: {changed}")
     if left := jobs_left(record, files):
         raise RefusedError(f"Snakemake would still run {left} jobs: run it, and look at the diff")
     if foreign := sorted({*map(str, results.glob("figures/[!.]*"))} - {*files}):

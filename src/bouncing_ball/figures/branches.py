@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from bouncing_ball.figures.canvas import WIDE, canvas, coloured, legend_below
 from bouncing_ball.figures.labels import number, parameters
-from bouncing_ball.figures.style import COLOURS, LINES, MARKS
+from bouncing_ball.figures.style import COLOURS, LINES, MARKS, SADDLE_NODE
 
 
 def restitution_families(data: xr.Dataset) -> Figure:
@@ -68,7 +68,7 @@ def up_to_second_saddle_node(curve: xr.Dataset) -> xr.Dataset:
     Beyond it the contact is longer than at it. A branch whose unstable side
     does not turn back is returned as it is.
     """
-    durations = curve.special_contact_duration.values[curve.special_kind.values == "saddle-node"]
+    durations = curve.special_contact_duration.values[curve.special_kind.values == SADDLE_NODE]
     if len(durations) < 2:
         return curve
     longest = np.sort(durations)[1]

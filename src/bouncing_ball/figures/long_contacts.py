@@ -10,11 +10,19 @@ from matplotlib.patches import Patch
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.figures.canvas import WIDE, canvas, coloured, legend_below, logarithmic
 from bouncing_ball.figures.labels import number
-from bouncing_ball.figures.style import COLOURS, CONTACT, GUIDE, MARKS, Look
+from bouncing_ball.figures.style import (
+    COLOURS,
+    CONTACT,
+    GUIDE,
+    MARKS,
+    PERIOD_DOUBLING,
+    SADDLE_NODE,
+    Look,
+)
 
 _MARKS: dict[str, Look] = {
-    "saddle-node": {**MARKS["saddle-node"], "color": COLOURS[1]},
-    "period doubling": {**MARKS["period doubling"], "color": COLOURS[3]},
+    SADDLE_NODE: {**MARKS[SADDLE_NODE], "color": COLOURS[1]},
+    PERIOD_DOUBLING: {**MARKS[PERIOD_DOUBLING], "color": COLOURS[3]},
     "grazing in contact": {**MARKS["grazing"], "color": COLOURS[0]},
     "grazing in flight": {**MARKS["grazing"], "marker": "v", "color": COLOURS[2]},
 }

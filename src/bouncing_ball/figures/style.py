@@ -32,9 +32,12 @@ LINES: dict[str, Look] = {
 
 # Hollow, so that markers which coincide can all be seen.
 _HOLLOW: Look = {"linestyle": "none", "markerfacecolor": "none", "markeredgewidth": 1.0}
+SADDLE_NODE, PERIOD_DOUBLING = "saddle-node", "period doubling"
+"""The bifurcations as datasets name them."""
+
 MARKS: dict[str, Look] = {
-    "saddle-node": {"marker": "o", "markersize": 5, **_HOLLOW},
-    "period doubling": {"marker": "s", "markersize": 5, **_HOLLOW},
+    SADDLE_NODE: {"marker": "o", "markersize": 5, **_HOLLOW},
+    PERIOD_DOUBLING: {"marker": "s", "markersize": 5, **_HOLLOW},
     "grazing": {"marker": "^", "markersize": 4.5, "linestyle": "none"},
 }
 """Special points of a branch."""

@@ -11,10 +11,10 @@ from matplotlib.figure import Figure
 from bouncing_ball.figures.branches import draw_curve
 from bouncing_ball.figures.canvas import WIDE, canvas, coloured, legend_below, logarithmic
 from bouncing_ball.figures.labels import QUANTITIES, note, parameters
-from bouncing_ball.figures.style import CONTACT, GUIDE, MODELS, Look
+from bouncing_ball.figures.style import CONTACT, GUIDE, MODELS, PERIOD_DOUBLING, SADDLE_NODE, Look
 
 _RIGID: Look = MODELS["restitution"] | {"linestyle": "--"}
-_DASHES = {"saddle-node": "-", "period doubling": (0, (4, 1.5))}
+_DASHES = {SADDLE_NODE: "-", PERIOD_DOUBLING: (0, (4, 1.5))}
 _MARKS = ("o", "x", "s")
 
 

@@ -26,8 +26,8 @@ from bouncing_ball.motion.sequence import Status
 
 
 @dataclass(frozen=True, repr=False)
-class Contacts(Dynamics):
-    """Those of any :class:`~bouncing_ball.contacts.contact_law.ContactLaw`."""
+class ContactDynamics(Dynamics):
+    """Contacts of any :class:`~bouncing_ball.contacts.contact_law.ContactLaw`, and flights."""
 
     # The collocation has blocks of its own; fewer here share the few contacts that last long.
     block: ClassVar[int] = 1 << 16
@@ -59,8 +59,8 @@ class Contacts(Dynamics):
 
 
 @dataclass(frozen=True, repr=False)
-class LinearContacts(Contacts):
-    """Those of an underdamped :class:`~bouncing_ball.contacts.spring_damper.SpringDamper`."""
+class LinearContactDynamics(ContactDynamics):
+    """The same of an underdamped :class:`~bouncing_ball.contacts.spring_damper.SpringDamper`."""
 
     block: ClassVar[int] = BLOCK
 

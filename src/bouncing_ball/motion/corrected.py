@@ -32,8 +32,8 @@ _DESCENT = 4
 
 
 @dataclass(frozen=True, repr=False)
-class Corrected(Dynamics):
-    """Those of the corrected model; ``law`` is the
+class CorrectedDynamics(Dynamics):
+    """Impacts and flights of the corrected model; ``law`` is the
     :class:`~bouncing_ball.contacts.signature.Signature`."""
 
     def depart(self, impact: Impact) -> Departure:

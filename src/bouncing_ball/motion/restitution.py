@@ -28,8 +28,8 @@ _INSTANT = np.finfo(float).eps
 
 
 @dataclass(frozen=True, repr=False)
-class Instants(Dynamics):
-    """Those of the restitution model; ``law`` is r, or a law r(v)."""
+class RestitutionDynamics(Dynamics):
+    """Impacts and flights of the restitution model; ``law`` is r, or a law r(v)."""
 
     def depart(self, impact: Impact) -> Departure:
         """The flight after each impact, or the rest on the table after the last."""

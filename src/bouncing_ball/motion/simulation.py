@@ -11,12 +11,12 @@ from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, require
 from bouncing_ball.motion.angles import table
-from bouncing_ball.motion.contact import Contacts, LinearContacts
-from bouncing_ball.motion.corrected import Corrected
+from bouncing_ball.motion.contact import ContactDynamics, LinearContactDynamics
+from bouncing_ball.motion.corrected import CorrectedDynamics
 from bouncing_ball.motion.dynamics import Dynamics, Impact
 from bouncing_ball.motion.ensembles import blocks, pick
 from bouncing_ball.motion.linear_contact import has_closed_form
-from bouncing_ball.motion.restitution import Instants
+from bouncing_ball.motion.restitution import RestitutionDynamics
 from bouncing_ball.motion.sequence import RECORDED, Cycle, ImpactSequence, Status
 
 Law = ContactLaw | Signature | RestitutionLaw | ArrayLike
@@ -30,15 +30,15 @@ def _dynamics(law: Law, amplitude: ArrayLike) -> Dynamics:
     lam = np.asarray(amplitude, dtype=float)
     require((lam >= 0) & np.isfinite(lam), lam, "amplitude Λ", "finite and ≥ 0")
     if isinstance(law, SpringDamper) and has_closed_form(law):
-        return LinearContacts(law, lam)
+        return LinearContactDynamics(law, lam)
     if isinstance(law, ContactLaw):
-        return Contacts(law, lam)
+        return ContactDynamics(law, lam)
     if isinstance(law, Signature):
-        return Corrected(law, lam)
+        return CorrectedDynamics(law, lam)
     if not isinstance(law, RestitutionLaw):
         law = np.asarray(law, dtype=float)
         require((law > 0) & (law <= 1), law, "restitution coefficient r", "in (0, 1]")
-    return Instants(law, lam)
+    return RestitutionDynamics(law, lam)
 
 
 def _row(law: Law, amplitude: ArrayLike, *states: ArrayLike):

@@ -5,10 +5,12 @@ The exponent of the first frequency ratio is unreadable, taken as 4.
 
 import xarray as xr
 
+from bouncing_ball.orbits.stability import Bifurcation
+
 AXES: dict[str, list] = {
     "frequency_ratio": [1e4, 10.0, 2.0],
     "n": [1, 2, 3],
-    "bound": ["saddle-node", "period doubling"],
+    "bound": [str(kind) for kind in Bifurcation],
 }
 _ENTRIES = [
     [["0.255", "1.032"], ["0.509", "1.122"], ["0.764", "1.259"]],

@@ -6,6 +6,7 @@ An undecidable claim says itself what its verdict depends on, and its remark why
 from bouncing_ball.claims import evidence
 from bouncing_ball.claims.claim import of_formula
 from bouncing_ball.claims.verdict import above, at_least, at_most, below
+from bouncing_ball.orbits.stability import Bifurcation
 
 
 def approximate_map(data):
@@ -49,7 +50,7 @@ def period_doubling_turns(data):
     """With decreasing ϖ the period doubling first moves down, turns at a moderate ϖ, and then
     moves up. Against the printed stiffest row, which is Holmes', it seems to rise at once.
     """
-    computed = evidence.softening(data).sel(bound="period doubling", frequency_ratio=10)
+    computed = evidence.softening(data).sel(bound=Bifurcation.PERIOD_DOUBLING, frequency_ratio=10)
     return {"largest computed rise from the stiffest contact to ϖ = 10": below(computed, 0)}
 
 

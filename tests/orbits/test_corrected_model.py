@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.contacts.laws.tsuji import Tsuji
+from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.orbit import OBSERVABLES
@@ -55,3 +57,11 @@ def test_the_papers_orbit():
     restitution = np.sin(np.arccos(np.pi * 0.35 / 1.65)) + np.pi**2 / 2
     assert 0.08 < restitution / truth - 1 < 0.1
     assert 4e-4 < corrected.orbit(1, 1.0).max_height / truth - 1 < 5e-4
+
+
+@pytest.mark.parametrize("stiffness", [300.0, 2e4])
+def test_without_dissipation_an_orbit_is_neutral_and_has_no_fold(stiffness):
+    model = CorrectedModel(Signature(Tsuji(stiffness, 0.0)))
+    families = np.array([1, 2, 3])
+    assert not np.any(model.orbit(families, 0.5).is_stable())
+    assert np.all(np.isnan(model.saddle_node(families).amplitude))

@@ -216,10 +216,11 @@ def bifurcation(model: Any, n: ArrayLike, kind: Bifurcation) -> Any:
     system = search.model.system(index)
     test = vanishing(lambda y: kind.test(*system.orbit(y).trace_and_determinant()))
     found = newton(system, search.start(lam, psi), test, _EXTENDED)
-    # A Λ of zero has no phase: the fold of an elastic contact.
-    good = found.converged & (found.point[:, -1] > _EXTENDED.tolerance)
-    y = np.where(good[:, np.newaxis], found.point, np.nan)
     low = (lam < _LOWEST) & (kind is Bifurcation.SADDLE_NODE)
+    # A Λ of zero has no phase: the fold of an elastic contact, found anywhere near by rounding.
+    reached = found.point[:, -1]
+    good = found.converged & (reached > _EXTENDED.tolerance) & (~low | (reached < 2 * lam))
+    y = np.where(good[:, np.newaxis], found.point, np.nan)
     for k in np.flatnonzero(np.isnan(y[:, 0]) & ~low):
         near = float(np.nan_to_num(lam[k], nan=1.0))
         special = continued(search.model.take(k), int(index[k]), near)

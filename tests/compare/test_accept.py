@@ -92,7 +92,10 @@ def test_a_refusal_changes_nothing(pair, run, monkeypatch, one_line, state, left
 
 def test_the_jobs_left_are_those_of_a_dry_run(monkeypatch, tmp_path, one_line):
     ends = iter([(0, "job  count\nall 1\ntotal 4\n", ""), (0, "", ""), (1, "", "many\nwords\n")])
-    done = lambda *_, **__: subprocess.CompletedProcess([], *next(ends))  # noqa: E731
+
+    def done(*_, **__):
+        return subprocess.CompletedProcess([], *next(ends))
+
     monkeypatch.setattr(module.subprocess, "run", done)
     assert module.jobs_left(tmp_path, []) == 4
     assert module.jobs_left(tmp_path, []) == 0

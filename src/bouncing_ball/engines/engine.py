@@ -171,13 +171,16 @@ class Engine(ABC):
 
 
 class Proportional(Engine):
-    """An engine whose two parameters are a k and b c, with factors that know the mass alone."""
+    """An engine whose two parameters are a k and b c, with factors that know the mass alone.
+
+    The factors are 1 where a subclass has no others.
+    """
 
     names: ClassVar[tuple[str, str]]
 
-    @abstractmethod
     def factors(self, mass: float) -> tuple[float, float]:
-        """What k and c are multiplied by."""
+        """The factors a and b, by which k and c are multiplied."""
+        return 1.0, 1.0
 
     def parameters(self, contact: Physical) -> Parameters:
         stiff, lossy = self.factors(contact.mass)

@@ -27,9 +27,6 @@ class Generic(Proportional):
     releases = (Release.DISPLACEMENT, Release.FORCE)
     scheme = Scheme.SEMI_IMPLICIT
 
-    def factors(self, mass: float) -> tuple[float, float]:
-        return 1.0, 1.0
-
     def snippet(self, contact: Physical, release: Release, time_step: float) -> str:
         pull, force = (contact.restitution(rule) for rule in Release)
         load = "k * p + c * rate"

@@ -19,9 +19,6 @@ class MercuryDPM(Proportional):
     releases = (Release.DISPLACEMENT,)
     scheme = Scheme.SEMI_IMPLICIT
 
-    def factors(self, mass: float) -> tuple[float, float]:
-        return 1.0, 1.0
-
     def snippet(self, contact: Physical, release: Release, time_step: float) -> str:
         stiffness, dissipation = self.parameters(contact).values()
         return f"""\

@@ -42,8 +42,8 @@ def _loads(orbit: Any) -> tuple[float, float]:
     duration = float(orbit.contact_duration)
     times = np.linspace(0.0, duration, _SAMPLES + int(_IN_A_RADIAN * duration))
     tops = loads(times).argmax(axis=1)
-    ends = times[np.clip([tops - 1, tops + 1], 0, times.size - 1)]
-    (depth, _), (_, force) = (loads(np.linspace(*around, _SAMPLES)) for around in ends.T)
+    low, high = times[np.clip([tops - 1, tops + 1], 0, times.size - 1)]
+    (depth, _), (_, force) = map(loads, np.linspace(low, high, _SAMPLES, axis=1))
     return float(np.max(depth)), float(np.max(force))
 
 

@@ -1,4 +1,4 @@
-"""What is published of every orbit that a study follows."""
+"""The quantities that the datasets contain of every orbit."""
 
 import numpy as np
 
@@ -13,11 +13,13 @@ OBSERVED = (
     "apparent_restitution",
 )
 PLACE = ("amplitude", "phase", "contact_duration")
-"""What is published of special orbits."""
+"""The quantities that the datasets contain of special orbits."""
 
 
 def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
-    """The named quantities of orbits, their stability and their admissibility.
+    """The named quantities of orbits, with their stability and their admissibility.
+
+    The arrays have the orbits' shape.
 
     Examples
     --------

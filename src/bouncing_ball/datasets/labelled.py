@@ -15,7 +15,7 @@ import xarray as xr
 from xarray.plot.accessor import DatasetPlotAccessor
 
 from bouncing_ball.datasets.variables import VARIABLES
-from bouncing_ball.errors import ParameterError
+from bouncing_ball.errors import ParameterError, extra
 
 _FIGURES = "bouncing_ball.figures.plots"
 CASE = "case"
@@ -35,7 +35,9 @@ class Plot(DatasetPlotAccessor):
         ModelError
             If the path does not end as a picture does or cannot be written.
         """
-        return import_module(_FIGURES).plot(self._ds, path)
+        with extra("plot"):
+            figures = import_module(_FIGURES)
+        return figures.plot(self._ds, path)
 
 
 class Labelled(xr.Dataset):

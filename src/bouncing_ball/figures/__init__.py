@@ -24,6 +24,7 @@ DRAWINGS = {
     "ext_release": "thresholds.release_rules",
     "ext_rattling": "long_contacts.stable_windows",
     "ext_basins": "long_contacts.basins",
+    "ext_impact": "free_impacts.free_impacts",
     "ext_instant": "histories.meeting_flights",
     "ext_orders": "model_errors.orders",
     "ext_laws": "model_errors.contact_laws",

@@ -10,10 +10,10 @@ from pydantic import AfterValidator, ValidationInfo
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import describe
+from bouncing_ball.orbits.columns import OBSERVED, columns
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.parameters import Amplitude, Family, Many, Parameters, Restitution, Span
-from bouncing_ball.studies.columns import OBSERVED, columns
 from bouncing_ball.studies.parameters import OrbitAmplitude, require_orbit
 
 # Relative distance of two frequency ratios that are one but for the rounding of a grid.

@@ -4,23 +4,20 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.continuation.branch import Branch, ContinuationError, resample
-from bouncing_ball.continuation.corrector import NewtonSettings
+from bouncing_ball.continuation.branch import Branch, ContinuationError
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
-from bouncing_ball.orbits.grazing import grazing_points
+from bouncing_ball.orbits.columns import PLACE, branch_columns, columns, orbits_in_columns
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.parameters import Family, FrequencyRatio, LossyRestitution, Many, Parameters
-from bouncing_ball.studies.columns import OBSERVED, PLACE, columns
 from bouncing_ball.studies.continuation import Continuation, branch_along_amplitude
 from bouncing_ball.studies.parameters import BranchEnd, Points
 from bouncing_ball.studies.printed_table1 import printed_table
 
 SADDLE_NODE, PERIOD_DOUBLING = Bifurcation
-GRAZING = "grazing"
 
 
 class Branches(Parameters):
@@ -57,43 +54,18 @@ def _branch(
     ratio: float, parameters: Branches, release: Release, continuation: Continuation
 ) -> xr.Dataset:
     """The branch of one contact; NaN, with the reason, where it cannot be followed."""
-    n, count, newton = parameters.n, parameters.points, NewtonSettings()
+    n, count = parameters.n, parameters.points
     try:
-        system, branch = branch_along_amplitude(
+        followed = branch_along_amplitude(
             n, parameters.restitution, ratio, parameters.amplitude_max, release, continuation
         )
-        y = resample(system, branch, count)
-        chosen = [s for s in branch.special if s.name in (SADDLE_NODE, PERIOD_DOUBLING)]
-        grazing = grazing_points(system, lambda z: system.orbit(z).is_admissible(), y, newton)
-        kinds = [*(s.name for s in chosen), *[GRAZING] * len(grazing)]
-        points = np.array([*(s.point for s in chosen), *grazing]).reshape(-1, y.shape[-1])
-        orbit, special = system.orbit(y), system.orbit(points)
-        reasons = [str(branch.start), str(branch.end)]
+        found = branch_columns(*followed, count)
     except (NoOrbitError, ContinuationError) as error:
         missing = (
             SpringDamperModel(SpringDamper(1.0, 0.0)).system(n).orbit(np.full((count, 4), np.nan))
         )
-        orbit, special = missing, missing[:0]
-        kinds, reasons = [], [str(error)] * 2
-    floquet = orbit.multipliers()
-    along = columns(orbit, "amplitude", *OBSERVED) | {"residual": orbit.defect()}
-    places = {name: getattr(special, name) for name in PLACE} | {"residual": special.defect()}
-    return xr.Dataset(
-        {
-            **{name: ("point", values) for name, values in along.items()},
-            "multiplier_real": (("point", "multiplier"), floquet.real),
-            "multiplier_imag": (("point", "multiplier"), floquet.imag),
-            "special_kind": ("special", np.array(kinds, dtype=object)),
-            **{f"special_{name}": ("special", values) for name, values in places.items()},
-            "end_reason": ("end", reasons),
-        },
-        coords={
-            "frequency_ratio": ratio,
-            # A branch with fewer special points than another has no more.
-            "special": np.arange(len(kinds)),
-            "end": ["unstable side", "stable side"],
-        },
-    )
+        found = orbits_in_columns(missing, missing[:0], [], [str(error)] * 2)
+    return found.assign_coords(frequency_ratio=ratio)
 
 
 def orbit_branches(parameters: Domains, release: Release, continuation: Continuation) -> xr.Dataset:

@@ -37,6 +37,12 @@ def test_every_script_and_every_engine_is_on_the_page():
     assert {*recipes, "generic"} == set(ENGINES) and len(BLOCKS) == len(recipes) + 5
 
 
+def test_the_readme_shows_a_part_of_the_first_recipe():
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    shown = dict(re.findall(r"```\n\$ (.*)\n…\n([^`]*)…\n```", readme))
+    assert len(shown) == 1 and all(text in dict(BLOCKS)[command] for command, text in shown.items())
+
+
 def test_the_links_of_the_page_lead_somewhere():
     links = re.findall(r"\]\(([^)#]+)\)", PAGE)
     assert len(links) >= 4 and all((ROOT / "docs" / link).exists() for link in links)

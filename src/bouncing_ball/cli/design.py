@@ -100,14 +100,11 @@ def _draw(found: Design, path: Path) -> None:
 
     with extra("plot"):
         from bouncing_ball.figures.design_page import draw
-        from bouncing_ball.figures.files import save
+        from bouncing_ball.figures.plots import write
         from bouncing_ball.figures.style import style
     with style():
         figure = draw(asdict(found), page(found), rows(found) + rows(found.judged))
-        try:
-            save(figure, path, {"Title": "bouncing-ball design"})
-        except OSError as error:
-            raise ModelError(f"{path} cannot be written: {error.strerror}") from None
+        write(figure, path, "bouncing-ball design")
 
 
 def _line(name: str, *columns: str) -> str:

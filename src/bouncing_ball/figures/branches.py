@@ -11,8 +11,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from bouncing_ball.datasets.labelled import CASE
 from bouncing_ball.figures.canvas import WIDE, canvas, coloured, legend_below
-from bouncing_ball.figures.labels import number, parameters
+from bouncing_ball.figures.labels import in_a_row, number, parameters, title
 from bouncing_ball.figures.style import COLOURS, LINES, MARKS, SADDLE_NODE
 
 
@@ -39,6 +40,22 @@ def domains(data: xr.Dataset) -> Figure:
         _draw_spring_damper(axes, up_to_second_saddle_node(curve), colour, colour)
     ylabel = r"phase of the table over $\pi$: $\varphi$, and above it $\varphi+\tau_b$"
     _name_axes(axes, data, ylabel, parameters(data, "n", "restitution"))
+    legend_below(figure, ncols=7)
+    return figure
+
+
+def over_amplitude(data: xr.Dataset) -> Figure:
+    """Branches as in Figs. 8 and 9, in their colours, named by what differs."""
+    figure, axes = canvas(WIDE, 4.2)
+    rows, names = in_a_row(data, "point", "special", "multiplier", "end")
+    _name_curves(axes, [name for name in names if name])
+    for curve, colour in coloured(rows, CASE):
+        _draw_spring_damper(axes, up_to_second_saddle_node(curve), colour, colour)
+    touching = bool((rows.contact_duration > 0).any())
+    above = r", and above it $\varphi+\tau_b$" if touching else ""
+    axes.set(xlabel=r"amplitude $\Lambda$", title=title(data))
+    axes.set(ylabel=rf"phase of the table over $\pi$: $\varphi${above}")
+    axes.set_xlim(0.0, float(data.amplitude.max()))
     legend_below(figure, ncols=7)
     return figure
 

@@ -7,8 +7,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from bouncing_ball.datasets.labelled import CASE
 from bouncing_ball.figures.canvas import WIDE, canvas, coloured, legend_below
-from bouncing_ball.figures.labels import note, number, parameters
+from bouncing_ball.figures.labels import in_a_row, note, number, parameters, title
 from bouncing_ball.figures.style import ARROW, COLOURS, CONTACT, GUIDE, TABLE, Look
 
 # From the stiffest contact to the softest.
@@ -26,6 +27,22 @@ def restitution_history(data: xr.Dataset) -> Figure:
     axes.set(xlabel=r"time $\tau/2\pi$", ylabel="$z$, $w$", title=title)
     axes.set(xlim=(0, float(periods[-1])), ylim=(None, 1.25 * float(data.ball.max())))
     axes.legend(loc="upper center", ncols=2)
+    return figure
+
+
+def over_time(data: xr.Dataset) -> Figure:
+    """Balls and table over time; several balls in their colours, named by what differs."""
+    figure, axes = canvas(WIDE, 2.8)
+    balls, names = in_a_row(data, "time")
+    periods = data.time / (2 * np.pi)
+    tables = balls.table.values
+    for k in range(1 if np.ptp(tables, axis=0).max() == 0 else len(tables)):
+        axes.plot(periods, tables[k], color=TABLE, label="table $w$", linewidth=0.9)
+    for (ball, colour), name in zip(coloured(balls, CASE), names, strict=True):
+        axes.plot(periods, ball.ball, color=colour, label=name or "ball $z$", linewidth=1.0)
+    axes.set(xlabel=r"time $\tau/2\pi$", ylabel="$z$, $w$", title=title(data))
+    axes.set(xlim=(0, float(periods[-1])))
+    legend_below(figure, ncols=5)
     return figure
 
 

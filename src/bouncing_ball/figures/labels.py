@@ -5,6 +5,8 @@ from typing import Any
 import xarray as xr
 from matplotlib.axes import Axes
 
+from bouncing_ball.datasets.labelled import CASE
+
 QUANTITIES = {
     "max_height": r"greatest height $\max\,z$",
     "bounce_velocity": r"bouncing-off velocity $z'_b$",
@@ -32,7 +34,18 @@ def number(value: float) -> str:
     return f"{value:g}"
 
 
-_SYMBOLS = {"n": "n", "restitution": "r", "amplitude": r"\Lambda", "frequency_ratio": r"\varpi"}
+_SYMBOLS = {
+    "n": "n",
+    "restitution": "r",
+    "measured_restitution": "r",
+    "amplitude": r"\Lambda",
+    "frequency_ratio": r"\varpi",
+    "damping_ratio": r"\zeta",
+    "duration": "D",
+    "height": "h",
+    "phase": r"\varphi",
+    "velocity": "z′_i",
+}
 
 
 def parameters(data: xr.Dataset, *names: str, of: str = "") -> str:
@@ -44,6 +57,30 @@ def parameters(data: xr.Dataset, *names: str, of: str = "") -> str:
     '$n=1$, $r=0.85$'
     """
     return ", ".join(f"${_SYMBOLS[name]}={number(data.attrs[of + name])}$" for name in names)
+
+
+def title(data: xr.Dataset) -> str:
+    """The parameters that a labelled dataset has for all of it; of a model its label."""
+    known = [name for name in _SYMBOLS if name in data.attrs]
+    words = [str(data.attrs[name]) for name in ("model", "law") if name in data.attrs]
+    return ", ".join(x for x in (*words, parameters(data, *known)) if x)
+
+
+def in_a_row(data: xr.Dataset, *kept: str) -> tuple[xr.Dataset, list[str]]:
+    """A labelled dataset with the axes of its arguments as one, "case", and a name of each.
+
+    Examples
+    --------
+    >>> data = xr.Dataset({"ball": (("n", "time"), [[0.0], [1.0]])}, {"n": [1, 2]})
+    >>> in_a_row(data, "time")[1]
+    ['$n=1$', '$n=2$']
+    """
+    axes = [dim for dim in data.dims if dim not in kept]
+    labels = [name for name in data.coords if name in _SYMBOLS and set(data[name].dims) <= {*axes}]
+    rows = data.stack({CASE: axes}, create_index=False) if axes else data.expand_dims(CASE)
+    told = [{name: rows[name].values[k] for name in labels} for k in range(rows.sizes[CASE])]
+    names = [", ".join(f"${_SYMBOLS[x]}={number(v)}$" for x, v in one.items()) for one in told]
+    return rows.transpose(CASE, ...), names
 
 
 def note(axes: Axes, text: str, point: Any, offset: Any, **look: Any) -> None:

@@ -18,7 +18,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import fields
 from enum import StrEnum
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -33,6 +33,9 @@ from bouncing_ball.orbits import continued
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.stability import Bifurcation, Side
 from bouncing_ball.orbits.system import ContactSystem, OrbitSystem
+
+if TYPE_CHECKING:
+    from bouncing_ball.datasets.labelled import Grid, Labelled
 
 
 class Route(StrEnum):
@@ -188,6 +191,55 @@ class ImpactModel(Batch, ABC):
         The arguments are those of :func:`bouncing_ball.motion.simulation.simulate`.
         """
         return simulate(self._law, amplitude, phase, velocity, impacts)
+
+    def history(
+        self,
+        amplitude: ArrayLike,
+        phase: ArrayLike = 0.0,
+        velocity: ArrayLike = -np.pi,
+        *,
+        periods: float = 10.0,
+        samples: int = 200,
+    ) -> Labelled:
+        """A ball over time from a first impact: :func:`bouncing_ball.history`."""
+        from bouncing_ball.orbits import labelled
+
+        grid = self._grid(amplitude=amplitude, phase=phase, velocity=velocity)
+        return labelled.from_impact(self, grid, labelled.instants(periods, samples))
+
+    def drop(
+        self,
+        height: ArrayLike,
+        amplitude: ArrayLike = 0.0,
+        phase: ArrayLike = 0.0,
+        *,
+        periods: float = 10.0,
+        samples: int = 200,
+    ) -> Labelled:
+        """A ball that is let go at rest: :func:`bouncing_ball.drop`."""
+        from bouncing_ball.orbits import labelled
+
+        grid = self._grid(height=height, amplitude=amplitude, phase=phase)
+        return labelled.from_rest(self, grid, labelled.instants(periods, samples))
+
+    def branch(
+        self, n: ArrayLike, *, amplitude_max: float | None = None, points: int = 300
+    ) -> Labelled:
+        """The branch of n-T orbits over Λ: :func:`bouncing_ball.branch`."""
+        from bouncing_ball.orbits import labelled
+
+        return labelled.branches(self._grid(n=n), lambda n: self, amplitude_max, points)
+
+    def _grid(self, **given: Any) -> Grid:
+        """The arguments of a labelled result, which one model has; several have axes of names."""
+        from bouncing_ball.datasets.labelled import Grid
+
+        if self.shape:
+            call = "bouncing_ball.history(…, frequency_ratio=[5, 10])"
+            raise ModelError(f"several models have no labels: give their parameters to {call}")
+        found = Grid(**given)
+        found.attrs["model"] = self.label
+        return found
 
     def cycle(self, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
         """The Poincaré map, from an impact (φ, δ′) to the next one (route SIMULATION).

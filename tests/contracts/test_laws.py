@@ -244,7 +244,7 @@ def test_an_impact_of_a_simulation_is_the_contact(law, speed, phase, amplitude):
     found = (
         sequence.contact_duration[0],
         -sequence.release_displacement[0],
-        -sequence.relative_release_velocity[0],
+        -sequence.relative_bounce_velocity[0],
     )
     np.testing.assert_allclose(found, end[:3], rtol=0, atol=1e-11)
 

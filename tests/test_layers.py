@@ -20,7 +20,8 @@ ALLOWED = {
     "continuation": (set(), {"numpy", "scipy"}),
     "motion": ({"contacts"}, {"numpy"}),
     "orbits": ({"contacts", "continuation", "motion"}, {"numpy", "scipy"}),
-    "calls": ({"contacts", "motion", "orbits"}, {"numpy"}),
+    "attractors": ({"contacts", "motion", "orbits"}, {"numpy"}),
+    "calls": ({"contacts", "motion", "orbits", "attractors"}, {"numpy"}),
     "accuracy": ({"contacts", "continuation", "motion", "orbits"}, {"numpy", "scipy"}),
     "studies": (
         {"datasets", "contacts", "continuation", "motion", "orbits", "accuracy"},

@@ -19,9 +19,10 @@ ALLOWED = {
     "contacts": (set(), {"numpy", "scipy"}),
     "continuation": (set(), {"numpy", "scipy"}),
     "motion": ({"contacts"}, {"numpy"}),
-    "orbits": ({"contacts", "continuation", "motion"}, {"numpy", "scipy"}),
+    "orbits": ({"datasets", "contacts", "continuation", "motion"}, {"numpy", "scipy", "xarray"}),
     "attractors": ({"contacts", "motion", "orbits"}, {"numpy"}),
-    "calls": ({"contacts", "motion", "orbits", "attractors"}, {"numpy"}),
+    "calls": ({"datasets", "contacts", "motion", "orbits", "attractors"}, {"numpy"}),
+    "surveys": ({"datasets", "orbits", "calls"}, set()),
     "accuracy": ({"contacts", "continuation", "motion", "orbits"}, {"numpy", "scipy"}),
     "studies": (
         {"datasets", "contacts", "continuation", "motion", "orbits", "accuracy"},

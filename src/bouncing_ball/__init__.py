@@ -26,6 +26,7 @@ The layers, each importing only what lies above it in this list (and ``errors`` 
 ``orbits``        n-T orbits, their stability and bifurcations
 ``attractors``    the motions on which balls end: repeating, locked, chaotic
 ``calls``         the calls that most people need: a model, an orbit, its limits, a simulation
+``surveys``       calls with labelled datasets: a ball over time, a drop, a branch over Λ
 ``accuracy``      errors of one model against another, their thresholds, the error law
 ``studies``       the stages of the pipeline: parameters in, datasets out
 ``engines``       the contact of physics engines: their parameters, their time stepping
@@ -52,6 +53,9 @@ _PUBLIC = {
     "limits": "calls",
     "simulate": "calls",
     "model": "calls",
+    "history": "surveys",
+    "drop": "surveys",
+    "branch": "surveys",
     "design": "calculator.design",
     "SpringDamper": "contacts.spring_damper",
     "SpringDamperModel": "orbits.spring_damper_model",

@@ -1,5 +1,6 @@
 # Beyond the paper: the release rule, the orbits of permanent contact, the corrected restitution
-# model with its error law, contacts of other laws, and the explorer.
+# model with its error law, contacts of other laws, and the explorer. What dimensions each dataset
+# has is in the docstring of its study.
 
 BEYOND_THE_PAPER = {
     "ext_release": "studies.release_rules.release_rules",

@@ -1,4 +1,4 @@
-"""What is published of every orbit that is followed, and of a whole branch."""
+"""The quantities that datasets and answers contain of orbits, and of a branch with its ends."""
 
 import numpy as np
 import xarray as xr
@@ -19,12 +19,14 @@ OBSERVED = (
     "apparent_restitution",
 )
 PLACE = ("amplitude", "phase", "contact_duration")
-"""What is published of special orbits."""
+"""The quantities that the datasets contain of special orbits."""
 GRAZING = "grazing"
 
 
 def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
-    """The named quantities of orbits, their stability and their admissibility.
+    """The named quantities of orbits, with their stability and their admissibility.
+
+    The arrays have the orbits' shape.
 
     Examples
     --------
@@ -41,7 +43,10 @@ def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
 
 
 def branch_columns(system: OrbitSystem, branch: Branch, count: int) -> xr.Dataset:
-    """A branch at equal steps of arclength, shape (point,), and its special orbits, (special,).
+    """A branch at ``count`` points with equal steps of arclength, and its special orbits.
+
+    The variables are those of :func:`orbits_in_columns`; grazing orbits are found between the
+    points.
 
     Raises
     ------
@@ -61,7 +66,12 @@ def branch_columns(system: OrbitSystem, branch: Branch, count: int) -> xr.Datase
 def orbits_in_columns(
     orbit: Orbit, special: Orbit, kinds: list[str], ends: list[str]
 ) -> xr.Dataset:
-    """The same from its orbits, the kinds of the special ones and the reasons of its two ends."""
+    """Orbits along a branch, its special orbits with their kinds, and the reasons of its two ends.
+
+    The dataset has the observables of the orbits, with phases in rad, ``amplitude``, ``stable``,
+    ``admissible`` and ``residual`` over ``point``; their multipliers over (point, multiplier);
+    ``special_…`` over ``special``; and ``end_reason`` over ``end``, the unstable side first.
+    """
     floquet = orbit.multipliers()
     along = columns(orbit, "amplitude", *OBSERVED) | {"residual": orbit.defect()}
     places = {name: getattr(special, name) for name in PLACE} | {"residual": special.defect()}
@@ -75,7 +85,7 @@ def orbits_in_columns(
             "end_reason": ("end", ends),
         },
         coords={
-            # A branch with fewer special points than another has no more.
+            # Numbers, so that branches with different numbers of special points are aligned.
             "special": np.arange(len(kinds)),
             "end": ["unstable side", "stable side"],
         },

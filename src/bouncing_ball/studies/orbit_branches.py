@@ -30,19 +30,19 @@ class Branches(Parameters):
 
 
 class Domains(Branches):
-    """On several contacts."""
+    """One family, followed along Λ on several contacts."""
 
     frequency_ratio: Many[FrequencyRatio]
 
 
 class BothDomains(Branches):
-    """On one contact and in the restitution model."""
+    """One family, followed along Λ on one contact and in the restitution model."""
 
     frequency_ratio: FrequencyRatio
 
 
 class Ranges(Parameters):
-    """Several families on several contacts, whose stable ranges are looked for along Λ."""
+    """Several families on several contacts, whose ranges of stability in Λ are computed."""
 
     n: Many[Family]
     restitution: LossyRestitution
@@ -69,11 +69,14 @@ def _branch(
 
 
 def orbit_branches(parameters: Domains, release: Release, continuation: Continuation) -> xr.Dataset:
-    """Branches along Λ for one n and several ϖ, shape (ϖ, point) (Figs. 8 and 9).
+    """Branches along Λ for one n and several ϖ (Figs. 8 and 9).
 
-    Phases in rad; ``special_…`` are the saddle-nodes, period doublings and grazing orbits of
-    each branch, shape (ϖ, special). NaN where a branch cannot be followed; ``end_reason`` says
-    why it ends.
+    The dataset has ``amplitude``, the observables of the orbits with phases in rad, ``stable``,
+    ``admissible`` and ``residual`` (ϖ, point), at equal steps of arclength from the unstable to the
+    stable side; ``multiplier_real`` and ``multiplier_imag`` (ϖ, point, multiplier);
+    ``special_kind`` and further ``special_…`` variables of the saddle-nodes, period doublings and
+    grazing orbits (ϖ, special); and ``end_reason`` (ϖ, end), why the branch ends. Where a branch
+    cannot be followed its values are NaN and ``end_reason`` is the error.
     """
     ratios = parameters.frequency_ratio
     rows = [_branch(ratio, parameters, release, continuation) for ratio in ratios]
@@ -84,7 +87,11 @@ def orbit_branches(parameters: Domains, release: Release, continuation: Continua
 def both_domains(
     parameters: BothDomains, release: Release, continuation: Continuation
 ) -> xr.Dataset:
-    """The branch of one ϖ, as :func:`orbit_branches`, and that of the restitution model (Fig. 15).
+    """The branch of one ϖ, and that of the restitution model (Fig. 15).
+
+    The dataset has the variables of :func:`orbit_branches` with one ϖ. The restitution model has
+    ``restitution_amplitude``, ``restitution_phase`` in rad, ``restitution_stable`` and
+    ``restitution_admissible`` (point,), and numbers for Λ and φ of its two bifurcations.
 
     Raises
     ------
@@ -108,15 +115,15 @@ def both_domains(
 
 
 def first_limits(branch: Branch) -> np.ndarray:
-    """The saddle-node and the period doubling that bound the first stable range, (2, N + 1).
+    """The saddle-node and the period doubling that bound the first stable range, shape (2, N + 1).
 
-    The branch's last saddle-node in its order, from the unstable to the stable
-    side, and the first period doubling after it.
+    In the order of the branch, from the unstable to the stable side, they are its last saddle-node
+    and the first period doubling after it.
 
     Raises
     ------
     NoOrbitError
-        If the branch has not both.
+        If the branch lacks one of them.
     """
     folds = [k for k, special in enumerate(branch.special) if special.name == SADDLE_NODE]
     beyond = branch.special[folds[-1] :] if folds else ()
@@ -134,9 +141,11 @@ def stability_ranges(
 ) -> xr.Dataset:
     """Ranges of Λ in which the n-T orbits are stable, computed and printed (Table 1).
 
-    Shape (ϖ, n, bound), the bounds a saddle-node and a period doubling; phases in rad.
-
-    Where an orbit has no such range the entry is NaN, and ``absence`` says why.
+    The dataset has ``computed`` and ``printed``, values of Λ, ``special_phase`` in rad and
+    ``special_contact_duration``, shape (ϖ, n, bound), where the bounds are a saddle-node and a
+    period doubling; and ``restitution_range`` (impact_map, n, bound). An entry is NaN where the
+    orbit has no such range, and ``absence`` (ϖ, n), which exists only then, says why; ``printed``
+    is NaN where the paper has no entry.
     """
     families, ratios = parameters.n, parameters.frequency_ratio
     r, top, shape = parameters.restitution, parameters.amplitude_max, (len(ratios), len(families))
@@ -157,7 +166,7 @@ def stability_ranges(
     dataset = xr.Dataset(
         {
             **{name: (dims, found[..., k]) for k, name in enumerate(names)},
-            # NaN where the paper has no entry.
+            # Entries that the paper does not have become NaN.
             "printed": printed_table().reindex(frequency_ratio=list(ratios), n=list(families)),
             "restitution_range": (("impact_map", "n", "bound"), rigid_ranges),
         },

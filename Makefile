@@ -22,7 +22,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 # One thing after another: clean, run and compare share results/.
 .NOTPARALLEL:
-.PHONY: all setup lint test quick test-cluster test-long setup-engines test-engines mutants diff accept report clean ci setup-newest newest config-docs lock
+.PHONY: all setup lint test quick test-cluster test-long setup-engines test-engines gallery mutants diff accept report clean ci setup-newest newest config-docs lock
 
 all: $(SETUP)
 	$(BIN)/snakemake --cores 2 $(QUIETLY)
@@ -77,6 +77,10 @@ setup-engines: $(SETUP)
 # results/config/engines.nc and a table of it, results/engines.txt; make accept ONLY=engines.
 test-engines: $(SETUP)
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m engines tests/engines
+
+# The pictures of docs/gallery, each from its script.
+gallery: $(SETUP)
+	cd docs/gallery && for script in *.py; do $(abspath $(BIN))/python $$script || exit; done
 
 # Do the tests notice a wrong line? 200 single faults, one at a time.
 mutants: $(SETUP)

@@ -19,8 +19,9 @@ ALLOWED = {
     "contacts": (set(), {"numpy", "scipy"}),
     "continuation": (set(), {"numpy", "scipy"}),
     "motion": ({"contacts"}, {"numpy"}),
-    "orbits": ({"contacts", "continuation", "motion"}, {"numpy", "scipy"}),
-    "calls": ({"contacts", "motion", "orbits"}, {"numpy"}),
+    "orbits": ({"datasets", "contacts", "continuation", "motion"}, {"numpy", "scipy", "xarray"}),
+    "calls": ({"datasets", "contacts", "motion", "orbits"}, {"numpy"}),
+    "surveys": ({"datasets", "orbits", "calls"}, set()),
     "accuracy": ({"contacts", "continuation", "motion", "orbits"}, {"numpy", "scipy"}),
     # No engine is imported.
     "engines": ({"contacts"}, {"numpy"}),

@@ -35,7 +35,7 @@ def test_help_shows_the_way_in():
 def test_what_the_command_line_refuses_is_refused(impacts, one_line):
     with pytest.raises(bouncing_ball.ModelError) as error:
         bouncing_ball.simulate(1.0, restitution=0.85, impacts=impacts)
-    one_line(error, f"number of impacts {impacts} is not a positive integer")
+    one_line(error, f"impacts = {impacts} is not a whole number from 1 to 100000")
 
 
 def test_the_package_itself_needs_no_numpy():

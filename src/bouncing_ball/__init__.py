@@ -25,6 +25,7 @@ The layers, each importing only what lies above it in this list (and ``errors`` 
 ``motion``        event-driven simulation, from any initial state
 ``orbits``        n-T orbits, their stability and bifurcations
 ``calls``         the calls that most people need: a model, an orbit, its limits, a simulation
+``surveys``       calls with labelled datasets: a ball over time, a drop, a branch over Λ
 ``accuracy``      errors of one model against another, their thresholds, the error law
 ``engines``       the contact of physics engines: their parameters, their time stepping
 ``studies``       the stages of the pipeline: parameters in, datasets out
@@ -51,6 +52,9 @@ _PUBLIC = {
     "limits": "calls",
     "simulate": "calls",
     "model": "calls",
+    "history": "surveys",
+    "drop": "surveys",
+    "branch": "surveys",
     "design": "calculator.design",
     "SpringDamper": "contacts.spring_damper",
     "SpringDamperModel": "orbits.spring_damper_model",

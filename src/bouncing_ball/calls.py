@@ -16,7 +16,7 @@ from bouncing_ball.contacts.law_choice import law_named, law_of_impact
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError
+from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.motion.sequence import ImpactSequence
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.law_model import LawModel, law_at_orbit
@@ -26,11 +26,12 @@ from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Side
-from bouncing_ball.signatures import Range, takes
+from bouncing_ball.signatures import Range, check, takes
 
 # Of frequency ratio and amplitude: beyond, their squares leave no digits.
 FrequencyRatio = Annotated[Any, Range(1e-8, 1e8, "[]")]
 Amplitude = Annotated[Any, Range(0, 1e8, "(]")]
+AnyAmplitude = Annotated[Any, Range(0, 1e8, "[]")]
 Restitution = Annotated[Any, Range(0, 1, "(]")]
 DampingRatio = Annotated[Any, Range(0, 1, "[)")]
 Positive = Annotated[Any, Range(0)]
@@ -126,6 +127,7 @@ def _demand(fulfilled: bool, text: str) -> None:
 def _model(given: Mapping[str, Any], law_at: LawAt | None) -> ImpactModel:
     """The model of the parameters that are not None."""
     given = {name: value for name, value in given.items() if value is not None}
+    check(model, given)
     losses = [name for name in LOSS if name in given]
     for other in losses[1:]:
         raise ParameterError(f"argument {{{other}}}: not allowed with argument {{{losses[0]}}}")
@@ -239,6 +241,7 @@ def orbit(
       apparent_restitution  0.851132
       max_height            5.41098
     """
+    check(orbit, locals())
     branch = Side.STABLE if side == "all" else Side(side)
     of = _model(impact, lambda kind, r, d: law_at_orbit(kind, r, d, n, amplitude, branch))
     if side != "all" and index is None:
@@ -284,11 +287,12 @@ def limits(n: Index, **impact: Any) -> Limits:
     >>> str(found).splitlines()[0]
     'saddle-node: RestitutionOrbit'
     """
+    check(limits, locals())
     of = model_of_limits(n, **impact)
     return Limits(of.saddle_node(n), of.period_doubling(n))
 
 
-def model_of_impact(amplitude: float, phase: float, velocity: float, **impact: Any) -> ImpactModel:
+def model_of_impact(amplitude: Any, phase: Any, velocity: Any, **impact: Any) -> ImpactModel:
     """The model; a law that is given by r and D has them at the speed of this impact."""
     speed = amplitude * np.cos(phase) - velocity
     return _model(impact, lambda kind, r, d: law_of_impact(kind, r, d, speed))
@@ -296,7 +300,7 @@ def model_of_impact(amplitude: float, phase: float, velocity: float, **impact: A
 
 @takes(model)
 def simulate(
-    amplitude: Amplitude,
+    amplitude: AnyAmplitude,
     *,
     phase: Finite = 0.0,
     velocity: Finite = -math.pi,
@@ -328,7 +332,6 @@ def simulate(
     >>> simulate(0.0, restitution=0.5, velocity=-4.0, impacts=3).time.tolist()
     [0.0, 4.0, 6.0]
     """
-    if not isinstance(impacts, int) or impacts < 1:
-        raise ModelError(f"number of impacts {impacts} is not a positive integer")
+    check(simulate, locals())
     of = model_of_impact(amplitude, phase, velocity, **impact)
     return of.simulate(amplitude, phase, velocity, impacts)

@@ -7,6 +7,7 @@ beside them.
 """
 
 import runpy
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -61,6 +62,7 @@ every_case = pytest.mark.parametrize(("n", "above"), CASES)
 every_side = pytest.mark.parametrize("side", list(Side))
 
 
+@cache
 def some_orbit(name, n, above, side):
     model = MODELS[name]
     node = float(model.saddle_node(n).amplitude)

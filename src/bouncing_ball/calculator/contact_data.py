@@ -77,7 +77,9 @@ def loss(given: Given, release: Release) -> float:
 
 
 def _oscillating(zeta: float, release: Release) -> float:
-    bounces = zeta < 1 and SpringDamper(1.0, zeta, release).restitution > 0
+    # Where no damper pulls, an overdamped ball comes back, too.
+    pulls = release is Release.DISPLACEMENT
+    bounces = not pulls or (zeta < 1 and SpringDamper(1.0, zeta, release).restitution > 0)
     require(bounces, zeta, "damping_ratio", "so far below 1, the critical damping, that it bounces")
     return zeta
 

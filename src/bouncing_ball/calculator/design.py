@@ -194,14 +194,14 @@ def contact(
         raise ModelError("how stiff the contact is is missing: give stiffness, or contact_time")
     if case.law is not None:
         raise ModelError("a Hertz contact needs a table: its duration depends on the speed")
-    si, linear = case.in_si(), case.contact
-    physical = Physical(case.mass, si["stiffness"], si["damping"])
+    zeta, omega = float(case.contact.damping_ratio), float(case.contact.frequency_ratio)
+    physical = Physical(case.mass, case.mass * omega**2, 2 * zeta * case.mass * omega)
     return Contact(
         *physical,
-        float(linear.damping_ratio),
-        si["contact_time"],
+        zeta,
+        physical.contact_time(rule),
         str(rule),
-        float(linear.restitution),
+        physical.restitution(rule),
         engine_named(engine).settings(physical, rule, error) if engine else None,
     )
 

@@ -13,7 +13,7 @@ from bouncing_ball.calculator.results import QUANTITIES, Contact, Design, Family
 from bouncing_ball.calculator.units import number, shown
 from bouncing_ball.engines import engine_named
 from bouncing_ball.engines.engine import EngineSettings
-from bouncing_ball.errors import ModelError, ParameterError
+from bouncing_ball.errors import ModelError, ParameterError, extra
 from bouncing_ball.signatures import takes
 
 _DRAWINGS = (".pdf", ".png", ".svg")
@@ -97,16 +97,14 @@ def _read(
 
 def _draw(found: Design, path: Path) -> None:
     from bouncing_ball.calculator.page_data import page
-    from bouncing_ball.figures.design_page import draw
-    from bouncing_ball.figures.files import save
-    from bouncing_ball.figures.style import style
 
+    with extra("plot"):
+        from bouncing_ball.figures.design_page import draw
+        from bouncing_ball.figures.plots import write
+        from bouncing_ball.figures.style import style
     with style():
         figure = draw(asdict(found), page(found), rows(found) + rows(found.judged))
-        try:
-            save(figure, path, {"Title": "bouncing-ball design"})
-        except OSError as error:
-            raise ModelError(f"{path} cannot be written: {error.strerror}") from None
+        write(figure, path, "bouncing-ball design")
 
 
 def _line(name: str, *columns: str) -> str:

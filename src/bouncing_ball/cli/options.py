@@ -89,12 +89,11 @@ def _assignment(text: str) -> tuple[str, float]:
 
 def _within(allowed: Range, kind: Any) -> Callable[[str], Any]:
     """A parser of numbers in a range, for ``type=``."""
-    whole = f"a whole number from {allowed.low:g} to {allowed.high:.0f}"
 
     def parse(text: str) -> Any:
         value = _number(text, kind)
         if value not in allowed:
-            what = whole if kind is int else allowed
+            what = allowed.whole if kind is int else allowed
             raise argparse.ArgumentTypeError(f"{text!r} is not {what}")
         return value
 

@@ -35,6 +35,9 @@ _CANCELLATION = 4.0
 # Nodes of the integral, and one more for each radian of the table: the integrand
 # turns by (1 + ϖ) s ≤ 2s + 2 there, and 2N nodes more than half of that leave nothing.
 _NODES = 20
+# Longer integrals are cut into panels of at most so many radians of the table, because the
+# effort for the nodes of one panel grows with the cube of their number.
+_PANEL = 200
 # Contacts integrated at once: as many as keep the nodes in the cache.
 _BLOCK = 512
 
@@ -72,14 +75,17 @@ def _damped(s, a, q, w):
 
 
 @lru_cache(maxsize=64)
-def _gauss(count: int) -> tuple[np.ndarray, np.ndarray]:
-    x, weight = np.polynomial.legendre.leggauss(count)
-    return (1 + x) / 2, weight / 2
+def _gauss(radians: int) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes and weights on [0, 1] of an integral over so many radians of the table."""
+    panels = 1 + radians // _PANEL
+    x, weight = np.polynomial.legendre.leggauss(_NODES - (-radians // panels))
+    start = np.arange(panels)[:, np.newaxis]
+    return ((start + (1 + x) / 2) / panels).ravel(), np.tile(weight / (2 * panels), panels)
 
 
 def _integrated(nu, s, a, q, w):
     """h and ∂h/∂ν by their integrals."""
-    x, weight = _gauss(_NODES + int(np.max(np.abs(s))))
+    x, weight = _gauss(int(np.max(np.abs(s))))
     s, a, q, w = (column[:, np.newaxis] for column in (s, a, q, w))
     push = s * weight * _damped(s * (1 - x), a, q, w)[1] * np.exp(nu * s * x)
     return push.sum(axis=1), (s * x * push).sum(axis=1)

@@ -20,7 +20,8 @@ ALLOWED = {
     "continuation": (set(), {"numpy", "scipy"}),
     "motion": ({"contacts"}, {"numpy"}),
     "orbits": ({"datasets", "contacts", "continuation", "motion"}, {"numpy", "scipy", "xarray"}),
-    "calls": ({"datasets", "contacts", "motion", "orbits"}, {"numpy"}),
+    "attractors": ({"contacts", "motion", "orbits"}, {"numpy"}),
+    "calls": ({"datasets", "contacts", "motion", "orbits", "attractors"}, {"numpy"}),
     "surveys": ({"datasets", "orbits", "calls"}, set()),
     "accuracy": ({"contacts", "continuation", "motion", "orbits"}, {"numpy", "scipy"}),
     # No engine is imported.

@@ -24,6 +24,7 @@ The layers, each importing only what lies above it in this list (and ``errors`` 
 ``continuation``  pseudo-arclength continuation; knows nothing of balls
 ``motion``        event-driven simulation, from any initial state
 ``orbits``        n-T orbits, their stability and bifurcations
+``attractors``    the motions on which balls end: repeating, locked, chaotic
 ``calls``         the calls that most people need: a model, an orbit, its limits, a simulation
 ``surveys``       calls with labelled datasets: a ball over time, a drop, a branch over Λ
 ``accuracy``      errors of one model against another, their thresholds, the error law

@@ -16,13 +16,15 @@ from typing import ClassVar
 import numpy as np
 
 from bouncing_ball.contacts.collocation import MOST_PANELS, Start, march
-from bouncing_ball.motion.angles import reduce_angle, table
+from bouncing_ball.contacts.signature import Signature
+from bouncing_ball.motion.angles import reduce_angle, sine_and_versine, table
 from bouncing_ball.motion.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.motion.ensembles import BLOCK
 from bouncing_ball.motion.landing import Flight, land
 from bouncing_ball.motion.linear_contact import ContactMotion, release
 from bouncing_ball.motion.resumption import resumption
 from bouncing_ball.motion.sequence import Status
+from bouncing_ball.motion.tangent import Deviation, Jacobian
 
 
 @dataclass(frozen=True, repr=False)
@@ -57,6 +59,35 @@ class ContactDynamics(Dynamics):
         impact = Impact(reduce_angle(departure.phase + time), displacement, velocity)
         return impact, departure.duration + time
 
+    def jacobian(
+        self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
+    ) -> Jacobian:
+        """Of the contact and of the flight; not a number from or to a resumption."""
+        flight, one = departure.flight, np.ones_like(passed)
+        start = Start(0 * one, -impact.velocity, impact.phase, self.amplitude * one, one)
+        by = march(self.law, start, MOST_PANELS, differentiate=True).jacobian
+        state = np.where((impact.displacement < 0) | (after.displacement < 0), np.nan, one)
+        columns = (
+            Deviation(k + sign * by[:, 0, c], -sign * by[:, 1, c], -sign * by[:, 2, c]).flown(
+                (flight.x, flight.y),
+                table(after.phase, self.amplitude),
+                passed - departure.duration,
+                after.velocity * state,
+                0.0,
+            )
+            for c, k, sign in ((0, 1, 1), (1, 0, -1))
+        )
+        return Jacobian.of_columns(*columns)
+
+    def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
+        """Whether the contact lasts for twice that of a free impact of this speed.
+
+        Without damping and with a constant load a ball that comes with no speed at all stays
+        so long: a longer contact is one that the load ends.
+        """
+        free = Signature(self.law)(np.maximum(-impact.velocity, np.finfo(float).tiny)).duration
+        return departure.duration > 2 * free
+
 
 @dataclass(frozen=True, repr=False)
 class LinearContactDynamics(ContactDynamics):
@@ -85,3 +116,54 @@ class LinearContactDynamics(ContactDynamics):
         return Departure(
             phase, end.time, Flight(displacement, velocity, x, y, self.amplitude), status
         )
+
+    def jacobian(
+        self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
+    ) -> Jacobian:
+        """Of the contact, in closed form, and of the flight."""
+        contact, flight, duration = self.law, departure.flight, departure.duration
+        stiffness, loss = (
+            contact.frequency_ratio**2,
+            2 * contact.damping_ratio * (contact.frequency_ratio),
+        )
+        damped, lag = contact.damped_frequency, contact.lag
+        sine, versine = sine_and_versine(damped * duration)
+        decay = np.exp(-loss / 2 * duration)
+        impulse = decay * sine / damped
+        impulse_rate = decay * (1 - versine) - loss / 2 * impulse
+        level = impulse_rate + loss * impulse
+        depth, rate = impact.displacement, impact.velocity
+        _, y = table(impact.phase, self.amplitude)
+        first = (y - 1) - loss * rate - stiffness * depth
+        left, speed = flight.displacement, flight.velocity
+        last = (flight.y - 1) - loss * speed - stiffness * left
+        # Along the motion nothing changes but the time.
+        by_phase = Deviation(
+            np.ones_like(passed),
+            speed - level * rate - impulse * first,
+            last + stiffness * impulse * rate - impulse_rate * first,
+        )
+        before, held = (np.where(x < 0, lag, 0.0) for x in (depth, after.displacement))
+        by_rate = Deviation(
+            np.zeros_like(passed),
+            impulse - before * level,
+            impulse_rate + before * stiffness * impulse,
+        )
+        of_flight = (
+            (flight.x, flight.y),
+            table(after.phase, self.amplitude),
+            passed - duration,
+            after.velocity,
+            held,
+        )
+        return Jacobian.of_columns(
+            *(x.to_event(speed, last, lag).flown(*of_flight) for x in (by_phase, by_rate))
+        )
+
+    def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
+        """Whether the contact lasts longer than a whole damped oscillation.
+
+        Without damping and with a constant load a ball that comes with no speed at all stays
+        so long: a longer contact is one that the load ends.
+        """
+        return departure.duration * self.law.damped_frequency > 2 * np.pi

@@ -17,6 +17,7 @@ the instant. There the continued flight meets the table's level but for a t_c²/
 """
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -24,7 +25,8 @@ from bouncing_ball.contacts import corrected_map
 from bouncing_ball.motion.angles import reduce_angle, table
 from bouncing_ball.motion.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.motion.landing import Flight, emerge, land
-from bouncing_ball.motion.rest import stay
+from bouncing_ball.motion.rest import lifted, stay
+from bouncing_ball.motion.tangent import Deviation, Jacobian
 
 # Newton steps from the landing to the instant: the start is right to the third
 # order in t_c, and each step doubles that.
@@ -36,13 +38,18 @@ class CorrectedDynamics(Dynamics):
     """Impacts and flights of the corrected model; ``law`` is the
     :class:`~bouncing_ball.contacts.signature.Signature`."""
 
+    forgets: ClassVar[bool] = True
+
+    def start(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
+        """First impacts, with their instants."""
+        arrival = velocity + self.amplitude * np.cos(phase)
+        instant = corrected_map.meeting(self.law, self.amplitude, phase, arrival)
+        hit = corrected_map.impact(self.law, self.amplitude, *instant)
+        return Impact.at_level(phase, velocity, hit)
+
     def depart(self, impact: Impact) -> Departure:
         """The end of each contact by the flight from its instant, or a rest on the table."""
         hit, amplitude = impact.known, self.amplitude
-        if hit is None:
-            arrival = impact.velocity + amplitude * np.cos(impact.phase)
-            instant = corrected_map.meeting(self.law, amplitude, impact.phase, arrival)
-            hit = corrected_map.impact(self.law, amplitude, *instant)
         x, y = table(hit.phase, amplitude)
         rest = hit.instant.duration - hit.instant.delay
         whole = Flight(hit.height - y, hit.velocity - x, x, y, amplitude)
@@ -86,3 +93,33 @@ class CorrectedDynamics(Dynamics):
             missing = displacement - rate * here.delay
             time = time - np.where(by_time < 0, missing / np.where(by_time < 0, by_time, -1.0), 0.0)
         return time
+
+    def jacobian(
+        self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
+    ) -> Jacobian:
+        """From one instant to the next; zero where the ball sticks, as it forgets the first."""
+        hit, then = impact.known, after.known
+        (x, y), none = table(hit.phase, self.amplitude), np.zeros_like(passed)
+        free = np.where(self.sticks(impact, departure), 0.0, 1.0)
+        here, depth = hit.instant.tangent(hit.speed, 1 - y)[0], then.instant.tangent(then.speed, 0)
+        between = passed + then.instant.delay - hit.instant.delay
+        of_flight = (
+            (x, y),
+            table(then.phase, self.amplitude),
+            between,
+            -then.speed,
+            -depth[0].delay,
+        )
+        return Jacobian.of_columns(
+            Deviation(free, none, -here.load * x * free).flown(*of_flight),
+            Deviation(none, here.delay * free, -here.restitution * free).flown(*of_flight),
+        )
+
+    def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
+        """Whether the ball leaves by its lift-off."""
+        return lifted(departure, self.amplitude)
+
+    def section(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
+        """The phase of the instant and the velocity before it."""
+        hit = impact.known
+        return reduce_angle(hit.phase), -hit.speed

@@ -10,6 +10,7 @@ from bouncing_ball.contacts.batch import Batch
 from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.motion.ensembles import BLOCK
 from bouncing_ball.motion.landing import Flight, land
+from bouncing_ball.motion.tangent import Jacobian
 
 
 class Impact(NamedTuple):
@@ -54,6 +55,12 @@ class Dynamics(Batch, ABC):
     amplitude: np.ndarray
 
     block: ClassVar[int] = BLOCK
+    forgets: ClassVar[bool] = False
+    """Whether a ball that sticks leaves in one state, whatever it did before."""
+
+    def start(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
+        """First impacts at the table's level, at phases φ with δ′."""
+        return Impact.at_level(phase, velocity)
 
     @abstractmethod
     def depart(self, impact: Impact) -> Departure:
@@ -64,3 +71,17 @@ class Dynamics(Batch, ABC):
         landing = land(departure.flight, departure.flight.sure())
         impact = Impact.at_level(departure.phase + landing.time, -landing.rate)
         return impact, departure.duration + landing.time
+
+    @abstractmethod
+    def jacobian(
+        self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
+    ) -> Jacobian:
+        """Derivative of the map from one impact to the next on the section of :meth:`section`."""
+
+    @abstractmethod
+    def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
+        """Whether the ball stays on the table until that lets it go."""
+
+    def section(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
+        """The state (phase, relative velocity) of an impact by which motions are compared."""
+        return impact.phase, impact.velocity

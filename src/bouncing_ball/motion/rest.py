@@ -55,3 +55,9 @@ def stay(departure: Departure, rests: np.ndarray, amplitude: np.ndarray) -> Depa
         flight=Flight(displacement, velocity, x, y, amplitude),
         status=np.where(forever, Status.PERMANENT_CONTACT, Status.BOUNCING),
     )
+
+
+def lifted(departure: Departure, amplitude: np.ndarray) -> np.ndarray:
+    """Whether balls leave by their lift-off, in the one state that all of them have then."""
+    at = departure.phase == lift_off_phase(amplitude)
+    return at & (departure.flight.velocity == 0) & (departure.flight.displacement == 0)

@@ -12,14 +12,16 @@ at Λ sin τ = 1 on the way up; for Λ ≤ 1 it stays for ever.
 """
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
-from bouncing_ball.contacts.restitution_law import RestitutionLaw
+from bouncing_ball.contacts.restitution_law import RestitutionLaw, rebound
 from bouncing_ball.motion.angles import table
 from bouncing_ball.motion.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.motion.landing import Flight
-from bouncing_ball.motion.rest import pressed, stay
+from bouncing_ball.motion.rest import lifted, pressed, stay
+from bouncing_ball.motion.tangent import Deviation, Jacobian
 
 # Λ T₀/g and T₀/g below which chattering is summed up.
 _CHATTER = 1e-5
@@ -30,6 +32,8 @@ _INSTANT = np.finfo(float).eps
 @dataclass(frozen=True, repr=False)
 class RestitutionDynamics(Dynamics):
     """Impacts and flights of the restitution model; ``law`` is r, or a law r(v)."""
+
+    forgets: ClassVar[bool] = True
 
     def depart(self, impact: Impact) -> Departure:
         """The flight after each impact, or the rest on the table after the last."""
@@ -54,3 +58,26 @@ class RestitutionDynamics(Dynamics):
         settling = np.where(sticks, total * (1 + correction), 0.0)
         settled = Departure(impact.phase + settling, settling, flight, none, settling)
         return stay(settled, sticks, amplitude)
+
+    def jacobian(
+        self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
+    ) -> Jacobian:
+        """Of the impact and of the flight; zero where the ball sticks, as it forgets both."""
+        slope = rebound(self.law, np.maximum(-impact.velocity, np.finfo(float).tiny))[1]
+        flight, none = departure.flight, np.zeros_like(passed)
+        free = np.where(self.sticks(impact, departure), 0.0, 1.0)
+        of_flight = (
+            (flight.x, flight.y),
+            table(after.phase, self.amplitude),
+            passed - departure.duration,
+            after.velocity,
+            0.0,
+        )
+        return Jacobian.of_columns(
+            Deviation(free, none, none).flown(*of_flight),
+            Deviation(none, none, -slope * free).flown(*of_flight),
+        )
+
+    def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
+        """Whether the ball leaves by its lift-off."""
+        return lifted(departure, self.amplitude)

@@ -41,12 +41,31 @@ def _dynamics(law: Law, amplitude: ArrayLike) -> Dynamics:
     return RestitutionDynamics(law, lam)
 
 
-def _row(law: Law, amplitude: ArrayLike, *states: ArrayLike):
+def _in_a_row(law: Law, amplitude: ArrayLike, *states: ArrayLike):
     """The dynamics and the states of balls in a row, and their shape."""
     dynamics = _dynamics(law, amplitude)
     arrays = [np.asarray(x, dtype=float) for x in states]
     shape = np.broadcast_shapes(dynamics.shape, *(x.shape for x in arrays))
     return dynamics.flat(shape), [np.broadcast_to(x, shape).reshape(-1) for x in arrays], shape
+
+
+def first_impacts(
+    law: Law, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike
+) -> tuple[Dynamics, np.ndarray, np.ndarray, tuple[int, ...]]:
+    """The dynamics of balls in a row, φ and δ′ ≤ 0 of their first impacts, and their shape.
+
+    Raises
+    ------
+    ModelError
+        If r, Λ or a state is outside its range, or if a ball rises from the table.
+    """
+    dynamics, (start, before), shape = _in_a_row(law, amplitude, phase, velocity)
+    if not np.all(np.isfinite(start) & np.isfinite(before)):
+        raise ModelError("the phase and the velocity of the impact must be finite")
+    relative = before - table(start, dynamics.amplitude)[0]
+    if not np.all(relative <= _ROUNDING * (np.abs(before) + dynamics.amplitude)):
+        raise ModelError("a ball that rises from the table has no impact: z′ > w′")
+    return dynamics, start, np.minimum(relative, 0.0), shape
 
 
 def simulate(
@@ -88,19 +107,13 @@ def simulate(
     >>> simulate(0.5, 0.0, 0.0, -8.0, 3).time.tolist()
     [0.0, 8.0, 12.0]
     """
-    dynamics, (start, before), shape = _row(law, amplitude, phase, velocity)
-    if not np.all(np.isfinite(start) & np.isfinite(before)):
-        raise ModelError("the phase and the velocity of the impact must be finite")
-    relative = before - table(start, dynamics.amplitude)[0]
-    if not np.all(relative <= _ROUNDING * (np.abs(before) + dynamics.amplitude)):
-        raise ModelError("a ball that rises from the table has no impact: z′ > w′")
-    relative = np.minimum(relative, 0.0)
+    dynamics, start, relative, shape = first_impacts(law, amplitude, phase, velocity)
     rows = {name: np.full((impacts, start.size), np.nan) for name in RECORDED}
     status = np.zeros(start.size, dtype=np.int8)
     for part in blocks(start.size, dynamics.block):
-        impact = Impact.at_level(start[part], relative[part])
         own = [values[:, part] for values in rows.values()]
-        _run(dynamics.take(part), impact, own, status[part])
+        here = dynamics.take(part)
+        _run(here, here.start(start[part], relative[part]), own, status[part])
     return ImpactSequence(
         amplitude=np.broadcast_to(np.asarray(amplitude, dtype=float), shape),
         contact=law if isinstance(law, ContactLaw) else None,
@@ -157,12 +170,12 @@ def next_impact(
     >>> round(float(cycle.relative_velocity), 11)
     -2.0
     """
-    dynamics, (start, velocity), shape = _row(law, amplitude, phase, relative_velocity)
+    dynamics, (start, velocity), shape = _in_a_row(law, amplitude, phase, relative_velocity)
     out = np.full((len(Cycle._fields), start.size), np.nan)
     out[-1] = np.inf
     for part in blocks(start.size, dynamics.block):
         here = dynamics.take(part)
-        departure = here.depart(Impact.at_level(start[part], velocity[part]))
+        departure = here.depart(here.start(start[part], velocity[part]))
         going = np.flatnonzero(departure.status == Status.BOUNCING)
         if going.size:
             landed, passed = here.take(going).fly(pick(departure, going))

@@ -86,7 +86,9 @@ class Grid:
 
     @property
     def rows(self) -> list[np.ndarray]:
-        """An array of as many entries as there are places, to broadcast with; none for one."""
+        """A list of one array with an entry for each place, to broadcast with; empty without an
+        axis.
+        """
         return [np.zeros(math.prod(self.shape))] if self.shape else []
 
     def cells(self) -> list[dict[str, Any]]:

@@ -21,7 +21,7 @@ from bouncing_ball.contacts.laws.tsuji import Tsuji, tsuji_damping
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import free_impact
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.errors import ModelError, require
+from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
 
@@ -41,10 +41,10 @@ def _one_of(given: Given, names: tuple[str, ...], what: str, give: str = "") -> 
     """The one of some parameters that is given; none is an error if ``give`` says what to give."""
     found = [name for name in names if name in given]
     if len(found) > 1:
-        both = " and ".join(found)
-        raise ModelError(f"{both} contradict each other: each says {what}; give one of them")
+        both = " and ".join(f"{{{name}}}" for name in found)
+        raise ParameterError(f"{both} contradict each other: each says {what}; give one of them")
     if give and not found:
-        raise ModelError(f"{what} is missing: give {give}")
+        raise ParameterError(f"{what} is missing: give {give}")
     return found[0] if found else ""
 
 
@@ -61,26 +61,31 @@ def loss(given: Given, release: Release) -> float:
     >>> loss({"drop_height": 4.0, "rebound_height": 4.0}, Release.DISPLACEMENT)
     0.0
     """
-    ways = "damping, damping_ratio, restitution, measured_restitution, or drop_height and"
-    name = _one_of(given, LOSSY, "how much the contact loses", f"one of {ways} rebound_height")
+    single = ", ".join(f"{{{name}}}" for name in LOSSY[:-1])
+    ways = f"one of {single}, or {{drop_height}} and {{rebound_height}}"
+    name = _one_of(given, LOSSY, "how much the contact loses", ways)
     if name == "damping":
-        raise ModelError("damping needs stiffness, which is missing; a restitution does not")
+        raise ParameterError(
+            "{damping} needs {stiffness}, which is missing; a restitution does not"
+        )
     if name == "damping_ratio":
-        return _oscillating(given[name], release)
+        return _oscillating(given[name], release, "{damping_ratio}")
     if name != "rebound_height":
         rule = Release.DISPLACEMENT if name == "restitution" else release
         return float(damping_ratio(given[name], rule))
     height, drop = given[name], given["drop_height"]
     if height > drop:
-        raise ModelError(f"rebound_height = {height:g} m is above drop_height = {drop:g} m")
+        raise ParameterError(f"{{rebound_height}} {height:g} m is above {{drop_height}} {drop:g} m")
     return float(damping_ratio(math.sqrt(height / drop), release))
 
 
-def _oscillating(zeta: float, release: Release) -> float:
+def _oscillating(zeta: float, release: Release, name: str) -> float:
     # Where no damper pulls, an overdamped ball comes back, too.
     pulls = release is Release.DISPLACEMENT
     bounces = not pulls or (zeta < 1 and SpringDamper(1.0, zeta, release).restitution > 0)
-    require(bounces, zeta, "damping_ratio", "so far below 1, the critical damping, that it bounces")
+    if not bounces:
+        enough = "so far below 1, the critical damping, that it bounces"
+        raise ParameterError(f"{name} = {zeta:.12g} is not {enough}")
     return zeta
 
 
@@ -101,13 +106,13 @@ def hertz(mass: float, modulus: float, radius: float, restitution: float, table:
 def table_of(given: Given) -> Table:
     """The table, from one of the ways to say how fast and one to say how far it moves."""
     fast = ("frequency", "angular_frequency", "period")
-    rate = _one_of(given, fast, "how fast the table moves", "frequency, such as 50 Hz")
-    ways = "amplitude, such as 0.1 mm, or acceleration, such as 2 g"
-    far = _one_of(given, ("amplitude", "acceleration"), "how far the table moves", ways)
+    rate = _one_of(given, fast, "how fast the table moves", "{frequency}, such as 50 Hz")
+    ways = "{acceleration}, such as 2 g, or {table_amplitude}, such as 0.1 mm"
+    far = _one_of(given, ("table_amplitude", "acceleration"), "how far the table moves", ways)
     value, turn = given[rate], 2 * math.pi
     omega = {"frequency": turn * value, "period": turn / value}.get(rate, value)
-    height = given["amplitude"] if far == "amplitude" else given["acceleration"] / omega**2
-    return Table(omega, height, given.get("gravity", STANDARD_GRAVITY))
+    moved = given[far] if far == "table_amplitude" else given["acceleration"] / omega**2
+    return Table(omega, moved, given.get("gravity", STANDARD_GRAVITY))
 
 
 def meant(asked: Sequence[int], restitution: float, amplitude: float) -> int:
@@ -132,16 +137,17 @@ def case_of(given: Given, table: Table, release: Release, asked: Sequence[int]) 
     """
     for first, second in _PAIRS.items():
         if (first in given) != (second in given):
-            raise ModelError(f"{first} and {second} are needed together")
+            raise ParameterError(f"{{{first}}} and {{{second}}} are needed together")
     if "mass" not in given:
-        raise ModelError("mass is missing: give it, such as 20 g")
+        raise ParameterError("the mass is missing: give {mass}, such as 20 g")
     stiff, mass = _one_of(given, STIFF, "how stiff the contact is"), given["mass"]
     if not stiff:
         return None
     if stiff == "stiffness":
         omega = math.sqrt(given["stiffness"] / mass)
         if _one_of(given, LOSSY, "how much the contact loses") == "damping":
-            zeta = _oscillating(given["damping"] / (2 * mass * omega), release)
+            zeta = given["damping"] / (2 * mass * omega)
+            zeta = _oscillating(zeta, release, "damping ratio ζ of this {damping}")
         else:
             zeta = loss(given, release)
         return Case(mass, table, SpringDamper(omega / table.angular_frequency, zeta, release))

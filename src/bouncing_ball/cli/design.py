@@ -10,7 +10,7 @@ from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.calculator import design as calculator
 from bouncing_ball.calculator.contact_data import LOSSY, STIFF
 from bouncing_ball.calculator.results import QUANTITIES, Contact, Design, Family, rows
-from bouncing_ball.calculator.units import number, shown
+from bouncing_ball.calculator.units import number, percent, shown
 from bouncing_ball.engines import engine_named
 from bouncing_ball.engines.engine import EngineSettings
 from bouncing_ball.errors import ModelError, ParameterError, extra
@@ -20,7 +20,7 @@ _DRAWINGS = (".pdf", ".png", ".svg")
 
 
 # What says that there is a table; for an engine there need not be one.
-_TABLE = ("frequency", "angular_frequency", "period", "amplitude", "acceleration")
+_TABLE = ("frequency", "angular_frequency", "period", "table_amplitude", "acceleration")
 
 
 @takes(calculator.design)
@@ -163,7 +163,7 @@ def lines(found: Design | Contact) -> list[str]:
     engine = _engine_lines(found.engine_settings()) if found.question["engine"] else []
     need, always = found.needed, ThresholdStatus.ALWAYS_WITHIN
     simple = "error law", "corrected"
-    asked = f"ϖ for {shown(need.tolerance, '%')} in the {QUANTITIES[Quantity(need.quantity)]}"
+    asked = f"ϖ for {percent(need.tolerance)} in the {QUANTITIES[Quantity(need.quantity)]}"
     exact = "any" if need.status == always else shown(need.frequency_ratio)
     corrected = "any" if need.corrected_status == always else shown(need.corrected)
     return [

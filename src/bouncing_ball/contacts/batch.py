@@ -4,6 +4,8 @@ Their fields broadcast together, as arguments of a function do. A scalar field
 is that of all elements, and stays a scalar.
 """
 
+import functools
+import inspect
 import math
 from dataclasses import dataclass, fields, replace
 from typing import Any, Self
@@ -40,6 +42,60 @@ def in_words(value: Any) -> str:
         edgeitems=2,
         formatter={"float_kind": lambda number: f"{number:.6g}"},
     )
+
+
+def plain(value: Any) -> Any:
+    """A single number as Python's own; a single batch, or a method of one, as one that has them.
+
+    Examples
+    --------
+    >>> plain(np.array(0.5)), plain(np.bool_(True)), plain(np.array([0.5]))
+    (0.5, True, array([0.5]))
+    """
+    if isinstance(value, np.ndarray | np.generic) and not value.ndim:
+        return value.item()
+    if isinstance(value, Batch) and not value.shape:
+        return Single(value)
+    if type(value) is tuple:
+        return tuple(map(plain, value))
+    if inspect.ismethod(value):
+        return functools.wraps(value)(lambda *given, **more: plain(value(*given, **more)))
+    return value
+
+
+class Single:
+    """One element by itself: all that a batch without a shape offers, with Python's numbers.
+
+    Inside, a batch works with arrays of one element. A user who asks for one orbit has floats.
+
+    Examples
+    --------
+    >>> from bouncing_ball.contacts.spring_damper import SpringDamper
+    >>> one = Single(SpringDamper(np.array(5.0), 0.0))
+    >>> one.frequency_ratio, one.damped_frequency, isinstance(one, SpringDamper)
+    (5.0, 5.0, True)
+    """
+
+    __slots__ = ("_of",)
+
+    def __init__(self, of: Any) -> None:
+        self._of = of
+
+    @property  # type: ignore[misc]
+    def __class__(self) -> type:
+        return type(self._of)
+
+    def __reduce__(self) -> Any:
+        return Single, (self._of,)
+
+    def __getattr__(self, name: str) -> Any:
+        return plain(getattr(self._of, name))
+
+    def __dir__(self) -> list[str]:
+        return dir(self._of)
+
+    def __repr__(self) -> str:
+        return repr(self._of)
 
 
 @dataclass(frozen=True, repr=False)

@@ -48,7 +48,7 @@ def history(sequence: ImpactSequence, time: ArrayLike) -> History:
     >>> history(simulate(1.0, 0.0, 0.0, -2.0, 2), [0.0, 2.0, 4.0]).height.tolist()
     [0.0, 2.0, 0.0]
     """
-    if sequence.status.ndim:
+    if np.ndim(sequence.status):
         raise ValueError("the sequence has several balls: name one, as in sequence[0]")
     t, lam = np.asarray(time, dtype=float), sequence.amplitude
     last = int(sequence.impacts) - 1
@@ -58,7 +58,7 @@ def history(sequence: ImpactSequence, time: ArrayLike) -> History:
     # The last flight is not known to its end.
     flying = (since > duration) & ((row < last) | (sequence.status != Status.BOUNCING))
     left = sequence.phase[row] + np.where(flying, duration, 0.0)
-    state = sequence.release_displacement[row], sequence.relative_release_velocity[row]
+    state = sequence.release_displacement[row], sequence.relative_bounce_velocity[row]
     flight = Flight(*state, *table(left, lam), lam)
     gap, speed, _, _ = flight.gap(np.where(flying, since - duration, 0.0))
     gap, speed = (np.where(flying, x, np.nan) for x in (gap, speed))
@@ -77,5 +77,5 @@ def _in_contact(sequence: ImpactSequence, row: np.ndarray, since: np.ndarray):
         return law.flow(since, *at, lam)[:2]
     one = np.ones_like(since)
     start = Start(-at[0], -at[1], at[2], lam * one, one)
-    ends = -sequence.release_displacement[row], -sequence.relative_release_velocity[row]
+    ends = -sequence.release_displacement[row], -sequence.relative_bounce_velocity[row]
     return -np.array(states(law, start, (sequence.contact_duration[row], *ends), since))

@@ -134,7 +134,7 @@ def stretching(sequence: ImpactSequence, restitution: float, skip: int) -> Stret
     jacobian[free] = exact_map_jacobian(
         flight[free],
         sequence.phase[:-1][free],
-        sequence.release_velocity[:-1][free],
+        sequence.bounce_velocity[:-1][free],
         np.broadcast_to(sequence.amplitude, flight.shape)[free],
         restitution,
     )

@@ -12,7 +12,7 @@ from bouncing_ball.motion.angles import reduce_angle
 
 RECORDED = (
     *("time", "phase", "displacement", "relative_velocity", "contact_duration"),
-    *("release_displacement", "relative_release_velocity", "settling"),
+    *("release_displacement", "relative_bounce_velocity", "settling"),
 )
 """The arrays of an :class:`ImpactSequence` with a row for each impact, in order."""
 
@@ -62,7 +62,7 @@ class ImpactSequence:
     contact_duration : array
         Time until the ball leaves; 0 for an impact with a restitution coefficient
         unless the ball sticks; infinite for permanent contact.
-    release_displacement, relative_release_velocity : array
+    release_displacement, relative_bounce_velocity : array
         δ and δ′ when the ball leaves.
     status : array of int
         :class:`Status` of each ball.
@@ -79,15 +79,17 @@ class ImpactSequence:
     relative_velocity: np.ndarray
     contact_duration: np.ndarray
     release_displacement: np.ndarray
-    relative_release_velocity: np.ndarray
+    relative_bounce_velocity: np.ndarray
     status: np.ndarray
     settling: np.ndarray
 
     def __repr__(self) -> str:
-        balls = f" of {self.status.size} balls" if self.status.ndim else ""
+        balls = f" of each of {self.status.size} balls" if self.status.ndim else ""
+        least, most = np.min(self.impacts), np.max(self.impacts)
+        count = f"{least}" if least == most else f"{least} to {most}"
         doing = (Status(int(k)).name.lower().replace("_", " ") for k in np.unique(self.status))
-        head = f"ImpactSequence: {len(self.time)} impacts{balls}, then {' or '.join(doing)}"
-        names = ("time", "phase", "impact_velocity", "contact_duration", "release_velocity")
+        head = f"ImpactSequence: {count} impacts{balls}, then {' or '.join(doing)}"
+        names = ("time", "phase", "impact_velocity", "contact_duration", "bounce_velocity")
         values = (f"  {name:<22}{in_words(getattr(self, name))}" for name in names)
         return "\n".join([head, *values])
 
@@ -117,9 +119,9 @@ class ImpactSequence:
         return reduce_angle(self.phase + np.where(finite, self.contact_duration, np.nan))
 
     @property
-    def release_velocity(self) -> np.ndarray:
+    def bounce_velocity(self) -> np.ndarray:
         """Absolute velocity z′_b of the ball when it leaves."""
-        return self.relative_release_velocity + self.amplitude * np.cos(self.release_phase)
+        return self.relative_bounce_velocity + self.amplitude * np.cos(self.release_phase)
 
     @property
     def impacts(self) -> np.ndarray:

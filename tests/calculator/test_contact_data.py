@@ -78,7 +78,7 @@ def test_the_hertz_contact_is_that_of_the_energy():
         ({"stiffness": 1e6, "contact_time": 1e-3, "restitution": 0.5}, "contradict each other"),
         ({"contact_time": 1e-3, "damping": 1.0}, "damping needs stiffness"),
         # Critical: 2√(km).
-        ({"stiffness": 2.0, "damping": 0.4}, "damping_ratio = 1 is not so far below 1"),
+        ({"stiffness": 2.0, "damping": 0.4}, "= 1 is not so far below 1"),
         ({"stiffness": 1e6, "damping_ratio": 1.0}, "the critical damping"),
         ({"stiffness": 1e6, "rebound_height": 0.5}, "needed together"),
         ({"reduced_modulus": 1e11, "restitution": 0.5}, "reduced_modulus needs radius"),

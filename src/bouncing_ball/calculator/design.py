@@ -225,10 +225,13 @@ def contact(
     if case.law is not None:
         raise ModelError("a Hertz contact needs a table: its duration depends on the speed")
     zeta, omega = float(case.contact.damping_ratio), float(case.contact.frequency_ratio)
-    physical = Physical(case.mass, case.mass * omega**2, 2 * zeta * case.mass * omega)
+    stiffness = given.get("stiffness", case.mass * omega**2)
+    damping = given.get("damping", 2 * zeta * case.mass * omega)
+    physical = Physical(case.mass, stiffness, damping)
     return Contact(
         *physical,
         zeta,
+        omega,
         physical.contact_time(rule),
         str(rule),
         physical.restitution(rule),

@@ -219,9 +219,7 @@ def contact(
     # At 1 rad/s the frequency ratio is the contact's own frequency.
     case = case_of(given, Table(1.0, 1.0, STANDARD_GRAVITY), rule, [1])
     if case is None:
-        raise ParameterError(
-            "how stiff the contact is is missing: give {stiffness}, or {contact_time}"
-        )
+        raise ParameterError("no stiffness: give {stiffness}, or {contact_time}")
     if case.law is not None:
         raise ModelError("a Hertz contact needs a table: its duration depends on the speed")
     zeta, omega = float(case.contact.damping_ratio), float(case.contact.frequency_ratio)

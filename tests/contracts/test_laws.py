@@ -236,7 +236,7 @@ def test_an_impact_of_a_simulation_is_the_contact(law):
     found = (
         sequence.contact_duration[0],
         -sequence.release_displacement[0],
-        -sequence.relative_release_velocity[0],
+        -sequence.relative_bounce_velocity[0],
     )
     # Some last longer than a dozen oscillations.
     known = np.isfinite(end.duration)

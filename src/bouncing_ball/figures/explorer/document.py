@@ -44,15 +44,22 @@ def _allowed(text: str) -> str:
     return f"'sha256-{digest}'"
 
 
-def to_html(data: xr.Dataset) -> str:
-    """The page with reference orbits, the dataset of
-    :mod:`bouncing_ball.studies.reference_orbits`.
+def to_html(data: xr.Dataset, engines: str) -> str:
+    """The page with what it checks itself against.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Reference orbits (:mod:`bouncing_ball.studies.reference_orbits`).
+    engines : str
+        The physics engines with reference settings, as JSON
+        (:mod:`bouncing_ball.engines.reference`).
     """
-    model, page, look = (
+    *scripts, look = (
         files(__package__).joinpath(name).read_text(encoding="utf-8")
-        for name in ("model.js", "page.js", "page.css")
+        for name in ("model.js", "engines.js", "page.js", "page.css")
     )
-    script, style = f"\n{model}\n{page}", f"\n{look}"
+    script, style = "\n" + "\n".join(scripts), f"\n{look}"
     environment = Environment(
         loader=PackageLoader(str(__package__), "."), undefined=StrictUndefined, autoescape=False
     )
@@ -61,5 +68,11 @@ def to_html(data: xr.Dataset) -> str:
         "base-uri 'none'; form-action 'none'"
     )
     return environment.get_template("page.html.j2").render(
-        policy=policy, script=script, style=style, references=references(data), bound=repr(BOUND)
+        policy=policy,
+        script=script,
+        style=style,
+        references=references(data),
+        engines=engines,
+        names=list(json.loads(engines)["engines"]),
+        bound=repr(BOUND),
     )

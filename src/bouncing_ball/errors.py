@@ -4,6 +4,8 @@ Both derive from :class:`ValueError`, so that callers who do not care for the
 distinction can catch that.
 """
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -32,6 +34,34 @@ class ParameterError(ModelError):
 
 class NoOrbitError(ValueError):
     """The requested periodic orbit does not exist, with the reason why."""
+
+
+@contextmanager
+def extra(name: str) -> Iterator[None]:
+    """Around imports that need an extra of the package: one line says how to install it.
+
+    Raises
+    ------
+    ModelError
+        If a package of this extra is not installed.
+
+    Examples
+    --------
+    >>> with extra("plot"):
+    ...     import no_such_package
+    Traceback (most recent call last):
+    ...
+    bouncing_ball.errors.ModelError: no_such_package is not installed, and this needs it: \
+install the extra 'plot', for example pip install ".[plot]"
+    """
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        package = str(error.name).partition(".")[0]
+        raise ModelError(
+            f"{package} is not installed, and this needs it: "
+            f'install the extra {name!r}, for example pip install ".[{name}]"'
+        ) from None
 
 
 def require(valid: "ArrayLike", value: "ArrayLike", name: str, allowed: str) -> None:

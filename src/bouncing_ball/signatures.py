@@ -1,4 +1,4 @@
-"""What a call takes: ranges of its parameters, and parameters handed on to another call.
+"""Ranges of a call's parameters, and parameters that it hands on to another call.
 
 The command line reads both from the signatures of the calls, and the meaning of a parameter from
 the call's docstring, so that each stands once.
@@ -6,8 +6,10 @@ the call's docstring, so that each stands once.
 
 import inspect
 import math
-from collections.abc import Callable
-from typing import Any, NamedTuple, TypeVar
+from collections.abc import Callable, Mapping
+from typing import Annotated, Any, Literal, NamedTuple, TypeVar, get_args, get_origin
+
+from bouncing_ball.errors import ParameterError
 
 _Call = TypeVar("_Call", bound=Callable)
 
@@ -26,6 +28,11 @@ class Range(NamedTuple):
     low: float = -math.inf
     high: float = math.inf
     ends: str = "()"
+
+    @property
+    def whole(self) -> str:
+        """The whole numbers that are allowed."""
+        return f"a whole number from {self.low:g} to {self.high:.0f}"
 
     def __contains__(self, value: Any) -> bool:
         above = value > self.low if self.ends[0] == "(" else value >= self.low
@@ -77,3 +84,56 @@ def takes(other: Callable, *names: str) -> Callable[[_Call], _Call]:
         return call
 
     return with_parameters
+
+
+def _entries(value: Any) -> list:
+    """Those of an array, a list or a labelled array; a single value is one."""
+    value = getattr(value, "values", value)
+    if hasattr(value, "ravel"):
+        return value.ravel().tolist()
+    return list(value) if isinstance(value, list | tuple) else [value]
+
+
+def check(call: Callable, given: Mapping[str, Any]) -> None:
+    """Raise :class:`ParameterError` unless each argument is one that the call's signature allows.
+
+    Of an array every entry has to be.
+
+    Examples
+    --------
+    >>> def call(side: Literal["left", "right"], length: Annotated[Any, Range(0)] = 1.0): ...
+    >>> check(call, {"length": [1.0, 2.0], "side": "up"})
+    Traceback (most recent call last):
+    ...
+    bouncing_ball.errors.ParameterError: side = 'up' is not one of left, right
+    >>> check(call, {"length": [1.0, -2.0]})
+    Traceback (most recent call last):
+    ...
+    bouncing_ball.errors.ParameterError: length = -2.0 is not a finite number > 0
+    """
+    for name, parameter in inspect.signature(call).parameters.items():
+        if given.get(name) is None:
+            continue
+        for hint in (parameter.annotation, *get_args(parameter.annotation)):
+            kind, *_, allowed = get_args(hint) or (None, None)
+            if get_origin(hint) is Literal:
+                _allow(
+                    given[name] in get_args(hint),
+                    name,
+                    given[name],
+                    "one of " + ", ".join(get_args(hint)),
+                )
+            elif get_origin(hint) is Annotated and isinstance(allowed, Range):
+                for value in _entries(given[name]):
+                    whole = kind is int
+                    good = (
+                        isinstance(value, int | float)
+                        and value in allowed
+                        and (not whole or value == int(value))
+                    )
+                    _allow(good, name, value, allowed.whole if whole else str(allowed))
+
+
+def _allow(good: bool, name: str, value: Any, allowed: str) -> None:
+    if not good:
+        raise ParameterError(f"{{{name}}} = {value!r} is not {allowed}")

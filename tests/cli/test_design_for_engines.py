@@ -57,6 +57,7 @@ def test_what_a_solref_means_needs_no_table(ask, said):
     found = ask(*FROM, "--mass", "500 g")
     assert found["stiffness"] == pytest.approx(142122) and found["engine"] is None
     assert found["damping"] == pytest.approx(34.4)
+    assert found["natural_frequency"] == pytest.approx(math.sqrt(284244))
     assert found["damping_ratio"] == pytest.approx(0.0645, abs=5e-5)
     assert found["measured_restitution"] == pytest.approx(0.8231, abs=1e-4)
     # The default impedance is told what it costs.
@@ -65,6 +66,10 @@ def test_what_a_solref_means_needs_no_table(ask, said):
     assert "at the surface the spring is 0.9 and the damper 0.95" in text
     positive = ask(*BALL, "--from", "mujoco", "--solref", "0.02 0.3", "--solimp", "1e-4 1e-4")
     assert positive["damping_ratio"] == pytest.approx(0.3) and positive["notes"] == []
+    # MuJoCo's default: 20 ms and critical damping.
+    default = ask(*BALL, "--from", "mujoco", "--solref", "0.02 1")
+    assert default["damping_ratio"] == pytest.approx(1)
+    assert default["measured_restitution"] == pytest.approx(math.exp(-2))
 
 
 def test_with_a_table_it_is_a_design(ask):
@@ -92,10 +97,17 @@ def test_from_one_engine_to_another(ask):
         (FROM, "the mass is missing: mujoco's parameters do not have it"),
         ((*FROM, "--mass", "5 m"), "mass = 5 m is of the dimension [length]"),
         (("design", *OTHER), "the mass is missing"),
-        ((*BALL, *OTHER), "gamma_n of lammps is missing"),
+        ((*BALL, *OTHER), "gamma_n is missing: the contact of lammps has kn and gamma_n"),
+        ((*BALL, *OTHER, "--set", "gamma=2"), "lammps has no 'gamma'"),
+        ((*BALL, *OTHER, "--set", "gamma_n=x"), "'gamma_n=x' is not NAME=NUMBER"),
+        (("design", *OTHER, "--set", "gamma_n=2", "--mass", "0"), "mass = 0.0 is not a positive"),
+        ((*STIFF[:1], *STIFF[3:], "--engine", "mujoco", "--mass", "0"), "mass = 0 kg is not a"),
+        ((*STIFF[:1], *STIFF[3:], "--engine", "mujoco"), "mass is missing"),
+        ((*BALL, "--from", "mujoco", "--set", "solref=1"), "solref = '1.0' is not 2 numbers"),
         ((*BALL, "--from", "mujoco"), "solref is missing"),
         ((*BALL, "--from", "mujoco", "--solref", "-1"), "solref = '-1' is not 2 numbers"),
-        ((*BALL, "--from", "mujoco", "--solref", "0.02 1"), "1, the critical damping"),
+        ((*BALL, "--from", "mujoco", "--solref", "0.02 1", "--engine", "lammps"), "so far below 1"),
+        ((*BALL, "--from", "mujoco", "--solref", "0.02 1", *SHAKEN), "overdamped"),
         ((*BALL, "--from", "unreal"), "unknown engine 'unreal'"),
         ((*BALL, "--solref", "-1 -1"), "--solref needs --from, the engine that has it"),
         ((*BALL, "--set", "kn=1"), "--set kn needs --from"),

@@ -1,4 +1,4 @@
-"""Permanent contact of any law: the closed form, and what a touch is."""
+"""Permanent contact of any law against the closed form, and the motion at the threshold."""
 
 import numpy as np
 import pytest
@@ -17,23 +17,26 @@ def test_a_contact_below_the_threshold_is_held_and_above_it_is_not(kind):
     law = law_of_impact(kind, 0.65, 0.6, 3.8)
     threshold = permanent_contact(law)
 
-    def lowest(lam):
-        """The least grip in the last period of a motion that has settled."""
+    def lowest(*shares):
+        """The smallest grip in the last period of settled motions, at shares of the threshold."""
+        lam = threshold * np.array(shares)
 
         def rates(t, state):
-            p = max(state[0], 1e-300)
-            return [state[1], 1 - lam * np.sin(t) - float(law.force(np.float64(p), state[1]))]
+            p, u = state.reshape(2, -1)
+            force = law.force(np.maximum(p, 1e-300), u)
+            return np.concatenate([u, 1 - lam * np.sin(t) - force])
 
         end = 40 * 2 * np.pi
         time = np.linspace(end - 2 * np.pi, end, 4001)
         rest = (1 / float(law.stiffness)) ** (2 / 3)
-        run = solve_ivp(rates, (0, end), [rest, 0.0], "DOP853", time, rtol=1e-9, atol=1e-12)
-        return np.min(law.grip(*run.y)) / rest
+        start = np.repeat([rest, 0.0], lam.size)
+        run = solve_ivp(rates, (0, end), start, "DOP853", time, rtol=1e-9, atol=1e-12)
+        return np.min(law.grip(*run.y.reshape(2, lam.size, -1)), axis=1) / rest
 
     # The grip at its least grows as the distance from the threshold, some parts of rest.
-    assert lowest(threshold * 0.999) > 0
-    assert lowest(threshold * 1.001) < lowest(threshold * 0.999)
-    assert abs(lowest(threshold * 0.9999)) < 2e-3
+    below, next_to, above = lowest(0.999, 0.9999, 1.001)
+    assert below > max(above, 0)
+    assert abs(next_to) < 2e-3
 
 
 def test_it_tends_to_gravity_for_a_hard_contact():

@@ -1,4 +1,4 @@
-"""What every contact law keeps: its release, its energy, its derivatives, and its simulation.
+"""The contract of every contact law: its release, energy, derivatives, and simulation.
 
 A new law is one more line of :data:`LAWS`. The spring-damper as a law without a closed form
 (:class:`Spring`) is compared with the closed form everywhere.
@@ -9,8 +9,6 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from bouncing_ball.contacts.collocation import contacts, path
@@ -29,7 +27,7 @@ from bouncing_ball.motion.simulation import next_impact, simulate
 
 @dataclass(frozen=True, repr=False)
 class Spring(ContactLaw):
-    """The spring-damper, of which only the force and the release are known."""
+    """The spring-damper as a law with nothing but its force and its release."""
 
     frequency_ratio: float | np.ndarray
     damping_ratio: float | np.ndarray
@@ -229,24 +227,21 @@ def test_the_defaults_are_the_closed_forms(release):
     np.testing.assert_allclose(found.gap[same], expected.gap[same], atol=1e-10)
 
 
-@given(
-    law=st.sampled_from(list(LAWS.values())),
-    speed=st.floats(1.5, 8.0),
-    phase=st.floats(-3.0, 3.0),
-    amplitude=st.floats(0.0, 1.0),
-)
-def test_an_impact_of_a_simulation_is_the_contact(law, speed, phase, amplitude):
+@every_law
+def test_an_impact_of_a_simulation_is_the_contact(law):
+    rng = np.random.default_rng(5)
+    speed, phase, amplitude = rng.uniform([[1.5], [-3.0], [0.0]], [[8.0], [3.0], [1.0]], (3, 40))
     sequence = simulate(law, amplitude, phase, amplitude * np.cos(phase) - speed, 1)
     end = contacts(law, speed, phase, amplitude)
-    if np.isnan(end.duration):
-        # Longer than a dozen oscillations.
-        return
     found = (
         sequence.contact_duration[0],
         -sequence.release_displacement[0],
-        -sequence.relative_release_velocity[0],
+        -sequence.relative_bounce_velocity[0],
     )
-    np.testing.assert_allclose(found, end[:3], rtol=0, atol=1e-11)
+    # Some last longer than a dozen oscillations.
+    known = np.isfinite(end.duration)
+    assert known.mean() > 0.8
+    np.testing.assert_allclose(np.array(found)[:, known], np.array(end[:3])[:, known], atol=1e-11)
 
 
 HERTZ = [HuntCrossley(4e3, 0.08), Tsuji(4e3, 0.3), KuwabaraKono(4e3, 0.005)]

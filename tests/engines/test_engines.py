@@ -9,6 +9,7 @@ from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.engines import ENGINES, engine_named
 from bouncing_ball.engines.engine import ERROR, Physical
+from bouncing_ball.engines.reference import numbers, template
 from bouncing_ball.engines.scheme import error_in_steps
 from bouncing_ball.errors import ModelError
 
@@ -52,8 +53,20 @@ def test_the_snippet_has_the_numbers(name, release):
     assert all(len(line) < 110 for line in found.snippet.splitlines())
 
 
+@pytest.mark.parametrize(("name", "release"), BOTH)
+def test_a_text_with_places_for_numbers_is_the_snippet(name, release):
+    engine, step = ENGINES[name], 1.25e-6
+    values = numbers(engine, CONTACT) | {"mass": CONTACT.mass, "time_step": step}
+    texts = {key: repr(value) for key, value in values.items()}
+    texts |= {str(rule): f"{CONTACT.restitution(rule):.4f}" for rule in Release}
+    text = re.sub(r"@([\w.]+)@", lambda found: texts[found[1]], template(engine, release))
+    assert text == engine.snippet(CONTACT, release, step)
+
+
 def test_the_release_is_written_where_there_are_two():
     words = {"lammps": "limit_damping", "liggghts": "limitForce on", "generic": "max(0.0"}
+    # LIGGGHTS 3.8.0 refuses it before the wall, and with it there has r = 0.5 and 0.75 to 0.001.
+    assert ENGINES["liggghts"].settings(CONTACT, "force").snippet.endswith("0.0 limitForce on")
     for name, word in words.items():
         for release in Release:
             assert (word in ENGINES[name].settings(CONTACT, release).snippet) is (
@@ -111,9 +124,16 @@ def test_the_form_of_a_time_constant_and_a_damping_ratio():
         ("mujoco", {"solref": "0 0"}, 1.0, "nor two positive ones"),
         ("mujoco", {"solref": "-1 -1", "solimp": "1 2 3 4 5 6"}, 1.0, "is not 0 to 5 numbers"),
         ("mujoco", {"solref": "-1 -1", "solimp": "1.5"}, 1.0, "impedance 1.5, which is not in"),
-        ("mujoco", {"solref": "-1 -1", "colour": 1}, 1.0, "mujoco has no 'colour'"),
+        (
+            "mujoco",
+            {"solref": "-1 -1", "colour": 1},
+            1.0,
+            "'colour': its contact has solref and so",
+        ),
+        ("mujoco", {"solref": 1.0}, 1.0, "solref = '1.0' is not 2 numbers"),
+        ("mujoco", {"solref": None, "solimp": None}, 0.0, "mass = 0.0 is not a positive number"),
         ("lammps", {"kn": 1.0, "gamman": 1.0}, 1.0, "its contact has kn and gamma_n"),
-        ("lammps", {"kn": 1.0}, 1.0, "gamma_n of lammps is missing"),
+        ("lammps", {"kn": 1.0}, 1.0, "gamma_n is missing: the contact of lammps has"),
         ("pybullet", {"contactStiffness": 0.0, "contactDamping": 1.0}, 1.0, "is not positive"),
         ("generic", {"stiffness": 1.0, "damping": -1.0}, 1.0, "damping = -1.0 is not a number of"),
     ],
@@ -141,5 +161,33 @@ def test_engines_and_releases_that_there_are_not(name, release, says, one_line):
 
 def test_a_contact_that_does_not_bounce(one_line):
     with pytest.raises(ModelError) as error:
-        ENGINES["mujoco"].settings(Physical(1.0, 1.0, 2.0))
+        ENGINES["lammps"].settings(Physical(1.0, 1.0, 2.0))
     one_line(error, "overdamped")
+
+
+@pytest.mark.parametrize("zeta", [1.0, 1.5, 20.0])
+def test_an_overdamped_ball_comes_back_where_nothing_pulls(zeta):
+    # MuJoCo's default is ζ = 1. Of p = (e^{-at} - e^{-bt})/(b - a) the force ends where p″ = 0.
+    found = ENGINES["generic"].settings(Physical(1.0, 1.0, 2 * zeta), "force", 0.02)
+    assert list(found.restitutions) == ["force"] and "If it ended" not in found.snippet
+    a, b = zeta + np.array([-1, 1]) * np.sqrt(zeta**2 - 1)
+    end = 2 * np.log(b / a) / (b - a) if zeta > 1 else 2.0
+    rate = (a * np.exp(-a * end) - b * np.exp(-b * end)) / (b - a) if zeta > 1 else np.exp(-2)
+    assert found.restitution == pytest.approx(abs(rate), rel=1e-12)
+    assert found.time_step * found.steps == pytest.approx(end, rel=1e-11)
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_each_release_of_an_engine_has_its_restitution(name):
+    found, zeta = ENGINES[name].settings(CONTACT), CONTACT.damping_ratio
+    angles = {"displacement": np.pi, "force": np.pi - 2 * np.arcsin(zeta)}
+    expected = {rule: np.exp(-zeta * angles[rule] / np.sqrt(1 - zeta**2)) for rule in angles}
+    assert found.restitutions == pytest.approx({x: expected[x] for x in ENGINES[name].releases})
+    assert found.restitution == found.restitutions[found.release]
+
+
+def test_no_damping_is_written_without_a_sign():
+    found = ENGINES["mujoco"].settings(Physical(1.0, 1e4, 0.0))
+    assert 'solref="-10000.0 0.0"' in found.snippet
+    again = ENGINES["mujoco"].read({"solref": "-1e4 0"}, 1.0)
+    assert again == (1.0, 1e4, 0.0) and np.copysign(1, again.damping) == 1

@@ -92,7 +92,7 @@ def test_many_steps_follow_the_law_of_few():
     ("arguments", "says"),
     [
         ((0.1, 7), "7 steps in a contact are too few: at least 8"),
-        ((1.0, 50), "damping ratio ζ = 1.0 is not in [0, 1)"),
+        ((-0.1, 50), "damping ratio ζ = -0.1 is not in [0, 1)"),
     ],
 )
 def test_mistakes(arguments, says, one_line):

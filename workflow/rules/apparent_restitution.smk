@@ -1,5 +1,6 @@
 # Apparent restitution, bouncing-off velocity and Poincaré map: orbits of the spring-damper
-# model along the frequency ratio.
+# model along the frequency ratio. Each dataset has the observables of the stable orbits over
+# (case, frequency_ratio), NaN where there is no orbit.
 
 ALONG_FREQUENCY_RATIO = {
     "fig05": "studies.frequency_sweeps.apparent_restitution",

@@ -27,7 +27,7 @@ rule paper:
         "../scripts/paper.py"
 
 
-# Not part of a run: Typst is needed for nothing else.
+# Not part of a run, because nothing else needs Typst.
 rule paper_pdf:
     name:
         "paper.pdf"

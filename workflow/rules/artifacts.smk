@@ -1,5 +1,5 @@
-# Targets by name, `snakemake fig08`: whatever is published of it, the dataset too, which
-# Snakemake would not miss beside a figure that is there.
+# Targets by name, for example `snakemake fig08`: all files of the artifact, with its dataset, which
+# Snakemake would not miss as long as the figure exists.
 
 
 def files(name):

@@ -1,10 +1,12 @@
 # Beyond the paper: the release rule, the orbits of permanent contact, the corrected restitution
-# model with its error law, contacts of other laws, and the explorer.
+# model with its error law, contacts of other laws, and the explorer. What dimensions each dataset
+# has is in the docstring of its study.
 
 BEYOND_THE_PAPER = {
     "ext_release": "studies.release_rules.release_rules",
     "ext_rattling": "studies.long_contacts.stable_windows",
     "ext_basins": "studies.long_contacts.basins",
+    "ext_impact": "studies.free_impacts.free_impacts",
     "ext_instant": "studies.time_histories.meeting_flights",
     "ext_orders": "studies.model_errors.orders",
     "ext_laws": "studies.contact_laws.law_errors",

@@ -2,7 +2,7 @@
 
 from bouncing_ball.configuration.check import check_configuration
 
-# Jobs need not look again.
+# Jobs need not check it again.
 if workflow.is_main_process:
     try:
         check_configuration(map(os.path.relpath, workflow.configfiles), config, STUDIES)

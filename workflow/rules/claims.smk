@@ -1,4 +1,5 @@
-# The paper under audit: its formulas, Table 1, every orbit by three routes, and its claims.
+# The paper under audit: its formulas, Table 1, every orbit by three routes, and its claims. Each
+# dataset has a row for each formula, hypothesis, orbit or claim.
 
 from bouncing_ball.claims import ledger, witness
 
@@ -8,7 +9,8 @@ CLAIMS = {
     "witness": "claims.witness.witness",
     "claims": "claims.ledger.ledger",
 }
-# What shows orbits or bifurcations, which other routes must confirm; and what decides the claims.
+# The artifacts with orbits or bifurcations, which other routes must confirm, and the datasets that
+# decide the claims.
 READS |= {"witness": list(witness.SHOWN), "claims": ledger.READS}
 
 

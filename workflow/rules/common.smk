@@ -7,8 +7,8 @@ import sys
 from importlib.util import find_spec
 from pathlib import Path
 
-# What Snakemake has imported stays. Not to look through it for garbage again and again saves
-# half a second of each start.
+# What Snakemake has imported stays in use. Excluding it from garbage collection saves half a
+# second of each start.
 gc.freeze()
 
 # Snakemake starts jobs by the path of Python as it is.
@@ -19,7 +19,7 @@ if shlex.quote(sys.executable) != sys.executable:
 
 # The repository, whichever Snakefile was called.
 ROOT = os.path.abspath(Path(str(workflow.current_basedir), "..", ".."))
-# Not the code of another checkout, whose environment this may be.
+# The package may belong to another checkout, if its environment is active.
 HERE = Path(ROOT, "src", "bouncing_ball")
 found = Path(getattr(find_spec("bouncing_ball"), "origin", "nowhere/at/all")).parent
 if found.resolve() != HERE.resolve():
@@ -31,7 +31,7 @@ from bouncing_ball.configuration.study import arguments
 from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
 from bouncing_ball.pipeline.sources import sources
 
-# Two lines before every job, which say nothing of it.
+# Snakemake writes these two lines before every job, and they do not name it.
 logger.addFilter(lambda record: not str(record.msg).startswith(("Select jobs", "Execute ")))
 
 # The study of each artifact, and the artifacts whose datasets it reads.

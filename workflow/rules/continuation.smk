@@ -1,5 +1,7 @@
 # Existence and stability of n-T orbits by continuation: from the restitution orbit along the
-# frequency ratio to the contact wanted, then along the amplitude to both sides.
+# frequency ratio to the contact in question, then along the amplitude to both sides. Datasets:
+# orbits over (frequency_ratio, point) with their special points over (frequency_ratio, special);
+# of the table the stable ranges over (frequency_ratio, n, bound).
 
 CONTINUATION = {
     "fig08": "studies.orbit_branches.orbit_branches",

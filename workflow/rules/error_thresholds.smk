@@ -1,4 +1,5 @@
-# Error thresholds: the frequency ratio from which the restitution model is right.
+# Error thresholds: the frequency ratio from which the restitution model is accurate. Datasets:
+# relative errors over (quantity, frequency_ratio), thresholds over (quantity, tolerance).
 
 ERROR_THRESHOLDS = {
     "fig14": "studies.error_thresholds.height_error",

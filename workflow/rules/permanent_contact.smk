@@ -1,4 +1,5 @@
-# Permanent contact: the amplitude from which the table throws the ball off.
+# Permanent contact: the amplitude from which the table throws the ball off, a dataset over
+# frequency_ratio.
 
 PERMANENT_CONTACT = {
     "fig11": "studies.permanent_contact_curve.permanent_contact",

@@ -1,10 +1,10 @@
 # The accepted record, figures/ and paper.md, which git holds; its log is `git log figures/`.
-# Without outputs that Snakemake knows of, so that both look at the record at each call.
+# Both rules have no outputs, so that Snakemake runs them at each call.
 
 from bouncing_ball.pipeline.conclusion import concluded
 
 
-# ONLY='fig08 table1' snakemake --cores 1 accept; without ONLY, what has moved.
+# ONLY='fig08 table1' snakemake --cores 1 accept; without ONLY, all artifacts that have moved.
 rule accept:
     localrule: True
     message:
@@ -31,7 +31,7 @@ rule diff:
         "../scripts/diff.py"
 
 
-# A difference and a refusal are no failures of their jobs: one line, and exit status 1.
+# A difference or a refusal is not a failure of its job: it gives one line, and exit status 1.
 onsuccess:
     if conclusion := concluded():
         sys.exit(conclusion)

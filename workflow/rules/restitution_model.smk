@@ -1,4 +1,5 @@
-# The restitution model: its orbits in closed form, and what its balls do beside them.
+# The restitution model: its orbits in closed form, and the motion of balls that start beside
+# them. Datasets: one orbit over time (sample), the branches over (n, point), the motions over case.
 
 RESTITUTION_MODEL = {
     "fig02": "studies.restitution_families.restitution_history",

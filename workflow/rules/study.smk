@@ -1,5 +1,7 @@
-# Parameters in, a dataset out. The stages of the paper are this rule for their own artifacts;
-# itself it makes none.
+# Parameters in, a dataset out. Each stage of the paper uses this rule with the names of its
+# artifacts; the rule itself makes none. The docstring of a study says which variables its dataset
+# has and over which dimensions. All values are dimensionless: times Ωt, lengths Ω²y/g, velocities
+# Ωẏ/g, with phases in radians.
 rule study:
     message:
         "{wildcards.artifact}: {params.title}"

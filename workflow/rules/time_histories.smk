@@ -1,4 +1,5 @@
-# Time histories of orbits of the spring-damper model.
+# Time histories of orbits of the spring-damper model: datasets over sample, for several contacts
+# over (frequency_ratio, sample).
 
 TIME_HISTORIES = {
     "fig07": "studies.time_histories.contact_history",

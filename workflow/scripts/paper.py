@@ -9,6 +9,7 @@ from bouncing_ball.figures import DRAWINGS
 from bouncing_ball.figures.article.render import render_article
 from bouncing_ball.figures.atlas.tables import shares
 from bouncing_ball.figures.tables.formats import to_markdown
+from bouncing_ball.figures.tables.rows import claims
 from bouncing_ball.pipeline.job import logged, read_input
 
 
@@ -19,6 +20,7 @@ def text_of(path):
 with logged(snakemake) as lines:
     data = {Path(path).stem: read_input(path) for path in snakemake.input.data}
     tables = {Path(path).stem: text_of(path) for path in snakemake.input.tables}
+    tables["claims"] = to_markdown(*claims(data["claims"]))
     data["atlas"] = read_dataset(snakemake.input.atlas)
     tables["atlas"] = to_markdown(*shares(data["atlas"]))
     folder = Path(snakemake.input.templates[0]).parent

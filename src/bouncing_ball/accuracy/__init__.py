@@ -1,1 +1,5 @@
-"""How wrong one model of the impact is against another, and from which contact on it is right."""
+"""Errors of one model of the impact against another, and the contacts from which they are small.
+
+Units and broadcasting are those of :mod:`bouncing_ball`. Errors are signed, relative and thus
+dimensionless; arrays of them have a leading axis for each model and each quantity.
+"""

@@ -1,9 +1,9 @@
 r"""The error of the restitution model, to first order in the contact duration.
 
 The corrected model (:mod:`bouncing_ball.orbits.corrected_branch`) differs from the
-exact one by the second order, from the restitution model by the first: the
-delay t_c and the load sensitivity σ. So the first-order error of the
-restitution model is the derivative of the closed forms along (t_c, σ, D) at 0.
+exact one by the second order, and from the restitution model by the first, through the
+delay t_c and the load sensitivity σ. The first-order error of the
+restitution model is therefore the derivative of the closed forms along (t_c, σ, D) at 0.
 With ``C = nπ (1 - r)/(1 + r)``, ``cos ψ₀ = C/Λ``, ``Y₀ = Λ sin ψ₀`` and
 ``a₀ = 1 - Y₀`` of the restitution model's orbit ::
 
@@ -21,12 +21,12 @@ two straight lines ::
     δY = [2 t_c (Y₀ - 1) - nπ σ C + (1 - r) δX]/(nπ (1 + r))
     δΛ = (C δX + Y₀ δY)/Λ_PD
 
-For a linear contact t_c, σ and D are inversely proportional to ϖ: the
+For a linear contact t_c, σ and D are inversely proportional to ϖ, so that the
 signature at ϖ = 1 gives the K of a relative error K/ϖ + O(1/ϖ²). The contact
-is compared with the restitution model *of its own r*: with the force release
-that is not the r of Eq. 16, whose restitution model is not its limit.
+is compared with the restitution model of the r that a free impact on it has: with the force
+release this is not the r of Eq. 16, whose restitution model is not the limit of the contact.
 
-The permanent contact has no impact to repair, and its error is of the second
+The permanent contact has no impact to correct, and its error is of the second
 order: ``Λ_SD = 1 + K₂/ϖ² + O(1/ϖ⁴)`` with K₂ = -(1 - 2ζ²) for the
 displacement release and -1 for the force release.
 
@@ -36,11 +36,10 @@ The law holds while three numbers are small, δ = δ_SN + δ_load + δ_period::
     δ_load = D (1 + |a₀|)/(r v₀)     load against the speed of the ball that leaves
     δ_period = D max(1, Λ)           contact against the period
 
-Its remainder was measured as ``|error - K| ≤ M S δ`` (all at the contact's own ϖ)
-for δ < 0.3, with S the :func:`scale` of K and M = 2 for the greatest height and
-the period doubling and less for the rest, but M = 4 for the phase. So it fails
-next to the saddle-node, within Λ - Λ_SN ~ 1/ϖ, for grazing and slow impacts, and
-for small r.
+Its remainder was measured as ``|error - K| ≤ M S δ``, with all terms at the ϖ of the contact,
+for δ < 0.3, where S is the :func:`scale` of K and M = 4 for the phase and 2 for the other
+quantities. The law therefore fails next to the saddle-node, within Λ - Λ_SN ~ 1/ϖ, for grazing
+and slow impacts, and for small r.
 """
 
 from collections.abc import Iterable
@@ -56,21 +55,21 @@ from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits import restitution_orbit
 
 STATED = 0.3
-"""δ below which the law is stated."""
+"""δ below which the law holds: the bound of its range of validity."""
 
 
 ByQuantity = dict[Quantity, np.ndarray]
 """One array for each quantity of an impact, in their order."""
 
 REMAINDER = dict.fromkeys(OF_IMPACTS, 2.0) | {Quantity.PHASE: 4.0}
-"""M of each quantity: the stated remainder is M S δ. Measured, not proved."""
+"""M of each quantity: the remainder is at most M S δ. Measured, not proved."""
 
 
 def first_order(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> ByQuantity:
-    """Relative first-order errors of the restitution model at the stable side's orbit.
+    """Relative first-order errors of the restitution model at its orbit on the stable side.
 
-    That of the saddle-node is infinite at r = 1, and that of the phase at the saddle-node,
-    where the restitution model's value is 0: there is nothing to be relative to.
+    The error of the saddle-node is infinite at r = 1, and that of the phase at the saddle-node,
+    because the value of the restitution model, to which it is relative, is 0 there.
 
     Parameters
     ----------
@@ -81,14 +80,19 @@ def first_order(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> ByQuant
     amplitude : array_like
         Λ, at or above the saddle-node of the restitution model.
 
+    Returns
+    -------
+    dict
+        An array for each quantity of an impact, of the shape to which the arguments broadcast.
+
     Raises
     ------
     NoOrbitError
-        If Λ lies below it.
+        If Λ lies below the saddle-node.
 
     Examples
     --------
-    A ball that leaves 0.1 late, and nothing else:
+    A ball that leaves 0.1 late, with no other effect of the contact:
 
     >>> law = first_order(1, Instant(0.0, 0.5, 0.0, 0.1), 1.5)
     >>> abs(float(law["max_height"])), round(float(law["bounce_velocity"]) * np.pi, 15)
@@ -125,6 +129,8 @@ def _period_doubling(half, r, delay, load, fold):
 def small_parameter(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> np.ndarray:
     """δ, which must be small for the law to hold; infinite at the saddle-node.
 
+    Arguments, shape and errors are those of :func:`first_order`.
+
     Examples
     --------
     >>> bool(small_parameter(1, Instant(0.05, 1.0, 0.0, 0.1), 1.0) < 0.3)
@@ -140,10 +146,11 @@ def small_parameter(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> np.
 
 
 def scale(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> ByQuantity:
-    """S of each quantity: K with its parts added up without their signs.
+    """S of each quantity: K with its terms added up without their signs.
 
-    The apparent restitution's K is that of a small part of the contact force; its
-    scale is that of the whole.
+    The apparent restitution is an exception. For a linear contact the terms of its K cancel up to
+    κ - 2ζ(1 + r)/ϖ, and its scale is the effect of the load over the entire contact,
+    D (1 + |a₀|)/(r v₀). Arguments, shape and errors are those of :func:`first_order`.
 
     Examples
     --------
@@ -171,18 +178,18 @@ def scale(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> ByQuantity:
 
 
 class Remainder(NamedTuple):
-    """Errors against the law, which states ``factor`` ≤ M where it is ``stated``."""
+    """Errors against the law, by which ``factor`` ≤ M where it holds (``stated``)."""
 
     law: np.ndarray
-    """What the law says, shape (quantity, ...)."""
+    """The errors by the law, shape (quantity, ...)."""
     factor: np.ndarray
     """|error - law|/(S δ) of each quantity; NaN without an error."""
     small: np.ndarray
-    """δ."""
+    """δ, without the axis of quantities."""
     stated: np.ndarray
-    """Where there is an error and δ is below :data:`STATED`."""
+    """Where there is an error and δ is below :data:`STATED`, so that the law holds."""
     exceeded: np.ndarray
-    """Where the factor is above M all the same."""
+    """Where the factor is above M, whatever δ is."""
 
 
 def remainder(
@@ -192,7 +199,20 @@ def remainder(
     error: np.ndarray,
     quantities: Iterable[Quantity] = OF_IMPACTS,
 ) -> Remainder:
-    """What errors of the restitution model leave of the law, shape (quantity, ...).
+    """Errors of the restitution model against the law, shape (quantity, ...).
+
+    Parameters
+    ----------
+    n, instant, amplitude
+        As in :func:`first_order`.
+    error : ndarray, shape (quantity, ...)
+        Signed relative errors of these quantities; NaN where there is none.
+    quantities : iterable of Quantity
+
+    Raises
+    ------
+    NoOrbitError
+        If Λ lies below the saddle-node.
 
     Examples
     --------
@@ -219,6 +239,19 @@ def coefficients(
 ) -> ByQuantity:
     """K of each quantity for a linear contact: relative error K/ϖ + O(1/ϖ²).
 
+    Parameters
+    ----------
+    n, damping_ratio, amplitude : array_like
+        Index of the family, ζ < 1 and Λ.
+    release : Release
+
+    Raises
+    ------
+    NoOrbitError
+        If Λ lies below the saddle-node of the restitution model.
+    ModelError
+        If ζ is outside [0, 1).
+
     Examples
     --------
     The rule of thumb 1/(nε) for r → 1, here where Λ sin φ = 1:
@@ -238,7 +271,10 @@ def law_thresholds(
     release: Release,
     tolerance: float,
 ) -> ByQuantity:
-    """The ϖ from which each error is within a tolerance by the law, |K|/ε or √(|K₂|/ε).
+    """The ϖ from which each error is within a tolerance ε by the law, |K|/ε or √(|K₂|/ε).
+
+    Arguments and errors are those of :func:`coefficients`; the result has an array for each of the
+    seven quantities.
 
     Examples
     --------

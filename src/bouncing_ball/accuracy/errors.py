@@ -26,7 +26,13 @@ SIMPLE = ("restitution", "corrected")
 
 
 def models(contact: SpringDamper) -> tuple[SpringDamperModel, RestitutionModel, CorrectedModel]:
-    """The exact model of a contact, and the simple ones with the contact's own r."""
+    """The exact model of a contact, and both simple ones with the r that a free impact on it has.
+
+    Raises
+    ------
+    ModelError
+        If ζ ≥ 1.
+    """
     return (
         SpringDamperModel(contact),
         RestitutionModel(contact.restitution),
@@ -35,10 +41,10 @@ def models(contact: SpringDamper) -> tuple[SpringDamperModel, RestitutionModel, 
 
 
 def relative(exact: ArrayLike, simple: ArrayLike) -> np.ndarray:
-    """Signed relative errors, exact minus simple over simple value.
+    """Signed relative errors: exact less simple value, over the simple value.
 
-    NaN where either is missing, and for 0/0; infinite over a simple value of 0, which
-    leaves nothing to be relative to (the saddle-node and the phase at r = 1).
+    NaN where either is missing, and for 0/0. Infinite where the simple value is 0, as for the
+    saddle-node and the phase at r = 1.
 
     Examples
     --------
@@ -51,7 +57,7 @@ def relative(exact: ArrayLike, simple: ArrayLike) -> np.ndarray:
 
 
 def modulus(error: ArrayLike) -> np.ndarray:
-    """Modulus of errors, infinite where there is none: what is missing is not right.
+    """Modulus of errors; infinite for NaN, because a model that lacks a quantity is not accurate.
 
     Examples
     --------
@@ -69,6 +75,19 @@ def relative_errors(
     quantities: Sequence[str] = OF_IMPACTS,
 ) -> np.ndarray:
     """Signed relative errors of simple models, shape (model, quantity, ...).
+
+    Parameters
+    ----------
+    exact : ImpactModel
+    simple : sequence of ImpactModel
+    n, amplitude : array_like
+        Index of the family and Λ of the stable orbits; they broadcast with the models.
+    quantities : sequence of str
+
+    Returns
+    -------
+    ndarray
+        NaN where a model has no such orbit or bifurcation.
 
     Examples
     --------
@@ -90,7 +109,10 @@ def errors(
     amplitude: ArrayLike,
     quantities: Sequence[str] = OF_IMPACTS,
 ) -> np.ndarray:
-    """Signed relative errors of both simple models on contacts, (model, quantity, ...).
+    """Signed relative errors of both simple models on contacts, shape (model, quantity, ...).
+
+    See :func:`relative_errors`; the models are those of :func:`models`, in the order
+    :data:`SIMPLE`.
 
     Examples
     --------
@@ -102,10 +124,11 @@ def errors(
 
 
 def orbit_errors(orbit: SpringDamperOrbit) -> np.ndarray:
-    """Errors of the quantities of exact orbits, shape (model, quantity, ...); NaN without orbit.
+    """Errors of the four quantities of exact orbits, shape (model, quantity, ...); NaN without
+    orbit.
 
-    As :func:`errors` at the Λ at which the orbits are, without a search for the corrected
-    one: the signature of a linear contact is the same at every speed.
+    They equal :func:`errors` at the Λ of the orbits. The corrected orbit needs no search, because
+    the signature of a linear contact is the same at every speed.
 
     Examples
     --------
@@ -116,7 +139,7 @@ def orbit_errors(orbit: SpringDamperOrbit) -> np.ndarray:
     """
     n, lam, signature = orbit.n, orbit.amplitude, Signature(orbit.law)
     psi = corrected_branch.instant_phase(n, signature(), lam)
-    # Below its own saddle-node, or without exact orbit, a model has no orbit at all.
+    # A simple model has no orbit below its saddle-node, or where the exact orbit is missing.
     simple: tuple[Orbit, Orbit] = (
         RestitutionModel(orbit.law.restitution).orbit(n, lam),
         CorrectedOrbit.at(n, signature, lam, psi),

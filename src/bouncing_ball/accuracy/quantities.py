@@ -1,4 +1,4 @@
-"""The seven quantities in which models are compared, and how a model is asked for them."""
+"""The seven quantities in which models are compared, and their values in a model."""
 
 from collections.abc import Iterable
 from enum import StrEnum
@@ -11,7 +11,7 @@ from bouncing_ball.orbits.model import ImpactModel
 
 
 class Quantity(StrEnum):
-    """What is compared between models."""
+    """A quantity that is compared between models."""
 
     MAX_HEIGHT = "max_height"
     BOUNCE_VELOCITY = "bounce_velocity"
@@ -27,7 +27,7 @@ OF_ORBITS = tuple(Quantity)[:4]
 OF_LIMITS = tuple(Quantity)[4:]
 """Values of Λ: functions of the contact and of n, the permanent contact's without n."""
 OF_IMPACTS = tuple(Quantity)[:6]
-"""Those that depend on an impact. A ball held in permanent contact has none."""
+"""Quantities that depend on an impact, of which permanent contact has none."""
 
 
 def values(
@@ -36,7 +36,14 @@ def values(
     amplitude: ArrayLike,
     quantities: Iterable[str] = OF_IMPACTS,
 ) -> np.ndarray:
-    """Quantities in a model, all of the orbit from one search for it.
+    """Quantities in a model, all those of the orbit from one search for it.
+
+    Parameters
+    ----------
+    model : ImpactModel
+    n, amplitude : array_like
+        Index of the family and Λ of the stable orbits; they broadcast with the model.
+    quantities : iterable of str
 
     Returns
     -------

@@ -1,4 +1,4 @@
-r"""From which frequency ratio ϖ on an error stays within a tolerance.
+"""The frequency ratio ϖ above which an error stays within a tolerance.
 
 The threshold is the largest ϖ at which the modulus of the error crosses the tolerance,
 within the range scanned. Where a model lacks the quantity, the error is infinite.
@@ -22,9 +22,9 @@ Numbered = Callable[[np.ndarray, np.ndarray], np.ndarray]
 Errors = Callable[[np.ndarray, np.ndarray, Sequence[str]], np.ndarray]
 """Signed relative errors of quantities, shape (quantity, m), at ratios ϖ of rows, shape (m,)."""
 
-# Errors are bounded for the root finder: they may vanish, or be infinite.
+# Errors are bounded for the root finder, because they may vanish or be infinite.
 _SMALLEST, _LARGEST = 1e-300, 1e3
-# Of ln ϖ: the rounding of an error of 0.1 % moves its threshold by as much.
+# Tolerance of ln ϖ: the rounding of an error of 0.1 % moves its threshold by as much.
 _CLOSE = 1e-13
 
 
@@ -47,21 +47,22 @@ class Thresholds(NamedTuple):
 def last_crossing(function: Numbered, ratios: np.ndarray, scanned: np.ndarray) -> np.ndarray:
     """The largest ϖ at which each function changes its sign.
 
-    The last change between two samples is closed to the last digit; an even
-    number of changes between two samples goes unseen.
+    The last change between two samples is located to the last digit; an even
+    number of changes between two samples is not noticed.
 
     Parameters
     ----------
     function : callable
+        Values at ratios ϖ, of the functions with given numbers; see :data:`Numbered`.
     ratios : ndarray, shape (N,)
         Increasing grid.
     scanned : ndarray, shape (k, N)
-        The k functions on the grid; next to a NaN no change counts.
+        The k functions on the grid; a change next to a NaN does not count.
 
     Returns
     -------
     ndarray, shape (k,)
-        NaN for a function that changes nowhere.
+        NaN for a function that does not change its sign.
 
     Examples
     --------
@@ -78,14 +79,14 @@ def last_crossing(function: Numbered, ratios: np.ndarray, scanned: np.ndarray) -
     found = np.full(len(scanned), np.nan)
     if which.size:
         bracket = np.log(ratios[last]), np.log(ratios[last + 1])
-        with np.errstate(invalid="ignore"):  # of an interpolation that is then not taken
+        with np.errstate(invalid="ignore"):  # from an interpolation that find_root rejects
             root = find_root(
                 lambda x, k: function(np.exp(x), k.astype(int)),
                 bracket,
                 args=(which,),
                 tolerances={"xatol": _CLOSE},
             )
-        # On a sample rounding may turn the sign back: the root is that sample.
+        # At a sample rounding may change the sign again; the root is then that sample.
         values_at_ends = np.abs(root.f_bracket)
         end = np.where(values_at_ends[0] < values_at_ends[1], *bracket)
         found[which] = np.exp(np.where(root.success, root.x, end))
@@ -134,9 +135,10 @@ def thresholds(
 
 
 def by_quantity(errors: Errors, quantities: Sequence[str], rows: int) -> Numbered:
-    """Errors of several quantities, numbered quantity by quantity, ``rows`` of each.
+    """Errors of several quantities as one set of numbered functions, ``rows`` for each quantity.
 
-    Those of an orbit are asked for together, as they are found by the same steps.
+    Function number q·rows + k is quantity q of row k. The quantities of an orbit are computed
+    together, because one search finds the orbit for all of them.
     """
     of_orbit = np.isin(quantities, OF_ORBITS)
     groups = [np.flatnonzero(of_orbit), *np.flatnonzero(~of_orbit)[:, np.newaxis]]
@@ -156,14 +158,15 @@ def by_quantity(errors: Errors, quantities: Sequence[str], rows: int) -> Numbere
 
 
 class Search(NamedTuple):
-    """From which ϖ on each simple model is right, of several orbits."""
+    """The ϖ from which on each simple model is accurate, for several orbits."""
 
     threshold: np.ndarray
-    """Shape (model, quantity, orbit); NaN where the status is not ``FOUND``."""
+    """ϖ, shape (model, quantity, orbit); NaN where the status is not ``FOUND``."""
     status: np.ndarray
+    """:class:`ThresholdStatus`, shape (model, quantity, orbit)."""
     zero: np.ndarray
-    """Where the restitution model's error passes through zero by accident, the largest ϖ;
-    (quantity, orbit), NaN if it does not."""
+    """The largest ϖ at which the restitution model's error changes its sign, shape
+    (quantity, orbit); NaN if it does not."""
 
 
 def search(
@@ -177,8 +180,21 @@ def search(
 ) -> Search:
     """Thresholds and zeros of the errors of both simple models, for linear contacts.
 
-    ``zeta``, ``n`` and ``amplitude`` are those of the orbits, one-dimensional; the
-    restitution model has the contact's own r.
+    Parameters
+    ----------
+    zeta, n, amplitude : array_like
+        ζ, index of the family and Λ of each orbit; they broadcast to shape (orbit,).
+    rule : Release
+    ratios : ndarray, shape (N,)
+        Increasing grid of ϖ.
+    tolerance : float
+        Relative error tolerated.
+    quantities : sequence of str
+
+    Returns
+    -------
+    Search
+        The restitution model has the r that a free impact on the contact has.
     """
     damping, index, lam = (np.atleast_1d(x) for x in np.broadcast_arrays(zeta, n, amplitude))
     size = len(quantities), len(SIMPLE), lam.size
@@ -192,7 +208,7 @@ def search(
     scanned = errors(grid, index, lam, quantities).transpose(1, 0, 3, 2)
     every = scanned.reshape(-1, ratios.size)
     found = thresholds(by_quantity(along, quantities, size[1] * size[2]), ratios, every, tolerance)
-    # The restitution model's errors come first.
+    # The restitution model is the first one.
     own = scanned[:, 0].reshape(-1, ratios.size)
     zero = last_crossing(by_quantity(along, quantities, lam.size), ratios, own)
     ratio, status = (part.reshape(size).swapaxes(0, 1) for part in found)

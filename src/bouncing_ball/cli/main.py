@@ -10,7 +10,7 @@ from typing import Any
 from bouncing_ball import __version__
 from bouncing_ball.cli.options import Parser, add_options, in_options, positional
 from bouncing_ball.cli.output import fail, say
-from bouncing_ball.errors import NoOrbitError, ParameterError
+from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, extra
 
 # What each subcommand is for, and the module of its call. A module is imported when its
 # subcommand is used: the list of subcommands needs no numpy.
@@ -28,7 +28,11 @@ _COMMANDS = {
 
 def _module(command: str) -> Any:
     """The module of a subcommand: its call, and ``lines`` that make its answer readable."""
-    return import_module(f"bouncing_ball.{_COMMANDS[command][1]}")
+    try:
+        with extra("pipeline"):
+            return import_module(f"bouncing_ball.{_COMMANDS[command][1]}")
+    except ModelError as error:
+        fail(str(error), status=2)
 
 
 def _call(command: str) -> Callable[..., Any]:

@@ -13,14 +13,15 @@ from bouncing_ball.continuation.step_control import StepControl
 
 
 class ContinuationError(RuntimeError):
-    """No point to start from."""
+    """The continuation has no solution to start from, or a branch cannot be resampled."""
 
 
 class End(NamedTuple):
-    """An end of a branch: why, a sentence as which it prints, and whether that is the end of it.
+    """An end of a branch.
 
-    Unfinished is a branch of as many points as were allowed, and one that broke off at an event
-    that could not be located, down to the smallest step.
+    ``sentence`` is the reason, as which the end prints. ``finished`` tells whether the branch ends
+    there: it does not if it has reached the allowed number of points, or if it broke off at
+    an event that could not be located with the smallest step.
     """
 
     sentence: str
@@ -60,19 +61,32 @@ class Branch:
         return np.concatenate([[0.0], np.cumsum(steps)])
 
     def named(self, name: str) -> list[np.ndarray]:
-        """The points of all located events of one name."""
+        """The points y of all located events with this name, in order along the branch."""
         return [special.point for special in self.special if special.name == name]
 
 
 def solve_at(
     problem: Problem, guess: np.ndarray, settings: NewtonSettings = NewtonSettings()
 ) -> np.ndarray:
-    """The solution at the guess's own parameter.
+    """The solution at the parameter of the guess, shape (N + 1,).
 
     Raises
     ------
     ContinuationError
         If Newton's method does not converge from the guess.
+
+    Examples
+    --------
+    The circle x² + p² = 1 at p = 0.6:
+
+    >>> class Circle:
+    ...     def residual(self, y):
+    ...         return np.sum(y * y, axis=-1, keepdims=True) - 1
+    ...
+    ...     def jacobian(self, y):
+    ...         return 2 * y[..., np.newaxis, :]
+    >>> solve_at(Circle(), np.array([1.0, 0.6])).round(12).tolist()
+    [0.8, 0.6]
     """
     axis = np.zeros_like(guess)
     axis[-1] = 1.0
@@ -86,13 +100,13 @@ def solve_at(
 
 
 class _Rejected(Exception):
-    """A step that must be shorter, with the :class:`End` of the branch if it cannot be."""
+    """A step that must be shorter, with the :class:`End` of the branch if it cannot be shorter."""
 
 
 def _located(problem, events, values, left, right, settings):
-    """Events and points where test functions change sign on the way, up to a terminal one.
+    """Events and points where test functions change sign within a step, up to a terminal one.
 
-    ``values`` are those of the test functions at both ends.
+    ``values`` holds the values of each test function at both ends of the step.
     """
     located, failure = [], None
     for event, (before, after) in zip(events, values, strict=True):
@@ -216,15 +230,15 @@ def resample(
 ) -> np.ndarray:
     """Solutions at equal distances along a branch, shape (count, N + 1).
 
-    Cubic Hermite interpolation between the points of the branch predicts, the
-    corrector corrects; the first and last points are those of the branch. The
-    chords between neighbours are made equal, so that the result is a matter of
-    the branch and of ``count``, and not of the step control.
+    Cubic Hermite interpolation between the points of the branch is the predictor, Newton's method
+    the corrector; the first and last points are those of the branch. The chords between neighbours
+    are made equal, so that the result depends on the branch and on ``count``, and not on the
+    step control.
 
     Raises
     ------
     ContinuationError
-        If the corrector fails, on a branch followed with too long steps, or if
+        If the corrector fails, because the branch was followed with too long steps, or if
         the branch has a single point.
     """
     # Imported here: not every run resamples.

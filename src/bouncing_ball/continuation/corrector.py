@@ -13,10 +13,10 @@ _TINY = np.finfo(float).tiny
 class Correction(NamedTuple):
     """Outcome of Newton iterations, one for each guess.
 
-    ``point`` has the shape of the guesses; ``converged``, ``residual``, the largest entry
-    of the extended residual at the last iteration, and ``step``, the norm of the last
-    Newton step relative to 1 + |y|, have that of its leading axes. ``iterations`` is how
-    many were done until all had converged or failed.
+    ``point`` has the shape of the guesses. ``converged``, ``residual`` (the largest entry of the
+    extended residual at the last iteration) and ``step`` (the norm of the last Newton step
+    relative to 1 + |y|) have that of its leading axes. ``iterations`` is their number until all
+    guesses had converged or failed.
     """
 
     point: np.ndarray
@@ -29,9 +29,9 @@ class Correction(NamedTuple):
 class NewtonSettings(NamedTuple):
     """When a Newton iteration has converged, and when it has failed.
 
-    ``tolerance`` bounds the norm of the last step, relative to 1 + |y|. As the
-    convergence is quadratic, the point is then as exact as F is computed.
-    No step is longer than ``longest``.
+    ``tolerance`` bounds the norm of the last step, relative to 1 + |y|. Since the
+    convergence is quadratic, the point is then as exact as F is computed. ``longest`` is the
+    greatest length of a step, and ``max_iterations`` their greatest number.
     """
 
     tolerance: float = 1e-12
@@ -53,15 +53,15 @@ def newton(
     problem : Problem
         N equations.
     guess : ndarray, shape (..., N + 1)
-        Many guesses are iterated together; each rests when it has converged.
+        Many guesses are iterated together; each stops when it has converged.
     condition : Condition
-        The equation number N + 1, for instance a plane or a test function.
+        The equation number N + 1, for example a plane or a test function.
     settings : NewtonSettings
 
     Returns
     -------
     Correction
-        Not converged is what ran out of iterations, met a singular matrix or left
+        A guess has not converged if it ran out of iterations, met a singular matrix or left
         the domain of F.
     """
     y = np.array(guess, dtype=float)
@@ -90,7 +90,7 @@ def newton(
 
 
 def _solve(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """Solutions of linear systems; NaN for a singular or unknown matrix."""
+    """Solutions of linear systems; NaN for a singular matrix, or one with NaN entries."""
     try:
         return np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
     except np.linalg.LinAlgError:
@@ -116,10 +116,10 @@ def plane(normal: np.ndarray, through: np.ndarray) -> Condition:
 
 
 def tangent(jacobian: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """Unit tangent of the solution curve, on the side of ``along``.
+    """Unit tangent of the solution curve, on the side of ``along``, shape (..., N + 1).
 
-    The null vector of the N × (N + 1) Jacobian, at a fold too. Shapes (..., N, N + 1) and
-    (..., N + 1).
+    It is the null vector of the N × (N + 1) Jacobian, which also exists at a fold. The arguments
+    have shapes (..., N, N + 1) and (..., N + 1).
 
     Examples
     --------

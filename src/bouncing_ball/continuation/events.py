@@ -1,8 +1,8 @@
-"""Special points on a branch: test functions and their exact location.
+"""Special points on a branch: test functions, and the exact location of their zeros.
 
-An event is a zero of a test function g(y). A sign change between two points
-of the branch announces it; it is then located on the extended system
-``F(y) = 0, g(y) = 0``, to the tolerance of Newton's method and not to the step.
+An event is a zero of a test function g(y). A sign change between two points of the branch
+announces it; it is then located on the extended system ``F(y) = 0, g(y) = 0``, to the
+tolerance of Newton's method whatever the length of the step.
 """
 
 from collections.abc import Callable
@@ -14,12 +14,12 @@ import numpy as np
 from bouncing_ball.continuation.corrector import Condition, NewtonSettings, newton
 from bouncing_ball.continuation.problem import Problem
 
-# Step of the central differences for ∇g, near the optimum ε^(1/3). It sets how
-# fast the iteration converges; where it converges to is set by g alone.
+# Step of the central differences for ∇g, near the optimum ε^(1/3). It determines how
+# fast the iteration converges, but not to which point, which depends on g alone.
 _DIFFERENCE = 6e-6
-# A first-order gradient costs a few iterations more than the plain corrector.
+# With an approximate gradient a few more iterations are needed than in the plain corrector.
 _EXTRA_ITERATIONS = 12
-# How far beyond the bracket rounding may put a zero at its end, in parts of it.
+# Rounding may put a zero at an end of the bracket outside by this part of its length.
 _SLACK = 1e-6
 
 
@@ -30,13 +30,13 @@ class Event:
     Parameters
     ----------
     name : str
-        What its zero is called in results.
+        The name of its zeros in results.
     function : callable
         g(y), for y of shape (..., N + 1).
     terminal : bool
-        Whether the branch ends there. A terminal function is positive inside.
+        Whether the branch ends there. A terminal function is positive inside the domain.
     reason : str
-        For a terminal event, why the branch ends, in words.
+        The sentence that says why the branch ends at a terminal event.
     """
 
     name: str
@@ -46,7 +46,7 @@ class Event:
 
 
 class SpecialPoint(NamedTuple):
-    """A located event: its name, the point y and the largest residual left."""
+    """A located event: its name, the point y of shape (N + 1,), and the largest residual left."""
 
     name: str
     point: np.ndarray
@@ -54,19 +54,33 @@ class SpecialPoint(NamedTuple):
 
 
 def fold(problem: Problem, name: str = "fold") -> Event:
-    """Event at which ∂F/∂x is singular: the branch turns in the parameter."""
+    """The event at which ∂F/∂x is singular, so that the branch turns in the parameter."""
 
     return Event(name, lambda y: np.linalg.det(problem.jacobian(y)[..., :-1]))
 
 
 def parameter_bound(bound: float, upper: bool, reason: str) -> Event:
-    """Terminal event at which the parameter, the last entry of y, meets a bound."""
+    """Terminal event at which the parameter, the last entry of y, reaches a bound.
+
+    Examples
+    --------
+    >>> event = parameter_bound(2.0, upper=True, reason="p = 2")
+    >>> event.terminal, float(event.function(np.array([0.0, 1.5])))
+    (True, 0.5)
+    """
     sign = -1.0 if upper else 1.0
     return Event("parameter bound", lambda y: sign * (y[..., -1] - bound), True, reason)
 
 
 def vanishing(function: Callable[[np.ndarray], np.ndarray]) -> Condition:
-    """The condition that a test function is zero, its gradient by differences."""
+    """The condition that a test function is zero, with its gradient by central differences.
+
+    Examples
+    --------
+    >>> value, gradient = vanishing(lambda y: y[..., 0] ** 2)(np.array([3.0, 1.0]))
+    >>> float(value), gradient.round(6).tolist()
+    (9.0, [6.0, 0.0])
+    """
 
     def condition(y):
         size = y.shape[-1]
@@ -84,8 +98,9 @@ def locate(
 ) -> SpecialPoint | None:
     """The zero of an event between two points of the branch, shape (N + 1,) each.
 
-    Newton's method on the extended system, from the secant estimate. None where it leaves the
-    bracket: a step of the continuation was too long, or there is no zero.
+    Newton's method on the extended system starts from the secant estimate. The result is None if
+    it leaves the bracket, because a step of the continuation was too long or because there is no
+    zero.
     """
     values, chord = [float(event.function(y)) for y in (left, right)], right - left
     guess = left + values[0] / (values[0] - values[1]) * chord

@@ -1,4 +1,4 @@
-"""What a continuation needs to know of a problem."""
+"""The interface of a problem for the continuation."""
 
 from typing import Protocol
 
@@ -9,7 +9,7 @@ class Problem(Protocol):
     """N equations F(y) = 0 in N unknowns x and one parameter p, y = (x, p).
 
     Both methods broadcast over leading axes. The unknowns should be scaled to
-    order one: the arclength is measured in the plain Euclidean norm of y.
+    order one, because the arclength is the Euclidean norm of y.
     """
 
     def residual(self, y: np.ndarray) -> np.ndarray:

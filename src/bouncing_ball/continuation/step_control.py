@@ -1,4 +1,4 @@
-"""How long the next step along the branch is."""
+"""Control of the step length along the branch."""
 
 from dataclasses import dataclass
 
@@ -29,7 +29,7 @@ class StepControl:
     max_angle: float = 0.2
 
     def after(self, step: float, iterations: int, angle: float) -> float:
-        """Next step after an accepted one.
+        """The next step in arclength after an accepted one.
 
         Examples
         --------

@@ -6,7 +6,6 @@ from typing import Any
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.engines.engine import Engine, Parameters, Physical
 from bouncing_ball.engines.scheme import Scheme
-from bouncing_ball.errors import require
 
 
 class Drake(Engine):
@@ -26,17 +25,16 @@ class Drake(Engine):
     """
 
     name = "drake"
+    names = ("point_contact_stiffness", "relaxation_time")
     releases = (Release.FORCE,)
     scheme = Scheme.IMPLICIT
 
     def parameters(self, contact: Physical) -> Parameters:
         time = contact.damping / contact.stiffness / 2
-        return {"point_contact_stiffness": 2 * contact.stiffness, "relaxation_time": time}
+        return dict(zip(self.names, (2 * contact.stiffness, time), strict=True))
 
     def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
-        names = ("point_contact_stiffness", "relaxation_time")
-        m, double, half_time = self._given(parameters, mass, *names)
-        require(double > 0, double, names[0], "positive")
+        m, double, half_time = self._two(parameters, mass)
         return Physical(m, double / 2, double * half_time)
 
     def snippet(self, contact: Physical, release: Release, time_step: float) -> str:

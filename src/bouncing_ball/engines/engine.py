@@ -6,10 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
-from bouncing_ball.contacts.damping import restitution_coefficient
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.engines.scheme import Scheme, steps_for
+from bouncing_ball.engines.scheme import Scheme, free_impact, steps_for
 from bouncing_ball.errors import ModelError, require
 
 ERROR = 0.001
@@ -48,15 +46,13 @@ class Physical(NamedTuple):
         Raises
         ------
         ModelError
-            If ζ ≥ 1: the ball does not come back.
+            If ζ ≥ 1 and the damper pulls: the ball does not come back.
         """
-        return float(restitution_coefficient(self.damping_ratio, release))
+        return free_impact(self.damping_ratio, release)[1]
 
     def contact_time(self, release: Release) -> float:
         """Duration of a free impact, in s."""
-        return float(
-            SpringDamper(self.angular_frequency, self.damping_ratio, release).free_duration
-        )
+        return free_impact(self.damping_ratio, release)[0] / self.angular_frequency
 
 
 @dataclass(frozen=True)
@@ -64,9 +60,10 @@ class EngineSettings:
     """What to write into an engine, and what it will do.
 
     ``parameters`` are in the engine's units, under its names. ``time_step`` is in s: ``steps``
-    of it in a contact leave the ``restitution`` of a free impact within ``error``. Of the orbit
-    that a design is about are ``max_height`` and ``penetration`` in m and ``contact_duration``
-    in s; None where there is no orbit.
+    of it in a contact leave the ``restitution`` of a free impact within ``error``;
+    ``restitutions`` are those of the same contact by each release that the engine has. Of the
+    orbit that a design is about are ``max_height`` and ``penetration`` in m and
+    ``contact_duration`` in s; None where there is no orbit.
     """
 
     name: str
@@ -74,6 +71,7 @@ class EngineSettings:
     time_step: float
     release: str
     restitution: float
+    restitutions: dict[str, float]
     steps: int
     error: float
     scheme: str
@@ -86,11 +84,12 @@ class EngineSettings:
 class Engine(ABC):
     """A physics engine and its linear contact between a ball and a wall at rest or moved.
 
-    A subclass says its ``name``, its ``releases``, the one it has by default first, and the
-    ``scheme`` that moves a ball in contact.
+    A subclass says its ``name``, the ``names`` of its parameters, its ``releases``, the one it
+    has by default first, and the ``scheme`` that moves a ball in contact.
     """
 
     name: ClassVar[str]
+    names: ClassVar[tuple[str, ...]]
     releases: ClassVar[tuple[Release, ...]]
     scheme: ClassVar[Scheme]
 
@@ -126,6 +125,12 @@ class Engine(ABC):
             raise ModelError(f"{self.name} has no {release} release: its contacts end by {has}")
         return release
 
+    def restitutions(self, contact: Physical, release: Release) -> dict[Release, float]:
+        """r of a free impact by a release, and by the others of the engine that have one."""
+        slow = contact.damping_ratio < 1
+        rules = [rule for rule in self.releases if rule is release or slow]
+        return {rule: contact.restitution(rule) for rule in rules}
+
     def settings(
         self, contact: Physical, release: str | None = None, error: float = ERROR
     ) -> EngineSettings:
@@ -144,27 +149,33 @@ class Engine(ABC):
         step = float(f"{contact.contact_time(rule) / steps:.12g}")
         text = self.snippet(contact, rule, step)
         found = self.parameters(contact)
+        by_rule = {str(one): r for one, r in self.restitutions(contact, rule).items()}
         return EngineSettings(
-            self.name, found, step, str(rule), restitution, steps, error, str(self.scheme), text
+            *(self.name, found, step, str(rule), restitution, by_rule),
+            *(steps, error, str(self.scheme), text),
         )
 
-    def _given(
-        self, parameters: Mapping[str, Any], mass: float | None, *names: str
-    ) -> tuple[float, ...]:
-        """The mass and then the parameters, all that the engine has and no other."""
-        values = dict(parameters)
+    def _given(self, parameters: Mapping[str, Any], mass: float | None) -> float:
+        """The mass, if it is given and all parameters are the engine's."""
+        if unknown := set(parameters) - set(self.names):
+            names = " and ".join(self.names)
+            raise ModelError(f"{self.name} has no {sorted(unknown)[0]!r}: its contact has {names}")
         if mass is None:
             raise ModelError(f"the mass is missing: {self.name}'s parameters do not have it")
         require(0 < mass < math.inf, mass, "mass", "a positive number of kg")
-        if unknown := set(values) - set(names):
-            all_of = " and ".join(names)
-            raise ModelError(f"{self.name} has no {sorted(unknown)[0]!r}: its contact has {all_of}")
-        for name in names:
-            if name not in values:
-                raise ModelError(f"{name} of {self.name} is missing")
-            value = values[name]
+        return float(mass)
+
+    def _two(self, parameters: Mapping[str, Any], mass: float | None) -> tuple[float, float, float]:
+        """The mass, the stiffness, which is positive, and the loss, in the engine's units."""
+        m, found = self._given(parameters, mass), []
+        for name in self.names:
+            if name not in parameters:
+                both = " and ".join(self.names)
+                raise ModelError(f"{name} is missing: the contact of {self.name} has {both}")
+            found.append(value := float(parameters[name]))
             require(0 <= value < math.inf, value, name, "a number of at least 0")
-        return (mass, *(float(values[name]) for name in names))
+        require(found[0] > 0, found[0], self.names[0], "positive")
+        return m, found[0], found[1]
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}()"
@@ -176,8 +187,6 @@ class Proportional(Engine):
     The factors are 1 where a subclass has no others.
     """
 
-    names: ClassVar[tuple[str, str]]
-
     def factors(self, mass: float) -> tuple[float, float]:
         """The factors a and b, by which k and c are multiplied."""
         return 1.0, 1.0
@@ -188,7 +197,6 @@ class Proportional(Engine):
         return dict(zip(self.names, values, strict=True))
 
     def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
-        m, *values = self._given(parameters, mass, *self.names)
-        require(values[0] > 0, values[0], self.names[0], "positive")
+        m, stiffness, loss = self._two(parameters, mass)
         stiff, lossy = self.factors(m)
-        return Physical(m, values[0] / stiff, values[1] / lossy)
+        return Physical(m, stiffness / stiff, loss / lossy)

@@ -1,12 +1,17 @@
 """Any engine or script of one's own: a spring, a damper and a rule that ends the contact."""
 
+from collections.abc import Mapping
+from typing import Any
+
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.engines.engine import Physical, Proportional
+from bouncing_ball.engines.engine import Parameters, Physical, Proportional
 from bouncing_ball.engines.scheme import Scheme
+
+_ENDS = {Release.DISPLACEMENT: "at p = 0", Release.FORCE: "where the force vanishes"}
 
 
 class Generic(Proportional):
-    """k and c as they are, moved by semi-implicit Euler: what a first script has.
+    """m, k and c as they are, moved by semi-implicit Euler: what a first script has.
 
     Examples
     --------
@@ -15,7 +20,8 @@ class Generic(Proportional):
     k = 200.0  # N/m
     c = 4.0  # N s/m
     h = 0.001  # s
-    # Free impacts have r = 0.7292 released at p = 0, 0.7441 released without force.
+    # The contact ends where the force vanishes: a free impact has r = 0.7441.
+    # If it ended at p = 0, it would have r = 0.7292.
     <BLANKLINE>
     def force(p, rate):
         # p is the penetration in m, rate its derivative.
@@ -27,16 +33,28 @@ class Generic(Proportional):
     releases = (Release.DISPLACEMENT, Release.FORCE)
     scheme = Scheme.SEMI_IMPLICIT
 
+    def parameters(self, contact: Physical) -> Parameters:
+        return {"mass": contact.mass, **super().parameters(contact)}
+
+    def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
+        given = {"mass": mass, **parameters}
+        return super().read({name: given[name] for name in given if name != "mass"}, given["mass"])
+
     def snippet(self, contact: Physical, release: Release, time_step: float) -> str:
-        pull, force = (contact.restitution(rule) for rule in Release)
         load = "k * p + c * rate"
         load = f"max(0.0, {load})" if release is Release.FORCE else load
+        found = self.restitutions(contact, release)
+        about = (
+            f"# The contact ends {_ENDS[release]}: a free impact has r = {found.pop(release):.4f}."
+        )
+        for rule, r in found.items():
+            about += f"\n# If it ended {_ENDS[rule]}, it would have r = {r:.4f}."
         return f"""\
 m = {contact.mass!r}  # kg
 k = {contact.stiffness!r}  # N/m
 c = {contact.damping!r}  # N s/m
 h = {time_step!r}  # s
-# Free impacts have r = {pull:.4f} released at p = 0, {force:.4f} released without force.
+{about}
 
 def force(p, rate):
     # p is the penetration in m, rate its derivative.

@@ -31,14 +31,14 @@ _LEAST, _MOST = 1e-4, 0.9999
 
 def _numbers(name: str, value: str | Sequence[float], counts: range) -> list[float]:
     """The numbers of an attribute, as XML or as a sequence has them."""
-    parts = value.split() if isinstance(value, str) else list(value)
+    parts = value.split() if isinstance(value, str) else np.ravel(value).tolist()
     allowed = f"{counts[0]} numbers" if len(counts) == 1 else f"{counts[0]} to {counts[-1]} numbers"
     try:
         found = [float(part) for part in parts]
     except (TypeError, ValueError):
         found = []
     if len(found) not in counts or not np.all(np.isfinite(found)):
-        shown = value if isinstance(value, str) else " ".join(map(str, value))
+        shown = value if isinstance(value, str) else " ".join(map(str, parts))
         raise ModelError(f"{name} = {shown!r} is not {allowed}")
     return found
 
@@ -82,22 +82,24 @@ class MuJoCo(Engine):
     """
 
     name = "mujoco"
+    names = ("solref", "solimp")
     releases = (Release.FORCE,)
     scheme = Scheme.SEMI_IMPLICIT
 
     def parameters(self, contact: Physical) -> dict[str, list[float]]:
-        per_mass = [-contact.stiffness / contact.mass, -contact.damping / contact.mass]
+        # A difference, so that no damping is 0.0 and not -0.0.
+        per_mass = [0.0 - value / contact.mass for value in contact[1:]]
         return {"solref": per_mass, "solimp": [_LEAST, _LEAST, 0.001]}
 
     def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
         values = {name: value for name, value in parameters.items() if value is not None}
-        impedance(values.pop("solimp", ()))
+        m = self._given(values, mass)
+        impedance(values.get("solimp", ()))
         if "solref" not in values:
             raise ModelError("solref is missing: give it, such as '-10000 -20'")
-        first, second = _numbers("solref", values.pop("solref"), range(2, 3))
-        (m,) = self._given(values, mass)
+        first, second = _numbers("solref", values["solref"], range(2, 3))
         if first < 0 and second <= 0:
-            return Physical(m, -first * m, -second * m)
+            return Physical(m, -first * m, abs(second) * m)
         if first > 0 and second > 0:
             return Physical(m, m / (first * second) ** 2, 2 * m / first)
         raise ModelError(

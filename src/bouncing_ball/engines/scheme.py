@@ -38,6 +38,32 @@ class Scheme(StrEnum):
     IMPLICIT = "implicit Euler"
 
 
+def free_impact(damping_ratio: float, release: Release) -> tuple[float, float]:
+    """Duration in units of 1/ω and restitution of the exact free impact, ``(T, exp(-ζT))``.
+
+    T = (π - 2α)/√(1 - ζ²) (:mod:`bouncing_ball.contacts.release`). With the force release an
+    overdamped ball comes back, too: there T = 2 arcosh ζ/√(ζ² - 1), which is 2 at ζ = 1.
+
+    Raises
+    ------
+    ModelError
+        If ζ is negative, or ζ ≥ 1 with the displacement release.
+
+    Examples
+    --------
+    >>> duration, r = free_impact(1.0, Release.FORCE)
+    >>> bool(duration == 2 and r == np.exp(-2))
+    True
+    """
+    zeta = float(damping_ratio)
+    if zeta < 1 or release is Release.DISPLACEMENT:
+        r = float(restitution_coefficient(zeta, release))
+        return float(release.free_angle(zeta)) / np.sqrt((1 - zeta) * (1 + zeta)), r
+    root = np.sqrt((zeta - 1) * (zeta + 1))
+    duration = 2 * np.arcsinh(root) / root if root > 0 else 2.0
+    return float(duration), float(np.exp(-zeta * duration))
+
+
 def _step(scheme: Scheme, zeta: float, h: float) -> tuple[np.ndarray, float]:
     """The matrix of one step of (x, v), and λ: the contact pushes while x + λv < 0."""
     loss = 2 * zeta
@@ -60,7 +86,7 @@ def restitution_in_steps(
     ----------
     scheme : Scheme
     damping_ratio : float
-        ζ in [0, 1).
+        ζ, below 1 with the displacement release.
     release : Release
         What ends the contact.
     steps : int
@@ -87,10 +113,8 @@ def restitution_in_steps(
     """
     if steps < _FEWEST:
         raise ModelError(f"{steps} steps in a contact are too few: at least {_FEWEST}")
-    # It also checks ζ.
-    restitution_coefficient(damping_ratio, release)
     zeta = float(damping_ratio)
-    h = float(release.free_angle(zeta)) / np.sqrt((1 - zeta) * (1 + zeta)) / steps
+    h = free_impact(zeta, release)[0] / steps
     power, lag = _step(scheme, zeta, h)
     start = np.asarray(fraction, dtype=float).ravel()
     # All states of all impacts, twice as many with each power of the step.
@@ -112,7 +136,7 @@ def error_in_steps(scheme: Scheme, damping_ratio: float, release: Release, steps
     0.0025
     """
     computed = restitution_in_steps(scheme, damping_ratio, release, steps)
-    return float(np.max(np.abs(computed - restitution_coefficient(damping_ratio, release))))
+    return float(np.max(np.abs(computed - free_impact(damping_ratio, release)[1])))
 
 
 def steps_for(scheme: Scheme, damping_ratio: float, release: Release, error: float) -> int:

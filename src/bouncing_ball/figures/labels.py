@@ -1,9 +1,11 @@
-"""The words on figures: quantities, parameters, notes."""
+"""The texts on figures: quantities, parameters, notes."""
 
 from typing import Any
 
 import xarray as xr
 from matplotlib.axes import Axes
+
+from bouncing_ball.datasets.labelled import CASE
 
 QUANTITIES = {
     "max_height": r"greatest height $\max\,z$",
@@ -14,16 +16,16 @@ QUANTITIES = {
     "period_doubling": r"period doubling $\Lambda_{PD}$",
     "permanent_contact": r"permanent contact",
 }
-"""The quantities compared between the models, as a title names them."""
+"""The titles of the quantities compared between the models."""
 
 
 def number(value: float) -> str:
-    """A parameter as a label shows it.
+    r"""A parameter as a label shows it, in LaTeX from 10⁴ on.
 
     Examples
     --------
     >>> number(0.85), number(10000.0), number(250000.0)
-    ('0.85', '10^{4}', '2.5\\\\times 10^{5}')
+    ('0.85', '10^{4}', '2.5\\times 10^{5}')
     """
     if value >= 1e4:
         mantissa, exponent = f"{value:e}".split("e")
@@ -32,11 +34,23 @@ def number(value: float) -> str:
     return f"{value:g}"
 
 
-_SYMBOLS = {"n": "n", "restitution": "r", "amplitude": r"\Lambda", "frequency_ratio": r"\varpi"}
+_SYMBOLS = {
+    "n": "n",
+    "restitution": "r",
+    "measured_restitution": "r",
+    "amplitude": r"\Lambda",
+    "frequency_ratio": r"\varpi",
+    "damping_ratio": r"\zeta",
+    "duration": "D",
+    "height": "h",
+    "phase": r"\varphi",
+    "velocity": "z′_i",
+}
 
 
 def parameters(data: xr.Dataset, *names: str, of: str = "") -> str:
-    """Parameters of a dataset, as a title shows them; ``of`` begins their attributes' names.
+    """Parameters of a dataset, as a title shows them; ``of`` is a prefix of their attributes'
+    names.
 
     Examples
     --------
@@ -44,6 +58,34 @@ def parameters(data: xr.Dataset, *names: str, of: str = "") -> str:
     '$n=1$, $r=0.85$'
     """
     return ", ".join(f"${_SYMBOLS[name]}={number(data.attrs[of + name])}$" for name in names)
+
+
+def title(data: xr.Dataset) -> str:
+    """The parameters that a labelled dataset has as attributes, and the names of its model and
+    law.
+    """
+    known = [name for name in _SYMBOLS if name in data.attrs]
+    words = [str(data.attrs[name]) for name in ("model", "law") if name in data.attrs]
+    return ", ".join(x for x in (*words, parameters(data, *known)) if x)
+
+
+def in_a_row(data: xr.Dataset, *kept: str) -> tuple[xr.Dataset, list[str]]:
+    """A labelled dataset with the axes of its arguments merged into one, "case", and their labels.
+
+    The dimensions ``kept`` remain. The labels name each case by its arguments.
+
+    Examples
+    --------
+    >>> data = xr.Dataset({"ball": (("n", "time"), [[0.0], [1.0]])}, {"n": [1, 2]})
+    >>> in_a_row(data, "time")[1]
+    ['$n=1$', '$n=2$']
+    """
+    axes = [dim for dim in data.dims if dim not in kept]
+    labels = [name for name in data.coords if name in _SYMBOLS and set(data[name].dims) <= {*axes}]
+    rows = data.stack({CASE: axes}, create_index=False) if axes else data.expand_dims(CASE)
+    told = [{name: rows[name].values[k] for name in labels} for k in range(rows.sizes[CASE])]
+    names = [", ".join(f"${_SYMBOLS[x]}={number(v)}$" for x, v in one.items()) for one in told]
+    return rows.transpose(CASE, ...), names
 
 
 def note(axes: Axes, text: str, point: Any, offset: Any, **look: Any) -> None:

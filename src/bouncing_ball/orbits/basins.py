@@ -1,9 +1,9 @@
-"""Which orbit a ball ends on, from the Poincaré map of any model.
+"""The orbit on which a ball ends, from the Poincaré map of any model.
 
-A stable orbit is left alone once a ball is near enough. How near is found beforehand: in the
-coordinates in which the linearised map shrinks every vector, the map itself
-shrinks a whole disk about the orbit. A ball in this *trap* can only go to the
-orbit, and needs no further impacts.
+A ball that is near enough to a stable orbit approaches it, so that its further impacts need
+not be simulated. How near is found beforehand: in the coordinates in which the linearised map
+shrinks every vector, the map itself shrinks a disk about the orbit. A ball in this *trap*
+can only approach the orbit.
 """
 
 from collections.abc import Sequence
@@ -17,29 +17,29 @@ from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.orbit import Orbit
 
 PERMANENT = -1
-"""Destination of a ball that stays on the table for ever."""
+"""Destination of a ball that stays on the table."""
 ELSEWHERE = -2
-"""Destination of a ball that is in no trap after all impacts."""
+"""Destination of a ball that is in no trap after the last impact."""
 
-# Directions in which a circle is tried, and radii, from the greatest down to one in which
-# the map is linear, at steps of a quarter.
+# Directions in which a circle is sampled, and radii in steps of a quarter of an octave, from
+# one at which the map is linear up to the largest.
 _DIRECTIONS = 256
 _RADII = 2.0 ** np.arange(-12.0, 2.0, 0.25)
 
 
 @dataclass(frozen=True)
 class Trap:
-    """A disk about a stable orbit that the map shrinks.
+    """A disk about a stable orbit that the Poincaré map shrinks.
 
     Parameters
     ----------
     phase, velocity : float
         φ and δ′ of the orbit.
     frame : ndarray
-        Turns a deviation (φ, δ′) into coordinates that the linearised map shrinks,
-        complex, shape (2, 2).
+        Matrix from a deviation (φ, δ′) to coordinates in which the linearised map shrinks
+        distances; complex, shape (2, 2).
     radius : float
-        Of the disk in these coordinates; 0 if no disk was found.
+        Radius of the disk in these coordinates; 0 if no disk was found.
     """
 
     phase: float
@@ -48,17 +48,23 @@ class Trap:
     radius: float
 
     def distance(self, phase: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-        """How far states are from the orbit, in its coordinates."""
+        """Distance of states (φ, δ′) from the orbit in its coordinates, of the states' shape."""
         turned, faster = reduce_angle(phase - self.phase), velocity - self.velocity
         a, b = (abs(row[0] * turned + row[1] * faster) for row in self.frame)
         return np.hypot(a, b)
 
 
 def trap(model: ImpactModel, orbit: Orbit) -> Trap:
-    """The largest disk that shrinks, and all smaller ones with it, by its boundary.
+    """The largest disk that shrinks together with all smaller ones, judged by its boundary.
 
-    The map is continuous as long as no ball grazes, and a disk whose boundary goes inside
-    goes inside as a whole.
+    The map is continuous as long as no ball grazes, so that a disk whose boundary is mapped
+    inside is mapped inside. The boundary is sampled in 256 directions.
+
+    Parameters
+    ----------
+    model : ImpactModel
+    orbit : Orbit
+        A single stable one.
 
     Examples
     --------
@@ -86,8 +92,11 @@ def trap(model: ImpactModel, orbit: Orbit) -> Trap:
 
 
 class Destinations(NamedTuple):
-    """Where balls end: index of the orbit, :data:`PERMANENT` or :data:`ELSEWHERE`, with their
-    state (φ, δ′) when that was known, NaN in permanent contact."""
+    """Where balls end, with shape (balls,) each.
+
+    ``orbit`` is the index of the orbit, :data:`PERMANENT` or :data:`ELSEWHERE`; ``phase`` and
+    ``velocity`` are the last state (φ, δ′), NaN in permanent contact.
+    """
 
     orbit: np.ndarray
     phase: np.ndarray
@@ -107,14 +116,15 @@ def destinations(
     Parameters
     ----------
     model : ImpactModel
+        A single one.
     amplitude : float
         Λ.
     orbits : sequence of Orbit
-        The stable ones at this Λ.
+        The stable orbits at this Λ, each a single one.
     phase, velocity : ndarray, shape (balls,)
-        Starts.
+        φ and δ′ of the first impacts.
     impacts : int
-        After which a ball is given up.
+        Impacts after which a ball is given up.
     """
     traps = [trap(model, orbit) for orbit in orbits]
     found = np.full(phase.shape, ELSEWHERE)

@@ -1,10 +1,10 @@
 """Orbits and bifurcations of any model, by continuation of its equations.
 
-A search starts from the orbit of the corrected restitution model with the signature of the
-impact at the speed of the restitution model's orbit, and is closed by Newton's method on the
-model's own equations, for many orbits at once. Bifurcations are solutions of these
-equations extended by the stability's test function. What is not found so is looked for along
-the branch of each single model.
+A search starts from the orbit of the corrected restitution model, with the signature of the
+impact at the speed of the restitution model's orbit. Newton's method on the equations of the
+model then finds the orbit, for many orbits at once. Bifurcations are solutions of these
+equations extended by the test function of stability. Where this fails, the branch of each
+single model is followed instead.
 """
 
 from collections.abc import Sequence
@@ -23,29 +23,36 @@ from bouncing_ball.orbits import corrected_branch as corrected
 from bouncing_ball.orbits.orbit import check_index
 from bouncing_ball.orbits.stability import Bifurcation, Side
 
-# Newton steps for the speed of the orbit, and the last one: what is left is its square, and a
-# start needs three digits.
+# At most so many Newton steps for the impact speed, which end with one below a thousandth of
+# the speed: the error left is of the order of its square, and a start needs three digits.
 _ROUNDS, _ENOUGH = 6, 1e-3
-# Newton steps, in so many rounds; those that are done leave after each. A first step may be
-# long next to the fold.
+# Newton steps of each of several rounds; orbits that have converged leave after each round.
+# The length of a step is limited because the first one may be long next to the fold.
 _SETTINGS = NewtonSettings(max_iterations=5, longest=0.5)
 _TRIES = 5
 _EXTENDED = NewtonSettings(max_iterations=25)
-# A branch, for all orbits at one Λ: from so far above it, in not too many steps.
+# A branch is followed from Λ times this factor, in steps of this size and at most so many.
 _ABOVE = 1.3
 _STEPS = StepControl(initial=0.05, smallest=1e-3, largest=0.4, max_angle=0.25)
 _POINTS = 300
 _FARTHER = 4.0
-# A fold so low is one of nearly elastic contacts: no step of a branch resolves it.
+# A fold below this Λ belongs to a nearly elastic contact; no step of a branch resolves it.
 _LOWEST = 1e-4
-# Longest step, in parts of a large Λ.
+# Longest step as a part of Λ, where Λ is large.
 _STRIDE = 0.05
 _HERE = "this amplitude"
 
 
 def restitution_speed(n: ArrayLike, model: Any) -> tuple[np.ndarray, Instant]:
-    """v = 2πn/(1 + r(v)), the impact speed of the restitution model's n-T orbits, and
-    the signature of the model's impact next to it.
+    """v = 2πn/(1 + r(v)), the impact speed of the restitution model's n-T orbits, by Newton's
+    method.
+
+    Returns
+    -------
+    speed : ndarray
+        Of the shape of n and the model; its relative error is of order 10⁻⁶.
+    instant : Instant
+        The signature of the model's impact at the last but one iterate of the speed.
 
     Examples
     --------
@@ -68,9 +75,9 @@ def restitution_speed(n: ArrayLike, model: Any) -> tuple[np.ndarray, Instant]:
 
 
 class _Search(NamedTuple):
-    """Orbits that are looked for, in a row: the models, n and the signatures to start from.
+    """Orbits to be found, in a row: their models, n, and the signatures to start from.
 
-    A single model is that of all; points y are rows too, with Λ as their last entry.
+    A single model serves all orbits. Points y are rows as well, with Λ as their last entry.
     """
 
     model: Any
@@ -79,7 +86,7 @@ class _Search(NamedTuple):
 
     @classmethod
     def of(cls, model: Any, n: ArrayLike, *more: ArrayLike) -> tuple["_Search", Any, Any]:
-        """The search, everything else in a row as well, and the shape of the orbits."""
+        """The search, the further arguments flattened like n, and the shape of the orbits."""
         check_index(n)
         instant = restitution_speed(n, model)[1]
         arrays = (n, *instant, *more, np.zeros(model.shape))
@@ -90,7 +97,7 @@ class _Search(NamedTuple):
         return cls(model.flat(shape), index, Instant(*rows[:size])), rows[size:], shape
 
     def start(self, amplitude: np.ndarray, psi: np.ndarray) -> np.ndarray:
-        """Points of the corrected model's orbits with instants at the phases ψ."""
+        """Points y of the corrected model's orbits with their instants at the phases ψ."""
         t_c = self.instant.delay
         orbit = self.model.orbit_of(
             self.n, amplitude, psi - t_c, self.instant.duration, t_c - self.n * np.pi
@@ -98,7 +105,7 @@ class _Search(NamedTuple):
         return self.model.system(self.n).point(orbit)
 
     def solved(self, guess: np.ndarray) -> np.ndarray:
-        """Solutions at the guesses' own Λ; NaN where none was found."""
+        """Solutions at the Λ of each guess; NaN where Newton's method does not converge."""
         point, y = guess.copy(), np.full_like(guess, np.nan)
         todo = np.flatnonzero(np.all(np.isfinite(guess), axis=-1))
         axis = np.eye(guess.shape[-1])[-1]
@@ -119,7 +126,26 @@ def _shaped(model: Any, n: ArrayLike, y: np.ndarray, shape: tuple[int, ...]) -> 
 
 
 def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Any:
-    """The n-T orbits at Λ on a side of the saddle-node; NaN where none is found."""
+    """The n-T orbits at Λ on a side of the saddle-node; NaN where none is found.
+
+    Parameters
+    ----------
+    model : ImpactModel
+    n, amplitude : array_like
+        Index of the family and Λ, which broadcast with the model.
+    side : Side
+
+    Returns
+    -------
+    Orbit
+        Of the common shape. An orbit that Newton's method does not find on this side is looked
+        for along its branch, one at a time.
+
+    Raises
+    ------
+    ModelError
+        If n is not a positive integer.
+    """
     search, (lam,), shape = _Search.of(model, n, amplitude)
     psi = corrected.instant_phase(search.n, search.instant, lam, side is Side.STABLE)
     # Next to the fold the start may lie below it.
@@ -136,7 +162,7 @@ def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Any:
 
 
 def _on_branch(model: Any, n: int, amplitude: float, side: Side) -> np.ndarray | float:
-    """The point at Λ on a side of the fold that is next to it along the branch, or NaN."""
+    """The point at Λ on the part of the branch next to the fold, on one side of it, or NaN."""
     if not amplitude >= float(model.saddle_node(n).amplitude):
         return np.nan
     found = continued(model, n, amplitude, farther=_ABOVE)
@@ -152,10 +178,23 @@ def _on_branch(model: Any, n: int, amplitude: float, side: Side) -> np.ndarray |
 def continued(
     model: Any, n: int, amplitude: float, farther: float = _FARTHER
 ) -> Sequence[SpecialPoint]:
-    """Bifurcations, and what is at Λ, on the branch of a single model.
+    """Bifurcations and crossings of Λ along the branch of a single model.
 
-    In the order from its stable side down to the fold and on; none where it cannot be started
-    or followed.
+    Parameters
+    ----------
+    model : ImpactModel
+        A single one.
+    n : int
+    amplitude : float
+        Λ; its crossings have the name ``"this amplitude"``.
+    farther : float
+        The branch is followed up to this multiple of the larger of Λ and 1, at least.
+
+    Returns
+    -------
+    sequence of SpecialPoint
+        In order from the stable side at large Λ down to the fold and beyond. Empty where the
+        branch cannot be started, or breaks off before an end that is known.
     """
     system, (search, _, _) = model.system(n), _Search.of(model, [n])
     fold = float(np.nan_to_num(corrected.saddle_node(n, search.instant)[0]))
@@ -178,12 +217,22 @@ def continued(
         )
     except ContinuationError:
         return ()
-    # One that broke off at an event may have others beyond.
+    # Beyond an event at which the branch broke off there may be others, so that the list would
+    # be incomplete.
     return branch.special if branch.end.finished or len(branch.points) == _POINTS else ()
 
 
 def orbits_at(model: Any, n: int, amplitude: float) -> Any:
-    """The n-T orbits at one Λ on the branch of the stable side, by contact duration."""
+    """The n-T orbits of a single model at one Λ, in order of contact duration, shape (count,).
+
+    They are those on the branch that comes from large Λ on its stable side or, where it cannot be
+    followed, those on both sides of the fold.
+
+    Raises
+    ------
+    ModelError
+        If n is not a positive integer.
+    """
     check_index(n)
     if amplitude >= float(model.saddle_node(n).amplitude):
         special = continued(model, int(n), float(amplitude))
@@ -195,17 +244,24 @@ def orbits_at(model: Any, n: int, amplitude: float) -> Any:
 
 
 def both_sides(model: Any, n: int, amplitude: float) -> Any:
-    """The orbits on both sides of the fold at one Λ, by contact duration; one at the fold."""
+    """The orbits on both sides of the fold at one Λ, in order of contact duration.
+
+    Two orbits, one at the fold itself, or none: shape (count,).
+    """
     system = model.system(n)
     y = np.array([system.point(model.orbit(n, amplitude, side)) for side in Side])
-    # The larger phase, that of the stable side, first.
+    # The larger phase, which is that of the stable side, comes first.
     y = np.unique(y[np.all(np.isfinite(y), axis=-1)], axis=0)[::-1]
     found = system.orbit(y)
     return found[np.argsort(found.contact_duration, kind="stable")]
 
 
 def bifurcation(model: Any, n: ArrayLike, kind: Bifurcation) -> Any:
-    """The orbits at a bifurcation: next to the corrected model's, or the first on the branch."""
+    """The orbits at a bifurcation, of the shape of n and the model; NaN where none is found.
+
+    Newton's method starts from the bifurcation of the corrected model. Where it fails, the branch
+    is followed: its first saddle-node, or its last period doubling, is taken.
+    """
     search, _, shape = _Search.of(model, n)
     index = search.n
     if kind is Bifurcation.SADDLE_NODE:
@@ -217,7 +273,7 @@ def bifurcation(model: Any, n: ArrayLike, kind: Bifurcation) -> Any:
     test = vanishing(lambda y: kind.test(*system.orbit(y).trace_and_determinant()))
     found = newton(system, search.start(lam, psi), test, _EXTENDED)
     low = (lam < _LOWEST) & (kind is Bifurcation.SADDLE_NODE)
-    # A Λ of zero has no phase: the fold of an elastic contact, found anywhere near by rounding.
+    # Λ = 0 has no phase: rounding decides where near it the fold of an elastic contact is found.
     reached = found.point[:, -1]
     good = found.converged & (reached > _EXTENDED.tolerance) & (~low | (reached < 2 * lam))
     y = np.where(good[:, np.newaxis], found.point, np.nan)

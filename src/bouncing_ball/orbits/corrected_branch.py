@@ -1,6 +1,6 @@
 r"""n-T orbits of the corrected restitution model, in closed form.
 
-Impacts are instants at the phase ψ, a period 2πn apart at equal heights, so
+Impacts are instants at the phase ψ, the time 2πn apart and at equal heights, so
 that the ball has the velocities ∓nπ there, as in the restitution model. With
 X = Λ cos ψ, Y = Λ sin ψ, the speed v = nπ + X and the load a = 1 - Y, the
 impact ``nπ - X = r v + σ a`` is a straight line in the plane of (X, Y)::
@@ -8,8 +8,8 @@ impact ``nπ - X = r v + σ a`` is a straight line in the plane of (X, Y)::
     (1 + r) X - σ Y = nπ (1 - r) - σ
     R Λ cos(ψ + χ) = nπ (1 - r) - σ,      R = √((1 + r)² + σ²),  tan χ = σ/(1 + r)
 
-which is Eq. 6 for σ = 0. Λ is smallest at ψ = -χ: the saddle-node. The contact
-starts at φ = ψ - t_c, lasts D, and ::
+which is Eq. 6 for σ = 0. Λ is smallest at ψ = -χ, the saddle-node. The contact
+starts at φ = ψ - t_c and lasts D, and ::
 
     z′_i = -(nπ - t_c),   z′_b = nπ - (D - t_c),   max z = Y - v t_c + (nπ)²/2
 
@@ -20,7 +20,7 @@ at the start of contact, gives ::
     tr  = 1 - r + [(2πn - t_c)(W + r) - t_c]/u
     det = -r + [(2πn - t_c) r - t_c - t_c W]/u
 
-so that ``1 - tr + det = -2πn W/u`` vanishes at the saddle-node, and
+Therefore ``1 - tr + det = -2πn W/u`` vanishes at the saddle-node, and
 ``1 + tr + det = 0`` is a second straight line, which meets the first at the
 period doubling::
 
@@ -28,10 +28,10 @@ period doubling::
 
 A law whose signature depends on the speed has the curve ``nπ - X = r(v) v + σ(v) a`` in
 place of the line, and at each of its points a tangent of the same form
-(:meth:`~bouncing_ball.contacts.signature.Instant.tangent`): with b in place of r and e
-in place of t_c. The linearised cycle is that of the tangent, so that trace and
-determinant are as above. Its points have no closed form; the one for the signature at the
-restitution model's speed is where searches start, of this model and of any other.
+(:meth:`~bouncing_ball.contacts.signature.Instant.tangent`) with b in place of r and e
+in place of t_c. The linearised cycle is that of the tangent, and trace and
+determinant are as above. Points of the curve have no closed form; searches, of this model
+and of any other, start from the line for the signature at the restitution model's speed.
 
 All quantities are dimensionless; all functions broadcast.
 """
@@ -43,7 +43,7 @@ from bouncing_ball.contacts.signature import Instant
 
 
 def _level(n: ArrayLike, instant: Instant) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The right side nπ(1 - r) - σ, R and χ."""
+    """The right side nπ(1 - r) - σ of the line, R and χ."""
     r, load = np.asarray(instant.restitution), np.asarray(instant.load)
     side = np.asarray(n) * np.pi * (1 - r) - load
     return side, np.hypot(1 + r, load), np.arctan2(load, 1 + r)
@@ -52,7 +52,7 @@ def _level(n: ArrayLike, instant: Instant) -> tuple[np.ndarray, np.ndarray, np.n
 def saddle_node(n: ArrayLike, instant: Instant) -> np.ndarray:
     """Λ at which the n-T orbits appear, (nπ(1 - r) - σ)/R.
 
-    NaN where σ is so large that the line lies on the other side of Λ = 0.
+    NaN where σ is so large that the line passes on the other side of Λ = 0.
 
     Examples
     --------
@@ -97,11 +97,13 @@ def instant_phase(
 def trace_and_determinant(
     n: ArrayLike, instant: Instant, amplitude: ArrayLike, phase: ArrayLike
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Trace and determinant of the linearised cycle at instants of phase ψ.
+    """Trace and determinant of the linearised cycle with its instants at the phase ψ.
+
+    ``amplitude`` and ``phase`` are Λ and ψ; both results have the broadcast shape of all arguments.
 
     Examples
     --------
-    Without delay and load those of the restitution model:
+    Without delay and load sensitivity they are those of the restitution model:
 
     >>> amplitude = 2 * np.pi / 3
     >>> trace, det = trace_and_determinant(2, Instant(0.0, 0.5, 0.0, 0.0), amplitude, 0.0)

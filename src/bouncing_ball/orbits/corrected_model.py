@@ -1,4 +1,7 @@
-"""The corrected restitution model and its n-T orbits."""
+"""The corrected restitution model and its n-T orbits.
+
+Its equations are derived in :mod:`bouncing_ball.orbits.corrected_branch`.
+"""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -17,12 +20,12 @@ from bouncing_ball.orbits.stability import Side
 
 @dataclass(frozen=True, repr=False)
 class CorrectedModel(ImpactModel):
-    """A ball whose impacts are instants, at the centroid of the contact force.
+    """A ball whose impacts are instants at the centroid of the contact force.
 
     Parameters
     ----------
     law : Signature
-        What the impact is to the outside.
+        Delay, restitution, load sensitivity and duration of the impact, at each speed.
 
     Examples
     --------
@@ -38,16 +41,22 @@ class CorrectedModel(ImpactModel):
 
     @classmethod
     def of_contact(cls, contact: SpringDamper) -> "ConstantCorrectedModel":
-        """The model of a spring-damper contact."""
+        """The model of a spring-damper contact, which has a closed form.
+
+        Raises
+        ------
+        ModelError
+            If ζ ≥ 1.
+        """
         return ConstantCorrectedModel(Signature(contact))
 
     def signature(self, speed: ArrayLike) -> Instant:
-        """The law."""
+        """The signature at impact speeds v > 0."""
         return self.law(speed)
 
 
 class ConstantCorrectedModel(CorrectedModel):
-    """The same for a signature that does not depend on the speed, in closed form."""
+    """The corrected model with a signature that does not depend on the speed, in closed form."""
 
     routes: ClassVar[frozenset[Route]] = frozenset(Route)
 
@@ -74,6 +83,6 @@ class ConstantCorrectedModel(CorrectedModel):
         return CorrectedOrbit.at(n, self.law, *formulas.period_doubling(n, self._instant))
 
     def nearest(self, orbit: CorrectedOrbit) -> CorrectedOrbit:
-        """The nearest orbits of the branch, a straight line in (Λ cos ψ, Λ sin ψ)."""
+        """The nearest points of the branch, which is a straight line in (Λ cos ψ, Λ sin ψ)."""
         found = formulas.nearest(orbit.n, orbit.instant, orbit.amplitude, orbit.hit.phase)
         return CorrectedOrbit.at(orbit.n, orbit.law, *found)

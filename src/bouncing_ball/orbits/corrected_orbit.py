@@ -1,8 +1,8 @@
 """n-T orbits of the corrected restitution model: path, equation and stability.
 
-The unknown is the phase ψ of the instant: the velocity before it is -nπ. What is left is the
-velocity after it, the equation of :mod:`bouncing_ball.orbits.corrected_branch`; continued, it
-checks both the continuation and the formula. All quantities are dimensionless.
+The only unknown is the phase ψ of the instant, because the velocity before it is -nπ. The
+velocity after it gives the one equation, that of :mod:`bouncing_ball.orbits.corrected_branch`.
+Its solutions by continuation check both the continuation and the closed form.
 """
 
 from functools import cached_property
@@ -16,7 +16,8 @@ from bouncing_ball.contacts.signature import Instant, Signature
 from bouncing_ball.orbits import corrected_branch as formulas
 from bouncing_ball.orbits.orbit import Orbit
 
-# Errors of the signature of an elastic contact, grown by the flight over the delay.
+# Errors of the tabulated signature of an elastic contact, multiplied by the ratio of flight
+# time to delay.
 _ELASTIC = 1e-10
 
 
@@ -34,24 +35,24 @@ class CorrectedOrbit(Orbit):
 
     @classmethod
     def at(cls, n: ArrayLike, law: Signature, amplitude: ArrayLike, phase: ArrayLike) -> Self:
-        """The orbits with instants at the phase ψ, where the velocity before is -nπ."""
+        """The orbits with instants at the phase ψ, before which the velocity is -nπ."""
         launch = np.asarray(n) * np.pi
         hit = impact(law, amplitude, phase, -launch)
         delay, duration = hit.instant.delay, hit.instant.duration
         found = cls.of(n, law, amplitude, hit.phase - delay, duration, delay - launch)
-        # Known already: nobody needs to find it again.
+        # The cached property below would compute the same instant again.
         vars(found)["hit"] = hit
         return found
 
     @cached_property
     def hit(self) -> Hit:
-        """The instant: phase ψ, depth, speeds."""
+        """The instant: its phase ψ, depth, speeds and signature."""
         start = meeting(self.law, self.amplitude, self.phase, self.impact_velocity)
         return impact(self.law, self.amplitude, *start)
 
     @property
     def instant(self) -> Instant:
-        """The signature of the impacts, at the speed of the instant."""
+        """The signature of the impacts at the speed v of the instant."""
         return self.hit.instant
 
     @property
@@ -61,24 +62,25 @@ class CorrectedOrbit(Orbit):
 
     @property
     def bounce_height(self) -> np.ndarray:
-        """Absolute height z_b of the ball at release, by the flight from the instant."""
+        """Absolute height z_b of the ball at release, on the flight that starts at the instant."""
         return self.hit.height + (self.bounce_velocity + self.after / 2) * self.after
 
     def contact_path(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The two continued flights, before and after the instant."""
+        """Height and velocity of the two continued flights, before and after the instant."""
         since = np.asarray(time) - self.instant.delay
         start = np.where(since < 0, self.hit.arrival, self.bounce_velocity + self.after)
         return self.hit.height + (start - since / 2) * since, start - since
 
     @property
     def unknowns(self) -> tuple[np.ndarray, ...]:
-        """ψ."""
+        """The one unknown, ψ."""
         return (self.hit.phase,)
 
     def residual(self) -> np.ndarray:
-        """nπ against the flight's velocity after the impact, and that of the impact against it.
+        """Two velocity defects, shape (..., 2).
 
-        Shape (..., 2).
+        With w₀ = z′_b + D - t_c the velocity with which the flight starts at the instant, they are
+        w₀ - nπ, and the velocity after the impact less w₀.
         """
         start = self.bounce_velocity + self.after
         level = start - np.asarray(self.n) * np.pi
@@ -93,16 +95,16 @@ class CorrectedOrbit(Orbit):
 
     @property
     def _tangent(self) -> Instant:
-        """The constant signature that changes alike next to the instant."""
+        """The constant signature that agrees to first order near the speed of the instant."""
         load = 1 - self.amplitude * np.sin(self.hit.phase)
         return self.instant.tangent(self.hit.speed, load)[0]
 
     def monodromy(self) -> np.ndarray:
         """Jacobian of the return map (φ, δ′) → (φ₁, δ′₁), shape (..., 2, 2).
 
-        An instant moved by (dψ, dp) changes the velocity after it by W dψ - b dp, and its
-        depth by e dv; with ``u = v - e a`` the next one is later by
-        ``u s = (2πn - e)(W dψ - b dp) + e dp``. The starts of contact are t_c(v) before.
+        An instant moved by (dψ, dp) changes the velocity after it by W dψ - b dp, and its depth by
+        e dv. With ``u = v - e a`` the next instant is later by s, where ``u s = (2πn - e)(W dψ - b
+        dp) + e dp``. Each contact starts the time t_c(v) before its instant.
         """
         y, d_delay = self.amplitude * np.sin(self.hit.phase), self.instant.d_delay
         here, velocity = self._tangent, np.zeros((*self.shape, 2))
@@ -124,13 +126,13 @@ class CorrectedOrbit(Orbit):
     def trace_and_determinant(self) -> tuple[np.ndarray, np.ndarray]:
         """The closed forms of :mod:`bouncing_ball.orbits.corrected_branch`.
 
-        A determinant that a tabulated signature does not tell from 1 is 1: without
-        dissipation it is, and rounding would decide between stable and not.
+        Without dissipation the determinant is 1, and rounding would decide about stability. A
+        determinant that equals 1 within the error of a tabulated signature is therefore set to 1.
         """
         place = self.amplitude, self.hit.phase
         trace, det = formulas.trace_and_determinant(self.n, self.instant, *place)
         return trace, np.where(np.abs(det - 1) < _ELASTIC, 1.0, det)
 
     def determinant(self) -> np.ndarray:
-        """That of the linearised cycle, in closed form."""
+        """Determinant of the linearised cycle, in closed form."""
         return self.trace_and_determinant()[1]

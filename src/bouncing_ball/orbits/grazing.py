@@ -1,8 +1,8 @@
-"""Where a branch becomes inadmissible.
+"""Grazing points, at which a branch becomes inadmissible.
 
-Between an admissible and an inadmissible point lies a grazing orbit. It is
-found by bisection of the chord between both, each point corrected onto the
-branch, down to neighbouring floating-point numbers.
+Between an admissible and an inadmissible point lies a grazing orbit. It is found by bisection
+of the chord between both, with each midpoint corrected onto the branch, until the two are
+neighbouring floating-point numbers.
 """
 
 from collections.abc import Callable
@@ -22,7 +22,7 @@ def grazing_points(
     points: np.ndarray,
     settings: NewtonSettings,
 ) -> np.ndarray:
-    """The last admissible points of a branch, one for every change along it, (k, N + 1).
+    """The last admissible points of a branch, one for each change of admissibility along it.
 
     Parameters
     ----------
@@ -33,6 +33,11 @@ def grazing_points(
     points : ndarray, shape (m, N + 1)
         Solutions in order along the branch.
     settings : NewtonSettings
+
+    Returns
+    -------
+    ndarray, shape (k, N + 1)
+        One point for each of the k changes, in order along the branch.
     """
     admissible = admissible_at(points)
     at = np.flatnonzero(admissible[:-1] != admissible[1:])

@@ -1,7 +1,6 @@
 """A ball on a contact of any law, and its n-T orbits without a closed form.
 
-The contact of an orbit is that of :mod:`bouncing_ball.contacts.collocation`, and so are
-its derivatives. All quantities are dimensionless.
+The contact of an orbit and its derivatives come from :mod:`bouncing_ball.contacts.collocation`.
 """
 
 from __future__ import annotations
@@ -25,14 +24,14 @@ from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
 from bouncing_ball.orbits.stability import Side
 
-# Law and orbit in turn: the speed hardly depends on a law with the same r and D, and the
-# secant through two rounds leaves little of that: less than a hundredth of the last step.
+# Rounds that compute law and orbit in turn. The speed hardly depends on the law at given r and
+# D, and a secant through two rounds leaves less than a hundredth of the last step.
 _ROUNDS = 20
 _SETTLED = 1e-10
 
 
 class LawOrbit(Orbit):
-    """n-T orbits; ``law`` is the :class:`ContactLaw`.
+    """n-T orbits of a contact law; ``law`` is the :class:`ContactLaw`.
 
     Examples
     --------
@@ -44,27 +43,29 @@ class LawOrbit(Orbit):
 
     @classmethod
     def at(cls, n: ArrayLike, law: ContactLaw, amplitude: ArrayLike, *start: ArrayLike) -> Self:
-        """The orbits whose contacts start with (φ, z′_i), and last as long as they then do."""
+        """The orbits whose contacts start with (φ, z′_i); the contact duration follows from the
+        law.
+        """
         columns = (np.asarray(x, dtype=float) for x in (amplitude, *start))
         lam, phi, velocity = np.broadcast_arrays(*columns, np.zeros(law.shape))[:3]
         found = contacts(law, lam * np.cos(phi) - velocity, phi, lam)
         orbit = cls(n, law, lam, phi, found.duration, velocity)
-        # What it would compute itself when it is asked for its contact.
+        # The cached property below would compute the same contact again.
         orbit.__dict__["contact"] = found
         return orbit
 
     @cached_property
     def contact(self) -> Contacts:
-        """The contact from the orbit's impact on, its derivatives and its path."""
+        """The contact that starts at the orbit's impact: its end, its derivatives and its path."""
         return contacts(self.law, -self.relative_impact_velocity, self.phase, self.amplitude)
 
     @property
     def clock(self) -> ArrayLike:
-        """π/D, what ϖ is for the linear contact."""
+        """π/D, which corresponds to ϖ of the linear contact."""
         return np.pi / np.asarray(self.contact_duration)
 
     def contact_motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """δ and δ′ at times 0 ≤ τ ≤ τ_b in contact."""
+        """δ and δ′ at times 0 ≤ τ ≤ τ_b in contact, of the shape of the times."""
         speed = -self.relative_impact_velocity
         depth, rate = path(self.law, self.contact, time, speed, self.phase, self.amplitude)
         return -depth, -rate
@@ -72,7 +73,7 @@ class LawOrbit(Orbit):
     def residual(self) -> np.ndarray:
         """Duration, velocity and landing defects, shape (..., 3).
 
-        The first is π times the relative error of the duration.
+        The first is π times the relative error of the duration; the others are Eqs. 24-25.
         """
         found = self.contact
         late = (found.duration - self.contact_duration) * self.clock
@@ -84,7 +85,7 @@ class LawOrbit(Orbit):
         return self.contact.jacobian[..., :3] * sign
 
     def determinant(self) -> np.ndarray:
-        """exp(-∫ ∂f/∂p′ dt) over the contact: the flight keeps areas."""
+        """exp(-∫ ∂f/∂p′ dτ) over the contact, because the flight preserves areas."""
         return self.contact.contraction
 
 
@@ -112,15 +113,24 @@ class LawModel(ImpactModel):
     orbit_type: ClassVar[type[Orbit]] = LawOrbit
 
     def signature(self, speed: ArrayLike) -> Instant:
-        """That of a free impact."""
+        """The signature of free impacts with speeds v > 0.
+
+        Raises
+        ------
+        ModelError
+            If the law does not release the ball.
+        """
         return free_impact(self.law, speed)
 
     def orbits(self, n: int, amplitude: float) -> LawOrbit:
-        """All n-T orbits of one law at one Λ on the branch, in order of contact duration."""
+        """All n-T orbits of one law at one Λ that lie on the branch from large Λ, shape (count,).
+
+        They are in order of contact duration.
+        """
         return orbits_at(self, n, amplitude)
 
     def permanent_contact_threshold(self) -> np.ndarray:
-        """Λ up to which a steady contact is held all the time."""
+        """Λ up to which a steady contact never releases the ball, of the shape of the laws."""
         laws = self.law.flat(self.law.shape)
         found = [permanent_contact(laws.take(k)) for k in range(self.law.size)]
         return np.array(found).reshape(self.law.shape)
@@ -134,10 +144,29 @@ def law_at_orbit(
     amplitude: float,
     side: Side = Side.STABLE,
 ) -> ContactLaw:
-    """The contact laws with r and D at the impact speeds of their own n-T orbits at Λ.
+    """The contact laws with r and D at the impact speeds of the n-T orbits that they have at Λ.
 
-    A law whose restitution falls with the speed has *one* r and *one* D only at a speed. To
-    compare models, it is given by both at the impact speed of the orbit in question.
+    A law whose restitution depends on the speed has *one* r and *one* D only at one speed. To
+    compare models, r and D are therefore prescribed at the impact speed of the orbit in question,
+    by a secant iteration for that speed.
+
+    Parameters
+    ----------
+    kind : type of ContactLaw
+    restitution : float
+        r in (0, 1].
+    duration : array_like
+        D; one law for each.
+    n : int
+        Index of the family.
+    amplitude : float
+        Λ.
+    side : Side
+
+    Returns
+    -------
+    ContactLaw
+        Of the shape of ``duration``.
 
     Raises
     ------

@@ -1,20 +1,22 @@
-r"""The stable 1-T orbits with a long contact, into which permanent contact continues.
+"""The stable 1-T orbits with a long contact, into which permanent contact continues.
 
 At Λ_SD permanent contact ends, and a 1-T orbit with a short flight T and a
 contact that lasts D = 2π - T begins (``docs/closed-form.md``, section 6); next
 to Λ_SD it is stable. Followed along T the orbit is stable and admissible up to
 the first of a saddle-node, a period doubling, and a grazing: a second touch of
-the table's level, in contact or in flight. These two ends are the window.
+the table's level, in contact or in flight. The *window* is the range of Λ between these
+two ends. Beyond a grazing end there may be stable motion with more flights per period, which is
+not followed here.
 
 For a stiff contact the window is short and near Λ = 1. There the ball leaves
-about the top of the table, within a time of order 1/ϖ. In the contact's own
-time s = ϖτ, counted from the top, with δ = x/ϖ⁴ and Λ = 1 + C/ϖ², the motion is ::
+near the top of the table, within a time of order 1/ϖ of it. In the time s = ϖτ of the
+contact, measured from the top, with δ = x/ϖ⁴ and Λ = 1 + C/ϖ², the motion is ::
 
     x″ + 2ζx′ + x = C - s²/2   in contact,      x″ = C - s²/2   in flight
 
-with ϖ nowhere in it. The contact that follows is longer by ϖ than its own
-oscillation, so that the orbit is stable; the window ends where the
-oscillation after the landing reaches x = 0 again (:func:`stiff_limit`).
+which does not contain ϖ. The contact that follows lasts for so many oscillations, of order ϖ,
+that the orbit is stable; the window ends where the oscillation after the landing reaches
+x = 0 again (:func:`stiff_limit`).
 """
 
 import math
@@ -33,28 +35,29 @@ from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.stability import Bifurcation
 
-# Flights from which the branch is followed, over the contact's own time unit or a
-# tenth, short enough for weak damping and long enough for rounding at ϖ = 200; and to
-# which: the contact is an instant.
+# The branch is followed from the flight time _SHORT/max(ϖ, _SOFT), which is short enough for
+# weak damping and long enough for the rounding at ϖ = 200, to _LONG, where the contact is
+# nearly an instant.
 _SHORT, _LONG = 0.2, 2 * np.pi - 0.05
 _SOFT = 10.0
-# Orbits along the branch among which the first end is bracketed (ten times as many find
-# the same ends), and bisections
-# from there: down to neighbouring floating-point numbers.
+# Orbits along the branch among which the first end is bracketed (ten times as many find the
+# same ends), and bisections of the bracket, down to neighbouring floating-point numbers.
 _SAMPLES = 150
 _BISECTIONS = 52
 # Orbits from the saddle-node to Λ_SD that must all be admissible; the inadmissible part
 # opens with the root of the distance in ϖ, so that six hundred of them resolve 10⁻⁶.
 _JOINT_SAMPLES = 600
-# Next to the saddle-node, on its unstable side.
+# These orbits start so far in time from the saddle-node, on its unstable side.
 _TO_SIDE = 1e-3
+# Width in ϖ at which the bisection for the joining ratio stops.
 _CLOSE = 1e-8
-# What has happened is seen so far beyond an end, past all rounding.
+# The kind of an end is determined at the flight time longer by this part, beyond all rounding.
 _BEYOND = 1e-8
-# Samples of an oscillation, and once more next to the highest: of the height the square of the
-# last step is left, 1e-15. And what is returned where it has none.
+# Samples of an oscillation, taken again around the highest one: the error of the height is of
+# the order of the square of the last step, 1e-15. The second number stands for the height of an
+# oscillation without a maximum.
 _FINE, _FAR_BELOW = 20_001, -1e3
-# A contact that opens on the way is shorter by a good part of an oscillation.
+# A contact that opens before its end is shorter by a considerable part of an oscillation.
 _SHORTER = 1e-6
 
 
@@ -64,15 +67,19 @@ class End(StrEnum):
     SADDLE_NODE = Bifurcation.SADDLE_NODE
     PERIOD_DOUBLING = Bifurcation.PERIOD_DOUBLING
     CONTACT = "grazing in contact"
-    """The contact would open on the way."""
+    """The contact would open before its end."""
     FLIGHT = "grazing in flight"
-    """The ball would land before."""
+    """The ball would land before the end of its flight."""
     NONE = "none"
-    """No window was found, or no end of it."""
+    """No window was found, or it has no end in the range of flight times."""
 
 
 class Window(NamedTuple):
-    """Upper ends of the windows: Λ, the flight T, and the kind of end; NaN where there is none."""
+    """Upper ends of the windows: Λ, the flight time T, and the :class:`End` as text; shape (m,)
+    each.
+
+    Λ and T are NaN where no end was found.
+    """
 
     amplitude: np.ndarray
     flight_time: np.ndarray
@@ -80,7 +87,9 @@ class Window(NamedTuple):
 
 
 def orbit_with_flight(contact: SpringDamper, flight_time: ArrayLike) -> SpringDamperOrbit:
-    """The 1-T orbits with a given time of flight, of contacts of the same shape.
+    """The 1-T orbits with a given time of flight T in (0, 2π).
+
+    Contact and flight times broadcast.
 
     Examples
     --------
@@ -94,7 +103,7 @@ def orbit_with_flight(contact: SpringDamper, flight_time: ArrayLike) -> SpringDa
 
 
 def _usual(contact: SpringDamper, flight_time: np.ndarray) -> np.ndarray:
-    """Whether the orbits are stable and admissible; the second is asked where the first holds."""
+    """Whether the orbits are stable and admissible; only the stable ones are simulated."""
     orbit = orbit_with_flight(contact, flight_time)
     good = orbit.is_stable()
     if good.any():
@@ -103,7 +112,7 @@ def _usual(contact: SpringDamper, flight_time: np.ndarray) -> np.ndarray:
 
 
 def _kind(contact: SpringDamper, flight_time: np.ndarray) -> np.ndarray:
-    """What is wrong with the orbits just beyond an end."""
+    """The kind of an end, from the orbits just beyond it."""
     orbit = orbit_with_flight(contact, flight_time * (1 + _BEYOND))
     trace, determinant = orbit.trace_and_determinant()
     motion = simulate(contact, orbit.amplitude, orbit.phase, orbit.impact_velocity, 1)
@@ -116,7 +125,7 @@ def _kind(contact: SpringDamper, flight_time: np.ndarray) -> np.ndarray:
 def _bisected(
     good: Callable, inside: np.ndarray, outside: np.ndarray, times: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Closer points inside, where something holds, and outside, where it does not."""
+    """Bisected points inside, where a condition holds, and outside, where it does not."""
     for _ in range(times):
         middle = (inside + outside) / 2
         here = good(middle)
@@ -125,12 +134,17 @@ def _bisected(
 
 
 def stable_window(contact: SpringDamper) -> Window:
-    """Where the stable orbits that begin at Λ_SD end.
+    """The upper ends of the windows of stable orbits that begin at Λ_SD.
 
     Parameters
     ----------
     contact : SpringDamper
-        ϖ and ζ of shape (m,), and the release rule.
+        ϖ and ζ < 1 of shape (m,), and the release rule.
+
+    Raises
+    ------
+    ModelError
+        If a ζ is 1 or more.
 
     Examples
     --------
@@ -143,7 +157,7 @@ def stable_window(contact: SpringDamper) -> Window:
     start = _SHORT / np.maximum(contact.frequency_ratio, _SOFT)
     grid = start * (_LONG / start) ** np.linspace(0.0, 1.0, _SAMPLES)[:, np.newaxis]
     last, going = np.zeros(start.size, dtype=int), np.arange(start.size)
-    # Contact by contact until its first end; most windows end early.
+    # A contact leaves the loop at its first end; most windows end early.
     for row in range(_SAMPLES):
         going = going[_usual(contact[going], grid[row, going])]
         last[going] = row + 1
@@ -159,10 +173,11 @@ def stable_window(contact: SpringDamper) -> Window:
 
 
 def joined(contact: SpringDamper) -> np.ndarray:
-    """Whether all orbits from the saddle-node to Λ_SD are admissible, for each contact, (m,).
+    """Whether all orbits from the saddle-node to Λ_SD are admissible, for each contact, shape (m,).
 
-    Then the unstable side of the branch with a short contact leads to the orbits
-    with a long one. False where the branch has no saddle-node.
+    If they are, the unstable side of the branch with a short contact leads to the orbits
+    with a long one. False where the branch has no saddle-node. It is decided on 600 orbits
+    between the two, because the inadmissible part opens with the root of the distance in ϖ.
     """
     node = SpringDamperModel(contact).saddle_node(1).contact_duration
     found = np.isfinite(node)
@@ -176,7 +191,7 @@ def joined(contact: SpringDamper) -> np.ndarray:
 def joining_ratio(
     damping_ratio: ArrayLike, release: Release, low: float, high: float
 ) -> np.ndarray:
-    """The ϖ above which the families with a short and a long contact are apart.
+    """The ϖ above which the families with a short and a long contact are not connected.
 
     Parameters
     ----------
@@ -184,12 +199,12 @@ def joining_ratio(
         ζ.
     release : Release
     low, high : float
-        ϖ between which the parting is looked for.
+        Range of ϖ in which the transition is looked for.
 
     Returns
     -------
     ndarray
-        For each ζ; NaN unless they are joined at ``low`` and apart at ``high``.
+        Of the shape of ζ; NaN unless the families are connected at ``low`` and not at ``high``.
     """
     zeta = np.atleast_1d(np.asarray(damping_ratio, dtype=float))
 
@@ -206,8 +221,8 @@ def joining_ratio(
 def _highest_after_landing(excess: float, zeta: float) -> float:
     """Highest x that the oscillation after the landing reaches, for C = 2ζ² - 1 + ``excess``.
 
-    Before the flight the ball follows ``p(s) = excess - (s - 2ζ)²/2``, without
-    any oscillation left.
+    Before the flight the ball follows ``p(s) = excess - (s - 2ζ)²/2``, because the preceding
+    oscillation has decayed.
     """
     level = 2 * zeta * zeta - 1 + excess
     rate = math.sqrt(2 * excess)
@@ -226,7 +241,7 @@ def _highest_after_landing(excess: float, zeta: float) -> float:
         free = np.exp(-zeta * time) * (a * np.cos(omega * time) + b * np.sin(omega * time))
         return excess - (after + time) ** 2 / 2 + free
 
-    # The only maximum that can matter is the first; later p is far below.
+    # Only the first maximum matters, because later ones follow p far down.
     time = np.linspace(0.0, 3 * np.pi / omega, _FINE)
     x = displacement(time)
     peaks = 1 + np.flatnonzero((x[1:-1] > x[:-2]) & (x[1:-1] >= x[2:]))
@@ -242,7 +257,7 @@ def stiff_limit(damping_ratio: float) -> float:
     Raises
     ------
     ModelError
-        If ζ is not in (0, 0.9], where the oscillation after a landing can be seen.
+        If ζ is not in (0, 0.9], where the oscillation after a landing can be resolved.
 
     Examples
     --------

@@ -1,6 +1,6 @@
-"""What every model of the impact offers.
+"""The interface of every model of the impact.
 
-Callers ask; none of them tests which model it has::
+Code that uses a model calls these methods and never tests which model it has::
 
     model = SpringDamperModel(SpringDamper.from_restitution(0.85, 10.0))  # or RestitutionModel(…)
     orbit = model.require_orbit(1, 0.9)                # the 1-T orbit at Λ = 0.9
@@ -8,10 +8,9 @@ Callers ask; none of them tests which model it has::
     model.saddle_node(1).amplitude, model.period_doubling(1).amplitude
     model.simulate(0.9, phase=0.0, velocity=-3.0, impacts=100).phase
 
-A new model is a subclass of :class:`ImpactModel`, with its orbits as a
-subclass of :class:`Orbit`: what follows from the flight alone, and by continuation, is
-written once. Models and orbits are arrays: all fields broadcast, and both are indexed,
-``orbit[3]``. Everything is dimensionless.
+A new model is a subclass of :class:`ImpactModel`, with its orbits as a subclass of
+:class:`Orbit`; everything that follows from the flight alone, or by continuation, is inherited.
+Models and orbits are arrays: all fields broadcast, and both can be indexed, ``orbit[3]``.
 """
 
 from __future__ import annotations
@@ -19,7 +18,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import fields
 from enum import StrEnum
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -35,16 +34,23 @@ from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.stability import Bifurcation, Side
 from bouncing_ball.orbits.system import ContactSystem, OrbitSystem
 
+if TYPE_CHECKING:
+    from bouncing_ball.datasets.labelled import Grid, Labelled
+
 
 class Route(StrEnum):
-    """Independent ways to a model's orbits."""
+    """Numerical routes to a model's orbits, which the tests compare with each other.
+
+    They share the equations of impact and flight, so their agreement checks the numerical methods
+    and not these equations.
+    """
 
     CONTINUATION = "continuation"
-    """Newton's method on its equations, :meth:`ImpactModel.system`."""
+    """Newton's method on the model's equations, :meth:`ImpactModel.system`."""
     FORMULA = "formula"
-    """A closed form of its branch, :meth:`ImpactModel.nearest`."""
+    """A closed form of the branch, :meth:`ImpactModel.nearest`."""
     SIMULATION = "simulation"
-    """Its motion from event to event, :meth:`ImpactModel.cycle`."""
+    """The motion from event to event, :meth:`ImpactModel.cycle`."""
 
 
 class Absence(StrEnum):
@@ -58,12 +64,13 @@ class Absence(StrEnum):
 
 
 class ImpactModel(Batch, ABC):
-    """A law of the impact and its n-T orbits: a frozen dataclass with one field, the law.
+    """A law of the impact together with its n-T orbits.
 
-    ``name`` is what users call it; ``routes`` are the ways to its orbits. A model says what
-    the impact is to the outside (:meth:`signature`), and what its orbits are: a type with the
-    constructor ``at``, or a :meth:`system`. The orbits at Λ, their absence and bifurcations
-    follow by continuation; a closed form overrides them.
+    A subclass is a frozen dataclass with one field, which holds the law. ``name`` stands for the
+    model in messages, ``routes`` are the routes to its orbits and ``orbit_type`` is their class. A
+    subclass defines :meth:`signature`, and its orbits either by a type with the constructor ``at``
+    or by a :meth:`system` of equations. Orbits at Λ, the reason for their absence and their
+    bifurcations then follow by continuation; a model with a closed form overrides these methods.
     """
 
     name: ClassVar[str]
@@ -72,37 +79,69 @@ class ImpactModel(Batch, ABC):
 
     @property
     def label(self) -> str:
-        """Its parameters, in words; of a single model."""
+        """The parameters of a single model as text."""
         return self._law.label
 
     @abstractmethod
     def signature(self, speed: ArrayLike) -> Instant:
-        """What an impact of speed v > 0 is to the outside, from which searches start."""
+        """The impact as an instant, at impact speeds v > 0: searches for orbits start from it."""
 
     def permanent_contact_threshold(self) -> np.ndarray:
-        """Λ up to which the ball stays on the table: 1 where impacts are instants (Eq. 9)."""
+        """Λ up to which the ball stays on the table, of the model's shape.
+
+        It is 1 where impacts are instants (Eq. 9).
+        """
         return np.full(self.shape, RESTITUTION_THRESHOLD)
 
-    # What follows.
+    # Everything below has a default, by continuation.
 
     def system(self, n: int | np.ndarray) -> OrbitSystem:
-        """The equations of the orbits, continued in Λ (route CONTINUATION)."""
+        """The equations of the orbits as a continuation problem in Λ (route CONTINUATION)."""
         orbits: Any = self.orbit_type
         return ContactSystem(n, self._law, orbits.at)
 
     def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> Any:
-        """The n-T orbits at Λ on a side of the saddle-node; NaN where there is none."""
+        """The n-T orbits at given Λ, on one side of the saddle-node.
+
+        Parameters
+        ----------
+        n : array_like of int
+            Index of the family: an orbit repeats after the time 2πn.
+        amplitude : array_like
+            Λ = aΩ²/g.
+        side : Side
+            The side of the branch that is stable next to the saddle-node, or the other.
+
+        Returns
+        -------
+        Orbit
+            Of the shape to which n, Λ and the model broadcast; NaN where there is no orbit.
+
+        Raises
+        ------
+        ModelError
+            If n is not a positive integer, or the side is unknown.
+        """
         return continued.orbit_at(self, n, amplitude, Side(side))
 
     def orbits(self, n: int, amplitude: float) -> Any:
-        """All n-T orbits at one Λ, in order of contact duration, shape (count,).
+        """All n-T orbits of a single model at one Λ, in order of contact duration, shape (count,).
 
-        Those of both sides, one at the saddle-node: an impact that takes no time has no others.
+        By default these are the orbits on both sides of the saddle-node, which are one at the
+        saddle-node itself: an impact without duration has no others.
+
+        Raises
+        ------
+        ModelError
+            If n is not a positive integer.
         """
         return continued.both_sides(self, n, amplitude)
 
     def absence(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> np.ndarray:
-        """The :class:`Absence` of each orbit that :meth:`orbit` looks for, as text."""
+        """Why :meth:`orbit` finds none: the text of an :class:`Absence` for each orbit.
+
+        Arguments and shape are those of :meth:`orbit`.
+        """
         missing, fold = ~self.orbit(n, amplitude, side).exists, self.saddle_node(n).amplitude
         other = Absence.NOT_FOUND
         if Route.FORMULA in self.routes:
@@ -113,15 +152,29 @@ class ImpactModel(Batch, ABC):
         return np.where(missing, why, Absence.NONE)
 
     def saddle_node(self, n: ArrayLike) -> Any:
-        """The orbits at the saddle-node; NaN where the branch has none."""
+        """The orbits at the saddle-node, of the shape of n and the model; NaN where there is none.
+
+        Raises
+        ------
+        ModelError
+            If n is not a positive integer.
+        """
         return continued.bifurcation(self, n, Bifurcation.SADDLE_NODE)
 
     def period_doubling(self, n: ArrayLike) -> Any:
-        """The orbits at the period doubling nearest to it; NaN where there is none."""
+        """The orbits at the period doubling that is nearest to the saddle-node on the stable side.
+
+        They have the shape of n and the model; NaN where the stable side has no period doubling.
+
+        Raises
+        ------
+        ModelError
+            If n is not a positive integer.
+        """
         return continued.bifurcation(self, n, Bifurcation.PERIOD_DOUBLING)
 
     def nearest(self, orbit: Any) -> Any:
-        """The orbits of the closed form nearest to given ones (route FORMULA).
+        """The points of the closed-form branch that are nearest to given orbits (route FORMULA).
 
         Raises
         ------
@@ -133,12 +186,66 @@ class ImpactModel(Batch, ABC):
     def simulate(
         self, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
     ) -> ImpactSequence:
-        """Impacts from a first one at phase φ, with absolute velocity z′_i before it:
-        :func:`bouncing_ball.motion.simulation.simulate`."""
+        """Impacts that follow a first one at phase φ with the absolute velocity z′_i before it.
+
+        The arguments are those of :func:`bouncing_ball.motion.simulation.simulate`.
+        """
         return simulate(self._law, amplitude, phase, velocity, impacts)
 
+    def history(
+        self,
+        amplitude: ArrayLike,
+        phase: ArrayLike = 0.0,
+        velocity: ArrayLike = -np.pi,
+        *,
+        periods: float = 10.0,
+        samples: int = 200,
+    ) -> Labelled:
+        """A ball over time from a first impact: :func:`bouncing_ball.history`."""
+        from bouncing_ball.orbits import labelled
+
+        grid = self._grid(amplitude=amplitude, phase=phase, velocity=velocity)
+        return labelled.from_impact(self, grid, labelled.instants(periods, samples))
+
+    def drop(
+        self,
+        height: ArrayLike,
+        amplitude: ArrayLike = 0.0,
+        phase: ArrayLike = 0.0,
+        *,
+        periods: float = 10.0,
+        samples: int = 200,
+    ) -> Labelled:
+        """A ball that is let go at rest: :func:`bouncing_ball.drop`."""
+        from bouncing_ball.orbits import labelled
+
+        grid = self._grid(height=height, amplitude=amplitude, phase=phase)
+        return labelled.from_rest(self, grid, labelled.instants(periods, samples))
+
+    def branch(
+        self, n: ArrayLike, *, amplitude_max: float | None = None, points: int = 300
+    ) -> Labelled:
+        """The branch of n-T orbits over Λ: :func:`bouncing_ball.branch`."""
+        from bouncing_ball.orbits import labelled
+
+        return labelled.branches(self._grid(n=n), lambda n: self, amplitude_max, points)
+
+    def _grid(self, **given: Any) -> Grid:
+        """The arguments of a labelled result, which one model has; several have axes of names."""
+        from bouncing_ball.datasets.labelled import Grid
+
+        if self.shape:
+            call = "bouncing_ball.history(…, frequency_ratio=[5, 10])"
+            raise ModelError(f"several models have no labels: give their parameters to {call}")
+        found = Grid(**given)
+        found.attrs["model"] = self.label
+        return found
+
     def cycle(self, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
-        """The Poincaré map, from an impact (φ, δ′) to the next (route SIMULATION)."""
+        """The Poincaré map, from an impact (φ, δ′) to the next one (route SIMULATION).
+
+        The arguments are those of :func:`bouncing_ball.motion.simulation.next_impact`.
+        """
         return next_impact(self._law, amplitude, phase, relative_velocity)
 
     @property
@@ -147,16 +254,16 @@ class ImpactModel(Batch, ABC):
         return law
 
     def orbit_of(self, n: ArrayLike, amplitude: ArrayLike, *numbers: ArrayLike) -> Any:
-        """Orbits known by Λ, φ, D and z′_i, as a dataset has them: :meth:`Orbit.of`."""
+        """Orbits from their numbers Λ, φ, D and z′_i, as datasets store them: :meth:`Orbit.of`."""
         return self.orbit_type.of(n, self._law, amplitude, *numbers)
 
     def require_admissible(self, n: int, amplitude: float, side: Side = Side.STABLE) -> Orbit:
-        """:meth:`require_orbit`, if it is one of the ball.
+        """The orbit of :meth:`require_orbit`, if the simulated ball follows it.
 
         Raises
         ------
         NoOrbitError
-            If there is none, or if it is inadmissible.
+            If there is no orbit, or if it is inadmissible.
         """
         orbit = self.require_orbit(n, amplitude, side)
         if not orbit.is_admissible():
@@ -167,12 +274,12 @@ class ImpactModel(Batch, ABC):
         return orbit
 
     def require_orbit(self, n: int, amplitude: float, side: Side = Side.STABLE) -> Orbit:
-        """The one orbit at Λ on a side of the saddle-node.
+        """The one orbit at Λ on a side of the saddle-node, of a single model.
 
         Raises
         ------
         NoOrbitError
-            If there is none, with the reason.
+            If there is no orbit; the message gives the reason.
         """
         orbit = self.orbit(n, amplitude, side)
         if not orbit.exists:

@@ -1,7 +1,8 @@
-"""One n-T orbit of any model, or arrays of them: what follows from the flight alone.
+"""One n-T orbit of any model, or an array of orbits: what follows from the flight alone.
 
-Time runs from the start of contact, τ_i = 0; the contact ends at τ_b = D, the next one
-starts at τ_2 = 2πn. Everything is dimensionless.
+Time runs from the start of contact, τ_i = 0; the contact ends at τ_b = D, and the next one
+starts at τ_2 = 2πn. Heights and velocities are absolute unless they are called relative, which
+means relative to the table: δ = z - w.
 """
 
 from __future__ import annotations
@@ -31,15 +32,16 @@ OBSERVABLES = (
     "apparent_restitution",
     "max_height",
 )
-"""What is read from an orbit, by the names that datasets and the command line use."""
+"""The seven observables of an orbit, by the names that datasets and the command line use."""
 
-# An event that the equations do not know of shifts the next impact by a good
-# part of a period; rounding, amplified by one unstable cycle, by far less.
+# An earlier impact or release that the equations do not model shifts the next impact by a
+# considerable part of a period; rounding, amplified by one unstable cycle, by far less.
 _SAME = 1e-6
-# Samples of a contact among which its highest point is looked for, each time in two of the steps
-# before: the last are 16⁻⁵ of the first, and the height is the square of the time's error.
-# Orbits whose samples are in memory at once.
+# The highest point of a contact is looked for among this many samples, which are then taken
+# again between the neighbours of the highest one: the last steps are 16⁻⁵ of the first, and
+# the error of the height is of the order of the square of that in time.
 _SAMPLES, _REFINEMENTS = 33, 6
+# Orbits whose samples are in memory at the same time.
 _BLOCK = 1024
 
 
@@ -65,18 +67,18 @@ def _columns(*arrays: ArrayLike) -> Iterator[np.ndarray]:
 
 @dataclass(frozen=True, repr=False)
 class Orbit(Batch, ABC):
-    """n-T orbits of one model, one per element of the (broadcast) arrays.
+    """n-T orbits of one model, one for each element of the (broadcast) fields.
 
     Parameters
     ----------
     n : int or array of int
         Index of the family.
     law : Batch
-        The law of the impact: what the model is made of.
+        The law of the impact, the model's only field.
     amplitude, phase : array
-        Λ and the table's phase φ at the start of contact.
+        Λ, and the table's phase φ at the start of contact.
     contact_duration : array
-        τ_b, 0 for an instantaneous impact. NaN where there is no orbit.
+        D = τ_b, 0 for an instantaneous impact. NaN where there is no orbit.
     impact_velocity : array
         Absolute velocity z′_i of the ball at the start of contact.
     """
@@ -103,66 +105,76 @@ class Orbit(Batch, ABC):
         contact_duration: ArrayLike = 0.0,
         impact_velocity: ArrayLike | None = None,
     ) -> Self:
-        """Orbits known by their numbers; none where the phase is NaN.
+        """Orbits from their numbers; there is none where the phase is NaN.
 
-        Λ and φ are enough where the impact takes no time: z′_i is then -nπ.
+        Λ and φ suffice for an impact without duration, because z′_i = -nπ then.
         """
         velocity = -np.asarray(n) * np.pi if impact_velocity is None else impact_velocity
         missing = np.where(np.isnan(phase), np.nan, 0.0)
         values = (amplitude, phase, contact_duration + missing, velocity + missing)
         return cls(n, law, *np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in values)))
 
-    # What a model's orbits add.
+    # A model's orbits define the following.
 
     @property
     def unknowns(self) -> tuple[np.ndarray, ...]:
-        """(φ, z′_i), from which the contact follows."""
+        """The unknowns from which the contact follows: (φ, z′_i), unless a model has fewer."""
         return self.phase, self.impact_velocity
 
     @property
     def clock(self) -> ArrayLike:
-        """Rate of the contact's own time against the table's; 1 without any."""
+        """Rate of the contact's oscillation time against the table's; 1 for an instant.
+
+        Durations are compared in this time, in which those of a stiff contact are of order one.
+        """
         return 1.0
 
     def contact_motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """δ and δ′ at times 0 ≤ τ ≤ τ_b in contact."""
+        """δ and δ′ at times 0 ≤ τ ≤ τ_b in contact, of the shape of the times."""
         return np.zeros_like(time), np.zeros_like(time)
 
     def contact_path(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Absolute position and velocity at times 0 ≤ τ ≤ τ_b in contact."""
+        """Height z and velocity z′ at times 0 ≤ τ ≤ τ_b in contact, of the shape of the times."""
         angle, (displacement, velocity) = self.phase + time, self.contact_motion(time)
         lift, pace = self.amplitude * np.sin(angle), self.amplitude * np.cos(angle)
         return displacement + lift, velocity + pace
 
     @abstractmethod
     def residual(self) -> np.ndarray:
-        """Defects of the model's equations, along the last axis."""
+        """Defects of the model's equations along the last axis; all are 0 for an orbit."""
 
     def contact_jacobian(self) -> np.ndarray:
         """Jacobian of (τ_b, δ_b, δ′_b) in (τ, δ′, Λ) at the impact, shape (..., 3, 3).
 
-        Λ, at a fixed δ′, is for the equations of the orbits. Not needed where both the
-        equations and the monodromy are a model's own.
+        The column of Λ, taken at a fixed δ′, serves the equations of the orbits. A model that has
+        both its equations and its monodromy in another form does not need it.
         """
         raise NotImplementedError(f"{type(self).__name__} has a monodromy of its own")
 
     @abstractmethod
     def determinant(self) -> np.ndarray:
-        """Determinant of the monodromy, from the contraction and not from its entries.
+        """Determinant of the monodromy, from the contraction of the contact and not from its
+        entries.
 
-        Their rounding would decide between stable and not without dissipation.
+        Without dissipation it is 1, and the rounding of the entries would decide about stability.
         """
 
-    # What follows from the law and the flight.
+    # Everything below follows from the law and the flight.
 
     def cycle(self, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
-        """From impacts (φ, δ′) with these orbits' parameters to the next, simulated."""
+        """The simulated map from impacts (φ, δ′) to the next ones, with the parameters of these
+        orbits.
+        """
         return next_impact(self.law, self.amplitude, phase, relative_velocity)
 
     def flight_defects(
         self, displacement: ArrayLike, velocity: ArrayLike
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Velocity and landing defects (Eqs. 24-25) of contacts that end with (δ_b, δ′_b)."""
+        """Velocity and landing defects (Eqs. 24-25) of contacts that end with (δ_b, δ′_b).
+
+        They are ``δ′_b + Λ cos(φ + D) - z′_b`` and
+        ``δ_b + Λ sin(φ + D) - Λ sin φ + (z′_b - T/2) T``, with z′_b = z′_i + T and T = 2πn - D.
+        """
         lam, end, bounce = self.amplitude, self.release_phase, self.bounce_velocity
         rise = lam * (np.sin(end) - np.sin(self.phase)) + displacement
         fall = (bounce - self.flight_time / 2) * self.flight_time
@@ -170,12 +182,12 @@ class Orbit(Batch, ABC):
 
     @property
     def exists(self) -> np.ndarray:
-        """Whether there is an orbit."""
+        """Whether there is an orbit: its contact duration is finite."""
         return np.isfinite(self.contact_duration)
 
     @property
     def flight_time(self) -> np.ndarray:
-        """τ_2 - τ_b (Eq. 19)."""
+        """T = τ_2 - τ_b = 2πn - D (Eq. 19)."""
         return 2 * np.pi * np.asarray(self.n) - self.contact_duration
 
     @property
@@ -207,7 +219,7 @@ class Orbit(Batch, ABC):
     def bounce_height(self) -> np.ndarray:
         """Absolute height z_b of the ball at release.
 
-        From the flight, which ends at the table's level Λ sin φ.
+        It follows from the flight, which ends at the table's level Λ sin φ.
         """
         landing = self.amplitude * np.sin(self.phase)
         mean_velocity = (self.bounce_velocity + self.impact_velocity) / 2
@@ -215,28 +227,28 @@ class Orbit(Batch, ABC):
 
     @property
     def max_height(self) -> np.ndarray:
-        """Greatest absolute height over the cycle, in flight or in contact.
+        """Greatest absolute height z over the cycle, in flight or in contact.
 
-        In flight, if that reaches Λ: in contact the ball stays below the table. Else a long
-        contact may lift it higher with the table.
+        It is the apex of the flight if that reaches Λ, because a ball in contact is below the table
+        and thus below Λ. Otherwise a long contact may lift the ball higher with the table.
         """
         rising = np.maximum(self.bounce_velocity, 0.0)
         top = np.array(np.broadcast_to(self.bounce_height + rising * rising / 2, self.shape))
         low = np.flatnonzero((top < self.amplitude) & (self.contact_duration > 0))
-        # The samples of all at once would be gigabytes.
+        # The samples of all orbits at once would take gigabytes.
         for part in blocks(low.size, _BLOCK):
             lifted = self.flat(self.shape).take(low[part])._contact_top()
             top.flat[low[part]] = np.maximum(top.flat[low[part]], lifted)
         return top
 
     def _contact_top(self) -> np.ndarray:
-        """Greatest height in contact: its highest sample, among ever closer ones."""
+        """Greatest height in contact: the highest of samples that are refined around it."""
         steps = np.arange(_SAMPLES).reshape(-1, *(1,) * len(self.shape))
         low, step = 0.0 * self.contact_duration, self.contact_duration / (_SAMPLES - 1)
         for _ in range(_REFINEMENTS):
             height = self.contact_path(low + step * steps)[0]
             highest = np.argmax(np.where(np.isnan(height), -np.inf, height), axis=0)
-            # On from one step before the highest to one after it, within the contact.
+            # Continue from one step before the highest sample to one after it, in the contact.
             low = low + step * np.clip(highest - 1, 0, _SAMPLES - 3)
             step = 2 * step / (_SAMPLES - 1)
         return np.max(height, axis=0)
@@ -248,9 +260,10 @@ class Orbit(Batch, ABC):
         return self.bounce_height + (self.bounce_velocity + velocity) / 2 * s, velocity
 
     def path(self, time: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-        """Absolute height and velocity at any time since an impact.
+        """Absolute height and velocity at any time τ since an impact, with period 2πn.
 
-        Where an impact takes no time the velocity is the one after it.
+        The shape is that to which the times and the orbits broadcast. At an impact without duration
+        the velocity is the one after it.
         """
         s = np.mod(np.asarray(time, dtype=float), 2 * np.pi * np.asarray(self.n))
         touching = s < self.contact_duration
@@ -262,9 +275,10 @@ class Orbit(Batch, ABC):
     def flight_jacobian(
         self, start: Iterable[np.ndarray], contact: Iterable[np.ndarray]
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives of :meth:`flight_defects`, along the last axis.
+        """Derivatives of :meth:`flight_defects` along the last axis, by the chain rule.
 
-        Of those of (φ, z′_i, Λ) at the start of contact, and of (τ_b, δ_b, δ′_b) at its end.
+        ``start`` holds the derivatives of (φ, z′_i, Λ) at the start of contact, ``contact`` those
+        of (τ_b, δ_b, δ′_b) at its end.
         """
         (d_phase, d_impact, d_lam), (d_duration, d_displacement, d_velocity) = start, contact
         lam, phase, end = _columns(self.amplitude, self.phase, self.release_phase)
@@ -278,7 +292,7 @@ class Orbit(Batch, ABC):
     def jacobian(self) -> np.ndarray:
         """Jacobian of the flight's two defects in (φ, z′_i, Λ), shape (..., 2, 3).
 
-        The contact is the one that starts so.
+        The contact is the one that starts at (φ, z′_i), not the one of ``contact_duration``.
         """
         inner = np.tile(np.eye(3), (*self.shape, 1, 1))
         inner[..., 1, 0] = self.amplitude * np.sin(self.phase)
@@ -289,10 +303,10 @@ class Orbit(Batch, ABC):
     def monodromy(self) -> np.ndarray:
         """Jacobian of the return map (τ, δ′) → (τ₁, δ′₁), shape (..., 2, 2).
 
-        Its eigenvalues are the Floquet multipliers. The section is the start of contact. A
-        start moved by (dφ, dz′_i) leaves the defects (dV, dH) of velocity and height, and a
-        flight that is longer by s, to the table: ``u s = -(dH + T dV)``. So the next start is
-        moved by (dφ + s, dz′_i + dV - s).
+        Its eigenvalues are the Floquet multipliers; the Poincaré section is the start of contact. A
+        start moved by (dφ, dz′_i) leaves the defects (dV, dH) of velocity and height, and changes
+        the flight time to the table by s, where ``u s = -(dH + T dV)`` with u the relative impact
+        velocity. The next start is therefore moved by (dφ + s, dz′_i + dV - s).
         """
         d_velocity, d_height = np.moveaxis(self.jacobian()[..., :2], -2, 0)
         flight, speed = _columns(self.flight_time, self.relative_impact_velocity)
@@ -304,7 +318,7 @@ class Orbit(Batch, ABC):
         return (np.eye(2) + turn) @ moved @ (np.eye(2) - turn)
 
     def trace_and_determinant(self) -> tuple[np.ndarray, np.ndarray]:
-        """Trace and determinant of the monodromy."""
+        """Trace and determinant of the monodromy, each of the orbits' shape."""
         return np.trace(self.monodromy(), axis1=-2, axis2=-1), self.determinant()
 
     def multipliers(self) -> np.ndarray:
@@ -312,14 +326,14 @@ class Orbit(Batch, ABC):
         return stability.multipliers(*self.trace_and_determinant())
 
     def is_stable(self) -> np.ndarray:
-        """Whether both multipliers lie inside the unit circle."""
+        """Whether both multipliers lie inside the unit circle: asymptotic stability."""
         return stability.is_stable(*self.trace_and_determinant())
 
     def is_admissible(self) -> np.ndarray:
-        """Whether the simulated cycle is the orbit's own.
+        """Whether the simulated ball follows the orbit for a cycle.
 
-        No earlier release and no earlier landing: the simulation's next impact,
-        whose events are certified, is the orbit's own. False where there is none.
+        It does if there is no earlier release and no earlier landing: the next impact of the
+        simulation, whose events are certified, is that of the orbit. False where there is no orbit.
         """
         falls, lasts = self.relative_impact_velocity < 0, self.contact_duration >= 0
         possible = falls & lasts & (self.flight_time > 0)
@@ -330,16 +344,17 @@ class Orbit(Batch, ABC):
             cycle = part.cycle(part.phase, speed)
             returned = np.abs(cycle.relative_velocity / speed - 1) < _SAME
             same = np.abs(cycle.time - 2 * np.pi * np.asarray(part.n)) < _SAME
-            # A contact that resumes below the table's level starts with a rising ball.
+            # A contact that resumes below the table's level starts with a rising ball, and
+            # such a next impact differs in its velocity.
             admissible[possible] = same & returned
         return admissible
 
     def defect(self) -> np.ndarray:
-        """Largest defect of the model's equations."""
+        """Largest absolute defect of the model's equations."""
         return np.max(np.abs(self.residual()), axis=-1)
 
     def distance(self, other: Orbit) -> np.ndarray:
-        """Largest difference in Λ, φ, contact duration in its own time, and z′_i."""
+        """Largest difference to other orbits in Λ, φ, z′_i, and in D times :attr:`clock`."""
         differences = (
             self.amplitude - other.amplitude,
             reduce_angle(self.phase - other.phase),

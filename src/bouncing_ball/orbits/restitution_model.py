@@ -1,4 +1,4 @@
-"""Models whose impacts are instants, and their n-T orbits."""
+"""Models in which an impact is an instant at the table's level, and their n-T orbits."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from bouncing_ball.orbits.stability import Side
 
 
 class _Instants(ImpactModel):
-    """What models of an instant share, whatever its restitution."""
+    """The methods shared by models with instantaneous impacts, whatever their restitution."""
 
     orbit_type: ClassVar[type[Orbit]] = RestitutionOrbit
 
     def signature(self, speed: ArrayLike) -> Instant:
-        """r alone: no delay, no load, no duration."""
+        """The restitution r(v), without delay, load sensitivity and duration."""
         v = np.asarray(speed, dtype=float)
         r, slope = rebound(self._law, v)
         none = np.zeros_like(v)
@@ -37,6 +37,20 @@ class RestitutionLawModel(_Instants):
     Parameters
     ----------
     law : RestitutionLaw
+        Its orbits have no closed form; they are found by continuation.
+
+    Examples
+    --------
+    >>> from dataclasses import dataclass
+    >>> @dataclass(frozen=True, repr=False)
+    ... class Slowing(RestitutionLaw):
+    ...     scale: float
+    ...
+    ...     def restitution(self, speed):
+    ...         return 1 / (1 + speed / self.scale)
+    >>> orbit = RestitutionLawModel(Slowing(50.0)).orbit(1, 1.0)
+    >>> round(float(orbit.bounce_velocity / np.pi), 12)
+    1.0
     """
 
     law: RestitutionLaw
@@ -45,18 +59,22 @@ class RestitutionLawModel(_Instants):
 
     @property
     def label(self) -> str:
-        """The law and its parameters."""
         return repr(self.law)
 
 
 @dataclass(frozen=True, repr=False)
 class RestitutionModel(_Instants):
-    """A ball whose impacts are instants: δ′ becomes -r δ′.
+    """A ball whose impacts are instants at which δ′ becomes -r δ′ (Eqs. 1-9).
 
     Parameters
     ----------
     restitution : float or array
         r in (0, 1].
+
+    Raises
+    ------
+    ModelError
+        If an r lies outside (0, 1].
 
     Examples
     --------
@@ -75,29 +93,32 @@ class RestitutionModel(_Instants):
 
     @property
     def label(self) -> str:
-        """r."""
         return f"r = {float(self.restitution):g}"
 
     def orbit(
         self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE
     ) -> RestitutionOrbit:
-        """The n-T orbits at Λ on a side of the saddle-node; NaN where there is none."""
+        """The n-T orbits at Λ on a side of the saddle-node (Eq. 6); NaN below it."""
         fold, lam = formulas.saddle_node(n, self.restitution), np.asarray(amplitude, dtype=float)
         there = lam >= fold
-        phase = formulas.phase(n, self.restitution, np.where(there, lam, fold), side == Side.STABLE)
+        phase = formulas.phase(
+            n, self.restitution, np.where(there, lam, fold), Side(side) is Side.STABLE
+        )
         return self.orbit_of(n, lam, np.where(there, phase, np.nan))
 
     def saddle_node(self, n: ArrayLike) -> RestitutionOrbit:
-        """The orbits at the saddle-node, φ = 0."""
+        """The orbits at the saddle-node (Eq. 7), where φ = 0."""
         return self.orbit_of(n, formulas.saddle_node(n, self.restitution), 0.0)
 
     def period_doubling(self, n: ArrayLike) -> RestitutionOrbit:
-        """The orbits at the period doubling of the exact map."""
+        """The orbits at the period doubling of the exact map, not that of Eq. 8."""
         lam = formulas.period_doubling(n, self.restitution)
         return self.orbit_of(n, lam, formulas.phase(n, self.restitution, lam))
 
     def nearest(self, orbit: RestitutionOrbit) -> RestitutionOrbit:
-        """The nearest orbits of the closed form, the line Λ cos φ = Λ_SN."""
+        """The points nearest to given orbits on the line Λ cos φ = Λ_SN, the closed form of the
+        branch.
+        """
         fold = formulas.saddle_node(orbit.n, orbit.restitution)
         lift = orbit.amplitude * np.sin(orbit.phase)
         return self.orbit_of(orbit.n, np.hypot(fold, lift), np.arctan2(lift, fold))

@@ -1,6 +1,6 @@
-r"""n-T orbits of the restitution-coefficient model, in closed form (Eqs. 6-8).
+"""n-T orbits of the restitution-coefficient model, in closed form (Eqs. 6-8).
 
-One impact every n table periods, v = nπ and Λ cos φ = nπ (1 - r)/(1 + r).
+There is one impact every n table periods, with v = nπ and Λ cos φ = nπ (1 - r)/(1 + r).
 Both maps have the same fixed points; they differ in stability:
 
 ===============  =============================  ========
@@ -10,10 +10,8 @@ exact (Eq. 5)    1 + r² - (1 + r)² Λ sin φ      r²
 Holmes'          1 + r - 2 (1 + r) Λ sin φ      r
 ===============  =============================  ========
 
-so that the period doublings are at Λ sin φ = 2(1 + r²)/(1 + r)² and at
-Λ sin φ = 1. The paper's Eq. 8 is the second, though its Eq. 5 is the exact map.
-
-All quantities are dimensionless.
+Their period doublings are therefore at Λ sin φ = 2(1 + r²)/(1 + r)² and at Λ sin φ = 1. The
+paper's Eq. 8 is the second one, although its Eq. 5 is the exact map.
 """
 
 from enum import StrEnum
@@ -31,7 +29,7 @@ class ImpactMap(StrEnum):
     """Which map of the impact the stability refers to."""
 
     EXACT = "exact"
-    """Eq. 5, with the table's displacement in the time of flight."""
+    """Eq. 5, in which the time of flight depends on the table's displacement."""
     HOLMES = "holmes"
     """The high-bounce approximation, to which the printed Eq. 8 belongs."""
 
@@ -46,6 +44,11 @@ def check_family(n: ArrayLike, restitution: ArrayLike) -> None:
 def saddle_node(n: ArrayLike, restitution: ArrayLike) -> np.ndarray:
     """Λ at which the n-T orbits appear, nπ(1 - r)/(1 + r) (Eq. 7).
 
+    Raises
+    ------
+    ModelError
+        Unless n is a positive integer and 0 < r ≤ 1.
+
     Examples
     --------
     >>> bool(np.isclose(saddle_node(1, 0.5), np.pi / 3))
@@ -57,7 +60,7 @@ def saddle_node(n: ArrayLike, restitution: ArrayLike) -> np.ndarray:
 
 
 def rigid_speed(n: ArrayLike, restitution: ArrayLike) -> np.ndarray:
-    """Impact speed 2πn/(1 + r) of the n-T orbits, at every Λ.
+    """Impact speed 2πn/(1 + r) of the restitution model's n-T orbits, at every Λ.
 
     Examples
     --------
@@ -71,6 +74,11 @@ def period_doubling_lift(
     restitution: ArrayLike, impact_map: ImpactMap = ImpactMap.EXACT
 ) -> np.ndarray:
     """Λ sin φ at the period doubling: 2(1 + r²)/(1 + r)², or 1 for Holmes' map.
+
+    Raises
+    ------
+    ModelError
+        Unless 0 < r ≤ 1.
 
     Examples
     --------
@@ -87,10 +95,15 @@ def period_doubling_lift(
 def period_doubling(
     n: ArrayLike, restitution: ArrayLike, impact_map: ImpactMap = ImpactMap.EXACT
 ) -> np.ndarray:
-    """Λ of the period doubling (Eq. 8 as printed is Holmes' map).
+    """Λ of the period doubling (Eq. 8 as printed is that of Holmes' map).
 
     ``Λ² = [2(1 + r²)/(1 + r)²]² + [nπ(1 - r)/(1 + r)]²`` for the exact map,
     with 1 in place of the first bracket for Holmes'.
+
+    Raises
+    ------
+    ModelError
+        Unless n is a positive integer and 0 < r ≤ 1.
 
     Examples
     --------
@@ -105,13 +118,15 @@ def period_doubling(
 def phase(
     n: ArrayLike, restitution: ArrayLike, amplitude: ArrayLike, stable_side: bool = True
 ) -> np.ndarray:
-    """Phase φ of the impact (Eq. 6), positive on the side of the fold that is
-    stable next to it, negative on the other.
+    """Phase φ of the impact (Eq. 6), in [-π/2, π/2].
+
+    It is positive on the side of the saddle-node that is stable next to it, and negative on the
+    other one.
 
     Raises
     ------
     NoOrbitError
-        If Λ lies below the saddle-node.
+        If a Λ lies below the saddle-node.
 
     Examples
     --------
@@ -132,10 +147,10 @@ def phase(
 def branch(
     n: ArrayLike, restitution: ArrayLike, amplitude_max: float, points: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Λ and φ along the whole branch up to ``amplitude_max``.
+    """Λ and φ along the branch up to ``amplitude_max``, each of shape (..., points).
 
-    From the unstable side to the stable one, at equal steps of Λ sin φ, which
-    parametrises the branch for r = 1 too. Shapes (..., points).
+    The points run from the unstable side to the stable one at equal steps of Λ sin φ, a parameter
+    that remains valid for r = 1, where the saddle-node is at Λ = 0.
 
     Raises
     ------
@@ -171,12 +186,12 @@ class RestitutionOrbit(Orbit):
         return cls.of(n, law, amplitude, phase, 0.0, velocity)
 
     def _rebound(self) -> tuple[np.ndarray, np.ndarray]:
-        """r and the slope of r v at the impact."""
+        """r, and the slope d(r v)/dv, at the impact speed v."""
         return rebound(self.law, -self.relative_impact_velocity)
 
     @property
     def restitution(self) -> np.ndarray:
-        """r of the impact."""
+        """r at the impact speed."""
         return self._rebound()[0]
 
     def residual(self) -> np.ndarray:
@@ -185,18 +200,21 @@ class RestitutionOrbit(Orbit):
         return np.stack(np.broadcast_arrays(*self.flight_defects(0.0, after)), axis=-1)
 
     def contact_jacobian(self) -> np.ndarray:
-        """Of an instant at the table's level: only δ′_b = -r δ′ varies, with δ′."""
+        """Jacobian of (τ_b, δ_b, δ′_b) in (τ, δ′, Λ), shape (..., 3, 3).
+
+        An instant at the table's level has a single entry: ∂δ′_b/∂δ′ = -d(r v)/dv.
+        """
         jacobian = np.zeros((*self.shape, 3, 3))
         jacobian[..., 2, 1] = -self._rebound()[1]
         return jacobian
 
     def determinant(self) -> np.ndarray:
-        """r d(r v)/dv: r² for a constant r."""
+        """r d(r v)/dv, which is r² for a constant r."""
         r, slope = self._rebound()
         return r * slope + 0 * self.phase
 
     def trace_and_determinant(self) -> tuple[np.ndarray, np.ndarray]:
-        """With s = d(r v)/dv: 1 + r s - (1 + r)(1 + s) Λ sin φ, and r s."""
+        """Trace 1 + r s - (1 + r)(1 + s) Λ sin φ and determinant r s, where s = d(r v)/dv."""
         r, slope = self._rebound()
         lift = self.amplitude * np.sin(self.phase)
         return 1 + r * slope - (1 + r) * (1 + slope) * lift, self.determinant()

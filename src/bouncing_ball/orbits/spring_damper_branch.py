@@ -19,19 +19,19 @@ One 3×3 solve gives the orbit, so D runs along the whole branch: saddle-node
 and period doubling included, ``Λ = √(X² + Y²)``, ``φ = atan2(Y, X)``.
 
 For a stiff contact the branch occupies a range of D of order 1/ϖ² around the
-free half period, where D itself has too few digits left. The curve is
-therefore parametrised by the *excess angle* ε, ``ϖ_d D = θ₀ + ε``, with θ₀ the
+free half period, in which D has too few digits to tell its points apart. The curve is
+therefore parametrised by the *excess angle* ε, ``ϖ_d D = θ₀ + ε``, where θ₀ is the
 angle at which the free contact would be released, π - 2α with sin α = κϖ/2
-(:mod:`bouncing_ball.contacts.release`). The one coefficient that is sensitive,
+(:mod:`bouncing_ball.contacts.release`). The one sensitive coefficient,
 that of u in the release condition, is then proportional to sin ε.
 
 Differentiating the three equations along ε gives dΛ/dε. It vanishes at the
-saddle-node, and also where the ball grazes at impact or release, without a
-multiplier at 1. The determinant of the monodromy M is ``exp(-2ζϖD)``, as the
-contact contracts (τ, δ, δ′) volume at the rate 2ζϖ and the flight preserves it.
+saddle-node, and also where the ball grazes at impact or release, where no
+multiplier is 1. The determinant of the monodromy M is ``exp(-2ζϖD)``, because the
+contact contracts the volume of (τ, δ, δ′) at the rate 2ζϖ and the flight preserves it.
 Its trace follows from ``det(M - 1) = 1 - tr + det``, which is the Jacobian
-determinant of velocity and landing in (φ, u) over u. With A the matrix of the
-three equations, R_D the derivative of the first along D at fixed (X, Y, u), ::
+determinant of velocity and landing in (φ, u), divided by u. With A the matrix of the
+three equations and R_D the derivative of the first one along D at fixed (X, Y, u), ::
 
     1 - tr + det = -(det A / (u R_D)) ½ d(Λ²)/dD
 
@@ -49,19 +49,20 @@ from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import require
 from bouncing_ball.motion.ensembles import blocks, pick
 
-# Points computed at once: as many as keep the intermediate arrays in the cache.
+# Points computed at the same time: so many that the intermediate arrays stay in the cache.
 _BLOCK = 8192
-# As in the oscillator's responses, of which only the values are
-# wanted here: their terms exceed the result by a factor of 16 at most.
+# Bound of |p(ν)| s² below which the oscillator's integrals replace the quotients. It is lower
+# than there, because only the values of the responses are needed here and not their
+# derivatives: the terms exceed the result by a factor of 16 at most.
 _DELICATE = 0.5
 
 
 class BranchPoint(NamedTuple):
-    """A point of the branch, its derivatives along ε, and its stability.
+    """Points of the branch, their derivatives along ε, and their stability; arrays of one shape.
 
     ``x``, ``y``, ``u`` are Λ cos φ, Λ sin φ and the relative impact velocity;
-    ``contact_duration`` is D; ``d_x``, ``d_y`` the derivatives dX/dε and dY/dε;
-    ``determinant`` that of the monodromy, ``saddle_node`` the ``1 - tr + det`` of it.
+    ``contact_duration`` is D; ``d_x``, ``d_y`` are the derivatives dX/dε and dY/dε;
+    ``determinant`` is that of the monodromy and ``saddle_node`` its ``1 - tr + det``.
     """
 
     contact_duration: np.ndarray
@@ -90,16 +91,15 @@ class BranchPoint(NamedTuple):
 
     @property
     def fold(self) -> np.ndarray:
-        """½ d(Λ²)/dε = X dX/dε + Y dY/dε = Λ dΛ/dε, zero at the saddle-node."""
+        """½ d(Λ²)/dε = X dX/dε + Y dY/dε = Λ dΛ/dε, which is zero at the saddle-node."""
         return self.x * self.d_x + self.y * self.d_y
 
 
 def _responses(duration, sin_angle, cos_angle, sin_d, cos_d, decay, omega, zeta, root):
     """g, g′, G, Q = Re h and P = Im h at time D, from the sine and cosine of ϖ_d D and of D.
 
-    The closed quotients of :mod:`bouncing_ball.contacts.oscillator` in real
-    arithmetic; where they lose digits (short or resonant contacts) the values
-    are taken from there.
+    These are the quotients of :mod:`bouncing_ball.contacts.oscillator` in real arithmetic. Where
+    they lose digits, in short or resonant contacts, the values come from that module.
     """
     stiffness, loss = omega * omega, 2 * zeta * omega
     g = decay * sin_angle / (omega * root)
@@ -128,13 +128,13 @@ def _responses(duration, sin_angle, cos_angle, sin_d, cos_d, decay, omega, zeta,
 
 
 def _solve(rows, right):
-    """Solution of 3×3 systems by Cramer's rule, a solver for more right sides, and det A."""
+    """Solution of 3×3 systems by Cramer's rule, a solver for further right sides, and det A."""
     (a1, a2, a3), (b1, b2, b3), (c1, c2, c3) = rows
     bc = b2 * c3 - b3 * c2, b3 * c1 - b1 * c3, b1 * c2 - b2 * c1
     ca = c2 * a3 - c3 * a2, c3 * a1 - c1 * a3, c1 * a2 - c2 * a1
     ab = a2 * b3 - a3 * b2, a3 * b1 - a1 * b3, a1 * b2 - a2 * b1
     determinant = a1 * bc[0] + a2 * bc[1] + a3 * bc[2]
-    # Zero at a pole of the branch, where Λ is infinite: no orbit.
+    # The determinant is zero at a pole of the branch, where Λ is infinite and there is no orbit.
     if np.any(determinant == 0):
         determinant = np.where(determinant == 0, np.nan, determinant)
     inverse = 1 / determinant
@@ -151,16 +151,21 @@ def branch_point(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> Bran
     Parameters
     ----------
     excess : array_like
-        ε, in radians of the contact's own oscillation.
+        ε, an angle of the contact's damped oscillation in radians.
     contact : SpringDamper
         ϖ, ζ < 1 and the release rule.
     n : array_like of int
         Index of the family.
 
+    Returns
+    -------
+    BranchPoint
+        Arrays of the shape to which the arguments broadcast.
+
     Raises
     ------
     ModelError
-        If ζ ≥ 1: an overdamped contact has no oscillation to count from.
+        If ζ ≥ 1: an overdamped contact does not oscillate, so that ε is not defined.
 
     Examples
     --------
@@ -182,14 +187,14 @@ def branch_point(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> Bran
     size = math.prod(shape)
     if size <= _BLOCK:
         return _branch_point(*arguments)
-    # Scalars stay scalars; the rest is run through in blocks.
+    # Scalars stay scalars; arrays are computed in blocks.
     flat = [x if x.ndim == 0 else np.broadcast_to(x, shape).ravel() for x in arguments]
     parts = [_branch_point(*(pick(x, part) for x in flat)) for part in blocks(size, _BLOCK)]
     return BranchPoint(*(np.concatenate(x).reshape(shape) for x in zip(*parts, strict=True)))
 
 
 def _branch_point(eps, omega, zeta, sine, n) -> BranchPoint:
-    """The same for one block of arrays; ``sine`` is sin α = κϖ/2."""
+    """:func:`branch_point` for one block of arrays; ``sine`` is sin α = κϖ/2."""
     root = np.sqrt((1 - zeta) * (1 + zeta))
     per_angle = 1 / (omega * root)
     duration = (2 * np.arccos(sine) + eps) * per_angle
@@ -236,12 +241,12 @@ def _branch_point(eps, omega, zeta, sine, n) -> BranchPoint:
     # Infinite or not a number where the ball grazes at impact or at release.
     with np.errstate(divide="ignore", invalid="ignore"):
         saddle = matrix * (x * d_x + y * d_y) / (u * along[0])
-    # Of the shape of all.
+    # Both broadcast to the shape of the other fields.
     duration, determinant = duration + 0 * u, decay * decay + 0 * u
     return BranchPoint(duration, x, y, u, d_x * per_angle, d_y * per_angle, saddle, determinant)
 
 
-# Gauss-Newton from a start that is right to rounding of D converges at once.
+# Gauss-Newton steps. The start is exact up to the rounding of D, and convergence immediate.
 _ITERATIONS = 4
 
 
@@ -250,9 +255,23 @@ def nearest_excess(
 ) -> np.ndarray:
     """ε of the point of the branch that is nearest to a given one in (X, Y, ε).
 
-    Comparing at equal Λ would divide by zero at a fold. At a stiff contact D has too
-    few digits to compare at equal D, as X and Y change ϖ times as fast; elsewhere both
+    Comparing orbits at equal Λ would divide by zero at a fold. For a stiff contact D has too
+    few digits to compare at equal D, because X and Y change ϖ times as fast; elsewhere X and Y
     may nearly stand still. The nearest point is well conditioned everywhere.
+
+    Parameters
+    ----------
+    contact : SpringDamper
+    n : array_like of int
+    x, y : array_like
+        X = Λ cos φ and Y = Λ sin φ of the given orbits.
+    excess : ndarray
+        ε of the given orbits.
+
+    Returns
+    -------
+    ndarray
+        Of the shape to which the arguments broadcast.
     """
     own = excess
     for _ in range(_ITERATIONS):

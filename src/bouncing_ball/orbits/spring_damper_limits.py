@@ -1,12 +1,12 @@
 """Saddle-node, period doubling and orbits at a given Λ, on the explicit branch.
 
-Scalar root finding along the branch of :mod:`bouncing_ball.orbits.spring_damper_branch`,
-for arrays of contacts at once: a scan brackets the first root next to the
-fold, Chandrupatla's method (:func:`scipy.optimize.elementwise.find_root`)
-closes the bracket to the last digit.
+These are roots of functions of one variable along the branch of
+:mod:`bouncing_ball.orbits.spring_damper_branch`, for arrays of contacts at the same time. A
+scan brackets the first root next to the fold, and Chandrupatla's method
+(:func:`scipy.optimize.elementwise.find_root`) reduces the bracket to the last digit.
 
 The branch comes from Λ → ∞ at short contacts, where Λ falls with the contact
-duration until the saddle-node: that is the side which is stable next to the
+duration until the saddle-node: this is the side that is stable next to the
 fold. Entries for which the quantity does not exist are NaN.
 """
 
@@ -25,23 +25,22 @@ from bouncing_ball.orbits.spring_damper_branch import BranchPoint, branch_point
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.stability import Bifurcation, Side
 
-# Points of the scan on each side of ε = 0, spaced geometrically from a small
-# part of 1/ϖ, the scale of the fold, to the ends of the admissible range.
+# Points of the scan on each side of ε = 0, spaced geometrically from this small
+# part of 1/ϖ, the scale of the fold, to the ends of the possible range.
 _SCAN = 60
 _SCAN_START = 1e-3
-# The scan's ends: contacts of a thousandth of the free one, at which Λ exceeds
-# 10⁶, and contacts that fill the cycle but for a millionth.
+# The scan's ends: contacts of a thousandth of the free duration, at which Λ exceeds
+# 10⁶, and contacts that fill the cycle but for a millionth of it.
 _SHORTEST = 1e-3
 _FULL = 1e-6
-# Contacts searched at once: as many as keep a scan in some ten megabytes.
+# Contacts searched at the same time: so many that a scan takes some ten megabytes.
 _BLOCK = 1024
-# Steps of the search for all orbits, in radians of the contact's oscillation and
-# of the table's, which Λ(ε) follows; and how many are taken at most.
+# Steps of the search for all orbits, in radians of the contact's oscillation and of the
+# table's, because Λ(ε) oscillates with both; and the largest number of steps.
 _FINE = 0.02
 _MOST = 200_000
 
 
-# Functions of the branch's points.
 _saddle, _fold = attrgetter("saddle_node"), attrgetter("fold")
 
 
@@ -66,29 +65,29 @@ class _Curves(NamedTuple):
         return branch_point(excess, self.contact, self.n)
 
     def ends(self) -> tuple[np.ndarray, np.ndarray]:
-        """ε at short contacts, where Λ is beyond any use, and at D → 2πn."""
+        """ε of the shortest contact, where Λ is larger than any of interest, and of D → 2πn."""
         start = self.contact.free_angle
         high = self.contact.damped_frequency * 2 * np.pi * self.n * (1 - _FULL) - start
         return np.minimum(-start * (1 - _SHORTEST), high), high
 
     def scan(self) -> np.ndarray:
-        """Grid between the ends, geometric on both sides of 0, shape (points, ...)."""
+        """Grid between the ends, geometric on both sides of ε = 0, shape (points, ...)."""
         low, high = self.ends()
         small = np.minimum(_SCAN_START / self.contact.frequency_ratio, -low / 2)
         steps = np.linspace(0, 1, _SCAN).reshape(-1, 1)
         down = -small * (-low / small) ** steps[::-1]
         up = small * np.maximum(high / small, 1.0) ** steps
-        # A contact softer than the cycle is long ends before ε = 0.
+        # The range of a contact whose free duration exceeds the cycle ends before ε = 0.
         return np.minimum(np.concatenate([down, np.zeros((1, *low.shape)), up]), high)
 
     def root(
         self, of: Callable, grid: np.ndarray, at: np.ndarray, found: Any, *more: np.ndarray
     ) -> np.ndarray:
-        """Roots of a function of the branch's points in the grid's intervals ``at``.
+        """Roots of a function of the branch's points in the intervals ``at`` of the grid.
 
-        NaN where none was found.
+        NaN where no interval was found.
         """
-        # Imported here: it takes a third of a second, and not every run asks for limits.
+        # Imported here because it takes a third of a second, and not every run needs limits.
         from scipy.optimize.elementwise import find_root
 
         def function(excess, which, *more):
@@ -107,9 +106,9 @@ class _Curves(NamedTuple):
     ) -> np.ndarray:
         """First, or last, zero of a test function with known values along a grid, or NaN.
 
-        A test function would change sign at a pole as well. Closed upon, its value
-        is then larger than at both ends of the bracket, and at a zero smaller: no
-        tolerance decides that it is one.
+        A test function also changes sign at a pole. As the bracket shrinks onto a pole the value
+        grows beyond those at both ends, whereas at a zero it becomes smaller; this distinguishes
+        the two without a tolerance.
         """
         row = np.arange(self.n.size)
         at, found = _bracket(values, last=last)
@@ -136,8 +135,10 @@ class _Curves(NamedTuple):
 
 
 def _bracket(values, *, last=False):
-    """Index of the first, or last, sign change along the first axis, and whether
-    there is one. Not-a-number has no sign."""
+    """Index of the first, or last, sign change along the first axis, and whether there is one.
+
+    NaN has no sign.
+    """
     left, right = values[:-1], values[1:]
     change = ((left < 0) & (right >= 0)) | ((left >= 0) & (right < 0))
     found = np.any(change, axis=0)
@@ -146,7 +147,7 @@ def _bracket(values, *, last=False):
 
 
 def _searched(search: Callable, contact: SpringDamper, n: ArrayLike, *more: ArrayLike):
-    """A search for many contacts, few at a time: the scan of each has 121 points."""
+    """A search for many contacts, in blocks, because the scan of each contact has 121 points."""
     check_index(n)
     arrays = (contact.frequency_ratio, contact.damping_ratio, n, *more)
     columns = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in arrays))
@@ -163,11 +164,23 @@ def saddle_node(contact: SpringDamper, n: ArrayLike) -> np.ndarray:
     dΛ/dε vanishes there too, but also where the ball grazes, and changes sign at
     the poles of the branch, where Λ is infinite; neither is a bifurcation.
 
+    Parameters
+    ----------
+    contact : SpringDamper
+        ϖ, ζ < 1 and the release rule.
+    n : array_like of int
+        Index of the family.
+
     Returns
     -------
-    numpy.ndarray
-        To be given to :func:`~bouncing_ball.orbits.spring_damper_branch.branch_point`.
-        NaN where the branch has no fold.
+    ndarray
+        ε for :func:`~bouncing_ball.orbits.spring_damper_branch.branch_point`, of the shape to
+        which the contact and n broadcast. NaN where the branch has no fold.
+
+    Raises
+    ------
+    ModelError
+        If n is not a positive integer, or ζ ≥ 1.
 
     Examples
     --------
@@ -179,9 +192,10 @@ def saddle_node(contact: SpringDamper, n: ArrayLike) -> np.ndarray:
 
 
 def period_doubling(contact: SpringDamper, n: ArrayLike) -> np.ndarray:
-    """Excess angle ε of the period doubling nearest to the saddle-node.
+    """Excess angle ε of the period doubling nearest to the saddle-node, on the stable side.
 
-    NaN where the stable side has none.
+    NaN where the stable side has none. Arguments, shape and errors are those of
+    :func:`saddle_node`.
     """
 
     def search(curves: _Curves) -> np.ndarray:
@@ -191,7 +205,7 @@ def period_doubling(contact: SpringDamper, n: ArrayLike) -> np.ndarray:
 
 
 def _stable_side(curves: _Curves, lam: np.ndarray) -> np.ndarray:
-    """ε of the orbit at Λ between short contacts and the saddle-node: Λ falls along it."""
+    """ε of the orbit at Λ between short contacts and the saddle-node, where Λ falls with ε."""
     grid, surplus = curves.stable_side(_surplus, lam)
     return curves.root(_surplus, grid, *_bracket(-surplus), lam)
 
@@ -203,8 +217,8 @@ def _unstable_side(curves: _Curves, lam: np.ndarray) -> np.ndarray:
     steps = np.linspace(0, 1, _SCAN).reshape(-1, 1)
     outward = fold + scale * np.maximum((high - fold) / scale, 1.0) ** steps
     grid = np.minimum(np.concatenate([fold[np.newaxis], outward]), high)
-    # The next turn of Λ is a point of the grid, so that no orbit next to it
-    # is missed between two points.
+    # The next turn of Λ is made a point of the grid, so that an orbit next to it
+    # is not missed between two points.
     turn, turns = _bracket(curves.point(grid[1:]).fold)
     summit = curves.root(_fold, grid[1:], turn, turns)
     grid = np.sort(np.concatenate([grid, np.where(turns, summit, high)[np.newaxis]]), axis=0)
@@ -219,13 +233,23 @@ def orbit_at(
     Parameters
     ----------
     contact : SpringDamper
-        ϖ and ζ, scalars or arrays, and the release rule.
+        ϖ and ζ < 1, scalars or arrays, and the release rule.
     n, amplitude : array_like
         Index of the family and Λ.
     side : Side
-        Side of the saddle-node. Where the unstable side turns again, as it
-        does for soft contacts, the orbit nearest to the saddle-node is meant;
-        there may be others with longer contacts.
+        Side of the saddle-node. Where the unstable side turns again, as it does for
+        compliant contacts, the result is the orbit nearest to the saddle-node; there may be
+        others with longer contacts.
+
+    Returns
+    -------
+    SpringDamperOrbit
+        Of the shape to which the arguments broadcast.
+
+    Raises
+    ------
+    ModelError
+        If n is not a positive integer, or ζ ≥ 1.
 
     Examples
     --------
@@ -238,12 +262,17 @@ def orbit_at(
 
 
 def orbits_at(contact: SpringDamper, n: int, amplitude: float) -> SpringDamperOrbit:
-    """All n-T orbits of one contact at one Λ, in order of contact duration.
+    """All n-T orbits of one contact at one Λ, in order of contact duration, shape (count,).
 
-    Every root of Λ(ε) = Λ at which the ball comes in and leaves. The turns of Λ
-    between the points of a fine grid are found first, so that two orbits next
-    to a turn are not missed. For ϖ above some 10³ the search does not reach
-    contacts longer than 2·10⁵ steps.
+    These are the roots of Λ(ε) = Λ at which the ball approaches the table at impact and leaves it
+    at release; they need not be admissible. The turns of Λ between the points of a fine grid are
+    found first, so that two orbits next to a turn are not missed. For ϖ above some 10³ the search
+    does not reach contacts longer than 2·10⁵ steps of 0.02 radians.
+
+    Raises
+    ------
+    ModelError
+        If n is not a positive integer, or ζ ≥ 1.
 
     Examples
     --------

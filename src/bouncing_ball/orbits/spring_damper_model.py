@@ -1,4 +1,4 @@
-"""The spring-damper model: a contact and its n-T orbits."""
+"""The spring-damper model: a contact together with its n-T orbits."""
 
 from __future__ import annotations
 
@@ -19,14 +19,16 @@ from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.spring_damper_system import SpringDamperSystem
 from bouncing_ball.orbits.stability import Side
 
-# Units in the last place of z′_i that rounding leaves of a Λ = 0; at most 3.9 were
+# Rounding of a Λ that is exactly 0, in units in the last place of z′_i; at most 3.9 were
 # seen for ϖ = 0.6…10⁶ and n = 1…100, under both rules.
 _UNITS = 8
 
 
 @dataclass(frozen=True, repr=False)
 class SpringDamperModel(ImpactModel):
-    """A ball on a spring-damper.
+    """A ball on a table with a spring-damper contact (Eqs. 10-27).
+
+    Its orbits lie on an explicit curve, see :mod:`bouncing_ball.orbits.spring_damper_branch`.
 
     Parameters
     ----------
@@ -48,12 +50,11 @@ class SpringDamperModel(ImpactModel):
 
     @property
     def label(self) -> str:
-        """ϖ and ζ."""
         contact = self.contact
         return f"ϖ = {float(contact.frequency_ratio):g}, ζ = {float(contact.damping_ratio):.4g}"
 
     def signature(self, speed: ArrayLike) -> Instant:
-        """The contact's own, the same at every speed."""
+        """The signature of the contact, which is the same at every speed."""
         return Signature(self.contact)(speed)
 
     def orbit(
@@ -63,13 +64,17 @@ class SpringDamperModel(ImpactModel):
         return limits.orbit_at(self.contact, n, amplitude, Side(side))
 
     def orbits(self, n: int, amplitude: float) -> SpringDamperOrbit:
-        """All n-T orbits of one contact at one Λ, in order of contact duration."""
+        """All n-T orbits of one contact at one Λ, in order of contact duration, shape (count,).
+
+        See :func:`~bouncing_ball.orbits.spring_damper_limits.orbits_at`.
+        """
         return limits.orbits_at(self.contact, n, amplitude)
 
     def saddle_node(self, n: ArrayLike) -> SpringDamperOrbit:
         """The orbits at the saddle-node; NaN where the branch has none.
 
-        Without dissipation it is at Λ = 0, which is a difference of terms as large as z′_i.
+        Without dissipation it is at Λ = 0. There Λ is the difference of terms as large as z′_i, so
+        that a Λ of the order of their rounding is set to 0.
 
         Examples
         --------
@@ -83,23 +88,26 @@ class SpringDamperModel(ImpactModel):
         return replace(found, amplitude=lam)
 
     def period_doubling(self, n: ArrayLike) -> SpringDamperOrbit:
-        """The orbits at the period doubling nearest to it; NaN where there is none."""
+        """The orbits at the period doubling nearest to the saddle-node; NaN where there is none."""
         excess = limits.period_doubling(self.contact, n)
         return SpringDamperOrbit.on_branch(excess, self.contact, n)
 
     def nearest(self, orbit: SpringDamperOrbit) -> SpringDamperOrbit:
-        """The orbits of the closed form nearest to given ones in (Λ cos φ, Λ sin φ, ε)."""
+        """The points of the branch that are nearest to given orbits in (Λ cos φ, Λ sin φ, ε)."""
         contact, n = orbit.law, orbit.n
         duration = orbit.contact_duration * contact.damped_frequency - contact.free_angle
         x, y = orbit.amplitude * np.cos(orbit.phase), orbit.amplitude * np.sin(orbit.phase)
         return SpringDamperOrbit.on_branch(nearest_excess(contact, n, x, y, duration), contact, n)
 
     def system(self, n: int | np.ndarray) -> SpringDamperSystem:
-        """The paper's equations, continued in Λ."""
+        """The paper's equations (Eqs. 21-27) as a continuation problem in Λ."""
         return SpringDamperSystem(n, self.contact)
 
     def permanent_contact_threshold(self) -> np.ndarray:
-        """Λ_SD(ϖ) or Λ_F(ϖ)."""
+        """Λ up to which the ball stays on the table.
+
+        It is Λ_SD(ϖ) for the displacement release and Λ_F(ϖ) for the force release.
+        """
         contact = self.contact
         return permanent_contact_threshold(
             contact.frequency_ratio, contact.damping_ratio, contact.release

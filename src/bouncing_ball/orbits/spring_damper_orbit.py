@@ -1,7 +1,4 @@
-r"""n-T orbits of the spring-damper model: their contact, equations and stability.
-
-All quantities are dimensionless.
-"""
+"""n-T orbits of the spring-damper model: their contact, equations and stability."""
 
 from typing import Any, Self
 
@@ -26,14 +23,20 @@ class SpringDamperOrbit(Orbit):
 
     @classmethod
     def from_branch(cls, point: BranchPoint, contact: SpringDamper, n: ArrayLike) -> Self:
-        """The orbit at a point of the closed-form branch."""
+        """The orbits at points of the closed-form branch."""
         return cls(
             n, contact, point.amplitude, point.phase, point.contact_duration, point.u + point.x
         )
 
     @classmethod
     def on_branch(cls, excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> Self:
-        """The orbits with excess angles ε of the contact; NaN where ε is."""
+        """The orbits with excess angles ε of the contact; NaN where ε is NaN.
+
+        Raises
+        ------
+        ModelError
+            If ζ ≥ 1.
+        """
         return cls.from_branch(branch_point(excess, contact, n), contact, n)
 
     @property
@@ -42,19 +45,21 @@ class SpringDamperOrbit(Orbit):
         return self.law.frequency_ratio
 
     def contact_flow(self, time: np.ndarray) -> Any:
-        """The contact's motion and its derivatives at times 0 ≤ τ ≤ τ_b."""
+        """The contact's :class:`~bouncing_ball.contacts.spring_damper.ContactFlow` at times 0 ≤ τ ≤
+        τ_b.
+        """
         u = self.relative_impact_velocity
         return self.law.flow(time, 0.0, u, self.phase, self.amplitude)
 
     def contact_motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """δ and δ′ at times 0 ≤ τ ≤ τ_b in contact."""
+        """δ and δ′ at times 0 ≤ τ ≤ τ_b in contact (Eqs. 12-13), of the shape of the times."""
         flow = self.contact_flow(time)
         return flow.displacement, flow.velocity
 
     def residual(self) -> np.ndarray:
         """Release, velocity and landing defects (Eqs. 23-25), shape (..., 3).
 
-        The first is ϖ (δ_b + κ δ′_b), of the order of a velocity as the second.
+        The first is ϖ (δ_b + κ δ′_b), which is of the order of a velocity like the second.
         """
         flow, contact = self.contact_flow(self.contact_duration), self.law
         release = contact.frequency_ratio * flow.displacement
@@ -64,9 +69,9 @@ class SpringDamperOrbit(Orbit):
     def contact_jacobian(self) -> np.ndarray:
         """Jacobian of (τ_b, δ_b, δ′_b) in (τ, δ′, Λ) at the impact, shape (..., 3, 3).
 
-        The duration is differentiated through δ_b + κ δ′_b = 0.
+        The duration is differentiated through the release condition δ_b + κ δ′_b = 0.
         """
-        # Rows δ, δ′; columns (τ, δ′, Λ) of the start, and the time.
+        # Rows δ, δ′; columns (τ, δ′, Λ) of the start. The last array is the derivative in time.
         jacobian = self.contact_flow(self.contact_duration).jacobian
         state, by_time = jacobian[..., [3, 2, 4]], jacobian[..., 0]
         lag = np.asarray(self.law.lag)
@@ -77,6 +82,6 @@ class SpringDamperOrbit(Orbit):
         return np.concatenate([duration[..., np.newaxis, :], state], axis=-2)
 
     def determinant(self) -> np.ndarray:
-        """exp(-2ζϖ τ_b), exactly."""
+        """exp(-2ζϖ τ_b), exactly, because the flow contracts in contact only, at the rate 2ζϖ."""
         loss = np.asarray(self.law.damping_ratio) * self.law.frequency_ratio
         return np.exp(-2 * loss * self.contact_duration)

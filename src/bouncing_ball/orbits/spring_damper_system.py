@@ -3,8 +3,8 @@ r"""The paper's equations of the n-T orbits (Eqs. 21-27) for a continuation.
 Of the paper's six unknowns, A and B follow from the start of contact
 (Eqs. 21-22) and z′_b from the periodicity (Eq. 27), all linearly. The rest,
 ``(φ, z′_i, ϖ τ_b)``, solves the three equations left: release (Eq. 23), the
-velocity at release (Eq. 24) and landing (Eq. 25). The duration is counted in
-the contact's own time, which keeps it of order one.
+velocity at release (Eq. 24) and landing (Eq. 25). The duration is measured in units of
+1/ϖ, in which it is of order one.
 
 The continuation parameter is Λ, or ln ϖ at a fixed Λ.
 """
@@ -21,13 +21,13 @@ from bouncing_ball.orbits.system import OrbitSystem
 
 @dataclass(frozen=True)
 class SpringDamperSystem(OrbitSystem):
-    """n-T orbits as a :class:`~bouncing_ball.continuation.problem.Problem`.
+    """The equations of n-T orbits as a :class:`~bouncing_ball.continuation.problem.Problem`.
 
     Parameters
     ----------
     n : int
         Index of the family. It, the contact and Λ may be arrays along the leading axis of y,
-        to solve for many systems at once.
+        to solve for many systems at the same time.
     contact : SpringDamper
         ϖ, ζ and the release rule.
     amplitude : float, optional
@@ -49,7 +49,7 @@ class SpringDamperSystem(OrbitSystem):
         return SpringDamperOrbit(self.n, contact, lam, phase, duration, impact)
 
     def point(self, orbit: SpringDamperOrbit) -> np.ndarray:
-        """(φ, z′_i, ϖ τ_b, p)."""
+        """y = (φ, z′_i, ϖ τ_b, p) of orbits, shape (..., 4)."""
         omega = np.asarray(orbit.law.frequency_ratio)
         parameter = orbit.amplitude if self.amplitude is None else np.log(omega)
         angle = omega * orbit.contact_duration
@@ -79,9 +79,15 @@ class SpringDamperSystem(OrbitSystem):
         return np.stack([release, *o.flight_jacobian(start, [d_duration, *ends])], axis=-2)
 
     def guess(self, amplitude: float, frequency_ratio: float) -> np.ndarray:
-        """The stable restitution orbit with a free contact: y to start from.
+        """The stable orbit of the restitution model with a free contact: a start y for Newton's
+        method.
 
-        Close to a solution for ϖ ≫ 1 only.
+        It is close to a solution for ϖ ≫ 1 only.
+
+        Raises
+        ------
+        NoOrbitError
+            If Λ lies below the saddle-node of the restitution model.
         """
         contact = replace(self.contact, frequency_ratio=frequency_ratio)
         phase = restitution_orbit.phase(self.n, contact.restitution, amplitude)

@@ -14,9 +14,9 @@ from bouncing_ball.errors import ModelError
 
 
 def multipliers(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
-    """Floquet multipliers, complex, shape (..., 2), the larger modulus first.
+    """Floquet multipliers, complex, shape (..., 2), the one of larger modulus first.
 
-    The second is the determinant over the first, which keeps its digits when
+    The second is the determinant divided by the first, and thus keeps its digits where
     the two differ by orders of magnitude.
 
     Examples
@@ -35,11 +35,12 @@ def multipliers(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
 
 
 class Side(StrEnum):
-    """Side of the saddle-node on which an orbit lies; ModelError for another name."""
+    """Side of the saddle-node on which an orbit lies; another name raises ModelError."""
 
     STABLE = "stable"
-    """The side that is stable next to the fold: the shorter contact."""
+    """The side that is stable next to the saddle-node, with the shorter contact."""
     UNSTABLE = "unstable"
+    """The side that is unstable next to the saddle-node, with the longer contact."""
 
     @classmethod
     def _missing_(cls, value: object) -> "Side":
@@ -47,13 +48,13 @@ class Side(StrEnum):
 
 
 class Bifurcation(StrEnum):
-    """The two losses of stability of an orbit along its branch."""
+    """The two bifurcations at which an orbit loses its stability along the branch."""
 
     SADDLE_NODE = "saddle-node"
     PERIOD_DOUBLING = "period doubling"
 
     def test(self, trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
-        """``1 ∓ tr + det``: zero at the bifurcation, positive on the stable side.
+        """``1 ∓ tr + det``: zero at the bifurcation, positive where the orbit is stable.
 
         Examples
         --------
@@ -66,6 +67,8 @@ class Bifurcation(StrEnum):
 
 def is_stable(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
     """Whether both multipliers lie inside the unit circle (Jury's conditions).
+
+    These are ``|det| < 1`` and ``1 ∓ tr + det > 0``.
 
     Examples
     --------

@@ -1,10 +1,10 @@
-r"""The equations of n-T orbits, for a continuation.
+"""The equations of n-T orbits as a continuation problem.
 
 Where a contact follows from its start the unknowns are (φ, z′_i), the phase and the velocity
-at the impact, and the parameter is Λ. The contact that starts so gives its duration and its
-end, so that two equations are left: velocity and height of the flight that follows
-(Eqs. 24-25). All are of order one however short the contact is. Of an impact in the
-corrected model the phase alone is unknown.
+at the impact, and the parameter is Λ. The contact that starts there gives its duration and its
+end, which leaves two equations: velocity and height of the flight that follows (Eqs. 24-25).
+Both are of order one however short the contact is. In the corrected model the only unknown is
+the phase of the instant.
 """
 
 from abc import ABC, abstractmethod
@@ -27,27 +27,35 @@ _MARGIN = 1e-4
 class OrbitSystem(ABC):
     """A model's equations as a :class:`~bouncing_ball.continuation.problem.Problem`.
 
-    y holds the unknowns and, last, the continuation parameter, along its last axis.
+    The last axis of y holds the N unknowns and, as its last entry, the continuation parameter.
     """
 
     @abstractmethod
     def orbit(self, y: np.ndarray) -> Any:
-        """The orbits at points y, with all their observables."""
+        """The orbits at points y of shape (..., N + 1), with all their observables."""
 
     @abstractmethod
     def point(self, orbit: Any) -> np.ndarray:
-        """y of given orbits."""
+        """The points y of given orbits, shape (..., N + 1): the inverse of :meth:`orbit`."""
 
     @abstractmethod
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """Exact Jacobian of the residual, shape (..., N, N + 1)."""
 
     def residual(self, y: np.ndarray) -> np.ndarray:
-        """The last N defects, shape (..., N): of a contact those of velocity and landing."""
+        """The last N defects of the orbits, shape (..., N).
+
+        These are velocity and landing where the contact follows from its start.
+        """
         return self.orbit(y).residual()[..., 1 - y.shape[-1] :]
 
     def events(self) -> tuple[Event, ...]:
-        """Bifurcations, and the ends of the domain in which an orbit makes sense."""
+        """Events along a branch: the bifurcations, and the ends of the domain in which orbits
+        exist.
+
+        Terminal are the loss of contact (the ball no longer approaches the table at impact), of the
+        release (it no longer leaves at the end of contact) and of the flight.
+        """
 
         def bifurcation(kind: Bifurcation) -> Event:
             return Event(kind, lambda y: kind.test(*self.orbit(y).trace_and_determinant()))
@@ -77,7 +85,7 @@ class OrbitSystem(ABC):
 
 @dataclass(frozen=True)
 class ContactSystem(OrbitSystem):
-    """Those of orbits whose contact follows from its start; y = (φ, z′_i, Λ), or (ψ, Λ).
+    """The system of orbits whose contact follows from its start; y = (φ, z′_i, Λ), or (ψ, Λ).
 
     Parameters
     ----------
@@ -104,7 +112,7 @@ class ContactSystem(OrbitSystem):
 
     @cached_property
     def _known(self) -> Callable:
-        # A step along a branch asks for its residual, Jacobian and events in turn.
+        # A step along a branch evaluates residual, Jacobian and events at the same points.
         def orbit(shape: tuple[int, ...], entries: bytes) -> Any:
             *unknowns, amplitude = np.moveaxis(np.frombuffer(entries).reshape(shape), -1, 0)
             return self.at(self.n, self.law, amplitude, *unknowns)
@@ -116,7 +124,7 @@ class ContactSystem(OrbitSystem):
         return self._known(y.shape, y.tobytes())
 
     def point(self, orbit: Any) -> np.ndarray:
-        """The orbits' unknowns, and Λ."""
+        """The orbits' unknowns with Λ behind them, shape (..., N + 1)."""
         return np.stack(np.broadcast_arrays(*orbit.unknowns, orbit.amplitude), axis=-1)
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:

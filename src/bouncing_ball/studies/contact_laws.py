@@ -1,9 +1,9 @@
-r"""The paper's comparison on the contacts that engineers use (beyond the paper).
+"""The paper's comparison on the contacts that engineers use (beyond the paper).
 
 All laws have the same restitution coefficient r and the same duration D of the
-free impact, at the impact speed of the orbit in question. What stands for ϖ, which a
-Hertz contact does not have, is π/D: that of the elastic linear contact of the
-same duration. Errors are relative to the value of the exact orbit on the contact.
+free impact, at the impact speed of the orbit in question. A Hertz contact has no ϖ; π/D takes
+its place, which is ϖ of the elastic linear contact with the same
+duration. Errors are relative to the value of the exact orbit on the contact.
 """
 
 from collections.abc import Callable
@@ -49,7 +49,7 @@ class OneOrbit(OrbitsAlongRatio):
 
 
 class LawErrors(OneOrbit):
-    """The error tolerated of its greatest height."""
+    """One orbit along π/D, and the relative error tolerated of its greatest height."""
 
     tolerance: Tolerance
 
@@ -67,6 +67,19 @@ def exact_model(
 ) -> ImpactModel:
     """The exact models of contacts with r and D at their speeds, arrays of one shape.
 
+    Parameters
+    ----------
+    name : str
+        One of :data:`NAMES`.
+    restitution : float
+    duration, speed : array_like
+        D, and the impact speed at which the contact has r and D.
+
+    Raises
+    ------
+    ModelError
+        If no law of this name has these r and D.
+
     Examples
     --------
     A linear contact has them at every speed:
@@ -83,12 +96,14 @@ def exact_model(
 
 
 def own_models(name: str, orbit: OneOrbit, ratios: np.ndarray) -> Any:
-    """The exact models of contacts with r and π/D at their own orbits' speeds.
+    """The exact models of contacts with r and π/D at the impact speeds of their orbits.
+
+    ``ratios`` are the values of π/D, shape (m,).
 
     Raises
     ------
     NoOrbitError, ModelError
-        If a contact has no such orbit: one that is longer than the cycle, for example.
+        If a contact has no such orbit, for example because D exceeds the cycle.
     """
     r, duration = orbit.restitution, np.pi / ratios
     if name in LINEAR:
@@ -97,9 +112,14 @@ def own_models(name: str, orbit: OneOrbit, ratios: np.ndarray) -> Any:
 
 
 def along(name: str, orbit: OneOrbit, value: Callable[[Any], np.ndarray]) -> np.ndarray:
-    """A value of the exact models along π/D, shape (..., ϖ).
+    """A quantity of the exact models along π/D, shape (..., ϖ).
 
-    NaN below the softest contact from which on all have their orbit.
+    It is NaN below the most compliant contact from which on all contacts have their orbit.
+
+    Raises
+    ------
+    NoOrbitError
+        If no contact has the orbit.
     """
     ratios = orbit.frequency_ratio.grid()
     for first in range(ratios.size):
@@ -110,7 +130,7 @@ def along(name: str, orbit: OneOrbit, value: Callable[[Any], np.ndarray]) -> np.
 
 
 def corrected_values(exact: Any, *asked: Any) -> np.ndarray:
-    """What the corrected restitution models of contacts say, shape (quantity, ϖ)."""
+    """Quantities in the corrected restitution models of contacts, shape (quantity, ϖ)."""
     if isinstance(exact, SpringDamperModel):
         return values(CorrectedModel.of_contact(exact.contact), *asked)
     each = (CorrectedModel(Signature(exact.law.take(k))) for k in range(exact.law.size))
@@ -118,8 +138,11 @@ def corrected_values(exact: Any, *asked: Any) -> np.ndarray:
 
 
 def _errors(name: str, parameters: LawErrors) -> tuple[np.ndarray, float]:
-    """Relative errors of both simple models, (model, quantity, ratio), and the π/D from which on
-    the greatest height of the restitution model is right."""
+    """Relative errors of both simple models, and a threshold.
+
+    The errors are moduli, shape (model, quantity, ratio); the threshold is the π/D from which on
+    the error of the restitution model's greatest height is tolerable.
+    """
     n, lam = parameters.n, parameters.amplitude
     rigid, asked = RestitutionModel(parameters.restitution), (n, lam, QUANTITIES)
 
@@ -140,8 +163,14 @@ def _errors(name: str, parameters: LawErrors) -> tuple[np.ndarray, float]:
 def law_errors(parameters: LawErrors) -> xr.Dataset:
     """Errors of the restitution model and of the corrected one on all laws, along π/D.
 
-    Moduli, shape (law, model, quantity, π/D), and the π/D from which the greatest height of the
-    restitution model is right, shape (law,); NaN where there is none.
+    The dataset has ``relative_error`` (law, model, quantity, duration_ratio), the modulus, and
+    ``error_threshold`` (law,), the π/D from which the greatest height of the restitution model is
+    within the tolerance; NaN where there is none.
+
+    Raises
+    ------
+    NoOrbitError
+        If a law has the orbit at no π/D.
     """
     errors, threshold = zip(*(_errors(name, parameters) for name in NAMES), strict=True)
     return described(
@@ -167,7 +196,7 @@ def _bounds(name: str, parameters: FiguresOfLaws) -> np.ndarray:
 
 
 def _domains(name: str, parameters: FiguresOfLaws) -> np.ndarray:
-    """Λ and φ along branches of the first family from the unstable side over the fold.
+    """Λ and φ along branches of the first family, from the unstable side over the fold.
 
     Shape (2, ratio, point).
     """
@@ -185,16 +214,24 @@ def _domains(name: str, parameters: FiguresOfLaws) -> np.ndarray:
 def figures_of_laws(parameters: FiguresOfLaws) -> xr.Dataset:
     """Table 1 and Figs. 8, 14 and 16 on contacts of the same r and duration.
 
-    Λ of the bifurcations, shape (law, bound, π/D, n); Λ and φ along branches, shape
-    (law, π/D, point); greatest height and threshold of permanent contact, shape (law, π/D), NaN
-    where a contact has no such orbit.
+    The dataset has ``bifurcation_amplitude`` (law, bound, shown_ratio, n), values of Λ;
+    ``amplitude`` and ``phase`` in rad along branches (law, shown_ratio, point); ``max_height`` and
+    ``threshold_amplitude`` of permanent contact (law, duration_ratio), NaN where a contact has no
+    such orbit or threshold; and the number ``restitution_max_height``. Both ratios are π/D.
+
+    Raises
+    ------
+    NoOrbitError
+        If a law has the orbit at no π/D.
+    ModelError
+        If a law has no contact with r and D.
     """
     one, names = parameters.heights, ("linear", *HERTZ)
     r, n, lam, ratios = one.restitution, one.n, one.amplitude, one.frequency_ratio.grid()
     bounds = [_bounds(name, parameters) for name in names]
     branches = np.array([_domains(name, parameters) for name in names])
     height = [along(name, one, lambda exact: exact.orbit(n, lam).max_height) for name in names]
-    # NaN where no contact that just touches was found.
+    # NaN where the law has no such contact, or no steady motion that just touches was found.
     held = np.full((len(names), ratios.size), np.nan)
     for place in np.ndindex(held.shape):
         with suppress(ModelError):

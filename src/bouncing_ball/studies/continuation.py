@@ -1,7 +1,7 @@
 """The continuation of n-T orbits of the spring-damper model, as the paper does it.
 
-From the restitution orbit at a very stiff contact, along ϖ to the contact wanted, then along Λ
-to both sides.
+It starts from the restitution model's orbit at a very stiff contact, follows the orbit along ϖ
+to the contact in question, and then follows the branch along Λ to both sides.
 """
 
 from typing import Annotated
@@ -47,7 +47,8 @@ class Continuation(Parameters):
 def _on_the_way(
     n: int, contact: SpringDamper, amplitude: float, continuation: Continuation
 ) -> np.ndarray:
-    """(φ, z′_i, ϖ τ_b) of the orbit at Λ, followed along ln ϖ from a very stiff contact.
+    """(φ, z′_i, ϖ τ_b) of the orbit at Λ, followed along ln ϖ from a very stiff contact, shape
+    (3,).
 
     Raises
     ------
@@ -87,14 +88,14 @@ def _start(
 ) -> np.ndarray:
     """A point of the branch along Λ of a contact, up to Λ = ``top``.
 
-    Half way between the two bifurcations of the restitution orbit, or to the
-    end of the window. Where that way is blocked, the orbit of the closed form
-    starts the branch.
+    Λ is half way between the two bifurcations of the restitution model's orbit, or between the
+    saddle-node and ``top`` if that is lower. Where this orbit cannot be followed to the contact,
+    the branch starts from an orbit of the closed form.
 
     Raises
     ------
     NoOrbitError
-        If there is no orbit there either.
+        If the closed form has no orbit there either.
     """
     rigid = RestitutionModel(restitution)
     node, doubling = (float(x.amplitude) for x in (rigid.saddle_node(n), rigid.period_doubling(n)))
@@ -120,14 +121,33 @@ def branch_along_amplitude(
     release: Release,
     continuation: Continuation,
 ) -> tuple[SpringDamperSystem, Branch]:
-    """The whole n-T branch up to Λ = ``amplitude_max``, with its special points.
+    """The n-T branch from one end to the other, up to Λ = ``amplitude_max``, with its special
+    points.
+
+    Parameters
+    ----------
+    n : int
+        Index of the family.
+    restitution, frequency_ratio : float
+        r, which gives ζ by Eq. 16, and ϖ.
+    amplitude_max : float
+        Λ at which the branch is left.
+    release : Release
+    continuation : Continuation
+
+    Returns
+    -------
+    system : SpringDamperSystem
+        The equations, with y = (φ, z′_i, ϖ τ_b, Λ).
+    branch : Branch
+        Its solutions, from the unstable to the stable side.
 
     Raises
     ------
     NoOrbitError
-        If there is none.
+        If there is no branch up to ``amplitude_max``.
     ContinuationError
-        If it is not followed to its end.
+        If the branch is not followed to its end.
     """
     contact = SpringDamper.from_restitution(restitution, frequency_ratio, release)
     system = SpringDamperModel(contact).system(n)

@@ -1,4 +1,4 @@
-r"""How stiff a contact must be for the restitution model to be right.
+"""How stiff a contact must be for the restitution model to be accurate.
 
 The relative error of a quantity q of the restitution model is
 ``|q_SD(ϖ) - q_CR| / |q_CR|`` (Eqs. 37-38 for the greatest height and the
@@ -31,13 +31,13 @@ class ErrorsAlongRatio(OrbitsAlongRatio):
 
 
 class ErrorThresholds(ErrorsAlongRatio):
-    """One orbit, the quantities compared on it and the errors tolerated."""
+    """One orbit, the quantities compared on it and the relative errors tolerated."""
 
     tolerances: Many[Tolerance]
 
 
 class PermanentContactError(PermanentContact):
-    """The error tolerated of the threshold of permanent contact."""
+    """The relative error tolerated of the threshold of permanent contact."""
 
     tolerance: Tolerance
 
@@ -49,9 +49,22 @@ def thresholds_along(
     tolerances: Sequence[float],
     restitution: float | None = None,
 ) -> xr.Dataset:
-    """Errors along ϖ, shape (quantity, ϖ), and thresholds, shape (quantity, tolerance).
+    """Errors of the restitution model along ϖ, and the thresholds of tolerances.
 
-    Of the restitution model with the r of Eq. 16, if no other is given.
+    Parameters
+    ----------
+    one : OrbitsAlongRatio
+    release : Release
+    quantities : sequence of Quantity
+    tolerances : sequence of float
+    restitution : float, optional
+        r of the restitution model; by default the r of Eq. 16.
+
+    Returns
+    -------
+    Dataset
+        ``relative_error`` (quantity, ϖ), moduli, infinite where a model lacks the quantity;
+        ``error_threshold`` in ϖ and ``threshold_status``, both (quantity, tolerance).
     """
     simple, ratios = RestitutionModel(restitution or one.restitution), one.frequency_ratio.grid()
 
@@ -77,13 +90,23 @@ def thresholds_along(
 
 
 def error_thresholds(parameters: ErrorThresholds, release: Release) -> xr.Dataset:
-    """Errors along ϖ, shape (quantity, ϖ), and thresholds in ϖ, shape (quantity, tolerance)."""
+    """Errors of the restitution model along ϖ, and the ϖ above which each is tolerable.
+
+    The dataset has ``relative_error`` (quantity, ϖ), the modulus, infinite where a model lacks the
+    quantity; ``error_threshold`` (quantity, tolerance), a ϖ, NaN where there is none; and
+    ``threshold_status`` (quantity, tolerance), a text.
+    """
     asked = parameters.quantities, parameters.tolerances
     return describe(thresholds_along(parameters, release, *asked))
 
 
 def height_error(parameters: OrbitErrors, release: Release) -> xr.Dataset:
-    """Greatest height along ϖ in both models, and ϖ_h for the tolerance (Eq. 37, Fig. 14)."""
+    """Greatest height along ϖ in both models, and ϖ_h for the tolerance (Eq. 37, Fig. 14).
+
+    The dataset has the variables of :func:`error_thresholds` for the one quantity, and
+    ``max_height``, ``phase`` in rad, ``contact_duration``, ``impact_velocity`` and ``admissible``
+    of the exact orbit, shape (ϖ,), NaN where there is none; ``restitution_max_height`` is a number.
+    """
     n, lam, ratios = parameters.n, parameters.amplitude, parameters.frequency_ratio.grid()
     dataset = thresholds_along(parameters, release, [Quantity.MAX_HEIGHT], [parameters.tolerance])
     orbit = parameters.exact(ratios, release).orbit(n, lam)
@@ -96,8 +119,17 @@ def height_error(parameters: OrbitErrors, release: Release) -> xr.Dataset:
 
 
 def permanent_contact_error(parameters: PermanentContactError, release: Release) -> xr.Dataset:
-    """Permanent contact along ϖ in both models, and ϖ_PC for the tolerance (Eq. 38, Fig. 16)."""
-    # The threshold of permanent contact knows neither orbit nor amplitude.
+    """Permanent contact along ϖ in both models, and ϖ_PC for the tolerance (Eq. 38, Fig. 16).
+
+    The dataset has the variables of :func:`error_thresholds` for the one quantity, and those of
+    :func:`~bouncing_ball.studies.permanent_contact_curve.permanent_contact`.
+
+    Raises
+    ------
+    ModelError
+        If the damping is too strong for a minimum of the threshold to exist.
+    """
+    # The threshold of permanent contact depends neither on n nor on Λ.
     nowhere = OrbitsAlongRatio.model_construct(n=1, amplitude=1.0, **dict(parameters))
     asked = [Quantity.PERMANENT_CONTACT]
     dataset = thresholds_along(nowhere, release, asked, [parameters.tolerance])

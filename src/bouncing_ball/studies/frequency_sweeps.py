@@ -10,13 +10,13 @@ from pydantic import AfterValidator, ValidationInfo
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import describe
+from bouncing_ball.orbits.columns import OBSERVED, columns
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.parameters import Amplitude, Family, Many, Parameters, Restitution, Span
-from bouncing_ball.studies.columns import OBSERVED, columns
 from bouncing_ball.studies.parameters import OrbitAmplitude, require_orbit
 
-# Relative distance of two frequency ratios that are one but for the rounding of a grid.
+# Relative distance of two frequency ratios that differ by the rounding of a grid only.
 _ROUNDING = 1e-12
 
 
@@ -51,9 +51,19 @@ class Sweep(Parameters):
 
 
 def with_round_values(ratios: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """A grid of ϖ with 2, 5 and the decades of its range, and where these are.
+    """A grid of ϖ with 2, 5 and the decades of its range added, and a mask of these.
 
-    A sample that is one of them but for rounding makes room for it.
+    A sample that equals one of them up to rounding is replaced by it.
+
+    Parameters
+    ----------
+    ratios : ndarray, shape (samples,)
+        Increasing.
+
+    Returns
+    -------
+    ratios, labelled : ndarray
+        The merged grid, increasing, and where it has one of the round values.
 
     Examples
     --------
@@ -89,18 +99,21 @@ def _sweep(
 
 
 def apparent_restitution(parameters: Cases, release: Release) -> xr.Dataset:
-    """r_a along ϖ for cases of (r, Λ), shape (case, ϖ); NaN where there is no orbit (Eq. 17).
+    """Orbits along ϖ for cases of (r, Λ), of which Figs. 5 and 6 show r_a (Eq. 17).
 
-    Figures 5 and 6.
+    The dataset has ``apparent_restitution``, the other observables of the stable orbit,
+    ``max_height``, ``stable`` and ``admissible``, shape (case, ϖ), NaN where there is no orbit;
+    ``restitution`` and ``amplitude``, shape (case,). Phases are in rad.
     """
     r, lam = zip(*((case.restitution, case.amplitude) for case in parameters.cases), strict=True)
     return describe(_sweep(parameters.n, r, lam, parameters.frequency_ratio.grid(), release))
 
 
 def frequency_sweep(parameters: Sweep, release: Release) -> xr.Dataset:
-    """Orbits along ϖ for one r and several Λ, shape (case, ϖ), and their restitution limits.
+    """Orbits along ϖ for one r and several Λ, and their limits in the restitution model (Fig. 10).
 
-    NaN where there is no orbit (Fig. 10).
+    The dataset has the variables of :func:`apparent_restitution`; ``restitution_phase`` (case,) in
+    rad, and the numbers ``restitution_bounce_velocity`` = nπ and ``restitution_impact_velocity``.
     """
     return describe(_with_limits(parameters, parameters.frequency_ratio.grid(), release))
 
@@ -115,7 +128,10 @@ def _with_limits(parameters: Sweep, ratios: np.ndarray, release: Release) -> xr.
 
 
 def poincare_map(parameters: Sweep, release: Release) -> xr.Dataset:
-    """The same at round ϖ too, which are labelled in Fig. 13."""
+    """Orbits along ϖ that includes round values, which are labelled in Fig. 13.
+
+    The dataset has the variables of :func:`frequency_sweep`, and ``labelled`` (ϖ,), a mask.
+    """
     ratios, labelled = with_round_values(parameters.frequency_ratio.grid())
     dataset = _with_limits(parameters, ratios, release)
     return describe(dataset.assign(labelled=("frequency_ratio", labelled)))

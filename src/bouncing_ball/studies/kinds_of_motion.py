@@ -11,8 +11,8 @@ from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.parameters import Family, LossyRestitution, Many, Parameters, number
 from bouncing_ball.studies.parameters import OrbitAmplitude
 
-# Two states are the same within this: a chaotic motion comes so close to an earlier
-# state once in 10⁸ impacts, and a stable one comes closer by any factor below 1.
+# Two states are equal within this distance: a chaotic motion comes so close to an earlier
+# state once in 10⁸ impacts, whereas a stable one approaches it geometrically.
 _SAME = 1e-6
 
 
@@ -41,13 +41,11 @@ class Motions(Parameters):
 
 
 def kinds_of_motion(parameters: Motions) -> xr.Dataset:
-    """What the balls do that start beside an n-T orbit, one motion for each Λ, shape (case,).
+    """The motion of balls that start beside an n-T orbit, one motion for each Λ.
 
-    The period is 0 unless all balls have the same one. The exponent is that of
-    all balls together, each until it sticks.
-
-    Every amplitude must be one at which there is an orbit, which the type of the parameters
-    checks.
+    The dataset has ``amplitude``; ``motion_period``, in impacts, 0 unless all balls have the same
+    period; ``lyapunov_exponent`` per impact, of all balls together, each until it sticks to the
+    table; and its standard error ``lyapunov_error``; all of shape (case,).
     """
     n, r, ensemble = parameters.n, parameters.restitution, parameters.ensemble
     model, balls = RestitutionModel(r), ensemble.balls
@@ -55,8 +53,8 @@ def kinds_of_motion(parameters: Motions) -> xr.Dataset:
     orbit = model.orbit(n, amplitude)
     beside = orbit.phase + ensemble.displacement * np.arange(1, balls + 1) / balls
     table, speed = amplitude * np.cos(beside), orbit.impact_velocity
-    # So far from the orbit the table may fall faster than its ball: there is no impact at that
-    # velocity, and the ball starts with the orbit's relative one.
+    # Far from the orbit the table may fall faster than the ball of the orbit, so that there is no
+    # impact at this velocity; the ball then starts with the relative velocity of the orbit.
     velocity = np.where(speed < table, speed, table + orbit.relative_impact_velocity)
     impacts = ensemble.transient + ensemble.impacts
     sequence = model.simulate(amplitude, beside, velocity, impacts + 1)

@@ -1,4 +1,4 @@
-"""The 1-T orbits into which permanent contact continues: their windows and their basins."""
+"""The 1-T orbits into which permanent contact continues: their stable windows and their basins."""
 
 from typing import Annotated
 
@@ -25,7 +25,7 @@ from bouncing_ball.studies.parameters import OrbitAmplitude
 
 
 class Windows(Parameters):
-    """Contacts whose stable windows are looked for, of several r and along ϖ."""
+    """Contacts of several r and along ϖ whose stable windows are computed."""
 
     restitution: Many[LossyRestitution]
     frequency_ratio: Span
@@ -52,7 +52,7 @@ class Basins(Parameters):
     ]
 
 
-# Contacts between which the families part, for all r from 0.3 on.
+# Range of ϖ in which the families of short and long contacts separate, for all r ≥ 0.3.
 _PARTING = (1.9, 4.0)
 
 MOTIONS = (
@@ -62,23 +62,25 @@ MOTIONS = (
     "n-T, n > 1",
     "none of these",
 )
-"""Where a ball may end; a long contact lasts more than half a period of the table."""
+"""The motions on which a ball may end; a long contact lasts more than half a table period."""
 
-# How many of the balls on none of these are examined for a period, and up to how many impacts.
+# Balls on none of these motions of which the period is determined, the longest period in
+# impacts, and the distance of states that counts as none.
 _ASKED, _LONGEST, _CLOSE = 100, 16, 1e-6
 
 
 def stable_windows(parameters: Windows, release: Release) -> xr.Dataset:
-    """Where the stable window of each contact begins and ends in Λ, shape (r, ϖ).
+    """The ranges of Λ in which the 1-T orbits with a long contact are stable and admissible.
 
-    NaN where there is no window. With it the
-    limit of stiff contacts, and the ϖ below which the orbits with a short and
-    a long contact are one family; both are NaN for another release than the
-    displacement's.
+    The dataset has ``threshold_amplitude``, at which a window begins, and its end
+    ``window_amplitude``, ``window_flight`` and ``window_end``, a text; shape (restitution, ϖ), NaN
+    where there is no window. ``stiff_window`` is the limit of ϖ²(Λ_end - Λ_SD) for stiff contacts
+    and ``joining_ratio`` the ϖ below which the orbits with a short and a long contact are one
+    family; shape (restitution,), NaN unless the release is the displacement's.
     """
     restitution, ratio = np.array(parameters.restitution), parameters.frequency_ratio.grid()
     zeta = damping_ratio(restitution)
-    # All contacts at once: many small steps cost more than large ones.
+    # All contacts in one array, because many small computations cost more than a large one.
     law = SpringDamper(np.tile(ratio, zeta.size), np.repeat(zeta, ratio.size), release)
     window = stable_window(law)
     stiff, joining = np.full((2, *zeta.shape), np.nan)
@@ -101,8 +103,9 @@ def stable_windows(parameters: Windows, release: Release) -> xr.Dataset:
 
 
 def _shared_period(model: SpringDamperModel, amplitude: float, ends: Destinations) -> int:
-    """Impacts after which most motions that are on no n-T orbit repeat; 0 if there is none."""
-    # One that is given up as it rises, after a release below the table's level, has no impact.
+    """Number of impacts after which most motions on no n-T orbit repeat; 0 if there is none."""
+    # A ball that was given up while it rises, after a release below the table's level, has no
+    # impact to start from.
     left = np.flatnonzero((ends.orbit == ELSEWHERE) & (ends.velocity < 0))
     asked = left[:: max(1, left.size // _ASKED)]
     if not asked.size:
@@ -110,7 +113,7 @@ def _shared_period(model: SpringDamperModel, amplitude: float, ends: Destination
     phase, velocity = ends.phase[asked], ends.velocity[asked]
     thrown = velocity + amplitude * np.cos(phase)
     periods = period(model.simulate(amplitude, phase, thrown, 20 * _LONGEST), _LONGEST, _CLOSE)
-    # Some were only late for an n-T orbit, which repeats after every impact.
+    # Some of these balls approach an n-T orbit slowly; their motion repeats after one impact.
     values, counts = np.unique(periods, return_counts=True)
     most = int(values[counts.argmax()])
     return most if most > 1 and counts.max() > asked.size / 2 else 0
@@ -119,8 +122,11 @@ def _shared_period(model: SpringDamperModel, amplitude: float, ends: Destination
 def basins(parameters: Basins, release: Release) -> xr.Dataset:
     """Where balls end that start with an impact at (φ, δ′), for one contact and several Λ.
 
-    Index among :data:`MOTIONS`, shape (case, start_speed, start_phase), with the shares of the
-    starts, shape (case, motion), and the places (φ, -δ′) of the 1-T orbits.
+    The dataset has ``destination`` (case, start_speed, start_phase), an index into :data:`MOTIONS`,
+    with φ in rad and the speed -δ′ at the middles of cells; ``basin_share`` (case, motion), the
+    shares of the starts; ``orbit_phase`` in rad and ``orbit_speed`` (case, motion), the places (φ,
+    -δ′) of the stable 1-T orbits, NaN where there is none; ``amplitude`` and ``other_period``, in
+    impacts, of shape (case,).
     """
     r, ratio = parameters.restitution, parameters.frequency_ratio
     model = SpringDamperModel(SpringDamper.from_restitution(r, ratio, release))

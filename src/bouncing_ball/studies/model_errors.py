@@ -1,8 +1,8 @@
-r"""The corrected restitution model against the exact contact (beyond the paper).
+"""The corrected restitution model against the exact contact (beyond the paper).
 
-Errors are relative to the exact contact's model as in Eqs. 37-38,
-``|q_SD - q|/|q|`` with q of the restitution model *of the contact's own r*, or
-of the corrected one. The law of the first order is that of
+Errors are relative to the simple model as in Eqs. 37-38, ``|q_SD - q|/|q|`` with q of the
+corrected model, or of the restitution model with the r that the contact really has, which
+differs from the r of Eq. 16 for the force release. The first-order law is that of
 :mod:`bouncing_ball.accuracy.error_law`.
 """
 
@@ -26,7 +26,7 @@ from bouncing_ball.studies.random_orbits import random_orbits
 
 
 class Orders(OrbitErrors):
-    """One orbit along ϖ, the error tolerated of it, and random orbits of the whole stable range."""
+    """One orbit along ϖ with a tolerated error, and random orbits of the stable range."""
 
     restitution: LossyRestitution
     seed: Seed
@@ -35,17 +35,17 @@ class Orders(OrbitErrors):
 
 
 _STIFF = 500.0
-"""ϖ at which the second order is all of the corrected model's error, and rounding none of it."""
+"""ϖ at which the corrected model's error is of second order, with no visible rounding."""
 
 
-# For the order: below 100 further orders show, beyond 10⁴ rounding.
+# Two ϖ for the order: below 100 higher orders contribute, above 10⁴ rounding does.
 _TWO_STIFF = np.array([[1000.0], [2000.0]])
 
 
 def _second_order(zeta: float, rule: Release, n, amplitude) -> np.ndarray:
     """C of each quantity: the corrected model's relative error is C/ϖ² + O(1/ϖ³).
 
-    Measured at two stiff contacts, and the third order taken off (Richardson).
+    It is measured at two stiff contacts, and the third order is eliminated (Richardson).
     """
     ratios = np.array([_STIFF, 2 * _STIFF])
     once, twice = (errors(SpringDamper(ratios, zeta, rule), n, amplitude)[1] * ratios**2).T
@@ -53,7 +53,7 @@ def _second_order(zeta: float, rule: Release, n, amplitude) -> np.ndarray:
 
 
 def _of_random_orbits(sample: Orders, release: Release) -> dict[str, tuple]:
-    """Orders of both models, and what the law leaves of the restitution model's errors."""
+    """Orders of both models, and the remainder of the restitution model's errors from the law."""
     n, zeta, lam, _ = random_orbits(sample.samples, sample.seed, release, (0.2, 0.95))
     once, twice = np.moveaxis(np.abs(errors(SpringDamper(_TWO_STIFF, zeta, release), n, lam)), 2, 0)
     n, zeta, lam, rng = random_orbits(sample.law_samples, sample.seed + 1, release)
@@ -72,15 +72,19 @@ def _of_random_orbits(sample: Orders, release: Release) -> dict[str, tuple]:
 def orders(parameters: Orders, release: Release) -> xr.Dataset:
     """Errors along ϖ for one orbit, their orders in 1/ϖ, and the error law.
 
-    Of the orbit: moduli of relative errors, shape (model, quantity, ϖ); K and C of the first two
-    orders, shape (quantity,); the ϖ for a tolerance, exact, shape (model, quantity), and by the
-    law, shape (quantity,), and where the restitution model's error passes through zero by
-    accident; the same of the permanent contact, which has no impact to correct. Of random
-    orbits: the measured order, shape (model, quantity, sample), and |error - K/ϖ|/(S δ), which
-    the law states to be below M, shape (quantity, law_sample), with δ.
+    For the orbit the dataset has ``relative_error`` (model, quantity, ϖ), the modulus;
+    ``coefficient`` K and ``second_order`` C (quantity,); ``error_threshold`` and
+    ``threshold_status`` (model, quantity), ``law_threshold`` (quantity,), the ϖ for the tolerance
+    exactly and by the law; ``error_zero`` (quantity,), the ϖ at which the restitution model's error
+    changes its sign. ``permanent_coefficient``, ``permanent_law`` and ``permanent_threshold`` are
+    the same numbers for the permanent contact, which has no impact to correct.
+
+    For random orbits it has the measured ``order`` (model, quantity, sample);
+    ``law_remainder`` (quantity, law_sample), which is |error - K/ϖ|/(S δ) and at most M by the law
+    where ``small_parameter`` δ (law_sample,) is below the number ``stated_below``.
     """
     n, lam, tolerance = parameters.n, parameters.amplitude, parameters.tolerance
-    # ζ of Eq. 16; the restitution model has the r that this contact really has.
+    # ζ by Eq. 16; the restitution model has the r that a contact with this ζ really has.
     zeta = float(damping_ratio(parameters.restitution))
     ratios = parameters.frequency_ratio.grid()
     curves = np.abs(errors(SpringDamper(ratios, zeta, release), n, lam))

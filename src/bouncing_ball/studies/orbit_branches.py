@@ -4,23 +4,20 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.continuation.branch import Branch, ContinuationError, resample
-from bouncing_ball.continuation.corrector import NewtonSettings
+from bouncing_ball.continuation.branch import Branch, ContinuationError
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
-from bouncing_ball.orbits.grazing import grazing_points
+from bouncing_ball.orbits.columns import PLACE, branch_columns, columns, orbits_in_columns
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.parameters import Family, FrequencyRatio, LossyRestitution, Many, Parameters
-from bouncing_ball.studies.columns import OBSERVED, PLACE, columns
 from bouncing_ball.studies.continuation import Continuation, branch_along_amplitude
 from bouncing_ball.studies.parameters import BranchEnd, Points
 from bouncing_ball.studies.printed_table1 import printed_table
 
 SADDLE_NODE, PERIOD_DOUBLING = Bifurcation
-GRAZING = "grazing"
 
 
 class Branches(Parameters):
@@ -33,19 +30,19 @@ class Branches(Parameters):
 
 
 class Domains(Branches):
-    """On several contacts."""
+    """One family, followed along Λ on several contacts."""
 
     frequency_ratio: Many[FrequencyRatio]
 
 
 class BothDomains(Branches):
-    """On one contact and in the restitution model."""
+    """One family, followed along Λ on one contact and in the restitution model."""
 
     frequency_ratio: FrequencyRatio
 
 
 class Ranges(Parameters):
-    """Several families on several contacts, whose stable ranges are looked for along Λ."""
+    """Several families on several contacts, whose ranges of stability in Λ are computed."""
 
     n: Many[Family]
     restitution: LossyRestitution
@@ -57,51 +54,29 @@ def _branch(
     ratio: float, parameters: Branches, release: Release, continuation: Continuation
 ) -> xr.Dataset:
     """The branch of one contact; NaN, with the reason, where it cannot be followed."""
-    n, count, newton = parameters.n, parameters.points, NewtonSettings()
+    n, count = parameters.n, parameters.points
     try:
-        system, branch = branch_along_amplitude(
+        followed = branch_along_amplitude(
             n, parameters.restitution, ratio, parameters.amplitude_max, release, continuation
         )
-        y = resample(system, branch, count)
-        chosen = [s for s in branch.special if s.name in (SADDLE_NODE, PERIOD_DOUBLING)]
-        grazing = grazing_points(system, lambda z: system.orbit(z).is_admissible(), y, newton)
-        kinds = [*(s.name for s in chosen), *[GRAZING] * len(grazing)]
-        points = np.array([*(s.point for s in chosen), *grazing]).reshape(-1, y.shape[-1])
-        orbit, special = system.orbit(y), system.orbit(points)
-        reasons = [str(branch.start), str(branch.end)]
+        found = branch_columns(*followed, count)
     except (NoOrbitError, ContinuationError) as error:
         missing = (
             SpringDamperModel(SpringDamper(1.0, 0.0)).system(n).orbit(np.full((count, 4), np.nan))
         )
-        orbit, special = missing, missing[:0]
-        kinds, reasons = [], [str(error)] * 2
-    floquet = orbit.multipliers()
-    along = columns(orbit, "amplitude", *OBSERVED) | {"residual": orbit.defect()}
-    places = {name: getattr(special, name) for name in PLACE} | {"residual": special.defect()}
-    return xr.Dataset(
-        {
-            **{name: ("point", values) for name, values in along.items()},
-            "multiplier_real": (("point", "multiplier"), floquet.real),
-            "multiplier_imag": (("point", "multiplier"), floquet.imag),
-            "special_kind": ("special", np.array(kinds, dtype=object)),
-            **{f"special_{name}": ("special", values) for name, values in places.items()},
-            "end_reason": ("end", reasons),
-        },
-        coords={
-            "frequency_ratio": ratio,
-            # A branch with fewer special points than another has no more.
-            "special": np.arange(len(kinds)),
-            "end": ["unstable side", "stable side"],
-        },
-    )
+        found = orbits_in_columns(missing, missing[:0], [], [str(error)] * 2)
+    return found.assign_coords(frequency_ratio=ratio)
 
 
 def orbit_branches(parameters: Domains, release: Release, continuation: Continuation) -> xr.Dataset:
-    """Branches along Λ for one n and several ϖ, shape (ϖ, point) (Figs. 8 and 9).
+    """Branches along Λ for one n and several ϖ (Figs. 8 and 9).
 
-    Phases in rad; ``special_…`` are the saddle-nodes, period doublings and grazing orbits of
-    each branch, shape (ϖ, special). NaN where a branch cannot be followed; ``end_reason`` says
-    why it ends.
+    The dataset has ``amplitude``, the observables of the orbits with phases in rad, ``stable``,
+    ``admissible`` and ``residual`` (ϖ, point), at equal steps of arclength from the unstable to the
+    stable side; ``multiplier_real`` and ``multiplier_imag`` (ϖ, point, multiplier);
+    ``special_kind`` and further ``special_…`` variables of the saddle-nodes, period doublings and
+    grazing orbits (ϖ, special); and ``end_reason`` (ϖ, end), why the branch ends. Where a branch
+    cannot be followed its values are NaN and ``end_reason`` is the error.
     """
     ratios = parameters.frequency_ratio
     rows = [_branch(ratio, parameters, release, continuation) for ratio in ratios]
@@ -112,7 +87,11 @@ def orbit_branches(parameters: Domains, release: Release, continuation: Continua
 def both_domains(
     parameters: BothDomains, release: Release, continuation: Continuation
 ) -> xr.Dataset:
-    """The branch of one ϖ, as :func:`orbit_branches`, and that of the restitution model (Fig. 15).
+    """The branch of one ϖ, and that of the restitution model (Fig. 15).
+
+    The dataset has the variables of :func:`orbit_branches` with one ϖ. The restitution model has
+    ``restitution_amplitude``, ``restitution_phase`` in rad, ``restitution_stable`` and
+    ``restitution_admissible`` (point,), and numbers for Λ and φ of its two bifurcations.
 
     Raises
     ------
@@ -136,15 +115,15 @@ def both_domains(
 
 
 def first_limits(branch: Branch) -> np.ndarray:
-    """The saddle-node and the period doubling that bound the first stable range, (2, N + 1).
+    """The saddle-node and the period doubling that bound the first stable range, shape (2, N + 1).
 
-    The branch's last saddle-node in its order, from the unstable to the stable
-    side, and the first period doubling after it.
+    In the order of the branch, from the unstable to the stable side, they are its last saddle-node
+    and the first period doubling after it.
 
     Raises
     ------
     NoOrbitError
-        If the branch has not both.
+        If the branch lacks one of them.
     """
     folds = [k for k, special in enumerate(branch.special) if special.name == SADDLE_NODE]
     beyond = branch.special[folds[-1] :] if folds else ()
@@ -162,9 +141,11 @@ def stability_ranges(
 ) -> xr.Dataset:
     """Ranges of Λ in which the n-T orbits are stable, computed and printed (Table 1).
 
-    Shape (ϖ, n, bound), the bounds a saddle-node and a period doubling; phases in rad.
-
-    Where an orbit has no such range the entry is NaN, and ``absence`` says why.
+    The dataset has ``computed`` and ``printed``, values of Λ, ``special_phase`` in rad and
+    ``special_contact_duration``, shape (ϖ, n, bound), where the bounds are a saddle-node and a
+    period doubling; and ``restitution_range`` (impact_map, n, bound). An entry is NaN where the
+    orbit has no such range, and ``absence`` (ϖ, n), which exists only then, says why; ``printed``
+    is NaN where the paper has no entry.
     """
     families, ratios = parameters.n, parameters.frequency_ratio
     r, top, shape = parameters.restitution, parameters.amplitude_max, (len(ratios), len(families))
@@ -185,7 +166,7 @@ def stability_ranges(
     dataset = xr.Dataset(
         {
             **{name: (dims, found[..., k]) for k, name in enumerate(names)},
-            # NaN where the paper has no entry.
+            # Entries that the paper does not have become NaN.
             "printed": printed_table().reindex(frequency_ratio=list(ratios), n=list(families)),
             "restitution_range": (("impact_map", "n", "bound"), rigid_ranges),
         },

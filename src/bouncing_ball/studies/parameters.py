@@ -1,6 +1,6 @@
-"""Types of parameters that need an orbit: amplitudes at which there is one.
+"""Types of parameters that require an orbit: amplitudes at which there is one.
 
-A type looks at the parameters that stand before it in its class: ``n`` and ``restitution``.
+A type reads the parameters that stand before it in its class, ``n`` and ``restitution``.
 """
 
 from collections.abc import Callable
@@ -26,12 +26,14 @@ from bouncing_ball.parameters import (
 
 
 def require_orbit(amplitude: float, n: int, restitution: float) -> float:
-    """The amplitude, if the restitution model has its n-T orbit there.
+    """The amplitude Λ itself, if the restitution model has its n-T orbit there (Eq. 7).
 
     Raises
     ------
     ValueError
-        One line that says from which amplitude on (Eq. 7).
+        One line that gives the lowest amplitude.
+    ModelError
+        Unless n is a positive integer and 0 < r ≤ 1.
 
     Examples
     --------
@@ -49,7 +51,7 @@ def require_orbit(amplitude: float, n: int, restitution: float) -> float:
 
 def _has_orbits(families: Callable[[np.ndarray], int]) -> AfterValidator:
     def check(amplitude: float, info: ValidationInfo) -> float:
-        # Without one of them that is the mistake.
+        # If one of these is missing or wrong, that is the mistake to be reported.
         if {"n", "restitution"} <= info.data.keys():
             n = families(np.atleast_1d(info.data["n"]))
             require_orbit(amplitude, n, info.data["restitution"])
@@ -63,14 +65,14 @@ OrbitAmplitude = Annotated[Amplitude, _has_orbits(min)]
 
 
 class OrbitParameters(Parameters):
-    """One orbit that the restitution model has too."""
+    """One orbit that the restitution model has as well."""
 
     n: Family
     restitution: Restitution
     amplitude: OrbitAmplitude
 
     def exact(self, frequency_ratio: ArrayLike, release: Release) -> SpringDamperModel:
-        """The spring-damper models of contacts with the damping of Eq. 16."""
+        """The spring-damper models at given ϖ, with the damping of Eq. 16."""
         contact = SpringDamper.from_restitution(self.restitution, frequency_ratio, release)
         return SpringDamperModel(contact)
 

@@ -1,4 +1,4 @@
-"""Permanent-contact threshold along ϖ (Fig. 11)."""
+"""Threshold of permanent contact along ϖ (Fig. 11)."""
 
 import xarray as xr
 
@@ -24,7 +24,11 @@ class PermanentContact(Parameters):
 
 
 def permanent_contact(parameters: PermanentContact, release: Release) -> xr.Dataset:
-    """The threshold along ϖ, shape (ϖ,), with its minimum and the restitution model's Λ_CR.
+    """The threshold of permanent contact along ϖ, in both models (Fig. 11, Eqs. 33 and 36).
+
+    The dataset has ``threshold_amplitude`` (ϖ,), a value of Λ, and the numbers
+    ``minimum_threshold`` and ``minimum_frequency_ratio`` of its minimum, ``restitution_threshold``
+    = Λ_CR, and ``damping_ratio`` ζ.
 
     Raises
     ------

@@ -1,6 +1,6 @@
 """Table 1 as the paper prints it: ends of the stability ranges over Λ, r = 0.85.
 
-The exponent of the first frequency ratio is unreadable, taken as 4.
+The exponent of the first frequency ratio is unreadable and taken as 4.
 """
 
 import xarray as xr
@@ -24,7 +24,12 @@ RESTITUTION = 0.85
 
 
 def printed_text(ratio: float, n: int, bound: str) -> str:
-    """An entry with its digits.
+    """The printed digits of an entry.
+
+    Raises
+    ------
+    KeyError
+        If the table has no such entry.
 
     Examples
     --------
@@ -35,5 +40,11 @@ def printed_text(ratio: float, n: int, bound: str) -> str:
 
 
 def printed_table() -> xr.DataArray:
-    """The entries as numbers, over ``frequency_ratio``, ``n`` and ``bound``."""
+    """The entries as numbers, with dimensions ``frequency_ratio``, ``n`` and ``bound``.
+
+    Examples
+    --------
+    >>> printed_table().sel(frequency_ratio=10.0, n=1).values.tolist()
+    [0.238, 1.035]
+    """
     return _TEXTS.astype(float)

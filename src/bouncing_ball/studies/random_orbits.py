@@ -1,4 +1,4 @@
-"""Random orbits of the whole stable range of the restitution model."""
+"""Random orbits of the stable range of the restitution model."""
 
 from collections.abc import Sequence
 
@@ -11,10 +11,30 @@ from bouncing_ball.orbits.restitution_model import RestitutionModel
 def random_orbits(
     size: int, seed: int | Sequence[int], release: Release, places: tuple[float, float] = (0.0, 1.0)
 ):
-    """Random (n, ζ, Λ) in the stable range of the restitution model, ``places`` of it.
+    """Random (n, ζ, Λ) in the stable range of the restitution model, and the generator.
 
-    r is even from 0.05 to 0.98, from 0.15 with the force release, whose linear
-    contacts go down to e⁻² only; n from 1 to 5.
+    r is uniform between 0.05 and 0.98, or from 0.15 with the force release, whose linear contacts
+    have r > e⁻²; n is uniform from 1 to 5, and Λ uniform in the part ``places`` of the range from
+    the saddle-node (0) to the period doubling (1).
+
+    Parameters
+    ----------
+    size : int
+    seed : int or sequence of int
+    release : Release
+    places : tuple of float
+
+    Returns
+    -------
+    n, damping_ratio, amplitude : ndarray, shape (size,)
+    generator : numpy.random.Generator
+        In the state after these draws.
+
+    Examples
+    --------
+    >>> n, zeta, lam, _ = random_orbits(100, 1, Release.DISPLACEMENT)
+    >>> bool(np.all((n >= 1) & (n <= 5) & (zeta > 0) & (zeta < 1) & (lam > 0)))
+    True
     """
     rng = np.random.default_rng(seed)
     lowest = 0.15 if release is Release.FORCE else 0.05

@@ -1,4 +1,4 @@
-"""Random orbits in full, for others to compare their own computation with.
+"""Random orbits with all their quantities, against which others can check a computation.
 
 The page of the explorer computes them again in the reader's browser.
 """
@@ -14,8 +14,8 @@ from bouncing_ball.datasets.variables import describe
 from bouncing_ball.parameters import Parameters, Seed, Span
 from bouncing_ball.studies.random_orbits import random_orbits
 
-# Of the restitution model's stable range: from next to its saddle-node to beyond
-# its period doubling.
+# Part of the restitution model's stable range, from near its saddle-node (0) to beyond its
+# period doubling (1).
 _PLACES = (0.02, 1.2)
 _SHOWN = (
     *("phase", "contact_duration", "impact_velocity", "bounce_velocity"),
@@ -31,12 +31,13 @@ class References(Parameters):
 
 
 def reference_orbits(parameters: References) -> xr.Dataset:
-    """One orbit for each ϖ of a grid under each release rule, shape (release, sample).
+    """One random orbit for each ϖ of a grid, under each release rule.
 
-    n, r and Λ are drawn at random.
-
-    r is that of Eq. 16; ``ball`` and ``contact_force`` are in the middle of the contact.
-    NaN where there is no orbit or no bifurcation.
+    All variables have the shape (release, sample): the contact and the orbit (``n``,
+    ``restitution`` by Eq. 16, ``frequency_ratio``, ``amplitude``), its observables with the phase
+    in rad, ``trace`` and ``determinant`` of the monodromy, its bifurcations, ``ball`` and
+    ``contact_force`` in the middle of the contact, and values of both simple models
+    (``restitution_…``, ``corrected_…``). NaN where there is no orbit or no bifurcation.
     """
     omega = parameters.frequency_ratio.grid()
     parts = [_under(rule, omega, parameters.seed + k) for k, rule in enumerate(Release)]

@@ -1,4 +1,4 @@
-"""What the rule that ends a contact changes (beyond the paper).
+"""The influence of the rule that ends a contact (beyond the paper).
 
 The paper ends a contact at δ = 0, where a damped contact pulls; a dry contact
 ends where its force vanishes. Three things are compared along ϖ:
@@ -41,7 +41,7 @@ def _lowest_doubling(
 ) -> np.ndarray:
     """The ϖ at which each period doubling is lowest; NaN if that is an end of the scan.
 
-    ``amplitude`` is that of the scan, shape (n, ϖ).
+    ``amplitude`` is Λ of the period doublings on the scan, shape (n, ϖ).
     """
 
     def doubling(log_ratio: np.ndarray, n: np.ndarray) -> np.ndarray:
@@ -50,7 +50,8 @@ def _lowest_doubling(
 
     lowest = np.argmin(np.where(np.isnan(amplitude), np.inf, amplitude), axis=-1)
     inside = np.clip(lowest, 1, ratios.size - 2)
-    # Three samples whose middle one is not the lowest are refused as a bracket.
+    # Where the middle one of three samples is not the lowest they are no bracket, which
+    # find_minimum reports as a failure.
     bracket = tuple(np.log(ratios[inside + k]) for k in (-1, 0, 1))
     found = find_minimum(doubling, bracket, args=(n,))
     return np.where(found.success, np.exp(found.x), np.nan)
@@ -78,7 +79,7 @@ def _bifurcations(parameters: ReleaseRules, rule: Release) -> xr.Dataset:
 
 
 def _thresholds(wanted: RuleThresholds) -> xr.Dataset:
-    """The ϖ above which each quantity is within the tolerance, reading by reading."""
+    """The ϖ above which each quantity is within the tolerance, for each reading of r."""
     r = wanted.restitution
     own = float(restitution_coefficient(damping_ratio(r), Release.FORCE))
     readings = {
@@ -97,11 +98,13 @@ def _thresholds(wanted: RuleThresholds) -> xr.Dataset:
 
 
 def release_rules(parameters: ReleaseRules) -> xr.Dataset:
-    """Bifurcations and thresholds under both rules.
+    """Bifurcations and thresholds under both release rules.
 
-    Λ of the bifurcations, shape (release, n, ϖ, bound), the ϖ at which each period doubling is
-    lowest, and the ϖ from which each quantity is right, shape (reading, quantity); NaN where there
-    is none.
+    The dataset has ``bifurcation_amplitude`` (release, n, ϖ, bound), values of Λ;
+    ``period_doubling_turn`` (release, n), the ϖ at which each period doubling is lowest;
+    ``error_threshold``, a ϖ, and ``threshold_status`` (reading, quantity), where a reading is a
+    release rule with an r of the restitution model; and the numbers ``damping_ratio`` and
+    ``force_restitution``. NaN where there is none.
     """
     dataset = xr.concat([_bifurcations(parameters, rule) for rule in Release], "release")
     dataset["damping_ratio"] = float(damping_ratio(parameters.restitution))

@@ -23,7 +23,7 @@ class RestitutionHistory(OrbitParameters):
 
 
 def _grazing(orbits: RestitutionOrbit) -> np.ndarray:
-    """φ and Λ at which the unstable orbits of one family graze the table, NaN beyond the branch."""
+    """φ and Λ at which the unstable orbits of one family graze the table; NaN if they do not."""
     system = RestitutionModel(orbits.law).system(int(orbits.n[0]))
     at = system.point(orbits)
     found = grazing_points(system, lambda y: system.orbit(y).is_admissible(), at, NewtonSettings())
@@ -31,10 +31,11 @@ def _grazing(orbits: RestitutionOrbit) -> np.ndarray:
 
 
 def restitution_orbits(parameters: FamilyBranches) -> xr.Dataset:
-    """φ in rad against Λ for several families, shape (n, point), with their special orbits.
+    """φ against Λ for several families of the restitution model (Fig. 3).
 
-    The branch of each family runs from the unstable side to the stable one,
-    out to Λ = ``amplitude_max``.
+    The dataset has ``amplitude``, ``phase`` in rad, ``stable`` and ``admissible`` (n, point), from
+    the unstable to the stable side up to Λ = ``amplitude_max``; Λ and φ of the saddle-node and of
+    the grazing orbit (n,); and those of the period doubling for both maps (impact_map, n).
 
     Raises
     ------
@@ -68,7 +69,10 @@ def restitution_orbits(parameters: FamilyBranches) -> xr.Dataset:
 
 
 def restitution_history(parameters: RestitutionHistory) -> xr.Dataset:
-    """Ball and table over ``periods`` of the orbit, restitution model, shape (sample,) (Fig. 2).
+    """Ball and table over some periods of an orbit of the restitution model (Fig. 2).
+
+    The dataset has ``time``, ``ball``, ``ball_velocity`` and ``table`` (sample,), and the number
+    ``phase`` in rad.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Time histories of orbits of the spring-damper model (Figs. 7 and 12, and its flights)."""
+"""Time histories of orbits of the spring-damper model (Figs. 7 and 12), and continued flights."""
 
 import numpy as np
 import xarray as xr
@@ -10,7 +10,7 @@ from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.parameters import FrequencyRatio, Many, Samples
 from bouncing_ball.studies.parameters import OrbitParameters
 
-# What is published of each orbit.
+# Quantities of each orbit in the datasets.
 _STATE = ("phase", "contact_duration", "impact_velocity", "bounce_velocity")
 
 
@@ -29,10 +29,10 @@ class Histories(OrbitParameters):
 
 
 def _cycle(parameters: ContactHistory | Histories, ratio: float, release: Release) -> xr.Dataset:
-    """One cycle on one contact: its contact, then its flight.
+    """One cycle on one contact: the contact, then the flight.
 
-    Half the samples fall in either part, and τ_b is a sample in both: the
-    contact may be a hundredth of the cycle and must be resolved all the same.
+    Half the samples fall in either part, and τ_b is a sample in both, because the
+    contact may last a hundredth of the cycle and must still be resolved.
     """
     n, lam, half = parameters.n, parameters.amplitude, parameters.samples // 2
     orbit = parameters.exact(ratio, release).require_admissible(n, lam)
@@ -55,7 +55,11 @@ def _cycle(parameters: ContactHistory | Histories, ratio: float, release: Releas
 
 
 def contact_history(parameters: ContactHistory, release: Release) -> xr.Dataset:
-    """One cycle of the spring-damper model from the start of contact, shape (sample,) (Fig. 7).
+    """One cycle of the spring-damper model from the start of contact (Fig. 7).
+
+    The dataset has ``time``, ``ball``, ``ball_velocity``, ``table`` and ``contact``, a mask, of
+    shape (sample,), and the numbers ``frequency_ratio``, ``phase`` in rad, ``contact_duration``,
+    ``impact_velocity`` and ``bounce_velocity``.
 
     Raises
     ------
@@ -67,7 +71,12 @@ def contact_history(parameters: ContactHistory, release: Release) -> xr.Dataset:
 
 
 def both_histories(parameters: Histories, release: Release) -> xr.Dataset:
-    """Both models against the phase of the table in rad, shape (ϖ, sample) (Fig. 12).
+    """One cycle of both models against the phase of the table (Fig. 12).
+
+    The dataset has ``table_phase`` in rad, ``ball`` and ``contact``, a mask, (ϖ, sample);
+    ``phase``, ``contact_duration``, ``impact_velocity`` and ``bounce_velocity`` (ϖ,); and for the
+    restitution model ``time`` and ``restitution_ball`` (sample,) and the number
+    ``restitution_phase`` in rad.
 
     Raises
     ------
@@ -90,7 +99,11 @@ def both_histories(parameters: Histories, release: Release) -> xr.Dataset:
 
 
 def meeting_flights(parameters: ContactHistory, release: Release) -> xr.Dataset:
-    """One contact, and the flights before and after it, continued into it; shape (time,).
+    """One contact, with the flights before and after it continued into it.
+
+    The dataset has ``ball``, ``table``, ``flight_before``, ``flight_after`` and ``contact_force``
+    over the weight, shape (time,), and numbers: ``contact_duration``, ``meeting_time`` and
+    ``meeting_height`` of the two flights, and the ``delay`` by the signature of the contact.
 
     Raises
     ------
@@ -104,7 +117,7 @@ def meeting_flights(parameters: ContactHistory, release: Release) -> xr.Dataset:
     start, velocity = orbit.contact_path(np.zeros(()))
     before, (after, _) = start + (velocity - time / 2) * time, orbit.flight_path(time)
     force = exact.contact.force(*-np.array(orbit.contact_motion(np.clip(time, 0, end))))
-    # The meeting point of the two parabolas, exact; and where the signature has it.
+    # The meeting point of the two parabolas, exactly; the signature's is the delay.
     jump = float(orbit.bounce_velocity + end - orbit.impact_velocity)
     apart = float(orbit.bounce_height - (start + (velocity - end / 2) * end))
     meeting = end - apart / jump

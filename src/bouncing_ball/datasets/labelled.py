@@ -1,0 +1,128 @@
+"""Labelled results of a call: an :class:`xarray.Dataset` that draws itself in one line.
+
+``found.plot()`` is the figure of the dataset's ``kind``, an attribute; ``found.plot("name.png")``
+writes it as well. Which function draws a kind is written in ``PLOTS`` of the package of figures,
+which is imported when a picture is asked for: computing needs no matplotlib.
+"""
+
+import math
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from xarray.plot.accessor import DatasetPlotAccessor
+
+from bouncing_ball.datasets.variables import VARIABLES
+from bouncing_ball.errors import ParameterError, extra
+
+_FIGURES = "bouncing_ball.figures.plots"
+CASE = "case"
+"""The axis of results that are computed in a row, before they have the axes of a call."""
+
+
+class Plot(DatasetPlotAccessor):
+    """The figure of a labelled dataset when it is called; xarray's plots as its methods."""
+
+    __slots__ = ()
+
+    def __call__(self, path: str | Path | None = None) -> Any:
+        """The figure as a :class:`matplotlib.figure.Figure`, written to ``path`` if there is one.
+
+        Raises
+        ------
+        ModelError
+            If the path does not end as a picture does or cannot be written.
+        """
+        with extra("plot"):
+            figures = import_module(_FIGURES)
+        return figures.plot(self._ds, path)
+
+
+class Labelled(xr.Dataset):
+    """A dataset with the attribute ``kind``, whose :attr:`plot` draws the figure of that kind.
+
+    Examples
+    --------
+    >>> found = Labelled({"phase": ("n", [0.5])}, attrs={"kind": "branch"})
+    >>> type(found.isel(n=0)).__name__, found.isel(n=0).kind
+    ('Labelled', 'branch')
+    """
+
+    __slots__ = ()
+
+    @property
+    def plot(self) -> Plot:  # type: ignore[override]
+        """Draws the figure; ``plot.scatter`` and the others are those of xarray."""
+        return Plot(self)
+
+
+class Grid:
+    """Arguments of a call, of which some are arrays: one axis for each, with its name.
+
+    A list or an array is an axis named after its parameter, so that two of them make a grid.
+    :class:`xarray.DataArray` keep their axes: two along one axis are taken in pairs.
+
+    Examples
+    --------
+    >>> grid = Grid(restitution=[0.5, 0.9], amplitude=[1.0, 2.0, 3.0], n=1)
+    >>> grid.shape, grid.flat["restitution"].tolist(), grid.flat["n"]
+    ((2, 3), [0.5, 0.5, 0.5, 0.9, 0.9, 0.9], 1)
+    """
+
+    def __init__(self, **given: Any) -> None:
+        self.coords = {
+            name: _axis(name, value).assign_attrs(VARIABLES.get(name, {}))
+            for name, value in given.items()
+            if np.ndim(value)
+        }
+        whole = dict(zip(self.coords, xr.broadcast(*self.coords.values()), strict=True))
+        template = next(iter(whole.values()), xr.DataArray(0.0))
+        self.dims, self.shape = template.dims, template.shape
+        self.single = {name: value for name, value in given.items() if name not in whole}
+        self.attrs = {n: x for n, x in self.single.items() if isinstance(x, str | int | float)}
+        self.flat = self.single | {name: each.values.ravel() for name, each in whole.items()}
+
+    @property
+    def size(self) -> int:
+        """Number of places."""
+        return math.prod(self.shape)
+
+    @property
+    def rows(self) -> list[np.ndarray]:
+        """A list of one array with an entry for each place, to broadcast with; empty without an
+        axis.
+        """
+        return [np.zeros(self.size)] if self.shape else []
+
+    def cells(self) -> list[dict[str, Any]]:
+        """The arguments of each place, one after another."""
+        rows = {name: self.flat[name].tolist() for name in self.coords}
+        places = zip(*rows.values(), strict=True) if rows else [()]
+        return [self.single | dict(zip(rows, each, strict=True)) for each in places]
+
+    def unfold(self, rows: xr.Dataset) -> Labelled:
+        """Results in a row, one for each place of the grid, with the grid's axes and labels.
+
+        The single arguments become attributes.
+        """
+        own = {name: each for name, each in rows.variables.items() if name not in self.coords}
+        for name, each in own.items():
+            if CASE in each.dims:
+                dims, shape = (*self.dims, *each.dims[1:]), (*self.shape, *each.shape[1:])
+                own[name] = xr.Variable(dims, each.values.reshape(shape), each.attrs)
+        own.pop(CASE, None)
+        coords = {name: own.pop(name) for name in rows.coords if name in own}
+        return Labelled(own, coords | self.coords, rows.attrs | self.attrs)
+
+
+def _axis(name: str, value: Any) -> xr.DataArray:
+    if isinstance(value, xr.DataArray):
+        return value
+    array = np.asarray(value)
+    if array.ndim > 1:
+        raise ParameterError(
+            f"{{{name}}} has {array.ndim} axes without names: give an xarray.DataArray"
+        )
+    return xr.DataArray(array, dims=name, coords={name: array})

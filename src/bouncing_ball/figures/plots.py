@@ -1,0 +1,56 @@
+"""The figure of a labelled dataset, by its kind, in the look of all figures."""
+
+from importlib import import_module
+from pathlib import Path
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from bouncing_ball.errors import ModelError
+from bouncing_ball.figures.files import save
+from bouncing_ball.figures.style import style
+
+PLOTS = {
+    "history": "histories.over_time",
+    "branch": "branches.over_amplitude",
+}
+"""Where each kind is drawn: ``module.function`` of this package."""
+
+SUFFIXES = (".pdf", ".png", ".svg")
+
+
+def plot(data: xr.Dataset, path: str | Path | None = None) -> Figure:
+    """The figure of a dataset whose attribute ``kind`` is in :data:`PLOTS`, written if there is a
+    path.
+
+    Raises
+    ------
+    ModelError
+        If the kind has no figure, or if the path does not end as a picture does or cannot be
+        written.
+    """
+    kind = data.attrs.get("kind")
+    if kind not in PLOTS:
+        raise ModelError(f"a dataset of the kind {kind!r} has no figure: {', '.join(PLOTS)} have")
+    module, name = PLOTS[kind].split(".")
+    with style():
+        figure = getattr(import_module(f"{__package__}.{module}"), name)(data)
+        if path is not None:
+            write(figure, Path(path), f"bouncing-ball {kind}")
+    return figure
+
+
+def write(figure: Figure, path: Path, title: str) -> None:
+    """Write a figure that a user has requested.
+
+    Raises
+    ------
+    ModelError
+        If the path does not end as a picture does or cannot be written.
+    """
+    if path.suffix not in SUFFIXES:
+        raise ModelError(f"'{path}' does not end in {' or '.join(SUFFIXES)}")
+    try:
+        save(figure, path, {"Title": title})
+    except OSError as error:
+        raise ModelError(f"{path} cannot be written: {error.strerror}") from None

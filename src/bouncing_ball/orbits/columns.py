@@ -1,0 +1,92 @@
+"""The quantities that datasets and answers contain of orbits, and of a branch with its ends."""
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.continuation.branch import Branch, resample
+from bouncing_ball.continuation.corrector import NewtonSettings
+from bouncing_ball.orbits.grazing import grazing_points
+from bouncing_ball.orbits.orbit import Orbit
+from bouncing_ball.orbits.stability import Bifurcation
+from bouncing_ball.orbits.system import OrbitSystem
+
+OBSERVED = (
+    "phase",
+    "contact_duration",
+    "release_phase",
+    "impact_velocity",
+    "bounce_velocity",
+    "apparent_restitution",
+)
+PLACE = ("amplitude", "phase", "contact_duration")
+"""The quantities that the datasets contain of special orbits."""
+GRAZING = "grazing"
+
+
+def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
+    """The named quantities of orbits, with their stability and their admissibility.
+
+    The arrays have the orbits' shape.
+
+    Examples
+    --------
+    >>> from bouncing_ball.orbits.restitution_model import RestitutionModel
+    >>> found = columns(RestitutionModel(1.0).orbit(1, 0.5), "phase")
+    >>> {name: x.item() for name, x in found.items()}
+    {'phase': 1.5707963267948966, 'stable': False, 'admissible': True}
+    """
+    return {
+        **{name: getattr(orbit, name) for name in names},
+        "stable": orbit.is_stable(),
+        "admissible": orbit.is_admissible(),
+    }
+
+
+def branch_columns(system: OrbitSystem, branch: Branch, count: int) -> xr.Dataset:
+    """A branch at ``count`` points with equal steps of arclength, and its special orbits.
+
+    The variables are those of :func:`orbits_in_columns`; grazing orbits are found between the
+    points.
+
+    Raises
+    ------
+    ContinuationError
+        If the branch was followed with too long steps.
+    """
+    newton = NewtonSettings()
+    y = resample(system, branch, count)
+    chosen = [s for s in branch.special if s.name in list(Bifurcation)]
+    grazing = grazing_points(system, lambda z: system.orbit(z).is_admissible(), y, newton)
+    points = np.array([*(s.point for s in chosen), *grazing]).reshape(-1, y.shape[-1])
+    kinds = [*(str(s.name) for s in chosen), *[GRAZING] * len(grazing)]
+    ends = [str(branch.start), str(branch.end)]
+    return orbits_in_columns(system.orbit(y), system.orbit(points), kinds, ends)
+
+
+def orbits_in_columns(
+    orbit: Orbit, special: Orbit, kinds: list[str], ends: list[str]
+) -> xr.Dataset:
+    """Orbits along a branch, its special orbits with their kinds, and the reasons of its two ends.
+
+    The dataset has the observables of the orbits, with phases in rad, ``amplitude``, ``stable``,
+    ``admissible`` and ``residual`` over ``point``; their multipliers over (point, multiplier);
+    ``special_…`` over ``special``; and ``end_reason`` over ``end``, the unstable side first.
+    """
+    floquet = orbit.multipliers()
+    along = columns(orbit, "amplitude", *OBSERVED) | {"residual": orbit.defect()}
+    places = {name: getattr(special, name) for name in PLACE} | {"residual": special.defect()}
+    return xr.Dataset(
+        {
+            **{name: ("point", values) for name, values in along.items()},
+            "multiplier_real": (("point", "multiplier"), floquet.real),
+            "multiplier_imag": (("point", "multiplier"), floquet.imag),
+            "special_kind": ("special", np.array(kinds, dtype=object)),
+            **{f"special_{name}": ("special", values) for name, values in places.items()},
+            "end_reason": ("end", ends),
+        },
+        coords={
+            # Numbers, so that branches with different numbers of special points are aligned.
+            "special": np.arange(len(kinds)),
+            "end": ["unstable side", "stable side"],
+        },
+    )

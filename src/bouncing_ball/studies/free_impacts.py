@@ -1,0 +1,48 @@
+"""A free impact of a spring-damper contact, by the damping ratio (beyond the paper).
+
+What a user of a physics engine has to know: without gravity, k, c and m act through ω = √(k/m) and
+ζ = c/(2√(km)) alone. Times are ωt, as those of a contact with ϖ = 1.
+"""
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.oscillator import responses
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
+from bouncing_ball.datasets.variables import described
+from bouncing_ball.parameters import LossyRestitution, Parameters, Samples
+
+
+class FreeImpacts(Parameters):
+    """The contact whose force is drawn over time; and up to which loss r and duration are."""
+
+    restitution: LossyRestitution
+    restitution_min: LossyRestitution
+    samples: Samples
+
+
+def free_impacts(parameters: FreeImpacts) -> xr.Dataset:
+    """r and duration by release and ζ, shape (release, ζ); the force of one contact, shape (time,).
+
+    ``free_force`` is that of the contact with r by the displacement release, over mω times the
+    impact speed; ``contact_end`` is where each release ends it, with ``end_restitution``.
+    """
+    zeta = np.linspace(0.0, damping_ratio(parameters.restitution_min), parameters.samples)
+    shown = float(damping_ratio(parameters.restitution))
+    along, ones = ([SpringDamper(1.0, z, rule) for rule in Release] for z in (zeta, shown))
+    time = np.linspace(0.0, float(ones[0].free_duration), parameters.samples)
+    penetration, rate = responses(time, 1.0, shown).impulse
+    return described(
+        {
+            "restitution": (("release", "damping_ratio"), [one.restitution for one in along]),
+            "contact_duration": (
+                ("release", "damping_ratio"),
+                [one.free_duration for one in along],
+            ),
+            "free_force": ("time", ones[0].force(penetration, rate)),
+            "contact_end": ("release", [float(one.free_duration) for one in ones]),
+            "end_restitution": ("release", [float(one.restitution) for one in ones]),
+        },
+        coords={"release": [str(rule) for rule in Release], "damping_ratio": zeta, "time": time},
+    )

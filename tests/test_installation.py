@@ -1,0 +1,69 @@
+"""The library and its command line need the packages of `dependencies` only."""
+
+import json
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import bouncing_ball
+
+PROJECT = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text("utf-8"))
+EXTRAS = PROJECT["project"]["optional-dependencies"]
+# Where a package is not imported by its name.
+MODULES = {"pillow": "PIL", "pyyaml": "yaml", "pypandoc_binary": "pypandoc"}
+PACKAGES = [re.split(r"[^\w-]", line)[0] for line in EXTRAS["plot"] + EXTRAS["pipeline"]]
+ABSENT = [MODULES.get(name, name) for name in PACKAGES if name != "bouncing-ball"]
+
+CONTACT = ["--restitution", "0.85", "--frequency-ratio", "10"]
+TABLE = ["--mass", "20 g", "--frequency", "50 Hz", "--acceleration", "0.8 g"]
+DESIGN = ["design", *TABLE, "--stiffness", "1e7 N/m", "--restitution", "0.85"]
+COMMANDS = [
+    ["orbit", "--amplitude", "1", *CONTACT],
+    ["limits", *CONTACT],
+    ["error-law", "--amplitude", "1", "--restitution", "0.85"],
+    ["permanent-contact", *CONTACT],
+    ["simulate", "--amplitude", "1", *CONTACT],
+    DESIGN,
+]
+
+
+def without_extras(code):
+    """A program for which the packages of the extras are not installed."""
+    absent = f"import sys; sys.modules.update(dict.fromkeys({ABSENT!r}))"
+    command = [sys.executable, "-c", f"{absent}\n{code}"]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+def test_calls_and_command_line_work_without_the_extras():
+    assert {"matplotlib", "snakemake", "yaml"} <= {*ABSENT}
+    done = without_extras(
+        "import bouncing_ball\nfrom bouncing_ball.cli.main import main\n"
+        "names = [name for name in bouncing_ball.__all__ if getattr(bouncing_ball, name)]\n"
+        f"for command in {COMMANDS!r}: main([*command, '--json'])\nprint(names)"
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    *answers, names = done.stdout.splitlines()
+    assert all(json.loads(answer) for answer in answers) and len(answers) == len(COMMANDS)
+    assert names == str(bouncing_ball.__all__)
+
+
+@pytest.mark.parametrize(
+    ("command", "extra"),
+    [
+        (["diff", ".", "."], "pipeline"),
+        (["explain", "fig08.png"], "pipeline"),
+        ([*DESIGN, "--plot", "page.png"], "plot"),
+    ],
+)
+def test_what_is_not_installed_is_said_in_one_line(command, extra):
+    done = without_extras(f"from bouncing_ball.cli.main import main; main({command!r})")
+    assert done.returncode == 2
+    assert re.fullmatch(
+        rf"bouncing-ball: \w+ is not installed, and this needs it: install the extra '{extra}', "
+        rf'for example pip install "\.\[{extra}\]"\n',
+        done.stderr,
+    )

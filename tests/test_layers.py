@@ -20,15 +20,16 @@ ALLOWED = {
     "continuation": (set(), {"numpy", "scipy"}),
     "motion": ({"contacts"}, {"numpy"}),
     "orbits": ({"datasets", "contacts", "continuation", "motion"}, {"numpy", "scipy", "xarray"}),
-    "calls": ({"datasets", "contacts", "motion", "orbits"}, {"numpy"}),
+    "attractors": ({"contacts", "motion", "orbits"}, {"numpy"}),
+    "calls": ({"datasets", "contacts", "motion", "orbits", "attractors"}, {"numpy"}),
     "surveys": ({"datasets", "orbits", "calls"}, set()),
     "accuracy": ({"contacts", "continuation", "motion", "orbits"}, {"numpy", "scipy"}),
-    "studies": (
-        {"datasets", "contacts", "continuation", "motion", "orbits", "accuracy"},
-        {"numpy", "scipy", "xarray", "pydantic"},
-    ),
     # No engine is imported.
     "engines": ({"contacts"}, {"numpy"}),
+    "studies": (
+        {"datasets", "contacts", "continuation", "motion", "orbits", "accuracy", "engines"},
+        {"numpy", "scipy", "xarray", "pydantic"},
+    ),
     # Units are parsed at the edge, and pint is imported there when it is asked for.
     "calculator": (
         {"contacts", "orbits", "calls", "accuracy", "engines"},
@@ -74,7 +75,7 @@ ALLOWED = {
 
 
 def imports(tree: ast.AST):
-    """Absolute names of what a module imports; relative imports are not used."""
+    """Absolute names of the modules that a module imports; relative imports are not used."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)

@@ -24,11 +24,12 @@ The layers, each importing only what lies above it in this list (and ``errors`` 
 ``continuation``  pseudo-arclength continuation; knows nothing of balls
 ``motion``        event-driven simulation, from any initial state
 ``orbits``        n-T orbits, their stability and bifurcations
+``attractors``    the motions on which balls end: repeating, locked, chaotic
 ``calls``         the calls that most people need: a model, an orbit, its limits, a simulation
 ``surveys``       calls with labelled datasets: a ball over time, a drop, a branch over Λ
 ``accuracy``      errors of one model against another, their thresholds, the error law
-``studies``       the stages of the pipeline: parameters in, datasets out
 ``engines``       the contact of physics engines: their parameters, their time stepping
+``studies``       the stages of the pipeline: parameters in, datasets out
 ``calculator``    units, cases and verdicts for an engineer's own contact
 ``atlas``         how stiff is stiff enough, for all orbits: tiles, shards, one file
 ``configuration`` the parameters of a run, read and checked

@@ -1,9 +1,9 @@
-"""The types from which parameters are made: what a number means, its unit and its range.
+"""The types from which parameters are made: the meaning of a number, its unit and its range.
 
 A study takes a subclass of :class:`Parameters` that stands beside it. The check of the
 configuration, its one-line errors, its documentation and its JSON schema are made from these
-classes, so that a name, a range or a description stands once. A limit is there for a reason,
-which the description says.
+classes, so that a name, a range or a description stands once. The description gives the reason
+for each limit.
 """
 
 from typing import Annotated, Any, Self, TypeVar
@@ -15,14 +15,14 @@ _T = TypeVar("_T")
 
 
 class Parameters(BaseModel):
-    """The parameters of a study, with all keys and no others.
+    """The parameters of a study, with exactly these keys.
 
-    Nothing is converted, so that a text is no number and 801.0 no count. Numbers are finite.
+    Values are not converted: a text is not a number, and 801.0 is not a count. Numbers are finite.
 
     Raises
     ------
     pydantic.ValidationError
-        As it is made from values that are not allowed.
+        If a value is not allowed.
 
     Examples
     --------
@@ -34,7 +34,9 @@ class Parameters(BaseModel):
 
 
 def number(description: str, unit: str = "1", **limits: Any) -> Any:
-    """A description with a unit and the limits ``ge``, ``gt``, ``le`` and ``lt``."""
+    """The field of a number: its description, its unit and the limits ``ge``, ``gt``, ``le``,
+    ``lt``.
+    """
     return Field(description=description, json_schema_extra={"unit": unit}, **limits)
 
 
@@ -47,7 +49,7 @@ def _distinct(values: tuple) -> tuple:
 Many = Annotated[tuple[_T, ...], Strict(False), Field(min_length=1), AfterValidator(_distinct)]
 """One or more different values, a list in the configuration."""
 
-# Why r and Λ have the limits that they have.
+# The reasons for the limits of r and Λ.
 _HELD = "an r below 0.05 is that of a contact which the ball hardly leaves"
 _UNSTABLE = "of the families n ≤ 20 have long been unstable"
 

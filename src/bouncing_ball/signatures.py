@@ -1,4 +1,4 @@
-"""What a call takes: ranges of its parameters, and parameters handed on to another call.
+"""Ranges of a call's parameters, and parameters that it hands on to another call.
 
 The command line reads both from the signatures of the calls, and the meaning of a parameter from
 the call's docstring, so that each stands once.

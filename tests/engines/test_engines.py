@@ -9,6 +9,7 @@ from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.engines import ENGINES, engine_named
 from bouncing_ball.engines.engine import ERROR, Physical
+from bouncing_ball.engines.reference import numbers, template
 from bouncing_ball.engines.scheme import error_in_steps
 from bouncing_ball.errors import ModelError
 
@@ -52,8 +53,20 @@ def test_the_snippet_has_the_numbers(name, release):
     assert all(len(line) < 110 for line in found.snippet.splitlines())
 
 
+@pytest.mark.parametrize(("name", "release"), BOTH)
+def test_a_text_with_places_for_numbers_is_the_snippet(name, release):
+    engine, step = ENGINES[name], 1.25e-6
+    values = numbers(engine, CONTACT) | {"mass": CONTACT.mass, "time_step": step}
+    texts = {key: repr(value) for key, value in values.items()}
+    texts |= {str(rule): f"{CONTACT.restitution(rule):.4f}" for rule in Release}
+    text = re.sub(r"@([\w.]+)@", lambda found: texts[found[1]], template(engine, release))
+    assert text == engine.snippet(CONTACT, release, step)
+
+
 def test_the_release_is_written_where_there_are_two():
     words = {"lammps": "limit_damping", "liggghts": "limitForce on", "generic": "max(0.0"}
+    # LIGGGHTS 3.8.0 refuses it before the wall, and with it there has r = 0.5 and 0.75 to 0.001.
+    assert ENGINES["liggghts"].settings(CONTACT, "force").snippet.endswith("0.0 limitForce on")
     for name, word in words.items():
         for release in Release:
             assert (word in ENGINES[name].settings(CONTACT, release).snippet) is (

@@ -44,9 +44,10 @@ rule draw_explorer:
     input:
         data="results/figures/explorer.nc",
         texts=expand(
-            f"{EXPLORER}/{{name}}", name=["model.js", "page.js", "page.css", "page.html.j2"]
+            f"{EXPLORER}/{{name}}",
+            name=["model.js", "engines.js", "page.js", "page.css", "page.html.j2"],
         ),
-        source=modules("figures.explorer.document"),
+        source=modules("figures.explorer.document", "engines.reference"),
     output:
         html="results/figures/explorer.html",
     log:

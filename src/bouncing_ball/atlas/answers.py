@@ -1,8 +1,8 @@
-r"""What is kept of the orbits of tiles: thresholds, extremes and counts.
+"""The answers kept of the orbits of tiles: thresholds, extremes and counts.
 
-Blocks of nodes are walked one after another; of each node its thresholds are kept, and its
-errors at the examined ϖ, until some tiles are whole. The answers of a tile, of which the files
-are made, are maxima of them and counts: they do not grow with the number of nodes.
+Nodes are walked in blocks. Of each node its thresholds and its errors at the examined ϖ are kept
+until the tiles of the block are complete. The answers of a tile, which the files contain, are
+maxima of these and counts, so that their size does not grow with the number of nodes.
 """
 
 import numpy as np
@@ -17,13 +17,15 @@ from bouncing_ball.atlas.walk import walk
 from bouncing_ball.contacts.signature import Signature
 
 BLOCK = 1024
-"""Nodes walked at once: as many as make long arrays, and keep the walk in the cache."""
+"""Nodes walked at the same time: enough for long arrays, few enough for the cache."""
 PER_DECADE = 10
-"""Bins of the histograms of thresholds in a decade of ϖ."""
+"""Number of bins per decade of ϖ in the histograms of thresholds."""
 
 
 def threshold_bins(ratios: np.ndarray) -> np.ndarray:
     """Lower bounds of the bins: 0 for what holds at all ϖ, infinity for what never does.
+
+    ``ratios`` are the ϖ of the atlas, increasing, shape (k,).
 
     Examples
     --------
@@ -37,16 +39,16 @@ def threshold_bins(ratios: np.ndarray) -> np.ndarray:
 
 
 def _of_nodes(plan: Plan, row: int, index: np.ndarray) -> xr.Dataset:
-    """What is kept of some nodes of a row."""
+    """The answers of some nodes of a row, over ``node``."""
     nodes, down = plan.nodes(row, index), plan.ratios[::-1]
     steps = list(walk(nodes, plan.ratios))
     error = np.concatenate([np.moveaxis(orbit_errors(step.orbit), 2, 0) for step in steps])
     stable = np.concatenate([step.stable for step in steps])
-    # ϖ came down; the examined ones increase.
+    # The walk goes down in ϖ, whereas the examined ϖ increase.
     at = np.flatnonzero(np.isin(down, plan.examined))[::-1]
     examined = np.moveaxis(error[at], 0, 2)
     signature = Signature(nodes.contact(down[at, np.newaxis]))
-    # One quantity after another, as the errors of all are larger than the cache.
+    # One quantity after another, because the errors of all do not fit into the cache.
     each = error.reshape(len(down), -1, len(index))
     found = [
         last_crossings(down, each[:, k], np.array(plan.tolerances)) for k in range(each.shape[1])
@@ -69,7 +71,12 @@ def _of_nodes(plan: Plan, row: int, index: np.ndarray) -> xr.Dataset:
 
 
 def row_answers(plan: Plan, row: int) -> xr.Dataset:
-    """The answers of the tiles of a row, which are its positions."""
+    """The answers of the tiles of a row, over ``position``.
+
+    Maxima over the nodes of a tile are ``largest_threshold``, a ϖ, and ``largest_error`` at each
+    examined ϖ, with its place ``worst_restitution`` and ``worst_amplitude``; the other variables
+    are numbers of nodes. Dimensions are model, quantity, tolerance, threshold_bin and ϖ.
+    """
     size = plan.nodes_per_tile * max(1, BLOCK // plan.nodes_per_tile)
     every = np.arange(plan.nodes_per_row)
     parts = [_of_tiles(plan, row, every[k : k + size]) for k in range(0, len(every), size)]
@@ -77,7 +84,7 @@ def row_answers(plan: Plan, row: int) -> xr.Dataset:
 
 
 def _of_tiles(plan: Plan, row: int, nodes: np.ndarray) -> xr.Dataset:
-    """The answers of some tiles of a row, of whose nodes 3 kB each are kept until then."""
+    """The answers of some tiles of a row; until they are complete each node takes 3 kB."""
     starts, bins = range(0, len(nodes), BLOCK), threshold_bins(plan.ratios)
     blocks = [_of_nodes(plan, row, nodes[k : k + BLOCK]) for k in starts]
     tiles = xr.concat(blocks, "node").coarsen(node=plan.nodes_per_tile)
@@ -85,7 +92,7 @@ def _of_tiles(plan: Plan, row: int, nodes: np.ndarray) -> xr.Dataset:
     size = abs(each.error).where(np.isfinite(each.error), -np.inf)
     # The first of the nodes with the largest error; none where no error is finite.
     largest, worst = size.max("own"), each.isel(own=size.argmax("own"))
-    # A bin is open at its upper end, but the first one closed: there all ϖ will do.
+    # A bin is open at its upper end, except the first, which has the thresholds at the smallest ϖ.
     place = np.searchsorted(bins, each.threshold, side="right") - 1
     place = np.where(each.threshold <= plan.ratios[0] * (1 + 1e-12), 0, place)
     in_bins = np.stack([np.sum(place == k, axis=-1) for k in range(len(bins))])

@@ -1,10 +1,10 @@
-r"""The last ϖ at which an error exceeds each tolerance, coming down from stiff contacts.
+"""The last ϖ at which an error exceeds each tolerance, from stiff contacts downwards.
 
 The threshold of an error is the ϖ from which on it stays within a tolerance: the first
-crossing that a walk from the largest ϖ to the smallest meets. It is known to lie
-within one step of the walk, and interpolated there: in logarithms, in which the error
+crossing that a walk from the largest ϖ to the smallest meets. It lies
+within one step of the walk and is interpolated there, in logarithms, in which the error
 is nearly a straight line, or along the error itself where that changes its sign. An
-excursion beyond the tolerance between two ϖ is seen by the parabola through the
+excursion beyond the tolerance between two ϖ is detected by the parabola through the
 nearest three.
 """
 
@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-# The error is bounded for the interpolation, as one of the models may have no orbit.
+# The error is bounded for the interpolation, because one of the models may have no orbit.
 _LARGEST = 1e3
 _SMALLEST = 1e-300
 
@@ -25,8 +25,7 @@ def last_crossings(ratios: np.ndarray, errors: np.ndarray, tolerances: np.ndarra
     ratios : ndarray, shape (k,)
         ϖ, decreasing.
     errors : ndarray, shape (k, ...)
-        The signed errors there, with one more dimension at least. Those that are not a
-        number are infinite.
+        The signed errors there, with at least one more dimension. NaN counts as infinite.
     tolerances : ndarray, shape (m,)
 
     Returns
@@ -45,18 +44,18 @@ def last_crossings(ratios: np.ndarray, errors: np.ndarray, tolerances: np.ndarra
     [3.0, 100.0, inf]
     """
     x, errors = np.log(ratios), np.where(np.isnan(errors), np.inf, errors)
-    # Of all ϖ down to each. Four times as fast as numpy's accumulate along this axis.
+    # The running maximum from the largest ϖ down; four times as fast as numpy's accumulate.
     largest = np.abs(errors)
     for above, here in pairwise(largest):
         np.maximum(above, here, out=here)
     step, entry, inside, height, top, curve = _peaks(x, errors)
     found = np.full((len(tolerances), *errors.shape[1:]), x[-1])
     for one, tolerance in zip(found, tolerances, strict=True):
-        # Which ϖ is the first beyond the tolerance.
+        # The index of the first ϖ at which the error exceeds the tolerance.
         first = np.count_nonzero(largest <= tolerance, axis=0)
         crosses = np.nonzero(first < len(x))
         one[crosses] = _crossing(x, errors, (first[crosses], *crosses), tolerance)
-        # Of several excursions before it the first one counts: it is written last.
+        # Of several excursions before it the first one counts, and is therefore written last.
         seen = (inside <= tolerance) & (tolerance < height) & (step <= first[entry])
         seen = np.flatnonzero(seen)[::-1]
         width = np.sqrt((height[seen] - tolerance) / -curve[seen])
@@ -66,7 +65,7 @@ def last_crossings(ratios: np.ndarray, errors: np.ndarray, tolerances: np.ndarra
 
 
 def _crossing(x: np.ndarray, errors: np.ndarray, at: tuple, tolerance: float) -> np.ndarray:
-    """ln ϖ at which errors reach their tolerance, within the step before the place given."""
+    """ln ϖ at which errors reach their tolerance, within the step before the given place."""
     step, *entry = at
     # Nothing is known beyond the largest ϖ.
     start = step == 0
@@ -82,10 +81,10 @@ def _crossing(x: np.ndarray, errors: np.ndarray, at: tuple, tolerance: float) ->
 
 
 def _peaks(x: np.ndarray, errors: np.ndarray) -> tuple:
-    """Parabolas through each three ϖ with their top between.
+    """Parabolas through three neighbouring ϖ whose apex lies between them.
 
-    Indices of the last of the three and of the entries, the modulus of the error in the middle
-    and that of the top, ln ϖ of the top, and the curvature.
+    Returns the indices of the last of the three and of the entries, the modulus of the error in the
+    middle and at the apex, ln ϖ of the apex, and the curvature.
     """
     e0, e1, e2 = errors[:-2], errors[1:-1], errors[2:]
     with np.errstate(invalid="ignore"):

@@ -1,4 +1,4 @@
-r"""What the atlas covers, in tiles, and how the work is divided.
+r"""The orbits that the atlas covers, in tiles, and the division of the work.
 
 An orbit of the atlas is a node (release rule, n, r, p) at a frequency ratio ϖ. The
 position p in (0, 1) is that of Λ in the stable range of the restitution model ::
@@ -7,8 +7,8 @@ position p in (0, 1) is that of Λ in the stable range of the restitution model 
 
 A *tile* is a range of r times a range of p, for one rule and one n; its nodes are
 the midpoints of an even grid in it. A *row* is all tiles of one rule, one n and one
-range of r. Rows are computed one by one, a *shard* is some rows in order: so its
-numbers do not depend on how many shards there are. All quantities are dimensionless.
+range of r. Rows are computed one by one, and a *shard* is some rows in order, so that the
+numbers do not depend on the number of shards. All quantities are dimensionless.
 """
 
 from dataclasses import dataclass
@@ -36,13 +36,13 @@ from bouncing_ball.parameters import (
 
 # A linear contact released by its force has a higher restitution coefficient.
 _LOWEST = {Release.DISPLACEMENT: 0.0, Release.FORCE: float(np.exp(-2))}
-# Ratios closer than this are one.
+# Ratios that differ by less in ln ϖ are equal.
 _SAME = 1e-9
 
 
 @dataclass(frozen=True)
 class Nodes:
-    """Nodes of one rule and one n; arrays of one shape."""
+    """Nodes of one rule and one n, with r and Λ as arrays of one shape."""
 
     release: Release
     n: int
@@ -55,26 +55,28 @@ class Nodes:
         return np.asarray(damping_ratio(self.restitution, self.release))
 
     def contact(self, frequency_ratio: float | np.ndarray) -> SpringDamper:
-        """The contacts of the nodes at ϖ, an array of any shape that broadcasts with theirs."""
+        """The contacts of the nodes at ϖ, an array of any shape that broadcasts with that of the
+        nodes.
+        """
         return SpringDamper(frequency_ratio, self.damping_ratio, self.release)
 
 
 class Ranges(Parameters):
-    """Equal ranges, with even nodes in each."""
+    """Equal ranges, with equally spaced nodes in each."""
 
     tiles: Annotated[int, number("number of equal ranges", ge=1, le=2000)]
     samples: Annotated[int, number("even nodes in each range", ge=1, le=10000)]
 
 
 class RestitutionRanges(Interval, Ranges):
-    """Ranges of r; those beyond a release rule's reach are left out."""
+    """Ranges of r, without those that a release rule does not reach."""
 
     min: Annotated[Restitution, Field(description="smallest r, for rules that reach it")]
     max: Annotated[Restitution, Field(description="largest r, above min")]
 
 
 class Plan(Parameters):
-    """What the atlas is made from, the section ``atlas`` of the configuration."""
+    """The parameters of the atlas, the section ``atlas`` of the configuration."""
 
     n: Many[Family]
     release: Many[Annotated[Release, Strict(False)]]
@@ -87,25 +89,25 @@ class Plan(Parameters):
 
     @cached_property
     def edges(self) -> np.ndarray:
-        """Bounds of the ranges of r, rounded to what one would type."""
+        """Bounds of the ranges of r, rounded to 12 decimals, shape (ranges + 1,)."""
         part = self.restitution
         return np.round(np.linspace(part.min, part.max, part.tiles + 1), 12)
 
     @cached_property
     def positions(self) -> np.ndarray:
-        """Bounds of the ranges of p."""
+        """Bounds of the ranges of p, shape (ranges + 1,)."""
         return np.linspace(0.0, 1.0, self.position.tiles + 1)
 
     @cached_property
     def ratios(self) -> np.ndarray:
-        """All ϖ, increasing: the grid, with those examined among it."""
+        """All ϖ, increasing: the grid merged with the examined ones."""
         grid, examined = self.frequency_ratio.grid(), np.sort(self.examined)
         apart = np.abs(np.log(grid[:, np.newaxis] / examined)) > _SAME
         return np.sort(np.concatenate([grid[np.all(apart, axis=1)], examined]))
 
     @property
     def resolution(self) -> float:
-        """Largest step of the grid: a threshold is known to lie within one."""
+        """Largest relative step of the grid; a threshold is known to lie within one step."""
         return float(np.max(self.ratios[1:] / self.ratios[:-1])) - 1
 
     @property
@@ -115,12 +117,12 @@ class Plan(Parameters):
 
     @cached_property
     def rows(self) -> np.ndarray:
-        """Numbers of the rows, without those of ranges of r that a rule does not reach."""
+        """Numbers of the rows, without those whose range of r a rule does not reach."""
         reached = [self.edges[:-1] >= _LOWEST[rule] for rule in self.release]
         return np.flatnonzero(np.broadcast_to(np.array(reached)[:, np.newaxis], self.shape))
 
     def shard_rows(self) -> list[np.ndarray]:
-        """The rows of each shard; their numbers differ by one at most."""
+        """The rows of each shard; the sizes of the shards differ by one at most."""
         return np.array_split(self.rows, min(self.shards, len(self.rows)))
 
     @property
@@ -139,19 +141,21 @@ class Plan(Parameters):
         return len(self.rows) * self.nodes_per_row * len(self.ratios)
 
     def nodes(self, row: int, index: np.ndarray) -> Nodes:
-        """Nodes of a row by their numbers, which go tile by tile, in each r by r."""
+        """Nodes of a row by their numbers ``index``, which run tile by tile, and in a tile r
+        by r.
+        """
         count = self.position.tiles * self.position.samples
         p = _midpoints(0.0, 1.0, count).reshape(self.position.tiles, 1, -1)
         each = np.broadcast_arrays(self.restitutions(row)[:, np.newaxis], p)
         return self.placed(row, *(x.ravel()[index] for x in each))
 
     def restitutions(self, row: int) -> np.ndarray:
-        """The r of a row."""
+        """The r of a row's nodes, shape (samples,)."""
         low, high = self.edges[row % self.restitution.tiles :][:2]
         return _midpoints(float(low), float(high), self.restitution.samples)
 
     def placed(self, row: int, r: np.ndarray, p: np.ndarray) -> Nodes:
-        """Nodes at any r and p, for a row's rule and n."""
+        """Nodes at any r and p, arrays of one shape, for the rule and the n of a row."""
         rule, family, _ = np.unravel_index(row, self.shape)
         n = self.n[family]
         low, high = restitution_orbit.saddle_node(n, r), restitution_orbit.period_doubling(n, r)

@@ -1,4 +1,4 @@
-"""The shards of the atlas, the limits of all families, and one dataset of all of them."""
+"""The shards of the atlas, the limits of all families, and the merged dataset."""
 
 from collections.abc import Iterable
 
@@ -14,11 +14,13 @@ from bouncing_ball.datasets.variables import describe, described
 from bouncing_ball.errors import ModelError
 
 _PLACE = ("release", "n", "restitution")
-"""The dimensions in place of ``row``."""
+"""The dimensions into which ``row`` is unfolded."""
 
 
 def shard(plan: Plan, index: int) -> xr.Dataset:
-    """The answers of a shard's rows."""
+    """The answers of a shard's rows, over ``row`` and the dimensions of
+    :func:`~bouncing_ball.atlas.answers.row_answers`.
+    """
     rows = plan.shard_rows()[index]
     found = xr.concat([row_answers(plan, row) for row in rows], "row")
     coords = {
@@ -32,7 +34,8 @@ def shard(plan: Plan, index: int) -> xr.Dataset:
 def limit_shard(plan: Plan) -> xr.Dataset:
     """The ϖ needed for saddle-node, period doubling and permanent contact, of all rows.
 
-    The largest threshold of the r of a row, interpolated as those of the orbits are.
+    ``limit_needed`` (row, model, limit_quantity, tolerance) is the largest threshold among the r of
+    a row, interpolated like those of the orbits.
     """
     down, shape = plan.ratios[::-1], (len(SIMPLE), len(OF_LIMITS), len(plan.tolerances))
     needed = np.empty((len(plan.rows), *shape))
@@ -54,8 +57,8 @@ def _common(plan: Plan, rows: np.ndarray) -> dict[str, object]:
 def merge(plan: Plan, shards: Iterable[xr.Dataset], limits: xr.Dataset) -> xr.Dataset:
     """The answers of all shards by rule, n, range of r and range of p.
 
-    Ranges of r that a rule does not reach have no nodes: their counts are 0, the rest is not a
-    number.
+    Ranges of r that a rule does not reach have no nodes: their counts are 0, and the other
+    variables are NaN.
 
     Raises
     ------

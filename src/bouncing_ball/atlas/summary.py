@@ -1,7 +1,7 @@
-"""What people ask of the atlas, small enough for the accepted record.
+"""The summary of the atlas, which is small enough for the accepted record.
 
-The frequency ratio needed for one tolerance over r, Λ and n; the shares of nodes on
-which a rule of thumb holds; the worst orbits; and how the error law fares.
+It has the frequency ratio needed for one tolerance over r, Λ and n; the shares of nodes on
+which a rule of thumb holds; the orbits with the largest errors; and the accuracy of the error law.
 """
 
 import numpy as np
@@ -13,9 +13,9 @@ from bouncing_ball.atlas.plan import Plan
 from bouncing_ball.datasets.variables import described
 
 TOLERANCE = 0.01
-"""Of charts and tables."""
+"""The tolerance of charts and tables."""
 RULE_OF_THUMB = 100.0
-"""The ϖ from which on the paper finds the restitution model right."""
+"""The ϖ above which the paper regards the restitution model as accurate."""
 QUANTILES = (0.5, 0.9, 0.99, 1.0)
 _TILES = ("restitution", "position")
 
@@ -23,7 +23,7 @@ _TILES = ("restitution", "position")
 def summary(plan: Plan, atlas: xr.Dataset) -> xr.Dataset:
     """The summary for a tolerance and a rule "ϖ above this is enough".
 
-    They are those of the atlas that are nearest to the paper's.
+    Both are those of the atlas that are nearest to the paper's.
     """
     near = atlas.sel({"tolerance": TOLERANCE, "frequency_ratio": RULE_OF_THUMB}, method="nearest")
     tolerance, rule = float(near.tolerance), float(near.frequency_ratio)
@@ -56,13 +56,15 @@ def summary(plan: Plan, atlas: xr.Dataset) -> xr.Dataset:
 
 
 def _share(atlas: xr.Dataset, name: str) -> xr.DataArray:
-    """Share of the nodes of each rule and n of which something is counted."""
+    """Share of the nodes of each rule and n that a variable counts."""
     nodes = atlas.threshold_counts.isel(model=0, quantity=0, tolerance=0, drop=True)
     return atlas[name].sum(_TILES) / nodes.sum(("threshold_bin", *_TILES))
 
 
 def _quantiles(atlas: xr.Dataset) -> xr.DataArray:
-    """ϖ from which a share of the nodes is right: the upper end of a bin, or the largest of all."""
+    """ϖ from which a share of the nodes is accurate: the upper end of a bin, or the largest
+    threshold.
+    """
     counts = atlas.threshold_counts.sum(_TILES)
     share = counts.cumsum("threshold_bin") / counts.sum("threshold_bin")
     ends = xr.DataArray(np.append(atlas.threshold_bin[1:], np.inf), dims="threshold_bin")
@@ -82,7 +84,7 @@ def _reach(edges: np.ndarray, exceeding: xr.DataArray, along: str) -> xr.DataArr
 
 
 def _law(plan: Plan) -> xr.Variable:
-    """For the charts: the error law's K in the middles of the tiles."""
+    """The modulus of the error law's K in the middles of the tiles, for the charts."""
     middle_r, middle_p = ((edges[1:] + edges[:-1]) / 2 for edges in (plan.edges, plan.positions))
     law = np.full((*plan.shape, len(middle_p), len(OF_ORBITS)), np.nan, "f4")
     for row in plan.rows:

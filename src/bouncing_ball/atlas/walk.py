@@ -1,24 +1,24 @@
 r"""Orbits at given Λ along ϖ, by walking on the branch and not by root finding.
 
 On the branch of :mod:`bouncing_ball.orbits.spring_damper_branch` the product t = ϖε is almost
-constant along ϖ, and (X, Y) almost a straight line along ε. So the walk comes down
-from the stiffest contact. There the load a = 1 - Y alone delays the release, by
+constant along ϖ, and (X, Y) almost a straight line along ε. The walk therefore starts at the
+stiffest contact and goes down. There the load a = 1 - Y alone delays the release, by
 ``(1 + r) a/(r v ϖ²)`` for both rules (:mod:`bouncing_ball.contacts.signature`), with
-``v = 2nπ/(1 + r)``; in the contact's own angle ::
+``v = 2nπ/(1 + r)``; as an angle of the contact's oscillation this is ::
 
     t = √(1 - ζ²) (1 + r)² (1 - Y)/(2nπ r)
 
-The next softer ϖ are taken some at a time: there t is that of the polynomial through the
-last eight along ln ϖ, corrected once. With X and Y straight along ε, Λ² is a parabola,
+The smaller ϖ are taken eight at a time. There t is extrapolated by the polynomial through the
+last eight along ln ϖ, and corrected once. With X and Y straight along ε, Λ² is a parabola,
 and of the two d with ::
 
     (X + X′d)² + (Y + Y′d)² = Λ²
 
-the smaller one is that of the stable side. Two evaluations of the branch for each
-orbit, where a bracketing root finder takes hundreds. What the walk gives is an orbit
-of the closed form in any case; only its Λ is not exactly that asked for, and the
-difference is known. Where it exceeds :data:`REACHED`, the orbit is looked for by
-:func:`bouncing_ball.orbits.spring_damper_limits.orbit_at`, whose word is the last.
+the smaller one is that of the stable side. This takes two evaluations of the branch for each
+orbit, whereas a bracketing root finder takes hundreds. Every result of the walk is an orbit
+of the closed form; only its Λ differs slightly from the requested one, by a known
+difference. Where it exceeds :data:`REACHED`, the orbit is computed by
+:func:`bouncing_ball.orbits.spring_damper_limits.orbit_at`, which is authoritative.
 """
 
 from collections.abc import Iterator
@@ -36,12 +36,12 @@ from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.stability import is_stable
 
 REACHED = 1e-6
-"""Relative distance of an orbit's Λ from that asked for. Errors are then those of an
-orbit next to the node's, exact there; the walk mostly keeps within 1e-9."""
+"""Largest relative distance of an orbit's Λ from the requested one. Errors are then those of a
+neighbouring orbit, computed exactly; the walk mostly stays within 1e-9."""
 TOGETHER = 8
-"""Number of ϖ taken at once, so that also few nodes make long arrays; t is extrapolated
-from as many."""
-# The extrapolation has no past at the stiffest contacts.
+"""Number of ϖ computed at the same time, so that few nodes make long arrays too; t is
+extrapolated from as many."""
+# At the stiffest contacts there is nothing to extrapolate from, so that t is corrected more often.
 _FIRST_CORRECTIONS = 4
 
 
@@ -52,11 +52,11 @@ class Step(NamedTuple):
     orbit: SpringDamperOrbit
     stable: np.ndarray
     sought: np.ndarray
-    """Whether each orbit was looked for, as the walk had not reached it."""
+    """Whether each orbit was found by the root finder, because the walk did not reach it."""
 
 
 def stiff_start(nodes: Nodes) -> np.ndarray:
-    """t = ϖε of the nodes as ϖ → ∞.
+    """t = ϖε of the nodes as ϖ → ∞, of the nodes' shape.
 
     Examples
     --------
@@ -105,7 +105,8 @@ def extrapolated(at: np.ndarray, past: np.ndarray, to: np.ndarray) -> np.ndarray
 def correction(point: BranchPoint, amplitude: np.ndarray) -> np.ndarray:
     """The d by which ε reaches Λ on the stable side, with X and Y straight along ε.
 
-    Where the parabola does not come down to Λ², the d of its lowest point.
+    Where the parabola does not come down to Λ², it is the d of the lowest point. The result has the
+    shape of the point's fields and ``amplitude``.
     """
     square = point.d_x * point.d_x + point.d_y * point.d_y
     above = point.x * point.x + point.y * point.y - amplitude * amplitude
@@ -128,7 +129,7 @@ def walk(nodes: Nodes, ratios: np.ndarray) -> Iterator[Step]:
         At :data:`TOGETHER` ϖ, the last one at fewer.
     """
     down = ratios[::-1]
-    # Before the first step t is that of ϖ → ∞ at any ϖ.
+    # Before the first step t is that of ϖ → ∞, whatever ϖ is.
     at, past = np.log(down[:1]), stiff_start(nodes)[np.newaxis]
     for k in range(0, len(down), TOGETHER):
         ratio = down[k : k + TOGETHER, np.newaxis]
@@ -148,7 +149,9 @@ def walk(nodes: Nodes, ratios: np.ndarray) -> Iterator[Step]:
 
 
 def _replaced(orbit: SpringDamperOrbit, sought: np.ndarray, contact: SpringDamper, nodes: Nodes):
-    """The orbits, those not reached by the walk looked for directly."""
+    """The orbits, in which those not reached by the walk are replaced by those of the root
+    finder.
+    """
     asked = np.broadcast_to(nodes.amplitude, sought.shape)[sought]
     found = limits.orbit_at(contact[sought], nodes.n, asked)
     names = ("amplitude", "phase", "contact_duration", "impact_velocity")

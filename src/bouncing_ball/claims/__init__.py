@@ -1,6 +1,7 @@
-"""The ledger of the paper's claims and the verdict on each, from datasets alone.
+"""The ledger of the paper's claims with a verdict on each, from datasets alone.
 
-This compares the *paper* with the replication, in printed digits. Whether a run
-still says what the accepted record says is another question, with tolerances
-of its own.
+A verdict compares the *paper* with the replication, in printed digits. Whether a run agrees with
+the accepted record is another question, with other tolerances: :mod:`bouncing_ball.compare`.
+Functions called ``data`` take a mapping from a dataset's name to the dataset; all numbers are
+dimensionless.
 """

@@ -1,6 +1,6 @@
-r"""The paper's equations as it prints them, as far as they are legible, right or wrong.
+"""The paper's equations as it prints them, as far as they are legible, right or wrong.
 
-Used only to be checked (:mod:`bouncing_ball.claims.formulas`); nothing else is
+They are used only to be checked (:mod:`bouncing_ball.claims.formulas`); nothing else is
 computed from them. All quantities are dimensionless; the functions broadcast.
 """
 
@@ -19,25 +19,50 @@ def restitution_law(before, table, restitution):
 
 
 def free_flight(time, start, height, velocity):
-    """Eq. 4, and Eq. 3 for the velocity: the ball in flight since τ₀, from z₀ and z′₀."""
+    """Eq. 4, and Eq. 3 for the velocity: height and velocity in flight since τ₀, from z₀ and z′₀.
+
+    Examples
+    --------
+    >>> free_flight(3.0, 1.0, 0.0, 4.0)
+    (6.0, 2.0)
+    """
     since = time - start
     return -(since**2) / 2 + since * velocity + height, -since + velocity
 
 
 def landing_defect(phase, velocity, flight, amplitude):
-    """First line of Eq. 5: Λ[sin(τ₀ + s) - sin τ₀] - (s v₀ - s²/2)."""
+    """First line of Eq. 5: Λ[sin(τ₀ + s) - sin τ₀] - (s v₀ - s²/2), zero at the landing.
+
+    Examples
+    --------
+    >>> abs(float(landing_defect(0.0, 2.0, 4.0, 0.0)))
+    0.0
+    """
     rise = amplitude * (np.sin(phase + flight) - np.sin(phase))
     return rise - (flight * velocity - flight * flight / 2)
 
 
 def bounced_velocity(phase, velocity, flight, amplitude, restitution):
-    """Second line of Eq. 5: v₁ = -r (v₀ - s) + (1 + r) Λ cos(τ₀ + s)."""
+    """Second line of Eq. 5: v₁ = -r (v₀ - s) + (1 + r) Λ cos(τ₀ + s).
+
+    Examples
+    --------
+    >>> float(bounced_velocity(0.0, 2.0, 4.0, 0.0, 0.5))
+    1.0
+    """
     push = (1 + restitution) * amplitude * np.cos(phase + flight)
     return -restitution * (velocity - flight) + push
 
 
 def fixed_point(n, restitution, amplitude):
-    """Eq. 6: φ = arccos[nπ/Λ (1 - r)/(1 + r)] and v = nπ."""
+    """Eq. 6: φ = arccos[nπ/Λ (1 - r)/(1 + r)] and v = nπ.
+
+    Examples
+    --------
+    >>> phase, velocity = fixed_point(1, 1.0, 2.0)
+    >>> float(phase) == np.pi / 2, float(velocity) == np.pi
+    (True, True)
+    """
     share = n * np.pi / amplitude * (1 - restitution) / (1 + restitution)
     return np.arccos(share), n * np.pi + 0 * share
 
@@ -54,7 +79,13 @@ def saddle_node(n, restitution):
 
 
 def period_doubling(n, restitution):
-    """Eq. 8: Λ = √(1 + [nπ (1 - r)/(1 + r)]²)."""
+    """Eq. 8: Λ = √(1 + [nπ (1 - r)/(1 + r)]²), which is that of Holmes' map.
+
+    Examples
+    --------
+    >>> float(period_doubling(3, 1.0))
+    1.0
+    """
     return np.sqrt(1 + saddle_node(n, restitution) ** 2)
 
 
@@ -63,6 +94,14 @@ def contact(time, frequency_ratio, damping_ratio, amplitude, phase, a, b):
 
     ``z = e^{-ζϖτ}(A cos ϖ_d τ + B sin ϖ_d τ) - 1/ϖ² + βΛ cos(τ + φ) + χΛ sin(τ + φ)``
     with β = -2ζϖ/γ, χ = [(2ζϖ)² + ϖ²(ϖ² - 1)]/γ, γ = (ϖ² - 1)² + (2ζϖ)².
+
+    Examples
+    --------
+    On a table at rest without oscillation the ball rests at -1/ϖ²:
+
+    >>> height, velocity = contact(1.0, 2.0, 0.1, 0.0, 0.0, 0.0, 0.0)
+    >>> float(height), float(velocity)
+    (-0.25, 0.0)
     """
     omega, zeta = frequency_ratio, damping_ratio
     loss, stiffness = 2 * zeta * omega, omega**2
@@ -79,7 +118,14 @@ def contact(time, frequency_ratio, damping_ratio, amplitude, phase, a, b):
 
 
 def flight(time, release_time, bounce_velocity, amplitude, phase):
-    """Eqs. 14 and 15: height and velocity of the ball in flight since τ_b."""
+    """Eqs. 14 and 15: height and velocity of the ball in flight since τ_b.
+
+    Examples
+    --------
+    >>> height, velocity = flight(2.0, 0.0, 2.0, 0.0, 0.0)
+    >>> float(height), float(velocity)
+    (2.0, 0.0)
+    """
     height = amplitude * np.sin(release_time + phase)
     return free_flight(time, release_time, height, bounce_velocity)
 
@@ -97,12 +143,24 @@ def damping_ratio(restitution):
 
 
 def bounce_velocity(impact_velocity, n, duration):
-    """Eq. 27: z′_b = z′_i + 2πn - τ_b."""
+    """Eq. 27: z′_b = z′_i + 2πn - τ_b.
+
+    Examples
+    --------
+    >>> bounce_velocity(-np.pi, 1, 0.0) == np.pi
+    True
+    """
     return impact_velocity + 2 * np.pi * n - duration
 
 
 def steady_displacement(time, frequency_ratio, damping_ratio, amplitude):
-    """Eq. 31: relative displacement in permanent contact, with τ + φ as the time."""
+    """Eq. 31: relative displacement in permanent contact, with τ + φ as the time.
+
+    Examples
+    --------
+    >>> float(steady_displacement(0.0, 2.0, 0.0, 1.0))
+    -0.25
+    """
     detuning, loss = frequency_ratio**2 - 1, 2 * damping_ratio * frequency_ratio
     gamma = detuning**2 + loss**2
     swing = amplitude / gamma * (detuning * np.sin(time) - loss * np.cos(time))
@@ -110,12 +168,24 @@ def steady_displacement(time, frequency_ratio, damping_ratio, amplitude):
 
 
 def permanent_contact_threshold(frequency_ratio, damping_ratio):
-    """Eq. 33: Λ_SD = √(1 + (4ζ² - 2)/ϖ² + 1/ϖ⁴)."""
+    """Eq. 33: Λ_SD = √(1 + (4ζ² - 2)/ϖ² + 1/ϖ⁴).
+
+    Examples
+    --------
+    >>> float(permanent_contact_threshold(2.0, 0.0))
+    0.75
+    """
     return np.sqrt(1 + (4 * damping_ratio**2 - 2) / frequency_ratio**2 + frequency_ratio**-4.0)
 
 
 def permanent_contact_frequency_ratio(threshold, damping_ratio, sign):
-    """Eqs. 34 (sign +1) and 35 (sign -1): the ϖ at which Λ_SD has a value."""
+    """Eqs. 34 (sign +1) and 35 (sign -1): the ϖ at which Λ_SD has a value.
+
+    Examples
+    --------
+    >>> round(float(permanent_contact_frequency_ratio(0.75, 0.0, 1)), 12)
+    2.0
+    """
     centre = 1 - 2 * damping_ratio**2
     root = np.sqrt(centre**2 + threshold**2 - 1)
     return np.sqrt((centre + sign * root) / (1 - threshold**2))

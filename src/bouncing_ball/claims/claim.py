@@ -1,7 +1,7 @@
 '''Claims and explanations as small functions of the datasets.
 
 A claim is a function whose docstring says what the paper claims, in our words, and which
-returns what decides it::
+returns the finding that decides it::
 
     @claim("Abstract and Introduction")
     def contact_shortens(data):
@@ -12,7 +12,7 @@ returns what decides it::
         return below(data["fig13"].contact_duration.diff("frequency_ratio"), 0)
 
 Its id is the function's name, unless another is given. Where a claim can be read in
-several ways, the function returns what decides each reading, by the reading's name.
+several ways, the function returns a finding for each reading, by the reading's name.
 '''
 
 import inspect
@@ -28,12 +28,13 @@ from bouncing_ball.claims.verdict import Finding, Verdict, against_print, at_mos
 from bouncing_ball.errors import ModelError
 
 Data = Mapping[str, Any]
-# Why claims are not reproduced: a text, its docstring, and checks that must hold for it.
+# An explanation of claims that are not reproduced: its docstring is the text, and it returns
+# checks that must hold for it.
 Explanation = Callable[[Data], Mapping[str, Finding]]
 
 
 def _answer(name: str, decide: Callable[[Data], Any], data: Data) -> Any:
-    """What a function finds in the datasets; what it misses there is an error in one line."""
+    """The result of a function of the datasets; data that it misses are an error of one line."""
     try:
         return decide(data)
     except (ModelError, KeyError, AttributeError) as error:
@@ -41,14 +42,25 @@ def _answer(name: str, decide: Callable[[Data], Any], data: Data) -> Any:
 
 
 def paragraphs(function: Callable[..., Any]) -> dict[str, Any]:
-    """A docstring: its statement, and its further paragraphs by their first word."""
+    '''The first paragraph of a docstring as ``statement``, and the others by their first word.
+
+    Examples
+    --------
+    >>> def stiff(data):
+    ...     """the contact is stiff
+    ...
+    ...     Condition: ϖ is above 100
+    ...     """
+    >>> paragraphs(stiff)
+    {'statement': 'the contact is stiff', 'condition': 'ϖ is above 100'}
+    '''
     first, *others = inspect.getdoc(function).split("\n\n")  # type: ignore[union-attr]
     parts = (" ".join(other.split()).partition(": ") for other in others)
     return {"statement": " ".join(first.split()), **{key.lower(): text for key, _, text in parts}}
 
 
 def name_of(function: Callable[..., Any]) -> str:
-    """What a claim or an explanation is called, by default.
+    """The name of a claim or an explanation, by default that of its function.
 
     Examples
     --------
@@ -59,7 +71,13 @@ def name_of(function: Callable[..., Any]) -> str:
 
 
 def checked(explanation: Explanation, data: Data) -> tuple[bool, str]:
-    """Whether all checks hold, and each with its number, or why they were not made."""
+    """Whether all checks of an explanation hold, and a text of them or why they were not made.
+
+    Raises
+    ------
+    ModelError
+        If a dataset, or a variable of it, is missing.
+    """
     try:
         found = _answer(name_of(explanation), explanation, PaperData(data))
     except NotAsked as reason:
@@ -70,25 +88,29 @@ def checked(explanation: Explanation, data: Data) -> tuple[bool, str]:
 
 @dataclass(frozen=True)
 class Claim:
-    """A claim of the paper, and what decides it.
+    """A claim of the paper, and the function that decides it.
 
     Parameters
     ----------
-    id, kind, item, statement : str
-        Name; what it is counted as, ``number``, ``statement`` or ``restored formula``, the
-        signs of which had to be restored, so that the check shows that this form is right,
-        not that the paper printed it; its place in the paper; what it says, in our words.
+    id : str
+        Its name.
+    kind : str
+        The group in which it is counted: ``number``, ``statement`` or ``restored formula``. The
+        signs of a restored formula are illegible in the text at hand, so that the check shows that
+        this form is right, and not that the paper printed it.
+    item, statement : str
+        Its place in the paper, and what the paper says there, in our words.
     decide : callable
         A :class:`~bouncing_ball.claims.verdict.Finding` from the datasets, or a
-        mapping of them by reading; numbers, where something is ``printed``.
+        mapping of findings by reading; numbers, if one is ``printed``.
     printed : str
         The number as printed, with its digits; empty if there is none.
     condition, remark : str
         The decidable condition into which a statement is turned; how it was read.
     explanation : callable, optional
-        Why it is not reproduced: conditions from the datasets, by what is checked.
+        Why it is not reproduced: conditions on the datasets, by what is checked.
     restates : Claim, optional
-        The claim that it says again; the tally counts it apart.
+        The claim that it repeats; the tally counts repetitions apart.
     """
 
     id: str
@@ -103,12 +125,12 @@ class Claim:
     restates: "Claim | None" = None
 
     def verdict(self, data: PaperData) -> tuple[Finding, str]:
-        """The finding, and why there is none.
+        """The finding, and a text that gives the reason if there is none.
 
         Raises
         ------
         ModelError
-            If a dataset, or what is needed of it, is missing.
+            If a dataset, or a variable of it, is missing.
         """
         try:
             found = _answer(self.id, self.decide, data)
@@ -125,9 +147,17 @@ class Claim:
 
 
 def claim(item: str, id: str = "", **given: Any) -> Callable[[Callable[[Data], Any]], Claim]:
-    """Makes a claim of a function, from its docstring; its id is the function's name by default.
+    """Decorator that makes a claim of a function and its docstring.
 
-    With a number as ``printed``, its digits as a text, the function returns the computed one.
+    Parameters
+    ----------
+    item : str
+        Its place in the paper.
+    id : str
+        Its name, by default the function's.
+    **given
+        Further fields of :class:`Claim`. With a number as ``printed``, its digits as a text, the
+        function returns the computed number.
     """
     kind = "number" if "printed" in given else "statement"
 
@@ -139,7 +169,10 @@ def claim(item: str, id: str = "", **given: Any) -> Callable[[Callable[[Data], A
 
 
 def formula(name: str, item: str, text: str, row: str = "", **given: Any) -> Claim:
-    """A printed formula, decided by a row of the dataset ``formulas``; by its item if not given."""
+    """A printed formula, decided by the row of its name in the dataset ``formulas``.
+
+    The row is ``item`` unless ``row`` is given.
+    """
 
     def decide(data: Data) -> Finding:
         return of_formula(data, row or item)
@@ -148,13 +181,16 @@ def formula(name: str, item: str, text: str, row: str = "", **given: Any) -> Cla
 
 
 def of_formula(data: Data, row: str) -> Finding:
-    """That a formula disagrees with its second computation by no more than rounding."""
+    """The finding that a formula disagrees with its second computation by no more than rounding.
+
+    ``row`` is its place along ``formula`` in the dataset ``formulas``.
+    """
     one = data["formulas"].sel(formula=row)
     return at_most(one.disagreement, one.budget)
 
 
 def defined_in(module: ModuleType) -> Iterator[Claim]:
-    """The claims of a module in their order; lists of them are opened."""
+    """The claims of a module in their order, those in lists included."""
     for value in vars(module).values():
         for one in value if isinstance(value, list) else [value]:
             if isinstance(one, Claim):

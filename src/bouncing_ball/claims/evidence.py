@@ -1,7 +1,7 @@
-"""What statements of the paper in words are decided by, read off the figures' datasets.
+"""The numbers that decide statements of the paper in words, read off the figures' datasets.
 
-Nothing is simulated or solved: datasets in, numbers out. A *softening* is the change
-from one row of Table 1 to the next softer one.
+Nothing is simulated or solved here: datasets in, numbers out. A *softening* is the change
+from one row of Table 1 to the next row, whose contact is more compliant.
 """
 
 from collections.abc import Mapping
@@ -16,55 +16,57 @@ from bouncing_ball.orbits.stability import Bifurcation
 
 Data = Mapping[str, xr.Dataset]
 BOUNDS = tuple(map(str, Bifurcation))
-# A logarithmic grid meets its round numbers, and a sample a bifurcation, but for rounding.
+# A logarithmic grid meets its round numbers, and a sample a bifurcation, up to rounding.
 GRID = 1e-9
 
 
 def curves(data: Data, *names: str) -> xr.Dataset:
-    """The sweeps of figures along ϖ, all of their curves along ``orbit``."""
+    """The sweeps of figures along ϖ with all their curves; dimensions ``orbit``,
+    ``frequency_ratio``.
+    """
     read = ["apparent_restitution", "bounce_velocity", "max_height", "phase"]
     axes = ["restitution", "amplitude"]
     parts = []
     for name in names:
         sweep = data[name].reset_coords()[read + axes].rename(case="orbit")
         pairs = zip(*(sweep[axis].values for axis in axes), strict=True)
-        # The digits that rounding leaves, so that no two are called alike.
+        # Six digits, which rounding does not change and which tell the curves apart.
         labels = [f"{name} r={r:.6g} Λ={lam:.6g}" for r, lam in pairs]
         parts.append(sweep.assign(n=data[name].attrs["n"]).assign_coords(orbit=labels))
     return xr.concat(parts, "orbit", data_vars="all")
 
 
 def apparent(data: Data) -> xr.DataArray:
-    """r_a - r along the curves of Figs. 5 and 6."""
+    """r_a - r along the curves of Figs. 5 and 6, over ``orbit`` and ``frequency_ratio``."""
     sweep = curves(data, "fig05", "fig06")
     return sweep.apparent_restitution - sweep.restitution
 
 
 def worst_when_stiff(values: xr.DataArray) -> xr.DataArray:
-    """Largest value among contacts that the paper takes for stiff, NaN if there is none."""
+    """Largest value among contacts that the paper regards as stiff; NaN if there is none."""
     stiff = values.frequency_ratio >= STIFF * (1 - GRID)
     return values.where(stiff).max("frequency_ratio")
 
 
 def rebound(data: Data) -> xr.DataArray:
-    """How much farther from r the apparent restitution is than for some softer contact."""
+    """Largest increase of |r_a - r| above its value at a more compliant contact, by ``orbit``."""
     error = abs(apparent(data)).transpose("orbit", "frequency_ratio")
     return (error - np.fmin.accumulate(error.values, axis=1)).max("frequency_ratio")
 
 
 def dip(data: Data, amplitude: float) -> xr.DataArray:
-    """How far the curve of Fig. 6 at an amplitude sinks below r."""
+    """Greatest depth of the curve of Fig. 6 at an amplitude below r."""
     curve = apparent(data).sel(orbit=f"fig06 r=0.65 Λ={amplitude:g}")
     return -curve.min("frequency_ratio")
 
 
-@np.errstate(divide="ignore", invalid="ignore")  # without damping there is no dip
+@np.errstate(divide="ignore", invalid="ignore")  # at r = 1, where the law divides by ζ = 0
 def lift(data: Data) -> tuple[xr.DataArray, xr.DataArray]:
-    """1 - Λ sin φ of Fig. 6 by Eq. 6, and as measured at the stiff end of its curves.
+    """1 - Λ sin φ of Fig. 6 by Eq. 6, and as measured at the stiff end of its curves, by ``case``.
 
-    To first order in 1/ϖ, ``r_a - r = -ζ(1 + r)²(1 - Λ sin φ)/(nπϖ)``: r_a comes from
-    below r exactly where Λ sin φ < 1. The limit of nπϖ(r_a - r) is extrapolated from
-    the two ends of the stiffest decade.
+    To first order in 1/ϖ, ``r_a - r = -ζ(1 + r)²(1 - Λ sin φ)/(nπϖ)``, so that r_a approaches r
+    from below exactly where Λ sin φ < 1. The limit of nπϖ(r_a - r) is extrapolated from the two
+    ends of the stiffest decade.
     """
     sweep = data["fig06"]
     n, r, ratio = sweep.attrs["n"], sweep.restitution, sweep.frequency_ratio
@@ -83,17 +85,17 @@ def short_of_lift(data: Data) -> xr.DataArray:
 
 
 def apparent_restitution_law_error(data: Data) -> xr.DataArray:
-    """How far the law of first order is off in Λ sin φ, at most."""
+    """The largest error of the first-order law of r_a, as an error of Λ sin φ."""
     by_law, measured = lift(data)
     return np.abs(measured - by_law).max()
 
 
 @np.errstate(divide="ignore", invalid="ignore")  # the phase is 0 at the saddle-node
 def stiff_orbit_error(data: Data) -> xr.DataArray:
-    """Figs. 5, 6 and 10: relative errors of the restitution model among stiff contacts.
+    """Figs. 5, 6 and 10: largest relative errors of the restitution model among stiff contacts.
 
-    Over ``orbit`` and ``measure``. That of a phase depends on its origin, and is there as
-    a share of a cycle too.
+    Over ``orbit`` and ``measure``. The relative error of a phase depends on its origin, so that the
+    error is given as a share of a cycle as well.
     """
     sweep = curves(data, "fig05", "fig06", "fig10")
     n, r, lam = sweep.n, sweep.restitution, sweep.amplitude
@@ -110,7 +112,7 @@ def stiff_orbit_error(data: Data) -> xr.DataArray:
 
 
 def spread(data: Data, left: float) -> xr.DataArray:
-    """Fig. 10: how far its curves are apart from a ϖ on, at most, as a share of nπ."""
+    """Fig. 10: largest distance between its curves for ϖ ≥ ``left``, as a share of nπ."""
     sweep = data["fig10"]
     velocity = sweep.bounce_velocity.where(sweep.frequency_ratio >= left * (1 - GRID))
     apart = velocity.max("case") - velocity.min("case")
@@ -118,29 +120,34 @@ def spread(data: Data, left: float) -> xr.DataArray:
 
 
 def inadmissible_orbits(data: Data) -> int:
-    """Orbits drawn in the paper's figures that are not orbits of the ball."""
+    """Number of orbits drawn in the paper's figures that are inadmissible."""
     drawn = [data[f"fig{k:02d}"].admissible for k in (3, 5, 6, 8, 9, 10, 13, 14, 15)]
     return sum(int((~flags.astype(bool)).sum()) for flags in drawn)
 
 
 def contact_durations(data: Data, place: int) -> list[xr.DataArray]:
-    """Shortest and longest contact of a branch of Figs. 8 and 9, 0 the softest, -1 the stiffest."""
+    """Shortest and longest contact of a branch of Figs. 8 and 9.
+
+    ``place`` is 0 for the most compliant contact and -1 for the stiffest.
+    """
     figures = (data[name].sortby("frequency_ratio") for name in ("fig08", "fig09"))
     branches = [figure.contact_duration.isel(frequency_ratio=place) for figure in figures]
     return [end for branch in branches for end in (branch.min(), branch.max())]
 
 
 def folds(data: Data) -> int:
-    """How many saddle-nodes a branch of Figs. 8 and 9 has, at least."""
+    """The smallest number of saddle-nodes on a branch of Figs. 8 and 9."""
     kinds = (data[name].special_kind == BOUNDS[0] for name in ("fig08", "fig09"))
     return min(int(found.sum("special").min()) for found in kinds)
 
 
 @np.errstate(invalid="ignore")  # a range without an end
 def range_error(data: Data) -> xr.DataArray:
-    """The restitution model's error on both ends of the range of Fig. 15; NaN without one.
+    """Relative errors of the restitution model at both ends of the range of Fig. 15; NaN without
+    one.
 
-    The special points are in the branch's order, which ends on the stable side.
+    Over ``bound``. The special points are in the order of the branch, which ends on the stable
+    side.
     """
     both = data["fig15"].isel(frequency_ratio=0)
     kinds, lam = both.special_kind.values, both.special_amplitude.values
@@ -150,30 +157,32 @@ def range_error(data: Data) -> xr.DataArray:
 
 
 def _rows(data: Data, source: str) -> xr.DataArray:
-    """Table 1, ``computed`` or ``printed``, from the stiffest row to the softest."""
+    """Table 1, ``computed`` or ``printed``, from the stiffest row to the most compliant."""
     return data["table1"][source].sortby("frequency_ratio", ascending=False)
 
 
 def softening(data: Data) -> xr.DataArray:
-    """How the computed ends of Table 1 move to the next softer row."""
+    """Change of the computed ends of Table 1 from each row to the next more compliant one."""
     return _rows(data, "computed").diff("frequency_ratio")
 
 
 def stiff_difference(data: Data, source: str, impact_map: str) -> xr.DataArray:
-    """Distance of the stiffest row of Table 1 from the restitution model's ranges."""
+    """Distance of the stiffest row of Table 1 from the restitution model's ranges, in Λ."""
     ranges = data["table1"].restitution_range.sel(impact_map=impact_map)
     return np.abs(_rows(data, source).isel(frequency_ratio=0) - ranges)
 
 
 def printed_slight_move(data: Data) -> xr.DataArray:
-    """The largest printed move from the stiffest row of Table 1 to the next one, relatively:
-    what the paper calls slight."""
+    """The largest relative change printed from the stiffest row of Table 1 to the next one.
+
+    The paper calls this change slight.
+    """
     stiffest, next_one = (_rows(data, "printed").isel(frequency_ratio=k, drop=True) for k in (0, 1))
     return np.abs(next_one / stiffest - 1).max()
 
 
 def period_doubling_lowest(data: Data) -> xr.DataArray:
-    """The ϖ at which the period doubling is lowest, for the families of Table 1."""
+    """The ϖ at which the period doubling is lowest, for the families n of Table 1."""
     turns = data["ext_release"].period_doubling_turn.sel(release="displacement", drop=True)
     return turns.reindex(n=data["table1"].n)
 

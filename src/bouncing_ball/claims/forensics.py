@@ -2,7 +2,7 @@
 
 Six are the models of this package with another damping, release or rounding, and Eqs. 7
 and 8. Two alter an equation: a contact without gravity, and a period doubling whose
-linearised flight ignores the table's displacement, as Holmes' map does.
+linearised flight neglects the table's displacement, as Holmes' map does.
 """
 
 from collections.abc import Callable
@@ -24,17 +24,19 @@ from bouncing_ball.studies.printed_table1 import AXES, LAST_DIGIT, RESTITUTION, 
 PRINTED_DAMPING = 0.052
 """ζ as the paper rounds it, beside the one of Eq. 16."""
 
-# Samples of a branch along ε, up to so far from ε = 0 against the scale of the fold, 1/ϖ.
+# Samples of a branch along ε, and their largest distance from ε = 0 in units of 1/ϖ, the scale
+# of the fold.
 _SAMPLES, _REACH = 2001, 12.0
 
 
 class WeightlessOrbit(SpringDamperOrbit):
-    """n-T orbits whose contact knows no gravity; the flight does."""
+    """n-T orbits with gravity in flight, but not in contact."""
 
     @classmethod
     def at(cls, excess: np.ndarray, contact: SpringDamper, n: np.ndarray) -> "WeightlessOrbit":
-        """The orbit at ε: at a fixed duration Eqs. 23-25 are linear in u = δ′ at the start,
-        Λ cos φ and Λ sin φ.
+        """The orbits with excess angles ε of the contact.
+
+        At a fixed duration Eqs. 23-25 are linear in u = δ′ at the start, Λ cos φ and Λ sin φ.
         """
         duration = (contact.free_angle + excess) / contact.damped_frequency
 
@@ -54,9 +56,10 @@ class WeightlessOrbit(SpringDamperOrbit):
 
 
 def high_bounce_monodromy(orbit: SpringDamperOrbit) -> np.ndarray:
-    """Monodromy of an orbit with Holmes' linearised flight, which ends where it began.
+    """Monodromy of orbits with Holmes' linearised flight, shape (..., 2, 2).
 
-    ``z′_b T - T²/2 = 0`` in place of Eq. 25, so that ``dT = -T dz′_b/z′_i``.
+    This flight ends at the height where it began, ``z′_b T - T²/2 = 0`` in place of Eq. 25, so that
+    ``dT = -T dz′_b/z′_i``.
     """
     d_duration, _, d_velocity = np.moveaxis(orbit.contact_jacobian()[..., :2], -2, 0)
     d_release = d_duration + np.array([1.0, 0.0])
@@ -72,13 +75,21 @@ def high_bounce_monodromy(orbit: SpringDamperOrbit) -> np.ndarray:
 def altered_ends(
     contact: SpringDamper, n: int, orbit_at: Callable, monodromy: Callable
 ) -> list[float]:
-    """Λ at the saddle-node and the period doubling of a branch that no model has.
+    """Λ at the saddle-node and the period doubling of a branch with altered equations.
 
-    ``orbit_at`` is the orbit whose contact lasts (θ₀ + ε)/ϖ_d, of ε, the contact and n.
-
-    The saddle-node is the minimum of Λ, whatever the linearisation says: no orbit has a
+    The saddle-node is the minimum of Λ, whatever the linearisation gives, because no orbit has a
     smaller Λ. The period doubling is the root of 1 + tr + det next to it, on the side of
     the short contacts.
+
+    Parameters
+    ----------
+    contact : SpringDamper
+        A single one.
+    n : int
+    orbit_at : callable
+        The orbits of ε, the contact and n; their contacts last (θ₀ + ε)/ϖ_d.
+    monodromy : callable
+        Their monodromy, shape (..., 2, 2).
     """
     from scipy.optimize import brentq, minimize_scalar
 
@@ -106,7 +117,7 @@ def readings() -> dict[str, np.ndarray]:
 
     "Equations as they stand" are Eqs. 11-26 and the linearised return map, of which digits
     beyond the last printed one may be cut off; ζ to first order is -ln r/π; under "high-bounce
-    stability" the orbit is exact; "all rows from Eqs. 7-8" are what the stiffness changes.
+    stability" the orbit is exact; "all rows from Eqs. 7-8" shows the influence of the stiffness.
     """
     omega, n = np.meshgrid(AXES["frequency_ratio"], AXES["n"], indexing="ij")
     zeta = float(damping_ratio(RESTITUTION))
@@ -135,15 +146,15 @@ def readings() -> dict[str, np.ndarray]:
 
 
 def forensics() -> xr.Dataset:
-    """Table 1 under every reading, the closest to the softer rows first.
+    """Table 1 under every reading, ranked by the rms difference in the two rows of smaller ϖ.
 
     Returns
     -------
     xarray.Dataset
         ``computed`` and ``difference`` (in last digits) over (reading, frequency_ratio,
-        n, bound); over (reading, rows) the largest and the rms difference and how many
-        entries are reproduced; ``unreachable``, the saddle-nodes that are printed below
-        the fold by more than the digits can hide, where no orbit exists.
+        n, bound); over (reading, rows) the largest and the rms difference and the number of
+        reproduced entries; ``unreachable`` over reading, the number of saddle-nodes that are
+        printed below the fold by more than rounding can explain, where no orbit exists.
     """
     found, printed = readings(), printed_table()
     axes = {"reading": list(found), **printed.coords}

@@ -1,10 +1,10 @@
 """Every formula of the paper that can be wrong, against a second computation.
 
 Each row of the dataset gives the largest disagreement over a sample of parameters and
-what rounding accounts for. The formulas are those of :mod:`bouncing_ball.claims.as_printed`;
-what they are compared with uses none of them but where the comparison says so: simulated
-cycles, the multipliers of orbits, and the equations of motion, differentiated in the complex
-plane.
+the part that rounding accounts for. The formulas are those of
+:mod:`bouncing_ball.claims.as_printed`. They are compared with simulated cycles, the multipliers
+of orbits, and the equations of motion, differentiated in the complex plane, none of which uses
+these formulas except where the comparison says so.
 """
 
 from typing import Annotated
@@ -24,24 +24,26 @@ from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.parameters import Parameters, Seed, number
 
-# Motions, roots and minima are right to rounding, 1e-16, amplified by the terms
-# that cancel in them: 10⁴ covers the samples.
+# Motions, roots and minima are exact up to rounding, 1e-16, amplified by the terms
+# that cancel in them; a factor of 10⁴ covers the samples.
 ROUNDING = 1e-12
-# The faintest rebound that a double can hold.
+# The smallest normal double, as the smallest r.
 _FAINT = float(np.finfo(float).tiny)
 # An impact so fast that the weight, 1/(ϖv) of its force, is less than rounding.
 WEIGHTLESS = 1e16
-# A contact so soft that Λ_SD ϖ² is 1 but for ϖ².
+# A ϖ so small that Λ_SD ϖ² differs from 1 by the order of ϖ² only.
 _SOFT = 1e-4
 # Eq. 16 on a table at rest: r and ϖ, with the impact velocity of the 1-T orbit.
 STATIC = {"restitution": [0.85, 0.65], "frequency_ratio": [10.0, 100.0]}
 
-# By formula: with what it is compared, the disagreement, and what rounding allows.
+# For each formula: the comparison, the disagreement, and the disagreement that rounding explains.
 Checks = dict[str, tuple[str, float, float]]
 
 
 def check(comparison: str, *defects, budget: float = ROUNDING) -> tuple[str, float, float]:
-    """With the largest absolute entry of all defects; NaN if one is NaN.
+    """The comparison with the largest absolute entry of all defects, and its budget.
+
+    The entry is NaN if one of the defects is NaN.
 
     Examples
     --------
@@ -52,7 +54,7 @@ def check(comparison: str, *defects, budget: float = ROUNDING) -> tuple[str, flo
 
 
 def slopes(motion, time):
-    """Derivatives of a motion's height and velocity by a complex step, right to rounding.
+    """Derivatives of a motion's height and velocity by a complex step, exact up to rounding.
 
     Examples
     --------
@@ -64,14 +66,20 @@ def slopes(motion, time):
 
 
 def impact_cycle(phase, velocity, r, lam):
-    """One simulated cycle from after an impact: (φ, v) after the next, and the time until it."""
+    """One simulated cycle of the restitution model, between states (φ, v) just after an impact.
+
+    Returns φ and v after the next impact, and the time until then; arrays broadcast.
+    """
     cycle = next_impact(r, lam, phase, (lam * np.cos(phase) - velocity) / r)
     bounced = lam * np.cos(cycle.phase) - r * cycle.relative_velocity
     return cycle.phase, bounced, cycle.time
 
 
 def restitution_model(rng, samples) -> Checks:
-    """Eqs. 1 to 9: impacts from random states, and orbits with their stability."""
+    """Checks of Eqs. 1 to 9: impacts from random states, and orbits with their stability.
+
+    ``rng`` is the random generator and ``samples`` the number of parameter sets; likewise below.
+    """
     r, lam = rng.uniform(0.1, 0.95, samples), rng.uniform(0.1, 3, samples)
     phase = rng.uniform(-np.pi, np.pi, samples)
     velocity = lam + rng.uniform(0.5, 6, samples)
@@ -89,7 +97,7 @@ def restitution_model(rng, samples) -> Checks:
     phi, launch = printed.fixed_point(n, r, above)
     back_phase, back_velocity, _ = impact_cycle(phi, launch, r, above)
     fixed = reduce_angle(back_phase - phi), back_velocity - launch
-    # The orbit at which both sides of the fold meet, φ = 0, exists at this Λ only.
+    # The orbit with φ = 0, at which both sides of the fold meet, exists at this Λ only.
     fold = printed.saddle_node(n, r)
     met_phase, met_velocity, _ = impact_cycle(0.0 * r, n * np.pi, r, fold)
     at_fold = model.orbit_of(n, fold, 0.0 * r).trace_and_determinant()
@@ -119,7 +127,10 @@ def restitution_model(rng, samples) -> Checks:
 
 
 def printed_contact(time, omega, zeta, lam, phase, impact):
-    """Eqs. 12-13 from an impact; A and B are linear in it (Eqs. 21-22)."""
+    """Eqs. 12-13 for a contact that starts with an impact, of shape (2, ...).
+
+    The constants A and B are linear in its height and velocity (Eqs. 21-22).
+    """
     zero, rate = printed.contact(0.0, omega, zeta, lam, phase, 0.0, 0.0)
     a = lam * np.sin(phase) - zero
     b = (impact - rate + zeta * omega * a) / (omega * np.sqrt(1 - zeta**2))
@@ -127,12 +138,15 @@ def printed_contact(time, omega, zeta, lam, phase, impact):
 
 
 def acceleration(rise, rate, frequency, damping, gravity=1.0):
-    """Eq. 11, δ″ + w″ = -1 - 2ζϖ δ′ - ϖ² δ; with the contact's own frequency and g, Eq. 10."""
+    """The absolute acceleration by Eq. 11, δ″ + w″ = -1 - 2ζϖ δ′ - ϖ² δ.
+
+    With the contact's frequency in rad/s and g in m/s² it is Eq. 10.
+    """
     return -gravity - 2 * damping * frequency * rate - frequency**2 * rise
 
 
 def measured_restitution(r, frequency_ratio, velocity):
-    """Velocity after a simulated impact over that before it, on a table at rest.
+    """Velocity after a simulated impact over the one before it, on a table at rest.
 
     NaN where the ball stays on the table.
     """
@@ -141,9 +155,9 @@ def measured_restitution(r, frequency_ratio, velocity):
 
 
 def damping(rng, samples) -> Checks:
-    """Eq. 16 and its limits."""
+    """Checks of Eq. 16 and its limits r = 1 and r → 0."""
     r, omega = rng.uniform(0.1, 0.99, samples), np.exp(rng.uniform(0, 5, samples))
-    # For r → 0, 1 - ζ tends to π²/(2 ln² r), slowly; twice that leaves room.
+    # For r → 0, 1 - ζ tends to π²/(2 ln² r), but slowly; the budget is twice as much.
     slow, faint = np.pi**2 / np.log(_FAINT) ** 2, 1 - printed.damping_ratio(_FAINT)
     impact = measured_restitution(r, omega, WEIGHTLESS) - r
     return {
@@ -154,13 +168,16 @@ def damping(rng, samples) -> Checks:
 
 
 def static_error() -> xr.DataArray:
-    """|r_static - r|/r of a heavy ball on a table at rest, over r and ϖ; NaN where it is held."""
+    """|r_static - r|/r of a heavy ball on a table at rest, over r and ϖ.
+
+    NaN where the ball does not rebound.
+    """
     r, ratio = np.meshgrid(*STATIC.values(), indexing="ij")
     return xr.DataArray(np.abs(measured_restitution(r, ratio, np.pi) / r - 1), STATIC)
 
 
 def contact_orbits(rng, samples) -> Checks:
-    """The definition of ϖ, and Eqs. 12 to 15 and 21 to 27 on orbits that repeat."""
+    """Checks of the definition of ϖ, and of Eqs. 12 to 15 and 21 to 27 on orbits that repeat."""
     omega, zeta = np.exp(rng.uniform(0.7, 5, samples)), rng.uniform(0.01, 0.5, samples)
     n = rng.integers(1, 4, samples)
     contact = SpringDamper(omega, zeta)
@@ -173,7 +190,7 @@ def contact_orbits(rng, samples) -> Checks:
     repeated = reduce_angle(again.phase - phase), again.relative_velocity - u
 
     def simulated(time):
-        """δ and δ′, and height and velocity, from the impact on."""
+        """δ and δ′, and height and velocity, at a time since the impact."""
         rise, rate, *_ = contact.flow(time, 0.0, u, phase, lam)
         return rise, rate, rise + lam * np.sin(phase + time), rate + lam * np.cos(phase + time)
 
@@ -186,10 +203,10 @@ def contact_orbits(rng, samples) -> Checks:
     physical = acceleration(rise * length, rate * speed, omega * table, zeta, gravity) / gravity
 
     def scaled(ratio):
-        """Eq. 11 with a frequency ratio, against Eq. 10."""
+        """The difference of Eq. 11 with a frequency ratio from Eq. 10, over ϖ."""
         return (acceleration(rise, rate, ratio, zeta) - physical) / omega
 
-    # Eqs. 21-22 give A and B, and Eqs. 23-26 are left.
+    # Eqs. 21-22 give A and B; the following defects are those of Eqs. 23-26.
     *_, level, velocity = simulated(end)
     left = printed_contact(end, omega, zeta, lam, phase, impact) - (level, velocity)
     landing = np.array(printed.flight(2 * np.pi * n, end, velocity, lam, phase))
@@ -207,14 +224,19 @@ def contact_orbits(rng, samples) -> Checks:
 
 
 def steady_amplitude(omega, zeta):
-    """Amplitude of δ by Eq. 31, at rest about -1/ϖ², for Λ = 1; from a quarter cycle apart."""
+    """Amplitude of δ by Eq. 31 about its mean -1/ϖ², over Λ.
+
+    It follows from two times that are a quarter cycle apart.
+    """
     lam = omega**-2.0
     swing = (printed.steady_displacement(time, omega, zeta, lam) for time in (0.0, np.pi / 2))
     return np.hypot(*(omega**2 * each + 1 for each in swing))
 
 
 def permanent_contact(rng, samples) -> Checks:
-    """Eqs. 29 to 36."""
+    """Checks of Eqs. 31 to 36 on permanent contact: the steady motion, Λ_SD, its inverse and
+    minimum.
+    """
     omega, zeta = np.exp(rng.uniform(-0.5, 2, samples)), rng.uniform(0.02, 0.5, samples)
     lam, begin = rng.uniform(0.1, 2, samples), rng.uniform(-np.pi, np.pi, samples)
     end = begin + rng.uniform(0.5, 6, samples)
@@ -238,7 +260,7 @@ def permanent_contact(rng, samples) -> Checks:
     level = bottom + (1 - bottom) * rng.uniform(0.1, 0.9, samples)
 
     def inverse(sign):
-        """The printed ϖ has this threshold, on its side of the lowest one."""
+        """The printed ϖ has this threshold, and lies on its side of the minimum."""
         ratio = printed.permanent_contact_frequency_ratio(level, zeta, sign)
         off = permanent_contact_threshold(ratio, zeta) / level - 1
         return check("roots of Λ_SD", off, np.sign(ratio - place) - sign)
@@ -257,14 +279,18 @@ def permanent_contact(rng, samples) -> Checks:
 
 
 class Formulas(Parameters):
-    """The random parameters on which the formulas are tried."""
+    """The random parameters on which the formulas are checked."""
 
     samples: Annotated[int, number("random parameters for each formula", ge=8, le=1000)]
     seed: Seed
 
 
 def formulas(parameters: Formulas) -> xr.Dataset:
-    """Disagreement of every printed formula, over ``samples`` random parameters, (formula,)."""
+    """Disagreement of every printed formula with a second computation.
+
+    The dataset has ``disagreement``, ``budget`` and ``compared_with``, a text, of shape (formula,);
+    and ``static_error`` over (restitution, frequency_ratio).
+    """
     rng = np.random.default_rng(parameters.seed)
     checks: Checks = {}
     for part in (restitution_model, contact_orbits, damping, permanent_contact):

@@ -28,11 +28,11 @@ _SECTIONS = (
 CLAIMS: tuple[Claim, ...] = tuple(claim for section in _SECTIONS for claim in defined_in(section))
 """Every claim of the paper that can be decided, in the order of the paper."""
 READS = tuple(parameters.PARAMETERS)
-"""The datasets that decide them."""
+"""The datasets that decide these claims."""
 
 
 def _row(claim: Claim, data: Mapping[str, xr.Dataset], holding: set[str]) -> dict[str, object]:
-    """What the dataset says of one claim; ``holding`` names the explanations that hold."""
+    """The entries of the dataset for one claim; ``holding`` names the explanations that hold."""
     asked = PaperData(data)
     finding, reason = claim.verdict(asked)
     why = name_of(claim.explanation) if claim.explanation else ""
@@ -57,8 +57,7 @@ def assess(claims: Sequence[Claim], data: Mapping[str, xr.Dataset]) -> xr.Datase
     Raises
     ------
     ModelError
-        If a dataset that decides a claim or an explanation, or what is needed of it,
-        is missing.
+        If a dataset that decides a claim or an explanation, or a variable of it, is missing.
     """
     why = {name_of(one.explanation): one.explanation for one in claims if one.explanation}
     checks = {name: checked(explanation, data) for name, explanation in why.items()}
@@ -86,8 +85,14 @@ def ledger(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        That of :func:`assess`, and functions of :mod:`bouncing_ball.claims.evidence` by
-        their names. The attributes are the paper's limits and what counts as close.
+        The dataset of :func:`assess`, with results of functions of
+        :mod:`bouncing_ball.claims.evidence` by their names. The attributes are the paper's limits
+        and the bound of a close number.
+
+    Raises
+    ------
+    ModelError
+        If a dataset, or a variable of it, is missing.
     """
     printed = (
         evidence.stiff_orbit_error,

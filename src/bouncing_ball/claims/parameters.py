@@ -1,4 +1,4 @@
-"""The paper's parameters by dataset: computed with others, a dataset decides no claim."""
+"""The paper's parameters of each dataset; computed with others, a dataset decides no claim."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -12,7 +12,7 @@ from bouncing_ball.datasets.netcdf import parameter_attributes
 TOLERANCE = 0.01
 """The paper's limit for the error of the restitution model, 1 % (Eqs. 37 and 38)."""
 STIFF = 100.0
-"""ϖ from which on the paper takes both models for the same."""
+"""ϖ above which the paper takes both models for equal."""
 PERMANENT_CONTACT = 6.0
 """ϖ at which, by the paper, the thresholds of permanent contact differ by its limit."""
 
@@ -30,7 +30,7 @@ _CASES = _cases((1.0, 0.8), (0.85, 1.0), (0.65, 1.0), (0.1, 2.6))
 _TABLE = {"restitution": 0.85, "frequency_ratio": [1e4, 10.0, 2.0]}
 _ORBIT = {"n": 1, "restitution": 0.65, "amplitude": 1.0}
 
-# The paper's, and the ranges that the conditions need besides.
+# The paper's parameters, and the ranges that the conditions need as well.
 PARAMETERS: dict[str, dict[str, Any]] = {
     "fig03": {"n": [1, 2, 3, 4, 5], "restitution": 0.85},
     "fig05": {"n": 1, "cases": _CASES, **_SWEEP},
@@ -49,7 +49,7 @@ PARAMETERS: dict[str, dict[str, Any]] = {
     "motions": {"n": 1, "restitution": 0.85, "amplitude": [1.0, 1.1, 2.0]},
     **{name: {} for name in ("formulas", "forensics", "witness")},
 }
-"""Of every dataset that decides claims; the release is the displacement's wherever there is one."""
+"""The parameters of every dataset that decides claims; the release is always the displacement's."""
 
 
 class NotAsked(Exception):
@@ -57,10 +57,9 @@ class NotAsked(Exception):
 
 
 class PaperData(dict[str, xr.Dataset]):
-    """Datasets by name, as far as they have the paper's parameters.
+    """Datasets by name, of which only those with the paper's parameters can be read.
 
-    Taking one that has others raises :class:`NotAsked`. ``used`` names those taken, in
-    their order.
+    Reading another one raises :class:`NotAsked`. ``used`` names those that were read, in order.
     """
 
     def __init__(self, data: Mapping[str, xr.Dataset]) -> None:

@@ -1,4 +1,4 @@
-"""The last line of a run: how many claims got which verdict."""
+"""The last line of a run: the number of claims with each verdict."""
 
 import numpy as np
 import xarray as xr
@@ -10,10 +10,16 @@ _GROUPS = ("restored formula", "number", "statement", "restatement")
 
 
 def tally(claims: xr.Dataset, figures: int) -> str:
-    """Figures made, claims and verdicts in one line, group by group.
+    """Number of figures, of claims and of verdicts in one line, group by group.
 
-    Independent claims are counted apart from their restatements, and formulas
+    Restatements are counted apart from the claims that they repeat, and formulas
     that had to be restored apart from numbers.
+
+    Parameters
+    ----------
+    claims : Dataset
+        ``verdict``, ``group`` and ``explained`` over ``claim``.
+    figures : int
 
     Examples
     --------

@@ -11,16 +11,16 @@ from bouncing_ball.datasets.rounding import compared_text
 from bouncing_ball.errors import ModelError
 
 CLOSE_UNITS = 2
-"""A number is close, not contradicted, if it is off by no more than so many units of its
-last printed digit: what a rounded intermediate result, or a point read off a curve, may
-cost. Our choice."""
+"""A number is close, and not contradicted, if it differs by no more than so many units of its
+last printed digit, because a rounded intermediate result, or a point read off a curve, may
+cause as much. The bound is our choice."""
 
-# Rounding must not decide what lies exactly on a bound.
+# Relative tolerance, so that rounding does not decide about a number exactly on a bound.
 _ROUNDING = 1e-9
 
 
 class Verdict(StrEnum):
-    """From the best to the worst, and no verdict at all."""
+    """The verdicts, from the best to the worst, and the absence of a verdict."""
 
     REPRODUCED = "reproduced"
     """Within half a unit of the last printed digit; a condition that holds."""
@@ -28,17 +28,17 @@ class Verdict(StrEnum):
     """A number farther away, by no more than :data:`CLOSE_UNITS`."""
     CONTRADICTED = "contradicted"
     UNDECIDABLE = "undecidable"
-    """Depends on how the claim is read."""
+    """The verdict depends on how the claim is read."""
     NOT_ASKED = "not asked"
     """The datasets were not computed with the paper's parameters."""
 
 
 @dataclass(frozen=True)
 class Finding:
-    """What decides a claim in one reading.
+    """The number that decides a claim in one reading, with its verdict.
 
     ``required`` is the printed number, or the condition in signs with its ``limit``,
-    which is NaN for a printed number. ``deviation_units`` and ``deviation`` are that from
+    which is NaN for a printed number. ``deviation_units`` and ``deviation`` are the difference from
     a printed number, in units of its last digit and as a share of it; NaN for a condition.
     """
 
@@ -50,12 +50,12 @@ class Finding:
     deviation: float = np.nan
 
     def __str__(self) -> str:
-        """The number found, or its bound where that is of the size of rounding."""
+        """The number found, or its bound if that is of the size of rounding."""
         return compared_text(self.found, self.limit)
 
 
 def _finite(values: ArrayLike | xr.DataArray) -> np.ndarray:
-    """The numbers, none of which may be missing: a missing one decides nothing."""
+    """The numbers as an array; a missing one is an error, because it would decide nothing."""
     numbers = np.asarray(values, dtype=float)
     missing = int(np.isnan(numbers).sum())
     if missing or not numbers.size:
@@ -71,12 +71,28 @@ def largest(values: ArrayLike | xr.DataArray) -> float:
     ------
     ModelError
         If there is none, or one of them is NaN.
+
+    Examples
+    --------
+    >>> largest([1.0, 3.0])
+    3.0
     """
     return float(_finite(values).max())
 
 
 def smallest(values: ArrayLike | xr.DataArray) -> float:
-    """The smallest of some numbers; raises as :func:`largest` does."""
+    """The smallest of some numbers.
+
+    Raises
+    ------
+    ModelError
+        If there is none, or one of them is NaN.
+
+    Examples
+    --------
+    >>> smallest([1.0, 3.0])
+    1.0
+    """
     return float(_finite(values).min())
 
 
@@ -86,7 +102,14 @@ def _condition(value: float, sign: str, bound: float, holds: bool) -> Finding:
 
 
 def at_most(values, bound) -> Finding:
-    """That all values are at most a bound; ties are decided in favour of the condition.
+    """The finding that all values are at most a bound; a tie counts in favour of the condition.
+
+    Of several bounds the smallest decides.
+
+    Raises
+    ------
+    ModelError
+        If there is no value, or one of them is NaN; likewise in the other conditions.
 
     Examples
     --------
@@ -98,25 +121,50 @@ def at_most(values, bound) -> Finding:
 
 
 def at_least(values, bound) -> Finding:
-    """That all values are at least a bound; ties are decided in favour of the condition."""
+    """The finding that all values are at least a bound; a tie counts in favour of the condition.
+
+    Of several bounds the largest decides.
+
+    Examples
+    --------
+    >>> [str(at_least(x, 2).verdict) for x in (3, 2, [3, 1])]
+    ['reproduced', 'reproduced', 'contradicted']
+    """
     value, limit = smallest(values), largest(bound)
     return _condition(value, "≥", limit, value >= limit - _ROUNDING * abs(limit))
 
 
 def below(values, bound) -> Finding:
-    """That all values are below a bound."""
+    """The finding that all values are below a bound, the smallest of several.
+
+    Examples
+    --------
+    >>> [str(below(x, 2).verdict) for x in (1, 2)]
+    ['reproduced', 'contradicted']
+    """
     value, limit = largest(values), smallest(bound)
     return _condition(value, "<", limit, value < limit)
 
 
 def above(values, bound) -> Finding:
-    """That all values are above a bound."""
+    """The finding that all values are above a bound, the largest of several.
+
+    Examples
+    --------
+    >>> [str(above(x, 2).verdict) for x in (3, 2)]
+    ['reproduced', 'contradicted']
+    """
     value, limit = smallest(values), largest(bound)
     return _condition(value, ">", limit, value > limit)
 
 
 def against_print(value: float, printed: str) -> Finding:
     """A computed number judged by its distance from a printed one, in units of the last digit.
+
+    Raises
+    ------
+    ModelError
+        If the number is NaN.
 
     Examples
     --------

@@ -1,8 +1,9 @@
-"""Three independent routes to every orbit that a figure or Table 1 shows.
+"""Three routes to every orbit that a figure or Table 1 shows.
 
 *Continuation* solves the model's equations, the *formula* is the closed form of its
 branch, the *simulation* runs from event to event. Every published orbit and bifurcation
-is taken from its dataset and met by all of them.
+is taken from its dataset and computed by each of them. The routes share the equations of
+impact and flight: their agreement checks the numerical methods.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -23,7 +24,7 @@ from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Bifurcation
 
-# Periods over which the simulation must hold a stable orbit.
+# Periods over which the simulation must remain on a stable orbit.
 HELD_PERIODS = 50
 # Kinds of comparison and their budgets, relative to the larger of Λ and n.
 # Continuation and formula are both right to rounding, amplified where the branch
@@ -37,20 +38,20 @@ HOLDS = f"simulation over {HELD_PERIODS} cycles, stable orbits"
 LEAVES = "rate of departure, unstable orbits"
 BUDGETS = {FORMULA: 1e-11, CLOSES: 1e-10, HOLDS: 1e-9, LEAVES: 1e-5}
 
-# What an unstable orbit is left by, as a share of the impact velocity: soft landings too.
+# Perturbation of an unstable orbit as a share of the impact velocity, which may be small.
 _NUDGE = 1e-8
-# Test function below which an orbit counts as left: away from the bifurcations,
-# where the multiplier is ±1 and a departure would show nothing.
+# Test function below which the departure from an orbit is measured. Nearer to the bifurcations
+# the multiplier is close to ±1, and a departure shows nothing.
 _UNSTABLE = -0.05
 _NEWTON = NewtonSettings(max_iterations=20)
-# Where a dataset says nothing else, what it shows is an orbit of the ball.
+# Orbits of a dataset without such a variable are admissible.
 _UNSAID = {"admissible": True, "restitution_admissible": True}
 
 
 class Shown(NamedTuple):
     """Orbits of one model in a row, or bifurcations, as a dataset shows them.
 
-    ``admissible`` is what the dataset says of each orbit.
+    ``admissible`` is the dataset's statement on each orbit.
     """
 
     model: ImpactModel
@@ -63,14 +64,14 @@ class Shown(NamedTuple):
 
 
 def _row(data: xr.Dataset, *names: str) -> Iterator[np.ndarray]:
-    """Variables, or parameters, in one row each, without the NaN entries of the first."""
+    """Variables or parameters of a dataset as rows, without the places where the first is NaN."""
     known = {**_UNSAID, **data.attrs, **data.coords, **data}
     flat = [x.values.ravel() for x in xr.broadcast(*(xr.DataArray(known[x]) for x in names))]
     return (column[np.isfinite(flat[0])] for column in flat)
 
 
 def _contacts(data: xr.Dataset, *names: str) -> tuple[Any, ...]:
-    """The models of spring-damper orbits, their n, and variables of them."""
+    """The models of spring-damper orbits, their n, and variables of them, each as a row."""
     *values, r, omega, n = _row(data, *names, "restitution", "frequency_ratio", "n")
     contact = SpringDamper.from_restitution(r, omega, data.attrs["release"])
     return SpringDamperModel(contact), n, *values
@@ -112,7 +113,7 @@ def located(data: xr.Dataset) -> Iterator[Shown]:
         yield Shown(model, model.orbit_of(n, *limit), kind)
 
 
-# What each dataset shows.
+# The kinds of orbits in each dataset.
 SHOWN: dict[str, tuple[Callable[[xr.Dataset], Iterator[Shown]], ...]] = {
     **{name: (restitution_orbits,) for name in ("fig02", "fig03")},
     **{f"fig{k:02d}": (contact_orbits,) for k in (5, 6, 7)},
@@ -127,22 +128,23 @@ SHOWN: dict[str, tuple[Callable[[xr.Dataset], Iterator[Shown]], ...]] = {
 
 
 def _by_equations(shown: Shown, near: Orbit) -> Orbit:
-    """What Newton's method on the model's equations finds next to orbits; NaN where it fails.
+    """Solutions of the model's equations next to orbits, by Newton's method; NaN where it fails.
 
     A bifurcation is found with its test function. An orbit is found in the plane that is
-    normal to its branch: well conditioned at a fold too, where Λ alone has half of the digits.
+    normal to its branch, which is well conditioned at a fold too, where Λ determines half of the
+    digits only.
     """
     system, kind = shown.model.system(near.n), shown.bifurcation
     y = system.point(near)
     if kind:
         condition = vanishing(next(one.function for one in system.events() if one.name == kind))
     else:
-        # The null vector of the Jacobian is the branch's tangent.
+        # The null vector of the Jacobian is the tangent of the branch.
         jacobian = np.nan_to_num(system.jacobian(y), posinf=0.0, neginf=0.0)
         condition = plane(np.linalg.svd(jacobian)[2][..., -1, :], y)
     with np.errstate(all="ignore"):
         found = newton(system, y, condition, _NEWTON)
-    # At the limit of rounding the last step never gets short enough.
+    # At the limit of rounding the last step may remain longer than the tolerance.
     good = found.converged | (found.residual < BUDGETS[FORMULA])
     return system.orbit(np.where(good[:, np.newaxis], found.point, np.nan))
 
@@ -150,7 +152,8 @@ def _by_equations(shown: Shown, near: Orbit) -> Orbit:
 def formula_and_equations(shown: Shown) -> np.ndarray:
     """Distance of every orbit from the closed form, and from the equations' solution there.
 
-    Of a bifurcation, which a dataset has with Λ and φ, the distance in both.
+    For a bifurcation, which a dataset has with Λ and φ, it is the distance in both. Shape
+    (orbits,), relative to the larger of Λ and n.
     """
     orbit, near = shown.orbit, shown.model.nearest(shown.orbit)
     found = _by_equations(shown, near)
@@ -161,12 +164,15 @@ def formula_and_equations(shown: Shown) -> np.ndarray:
 
 
 def _size(orbit: Orbit) -> np.ndarray:
-    """What differences of orbits are relative to: the larger of Λ and n."""
+    """The size to which differences of orbits are relative: the larger of Λ and n."""
     return np.maximum(orbit.amplitude, orbit.n)
 
 
 def simulation_returns(orbit: Orbit, cycles: int) -> np.ndarray:
-    """How far the simulation is from orbits after some cycles: φ, δ′ and the last period."""
+    """Distance of the simulation from orbits after some cycles, shape (orbits,).
+
+    It is the largest difference in φ, δ′ and the last period, relative to the larger of Λ and n.
+    """
     start = orbit.phase, orbit.relative_impact_velocity
     time, phase, speed = None, *start
     for _ in range(cycles):
@@ -181,9 +187,11 @@ def _next(orbit: Orbit, phase: np.ndarray, speed: np.ndarray) -> tuple[np.ndarra
 
 
 def simulation_leaves(orbit: Orbit) -> np.ndarray:
-    """The rate at which the simulation leaves every unstable orbit, against its multiplier.
+    """Relative error of the rate at which the simulation leaves unstable orbits, against the
+    multiplier.
 
-    Started a little off along the unstable direction, on both sides.
+    The simulation starts near the orbit on both sides, along the unstable direction. Shape
+    (orbits,).
     """
     values, vectors = np.linalg.eig(orbit.monodromy())
     every, which = np.arange(orbit.size), np.argmax(np.abs(values), axis=-1)
@@ -196,9 +204,9 @@ def simulation_leaves(orbit: Orbit) -> np.ndarray:
 
 
 def comparisons(shown: Shown) -> Iterator[tuple[str, np.ndarray]]:
-    """Each kind of comparison, and the disagreements of the orbits compared.
+    """Each kind of comparison, with the disagreements of the orbits compared.
 
-    The simulation meets those that are orbits of the ball, as the dataset says.
+    Only orbits that are admissible by the dataset are simulated.
     """
     yield FORMULA, formula_and_equations(shown)
     if shown.bifurcation:
@@ -211,14 +219,14 @@ def comparisons(shown: Shown) -> Iterator[tuple[str, np.ndarray]]:
 
 
 def _compared(name: str, data: xr.Dataset) -> tuple[list[float], list[int]]:
-    """Largest disagreement of each kind in a dataset, NaN where there is none, and how many."""
+    """Largest disagreement of each kind in a dataset, NaN where there is none, and the counts."""
     off: dict[str, list[float]] = {kind: [] for kind in BUDGETS}
     for find in SHOWN[name]:
         compared = [pair for shown in find(data) for pair in comparisons(shown)]
         if not any(values.size for _, values in compared):
             raise ModelError(f"{name}: {find.__name__} compares nothing")
         for kind, values in compared:
-            # A route that has no orbit there is as far from it as can be.
+            # If a route does not find the orbit, its distance is infinite.
             off[kind] += np.nan_to_num(values, nan=np.inf).tolist()
             if (worst := max(off[kind], default=0)) > (budget := BUDGETS[kind]):
                 raise ModelError(f"{name}: {kind} disagree by {worst:.1e}, more than {budget:.0e}")
@@ -232,6 +240,12 @@ def witness(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
     ----------
     data : mapping of str to xarray.Dataset
         The datasets of :data:`SHOWN`, or some of them.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``disagreement`` and ``orbits``, their number, over (artifact, comparison); ``budget`` over
+        comparison.
 
     Raises
     ------

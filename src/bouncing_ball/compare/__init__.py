@@ -1,1 +1,1 @@
-"""Whether two folders of artifacts say the same; copying one over the accepted record."""
+"""The comparison of two folders of artifacts, and copying one over the accepted record."""

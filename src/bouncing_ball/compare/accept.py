@@ -22,11 +22,11 @@ from bouncing_ball.provenance.revision import revision
 
 
 class RefusedError(ModelError):
-    """Results that must not become the record, with the reason why."""
+    """Results that must not become the record; the message gives the reason."""
 
 
 def jobs_left(repository: Path, files: Collection[str]) -> int:
-    """How many jobs Snakemake would still run for these files, by its own rerun triggers.
+    """Number of jobs that Snakemake would still run for these files, by its rerun triggers.
 
     Raises
     ------
@@ -43,7 +43,10 @@ def jobs_left(repository: Path, files: Collection[str]) -> int:
 
 
 def _copied(artifact: Whole, record: Path, results: Path) -> list[str]:
-    """Copy what an artifact has in the results, remove what it has no more; one line for each."""
+    """Copy the files of an artifact to the record, and remove those that it no longer has.
+
+    Returns a line for each file copied or removed.
+    """
     said = []
     for file in artifact.parts:
         old, new = record / file.name, results / file.name
@@ -64,14 +67,14 @@ def accept(
     config: Mapping[str, Any],
     only: Collection[str],
 ) -> list[str]:
-    """Copy artifacts over the record: those named, or what has moved beyond its budget.
+    """Copy artifacts over the record: those named, or all that have moved beyond their budgets.
 
     Parameters
     ----------
     record, results : Path
         The checkout, and the folder that the run wrote.
     files : collection of str
-        What a whole run makes.
+        The files that a complete run makes.
     config : mapping
         The configuration of this run.
     only : collection of str
@@ -80,13 +83,13 @@ def accept(
     Returns
     -------
     list of str
-        What was copied and removed, and what to commit.
+        The files copied and removed, and what to commit.
 
     Raises
     ------
     RefusedError
-        If the tree is not committed, the configuration is not the committed one, Snakemake
-        would still run something, or no run makes one of the results. Nothing is changed then.
+        If the tree is not committed, the configuration is not the committed one, Snakemake would
+        still run something, or one of the results is made by no rule. Nothing is changed then.
     ModelError
         If there is no artifact of one of these names.
     """
@@ -104,4 +107,7 @@ def accept(
     said = [line for artifact in taken for line in _copied(artifact, record, results)]
     if not said:
         return ["Nothing to accept: the record says what the results say."]
-    return [*said, "Now commit the record, and say why: git add figures paper.md && git commit"]
+    return [
+        *said,
+        "Now commit the record, and say why: git add figures config paper.md && git commit",
+    ]

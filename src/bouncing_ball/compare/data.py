@@ -1,4 +1,4 @@
-"""Two datasets, variable by variable: structure first, then numbers."""
+"""The comparison of two datasets, variable by variable: structure first, then numbers."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -12,14 +12,14 @@ from bouncing_ball.compare.outcome import Outcome, Row
 from bouncing_ball.compare.texts import compare_texts
 from bouncing_ball.errors import printable
 
-# How and with what a file was made, and words about it.
+# Attributes on the origin of a file, and texts about it.
 _NOT_COMPARED = ("provenance_", "title", "references", "history")
 # Entries of a variable that a report names.
 _LARGEST = 5
 
 
 def _form(variable: xr.DataArray) -> str:
-    """Type and sizes as they matter: texts of any length are texts.
+    """Type and sizes, with one type for texts of any length.
 
     Examples
     --------
@@ -31,7 +31,7 @@ def _form(variable: xr.DataArray) -> str:
 
 
 def header(data: xr.Dataset) -> str:
-    """All but the numbers, a line each: variables with their form, and attributes.
+    """A dataset without its numbers, in lines: variables with their form, and attributes.
 
     Examples
     --------
@@ -50,12 +50,12 @@ def header(data: xr.Dataset) -> str:
 
 
 def _beside(data: xr.Dataset, name: str, other: str) -> np.ndarray:
-    """Another variable of a dataset, in the shape of the first."""
+    """Another variable of a dataset, broadcast to the shape of the first."""
     return data[other].broadcast_like(data[name]).transpose(*data[name].dims).values
 
 
 def shares(name: str, record: xr.Dataset, new: xr.Dataset, budget: Budget) -> np.ndarray:
-    """Drift of a variable over its budget, place by place; ∞ where nothing may change.
+    """Drift of a variable over its budget, entry by entry; ∞ where nothing may change.
 
     Parameters
     ----------
@@ -63,12 +63,12 @@ def shares(name: str, record: xr.Dataset, new: xr.Dataset, budget: Budget) -> np
         A variable of both datasets, of the same shape and type.
     record, new : Dataset
     budget : Budget
-        Of texts, counts, and yes or no only a budget over a curve counts.
+        For texts, counts and truth values only a budget over a curve has an effect.
 
     Raises
     ------
     KeyError, ValueError
-        If the budget names a variable or a dimension that is not there.
+        If the budget names a variable or a dimension that does not exist.
 
     Examples
     --------
@@ -128,7 +128,10 @@ def _entries(artifact: str, name: str, record: xr.Dataset, new: xr.Dataset) -> I
 
 
 def compare_datasets(artifact: str, record: xr.Dataset, new: xr.Dataset) -> list[Row]:
-    """The headers of two datasets, and the numbers of all variables that have one form.
+    """Rows for the headers of two datasets, and for all variables that have the same form.
+
+    A variable has a row for each of the entries that moved most, five at most, or one row if it is
+    identical.
 
     Examples
     --------

@@ -1,22 +1,22 @@
-"""How far numbers have moved: pure functions of arrays.
+"""Drifts of numbers: pure functions of arrays.
 
-A drift is dimensionless: a difference over a scale. Two values that are both
-NaN, or infinite with the same sign, have drifted by nothing; a value that is
-not finite against one that is has drifted by infinity.
+A drift is dimensionless: a difference over a scale. Between two values that are both
+NaN, or infinite with the same sign, it is zero; between a value that is
+not finite and one that is it is infinite.
 """
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-# Along a curve a point may slide by so many samples and still be found.
+# Along a curve a point may slide by so many samples.
 _REACH = 2
 
 
 def span(values: ArrayLike) -> float:
     """The scale of a variable: max - min over its finite values.
 
-    A constant has no range, and its magnitude takes the place; for 0 it is 1.
-    Never the single value: next to a zero of the variable that would be tiny.
+    A constant has no range, and its magnitude is taken instead; for 0 it is 1. The scale is never
+    a single value, because next to a zero of the variable that would be tiny.
 
     Examples
     --------
@@ -31,7 +31,7 @@ def span(values: ArrayLike) -> float:
 
 
 def same(record: ArrayLike, new: ArrayLike) -> np.ndarray:
-    """Whether values are equal; NaN is equal to NaN.
+    """Whether values are equal, entry by entry; NaN is equal to NaN.
 
     Examples
     --------
@@ -61,7 +61,7 @@ def pointwise(record: ArrayLike, new: ArrayLike, scale: ArrayLike) -> np.ndarray
 def _to_polyline(x, y, line_x, line_y) -> np.ndarray:
     """Distance of point k to the segments k - 1 - reach … k + reach of a polyline."""
     count = x.shape[-1]
-    # Between gaps a vertex may have no segment.
+    # A vertex between two gaps has no segment.
     best = np.hypot(x - line_x, y - line_y)
     for offset in range(-_REACH - 1, _REACH + 1) if count > 1 else ():
         left = np.clip(np.arange(count) + offset, 0, count - 2)
@@ -78,9 +78,9 @@ def _to_polyline(x, y, line_x, line_y) -> np.ndarray:
 def curve(x: ArrayLike, y: ArrayLike, new_x: ArrayLike, new_y: ArrayLike) -> np.ndarray:
     """Distance between two sampled curves, at each sample, along the last axis.
 
-    All coordinates are shares of their scales. The larger of the distances of
+    All coordinates are shares of their scales. The result is the larger of the distances of
     the new sample to the record's polyline and of the record's sample to the
-    new one: samples that slide along the curve cost nothing but the sagitta of
+    new one. Samples that slide along the curve therefore cost no more than the sagitta of
     a chord, and a tube of radius ε around both curves is a drift of at most ε.
 
     Parameters

@@ -1,8 +1,8 @@
-"""Two folders of artifacts, and the result for each artifact.
+"""The comparison of two folders of artifacts, with the result for each artifact.
 
 A folder holds ``figures/`` with datasets, pictures and tables, and
-``paper.md``; nothing else in it is looked at. Files of one name and different
-suffixes are one artifact.
+``paper.md``; other files in it are ignored, except ``config/engines.nc``, what physics engines
+gave. Files of one name and different suffixes are one artifact.
 """
 
 from collections.abc import Collection
@@ -13,7 +13,9 @@ from bouncing_ball.compare.parts import judge
 from bouncing_ball.errors import ModelError, printable
 
 _PAPER = "paper.md"
-# In the order in which they are compared: the data first, as the others lean on them.
+# Compared where both folders have it, because not every machine has the engines.
+_MEASURED = Path("config/engines.nc")
+# In the order of comparison: the data first, because the judgement of the others depends on them.
 _SUFFIXES = (".nc", ".csv", ".png", ".svg", ".md", ".html")
 
 
@@ -29,7 +31,7 @@ def artifacts_in(*folders: Path) -> dict[str, set[str]]:
     for folder in folders:
         if (folder / "figures").is_symlink():
             raise ModelError(f"{printable(folder / 'figures')}: a link; links are not followed")
-        # Files that begin with a point are halfway written.
+        # Files whose name begins with a point are not written completely.
         paths = [*folder.glob("figures/[!.]*"), *folder.glob(_PAPER)]
         files = [path.relative_to(folder) for path in paths if path.suffix in _SUFFIXES]
         if not files:
@@ -37,11 +39,13 @@ def artifacts_in(*folders: Path) -> dict[str, set[str]]:
             raise ModelError(f"nothing to compare {where}")
         for file in files:
             found.setdefault(file.stem, set()).add(file.as_posix())
+    if all((folder / _MEASURED).is_file() for folder in folders):
+        found[_MEASURED.stem] = {_MEASURED.as_posix()}
     return found
 
 
 def compare_folders(record: Path, new: Path, only: Collection[str] = ()) -> Whole:
-    """All artifacts of two folders, or only those named, worst first.
+    """The comparison of all artifacts of two folders, or of those named, worst first.
 
     Raises
     ------
@@ -49,7 +53,7 @@ def compare_folders(record: Path, new: Path, only: Collection[str] = ()) -> Whol
         If one of the folders holds no artifact, or neither has one of those named.
     """
     files = artifacts_in(record, new)
-    # The text is made from all datasets: it comes last.
+    # The article comes last, because it is made from all datasets.
     names = sorted(files, key=lambda name: (f"{name}.md" == _PAPER, name))
     if unknown := [name for name in only if name not in names]:
         known = printable(", ".join(names))

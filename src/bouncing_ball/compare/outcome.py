@@ -1,4 +1,4 @@
-"""The ladder of outcomes, from the best to the worst, and what has one: a place, and a whole."""
+"""The outcomes of a comparison from the best to the worst, and of what it consists."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -7,9 +7,9 @@ from typing import Any
 
 
 class Outcome(StrEnum):
-    """The result for one thing and its counterpart in the record.
+    """The result for an artifact, a file or a part of it, and its counterpart in the record.
 
-    In order: a whole is as good as its worst part.
+    In order: the outcome of a whole is that of its worst part.
     """
 
     IDENTICAL = "identical"
@@ -22,17 +22,17 @@ class Outcome(StrEnum):
 
     @property
     def rank(self) -> int:
-        """Place on the ladder, 0 for ``IDENTICAL``."""
+        """Place in the order, 0 for ``IDENTICAL``."""
         return list(Outcome).index(self)
 
     @property
     def agrees(self) -> bool:
-        """Whether the new thing still says what the record says."""
+        """Whether the difference, if any, is within the budget."""
         return self.rank <= Outcome.WITHIN.rank
 
     @property
     def status(self) -> int:
-        """Exit status: 0 the same, 1 differs, 2 could not be compared.
+        """Exit status: 0 for agreement, 1 for a difference, 2 if there was no comparison.
 
         Examples
         --------
@@ -55,7 +55,7 @@ def worst(outcomes: Iterable[Outcome]) -> Outcome:
 
 @dataclass(frozen=True)
 class Row:
-    """A place where a file was compared: a line of a text, an entry of a variable, its pixels.
+    """A place where a file was compared: a line of a text, an entry of a variable, or the pixels.
 
     Parameters
     ----------
@@ -63,9 +63,9 @@ class Row:
         A line's number, or a variable's name.
     outcome : Outcome
     record, new : str, optional
-        What stands there; None where a side has nothing.
+        The content on both sides; None where a side has none.
     share : float
-        Drift over its budget; 0 where that is no number.
+        Drift over its budget; 0 for a text.
     at : str
         Coordinates of an entry of a variable.
     note : str
@@ -87,12 +87,12 @@ class Whole:
     Parameters
     ----------
     name : str
-        Of a file its path relative to either folder.
+        For a file its path relative to either folder.
     parts : sequence
-        What was compared, worst first but for the files; of a file none where the bytes are
-        the same.
+        The parts compared, worst first except for files. A file has none if its bytes are
+        identical.
     pictures : tuple
-        Of a PNG file the record's and the new bytes.
+        For a PNG file the bytes of the record and the new ones.
     """
 
     name: str
@@ -101,12 +101,12 @@ class Whole:
 
     @property
     def outcome(self) -> Outcome:
-        """The worst outcome of its parts."""
+        """The worst outcome of the parts."""
         return worst(part.outcome for part in self.parts)
 
     @property
     def share(self) -> float:
-        """The largest share of a budget."""
+        """The largest share of a budget among the parts."""
         return max((part.share for part in self.parts), default=0.0)
 
     @property

@@ -1,4 +1,4 @@
-"""One page with record and new side by side, which needs neither a network nor a script."""
+"""The HTML page with record and new side by side, which needs neither a network nor a script."""
 
 import base64
 import re
@@ -12,7 +12,7 @@ from bouncing_ball.errors import printable
 
 
 def _plain(value: Any) -> Any:
-    """The value of an expression of the page; text that is not markup yet, on one line."""
+    """The value of an expression of the page; a text that is not markup is put on one line."""
     is_text = isinstance(value, str) and not hasattr(value, "__html__")
     return printable(value, None) if is_text else value
 
@@ -21,7 +21,7 @@ _Words = list[tuple[bool, str]]
 
 
 def marked(record: str | None, new: str | None) -> tuple[_Words, _Words]:
-    """Two texts in words, each with whether it is the same on both sides.
+    """Two texts as words, each with whether it is the same on both sides.
 
     Examples
     --------
@@ -39,17 +39,17 @@ def marked(record: str | None, new: str | None) -> tuple[_Words, _Words]:
 
 
 def to_html(comparison: Whole) -> str:
-    """The page: artifacts worst first; record and new of each picture.
+    """The page: artifacts worst first, with the record's and the new version of each picture.
 
-    All pictures are part of the page; one that is the same on both sides is
-    there once. What the buttons do is style, and no script.
+    All pictures are embedded; one that is identical on both sides is embedded
+    once. The buttons work by style sheets, without a script.
 
     Examples
     --------
     >>> "<h1>Artifacts against the record</h1>" in to_html(Whole(""))
     True
     """
-    # Imported here, as the short table needs none of it.
+    # Imported here, because the table for the terminal does not need it.
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     environment = Environment(

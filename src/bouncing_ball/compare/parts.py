@@ -1,11 +1,12 @@
-"""One file of an artifact against its counterpart in the record, each kind by its own measure.
+"""One file of an artifact against its counterpart in the record, each kind by a measure of its
+kind.
 
-Data by their budgets, texts, tables and the words of SVG files line by line, PNG files by
-their pixels. Every file is judged alone: whatever is wrong with one, it could not be
-compared, with the reason, and the others are compared all the same.
+Data are judged by their budgets, texts, tables and the words of SVG files line by line, PNG files
+by their pixels. Every file is judged alone: if one is damaged, its outcome is that it could
+not be compared, with the reason, and the others are compared nevertheless.
 
 A folder of artifacts may come from anywhere. Nothing in it is run, no link is
-followed, and what is printed of it passes through :func:`bouncing_ball.errors.printable`.
+followed, and text from it passes through :func:`bouncing_ball.errors.printable` before printing.
 """
 
 import re
@@ -22,11 +23,11 @@ from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.errors import ModelError, printable
 
 MAX_BYTES = 16 * 2**20
-"""The largest file that is read; the largest of the record has half a megabyte."""
+"""The size above which a file is not read; the largest of the record has half a megabyte."""
 
 
 def redrawn(record: bytes, new: bytes) -> str:
-    """How two pictures name different versions of matplotlib; empty if they do not.
+    """A note that two pictures name different versions of matplotlib; empty if they do not.
 
     Examples
     --------
@@ -67,15 +68,16 @@ def _rows(old: Path, now: Path, data: Outcome | None) -> list[Row]:
 
 
 def judge(file: str, folders: tuple[Path, Path], data: Outcome | None) -> Whole:
-    """A file of the record's or the new folder, or of both; never an error.
+    """The comparison of a file of the record's or the new folder, or of both; it raises no error.
 
     Parameters
     ----------
     file : str
         Relative to either folder.
     folders : tuple
+        The record's and the new one.
     data : Outcome, optional
-        The worst of the datasets that a text is made from.
+        The worst outcome of the datasets that a text is made from.
     """
     old, now = (folder / file for folder in folders)
     # Warnings of the libraries about a damaged file become one line.
@@ -85,7 +87,7 @@ def judge(file: str, folders: tuple[Path, Path], data: Outcome | None) -> Whole:
             rows = tuple(_rows(old, now, data))
             drawn = old.suffix == ".png"
             return Whole(file, rows, (_content(old), _content(now)) if drawn else (None, None))
-        # What the libraries raise on a damaged file has no end.
+        # On a damaged file the libraries raise errors of many types.
         except Exception as error:
             why = " ".join(str(error).split()) or type(error).__name__
             return Whole(file, (Row("", Outcome.UNREADABLE, note=printable(why, 120)),))

@@ -11,7 +11,7 @@ _SENTENCES = (
 
 
 def sentence(comparison: Whole) -> str:
-    """How many artifacts have which outcome, worst first, and the result in a sentence.
+    """Number of artifacts with each outcome, worst first, and the result in a sentence.
 
     Examples
     --------
@@ -36,7 +36,7 @@ def share_text(share: float) -> str:
 
 
 def note(file: Whole) -> str:
-    """Where a file differs most, and how.
+    """The place where a file differs most, and the difference.
 
     Examples
     --------
@@ -55,7 +55,8 @@ def note(file: Whole) -> str:
 
 
 def to_terminal(comparison: Whole) -> str:
-    """One line for each file that is not identical, of the worst artifact first, and the result.
+    """A line for each file that is not identical, beginning with the worst artifact, and the
+    result.
 
     Examples
     --------

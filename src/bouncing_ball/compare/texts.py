@@ -1,4 +1,4 @@
-"""Texts line by line: words as they are, numbers as their data allow."""
+"""The comparison of texts line by line: words exactly, numbers as their data allow."""
 
 import re
 from decimal import Decimal
@@ -8,13 +8,13 @@ from pathlib import Path
 
 from bouncing_ball.compare.outcome import Outcome, Row
 
-# A number as it is printed, with its sign and exponent. An exponent of more digits
-# belongs to no number of ours, and Decimal would refuse it.
+# A printed number, with its sign and exponent. No number of the artifacts has an exponent of
+# more digits, and Decimal would refuse it.
 _NUMBER = re.compile(r"[-+]?[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]{1,4}(?![0-9]))?")
 
 
 def _same_to_the_last_digit(old: str, new: str) -> bool:
-    """Whether two printed numbers may be one number, rounded on two processors.
+    """Whether two printed numbers may be the same number, rounded on two processors.
 
     Examples
     --------
@@ -36,7 +36,7 @@ def _same_to_the_last_digit(old: str, new: str) -> bool:
 
 
 def may_be_rounding(old: str, new: str) -> bool:
-    """Whether two lines have the same words, and numbers apart by a last digit at most.
+    """Whether two lines have the same words, and numbers that differ by a last digit at most.
 
     Examples
     --------
@@ -90,11 +90,16 @@ def compare_texts(record: str, new: str, data: Outcome | None) -> list[Row]:
 
 
 def words_of(path: Path) -> str:
-    """What a file says, as lines of words and numbers.
+    """The words and numbers of a file, as lines.
 
-    Of a vector graphic its labels, and the letters that draw them: matplotlib draws a text as
-    outlines, one for each letter, with the text in a comment. Of an HTML page all but data in
-    JSON, which have a dataset of their own. Of any other text the text.
+    From a vector graphic they are its labels, and the letters that draw them: matplotlib draws a
+    text as outlines, one for each letter, with the text in a comment. From an HTML page they are
+    all but data in JSON, which have a dataset of their own. Any other text is returned unchanged.
+
+    Raises
+    ------
+    OSError, UnicodeDecodeError
+        If the file cannot be read, or is not UTF-8.
     """
     text = path.read_text(encoding="utf-8")
     match path.suffix:

@@ -1,1 +1,1 @@
-"""The configuration: one reader of YAML, one checker, one description."""
+"""The configuration: one reader of YAML, one checker, and one description made from the types."""

@@ -1,7 +1,7 @@
-"""Check of the configuration, with one line per mistake.
+"""The check of the configuration, with one line per mistake.
 
-The type of each section is that of the ``parameters`` of the study which takes it. So what is
-allowed, and why, stands beside the study.
+The type of each section is that of the ``parameters`` of the study which takes it, so that the
+allowed values and the reasons for them stand beside the study.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -18,7 +18,7 @@ from bouncing_ball.parameters import Parameters
 
 
 class _Sections(Parameters, strict=False):
-    """The whole configuration, whose release rule is written as a text."""
+    """The complete configuration, in which the release rule is a text."""
 
 
 def configuration_model(studies: Mapping[str, str], config: Mapping[str, Any]) -> type[BaseModel]:
@@ -53,7 +53,7 @@ def configuration_model(studies: Mapping[str, str], config: Mapping[str, Any]) -
 def check_configuration(
     files: Iterable[str], config: Mapping[str, Any], studies: Mapping[str, str]
 ) -> None:
-    """Raise on the first mistake in the files of a run, or in what it has read of them.
+    """Raise on the first mistake in the files of a run, or in the configuration read from them.
 
     Raises
     ------
@@ -62,7 +62,7 @@ def check_configuration(
     """
     for where in files:
         try:
-            # Snakemake has read it already, and taken the last of equal keys.
+            # Snakemake has read it already, but takes the last of equal keys without an error.
             read_yaml(where)
         except ConfigurationError as error:
             raise ConfigurationError(f"{where}: {error}") from None
@@ -74,7 +74,7 @@ def check_configuration(
 
 
 def check(model: type[BaseModel], config: Mapping[str, Any]) -> None:
-    """Raise on the first mistake.
+    """Raise on the first mistake in a configuration of this type.
 
     Raises
     ------
@@ -93,13 +93,13 @@ samples? Allowed here: min, max, samples
     try:
         model.model_validate(config)
     except ValidationError as error:
-        # A mistyped key is missing as well: what is unknown says more.
+        # A mistyped key is reported as unknown and as missing, of which the first is clearer.
         first = min(error.errors(), key=lambda each: each["type"] != "extra_forbidden")
         raise ConfigurationError(_sentence(model, first)) from None
 
 
 def place(path: Sequence[str | int]) -> str:
-    """A place of the configuration in words.
+    """The name of a place in the configuration.
 
     Examples
     --------
@@ -111,7 +111,8 @@ def place(path: Sequence[str | int]) -> str:
 
 
 def resolved(schema: Mapping[str, Any], root: Mapping[str, Any]) -> dict[str, Any]:
-    """A JSON schema with what it refers to filled in; its own entries win.
+    """A JSON schema in which a reference is replaced by its target; entries beside it take
+    precedence.
 
     Examples
     --------
@@ -124,7 +125,7 @@ def resolved(schema: Mapping[str, Any], root: Mapping[str, Any]) -> dict[str, An
     return {**(root["$defs"][reference] if reference else {}), **own}
 
 
-# Words of pydantic, and those of a user of YAML.
+# Expressions of pydantic, and what a user of YAML reads instead.
 _WORDS = {
     "Input should": "must",
     "Tuple should": "must",
@@ -137,7 +138,7 @@ _WORDS = {
 
 
 def _sentence(model: type[BaseModel], error: Any) -> str:
-    """What is wrong, where, what is allowed, and why."""
+    """One sentence for an error: the place, the value, what is allowed, and why."""
     root = model.model_json_schema()
     schema = parent = resolved(root, root)
     for part in error["loc"]:

@@ -28,7 +28,7 @@ _TABLE = """
 
 
 def configuration_schema(model: type[BaseModel]) -> str:
-    """The JSON schema of the configuration."""
+    """The JSON schema of a configuration, as text."""
     return json.dumps(model.model_json_schema(), indent=1, ensure_ascii=False) + "\n"
 
 
@@ -59,7 +59,7 @@ def _rows(schema, root, default, path) -> Iterator[str]:
 
 
 def configuration_page(model: type[BaseModel], config: Mapping[str, Any]) -> str:
-    """The page as Markdown: a table for each section, with the values of ``config``."""
+    """The page in Markdown: a table for each section, with the values of ``config`` as defaults."""
     root, page = model.model_json_schema(), _HEAD
     for name, default in config.items():
         rows = "".join(_rows(root["properties"][name], root, default, [name]))

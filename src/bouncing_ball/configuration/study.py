@@ -1,8 +1,8 @@
-"""The studies that the rules name, and what each takes of a run.
+"""The studies that the rules name, and the arguments that each takes from a run.
 
-A study says by its signature what it takes: ``study(parameters, release, continuation)``. Its
-``parameters`` are a section of the configuration, ``figures.fig08``, ``data`` are the datasets
-that its rule names, and each further argument is the setting of the whole run with that name.
+A study declares by its signature what it takes: ``study(parameters, release, continuation)``. Its
+``parameters`` are a section of the configuration, for example ``figures.fig08``, ``data`` are the
+datasets that its rule names, and each further argument is the setting of the run with that name.
 """
 
 import inspect
@@ -39,7 +39,9 @@ def load(study: str) -> Callable[..., Any]:
 
 
 def typed(study: Callable[..., Any]) -> Callable[..., Any]:
-    """A study that takes its parameters as they stand in the configuration.
+    """The study as a function of parameters as they stand in the configuration.
+
+    It raises :class:`pydantic.ValidationError` for parameters that are not allowed.
 
     Examples
     --------
@@ -54,7 +56,12 @@ def typed(study: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def taken(study: str) -> dict[str, Any]:
-    """What a study takes of a run: the type of each of its arguments but the data.
+    """The arguments of a study except the data, with their types.
+
+    Raises
+    ------
+    ConfigurationError
+        If there is no such study.
 
     Examples
     --------
@@ -66,12 +73,12 @@ def taken(study: str) -> dict[str, Any]:
 
 
 def section(artifact: str, run: Mapping[str, Any]) -> tuple[str, ...]:
-    """Where the parameters of an artifact are in the configuration.
+    """The section and the key of an artifact's parameters in the configuration.
 
     Raises
     ------
     ConfigurationError
-        If they are nowhere.
+        If no section has this key.
 
     Examples
     --------
@@ -87,7 +94,12 @@ def section(artifact: str, run: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def arguments(study: str, artifact: str, run: Mapping[str, Any]) -> dict[str, Any]:
-    """What a study is given for an artifact, as it stands in the configuration.
+    """The arguments of a study for an artifact, as they stand in the configuration.
+
+    Raises
+    ------
+    ConfigurationError
+        If there is no such study, or no section has the artifact.
 
     Examples
     --------

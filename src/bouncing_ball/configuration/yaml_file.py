@@ -1,6 +1,6 @@
 """YAML files, read with one line per mistake.
 
-What is said twice is refused: the last of two equal keys would win without a word.
+A key that is given twice is refused, because the last of two equal keys would win without an error.
 """
 
 from pathlib import Path
@@ -10,19 +10,19 @@ import yaml
 
 from bouncing_ball.errors import ModelError, escaped
 
-# Ten times as fast, where PyYAML was built with it; it reads the same language.
+# Ten times as fast, where PyYAML was built with libyaml; both read the same language.
 _BASE = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
 class ConfigurationError(ModelError):
-    """A wrong key, type or value in a file, in one line that is safe to print."""
+    """A wrong key, type or value in a file; the message is one line that is safe to print."""
 
     def __init__(self, text: str) -> None:
         super().__init__(escaped(text))
 
 
 class _Loader(_BASE):  # type: ignore[misc, valid-type]
-    """The safe language, in which a mapping has each key once."""
+    """The safe subset of YAML, in which a mapping has each key once."""
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict:
         seen = set()
@@ -57,7 +57,7 @@ def parse_yaml(text: str) -> Any:
         line = f" in line {error.problem_mark.line + 1}" if error.problem_mark else ""
         raise ConfigurationError(f"not YAML{line}: {error.problem}") from None
     except yaml.YAMLError as error:
-        # A character that no YAML file may hold.
+        # A character that is not allowed in a YAML file.
         raise ConfigurationError(f"not YAML: {' '.join(str(error).split())}") from None
 
 
@@ -67,7 +67,7 @@ def read_yaml(path: str | Path) -> Any:
     Raises
     ------
     ConfigurationError
-        One line, which does not name the file: it is not there, not UTF-8, or
+        One line, which does not name the file, if it does not exist, is not UTF-8, or is
         refused by :func:`parse_yaml`.
     """
     try:

@@ -1,4 +1,4 @@
-"""Files that are either whole or not there."""
+"""Files that are written completely or not at all."""
 
 import os
 from collections.abc import Iterator
@@ -8,9 +8,14 @@ from pathlib import Path
 
 @contextmanager
 def replacing(path: str | Path) -> Iterator[Path]:
-    """A temporary path in the same folder, moved to ``path`` if all goes well.
+    """A temporary path in the same folder, which replaces ``path`` if no error occurs.
 
-    Nothing is left of it otherwise. The suffix stays, as it names the format.
+    Otherwise it is removed. Its suffix is that of ``path``, because a suffix names the format.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be replaced.
     """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -23,6 +28,12 @@ def replacing(path: str | Path) -> Iterator[Path]:
 
 
 def write_text(path: str | Path, text: str) -> None:
-    """Write UTF-8 text, with the same line ends everywhere."""
+    """Write UTF-8 text with the same line ends on every system.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+    """
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="\n")

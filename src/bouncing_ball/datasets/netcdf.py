@@ -1,4 +1,4 @@
-"""Writing and reading the datasets as netCDF, atomically and reproducibly."""
+"""Datasets as netCDF files, written atomically and reproducibly."""
 
 import json
 from collections.abc import Mapping
@@ -14,11 +14,11 @@ CONVENTIONS = "CF-1.11"
 
 
 class DatasetError(ValueError):
-    """A file that is not there, or not a whole dataset, in one line."""
+    """A file that does not exist, or is not a complete dataset; the message is one line."""
 
 
 def attribute_name(parameter: str) -> str:
-    """The attribute that holds a parameter: a name in CF has letters, digits and underscores.
+    """The attribute that holds a parameter; in CF a name has letters, digits and underscores only.
 
     Examples
     --------
@@ -31,7 +31,7 @@ def attribute_name(parameter: str) -> str:
 def parameter_attributes(parameters: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
     """Nested parameters as flat netCDF attributes, see :func:`attribute_name`.
 
-    Lists of numbers stay lists; anything deeper becomes JSON.
+    Lists of numbers remain lists; anything deeper becomes JSON.
 
     Examples
     --------
@@ -53,13 +53,18 @@ def parameter_attributes(parameters: Mapping[str, Any], prefix: str = "") -> dic
 
 
 def write_dataset(dataset: xr.Dataset, path: str | Path, *, compressed: bool = False) -> None:
-    """Write a dataset by the CF conventions, so that the file is either whole or not there.
+    """Write a dataset by the CF conventions, completely or not at all.
 
-    Nothing is missing in a coordinate, so that it has no fill value.
+    Coordinates have no fill value, because none of their values is missing.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
     """
     encoding: dict[str, dict[str, Any]] = {str(x): {"_FillValue": None} for x in dataset.coords}
     for name, values in dataset.data_vars.items():
-        # A map of a few small integers shrinks many times.
+        # A map of a few small integers is compressed to a small part.
         if values.ndim and (compressed or values.dtype == "int8"):
             encoding[str(name)] = {"zlib": True, "complevel": 4}
     with replacing(path) as temporary:
@@ -67,7 +72,7 @@ def write_dataset(dataset: xr.Dataset, path: str | Path, *, compressed: bool = F
 
 
 def read_dataset(path: str | Path) -> xr.Dataset:
-    """Read a dataset whole and close its file.
+    """Read a dataset into memory and close its file.
 
     Raises
     ------
@@ -79,6 +84,6 @@ def read_dataset(path: str | Path) -> xr.Dataset:
             return dataset.load()
     except FileNotFoundError:
         raise DatasetError(f"no dataset {path}") from None
-    # What the libraries raise depends on where the damage is.
+    # The error that the libraries raise depends on the place of the damage.
     except (OSError, ValueError, RuntimeError, AttributeError) as error:
         raise DatasetError(f"{path} is damaged") from error

@@ -3,19 +3,19 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-# What rounding leaves of a finite difference: √ε, the largest size at which the
-# digits of a number may be those of the processor and not of the model.
+# The rounding error of a finite difference, √ε: at most at this size the digits of a number
+# may come from the processor and not from the model.
 ROUNDING_SIZE = float(np.sqrt(np.finfo(float).eps))
 
-# Distances closer than this are one distance. They are given in units of a last
-# printed digit, are known to 1e-8 and are printed to 1e-2.
+# Distances that differ by less are equal. They are given in units of a last
+# printed digit, computed to 1e-8 and printed to 1e-2.
 _SAME = 1e-6
 
 
 def levels(values: ArrayLike) -> np.ndarray:
-    """For each value the number of distinct smaller ones, equal ones being equal to rounding.
+    """For each value the number of distinct smaller ones; values equal up to rounding count as one.
 
-    Where rounding falls decides nothing, as it would if decimals were cut off.
+    Decimals are not cut off, because rounding would then decide about values near a decimal.
 
     Examples
     --------
@@ -25,7 +25,7 @@ def levels(values: ArrayLike) -> np.ndarray:
     values = np.asarray(values, dtype=float)
     order = np.argsort(values)
     ranked = values[order]
-    # Two infinite values are the same.
+    # Two infinite values are equal, which their difference would not show.
     apart = ranked[1:] > ranked[:-1] + _SAME
     found = np.empty(values.shape, dtype=int)
     found[order] = np.concatenate([[0], np.cumsum(apart)])
@@ -33,11 +33,10 @@ def levels(values: ArrayLike) -> np.ndarray:
 
 
 def compared_text(value: float, bound: float, form: str = ".4g") -> str:
-    """A number beside the bound that it is held against.
+    """The text of a number that is compared with a bound.
 
-    A number that keeps within a bound of the size of rounding is rounding
-    itself: its digits change with the processor, and the bound is all that it
-    says. Any other number is printed.
+    A number within a bound of the size of rounding is rounding itself: its digits change with the
+    processor, and only the bound is printed. Any other number is printed.
 
     Examples
     --------

@@ -8,12 +8,12 @@ import xarray as xr
 
 from bouncing_ball.errors import ModelError
 
-# Coordinates are computed from the numbers of the configuration.
+# Relative tolerance, because coordinates are computed from the numbers of the configuration.
 _MATCH = 1e-9
 
 
 def index_of(values: xr.DataArray, name: str, wanted: Any) -> int:
-    """Index of a label along a dimension; numbers are matched to rounding.
+    """Index of a label along a dimension; numbers are matched up to rounding.
 
     Raises
     ------

@@ -23,8 +23,8 @@ VARIABLES: dict[str, dict[str, str]] = {
 BUDGETS: dict[str, tuple[float, str]] = {
     row["name"]: (float(row["budget"]), row["scale"]) for row in _ROWS if row["budget"]
 }
-"""How far a variable may move from the accepted record, as a share of its scale: of 1, of another
-variable, or of its own range; see :mod:`bouncing_ball.compare.budgets`."""
+"""The largest change of a variable from the accepted record, as a share of its scale: of 1, of
+another variable, or of the range of its values; see :mod:`bouncing_ball.compare.budgets`."""
 
 
 def describe(dataset: xr.Dataset) -> xr.Dataset:
@@ -50,5 +50,11 @@ def describe(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def described(variables: Mapping[str, Any], coords: Mapping[str, Any] | None = None) -> xr.Dataset:
-    """A dataset of these variables, with the attributes of all: see :func:`describe`."""
+    """A dataset of these variables, with the attributes of each: see :func:`describe`.
+
+    Raises
+    ------
+    KeyError
+        If a name is not in :data:`VARIABLES`.
+    """
     return describe(xr.Dataset(variables, coords))

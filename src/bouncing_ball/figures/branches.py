@@ -23,7 +23,7 @@ def restitution_families(data: xr.Dataset) -> Figure:
     for family, colour in coloured(data, "n"):
         _draw_branch(axes, family, family.phase, colour)
         _draw_named_points(axes, family.sel(impact_map="exact"), colour)
-        # At the branch itself, because five colours are not told apart in grey.
+        # The name is at the branch itself, because five colours cannot be distinguished in grey.
         top = family.isel(point=family.phase.fillna(-np.inf).argmax("point"))
         end, name = (top.amplitude, top.phase / np.pi), f"$n={family.n.item()}$"
         axes.annotate(name, end, (3, 0), textcoords="offset points", va="center", color=colour)
@@ -45,7 +45,9 @@ def domains(data: xr.Dataset) -> Figure:
 
 
 def over_amplitude(data: xr.Dataset) -> Figure:
-    """Branches as in Figs. 8 and 9, in their colours, named by what differs."""
+    """Branches as in Figs. 8 and 9, of a labelled dataset, each named by the arguments that
+    differ.
+    """
     figure, axes = canvas(WIDE, 4.2)
     rows, names = in_a_row(data, "point", "special", "multiplier", "end")
     _name_curves(axes, [name for name in names if name])
@@ -71,7 +73,7 @@ def both_domains(data: xr.Dataset) -> Figure:
     _draw_named_points(axes, data, COLOURS[0])
     curve = data.squeeze("frequency_ratio")
     _draw_spring_damper(axes, curve, COLOURS[1], COLOURS[2])
-    # The contact may have no such branch.
+    # The contact may have no such branch, and then all its values are NaN.
     lowest = float(curve.amplitude.fillna(data.saddle_node_amplitude).min())
     title = parameters(data, "n", "restitution", "frequency_ratio")
     _name_axes(axes, data, r"phase of the table over $\pi$", title, left=0.9 * lowest)
@@ -80,10 +82,10 @@ def both_domains(data: xr.Dataset) -> Figure:
 
 
 def up_to_second_saddle_node(curve: xr.Dataset) -> xr.Dataset:
-    """The branch from its other end to the saddle-node at which its unstable side turns back.
+    """The branch from its short contacts to the saddle-node at which its unstable side turns back.
 
-    Beyond it the contact is longer than at it. A branch whose unstable side
-    does not turn back is returned as it is.
+    Beyond that saddle-node the contact is longer than at it. A branch whose unstable side
+    does not turn back is returned unchanged.
     """
     durations = curve.special_contact_duration.values[curve.special_kind.values == SADDLE_NODE]
     if len(durations) < 2:
@@ -96,7 +98,7 @@ def up_to_second_saddle_node(curve: xr.Dataset) -> xr.Dataset:
 
 
 def draw_curve(axes: Axes, x: Any, y: Any, admissible: Any, **look: Any) -> None:
-    """A curve of orbits in its own look, dotted where they are inadmissible."""
+    """A curve of orbits with a given look, dotted where they are inadmissible."""
     x, y, shown = np.asarray(x), np.asarray(y), np.asarray(admissible, dtype=bool)
     axes.plot(x, np.where(shown, y, np.nan), **look)
     if not np.all(shown):
@@ -115,7 +117,7 @@ def _name_curves(axes: Axes, names: list[str]) -> None:
 
 
 def _draw_branch(axes: Axes, curve: xr.Dataset, phase: xr.DataArray, colour: str) -> None:
-    """A branch in runs of one look, each reaching to the next one's first point."""
+    """A branch in runs of one look, each extended to the first point of the next one."""
     x, y = curve.amplitude.values, phase.values / np.pi
     kinds = np.where(curve.admissible, np.where(curve.stable, "stable", "unstable"), "inadmissible")
     edges = [0, *(np.flatnonzero(kinds[1:] != kinds[:-1]) + 1), len(kinds)]
@@ -125,7 +127,7 @@ def _draw_branch(axes: Axes, curve: xr.Dataset, phase: xr.DataArray, colour: str
 
 
 def _draw_named_points(axes: Axes, data: xr.Dataset, colour: str) -> None:
-    """The bifurcations and grazings of the restitution model that a dataset has by name."""
+    """The bifurcations and grazing orbits of the restitution model, where the dataset has them."""
     for kind in MARKS:
         name = kind.replace("-", "_").replace(" ", "_")
         if f"{name}_phase" in data:

@@ -1,4 +1,4 @@
-"""Figures without overlaps, and what all of their panels have alike."""
+"""Figures without overlaps, and the parts that all of their panels share."""
 
 from collections.abc import Iterator
 from itertools import cycle
@@ -20,13 +20,19 @@ WIDE = 7.0
 def canvas(
     width: float = WIDTH, height: float = 2.6, rows: int = 1, columns: int = 1, **options: Any
 ) -> tuple[Figure, Any]:
-    """A figure of a size in inches and its axes, laid out without overlaps."""
+    """A figure of a size in inches, and its axes (one, or an array), laid out without overlaps.
+
+    Further options are those of :meth:`matplotlib.figure.Figure.subplots`.
+    """
     figure = Figure(figsize=(width, height), layout="constrained")
     return figure, figure.subplots(rows, columns, **options)
 
 
 def legend_below(figure: Figure, handles: Any = None, **options: Any) -> None:
-    """A legend under all panels; of the names in the first panel, each once, if none are given."""
+    """A legend below all panels.
+
+    Without given handles it has those of the first panel, each name once.
+    """
     if handles is None:
         drawn, names = figure.axes[0].get_legend_handles_labels()
         handles = [handle for k, handle in enumerate(drawn) if names[k] not in names[:k]]
@@ -34,9 +40,10 @@ def legend_below(figure: Figure, handles: Any = None, **options: Any) -> None:
 
 
 def logarithmic(axes: Axes, ratio: xr.DataArray | None = None, **settings: Any) -> None:
-    """Logarithmic frequency-ratio axis with plain numbers at the decades, and other settings.
+    """A logarithmic axis of the frequency ratio with plain numbers at the decades.
 
-    It is named, and as long as the ϖ that are given.
+    With the values of ϖ it is also labelled, and limited to their range. Further settings are those
+    of :meth:`matplotlib.axes.Axes.set`.
     """
     if ratio is not None:
         axes.set(xlabel=r"frequency ratio $\varpi$", xlim=(float(ratio[0]), float(ratio[-1])))
@@ -46,5 +53,5 @@ def logarithmic(axes: Axes, ratio: xr.DataArray | None = None, **settings: Any) 
 
 
 def coloured(data: xr.Dataset, dim: str) -> Iterator[tuple[xr.Dataset, str]]:
-    """The dataset at each place along a dimension, with a colour of its own."""
+    """The dataset at each place along a dimension, with the colours in turn."""
     return zip(each(data, dim), cycle(COLOURS))

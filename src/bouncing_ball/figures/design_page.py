@@ -1,4 +1,4 @@
-"""One page to print: what ``bouncing-ball design`` says of a contact."""
+"""One page to print: the answer of ``bouncing-ball design`` about a contact."""
 
 import textwrap
 from collections.abc import Mapping, Sequence
@@ -18,12 +18,12 @@ _PAGE = 8.27, 11.69
 
 
 def draw(design: Mapping[str, Any], data: xr.Dataset, values: Sequence[tuple[str, str]]) -> Figure:
-    """The page.
+    """The page, A4 upright.
 
     Parameters
     ----------
     design : mapping
-        The answer, as its JSON has it.
+        The answer, with the keys of its JSON.
     data : Dataset
         Chart and motion (:mod:`bouncing_ball.calculator.page_data`).
     values : sequence of (str, str)
@@ -56,7 +56,7 @@ def _title(figure: Figure, design: Mapping[str, Any]) -> None:
 
 
 def _chart(axes: Axes, design: Mapping[str, Any], data: xr.Dataset) -> None:
-    """From which ϖ on each simple model is right, over r; the case is the star."""
+    """The ϖ from which on each simple model is accurate, over r, with the case as a star."""
     for name in data["simple"].values:
         axes.plot(data["restitution"], data.needed.sel(simple=name), label=name, **MODELS[name])
     ours = design["corrected"]["restitution"], design["frequency_ratio"]

@@ -1,4 +1,4 @@
-"""Figures as files that are the same from run to run."""
+"""Figures as files that are identical from run to run."""
 
 import json
 from collections.abc import Mapping
@@ -11,12 +11,17 @@ from bouncing_ball.datasets.files import replacing
 
 
 def save(figure: Figure, path: str | Path, metadata: Mapping[str, str]) -> None:
-    """Write a figure, whole or not at all, the same every time.
+    """Write a figure, completely or not at all, with the same bytes every time.
 
     The metadata become text chunks of a PNG; an SVG, whose vocabulary is
     limited, holds them as JSON in its description.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
     """
-    # Neither a time nor a version of matplotlib's own.
+    # No time and no version, which matplotlib would write otherwise.
     texts: dict[str, Any] = {"Software": None, **metadata}
     if Path(path).suffix == ".svg":
         texts = {"Date": None, "Creator": None, "Description": json.dumps(dict(metadata))}

@@ -1,4 +1,4 @@
-"""How stiffness, damping and restitution of a contact belong together."""
+"""Stiffness, damping and restitution of a contact, and how they depend on each other."""
 
 from typing import Any
 
@@ -14,7 +14,7 @@ _LOOKS: dict[str, Look] = {
     "displacement": {"color": COLOURS[0], "linestyle": "-", "linewidth": 1.4},
     "force": {"color": COLOURS[1], "linestyle": (0, (4, 1.5)), "linewidth": 1.8},
 }
-# Where r stands beside each end of the contact, in points.
+# The place of the text r beside each end of the contact, in points.
 _PLACES: dict[str, dict[str, Any]] = {
     "displacement": {"offset": (-7, 0), "ha": "right", "va": "center"},
     "force": {"offset": (2, 6), "ha": "left", "va": "bottom"},
@@ -22,7 +22,7 @@ _PLACES: dict[str, dict[str, Any]] = {
 
 
 def free_impacts(data: xr.Dataset) -> Figure:
-    """The force in one contact with both ends; over ζ restitution and duration."""
+    """ext_impact: the force in one contact with both ends; restitution and duration over ζ."""
     figure, (force, restitution, duration) = canvas(WIDE, 2.6, columns=3)
     load = data.free_force
     force.axhline(0, color=TABLE, linewidth=0.7)

@@ -1,4 +1,4 @@
-"""Motion of ball and table over time (Figs. 2, 7, 12 and the instant of an impact)."""
+"""Motion of ball and table over time (Figs. 2, 7 and 12, and ext_instant)."""
 
 from itertools import cycle
 
@@ -12,7 +12,7 @@ from bouncing_ball.figures.canvas import WIDE, canvas, coloured, legend_below
 from bouncing_ball.figures.labels import in_a_row, note, number, parameters, title
 from bouncing_ball.figures.style import ARROW, COLOURS, CONTACT, GUIDE, TABLE, Look
 
-# From the stiffest contact to the softest.
+# From the stiffest contact to the most compliant.
 _DASHES = ("-", (0, (8, 1.5)), (0, (5, 1.5)), (0, (3, 1, 1, 1)), (0, (1, 1)))
 _RIGID = "#b3b3b3"
 
@@ -31,7 +31,9 @@ def restitution_history(data: xr.Dataset) -> Figure:
 
 
 def over_time(data: xr.Dataset) -> Figure:
-    """Balls and table over time; several balls in their colours, named by what differs."""
+    """Balls and table over time; several balls in colours, each named by the arguments that
+    differ.
+    """
     figure, axes = canvas(WIDE, 2.8)
     balls, names = in_a_row(data, "time")
     periods = data.time / (2 * np.pi)
@@ -86,7 +88,7 @@ def contact_history(data: xr.Dataset) -> Figure:
 
 
 def both_histories(data: xr.Dataset) -> Figure:
-    """Fig. 12: height over τ, with the table at Λ sin τ for all curves; right, the summit."""
+    """Fig. 12: height over τ, with the table at Λ sin τ for all curves; at the right the apex."""
     figure, (axes, summit) = canvas(WIDE, 3.4, columns=2, width_ratios=(2.4, 1.0))
     n, amplitude = data.attrs["n"], data.attrs["amplitude"]
     period = 2 * np.pi * n
@@ -98,7 +100,7 @@ def both_histories(data: xr.Dataset) -> Figure:
     axes.set_xticks(np.pi * halves, ["0", r"$\pi$", *(rf"${k}\pi$" for k in halves[2:])])
     title = parameters(data, "n", "restitution", "amplitude")
     axes.set(xlabel=r"time $\tau$", ylabel="$z$, $w$", xlim=(time[0], time[-1]), title=title)
-    # Enlarged so far that the stiffest contact is seen apart.
+    # The enlargement separates the stiffest contact from the restitution model.
     ball = data.restitution_ball.values
     top, at = float(ball.max()), float(data.time[int(ball.argmax())] + data.restitution_phase)
     below = max(3 * (top - float(data.ball.isel(frequency_ratio=-1).max())), 0.02 * top)
@@ -110,9 +112,9 @@ def both_histories(data: xr.Dataset) -> Figure:
 
 
 def meeting_flights(data: xr.Dataset) -> Figure:
-    """The flights before and after a contact, continued; below, the contact force.
+    """ext_instant: the flights before and after a contact, continued; below, the contact force.
 
-    They meet at the centroid of the force.
+    The flights meet at the centroid of the force.
     """
     figure, (top, below) = canvas(4.2, 3.6, rows=2, sharex=True, height_ratios=(2.2, 1.0))
     time, end = data.time.values, float(data.contact_duration)
@@ -142,7 +144,7 @@ def meeting_flights(data: xr.Dataset) -> Figure:
 
 
 def _draw_both_models(axes: Axes, data: xr.Dataset, period: float) -> None:
-    """Both models; the restitution model is a broad line, over which the others are seen."""
+    """Both models; the restitution model is a broad line, over which the others remain visible."""
     phase = data.time.values + float(data.restitution_phase)
     rigid = _three_cycles(phase, data.restitution_ball.values, period)
     axes.plot(*rigid, color=_RIGID, label="restitution", linewidth=3.5)
@@ -157,10 +159,11 @@ def _draw_both_models(axes: Axes, data: xr.Dataset, period: float) -> None:
 def _three_cycles(
     phase: np.ndarray, ball: np.ndarray, period: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The orbit repeats: the cycles before and after are drawn as well.
+    """Phase and height of an orbit over three cycles, of which the outer ones repeat the middle
+    one.
 
-    Each point once: where a cycle ends and the next begins, rounding would
-    make a segment without direction, and the dashes of the line start anew.
+    A point between two cycles is taken once, because a segment without length would restart the
+    dashes of the line.
     """
     shifted = np.concatenate([phase[:-1] - period, phase[:-1], phase + period])
     return shifted, np.concatenate([ball[:-1], ball[:-1], ball])

@@ -1,4 +1,4 @@
-"""The words on figures: quantities, parameters, notes."""
+"""The texts on figures: quantities, parameters, notes."""
 
 from typing import Any
 
@@ -16,16 +16,16 @@ QUANTITIES = {
     "period_doubling": r"period doubling $\Lambda_{PD}$",
     "permanent_contact": r"permanent contact",
 }
-"""The quantities compared between the models, as a title names them."""
+"""The titles of the quantities compared between the models."""
 
 
 def number(value: float) -> str:
-    """A parameter as a label shows it.
+    r"""A parameter as a label shows it, in LaTeX from 10⁴ on.
 
     Examples
     --------
     >>> number(0.85), number(10000.0), number(250000.0)
-    ('0.85', '10^{4}', '2.5\\\\times 10^{5}')
+    ('0.85', '10^{4}', '2.5\\times 10^{5}')
     """
     if value >= 1e4:
         mantissa, exponent = f"{value:e}".split("e")
@@ -49,7 +49,8 @@ _SYMBOLS = {
 
 
 def parameters(data: xr.Dataset, *names: str, of: str = "") -> str:
-    """Parameters of a dataset, as a title shows them; ``of`` begins their attributes' names.
+    """Parameters of a dataset, as a title shows them; ``of`` is a prefix of their attributes'
+    names.
 
     Examples
     --------
@@ -60,14 +61,18 @@ def parameters(data: xr.Dataset, *names: str, of: str = "") -> str:
 
 
 def title(data: xr.Dataset) -> str:
-    """The parameters that a labelled dataset has for all of it; of a model its label."""
+    """The parameters that a labelled dataset has as attributes, and the names of its model and
+    law.
+    """
     known = [name for name in _SYMBOLS if name in data.attrs]
     words = [str(data.attrs[name]) for name in ("model", "law") if name in data.attrs]
     return ", ".join(x for x in (*words, parameters(data, *known)) if x)
 
 
 def in_a_row(data: xr.Dataset, *kept: str) -> tuple[xr.Dataset, list[str]]:
-    """A labelled dataset with the axes of its arguments as one, "case", and a name of each.
+    """A labelled dataset with the axes of its arguments merged into one, "case", and their labels.
+
+    The dimensions ``kept`` remain. The labels name each case by its arguments.
 
     Examples
     --------

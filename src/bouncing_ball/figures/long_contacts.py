@@ -26,16 +26,16 @@ _MARKS: dict[str, Look] = {
     "grazing in contact": {**MARKS["grazing"], "color": COLOURS[0]},
     "grazing in flight": {**MARKS["grazing"], "marker": "v", "color": COLOURS[2]},
 }
-# A mark at so many of the windows that end alike.
+# Every so many of the windows with the same kind of end have a mark.
 _EVERY = 8
-# In the order of the motions; five steps of grey.
+# Colours in the order of the motions; they are five steps of grey.
 _FILLS = ("#ffffff", "#b9d7ea", "#b34a10", "#e0a030", "#000000")
 _RATIO = r"frequency ratio $\varpi$"
 _ORBITS = {1: "o", 2: "^"}
 
 
 def stable_windows(data: xr.Dataset) -> Figure:
-    """Left, the window of the first r and what ends it; right, ϖ² times the widths for all r."""
+    """ext_rattling: the window of the first r with its ends; ϖ² times the widths for all r."""
     figure, (left, right) = canvas(WIDE, 3.2, columns=2)
     _draw_window(left, data.isel(restitution=0))
     ratio = data.frequency_ratio.values
@@ -52,7 +52,9 @@ def stable_windows(data: xr.Dataset) -> Figure:
 
 
 def basins(data: xr.Dataset) -> Figure:
-    """One panel for each Λ; each start has the colour of the motion it leads to."""
+    """ext_basins: a panel for each Λ, in which each start has the colour of the motion it
+    leads to.
+    """
     figure, row = canvas(WIDE, 3.1, columns=data.sizes["case"], sharey=True, squeeze=False)
     image: Look = {"origin": "lower", "aspect": "auto", "interpolation": "none"}
     image |= {"extent": (-1.0, 1.0, 0.0, data.attrs["velocity_max"])}
@@ -62,7 +64,7 @@ def basins(data: xr.Dataset) -> Figure:
         for k, mark in _ORBITS.items():
             at = one.orbit_phase[k] / np.pi, one.orbit_speed[k]
             axes.plot(*at, mark, color="#000000", markerfacecolor="#ffffff", markersize=5)
-        # Not the attribute of this name, which is a list.
+        # The variable, not the attribute of this name, which is a list.
         amplitude = number(float(one["amplitude"]))
         axes.set(title=rf"$\Lambda={amplitude}$", xlabel=r"phase of impact $\varphi/\pi$")
         axes.spines[["top", "right"]].set_visible(True)
@@ -76,7 +78,7 @@ def basins(data: xr.Dataset) -> Figure:
 
 
 def _draw_window(axes: Axes, window: xr.Dataset) -> None:
-    """The window of one r, its upper end marked by what ends it."""
+    """The window of one r, with marks at its upper end by the kind of the end."""
     ratio, kinds = window.frequency_ratio.values, window.window_end.values
     low, high = window.threshold_amplitude.values, window.window_amplitude.values
     axes.fill_between(ratio, low, high, color="#dcdcdc", linewidth=0)

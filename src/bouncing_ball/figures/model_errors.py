@@ -1,6 +1,7 @@
 """Errors of the restitution and of the corrected model, quantity by quantity.
 
-Also on contacts of other laws, with Figures 8, 14 and 16 on them.
+They are shown on linear contacts (ext_orders) and on contacts of other laws (ext_laws), together
+with Figures 8, 14 and 16 on the latter (ext_hertz).
 """
 
 from itertools import cycle
@@ -19,7 +20,7 @@ _SHAPES = ("", "o", "s", "^")
 
 
 def orders(data: xr.Dataset) -> Figure:
-    """Errors of both models along ϖ, with the slopes 1 and 2: the dataset of ext_orders."""
+    """ext_orders: errors of both models along ϖ, with the slopes 1 and 2."""
     figure, axes_of = _by_quantity(data, 4.2, r"frequency ratio $\varpi$")
     ratio = data.frequency_ratio.values
     for quantity, axes in axes_of.items():
@@ -42,10 +43,7 @@ def orders(data: xr.Dataset) -> Figure:
 
 
 def contact_laws(data: xr.Dataset) -> Figure:
-    """Errors of both models on contacts of five laws, over the share of the cycle in contact.
-
-    The dataset is that of ext_laws.
-    """
+    """ext_laws: errors of both models on five laws, over the share of the cycle in contact."""
     figure, axes_of = _by_quantity(data, 5.0, r"share of the cycle in contact, $D/(2\pi n)$")
     share = 1 / (2 * data.attrs["n"] * data.duration_ratio.values)
     for quantity, axes in axes_of.items():
@@ -68,15 +66,15 @@ def contact_laws(data: xr.Dataset) -> Figure:
 
 
 def figures_of_laws(data: xr.Dataset) -> Figure:
-    """Phase against Λ; height and permanent contact against π/D: the dataset of ext_hertz."""
+    """ext_hertz: phase against Λ; height and permanent contact against π/D."""
     figure, (branches, heights, held) = canvas(WIDE, 2.9, columns=3)
     ratio, marked = data.duration_ratio.values, []
     for law, shape in zip(data["law"].values, cycle(_SHAPES), strict=False):
         look, part = LAWS[law] | {"linewidth": 1.0}, data.sel(law=law)
         (line, *_) = branches.plot(part.amplitude.T, part.phase.T / np.pi, **look)
         heights.plot(ratio, part.max_height, **look)
-        # That of a nonlinear contact goes up and down between samples too: the line only
-        # leads from one to the next, and breaks off where no threshold was found.
+        # The threshold of a nonlinear contact oscillates between samples, so that the line only
+        # connects the samples, and breaks off where no threshold was found.
         drawn = {"linewidth": 0.3, "linestyle": "-"} if shape else {"linewidth": 0.8}
         drawn |= {"marker": shape, "markersize": 1.8}
         marked.append((line, *held.plot(ratio, part.threshold_amplitude, **look | drawn)))
@@ -94,7 +92,7 @@ def figures_of_laws(data: xr.Dataset) -> Figure:
 
 
 def _by_quantity(data: xr.Dataset, height: float, xlabel: str) -> tuple[Figure, dict[str, Axes]]:
-    """Two rows of three panels, one for the errors of each quantity, named on the outside only."""
+    """Two rows of three panels, one for the errors of each quantity, with labels outside only."""
     figure, slots = canvas(WIDE, height, 2, 3, sharex=True, sharey=True)
     for axes in slots.flat:
         axes.set(xlabel=xlabel, ylabel="relative error")

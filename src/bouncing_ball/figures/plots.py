@@ -20,12 +20,14 @@ SUFFIXES = (".pdf", ".png", ".svg")
 
 
 def plot(data: xr.Dataset, path: str | Path | None = None) -> Figure:
-    """The figure of a dataset whose attribute ``kind`` is in :data:`PLOTS`.
+    """The figure of a dataset whose attribute ``kind`` is in :data:`PLOTS`, written if there is a
+    path.
 
     Raises
     ------
     ModelError
-        If the path does not end as a picture does or cannot be written.
+        If the kind has no figure, or if the path does not end as a picture does or cannot be
+        written.
     """
     kind = data.attrs.get("kind")
     if kind not in PLOTS:
@@ -39,7 +41,7 @@ def plot(data: xr.Dataset, path: str | Path | None = None) -> Figure:
 
 
 def write(figure: Figure, path: Path, title: str) -> None:
-    """Write a figure that a user has asked for.
+    """Write a figure that a user has requested.
 
     Raises
     ------

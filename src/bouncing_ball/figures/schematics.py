@@ -12,7 +12,7 @@ _LINE: Look = {"color": "black", "linewidth": 1.0, "solid_capstyle": "round"}
 
 
 def restitution_model() -> Figure:
-    """Ball in flight over the table, without contact elements."""
+    """Fig. 1: the ball in flight over the table, without contact elements."""
     figure, axes = _scene(2.6, (-0.56, 4.42), 2.7, 2.7, r"$a\,\sin(\Omega t)$")
     axes.plot([1.7, 1.7], [1.0, 2.28], **GUIDE)
     axes.text(1.8, 1.2, "impact: $r$", ha="left", va="center", fontsize=8)
@@ -20,7 +20,7 @@ def restitution_model() -> Figure:
 
 
 def spring_damper_model() -> Figure:
-    """Ball over a spring and a dashpot that stand on the table."""
+    """Fig. 4: the ball over a spring and a dashpot that stand on the table."""
     figure, axes = _scene(2.8, (-0.58, 4.91), 2.95, 2.75, r"$a\,\sin(\Omega t+\varphi)$")
     axes.plot([1.15, 2.25], [2.3, 2.3], **_LINE)
     _spring(axes, 1.35, 1.0, 2.3)
@@ -33,7 +33,9 @@ def spring_damper_model() -> Figure:
 def _scene(
     width: float, span: tuple[float, float], ball: float, low: float, motion: str
 ) -> tuple[Figure, Axes]:
-    """The ball at its height and the moving table, with y(t) and g from a height on."""
+    """The ball at its height, the moving table, and the arrows of y(t) and g from the height
+    ``low``.
+    """
     figure, axes = canvas(width, 1.5)
     axes.set(xlim=span, ylim=(0.4, low + 0.75), aspect="equal")
     axes.axis("off")

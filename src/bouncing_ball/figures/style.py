@@ -1,4 +1,4 @@
-"""One look for all figures: colours, lines, markers and matplotlib's settings."""
+"""The look that all figures share: colours, lines, markers and matplotlib's settings."""
 
 from contextlib import AbstractContextManager
 from pathlib import Path
@@ -28,7 +28,7 @@ LINES: dict[str, Look] = {
     "unstable": {"linestyle": (0, (3.5, 2)), "linewidth": 1.0},
     "inadmissible": {"linestyle": (0, (0.8, 2.2)), "linewidth": 0.8},
 }
-"""Branches of orbits, by what the orbits are."""
+"""Branches of orbits, by their stability and admissibility."""
 
 # Hollow, so that markers which coincide can all be seen.
 _HOLLOW: Look = {"linestyle": "none", "markerfacecolor": "none", "markeredgewidth": 1.0}
@@ -47,7 +47,7 @@ MODELS: dict[str, Look] = {
     "restitution": {"color": RESTITUTION, "linewidth": 1.0},
     "corrected": {"color": CORRECTED, "linewidth": 1.2, "linestyle": (0, (4, 1.5))},
 }
-"""How each model is drawn where they stand side by side; the contact is below the others."""
+"""The line of each model where several are compared; that of the contact is below the others."""
 
 # Contact laws differ by their dashes as well as by their colours.
 LAWS: dict[str, Look] = {
@@ -57,7 +57,7 @@ LAWS: dict[str, Look] = {
     "tsuji": {"color": COLOURS[2], "linestyle": (0, (6, 1.5, 1, 1.5))},
     "kuwabara-kono": {"color": COLOURS[3], "linestyle": (0, (2, 1))},
 }
-"""How each contact law is drawn."""
+"""The line of each contact law."""
 
 
 def style() -> AbstractContextManager[None]:

@@ -14,7 +14,7 @@ from bouncing_ball.figures.labels import note, number, parameters
 from bouncing_ball.figures.style import COLOURS, GUIDE, RESTITUTION, Look
 
 _DASHES = ("-", (0, (5, 1.5)), (0, (1, 1)), (0, (5, 1.5, 1, 1.5)))
-# Above this frequency ratio the points crowd at that of the restitution model.
+# Above this frequency ratio the points are close to that of the restitution model.
 _NAMED_UP_TO = 10.0
 _LIMIT: Look = {"markersize": 9, "zorder": 5, "linestyle": "none", "color": RESTITUTION}
 
@@ -44,7 +44,7 @@ def bounce_velocity(data: xr.Dataset) -> Figure:
 def poincare_map(data: xr.Dataset) -> Figure:
     """Fig. 13: phase and velocity, over π, at the start and at the end of contact.
 
-    Each curve is traced by ϖ; a few of its values are marked on it.
+    Each curve is parametrised by ϖ, of which a few values are marked.
     """
     figure, axes = canvas(4.4, 4.0)
     for k, (curve, colour) in enumerate(zip(each(data, "case"), cycle(COLOURS[1:]))):
@@ -55,7 +55,7 @@ def poincare_map(data: xr.Dataset) -> Figure:
             (start, r"start of contact, $(\varphi,\,z′_i)$", (0, (4, 1.5)), "white"),
         ):
             look: Look = {"color": colour, "linestyle": dashes, "markerfacecolor": face}
-            # Named once for all cases.
+            # The legend names the curves of the first case only.
             _draw_trace(axes, curve, phase, velocity, name if k == 0 else None, look)
             axes.plot(curve.restitution_phase / np.pi, limit / np.pi, "*", **_LIMIT)
     axes.plot([], [], "*", label="restitution model", **_LIMIT)
@@ -78,9 +78,9 @@ def _draw_cases(axes: Axes, data: xr.Dataset, name: str, ylabel: str) -> None:
 
 
 def _draw_trace(axes: Axes, curve: xr.Dataset, phase, velocity, label, look: Look) -> None:
-    """Phase and velocity over π as ϖ varies, its round values marked.
+    """Phase and velocity over π as ϖ varies, with its round values marked.
 
-    Of a curve with a label the small values are named; the next one's would overlap.
+    On a curve with a label the small values are named; names on further curves would overlap.
     """
     x, y = phase.values / np.pi, velocity.values / np.pi
     marked = np.flatnonzero(curve.labelled.values)

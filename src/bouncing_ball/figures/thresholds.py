@@ -1,6 +1,6 @@
 """Thresholds along ϖ: of permanent contact, and of an error (Figs. 11, 14, 16).
 
-What the release rule changes in them, and in the bifurcations of Table 1 (ext_release).
+ext_release shows the influence of the release rule on them and on the bifurcations of Table 1.
 """
 
 import numpy as np
@@ -57,7 +57,7 @@ def permanent_contact_error(data: xr.Dataset) -> Figure:
 
 
 def release_rules(data: xr.Dataset) -> Figure:
-    """Shift of the bifurcations (left) and thresholds of each quantity (right): ext_release."""
+    """ext_release: shift of the bifurcations (left) and thresholds of each quantity (right)."""
     figure, (left, right) = canvas(WIDE, 3.8, columns=2, width_ratios=(1.0, 1.25))
     _draw_shifts(left, data)
     _draw_by_quantity(right, data)

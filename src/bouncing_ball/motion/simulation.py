@@ -1,4 +1,4 @@
-"""Balls followed from impact to impact, whatever the impact is made of."""
+"""The simulation of balls from impact to impact, for any kind of impact."""
 
 from typing import Any
 
@@ -22,7 +22,7 @@ from bouncing_ball.motion.sequence import RECORDED, Cycle, ImpactSequence, Statu
 Law = ContactLaw | Signature | RestitutionLaw | ArrayLike
 """A contact's law, its signature, or the restitution coefficient, a law r(v) or a number."""
 
-# A ball at rest on the table may come out of rounding as rising by a little.
+# Rounding may give a ball at rest on the table a small upward velocity.
 _ROUNDING = 8 * np.finfo(float).eps
 
 
@@ -41,7 +41,7 @@ def _dynamics(law: Law, amplitude: ArrayLike) -> Dynamics:
     return RestitutionDynamics(law, lam)
 
 
-def _row(law: Law, amplitude: ArrayLike, *states: ArrayLike):
+def _in_a_row(law: Law, amplitude: ArrayLike, *states: ArrayLike):
     """The dynamics and the states of balls in a row, and their shape."""
     dynamics = _dynamics(law, amplitude)
     arrays = [np.asarray(x, dtype=float) for x in states]
@@ -49,20 +49,37 @@ def _row(law: Law, amplitude: ArrayLike, *states: ArrayLike):
     return dynamics.flat(shape), [np.broadcast_to(x, shape).reshape(-1) for x in arrays], shape
 
 
+def first_impacts(
+    law: Law, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike
+) -> tuple[Dynamics, np.ndarray, np.ndarray, tuple[int, ...]]:
+    """The dynamics of balls in a row, φ and δ′ ≤ 0 of their first impacts, and their shape.
+
+    Raises
+    ------
+    ModelError
+        If r, Λ or a state is outside its range, or if a ball rises from the table.
+    """
+    dynamics, (start, before), shape = _in_a_row(law, amplitude, phase, velocity)
+    if not np.all(np.isfinite(start) & np.isfinite(before)):
+        raise ModelError("the phase and the velocity of the impact must be finite")
+    relative = before - table(start, dynamics.amplitude)[0]
+    if not np.all(relative <= _ROUNDING * (np.abs(before) + dynamics.amplitude)):
+        raise ModelError("a ball that rises from the table has no impact: z′ > w′")
+    return dynamics, start, np.minimum(relative, 0.0), shape
+
+
 def simulate(
     law: Law, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
 ) -> ImpactSequence:
     """Follow balls from an impact through a number of impacts, the first included.
 
-    Everything is dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g.
-
     Parameters
     ----------
     law : ContactLaw, Signature, RestitutionLaw or array_like
         The contact with its duration; or its signature, for the corrected model; or r, a law
-        or a number in (0, 1]. Arrays of parameters give each ball its own.
+        or a number in (0, 1]. Arrays of parameters have one entry per ball.
     amplitude : array_like
-        Λ.
+        Λ ≥ 0.
     phase, velocity : array_like
         Table phase φ and absolute velocity z′_i of the ball at the first impact, before it.
     impacts : int
@@ -88,19 +105,13 @@ def simulate(
     >>> simulate(0.5, 0.0, 0.0, -8.0, 3).time.tolist()
     [0.0, 8.0, 12.0]
     """
-    dynamics, (start, before), shape = _row(law, amplitude, phase, velocity)
-    if not np.all(np.isfinite(start) & np.isfinite(before)):
-        raise ModelError("the phase and the velocity of the impact must be finite")
-    relative = before - table(start, dynamics.amplitude)[0]
-    if not np.all(relative <= _ROUNDING * (np.abs(before) + dynamics.amplitude)):
-        raise ModelError("a ball that rises from the table has no impact: z′ > w′")
-    relative = np.minimum(relative, 0.0)
+    dynamics, start, relative, shape = first_impacts(law, amplitude, phase, velocity)
     rows = {name: np.full((impacts, start.size), np.nan) for name in RECORDED}
     status = np.zeros(start.size, dtype=np.int8)
     for part in blocks(start.size, dynamics.block):
-        impact = Impact.at_level(start[part], relative[part])
         own = [values[:, part] for values in rows.values()]
-        _run(dynamics.take(part), impact, own, status[part])
+        here = dynamics.take(part)
+        _run(here, here.start(start[part], relative[part]), own, status[part])
     return ImpactSequence(
         amplitude=np.broadcast_to(np.asarray(amplitude, dtype=float), shape),
         contact=law if isinstance(law, ContactLaw) else None,
@@ -157,12 +168,12 @@ def next_impact(
     >>> round(float(cycle.relative_velocity), 11)
     -2.0
     """
-    dynamics, (start, velocity), shape = _row(law, amplitude, phase, relative_velocity)
+    dynamics, (start, velocity), shape = _in_a_row(law, amplitude, phase, relative_velocity)
     out = np.full((len(Cycle._fields), start.size), np.nan)
     out[-1] = np.inf
     for part in blocks(start.size, dynamics.block):
         here = dynamics.take(part)
-        departure = here.depart(Impact.at_level(start[part], velocity[part]))
+        departure = here.depart(here.start(start[part], velocity[part]))
         going = np.flatnonzero(departure.status == Status.BOUNCING)
         if going.size:
             landed, passed = here.take(going).fly(pick(departure, going))

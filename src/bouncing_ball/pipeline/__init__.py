@@ -1,2 +1,3 @@
-"""What the Snakefile needs of Python: checks of the configuration, sources of
-a stage, and the adapter around a job. No science."""
+"""The Python side of the Snakefile: sources of a stage, and the adapter around a job. No
+science.
+"""

@@ -1,19 +1,19 @@
-"""What the rules of the atlas need: names and times of shards.
+"""Names and times of the atlas's shards, for its rules.
 
-Every job of every rule reads the rules; so the plan is imported when it is asked for.
+Every job reads the rules, so that the plan is imported only when one of these functions is called.
 """
 
 import math
 from collections.abc import Mapping
 from typing import Any
 
-# Processor time of an orbit on a slow machine, with some to spare.
+# Processor time of an orbit on a slow machine, with a margin.
 _SECONDS_PER_ORBIT = 3e-6
 _LEAST_MINUTES = 10
 
 
 def shard_names(parameters: Mapping[str, Any]) -> list[str]:
-    """The shards by number and count, so that another number of them has other names.
+    """The shards by number and count, so that a division into another number has other names.
 
     Examples
     --------
@@ -29,7 +29,7 @@ def shard_names(parameters: Mapping[str, Any]) -> list[str]:
 
 
 def shard_minutes(parameters: Mapping[str, Any]) -> int:
-    """Minutes that a cluster should give to a shard."""
+    """The time limit of a shard on a cluster, in minutes."""
     from bouncing_ball.atlas.plan import Plan
 
     plan = Plan(**parameters)

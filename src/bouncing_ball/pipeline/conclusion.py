@@ -1,7 +1,7 @@
 """The sentence with which a run ends with exit status 1, although no job fails.
 
-Of a job that fails Snakemake prints ten lines, with a command that nobody has typed. A
-difference from the record, or results that are not accepted, are an answer.
+For a job that fails Snakemake prints ten lines, with a command that the user did not type. A
+difference from the record, or results that are not accepted, are results and not failures.
 """
 
 from pathlib import Path
@@ -12,12 +12,12 @@ _CONCLUSION = Path("results/logs/conclusion")
 
 
 def conclude(sentence: str) -> None:
-    """Let the run end with a sentence."""
+    """End the run with this sentence, which replaces an earlier one."""
     write_text(_CONCLUSION, sentence)
 
 
 def concluded() -> str:
-    """The sentence with which this run ends; empty without one, and at the next call."""
+    """The sentence with which this run ends, or an empty text; it is removed by this call."""
     sentence = _CONCLUSION.read_text(encoding="utf-8") if _CONCLUSION.is_file() else ""
     _CONCLUSION.unlink(missing_ok=True)
     return sentence

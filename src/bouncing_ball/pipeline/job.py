@@ -1,7 +1,7 @@
 """The adapter around a job: log, one-line errors, files.
 
-Scripts of the workflow are three lines on top of this; ``snakemake`` is the
-object that Snakemake gives them.
+Scripts of the workflow consist of three lines that call it; ``snakemake`` is the
+object that Snakemake provides for them.
 """
 
 import gc
@@ -36,18 +36,18 @@ HISTORY = "computed from the equations; the attributes provenance_* say by what 
 
 @contextmanager
 def logged(snakemake: Any) -> Iterator[list[str]]:
-    """Collect lines for the job's log; on failure say in one line what failed.
+    """Collect lines for the job's log; on failure write one line that says what failed.
 
-    The log holds the traceback, the terminal the sentence.
+    The log then holds the traceback, and the terminal the line; the process exits with status 1.
     """
-    # Ctrl-C ends the job at once. As an exception it can arrive while a netCDF
-    # file is locked, whose closing then waits for ever; files are written whole
-    # or not at all, so nothing is lost.
+    # Ctrl-C ends the job at once. As an exception it could arrive while a netCDF
+    # file is locked, and closing the file would then wait forever. Files are written completely
+    # or not at all, so that nothing is lost.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    # What has been imported stays: it is not looked through for garbage again.
+    # Imported modules stay in use, and are excluded from garbage collection to save time.
     gc.freeze()
-    # With every dataset xarray asks whether its values are quantities of pint, and to import
-    # pint takes longer than to read. Those of a job are plain numbers.
+    # For every dataset xarray checks whether its values are quantities of pint. The values of a
+    # job are plain numbers, and importing pint takes longer than reading them.
     without_pint = sys.modules.setdefault("pint", None) is None  # type: ignore[arg-type]
     name = "/".join([snakemake.rule, *snakemake.wildcards])
     lines: list[str] = []
@@ -60,7 +60,7 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
             print("made", *outputs, flush=True)
     except Exception as error:
         kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
-        # A full disk may not take it.
+        # Writing the log fails if the disk is full.
         with suppress(OSError):
             write_text(log, traceback.format_exc())
         sys.exit(f"{name}: {kind}{' '.join(str(error).split())} (details in {log})")
@@ -75,7 +75,7 @@ def read_input(path: str) -> xr.Dataset:
     Raises
     ------
     DatasetError
-        If it is damaged, with the command that makes it again.
+        If it is damaged; the message has the command that makes it again.
     """
     try:
         return read_dataset(path)
@@ -85,12 +85,12 @@ def read_input(path: str) -> xr.Dataset:
 
 
 def provenance(snakemake: Any) -> dict[str, str]:
-    """The provenance of what the job writes.
+    """The provenance of the files that the job writes.
 
-    Gathered as a file is written: as a parameter of the job, a commit would run
-    everything again.
+    It is gathered when a file is written. As a parameter of the job, a new commit would make
+    Snakemake run every job again.
     """
-    # The scripts are in workflow/scripts of the repository, the run may be anywhere.
+    # The scripts are in workflow/scripts of the repository; the run may be in another folder.
     repository = Path(snakemake.scriptdir).resolve().parents[1]
     modules = set(snakemake.input.get("source", []))
     inputs = [str(path) for path in snakemake.input if path not in modules]
@@ -101,7 +101,7 @@ def make_dataset(snakemake: Any) -> None:
     """Run the study of the job and write its dataset.
 
     The parameters and the settings of the run become global attributes, unless
-    the study says itself what is worth recording, and so does the provenance.
+    the study sets attributes itself; so does the provenance.
     """
     with logged(snakemake) as lines:
         job = snakemake.params

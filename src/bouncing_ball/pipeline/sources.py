@@ -1,7 +1,7 @@
-"""The source files that a stage really uses.
+"""The source files that a stage uses.
 
 Snakemake reruns a job when its script changes, but does not see the modules
-that the script imports. They are listed among its inputs instead, found by
+that the script imports. They are therefore listed among the job's inputs. They are found by
 following the import statements, so that an edit reruns the stages that use
 the module and no others.
 """
@@ -16,7 +16,7 @@ _ROOT = Path(__file__).resolve().parent.parent
 
 @cache
 def module_file(module: str) -> Path | None:
-    """The file of a module or package of this package, if there is one."""
+    """The file of a module or package of this package; None if there is none."""
     base = _ROOT.joinpath(*module.split(".")[1:])
     for candidate in (base.with_suffix(".py"), base / "__init__.py"):
         if candidate.is_file():
@@ -24,14 +24,17 @@ def module_file(module: str) -> Path | None:
     return None
 
 
-# To parse each file takes half a second, at every start of Snakemake.
+# Regular expressions, because parsing the files would take half a second at each start of
+# Snakemake.
 _FROM = re.compile(rf"^[ \t]*from ({_PACKAGE}[\w.]*) import (\([^)]*\)|[^\n]*)", re.MULTILINE)
 _IMPORT = re.compile(rf"^[ \t]*import ({_PACKAGE}[\w.]*)", re.MULTILINE)
 
 
 @cache
 def imports(path: Path) -> frozenset[str]:
-    """Modules of this package named in the import statements of a file, and words beside them."""
+    """Modules of this package named in the import statements of a file, and objects imported from
+    them.
+    """
     text = path.read_text(encoding="utf-8")
     found = set(_IMPORT.findall(text))
     for module, names in _FROM.findall(text):

@@ -1,1 +1,1 @@
-"""Where an artifact comes from: what it carries, and the answer of ``explain``."""
+"""The origin of an artifact: what the artifact records of it, and the answer of ``explain``."""

@@ -1,4 +1,6 @@
-"""``bouncing-ball explain FILE``: what an artifact is made from, and how to make it again."""
+"""``bouncing-ball explain FILE``: the origin of an artifact, and the commands that make it
+again.
+"""
 
 import json
 import shlex
@@ -20,14 +22,14 @@ from bouncing_ball.provenance.origin import (
 )
 from bouncing_ball.provenance.revision import UNKNOWN, checkout, revision
 
-# Ignored by git, so that it does not mark the next run as dirty.
+# Git ignores this file, so that it does not mark the next run as dirty.
 _CHANGED = "results/configuration.json"
 
 
 def _carrier(path: Path) -> Path:
-    """The file that carries the provenance of an artifact: itself, or its dataset.
+    """The file that carries the provenance of an artifact: the artifact itself, or its dataset.
 
-    That of the article is the last dataset that is made, of the claims.
+    For the article it is the dataset of the claims, which is the last one made.
     """
     if not path.is_file():
         raise ProvenanceError(f"{path} cannot be read: no such file")
@@ -41,7 +43,7 @@ def _carrier(path: Path) -> Path:
 
 
 def _parameters(path: Path, commit: str) -> dict[str, Any]:
-    """The parameters, from the artifact's dataset if it is beside it and of the same commit."""
+    """The parameters, from the artifact's dataset if it is beside it and has the same commit."""
     beside = path.with_suffix(".nc")
     attributes = read_attributes(beside) if beside.is_file() else {}
     if attributes.get(PREFIX + "commit") != commit:
@@ -54,8 +56,8 @@ def _parameters(path: Path, commit: str) -> dict[str, Any]:
 
 
 def _commands(made: Mapping[str, Any], target: str, checked_out: bool | None) -> list[str]:
-    """What makes a file again, to be pasted into a shell."""
-    # Asked for by its name, a file that is up to date would not be made again.
+    """The commands that make a file again, to be pasted into a shell."""
+    # Without --force Snakemake would not make a file again that is up to date.
     commands = [f"snakemake --cores 2 --force {shlex.quote(target)}"]
     if changed := made["configuration"]:
         text = shlex.quote(json.dumps(changed))
@@ -105,7 +107,7 @@ def explain(file: Path, /) -> dict[str, Any]:
 
 
 def lines(answer: Mapping[str, Any]) -> list[str]:
-    """The answer of :func:`explain` as a readable table."""
+    """The answer of :func:`explain` as a readable table, line by line."""
     rows: dict[str, Any] = {}
     for name, value in answer.items():
         parts = value if isinstance(value, Mapping) else {"": value}
@@ -114,5 +116,5 @@ def lines(answer: Mapping[str, Any]) -> list[str]:
     rows["make again"] = " && ".join(answer["make_again"])
     texts = {k: x if isinstance(x, str) else json.dumps(x) for k, x in rows.items()}
     width = max(map(len, rows)) + 2
-    # The content of a file moves no cursor; paths and commands must stay whole.
+    # Texts from a file are made printable; paths and commands must not be cut off.
     return [f"{printable(name):<{width}}{printable(text, None)}" for name, text in texts.items()]

@@ -1,8 +1,8 @@
-"""What an artifact is made from, as the artifact itself carries it.
+"""The origin of an artifact, as the artifact itself records it.
 
-A dataset carries its provenance in netCDF attributes, a PNG file in its text, an
-SVG file in its description; a table or a page has that of its dataset. There is
-neither a time nor a machine in it, so that two runs of one commit give the same bytes.
+A dataset has its provenance in netCDF attributes, a PNG file in its text, an
+SVG file in its description; a table or a page has that of its dataset. It contains
+neither a time nor a machine, so that two runs of one commit give the same bytes.
 """
 
 import json
@@ -19,7 +19,7 @@ from bouncing_ball.errors import ModelError
 from bouncing_ball.provenance.revision import revision
 
 PREFIX = "provenance_"
-"""How the names of the attributes begin."""
+"""The prefix of the attributes' names."""
 LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib")
 CONFIGURATION = "config/config.yaml"
 CARRIERS = (".nc", ".png", ".svg")
@@ -29,11 +29,11 @@ _DESCRIPTION = "{http://purl.org/dc/elements/1.1/}description"
 
 
 class ProvenanceError(ModelError):
-    """A file that does not say, or not readably, what it is made from."""
+    """A file without provenance, or one whose provenance cannot be read."""
 
 
 def changes(config: Mapping[str, Any], written: Mapping[str, Any]) -> dict[str, Any]:
-    """What a configuration changes in the written one, nested alike.
+    """The values of a configuration that differ from the written one, nested in the same way.
 
     Examples
     --------
@@ -52,32 +52,38 @@ def changes(config: Mapping[str, Any], written: Mapping[str, Any]) -> dict[str, 
     return found
 
 
-# To find one all of a package's description is parsed.
+# Cached, because finding a version parses the metadata of the package.
 _version = cache(version)
 
 
 def versions() -> dict[str, str]:
-    """Versions of Python and of the libraries that decide about the artifacts."""
+    """Versions of Python and of the libraries that affect the artifacts."""
     return {"python": platform.python_version(), **{name: _version(name) for name in LIBRARIES}}
 
 
 def gather(
     target: str, inputs: Iterable[str], repository: Path, config: Mapping[str, Any]
 ) -> dict[str, str]:
-    """The provenance of what a job writes now, in a checkout and with a configuration.
+    """The provenance of the files that a job writes, in a checkout and with a configuration.
 
     Returns
     -------
     dict of str
-        Attributes of a dataset, or metadata of a picture: the full hash of the commit, or
-        unknown; whether the tree had changes that the commit has not, yes, no or unknown; as
-        JSON what the run's configuration changes in config/config.yaml, nested alike; what to
-        ask Snakemake for to have the artifact made again; as JSON the files that it is made
-        from, and the versions of Python and the libraries.
+        Attributes of a dataset, or metadata of a picture: ``commit``, the full hash or unknown;
+        ``dirty``, whether the tree had uncommitted changes (yes, no or unknown); ``configuration``,
+        as JSON the values of the run that differ from config/config.yaml; ``target``, the file to
+        request from Snakemake to make the artifact again; ``inputs`` and ``versions``, as JSON the
+        files that it is made from and the versions of Python and the libraries. Each name begins
+        with :data:`PREFIX`.
+
+    Raises
+    ------
+    ConfigurationError
+        If config/config.yaml cannot be read.
     """
     now = revision(repository)
     written = read_yaml(repository / CONFIGURATION)
-    # A run may be anywhere; files of the checkout are named from its top.
+    # A run may be in any folder; files of the checkout are named from its top.
     named = {os.path.relpath(path, repository) if ".." in path else path for path in inputs}
     made = {
         "commit": now.commit,
@@ -91,14 +97,14 @@ def gather(
 
 
 def read_attributes(path: Path) -> dict[str, Any]:
-    """Attributes of a dataset, metadata of a picture.
+    """The attributes of a dataset, or the metadata of a picture.
 
     Raises
     ------
     ProvenanceError
         If the file is of another kind, cannot be read, or is damaged.
     """
-    # Imported where they are needed: each takes a while.
+    # Imported where they are needed, because each import takes time.
     try:
         match path.suffix:
             case ".nc":
@@ -122,12 +128,12 @@ def read_attributes(path: Path) -> dict[str, Any]:
 
 
 def read_provenance(path: Path) -> dict[str, Any]:
-    """What a dataset or a picture carries, by the names of :func:`gather` without the prefix.
+    """The provenance of a dataset or a picture, by the names of :func:`gather` without the prefix.
 
     Raises
     ------
     ProvenanceError
-        As :func:`read_attributes`, or if it carries no provenance.
+        If the file cannot be read, see :func:`read_attributes`, or carries no provenance.
     """
     attributes = read_attributes(path).items()
     found = {name.removeprefix(PREFIX): x for name, x in attributes if name.startswith(PREFIX)}

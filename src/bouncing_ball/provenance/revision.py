@@ -1,4 +1,4 @@
-"""The state of the repository: which commit, and whether anything was changed."""
+"""The state of the repository: its commit, and whether anything was changed since."""
 
 import os
 import subprocess
@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 RECORD = ("figures", "paper.md")
-"""What git holds of the results; a change there changes no result."""
+"""The accepted results in git, which affect no new result."""
 
 
 class Revision(NamedTuple):
@@ -21,8 +21,8 @@ UNKNOWN = Revision("unknown", "unknown")
 
 def _git(folder: Path, *arguments: str) -> str | None:
     """The output of git, or None if it fails or is not there."""
-    # A hook tells git by GIT_… which repository it works in, and that need not be this one.
-    # Jobs that run side by side need not wait for each other's lock of the index.
+    # In a hook the variables GIT_… name a repository, which need not be this one. Without
+    # optional locks jobs that run in parallel do not wait for each other's lock of the index.
     environment = {key: value for key, value in os.environ.items() if key[:4] != "GIT_"}
     try:
         done = subprocess.run(
@@ -40,20 +40,22 @@ def _git(folder: Path, *arguments: str) -> str | None:
 def revision(folder: Path) -> Revision:
     """The commit checked out in a folder, and whether its tree is dirty.
 
-    Untracked files count, unless git ignores them; the accepted record does not.
-    Unknown without git, or in a folder that is not the top of its own repository.
+    Untracked files count, unless git ignores them; the accepted record does not count.
+    The result is :data:`UNKNOWN` without git, or if the folder is not the top of a repository.
     """
     head = _git(folder, "rev-parse", "--show-cdup", "HEAD")
     excluded = [f":(exclude){name}" for name in RECORD]
     status = _git(folder, "status", "--porcelain", "--untracked-files=normal", "--", ".", *excluded)
-    # The way up to the top comes first, and there it is empty.
+    # The first line is the path up to the top of the repository, which is empty there.
     if head is None or status is None or not head.startswith("\n"):
         return UNKNOWN
     return Revision(head.strip(), "yes" if status else "no")
 
 
 def checkout(*starts: Path) -> Path | None:
-    """The first folder, at or above the starts in turn, that holds this workflow."""
+    """The first folder, at or above the starts in turn, that holds this workflow; None if there is
+    none.
+    """
     for start in starts:
         for folder in (start, *start.parents):
             if (folder / "Snakefile").is_file() and (folder / "src" / "bouncing_ball").is_dir():

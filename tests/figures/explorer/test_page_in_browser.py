@@ -16,6 +16,8 @@ import pytest
 
 from bouncing_ball.cli.main import main
 from bouncing_ball.configuration.study import typed
+from bouncing_ball.engines import ENGINES
+from bouncing_ball.engines.reference import as_json
 from bouncing_ball.figures.explorer.document import BOUND, to_html
 from bouncing_ball.studies.reference_orbits import reference_orbits
 
@@ -41,21 +43,38 @@ def states():
         yield f"#r={r:.4f}&w={w:.6g}&a={max(a, 0.01):.5f}&n={n}&release={release}&side={side}"
 
 
+def engine_states():
+    """A hash of the physical tab for each engine and release that it has, and one that is not."""
+    rng = np.random.default_rng(11)
+    pairs = [(name, rule) for name, engine in ENGINES.items() for rule in engine.releases]
+    for name, release in [*pairs, ("drake", "displacement")]:
+        r, e = rng.uniform(0.5, 0.95), 10 ** rng.uniform(-3, -1.5)
+        m, k = 10 ** rng.uniform(0, 3), 10 ** rng.uniform(5, 7)
+        yield (
+            f"#tab=design&m={m:.4g}&f=20&acc=1.2&k={k:.6g}&r={r:.3f}&n=1&release={release}"
+            f"&engine={name}&e={e:.2g}"
+        )
+
+
 @pytest.fixture(scope="module")
 def seen(browse, tmp_path_factory):
     """All that is asked of the browser, in one run."""
     folder = tmp_path_factory.mktemp("explorer")
     data = typed(reference_orbits)(REFERENCES).assign_attrs(provenance_commit="c0ffee" * 6 + "c0ff")
-    right = to_html(data)
+    right = to_html(data, as_json())
     # Reference orbits that are not the model's.
-    wrong = to_html(data.assign(max_height=data.max_height * 1.00000001))
+    wrong = to_html(data.assign(max_height=data.max_height * 1.00000001), as_json())
+    # A text of an engine that is not the package's.
+    pasted = to_html(data, as_json().replace("hooke 100000.0", "hooke 100000.1", 1))
     (folder / "right.html").write_text(right, encoding="utf-8")
     (folder / "wrong.html").write_text(wrong, encoding="utf-8")
+    (folder / "pasted.html").write_text(pasted, encoding="utf-8")
     # A script that was changed in the file, without its checksum.
     tampered = right.replace("const GRAVITY = 9.80665", "const GRAVITY = 9.81")
     (folder / "tampered.html").write_text(tampered, encoding="utf-8")
     observer = folder / "observer.html"
     script = OBSERVER.replace("STATES", json.dumps(list(states())))
+    script = script.replace("ENGINES", json.dumps(list(engine_states())))
     observer.write_text(script, encoding="utf-8")
     text = browse(folder, observer, "--virtual-time-budget=30000", "--dump-dom")
     found = re.search(r'<pre id="seen">(.*)</pre>', text, re.DOTALL)
@@ -133,6 +152,9 @@ def test_the_badge(seen):
     right, wrong, tampered = (seen["badges"][name] for name in ("right", "wrong", "tampered"))
     assert right["kind"] == "good" and float(right["worst"]) < BOUND / 20
     assert "500 orbits of the Python package, commit c0ffeec0ff" in right["text"]
+    assert "and 40 settings of engines, computed again here" in right["text"]
+    pasted = seen["badges"]["pasted"]
+    assert pasted["kind"] == "bad" and "Infinity (settings of lammps)" in pasted["text"]
     assert wrong["kind"] == "bad" and float(wrong["worst"]) > BOUND
     assert wrong["text"].startswith("WRONG") and wrong["colour"] == "rgb(176, 0, 32)"
     # The policy does not let a changed script run, and what was not checked says so.
@@ -153,8 +175,37 @@ def test_address_slider_and_typed_values(seen):
     assert "--restitution 0.5 --frequency-ratio 20 --amplitude 1.2" in seen["byAddress"]["command"]
     assert "--release force" in seen["byAddress"]["command"]
     assert "w=31.62" in seen["bySlider"]["hash"] and seen["bySlider"]["typed"] == "31.62"
-    # What is out of range is marked, and changes nothing.
-    assert seen["invalid"] == {"marked": "true", "hash": seen["bySlider"]["hash"]}
+    # What is out of range is marked, changes no address, and leaves no answer beside it.
+    says = "restitution coefficient r: 1.5 is not a number from 0.001 to 1."
+    assert seen["invalid"] == {
+        "marked": "true", "hash": seen["bySlider"]["hash"], "refused": says,
+        "verdict": "", "command": "", "shown": 0,
+    }  # fmt: skip
+    assert seen["valid"]["refused"] == "" and seen["valid"]["verdict"] and seen["valid"]["shown"]
+    assert "left out: a = 0 (in its place 0.8)." in seen["still"]["refused"]
+    assert "r = 0.1 is not above e⁻² = 0.1353" in seen["tooLossy"]["refused"]
+    assert seen["tooLossy"]["verdict"] == seen["tooLossy"]["command"] == ""
+
+
+def test_what_an_engine_is_told_is_what_the_command_prints(seen, capsys):
+    assert len(seen["engines"]) == 11
+    for state in seen["engines"]:
+        said, rows = answered(capsys, state["command"]), state["rows"]
+        engine = said["engine"]
+        assert state["snippet"] == engine["snippet"], state["command"]
+        assert state["says"].startswith(f"For {engine['name']}, whose contacts end by ")
+        assert f"in {engine['steps']} steps of {engine['scheme']}" in state["says"]
+        assert state["chosen"] == engine["release"]
+        step = next(float(rows[name]) for name in rows if name.startswith("time step for an error"))
+        assert step == engine["time_step"]
+        assert close(rows["restitution of a free impact"], engine["restitution"])
+        for name, expected in {
+            "greatest height": engine["max_height"],
+            "duration of contact": engine["contact_duration"],
+        }.items():
+            assert float(rows[name]) == pytest.approx(expected, rel=BOUND), name
+        penetration = float(rows["greatest compression (sampled)"])
+        assert penetration == pytest.approx(engine["penetration"], rel=1e-5)
 
 
 def test_the_physical_tab_by_key(seen, capsys):

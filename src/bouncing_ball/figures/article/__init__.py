@@ -1,1 +1,1 @@
-"""The replication article from its templates: every number from a dataset."""
+"""The replication article from its templates, with every number from a dataset."""

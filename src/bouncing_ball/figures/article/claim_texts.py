@@ -1,4 +1,4 @@
-"""Claims and their verdicts as an article needs them."""
+"""Claims and their verdicts in the form in which an article needs them."""
 
 import re
 from typing import Any
@@ -13,8 +13,8 @@ from bouncing_ball.figures.tables.rows import found_text
 class Claims:
     """Access to the claims of a dataset by name, by place and by verdict.
 
-    A claim has the dataset's variables over ``claim`` by name, its ``id``, and ``found`` as in the
-    table of claims.
+    A claim has the dataset's variables over ``claim`` as attributes, its ``id``, and ``found`` as
+    in the table of claims.
     """
 
     def __init__(self, data: xr.Dataset) -> None:
@@ -26,14 +26,22 @@ class Claims:
         self._claims: dict[str, Any] = {row.id: row for row in frame.itertuples()}
 
     def __call__(self, name: str) -> Any:
-        """A claim by its id."""
+        """The claim with an id.
+
+        Raises
+        ------
+        ModelError
+            If the ledger has no such claim.
+        """
         if name not in self._claims:
             raise ModelError(f"no claim {name!r} in the ledger")
         return self._claims[name]
 
     def about(self, *items: str) -> list[Any]:
-        """The claims about a figure or equation, each only the first time; entries of
-        tables are left out."""
+        """The claims about figures or equations, except entries of tables.
+
+        Each claim is returned once, by the first call that names its place.
+        """
         found = [
             claim
             for name, claim in self._claims.items()
@@ -44,10 +52,10 @@ class Claims:
         return found
 
     def count(self, verdict: str = "", *, table: str = "", group: str = "independent") -> int:
-        """How many claims have a verdict, or how many there are; of one table if named.
+        """Number of claims with a verdict, or of all without one; of one table if it is named.
 
-        ``group`` is what they are counted as: ``independent`` for all but
-        restatements, ``all``, or one group.
+        ``group`` is ``independent`` for all claims but restatements, ``all``, or the name of one
+        group.
         """
         groups = {claim.group for claim in self._claims.values()} - {"restatement"}
         counted = {"independent": groups, "all": groups | {"restatement"}}.get(group, {group})
@@ -59,15 +67,18 @@ class Claims:
         )
 
     def asked(self, name: str) -> bool:
-        """Whether a claim has a verdict: the run has the paper's parameters for it."""
+        """Whether a claim has a verdict, because the run has the paper's parameters for it."""
         return self(name).verdict != "not asked"
 
     def not_asked(self) -> list[str]:
-        """Which parameters are not the paper's, so that claims are not asked."""
+        """The reasons for which claims have no verdict: parameters that are not the paper's."""
         return sorted({self(name).reason for name in self._claims if not self.asked(name)})
 
     def explanations(self) -> list[dict[str, object]]:
-        """Explanations of the claims that are asked and not reproduced, with those claims."""
+        """The explanations of claims that are not reproduced, each with its claims.
+
+        Each has ``name``, ``text``, ``holds``, ``checks`` and ``claims``.
+        """
         parts = ("text", "holds", "checks")
         found: list[dict[str, object]] = []
         for one in each(self._data, "explanation"):

@@ -1,4 +1,4 @@
-"""Numbers of datasets as text."""
+"""Numbers of datasets as texts."""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -10,17 +10,17 @@ from bouncing_ball.datasets.selection import index_of
 from bouncing_ball.errors import ModelError
 
 FORMATS = ("decimal", "listed", "pairs", "percent", "short")
-"""What templates know of this module."""
+"""The functions of this module that templates can call."""
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def _typeset(number: str) -> str:
-    """A number as Python prints it, with a minus sign, infinity, and a dash where there is none."""
+    """A number as Python prints it, with a minus sign, infinity, and a dash for NaN."""
     return number.replace("nan", "–").replace("inf", "∞").replace("-", "−")
 
 
 def decimal(value: float, digits: int) -> str:
-    """A number with so many decimals; a dash where there is none.
+    """A number with so many decimals; a dash for NaN.
 
     Examples
     --------
@@ -31,7 +31,7 @@ def decimal(value: float, digits: int) -> str:
 
 
 def short(value: float, digits: int = 6) -> str:
-    """A parameter without trailing zeros; large and small ones with a power of ten.
+    """A parameter without trailing zeros; small and large ones with a power of ten.
 
     Examples
     --------
@@ -82,7 +82,7 @@ def pairs(left: Iterable[float], right: Iterable[float]) -> list[str]:
 
 
 def value_at(data: Mapping[str, xr.Dataset], dataset: str, variable: str, **where: Any) -> float:
-    """One number of a dataset, at the coordinates given.
+    """One number of a dataset, at the given coordinates.
 
     Raises
     ------

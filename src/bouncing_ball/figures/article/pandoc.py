@@ -1,4 +1,4 @@
-"""Pandoc, which knows citations and Typst; it comes inside ``pypandoc_binary``."""
+"""Conversions by pandoc, which knows citations and Typst; it comes inside ``pypandoc_binary``."""
 
 import re
 from pathlib import Path
@@ -13,7 +13,7 @@ _LIST = '<div id="refs"></div>\n'
 
 
 def pandoc(text: str, reader: str, writer: str, *options: str) -> str:
-    """A text in another format.
+    """A text converted from one of pandoc's formats to another.
 
     Raises
     ------
@@ -28,10 +28,11 @@ def pandoc(text: str, reader: str, writer: str, *options: str) -> str:
 
 
 def with_citations(markdown: str, folder: str | Path) -> str:
-    """Numbers in place of ``[@key; ...]``, and the list of the works where ``#refs`` stands.
+    """The text with numbers in place of ``[@key; ...]``, and the list of works in place of
+    ``#refs``.
 
-    Pandoc makes these from ``references.yaml`` and ``numbered.csl`` in a folder; the rest of the
-    text stays as it is.
+    Pandoc makes both from ``references.yaml`` and ``numbered.csl`` in a folder; the rest of the
+    text is unchanged.
 
     Raises
     ------

@@ -1,7 +1,8 @@
-"""The article as a PDF: Markdown by pandoc into Typst, which sets it.
+"""The article as a PDF: pandoc converts Markdown to Typst, which sets it.
 
 Typst is needed for this only (the extra ``pdf``). The figures are embedded as vectors. The same
-text and figures give the same bytes: no time, and no font of the machine.
+text and figures give the same bytes, because the file contains neither a time nor fonts of the
+machine.
 """
 
 import re
@@ -15,16 +16,18 @@ from bouncing_ball.figures.article.pandoc import pandoc
 _FIGURE = re.compile(r"^!\[[^\]\n]*\]\((\S+)\.png\)\n((?:.+\n)+)", re.MULTILINE)
 # A link to a file of the repository that is not among the results.
 _OUTSIDE = re.compile(r"\]\((?!https?:|figures/|#)")
-# GitHub's Markdown and formulas; quotes stay as they are.
+# GitHub's Markdown with formulas; straight quotes are not changed.
 _READER = "commonmark_x+implicit_figures-smart"
 
 
 def for_pdf(markdown: str) -> str:
-    """The text with vector figures, each caption a part of its figure, for results/paper.pdf.
+    r"""The text with vector figures, and with each caption as a part of its figure.
+
+    Links to files of the repository start from ``results``, where the PDF is.
 
     Examples
     --------
-    >>> print(for_pdf("![Figure 1](figures/fig01.png)\\n**Figure 1.** A ball.\\n*More.*\\n"))
+    >>> print(for_pdf("![Figure 1](figures/fig01.png)\n**Figure 1.** A ball.\n*More.*\n"))
     ![**Figure 1.** A ball. *More.*](figures/fig01.svg)
     <BLANKLINE>
     """
@@ -35,12 +38,12 @@ def for_pdf(markdown: str) -> str:
 
 
 def article_pdf(markdown: str, template: str | Path, folder: str | Path) -> bytes:
-    """The PDF of an article, by a Typst template of pandoc, whose pictures are in a folder.
+    """The PDF of an article, set with a Typst template of pandoc; its pictures are in a folder.
 
     Raises
     ------
     ModelError
-        If it cannot be set, in one line, or the tools are not installed.
+        One line, if the article cannot be set or the tools are not installed.
     """
     try:
         import typst

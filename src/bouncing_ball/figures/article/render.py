@@ -18,15 +18,15 @@ def render_article(
 ) -> str:
     """The text of ``article.md.j2`` in a folder, with its citations.
 
-    Templates know ``data`` and ``tables`` by name, ``claims``, and the number formats of
+    Templates can use ``data`` and ``tables`` by name, ``claims``, and the number formats of
     :mod:`bouncing_ball.figures.article.numbers`; they cite as pandoc does, ``[@key]``.
 
     Raises
     ------
     ModelError
-        If a place of a dataset, a claim, an explanation or a reference is not there.
+        If a place of a dataset, a claim, an explanation or a reference does not exist.
     jinja2.UndefinedError
-        If a template names anything else that is not there.
+        If a template names anything else that does not exist.
     """
     environment = Environment(
         loader=FileSystemLoader(folder),
@@ -42,7 +42,7 @@ def render_article(
         return numbers.short(value) if digits is None else numbers.decimal(value, digits)
 
     def versions(dataset: xr.Dataset) -> dict[str, str]:
-        """What a dataset says of the versions that made it; nothing if it does not."""
+        """The versions of the libraries with which a dataset was made; empty if it does not say."""
         return json.loads(dataset.attrs.get("provenance_versions", "{}"))
 
     environment.globals.update(

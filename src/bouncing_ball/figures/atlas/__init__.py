@@ -1,1 +1,1 @@
-"""The charts of the atlas and its tables, from its summary."""
+"""The charts and tables of the atlas, from its summary."""

@@ -1,4 +1,4 @@
-"""The charts of the atlas: the ϖ from which on each model is right, from the summary."""
+"""The charts of the atlas: the ϖ from which on each model is accurate, from the summary."""
 
 from collections.abc import Iterator
 
@@ -13,14 +13,14 @@ from bouncing_ball.figures.labels import QUANTITIES
 from bouncing_ball.figures.style import CORRECTED, GUIDE, Look
 
 LEVELS = (3, 5, 10, 20, 50, 100, 200, 500, 1000)
-"""Bounds of the colours; the last colour is for what lies beyond."""
+"""Bounds of the colours; the last colour is for larger values."""
 _LAW_LEVELS = (20, 50, 100, 200, 500)
 _LAW: Look = {"colors": CORRECTED, "linewidths": 0.8, "linestyles": "--"}
 NEAR = 1
 """Ranges of positions next to the saddle-node that the colours of the page leave out."""
 _RIGHT, _CORRECTED, _NEITHER = "#ffffff", "#b9d7ea", "#7f7f7f"
 _SPAN = 3.0, 1e3
-# Not dotted, as the rule of thumb is.
+# Neither is dotted, because the rule of thumb is.
 _BESIDE = {"restitution": "--", "corrected": "-."}
 _LINE: Look = {"color": "black", "linewidth": 0.8}
 
@@ -33,10 +33,10 @@ def charts(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
 
 
 def page(data: xr.Dataset, release: str = "displacement") -> Figure:
-    """A panel for each quantity: for a contact (r, ϖ) the simplest model that is right.
+    """A panel for each quantity: the simplest model that is accurate, by contact (r, ϖ).
 
-    Right for all families and all positions, but for the one range next to the
-    saddle-node; a line shows what that range needs.
+    It is accurate for all families and all positions in the stable range except those nearest to
+    the saddle-node, for which lines show the ϖ needed.
     """
     figure, grid = canvas(WIDE, 9.2, 4, 2, sharex=True, sharey=True)
     slots = list(grid.flat)
@@ -72,7 +72,7 @@ def page(data: xr.Dataset, release: str = "displacement") -> Figure:
 def over_range(data: xr.Dataset, quantity: str, n: int = 1) -> Figure:
     """The ϖ needed over r and the position of Λ in the stable range, by rule and model.
 
-    The error law's |K|/ε is drawn over the restitution model as lines.
+    The error law's |K|/ε is drawn as lines over the map of the restitution model.
     """
     figure, slots = canvas(WIDE, 5.4, rows=2, columns=2, sharex=True, sharey=True)
     tolerance = float(data.summary_tolerance)
@@ -100,7 +100,7 @@ def over_range(data: xr.Dataset, quantity: str, n: int = 1) -> Figure:
 
 
 def _draw_simplest(axes: Axes, needed: xr.DataArray) -> None:
-    """The regions of (r, ϖ) in which the restitution or the corrected model will do."""
+    """The regions of (r, ϖ) in which the restitution or the corrected model is accurate."""
     r, low = needed.restitution.values, _SPAN[0]
     simple, corrected = (needed.sel(model=model).clip(*_SPAN).values for model in _BESIDE)
     axes.set_facecolor(_RIGHT)

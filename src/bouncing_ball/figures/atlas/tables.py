@@ -1,4 +1,6 @@
-"""Tables of the atlas: how often the rule of thumb holds, and the worst orbits by name."""
+"""Tables of the atlas: how often the rule of thumb holds, and the orbits with the largest
+errors.
+"""
 
 import numpy as np
 import xarray as xr
@@ -11,7 +13,7 @@ _MODELS = ("restitution", "corrected")
 
 
 def shares(data: xr.Dataset) -> Table:
-    """How the models fare on all nodes, by release rule and quantity; header and rows.
+    """Accuracy of the models on all nodes, by release rule and quantity; header and rows.
 
     A limit of the families has no position in the stable range, and no error at one ϖ.
     """
@@ -31,7 +33,7 @@ def shares(data: xr.Dataset) -> Table:
     for one in each(at.sel(frequency_ratio=rule), "release"):
         for part in each(one, "quantity"):
             simple, corrected = (part.sel(model=model) for model in _MODELS)
-            # Every n has as many nodes.
+            # The mean of the shares is that of all nodes, because every n has equally many.
             holding, error = float(simple.holding_share.mean()), float(simple.worst_error.max())
             most = [simple.needed_quantile.sel(share=share).max() for share in (0.5, 0.99)]
             needed = (*most, simple.needed.max(), corrected.needed.max())
@@ -47,7 +49,7 @@ def shares(data: xr.Dataset) -> Table:
 
 
 def _ratio(value: float | xr.DataArray) -> str:
-    """A frequency ratio, rounded up, so that it is enough."""
+    """A frequency ratio rounded up, so that it suffices."""
     number = float(value)
     if not np.isfinite(number):
         return "beyond the atlas"
@@ -58,9 +60,9 @@ def _ratio(value: float | xr.DataArray) -> str:
 def worst(data: xr.Dataset) -> Table:
     """The orbit with the largest error at the rule of thumb, by rule, model and quantity.
 
-    Each with the command that prints the exact orbit; with ``--model corrected`` it prints
-    the corrected one, and with ``--model restitution`` but without ``--frequency-ratio``
-    and ``--release`` that of the restitution model.
+    Each has the command that prints the exact orbit. With ``--model corrected`` it prints
+    the corrected one, and with ``--model restitution``, but without ``--frequency-ratio``
+    and ``--release``, that of the restitution model.
     """
     columns: Columns = {
         "release": text("release"),

@@ -1,1 +1,3 @@
-"""The explorer: one page that computes by itself, and checks itself against the package."""
+"""The explorer: one page that computes orbits in the browser, and checks itself against the
+package.
+"""

@@ -1,8 +1,8 @@
 """The explorer's page: model, drawings and reference orbits in one file.
 
-The scripts and the style are files of their own beside this one. A
-content-security policy lets these very texts run, known by their checksums, and
-nothing else: the page can ask for nothing, from nowhere.
+The scripts and the style are files beside this module. A content-security policy admits exactly
+these texts, by their checksums, so that the page can run no other script and load nothing from
+anywhere.
 """
 
 import base64
@@ -23,7 +23,7 @@ STATE = ("release", "restitution", "frequency_ratio", "n", "amplitude")
 
 
 def references(data: xr.Dataset) -> str:
-    """The reference orbits as JSON, one in a line; what does not exist is null."""
+    """The reference orbits as JSON, one per line; a quantity that does not exist is null."""
     names = [str(name) for name in data.data_vars if name not in STATE]
     rows = []
     for one in each(data, "release", "sample"):
@@ -39,18 +39,27 @@ def references(data: xr.Dataset) -> str:
 
 
 def _allowed(text: str) -> str:
-    """The source expression that lets one inline text through."""
+    """The source expression of the policy that admits one inline text."""
     digest = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
     return f"'sha256-{digest}'"
 
 
-def to_html(data: xr.Dataset) -> str:
-    """The page with reference orbits (:mod:`bouncing_ball.studies.reference_orbits`)."""
-    model, page, look = (
+def to_html(data: xr.Dataset, engines: str) -> str:
+    """The page with what it checks itself against.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Reference orbits (:mod:`bouncing_ball.studies.reference_orbits`).
+    engines : str
+        The physics engines with reference settings, as JSON
+        (:mod:`bouncing_ball.engines.reference`).
+    """
+    *scripts, look = (
         files(__package__).joinpath(name).read_text(encoding="utf-8")
-        for name in ("model.js", "page.js", "page.css")
+        for name in ("model.js", "engines.js", "page.js", "page.css")
     )
-    script, style = f"\n{model}\n{page}", f"\n{look}"
+    script, style = "\n" + "\n".join(scripts), f"\n{look}"
     environment = Environment(
         loader=PackageLoader(str(__package__), "."), undefined=StrictUndefined, autoescape=False
     )
@@ -59,5 +68,11 @@ def to_html(data: xr.Dataset) -> str:
         "base-uri 'none'; form-action 'none'"
     )
     return environment.get_template("page.html.j2").render(
-        policy=policy, script=script, style=style, references=references(data), bound=repr(BOUND)
+        policy=policy,
+        script=script,
+        style=style,
+        references=references(data),
+        engines=engines,
+        names=list(json.loads(engines)["engines"]),
+        bound=repr(BOUND),
     )

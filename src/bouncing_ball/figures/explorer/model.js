@@ -66,10 +66,22 @@ function solver([a, b, c]) {
 }
 
 // ---- The contact: ϖ, ζ < 1 and sin α = κϖ/2 of the release rule.
-function contactOf(r, omega, release) {
+// r is that of Eq. 16, or, measured, that of a free impact by the release.
+function contactOf(r, omega, release, measured = false) {
   const decrement = -Math.log(r) + 0;
-  const zeta = decrement / Math.hypot(Math.PI, decrement);
+  const zeta = measured && release === "force" ? forceDamping(decrement)
+    : decrement / Math.hypot(Math.PI, decrement);
   return {omega, zeta, release, sine: release === "force" ? zeta : 0};
+}
+// ζ = cos β with 2β cot β = -ln r < 2, by Newton's method: damping_ratio of damping.py.
+function forceDamping(decrement) {
+  if (decrement === 0) return 0;
+  let beta = Math.PI / 2 * Math.sqrt(1 - decrement / 2);
+  for (let k = 0; k < 6; k++) {
+    const sine = Math.sin(beta), cosine = Math.cos(beta);
+    beta -= (2 * beta * cosine / sine - decrement) / (2 * (cosine * sine - beta) / (sine * sine));
+  }
+  return Math.cos(beta);
 }
 const freeAngle = contact => 2 * Math.acos(contact.sine);
 const dampedFrequency = contact =>
@@ -402,8 +414,8 @@ const QUANTITIES = {
 };
 
 // All that the page shows of one state.
-function answer({r, omega, amplitude, n, release, side = "stable"}) {
-  const contact = contactOf(r, omega, release), own = ownRestitution(contact);
+function answer({r, omega, amplitude, n, release, side = "stable", measured = false}) {
+  const contact = contactOf(r, omega, release, measured), own = ownRestitution(contact);
   const models = [contactModel(contact), restitutionModel(own), correctedModel(signatureOf(contact))];
   const orbits = models.map(model => model.orbit(n, amplitude, side));
   const limits = models.map(m => ({saddle_node: m.saddleNode(n), period_doubling: m.periodDoubling(n)}));

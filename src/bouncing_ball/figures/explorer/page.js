@@ -15,14 +15,18 @@ const BOUND = Number(document.body.dataset.bound);
 // ---- State: what each value may be.
 const DEFAULTS = {
   tab: "orbit", r: 0.85, w: 10, a: 0.8, n: 1, release: "displacement", side: "stable",
-  m: 20, f: 50, acc: 0.8, k: 1e7,
+  m: 20, f: 50, acc: 0.8, k: 1e7, engine: "none", e: 0.001,
 };
 const RANGES = {
-  r: [0.001, 1], w: [0.1, 1e6], a: [0, 100], n: [1, 20],
-  m: [1e-9, 1e9], f: [1e-6, 1e9], acc: [0, 100], k: [1e-9, 1e18],
+  r: [0.001, 1], w: [0.1, 1e6], a: [0.001, 100], n: [1, 20],
+  m: [1e-9, 1e9], f: [1e-6, 1e9], acc: [0.001, 100], k: [1e-9, 1e18], e: [1e-6, 0.5],
 };
+const REFERENCES = Object.fromEntries(["references", "engines"].map(
+  name => [name, JSON.parse($(name).textContent)]));
+const {engines: ENGINES} = REFERENCES.engines;
 const CHOICES = {
   tab: ["orbit", "design"], release: ["displacement", "force"], side: ["stable", "unstable"],
+  engine: ["none", ...Object.keys(ENGINES)],
 };
 const GRAVITY = 9.80665;
 
@@ -35,13 +39,28 @@ function parse(hash) {
       : range && text.trim() !== "" && value >= range[0] && value <= range[1]
         && (name !== "n" || Number.isInteger(value)))
       state[name] = name in CHOICES ? text : value;
-    else refused.push(`${name} = ${text}`);
+    else refused.push(`${name} = ${text}`
+      + (name in DEFAULTS ? ` (in its place ${DEFAULTS[name]})` : ""));
+  }
+  if (state.tab === "design" && state.engine !== "none") {
+    // The engine's own rule, where it has not the one that is chosen.
+    const rules = Object.keys(ENGINES[state.engine].snippets);
+    if (!rules.includes(state.release)) [state.release] = rules;
   }
   return {state, refused};
 }
 
+// Why a state has no answer: an r that no contact of the engine has.
+function impossible(state) {
+  const least = Math.exp(-2);
+  return state.tab === "design" && state.engine !== "none" && state.release === "force"
+    && state.r <= least ? `r = ${state.r} is not above e⁻² = ${shown(least, 4)}, the least of an `
+      + `underdamped contact of ${state.engine}, which ends by its force.` : "";
+}
+
 function hashOf(state) {
-  const own = state.tab === "design" ? ["tab", "m", "f", "acc", "k", "r", "n", "release"]
+  const own = state.tab === "design" ? ["tab", "m", "f", "acc", "k", "r", "n", "release",
+    ...(state.engine === "none" ? [] : ["engine", "e"])]
     : ["r", "w", "a", "n", "release", "side"];
   return "#" + own.map(name => `${name}=${encodeURIComponent(state[name])}`).join("&");
 }
@@ -52,7 +71,8 @@ function asked(state) {
   if (state.tab === "orbit") return {r, n, release, side, omega: state.w, amplitude: state.a};
   const omega = Math.sqrt(state.k / (state.m / 1000)) / (2 * Math.PI * state.f);
   // The calculator asks for the orbit that is stable next to the saddle-node.
-  return {r, n, release, side: "stable", omega, amplitude: state.acc};
+  return {r, n, release, side: "stable", omega, amplitude: state.acc,
+    measured: state.engine !== "none"};
 }
 
 function commandOf(state) {
@@ -60,7 +80,8 @@ function commandOf(state) {
   if (state.tab === "design")
     return `bouncing-ball design --mass "${state.m} g" --frequency "${state.f} Hz" `
       + `--acceleration "${state.acc} g" --stiffness "${state.k} N/m" --restitution ${state.r} `
-      + family;
+      + family + (state.engine === "none" ? ""
+        : ` --engine ${state.engine} --restitution-error ${state.e}`);
   return `bouncing-ball orbit --restitution ${state.r} --frequency-ratio ${state.w} `
     + `--amplitude ${state.a} ${family} --side ${state.side}`;
 }
@@ -309,6 +330,7 @@ function physical(found, state) {
     ["contact time, free", start, "s"], ["largest time step, a fiftieth of it", start / 50, "s"],
     ["static deflection", mass * GRAVITY / state.k, "m"],
     ["greatest height", orbit.max_height * length, "m"],
+    ["duration of contact", orbit.contact_duration * time, "s"],
     ["impact speed", -orbit.relative_impact_velocity * GRAVITY / table, "m/s"],
     ["greatest compression (sampled)", depth * length, "m"],
     ["peak force (sampled)", force * mass * GRAVITY, "N"],
@@ -319,13 +341,32 @@ function physical(found, state) {
   ];
 }
 
+// What an engine is to be told, and the rows of it.
+function showEngine(state) {
+  const {engine, release, r, e} = state;
+  $("paste").hidden = $("e").parentElement.hidden = engine === "none";
+  if (engine === "none") return [];
+  const found = settingsOf(ENGINES, engine, release, state.m / 1000, state.k, r, e);
+  $("paste-says").textContent = `For ${engine}, whose contacts end by ${release} `
+    + `(r = ${shown(found.restitution, 4)}, within ${e} in ${found.steps} steps of ${found.scheme} `
+    + "in a contact):";
+  $("snippet").textContent = found.snippet;
+  return [["restitution of a free impact", found.restitution, ""],
+    [`time step for an error of ${e} in r`, found.time_step, "s"]];
+}
+
 // ---- The page.
 let current = DEFAULTS;
+// A state without an answer: why, and nothing of the answer before it.
+function refuse(text) {
+  $("refused").textContent = text;
+  document.body.toggleAttribute("data-refused", true);
+  for (const id of ["verdict", "command", "snippet"]) $(id).textContent = "";
+}
+
 function show(hash) {
-  const {state, refused} = parse(hash);
+  const {state, refused} = parse(hash), why = impossible(state);
   current = state;
-  const question = asked(state), found = answer(question);
-  $("refused").textContent = refused.length ? `Not a value here, and left out: ${refused.join(", ")}.` : "";
   for (const [name, value] of Object.entries(state)) setControl(name, value);
   for (const tab of CHOICES.tab) {
     const on = tab === state.tab;
@@ -334,6 +375,13 @@ function show(hash) {
     $(`panel-${tab}`).hidden = !on;
   }
   $("sides").hidden = state.tab === "design";
+  const rules = state.tab === "design" && ENGINES[state.engine]?.snippets;
+  for (const choice of document.querySelectorAll("input[name=release]"))
+    choice.disabled = rules && !(choice.value in rules);
+  if (why) return refuse(why);
+  const question = asked(state), found = answer(question);
+  $("refused").textContent = refused.length ? `Not a value here, and left out: ${refused.join(", ")}.` : "";
+  document.body.toggleAttribute("data-refused", false);
   const [good, sentence] = verdictOf(found, question), [exact] = found.orbits;
   $("verdict").textContent = sentence + (exact.exists && !exact.is_stable
     ? ` The ${state.n}-T orbit is unstable, and no ball will keep to it.` : "");
@@ -341,7 +389,7 @@ function show(hash) {
   $("command").textContent = commandOf(state);
   fillTables(found, question);
   if (state.tab === "design")
-    $("design-rows").replaceChildren(...physical(found, state).map(
+    $("design-rows").replaceChildren(...[...showEngine(state), ...physical(found, state)].map(
       ([name, value, unit]) => row(name, [[unit ? prefixed(value, unit) : shown(value), value, name]])));
   drawBranch(found, question);
   drawMotion(found, question);
@@ -349,6 +397,10 @@ function show(hash) {
 }
 
 function setControl(name, value) {
+  if (name === "engine") {
+    $("engine").value = value;
+    return;
+  }
   if (name in CHOICES) {
     const chosen = document.querySelector(`input[name=${name}][value=${value}]`);
     if (chosen) chosen.checked = true;
@@ -371,13 +423,18 @@ function change(name, value) {
 
 document.querySelectorAll("input[data-name]").forEach(typed => typed.addEventListener("input", () => {
   const {refused} = parse(`#${typed.dataset.name}=${encodeURIComponent(typed.value)}`);
-  if (refused.length) typed.setAttribute("aria-invalid", "true");
-  else change(typed.dataset.name, Number(typed.value));
+  if (refused.length) {
+    typed.setAttribute("aria-invalid", "true");
+    const [low, high] = RANGES[typed.dataset.name], whole = typed.dataset.name === "n" ? "whole " : "";
+    const label = document.querySelector(`label[for=${typed.id}]`).textContent;
+    refuse(`${label}: ${typed.value || "this"} is not a ${whole}number from ${low} to ${high}.`);
+  } else change(typed.dataset.name, Number(typed.value));
 }));
 document.querySelectorAll("input[type=range]").forEach(slider => slider.addEventListener("input", () => {
   const name = slider.id.slice("slide-".length), value = Number(slider.value);
   change(name, name === "w" ? Number((10 ** value).toPrecision(4)) : value);
 }));
+$("engine").addEventListener("change", () => change("engine", $("engine").value));
 document.querySelectorAll("input[type=radio]").forEach(choice => choice.addEventListener("change",
   () => change(choice.name, choice.value)));
 CHOICES.tab.forEach((tab, k) => {
@@ -410,12 +467,13 @@ $("play").addEventListener("click", () => {
 
 // ---- The badge: the page against Python.
 function check() {
-  const references = JSON.parse($("references").textContent);
-  const {worst, where, count} = compareReferences(references);
+  const {references} = REFERENCES, orbits = compareReferences(references);
+  const engines = compareEngines(REFERENCES.engines);
+  const {worst, where} = orbits.worst >= engines.worst ? orbits : engines, {count} = orbits;
   const good = worst <= BOUND;
   $("badge").className = good ? "good" : "bad";
   $("badge").textContent = `${good ? "Checked" : "WRONG"}: ${count} orbits of the Python package, commit `
-    + `${references.commit.slice(0, 10)}, computed again here: largest difference `
+    + `${references.commit.slice(0, 10)}, and ${engines.count} settings of engines, computed again here: largest difference `
     + `${worst.toExponential(1)} (${where}), ${good ? "within" : "above"} ${BOUND.toExponential(0)}.`;
   $("badge").dataset.worst = String(worst);
 }

@@ -1,1 +1,1 @@
-"""Tables of datasets as text: ``rows`` says what each shows, ``formats`` how it is written."""
+"""Tables of datasets as texts: ``rows`` defines each table, ``formats`` writes it."""

@@ -1,4 +1,4 @@
-"""Tables from datasets: parts of a dataset as rows, descriptions of a cell as columns."""
+"""Tables from datasets: rows are parts of a dataset, columns are functions of such a part."""
 
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -14,7 +14,7 @@ Columns = dict[str, Column]
 
 
 def table(parts: Iterable[xr.Dataset], columns: Columns) -> Table:
-    """Header and rows.
+    """The header, and a row of texts for each part.
 
     Examples
     --------
@@ -26,20 +26,20 @@ def table(parts: Iterable[xr.Dataset], columns: Columns) -> Table:
 
 
 def text(name: str) -> Column:
-    """A variable as it is."""
+    """The column of a variable, unformatted."""
     return lambda part: str(part[name].item())
 
 
 def quantity(part: xr.Dataset) -> str:
-    """The quantity of a row in words."""
+    """The cell with the quantity of a row."""
     return words(part["quantity"].item())
 
 
 def value(name: str, form: str, none: str = "–") -> Column:
-    """A variable in a format."""
+    """The column of a variable in a number format; ``none`` stands for NaN."""
     return lambda part: number(part[name], form, none)
 
 
 def at(column: Column, **where: Any) -> Column:
-    """A column that is about one place along dimensions which the rows leave."""
+    """A column that takes one place along dimensions over which the rows do not run."""
     return lambda part: column(part.sel(where))

@@ -1,6 +1,7 @@
-"""The tables of the run: for each a function of its dataset, named as the table.
+"""The tables of the run: a function of its dataset for each, with the table's name.
 
-A table is its parts, one for each row, and its columns: see :mod:`.layout`.
+Each returns the header and the rows as texts, made of parts of the dataset and columns, see
+:mod:`.layout`.
 """
 
 import numpy as np
@@ -15,8 +16,7 @@ from bouncing_ball.figures.tables.layout import Columns, at, quantity, table, te
 def table1(data: xr.Dataset) -> Table:
     """Stability ranges over Λ: each end of each range computed, printed, and their difference.
 
-    The last unit is that of the last printed digit, 0.001. Nothing is compared in the rows of
-    the restitution model.
+    The unit of the difference is that of Λ. The rows of the restitution model have nothing printed.
     """
     ends: Columns = {"n": text("n"), "bound": text("bound")}
     contacts: Columns = {
@@ -35,7 +35,7 @@ def table1(data: xr.Dataset) -> Table:
 
 
 def thresholds(data: xr.Dataset) -> Table:
-    """ϖ needed for each tolerance, quantity by quantity.
+    """The ϖ needed for each tolerance, quantity by quantity.
 
     Where the threshold lies outside the range scanned, the entry is the end of
     the range after < or >.
@@ -47,7 +47,7 @@ def thresholds(data: xr.Dataset) -> Table:
 
 
 def _threshold(form: str, within: str, never: str):
-    """A column of thresholds, or what is said where they are outside the range scanned."""
+    """A column of thresholds, with the given texts where they are outside the range scanned."""
 
     def column(part: xr.Dataset) -> str:
         status = part.threshold_status.item()
@@ -59,7 +59,7 @@ def _threshold(form: str, within: str, never: str):
 
 
 def formulas(data: xr.Dataset) -> Table:
-    """Printed formulas: compared with what, disagreement, what is allowed.
+    """Printed formulas: the comparison, the disagreement, and the disagreement allowed.
 
     Disagreements of the size of rounding are given by their bound.
     """
@@ -75,9 +75,9 @@ def formulas(data: xr.Dataset) -> Table:
 
 
 def forensics(data: xr.Dataset) -> Table:
-    """Readings of Table 1, the closest first; differences in last digits.
+    """Readings of Table 1, the closest first; differences in units of the last digit.
 
-    A dash is where a reading has no orbit.
+    A dash stands where a reading has no orbit.
     """
     columns: Columns = {"rank": text("rank"), "reading": text("reading")}
     for name in data.rows.values[:2]:
@@ -96,7 +96,7 @@ def witness(data: xr.Dataset) -> Table:
 
     An entry is a bound of the largest disagreement, which is the budget unless
     it is exceeded, and in brackets the number of orbits. The disagreement itself
-    is rounding, and no two processors have the same.
+    is rounding, which differs between processors.
     """
 
     def entry(part: xr.Dataset) -> str:
@@ -128,8 +128,10 @@ def claims(data: xr.Dataset) -> Table:
 
 
 def found_text(claim: xr.Dataset) -> str:
-    """The number found: two digits more than printed, or four in all, or its bound
-    where that is of the size of rounding."""
+    """The number found, with two digits more than printed, or four digits if nothing is printed.
+
+    A number of the size of rounding is given by its bound.
+    """
     printed = claim.printed_text.item()
     if not printed and np.isfinite(claim.found):
         return compared_text(float(claim.found), float(claim.limit))
@@ -137,16 +139,16 @@ def found_text(claim: xr.Dataset) -> str:
 
 
 def deviation_text(claim: xr.Dataset) -> str:
-    """In units of the last printed digit, and in per cent."""
+    """The deviation in units of the last printed digit, and in per cent."""
     units, share = float(claim.deviation_units), float(claim.deviation)
     return "" if np.isnan(units) else f"{units:+.2f} ({100 * share:+.3g} %)"
 
 
 def ext_orders(data: xr.Dataset) -> Table:
-    """The error law by quantity; the permanent contact last, without a correction.
+    """The error law by quantity, with the permanent contact last, which has no correction.
 
     C is the corrected model's error times ϖ²; the last column is the ϖ at which
-    the restitution model's error passes through zero by accident.
+    the restitution model's error changes its sign.
     """
     found = _threshold(".4g", "all", "none")
     columns: Columns = {
@@ -177,8 +179,8 @@ def ext_hertz(data: xr.Dataset) -> Table:
 def ext_laws(data: xr.Dataset) -> Table:
     """Errors on contacts of five laws with the same restitution coefficient and duration.
 
-    Both models at three π/D, the softest, the middle and the stiffest of the grid, and the
-    height's threshold.
+    Both models at three π/D, the smallest, the middle and the largest of the grid, and the
+    threshold of the height.
     """
     grid = data.duration_ratio.values
     columns: Columns = {"quantity": quantity, "law": text("law")}

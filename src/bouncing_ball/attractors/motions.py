@@ -1,0 +1,69 @@
+"""The motions on which balls end, as arrays with an entry for each ball."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from bouncing_ball.contacts.batch import Batch
+
+
+class Kind(StrEnum):
+    """What a ball does in the end."""
+
+    ORBIT = "orbit"
+    """It repeats after n periods of the table and k impacts that have no common divisor: an n-T
+    orbit with k impacts, without sticking."""
+    SUBHARMONIC = "subharmonic"
+    """It repeats after m n periods and m k impacts only, m > 1, without sticking: for example
+    m = 2 beyond the period doubling of an n-T orbit."""
+    LOCKED = "locked"
+    """It repeats and sticks to the table on the way."""
+    PERMANENT_CONTACT = "permanent contact"
+    CHAOTIC = "chaotic"
+    """It has not repeated, or not before rounding errors have grown to its size, and its
+    neighbours leave it at an exponential rate."""
+    UNDECIDED = "undecided"
+
+
+class Reason(StrEnum):
+    """Why a motion is undecided."""
+
+    NONE = ""
+    # The one that stands where nothing else is known.
+    NO_RECURRENCE = "it has neither repeated nor shown an exponent beyond its error"
+    MARGINAL = "it returns, and its neighbours come closer too slowly to tell that it repeats"
+    ROUNDING = "rounding errors grow to the size of the motion before it repeats"
+    NO_RELEASE = "no end of a contact was found"
+
+
+@dataclass(frozen=True, repr=False)
+class Motions(Batch):
+    """The motions on which balls end.
+
+    Parameters
+    ----------
+    kind : array of Kind
+    periods : array of int
+        Periods of the table after which the motion repeats; 0 if it does not.
+    impacts : array of int
+        Impacts until then, of the restitution model without those that are summed up before
+        the ball sticks, which are infinitely many. 0 in permanent contact.
+    exponent : array
+        Largest Lyapunov exponent per period of the table: of a motion that repeats by the larger
+        of its multipliers, -∞ where that is zero; NaN where nothing is known.
+    exponent_error : array
+        Its standard error; 0 for a motion that repeats.
+    reason : array of Reason
+        Why it is undecided.
+    followed : array of int
+        Impacts after which this was known.
+    """
+
+    kind: np.ndarray
+    periods: np.ndarray
+    impacts: np.ndarray
+    exponent: np.ndarray
+    exponent_error: np.ndarray
+    reason: np.ndarray
+    followed: np.ndarray

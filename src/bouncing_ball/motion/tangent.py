@@ -1,0 +1,96 @@
+"""Growth of small deviations of a ball from one impact to the next.
+
+A deviation (dφ, dδ, dδ′) is carried by the linearised flow of a flight or of a contact, and
+then along the motion to the next event, ``δ + κ δ′ = 0``. This is the landing with κ = 0; the
+release or the resumption of a contact by its force with the lag κ; and with κ = -dh/dv the
+instant of the corrected model at the depth h(v). On such a section ``dδ = -κ dδ′``, which leaves
+two numbers, (dφ, dδ′).
+
+The flow of a flight depends on the table at its two ends only. With X = Λ cos φ, Y = Λ sin φ, and
+the index 1 for the end after a time T::
+
+    ∂δ/∂φ = X - X₁ - Y T,    ∂δ′/∂φ = Y₁ - Y,    ∂δ/∂δ′ = T
+"""
+
+from typing import NamedTuple, Self
+
+import numpy as np
+
+
+class Deviation(NamedTuple):
+    """The deviations dφ, dδ and dδ′, with an entry per ball."""
+
+    phase: np.ndarray
+    displacement: np.ndarray
+    velocity: np.ndarray
+
+    def to_event(self, velocity, acceleration, lag) -> Self:
+        """The deviation at the event δ + κ δ′ = 0, where the motion has δ′ and δ″."""
+        missing = self.displacement + lag * self.velocity
+        later = -missing / (velocity + lag * acceleration)
+        return type(self)(
+            self.phase + later,
+            self.displacement + velocity * later,
+            self.velocity + acceleration * later,
+        )
+
+    def flown(self, start, end, time, velocity, lag) -> Self:
+        """The deviation at the next event, after a flight with the table's (X, Y) at its ends.
+
+        ``time`` is the time of flight, ``velocity`` δ′ at the event and ``lag`` its κ.
+        """
+        (x, y), (x1, y1) = start, end
+        fall = self.displacement + self.velocity * time + self.phase * (x - x1 - y * time)
+        pace = self.velocity + self.phase * (y1 - y)
+        return type(self)(self.phase, fall, pace).to_event(velocity, y1 - 1, lag)
+
+
+class Jacobian(NamedTuple):
+    """∂(φ₁, δ′₁)/∂(φ, δ′), row by row, with an entry per ball."""
+
+    a: np.ndarray
+    b: np.ndarray
+    c: np.ndarray
+    d: np.ndarray
+
+    @classmethod
+    def of_columns(cls, first: Deviation, second: Deviation) -> Self:
+        """The matrix whose columns are the images of (1, 0) and of (0, 1)."""
+        return cls(first.phase, second.phase, first.velocity, second.velocity)
+
+    @classmethod
+    def identity(cls, balls: int) -> Self:
+        """The identity."""
+        one, zero = np.ones(balls), np.zeros(balls)
+        return cls(one, zero, zero.copy(), one.copy())
+
+    def apply(self, phase: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The image of a deviation (dφ, dδ′)."""
+        return self.a * phase + self.b * velocity, self.c * phase + self.d * velocity
+
+    def after(self, first: "Jacobian") -> "Jacobian":
+        """The product of this matrix with ``first``, which acts first."""
+        a, c = self.apply(first.a, first.c)
+        b, d = self.apply(first.b, first.d)
+        return Jacobian(a, b, c, d)
+
+    def spectral_radius(self) -> np.ndarray:
+        """Modulus of the larger multiplier.
+
+        Examples
+        --------
+        >>> float(Jacobian(*np.array([0.0, -0.25, 1.0, 0.0])).spectral_radius())
+        0.5
+        """
+        half, det = (self.a + self.d) / 2, self.a * self.d - self.b * self.c
+        root = half * half - det
+        real = np.abs(half) + np.sqrt(np.maximum(root, 0.0))
+        return np.where(root < 0, np.sqrt(np.maximum(det, 0.0)), real)
+
+    def to_fixed_point(
+        self, phase: np.ndarray, velocity: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Newton's step (I - M)⁻¹ (φ₁ - φ, δ′₁ - δ′) from a state to the orbit next to it."""
+        a, d = 1 - self.a, 1 - self.d
+        det = a * d - self.b * self.c
+        return (d * phase + self.b * velocity) / det, (self.c * phase + a * velocity) / det

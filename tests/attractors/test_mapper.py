@@ -1,0 +1,144 @@
+"""Motions on which balls end, against orbits, multipliers and motions side by side."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from bouncing_ball.attractors.mapper import label
+from bouncing_ball.attractors.motions import Kind, Reason
+from bouncing_ball.contacts.signature import Signature
+from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.motion.simulation import next_impact
+from bouncing_ball.orbits.corrected_model import CorrectedModel
+from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+
+PHASES = np.linspace(-3, 3, 7)
+
+
+def contact(r, ratio, release="displacement"):
+    return SpringDamper.from_restitution(r, ratio, release)
+
+
+def beside(model, n, amplitude, moved=1e-3):
+    """A start beside the n-T orbit."""
+    orbit = model.orbit(n, amplitude)
+    phase = orbit.phase + moved
+    return phase, amplitude * np.cos(phase) + orbit.relative_impact_velocity
+
+
+@pytest.mark.parametrize(
+    ("law", "amplitude", "periods"),
+    [
+        (0.6, 3.0, 13),
+        (contact(0.6, 80.0), 3.0, 8),
+        (contact(0.6, 320.0), 3.0, 43),
+        (contact(0.6, 1280.0), 3.0, 23),
+        (Signature(contact(0.6, 80.0)), 3.0, 8),
+        (0.5, 2.5, 6),
+        (contact(0.5, 1280.0), 2.5, 6),
+        (Signature(contact(0.5, 80.0)), 2.5, 15),
+    ],
+)
+def test_balls_that_stick_repeat_as_another_simulation_saw_it(law, amplitude, periods):
+    # The time between stickings, measured with other code before this was written.
+    found = label(law, amplitude, PHASES, -9.0)
+    locks = found.kind == Kind.LOCKED
+    # A ball may be on a chaotic band of flights of two periods instead.
+    assert locks.sum() >= 6
+    assert set(found.kind) <= {Kind.LOCKED, Kind.CHAOTIC}
+    assert set(found.periods[locks]) == {periods}
+
+
+@pytest.mark.parametrize("r", [0.5, 0.85])
+def test_the_cascade(r):
+    # Where the orbits of period 1, 2, 4 and 8 lose stability, by finite differences of the map.
+    ends = {
+        0.5: [1.526824, 1.667131, 1.696781, 1.703181],
+        0.85: [1.038304, 1.199733, 1.226661],
+    }[r]
+    amplitude = np.array([ends[0] - 0.05, *(0.4 * a + 0.6 * b for a, b in pairwise(ends))])
+    found = label(r, amplitude, *beside(RestitutionModel(r), 1, amplitude), impacts=20_000)
+    assert found.kind.tolist() == [Kind.ORBIT, *[Kind.SUBHARMONIC] * (len(ends) - 1)]
+    assert found.periods.tolist() == found.impacts.tolist() == [1, 2, 4, 8][: len(ends)]
+
+
+@pytest.mark.parametrize(
+    "model",
+    [
+        RestitutionModel(0.6),
+        SpringDamperModel(contact(0.6, 20.0)),
+        SpringDamperModel(contact(0.6, 20.0, "force")),
+        CorrectedModel.of_contact(contact(0.6, 20.0)),
+    ],
+)
+def test_the_exponent_of_an_orbit_is_that_of_its_multiplier(model):
+    amplitude, n = np.array([0.8, 0.9, 1.0, 1.6]), np.array([1, 1, 1, 2])
+    found = label(model._law, amplitude, *beside(model, n, amplitude))
+    assert set(found.kind) == {Kind.ORBIT}
+    assert found.periods.tolist() == n.tolist()
+    assert set(found.impacts) == {1}
+    modulus = np.abs(model.orbit(n, amplitude).multipliers()).max(axis=-1)
+    # At a state that is within 10⁻⁶ of the orbit.
+    np.testing.assert_allclose(found.exponent, np.log(modulus) / n, atol=1e-5)
+
+
+def test_an_answer_does_not_depend_on_the_other_balls():
+    rng = np.random.default_rng(2)
+    amplitude, phase = rng.uniform(0.5, 4, 60), rng.uniform(-3, 3, 60)
+    law = contact(rng.uniform(0.2, 0.9, 60), 100.0)
+    start = amplitude, phase, -amplitude - 3
+    whole, order = label(law, *start, impacts=300), rng.permutation(60)
+    again = label(law[order], *(x[order] for x in start), impacts=300)
+    for name, values in vars(whole).items():
+        np.testing.assert_array_equal(getattr(again, name), values[order], err_msg=name)
+
+
+@pytest.mark.parametrize("law", [0.5, contact(0.5, 30.0), Signature(contact(0.5, 30.0))])
+def test_a_ball_on_a_slow_table_comes_to_rest(law):
+    found = label(law, [0.0, 0.5], 0.3, -3.0)
+    assert set(found.kind) == {Kind.PERMANENT_CONTACT}
+    assert found.periods.tolist() == [1, 1]
+
+
+def test_without_dissipation_nothing_is_attracted():
+    found = label(1.0, [0.0, 0.01, 6.0], 0.3, -7.0, impacts=500)
+    assert found.kind.tolist() == [Kind.UNDECIDED, Kind.UNDECIDED, Kind.CHAOTIC]
+
+
+def test_next_to_a_bifurcation_nothing_is_decided():
+    # A multiplier is -1 but for 10⁻⁶ there.
+    found = label(0.5, 1.526824, *beside(RestitutionModel(0.5), 1, 1.526824, 1e-8), impacts=500)
+    assert (found.kind, found.reason) == (Kind.UNDECIDED, Reason.MARGINAL)
+
+
+@pytest.mark.parametrize("law", [0.85, contact(0.85, 80.0), Signature(contact(0.85, 80.0))])
+def test_chaos_has_the_exponent_of_the_paths_side_by_side(law):
+    """Two balls, the distance set back after every impact, by the Poincaré map alone."""
+    lam, tiny, balls = 2.0, 1e-7, 200
+    rng = np.random.default_rng(7)
+    state = np.array([rng.uniform(-3, 3, balls), -rng.uniform(3, 9, balls)])
+    moved, grown, time = state + np.array([[tiny], [0]]), np.zeros(balls), np.zeros(balls)
+    for k in range(90):
+        here, there = (next_impact(law, lam, *x) for x in (state, moved))
+        state = np.array(here[:2])
+        shift = np.array(there[:2]) - state
+        shift[0] -= 2 * np.pi * np.rint(shift[0] / (2 * np.pi))
+        # One that sticks meets its neighbour, and is left out from then on.
+        apart = shift.any(axis=0)
+        distance = np.hypot(*shift[:, apart])
+        state, moved = state[:, apart], state[:, apart] + shift[:, apart] * tiny / distance
+        late = k >= 10
+        grown = grown[apart] + late * np.log(distance / tiny)
+        time = time[apart] + late * here.time[apart]
+    assert grown.size > 0.9 * balls
+    rates = 2 * np.pi * grown / time
+    found = label(law, lam, PHASES, -9.0, impacts=1500)
+    assert set(found.kind) == {Kind.CHAOTIC}
+    error = np.hypot(
+        np.std(rates) / np.sqrt(rates.size), np.mean(found.exponent_error) / np.sqrt(7)
+    )
+    assert abs(np.mean(found.exponent) - 2 * np.pi * grown.sum() / time.sum()) < 5 * error
+    # And its error is that by which the balls differ.
+    assert 0.4 < np.std(found.exponent, ddof=1) / np.mean(found.exponent_error) < 2

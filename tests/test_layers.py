@@ -75,7 +75,7 @@ ALLOWED = {
 
 
 def imports(tree: ast.AST):
-    """Absolute names of what a module imports; relative imports are not used."""
+    """Absolute names of the modules that a module imports; relative imports are not used."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)

@@ -1,4 +1,4 @@
-"""Orbits on any contact: the closed form where there is one, and what the laws share."""
+"""Orbits on any contact: the closed form where there is one, and properties that all laws share."""
 
 import numpy as np
 import pytest

@@ -7,7 +7,11 @@ Of the free impact that ends at the angle π - 2α (:mod:`bouncing_ball.contacts
 A drop test measures r = √(h′/h), whatever releases the contact. A Hertz contact has the
 force ``k x^{3/2} + C √(mk) x^{1/4} x′``, k = (4/3) E* √R, with the damping of Tsuji: its r
 is the same at every speed (:mod:`bouncing_ball.contacts.laws.tsuji`), and so E*, R and r are
-all of it. Everything in SI units.
+all of it. Of two elastic bodies, the ball and the table (Hertz), ::
+
+    1/E* = (1 - ν₁²)/E₁ + (1 - ν₂²)/E₂
+
+Everything in SI units.
 """
 
 import math
@@ -26,10 +30,12 @@ from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
 
 # What says how stiff a contact is; a modulus goes with a radius.
-STIFF = ("stiffness", "contact_time", "reduced_modulus")
+STIFF = ("stiffness", "contact_time", "reduced_modulus", "youngs_modulus")
+MATERIALS = ("youngs_modulus", "poissons_ratio", "table_youngs_modulus", "table_poissons_ratio")
+"""Moduli E and Poisson's ratios ν of the ball and of the table, from which E* follows."""
 # What says how much it loses; the height of a rebound goes with that of the drop.
 LOSSY = ("damping", "damping_ratio", "restitution", "measured_restitution", "rebound_height")
-_PAIRS = {"reduced_modulus": "radius", "rebound_height": "drop_height"}
+_PAIRS = {"rebound_height": "drop_height"}
 
 Given = Mapping[str, float]
 
@@ -89,6 +95,46 @@ def _oscillating(zeta: float, release: Release, name: str) -> float:
     return zeta
 
 
+def reduced_modulus(given: Given) -> float | None:
+    """E* of a Hertz contact in Pa, given or by the materials of both bodies; None of another.
+
+    Raises
+    ------
+    ModelError
+        If a part of them is missing.
+
+    Examples
+    --------
+    The same material twice, without lateral contraction: half its modulus. Against a table that is
+    much stiffer, the ball's own:
+
+    >>> same = dict.fromkeys(MATERIALS, 0.0) | {"radius": 1.0}
+    >>> reduced_modulus(same | {"youngs_modulus": 2.0, "table_youngs_modulus": 2.0})
+    1.0
+    >>> round(reduced_modulus(same | {"youngs_modulus": 2.0, "table_youngs_modulus": 1e12}), 9)
+    2.0
+    """
+    known = [name for name in MATERIALS if name in given]
+    if known:
+        missing = " and ".join(f"{{{name}}}" for name in MATERIALS if name not in given)
+        if missing:
+            raise ParameterError(
+                f"{{{known[0]}}} needs {missing}: both bodies are elastic, each with E and ν"
+            )
+    elastic = "youngs_modulus" if known else "reduced_modulus"
+    if (elastic in given) != ("radius" in given):
+        ways = "{reduced_modulus}, or with {youngs_modulus} and the other data of both materials"
+        raise ParameterError(
+            f"{{{elastic}}} needs {{radius}}, the radius of curvature at the contact"
+            if elastic in given
+            else f"{{radius}} of a Hertz contact goes with {ways}"
+        )
+    if not known:
+        return given.get("reduced_modulus")
+    ball, ball_ratio, table, table_ratio = (given[name] for name in MATERIALS)
+    return 1 / ((1 - ball_ratio**2) / ball + (1 - table_ratio**2) / table)
+
+
 def hertz(mass: float, modulus: float, radius: float, restitution: float, table: Table) -> Tsuji:
     """The law of a Hertz contact with E* and R, dimensionless: K = k √g/(mΩ³), C of r.
 
@@ -141,6 +187,7 @@ def case_of(given: Given, table: Table, release: Release, asked: Sequence[int]) 
     if "mass" not in given:
         raise ParameterError("the mass is missing: give {mass}, such as 20 g")
     stiff, mass = _one_of(given, STIFF, "how stiff the contact is"), given["mass"]
+    modulus = reduced_modulus(given)
     if not stiff:
         return None
     if stiff == "stiffness":
@@ -153,13 +200,13 @@ def case_of(given: Given, table: Table, release: Release, asked: Sequence[int]) 
         return Case(mass, table, SpringDamper(omega / table.angular_frequency, zeta, release))
     # In the unit of time in which the contact's own frequency is 1.
     unit, law = SpringDamper(1.0, loss(given, release), release), None
-    if stiff == "contact_time":
+    if modulus is None:
         duration = given["contact_time"] / table.time
     else:
         if release is not Release.DISPLACEMENT:
             raise ModelError("a Hertz contact with Tsuji's damping is released at δ = 0: no force")
         r = float(unit.restitution)
-        law = hertz(mass, given["reduced_modulus"], given["radius"], r, table)
+        law = hertz(mass, modulus, given["radius"], r, table)
         speed = rigid_speed(meant(asked, r, table.amplitude), r)
         duration = float(free_impact(law, speed).duration)
     ratio = float(unit.free_duration) / duration

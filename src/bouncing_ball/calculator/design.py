@@ -39,6 +39,7 @@ _FAMILIES = range(1, 9)
 # Beyond, the squares of ϖ and Λ leave no digits; as on the rest of the command line.
 _LARGEST = 1e8
 _LOSS = Unit("", "0.85", Range(0, 1, "(]"))
+_POISSON = Unit("", "0.3", Range(-1, 0.5, "(]"))
 _NONE_TOO = Range(0, 1e40, "[]")
 
 
@@ -54,6 +55,10 @@ def design(
     stiffness: Annotated[Any, Unit("N/m", "1e6 N/m")] = None,
     contact_time: Annotated[Any, Unit("s", "50 us")] = None,
     reduced_modulus: Annotated[Any, Unit("Pa", "115 GPa")] = None,
+    youngs_modulus: Annotated[Any, Unit("Pa", "210 GPa")] = None,
+    poissons_ratio: Annotated[Any, _POISSON] = None,
+    table_youngs_modulus: Annotated[Any, Unit("Pa", "210 GPa")] = None,
+    table_poissons_ratio: Annotated[Any, _POISSON] = None,
     radius: Annotated[Any, Unit("m", "5 mm")] = None,
     damping: Annotated[Any, Unit("N*s/m", "10 N s/m", _NONE_TOO)] = None,
     damping_ratio: Annotated[Any, Unit("", "0.05", _NONE_TOO)] = None,
@@ -91,8 +96,12 @@ def design(
         Duration of a free impact, in place of the stiffness.
     reduced_modulus
         E* of a Hertz contact with the damping of Tsuji, with its radius.
+    youngs_modulus, poissons_ratio
+        E and ν of the ball, in place of E*: 1/E* = (1 - ν²)/E of the ball plus that of the table.
+    table_youngs_modulus, table_poissons_ratio
+        E and ν of the table.
     radius
-        R of a Hertz contact.
+        R of a Hertz contact: the radius of curvature, of a ball on a plane table its own.
     damping
         c of the contact, with its stiffness.
     damping_ratio
@@ -144,7 +153,26 @@ def design(
     table = table_of(given)
     lam, asked = table.amplitude, _FAMILIES if n is None else [n]
     require(lam < _LARGEST, lam, "Λ", f"below {_LARGEST:g}")
-    case = case_of(given, table, rule, asked)
+    try:
+        return _answer(given, table, rule, asked, quantity, epsilon, question)
+    except NoOrbitError as error:
+        bare = str(acceleration).strip()
+        if not bare.replace(".", "", 1).isdigit():
+            raise
+        raise NoOrbitError(f"{error}; did you mean {bare} g?") from None
+
+
+def _answer(
+    given: dict[str, float],
+    table: Table,
+    rule: Release,
+    asked: Sequence[int],
+    quantity: str,
+    epsilon: float,
+    question: dict[str, Any],
+) -> Design:
+    """The verdict on a contact that is given, or the contact that is needed."""
+    lam, case = table.amplitude, case_of(given, table, rule, asked)
     if case is not None:
         ratio = float(case.contact.frequency_ratio)
         require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
@@ -195,10 +223,13 @@ def contact(
     if case.law is not None:
         raise ModelError("a Hertz contact needs a table: its duration depends on the speed")
     zeta, omega = float(case.contact.damping_ratio), float(case.contact.frequency_ratio)
-    physical = Physical(case.mass, case.mass * omega**2, 2 * zeta * case.mass * omega)
+    stiffness = given.get("stiffness", case.mass * omega**2)
+    damping = given.get("damping", 2 * zeta * case.mass * omega)
+    physical = Physical(case.mass, stiffness, damping)
     return Contact(
         *physical,
         zeta,
+        omega,
         physical.contact_time(rule),
         str(rule),
         physical.restitution(rule),
@@ -211,7 +242,7 @@ def _under(engine: str | None, release: str | None, given: dict[str, float]) -> 
     if engine is None:
         return Release.of(release or Release.DISPLACEMENT)
     rule = engine_named(engine).release(release)
-    if "reduced_modulus" in given:
+    if "reduced_modulus" in given or "youngs_modulus" in given:
         raise ParameterError(f"a Hertz contact is not written for {engine}: give {{stiffness}}")
     if "measured_restitution" not in given and "restitution" in given:
         given["measured_restitution"] = given.pop("restitution")

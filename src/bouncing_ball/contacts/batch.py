@@ -1,7 +1,7 @@
 """Frozen dataclasses over arrays, one element per contact, ball or orbit.
 
-Their fields broadcast together, as arguments of a function do. A scalar field
-is that of all elements, and stays a scalar.
+Their fields broadcast together, like the arguments of a function. A scalar field
+applies to all elements and remains a scalar.
 """
 
 import functools
@@ -18,14 +18,14 @@ def _shape(value: Any) -> tuple[int, ...]:
 
 
 def _entry(value: Any, shape: tuple[int, ...], index: Any) -> Any:
-    """Some elements of a field; a scalar is that of all."""
+    """Some elements of a field; a scalar applies to all."""
     if isinstance(value, Batch):
         return value._entries(shape, index)
     return np.broadcast_to(value, shape)[index] if np.ndim(value) else value
 
 
 def in_words(value: Any) -> str:
-    """A number or an array, rounded and abbreviated.
+    """A number or an array as text, rounded and abbreviated.
 
     Examples
     --------
@@ -100,7 +100,9 @@ class Single:
 
 @dataclass(frozen=True, repr=False)
 class Batch:
-    """What a frozen dataclass of arrays inherits: a shape, indexing, a length.
+    """Base class of frozen dataclasses of arrays: a shape, indexing, a length.
+
+    A single element, of shape (), has no length and cannot be indexed.
 
     Examples
     --------
@@ -116,12 +118,12 @@ class Batch:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Common shape of the fields."""
+        """The shape to which the fields broadcast."""
         return np.broadcast_shapes(*(_shape(getattr(self, f.name)) for f in fields(self)))
 
     @property
     def size(self) -> int:
-        """Number of elements."""
+        """The number of elements; 1 for a single one."""
         return math.prod(self.shape)
 
     def __len__(self) -> int:
@@ -139,11 +141,16 @@ class Batch:
         return self._entries(self.shape, index)
 
     def flat(self, shape: tuple[int, ...]) -> Self:
-        """One element for each entry of an array, in a row; a single one is that of all."""
+        """The elements broadcast to a shape and flattened to a row; a single one remains single.
+
+        It then applies to all elements of the row.
+        """
         if not self.shape:
             return self
         return self._entries(shape, np.unravel_index(np.arange(math.prod(shape)), shape))
 
     def take(self, which: Any) -> Self:
-        """Some elements of a row; a single one is that of all."""
+        """The elements of a row with these indices; a single one, which applies to all, is
+        unchanged.
+        """
         return self[which] if self.shape else self

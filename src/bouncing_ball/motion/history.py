@@ -13,10 +13,10 @@ from bouncing_ball.motion.sequence import ImpactSequence, Status
 
 
 class History(NamedTuple):
-    """Height z and velocity z′ of the ball, height w of the table, and δ = z - w.
+    """Height z and velocity z′ of the ball, height w of the table, and δ = z - w, at each time.
 
-    ``touching`` is true in contact, false in flight. NaN before the first impact and
-    after the last contact, whose flight is not known to its end.
+    ``touching`` is true in contact and false in flight. Entries are NaN before the first impact and
+    after the last contact, because the end of its flight is not known.
     """
 
     time: np.ndarray
@@ -28,7 +28,7 @@ class History(NamedTuple):
 
 
 def history(sequence: ImpactSequence, time: ArrayLike) -> History:
-    """Where a ball is at given times since its first impact.
+    """The motion of a ball at given times since its first impact, of the shape of the times.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def history(sequence: ImpactSequence, time: ArrayLike) -> History:
     row = np.clip(np.searchsorted(sequence.time[: last + 1], t, side="right") - 1, 0, None)
     since, duration = t - sequence.time[row], sequence.contact_duration[row]
     touching = (since >= 0) & (since <= duration)
-    # The last flight is not known to its end.
+    # The end of the last flight is not known.
     flying = (since > duration) & ((row < last) | (sequence.status != Status.BOUNCING))
     left = sequence.phase[row] + np.where(flying, duration, 0.0)
     state = sequence.release_displacement[row], sequence.relative_bounce_velocity[row]

@@ -18,7 +18,7 @@ RECORDED = (
 
 
 class Status(IntEnum):
-    """What a ball is doing after its last recorded impact."""
+    """The state of a ball after its last recorded impact."""
 
     BOUNCING = 0
     """More impacts follow."""
@@ -29,9 +29,9 @@ class Status(IntEnum):
 
 
 class Cycle(NamedTuple):
-    """The next impact: phase in [-π, π], relative velocity, δ, and the time until it.
+    """The next impact: phase in [-π, π], relative velocity δ′ ≤ 0, δ, and the time until it.
 
-    NaN, with an infinite time, after a contact that never ends.
+    The state is NaN and the time infinite after a contact that never ends.
     """
 
     phase: np.ndarray
@@ -57,7 +57,7 @@ class ImpactSequence:
     time, phase : array
         Time of the impact since the first one, and the table's phase, in [-π, π].
     displacement, relative_velocity : array
-        δ and δ′ at the impact. δ = 0 but where a contact that ended by its
+        δ and δ′ at the impact. δ = 0, except where a contact that ended by its
         force resumes below the table's level, with δ′ > 0.
     contact_duration : array
         Time until the ball leaves; 0 for an impact with a restitution coefficient
@@ -67,8 +67,8 @@ class ImpactSequence:
     status : array of int
         :class:`Status` of each ball.
     settling : array
-        The part of ``contact_duration`` taken by the infinitely many impacts of the restitution
-        model that are left out before a ball sticks; 0 for the other models.
+        The part of ``contact_duration`` in which infinitely many impacts of the restitution
+        model are summed up before a ball sticks; 0 for the other models.
     """
 
     amplitude: np.ndarray
@@ -109,18 +109,18 @@ class ImpactSequence:
 
     @property
     def impact_velocity(self) -> np.ndarray:
-        """Absolute velocity z′_i of the ball at the impact."""
+        """Absolute velocity z′_i of the ball at each impact, before it."""
         return self.relative_velocity + self.amplitude * np.cos(self.phase)
 
     @property
     def release_phase(self) -> np.ndarray:
-        """Phase of the table when the ball leaves, in [-π, π]; NaN if it never does."""
+        """Phase of the table at each release, in [-π, π]; NaN if the contact never ends."""
         finite = np.isfinite(self.contact_duration)
         return reduce_angle(self.phase + np.where(finite, self.contact_duration, np.nan))
 
     @property
     def bounce_velocity(self) -> np.ndarray:
-        """Absolute velocity z′_b of the ball when it leaves."""
+        """Absolute velocity z′_b of the ball at each release."""
         return self.relative_bounce_velocity + self.amplitude * np.cos(self.release_phase)
 
     @property

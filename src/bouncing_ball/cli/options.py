@@ -1,6 +1,7 @@
 """Options of a subcommand, from the signature and the docstring of its call."""
 
 import argparse
+import builtins
 import collections.abc
 import inspect
 import math
@@ -15,7 +16,7 @@ from bouncing_ball.cli.output import say
 from bouncing_ball.errors import escaped
 from bouncing_ball.signatures import Range
 
-_OTHER_NAMES = {"parameters": "set", "from_engine": "from"}
+_OTHER_NAMES = {"parameters": "set", "from_engine": "from", "amplitudes": "amplitude"}
 
 
 class Parser(argparse.ArgumentParser):
@@ -111,6 +112,8 @@ def _reading(annotation: Any) -> dict[str, Any]:
             return {"type": _within(kinds[1], kinds[0]), "metavar": "N" if kinds[0] is int else "X"}
         case typing.Literal:
             return {"choices": kinds}
+        case builtins.tuple:
+            return _reading(kinds[0]) | {"nargs": 2, "metavar": ("FROM", "TO")}
         case collections.abc.Mapping:
             return {"type": _assignment, "action": "append", "metavar": "NAME=NUMBER"}
         case pathlib.Path:

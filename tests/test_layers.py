@@ -25,12 +25,12 @@ ALLOWED = {
     "surveys": ({"datasets", "orbits", "calls"}, set()),
     "long_run": ({"datasets", "orbits", "attractors", "calls"}, {"numpy"}),
     "accuracy": ({"contacts", "continuation", "motion", "orbits"}, {"numpy", "scipy"}),
-    "studies": (
-        {"datasets", "contacts", "continuation", "motion", "orbits", "accuracy"},
-        {"numpy", "scipy", "xarray", "pydantic"},
-    ),
     # No engine is imported.
     "engines": ({"contacts"}, {"numpy"}),
+    "studies": (
+        {"datasets", "contacts", "continuation", "motion", "orbits", "accuracy", "engines"},
+        {"numpy", "scipy", "xarray", "pydantic"},
+    ),
     # Units are parsed at the edge, and pint is imported there when it is asked for.
     "calculator": (
         {"contacts", "orbits", "calls", "accuracy", "engines"},
@@ -77,7 +77,7 @@ ALLOWED = {
 
 
 def imports(tree: ast.AST):
-    """Absolute names of what a module imports; relative imports are not used."""
+    """Absolute names of the modules that a module imports; relative imports are not used."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)

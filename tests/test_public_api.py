@@ -1,11 +1,13 @@
-"""What users import from the top, as README shows it."""
+"""The names that users import from the package, as README shows them."""
 
 import doctest
+import pickle
 import pydoc
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import bouncing_ball
@@ -41,3 +43,71 @@ def test_what_the_command_line_refuses_is_refused(impacts, one_line):
 def test_the_package_itself_needs_no_numpy():
     code = "import sys, bouncing_ball; sys.exit('numpy' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+CONTACT = {"restitution": 0.85, "frequency_ratio": 10.0}
+
+
+def test_a_scalar_in_is_a_float_out():
+    one = bouncing_ball.orbit(1, np.float64(0.9), **CONTACT)
+    ends = bouncing_ball.limits(1, restitution=0.85)
+    numbers = (one.phase, one.max_height, one.law.damping_ratio, ends.saddle_node.amplitude)
+    assert {type(x) for x in (*numbers, *one.path(1.0))} == {float}
+    assert type(one.is_stable()) is type(one.is_admissible()) is bool
+    inside = bouncing_ball.model(**CONTACT).orbit(1, 0.9)
+    assert isinstance(one, type(inside)) and repr(one) == repr(inside)
+    assert pickle.loads(pickle.dumps(one)).phase == one.phase == float(inside.phase)
+
+
+def test_a_sequence_counts_the_impacts_that_it_has():
+    stuck = bouncing_ball.simulate(0.6, restitution=0.2, impacts=50)
+    assert type(stuck.impacts) is int and stuck.impacts < 50
+    assert repr(stuck).startswith(f"ImpactSequence: {stuck.impacts} impacts, then permanent")
+    both = bouncing_ball.simulate(0.6, restitution=[0.2, 0.8], impacts=50)
+    assert f"{stuck.impacts} to 50 impacts of each of 2 balls" in repr(both)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [CONTACT, {"restitution": 0.85}, {"restitution": 0.85, "law": "tsuji", "duration": 0.1}],
+)
+def test_arrays_give_labelled_orbits_and_limits(given):
+    orbits = bouncing_ball.orbit([1, 2], [0.2, 1.0], **given)
+    assert orbits.phase.dims == ("n", "amplitude")
+    # Below the saddle-node of both families.
+    assert orbits.phase.sel(amplitude=0.2).isnull().all()
+    assert not orbits.stable.sel(amplitude=0.2).any()
+    ends = bouncing_ball.limits([1, 2], **given)
+    for n in (1, 2):
+        one = bouncing_ball.orbit(n, 1.0, **given)
+        for name in ("phase", "max_height", "contact_duration"):
+            assert orbits[name].sel(n=n, amplitude=1.0) == pytest.approx(getattr(one, name), 1e-12)
+        node = bouncing_ball.limits(n, **given).saddle_node
+        assert ends.saddle_node_amplitude.sel(n=n) == pytest.approx(node.amplitude, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("call", "says"),
+    [
+        (
+            lambda: bouncing_ball.orbit(1, [0.5, 1.0], index=1, **CONTACT),
+            "is for one orbit, and not",
+        ),
+        (lambda: bouncing_ball.orbit(1, [0.5, 1.0], side="all", **CONTACT), "side all is for one"),
+        (lambda: bouncing_ball.orbit(1, 1.0, side="up", **CONTACT), "one of stable, unstable, all"),
+        (lambda: bouncing_ball.model(0.85).orbit(1, 1.0, "up"), "one of stable, unstable"),
+        (
+            lambda: bouncing_ball.model(0.85, 10.0, "glue"),
+            "'glue' is not one of displacement, force",
+        ),
+        (
+            lambda: bouncing_ball.model(0.85, model="rigid"),
+            "one of restitution, spring-damper, corr",
+        ),
+        (lambda: bouncing_ball.orbit(1, "a", restitution=0.85), "amplitude = 'a' is not a number"),
+    ],
+)
+def test_wrong_values_are_refused_with_the_allowed_ones(call, says, one_line):
+    with pytest.raises(bouncing_ball.ModelError) as error:
+        call()
+    one_line(error, says)

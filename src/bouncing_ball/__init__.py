@@ -29,8 +29,8 @@ The layers, each importing only what lies above it in this list (and ``errors`` 
 ``surveys``       calls with labelled datasets: a ball over time, a drop, a branch over Λ
 ``long_run``      calls about the motion on which a ball ends, over Λ and of many starts
 ``accuracy``      errors of one model against another, their thresholds, the error law
-``studies``       the stages of the pipeline: parameters in, datasets out
 ``engines``       the contact of physics engines: their parameters, their time stepping
+``studies``       the stages of the pipeline: parameters in, datasets out
 ``calculator``    units, cases and verdicts for an engineer's own contact
 ``atlas``         how stiff is stiff enough, for all orbits: tiles, shards, one file
 ``configuration`` the parameters of a run, read and checked

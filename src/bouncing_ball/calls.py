@@ -11,13 +11,13 @@ from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 
+from bouncing_ball.contacts.batch import Single, plain
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.law_choice import law_named, law_of_impact
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import NoOrbitError, ParameterError
-from bouncing_ball.motion.sequence import ImpactSequence
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.law_model import LawModel, law_at_orbit
 from bouncing_ball.orbits.model import ImpactModel
@@ -203,14 +203,14 @@ def orbit(
     side: Literal["stable", "unstable", "all"] = "stable",
     index: Index | None = None,
     **impact: Any,
-) -> Orbit:
+) -> Any:
     """The n-T orbit at the excitation amplitude Λ.
 
     Parameters
     ----------
-    n : int
+    n : int or array_like of int
         Index n of the family.
-    amplitude : float
+    amplitude : array_like
         Excitation amplitude Λ > 0.
     side : str
         Side of the saddle-node: "stable", the one that is stable next to it, or "unstable".
@@ -219,6 +219,12 @@ def orbit(
         The number of one of all orbits, from 1.
     impact
         The parameters of :func:`model`.
+
+    Returns
+    -------
+    Orbit or Labelled
+        One orbit, whose numbers are Python's floats. If a parameter is an array, a dataset of
+        the orbits' observables with an axis named after each array; NaN where there is no orbit.
 
     Raises
     ------
@@ -242,10 +248,15 @@ def orbit(
       max_height            5.41098
     """
     check(orbit, locals())
+    if _arrays(impact, n, amplitude):
+        if side == "all" or index is not None:
+            of_one = "{side} all" if side == "all" else "{index}"
+            raise ParameterError(f"{of_one} is for one orbit, and not for arrays of parameters")
+        return _on_grid("orbits", _model_of_orbit, side, n=n, amplitude=amplitude, **impact)
     branch = Side.STABLE if side == "all" else Side(side)
-    of = _model(impact, lambda kind, r, d: law_at_orbit(kind, r, d, n, amplitude, branch))
+    of = _model_of_orbit(n, amplitude, branch, **impact)
     if side != "all" and index is None:
-        return of.require_orbit(n, amplitude, branch)
+        return plain(of.require_orbit(n, amplitude, branch))
     if side != "stable" and index is not None:
         raise ParameterError("argument {index}: not allowed with argument {side}")
     found = of.orbits(n, amplitude)
@@ -255,7 +266,27 @@ def orbit(
         raise NoOrbitError(
             f"no orbit {index}: {of.label} has {found.size} {n}-T orbits at Λ = {amplitude:g}"
         )
-    return found if index is None else found[index - 1]
+    return found if index is None else plain(found[index - 1])
+
+
+def _model_of_orbit(n: int, amplitude: float, side: Side, **impact: Any) -> ImpactModel:
+    """The model; a law that is given by r and D has them at the speed of this orbit."""
+    return _model(impact, lambda kind, r, d: law_at_orbit(kind, r, d, n, amplitude, side))
+
+
+def _arrays(impact: Mapping[str, Any], *given: Any) -> bool:
+    """Whether any of the arguments is an array; those of a law by name may come as pairs."""
+    numbers = (value for name, value in impact.items() if name != "parameters")
+    return any(np.ndim(x) > 0 for x in (*given, *numbers))
+
+
+def _on_grid(result: str, *more: Any, **arguments: Any) -> Any:
+    """A labelled result for arguments of which some are arrays."""
+    # Imported here: a single orbit needs no labels, and xarray takes longer than the orbit.
+    from bouncing_ball.datasets.labelled import Grid
+    from bouncing_ball.orbits import labelled
+
+    return getattr(labelled, result)(Grid(**arguments), *more)
 
 
 def model_of_limits(n: int, **impact: Any) -> ImpactModel:
@@ -264,15 +295,21 @@ def model_of_limits(n: int, **impact: Any) -> ImpactModel:
 
 
 @takes(model)
-def limits(n: Index, **impact: Any) -> Limits:
+def limits(n: Index, **impact: Any) -> Any:
     """Saddle-node and period doubling of the n-T orbits; NaN where there is none.
 
     Parameters
     ----------
-    n : int
+    n : int or array_like of int
         Index n of the family.
     impact
         The parameters of :func:`model`.
+
+    Returns
+    -------
+    Limits or Labelled
+        Two orbits. If a parameter is an array, a dataset of both amplitudes and phases with an
+        axis named after each array.
 
     Raises
     ------
@@ -282,14 +319,16 @@ def limits(n: Index, **impact: Any) -> Limits:
     Examples
     --------
     >>> found = limits(1, restitution=0.85)
-    >>> float(found.saddle_node.amplitude) < float(found.period_doubling.amplitude)
+    >>> found.saddle_node.amplitude < found.period_doubling.amplitude
     True
     >>> str(found).splitlines()[0]
     'saddle-node: RestitutionOrbit'
     """
     check(limits, locals())
+    if _arrays(impact, n):
+        return _on_grid("limits", model_of_limits, n=n, **impact)
     of = model_of_limits(n, **impact)
-    return Limits(of.saddle_node(n), of.period_doubling(n))
+    return Limits(plain(of.saddle_node(n)), plain(of.period_doubling(n)))
 
 
 def model_of_impact(amplitude: Any, phase: Any, velocity: Any, **impact: Any) -> ImpactModel:
@@ -306,7 +345,7 @@ def simulate(
     velocity: Finite = -math.pi,
     impacts: Impacts = 100,
     **impact: Any,
-) -> ImpactSequence:
+) -> Any:
     """Impacts in order, from a first one at a phase of the table.
 
     Parameters
@@ -322,6 +361,11 @@ def simulate(
     impact
         The parameters of :func:`model`.
 
+    Returns
+    -------
+    ImpactSequence
+        Arrays with one entry for each impact; of several balls shape (impact, ...).
+
     Raises
     ------
     ModelError
@@ -334,4 +378,5 @@ def simulate(
     """
     check(simulate, locals())
     of = model_of_impact(amplitude, phase, velocity, **impact)
-    return of.simulate(amplitude, phase, velocity, impacts)
+    found = of.simulate(amplitude, phase, velocity, impacts)
+    return found if found.status.shape else Single(found)

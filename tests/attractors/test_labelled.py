@@ -116,7 +116,8 @@ def test_the_command_line_says_the_same(capsys, tmp_path):
     answer = json.loads(capsys.readouterr().out)
     assert (answer["kind"], answer["periods"], answer["impacts"]) == ("locked", 8, 11)
     picture = tmp_path / "found.png"
-    wanted = f"diagram --restitution 0.5 --amplitude 1 2 --points 5 --impacts 300 --plot {picture} --json"
+    wanted = "diagram --restitution 0.5 --amplitude 1 2 --points 5 --impacts 300 --json"
+    wanted += f" --plot {picture}"
     main(wanted.split())
     rows = json.loads(capsys.readouterr().out)["diagram"]
     assert [row["amplitude"] for row in rows] == [1.0, 1.25, 1.5, 1.75, 2.0]

@@ -14,6 +14,12 @@ from bouncing_ball.contacts.signature import free_impact
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError
 
+STEEL_ON_GLASS = {
+    "youngs_modulus": 2.1e11,
+    "poissons_ratio": 0.3,
+    "table_youngs_modulus": 6.4e10,
+    "table_poissons_ratio": 0.2,
+}
 MASS, TABLE = 0.02, Table(300.0, 1e-4, 9.81)
 
 
@@ -72,10 +78,23 @@ def test_the_hertz_contact_is_that_of_the_energy():
         ({"stiffness": 1e6, "contact_time": 1e-3, "restitution": 0.5}, "contradict each other"),
         ({"contact_time": 1e-3, "damping": 1.0}, "damping needs stiffness"),
         # Critical: 2√(km).
-        ({"stiffness": 2.0, "damping": 0.4}, "damping_ratio = 1.0 is not so far below 1"),
+        ({"stiffness": 2.0, "damping": 0.4}, "= 1 is not so far below 1"),
         ({"stiffness": 1e6, "damping_ratio": 1.0}, "the critical damping"),
         ({"stiffness": 1e6, "rebound_height": 0.5}, "needed together"),
-        ({"reduced_modulus": 1e11, "restitution": 0.5}, "needed together"),
+        ({"reduced_modulus": 1e11, "restitution": 0.5}, "reduced_modulus needs radius"),
+        (
+            {"radius": 1e-2, "restitution": 0.5},
+            "radius of a Hertz contact goes with reduced_modulus",
+        ),
+        ({**STEEL_ON_GLASS, "restitution": 0.5}, "youngs_modulus needs radius"),
+        (
+            {"youngs_modulus": 1e11, "restitution": 0.5},
+            "youngs_modulus needs poissons_ratio and table",
+        ),
+        (
+            {**STEEL_ON_GLASS, "radius": 1e-2, "reduced_modulus": 1e11, "restitution": 0.5},
+            "reduced_modulus and youngs_modulus contradict each other",
+        ),
         ({"stiffness": 1e6, "drop_height": 0.5, "rebound_height": 1.0}, "above drop_height"),
     ],
 )
@@ -87,3 +106,26 @@ def test_what_does_not_suffice_or_contradicts(given, says):
 
 def test_a_drop_test_without_loss():
     assert found(stiffness=1e6, drop_height=1.0, rebound_height=1.0) == pytest.approx((1e6, 0))
+
+
+def test_both_bodies_of_a_hertz_contact_yield_by_boussinesq():
+    radius, depth = 5e-3, 1e-6
+    law = case_of(
+        {**STEEL_ON_GLASS, "radius": radius, "restitution": 0.9, "mass": MASS},
+        TABLE,
+        Release.DISPLACEMENT,
+        [1],
+    ).law
+    # The law is in units of g/Ω² and of the weight.
+    force = MASS * TABLE.gravity * float(law.stiffness) * (depth / TABLE.length) ** 1.5
+    edge = math.sqrt(radius * depth)
+    peak = 3 * force / (2 * math.pi * edge**2)
+    # Point loads p dA on the surface of a half-space sink its middle by (1 - ν²) p dA/(π E r).
+    spread = 2 * math.pi * quad(lambda r: peak * math.sqrt(1 - (r / edge) ** 2), 0, edge)[0]
+    sunk = [
+        (1 - STEEL_ON_GLASS[f"{of}poissons_ratio"] ** 2)
+        / (math.pi * STEEL_ON_GLASS[f"{of}youngs_modulus"])
+        * spread
+        for of in ("", "table_")
+    ]
+    assert sum(sunk) == pytest.approx(depth, rel=1e-12)

@@ -136,7 +136,7 @@ def test_ways_to_say_the_same():
     one, omega = design(**STEEL, restitution=0.85, n=1), 2 * math.pi * 50
     for rate in ({"angular_frequency": f"{omega!r} rad/s"}, {"period": "20 ms"}):
         other = design(
-            **rate, mass=0.02, amplitude=0.8 * 9.80665 / omega**2, gravity="1 g", n=1,
+            **rate, mass=0.02, table_amplitude=0.8 * 9.80665 / omega**2, gravity="1 g", n=1,
             contact_time=one.contact_time, drop_height="1 m", rebound_height=0.85**2,
         )  # fmt: skip
         assert other.frequency_ratio == pytest.approx(one.frequency_ratio, rel=1e-12)
@@ -301,7 +301,7 @@ def test_no_orbit_or_no_contact(change, says, one_line):
         ({"mass": None}, "mass is missing"),
         ({"frequency": None}, "how fast the table moves is missing"),
         ({"acceleration": None}, "how far the table moves is missing"),
-        ({"amplitude": "1 mm"}, "contradict each other"),
+        ({"table_amplitude": "1 mm"}, "contradict each other"),
         ({"quantity": "colour"}, "one of max_height"),
         ({"release": "glue"}, "unknown release"),
         ({"restitution": 0.0}, "restitution = 0 is not a number in (0, 1]"),
@@ -312,6 +312,10 @@ def test_no_orbit_or_no_contact(change, says, one_line):
         ({"frequency": 1e300}, "frequency = 1e+300 Hz is not a number in"),
         ({"mass": 1e-300}, "mass = 1e-300 kg is not a number in"),
         (HERTZ | {"stiffness": None, "release": "force"}, "released at δ = 0"),
+        ({"tolerance": 5}, "tolerance = 5 is not a number in (0, 1): did you mean 5 %?"),
+        ({"tolerance": 1}, "did you mean 1 %?"),
+        ({"restitution": "85"}, "restitution = 85 is not a number in (0, 1]: did you mean 85 %?"),
+        ({"tolerance": 0}, "tolerance = 0 is not a number in (0, 1)"),
     ],
 )
 def test_mistakes(change, says, one_line):
@@ -332,6 +336,13 @@ def test_the_orbit_of_a_choice_is_that_of_the_restitution_model():
     assert found.notes[0] == "at this Λ the contact has no 4-T orbit"
 
 
+def test_a_tolerance_in_percent_and_one_with_many_digits():
+    one, other = (design(**STEEL, restitution=0.85, n=1, tolerance=x) for x in ("5 %", 0.05))
+    assert one.verdict == other.verdict and one.verdict.endswith("within 5 %.")
+    fine = design(**STEEL, restitution=0.85, n=1, tolerance=1e-6)
+    assert "1.2 % off, beyond 0.0001 %" in fine.verdict
+
+
 def test_a_tolerance_that_every_contact_meets_needs_no_frequency_ratio():
-    found = design(**STEEL, restitution=0.85, tolerance=2.0)
+    found = design(**STEEL, restitution=0.85, quantity="permanent_contact", tolerance=0.99)
     assert found.reason == "the error is within the tolerance at every frequency ratio scanned"

@@ -67,7 +67,7 @@ def test_a_contact_without_a_table_is_that_of_one_with_it():
         ({"engine": "unreal"}, "unknown engine 'unreal': one of generic, mujoco"),
         ({"release": "displacement"}, "mujoco has no displacement release"),
         ({"mass": None}, "mass is missing"),
-        ({"stiffness": None}, "how stiff the contact is is missing"),
+        ({"stiffness": None}, "no stiffness: give stiffness, or contact_time"),
         ({"restitution": None}, "how much the contact loses is missing"),
         ({"measured_restitution": 0.7}, "contradict each other"),
         ({"restitution": 0.1}, "the range of the force release"),

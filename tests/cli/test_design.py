@@ -40,7 +40,7 @@ def test_json_is_the_answer_of_the_call(ask):
 
 
 def test_the_text_begins_with_the_verdict_of_the_readme(said):
-    text = said(*CASE, *STIFF)
+    text = said(*CASE, *STIFF, "--all")
     lines = text.splitlines()
     readme = (Path(__file__).parents[2] / "README.md").read_text("utf-8")
     assert lines[0] in readme and lines[1] in readme
@@ -49,6 +49,15 @@ def test_the_text_begins_with_the_verdict_of_the_readme(said):
     # It does not depend on n.
     assert text.count("threshold of permanent contact") == 1
     assert lines[-1].split()[-6:] == ["0.02", "%"] * 3
+
+
+def test_without_a_family_each_has_one_line(said):
+    short = said(*CASE, *STIFF).splitlines()
+    assert [line.split()[:2] for line in short[-4:-1]] == [[f"{n}-T", "yes"] for n in (1, 2, 3)]
+    assert "--n 1 prints all" in short[-1] and "--all of all" in short[-1]
+    assert len(short) < 35
+    one = said(*CASE, *STIFF, "--n", "2")
+    assert "2-T orbit" in one and "period doubling at Λ" in one and "3-T" not in one
 
 
 def test_choosing(said):
@@ -63,6 +72,16 @@ def test_choosing(said):
     [
         (("--stiffness", "-5N/m"), 2, "stiffness = -5 N/m is not a number in"),
         (("--acceleration", "0.1 g"), 1, "no n-T orbit in any model"),
+        (
+            ("--acceleration", "0.8"),
+            1,
+            "of gravity, and the 1-T orbit needs 0.2526; did you mean 0.8 g?",
+        ),
+        (("--damping-ratio", "0.1"), 2, "--damping-ratio and --restitution contradict each other"),
+        (("--rebound-height", "1 m"), 2, "--rebound-height and --drop-height are needed together"),
+        (("--tolerance", "5"), 2, "--tolerance = 5 is not a number in (0, 1): did you mean 5 %?"),
+        (("--gravity", "1.62 m/s3"), 2, "--gravity = 1.62 m/s3 is of the dimension"),
+        (("--radius", "5 mm"), 2, "--radius of a Hertz contact goes with --reduced-modulus"),
         (("--plot", "page.jpg"), 2, "'page.jpg' does not end in .pdf or .png or .svg"),
         (("--plot", "/dev/null/page.png"), 2, "/dev/null/page.png cannot be written"),
     ],

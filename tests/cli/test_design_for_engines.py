@@ -57,6 +57,7 @@ def test_what_a_solref_means_needs_no_table(ask, said):
     found = ask(*FROM, "--mass", "500 g")
     assert found["stiffness"] == pytest.approx(142122) and found["engine"] is None
     assert found["damping"] == pytest.approx(34.4)
+    assert found["natural_frequency"] == pytest.approx(math.sqrt(284244))
     assert found["damping_ratio"] == pytest.approx(0.0645, abs=5e-5)
     assert found["measured_restitution"] == pytest.approx(0.8231, abs=1e-4)
     # The default impedance is told what it costs.

@@ -60,7 +60,9 @@ def test_counts_words_and_choices_are_exact(values, other):
 
 def test_no_budget_hides_what_a_reader_sees():
     # A tenth of a pixel of a picture of a thousand, but where rounding decides a whole sample.
-    budgets = [budget for own in ARTIFACTS.values() for budget in own.values()]
+    # What engines gave is a measurement, and no picture of the run is made of a new one.
+    computed = [own for name, own in ARTIFACTS.items() if name != "engines"]
+    budgets = [budget for own in computed for budget in own.values()]
     assert len(budgets) > 20
     assert all(budget.size <= 1e-4 or budget.over == "point" for budget in budgets)
 

@@ -1,7 +1,8 @@
-"""Texts, pictures and whole folders, falsified in ways that people meet, and the reports."""
+"""Texts, pictures and folders with typical falsifications, and the reports on them."""
 
 import os
 import shutil
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,7 +17,10 @@ from bouncing_ball.compare.page import to_html
 from bouncing_ball.compare.pictures import BUDGET, compare_pictures
 from bouncing_ball.compare.terminal import note, to_terminal
 from bouncing_ball.compare.texts import compare_texts
+from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
 from bouncing_ball.errors import ModelError
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def test_equal_folders_are_identical_and_every_file_is_compared(pair):
@@ -25,6 +29,23 @@ def test_equal_folders_are_identical_and_every_file_is_compared(pair):
     compared = {part.name for found in comparison.parts for part in found.parts}
     paths = (path for path in pair.record.rglob("*") if path.is_file())
     assert compared == {path.relative_to(pair.record).as_posix() for path in paths}
+
+
+def test_what_engines_gave_is_compared_where_they_ran(pair, one_line):
+    for folder in (pair.record, pair.new):
+        with pytest.raises(ModelError) as error:
+            pair.artifact("engines")
+        one_line(error, "unknown artifact engines")
+        (folder / "config").mkdir()
+        shutil.copyfile(ROOT / "config/engines.nc", folder / "config/engines.nc")
+    assert pair.artifact("engines").outcome is Outcome.IDENTICAL
+    # Another machine and another version: other times, and heights that a step may give.
+    moved = read_dataset(pair.new / "config/engines.nc")
+    moved.bounce_time.values *= 2
+    for off, outcome in ((9, Outcome.WITHIN), (2, Outcome.DRIFTED)):
+        moved.height_error.values += off * moved.step_allowance.values
+        write_dataset(moved, pair.new / "config/engines.nc")
+        assert pair.artifact("engines").outcome is outcome
 
 
 @pytest.mark.parametrize(

@@ -153,7 +153,7 @@ def test_the_jacobian_of_the_contact(name, n, above, side):
     def contact(state):
         phase, relative, lam = state
         end = model.simulate(lam, phase, relative + lam * np.cos(phase), 1)
-        ends = end.contact_duration, end.release_displacement, end.relative_release_velocity
+        ends = end.contact_duration, end.release_displacement, end.relative_bounce_velocity
         return np.array([float(x[0]) for x in ends])
 
     parts = orbit.phase, orbit.relative_impact_velocity, orbit.amplitude
@@ -353,5 +353,5 @@ def test_each_impact_of_a_simulation_has_its_own_restitution():
     found = OWN["MODEL"].simulate(0.4, np.array([0.0, 1.0]), np.array([-3.0, -5.0]), 30)
     speed = -found.relative_velocity
     expected = np.minimum(1.0, (0.7 / speed) ** 0.25)
-    np.testing.assert_allclose(found.relative_release_velocity / speed, expected, rtol=1e-12)
+    np.testing.assert_allclose(found.relative_bounce_velocity / speed, expected, rtol=1e-12)
     assert np.ptp(expected) > 0.1

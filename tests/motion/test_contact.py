@@ -48,7 +48,7 @@ def test_twenty_impacts_of_a_taylor_integrator(case, release, taylor_ball):
     reference = taylor_ball(release is Release.FORCE)
     expected = reference.impacts(lam, case[2], contact.damping_ratio, phase, velocity, 20)
     got = simulate(contact, lam, phase, velocity, 20)
-    found = (got.time, got.impact_velocity, got.contact_duration, got.release_velocity)
+    found = (got.time, got.impact_velocity, got.contact_duration, got.bounce_velocity)
     # Measured: below 6e-13. The clock of the integrator is absolute: its rounding, 1e-14,
     # is a velocity error of ϖ times that and the impact velocity.
     for a, b in zip(expected, found, strict=True):
@@ -119,7 +119,7 @@ def test_an_elastic_ball_on_a_table_at_rest_keeps_its_energy():
     assert sequence.status == Status.BOUNCING
     # 1000 impacts with an error of a unit in the last place each.
     np.testing.assert_allclose(sequence.impact_velocity, -speed, rtol=1e-13)
-    np.testing.assert_allclose(sequence.release_velocity, speed, rtol=1e-13)
+    np.testing.assert_allclose(sequence.bounce_velocity, speed, rtol=1e-13)
     # Symmetric about the deepest point: tan(ϖ D/2) = -ϖ u, on the far side of π/2.
     duration = 2 / omega * (np.pi - np.arctan(omega * speed))
     np.testing.assert_allclose(sequence.contact_duration, duration, rtol=1e-13)
@@ -240,7 +240,7 @@ def test_next_to_the_undamped_resonance(detuning):
     # The flow keeps its digits at the resonance too.
     end = contact.flow(impact.contact_duration[0], 0.0, -3.0, 0.4, 1.2)
     assert abs(end.displacement) < 1e-12
-    assert abs(end.velocity - impact.relative_release_velocity[0]) < 1e-12
+    assert abs(end.velocity - impact.relative_bounce_velocity[0]) < 1e-12
 
 
 def test_nearly_critical_damping():

@@ -87,7 +87,7 @@ def test_every_observable_of_an_impact_is_of_second_order(release):
         contact = SpringDamper(omega, 0.2, release)
         exact = simulate(contact, lam, phase, velocity, 1)
         got = simulate(Signature(contact), lam, phase, velocity, 1)
-        names = ("contact_duration", "relative_release_velocity", "release_displacement")
+        names = ("contact_duration", "relative_bounce_velocity", "release_displacement")
         found.append([np.abs(getattr(got, k)[0] - getattr(exact, k)[0]) for k in names])
     first, second = np.array(found)
     assert np.all(np.abs(np.median(np.log2(first / second), axis=1) - 2) < 0.02)
@@ -124,7 +124,7 @@ def test_a_weak_impact_stays_and_lifts_off():
     lifted = simulate(law, 1.5, 0.0, 1.5 - 1e-3, 2)
     phase = float(lifted.release_phase[0])
     assert phase == pytest.approx(np.arcsin(1 / 1.5), abs=1e-14)
-    assert lifted.relative_release_velocity[0] == 0
+    assert lifted.relative_bounce_velocity[0] == 0
     # In the exact contact the same ball leaves at the same moment, but for the
     # spring, which lets go where its force has gone: a delay of order 1/ϖ.
     exact = simulate(SpringDamper(20.0, 0.3), 1.5, 0.0, 1.5 - 1e-3, 1)

@@ -34,10 +34,10 @@ def test_neighbours_part_at_the_rate_of_the_exponent():
     one = beside(lam, 121, balls=20)
     parting = stretching(one, R, skip)
     logarithm = np.zeros(20)
-    phase, velocity = one.phase[0], one.release_velocity[0]
+    phase, velocity = one.phase[0], one.bounce_velocity[0]
     a, b = phase + tiny, velocity + 0
     for k in range(120):
-        here = impact_cycle(one.phase[k], one.release_velocity[k], R, lam)
+        here = impact_cycle(one.phase[k], one.bounce_velocity[k], R, lam)
         there = impact_cycle(a, b, R, lam)
         shift = reduce_angle(there[0] - here[0]), there[1] - here[1]
         distance = np.hypot(*shift)

@@ -39,7 +39,7 @@ def test_lift_off(lam):
     sequence = simulate(0.3, lam, -0.4, lam * np.cos(-0.4), 2)
     assert abs(float(sequence.release_phase[0]) - np.arcsin(1 / lam)) < 1e-14
     assert float(sequence.contact_duration[0]) == pytest.approx(0.4 + np.arcsin(1 / lam))
-    assert sequence.relative_release_velocity[0] == 0 and sequence.settling[0] == 0
+    assert sequence.relative_bounce_velocity[0] == 0 and sequence.settling[0] == 0
     # It lands where free flight from there meets the table.
     start = float(lift_off_phase(lam))
     s = float(sequence.time[1] - sequence.contact_duration[0])
@@ -50,7 +50,7 @@ def test_lift_off(lam):
 def test_a_table_below_gravity_keeps_the_ball():
     sequence = simulate(0.5, [0.0, 0.5, 1.0], 0.0, -6.0, 300)
     assert np.all(sequence.status == Status.PERMANENT_CONTACT)
-    assert np.all(np.isnan(sequence.relative_release_velocity[sequence.contact_duration > 0]))
+    assert np.all(np.isnan(sequence.relative_bounce_velocity[sequence.contact_duration > 0]))
 
 
 def chattering(r, lam, phase, speed):

@@ -21,25 +21,25 @@ class Table:
 
     Parameters
     ----------
-    angular_frequency, height : float
+    angular_frequency, table_amplitude : float
         Ω in rad/s and the amplitude A of the table in m.
     gravity : float
         g in m/s²; in a gear pair the drag torque over the inertia.
 
     Examples
     --------
-    >>> Table(angular_frequency=2.0, height=2.0, gravity=8.0).amplitude
+    >>> Table(angular_frequency=2.0, table_amplitude=2.0, gravity=8.0).amplitude
     1.0
     """
 
     angular_frequency: float
-    height: float
+    table_amplitude: float
     gravity: float
 
     @property
     def amplitude(self) -> float:
         """Λ = AΩ²/g."""
-        return self.height * self.angular_frequency**2 / self.gravity
+        return self.table_amplitude * self.angular_frequency**2 / self.gravity
 
     @property
     def time(self) -> float:

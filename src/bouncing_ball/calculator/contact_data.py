@@ -7,7 +7,11 @@ Of the free impact that ends at the angle π - 2α (:mod:`bouncing_ball.contacts
 A drop test measures r = √(h′/h), whatever releases the contact. A Hertz contact has the
 force ``k x^{3/2} + C √(mk) x^{1/4} x′``, k = (4/3) E* √R, with the damping of Tsuji: its r
 is the same at every speed (:mod:`bouncing_ball.contacts.laws.tsuji`), and so E*, R and r are
-all of it. Everything in SI units.
+all of it. Of two elastic bodies, the ball and the table (Hertz), ::
+
+    1/E* = (1 - ν₁²)/E₁ + (1 - ν₂²)/E₂
+
+Everything in SI units.
 """
 
 import math
@@ -21,15 +25,17 @@ from bouncing_ball.contacts.laws.tsuji import Tsuji, tsuji_damping
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import free_impact
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.errors import ModelError, require
+from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
 
 # What says how stiff a contact is; a modulus goes with a radius.
-STIFF = ("stiffness", "contact_time", "reduced_modulus")
+STIFF = ("stiffness", "contact_time", "reduced_modulus", "youngs_modulus")
+MATERIALS = ("youngs_modulus", "poissons_ratio", "table_youngs_modulus", "table_poissons_ratio")
+"""Moduli E and Poisson's ratios ν of the ball and of the table, from which E* follows."""
 # What says how much it loses; the height of a rebound goes with that of the drop.
 LOSSY = ("damping", "damping_ratio", "restitution", "measured_restitution", "rebound_height")
-_PAIRS = {"reduced_modulus": "radius", "rebound_height": "drop_height"}
+_PAIRS = {"rebound_height": "drop_height"}
 
 Given = Mapping[str, float]
 
@@ -41,10 +47,10 @@ def _one_of(given: Given, names: tuple[str, ...], what: str, give: str = "") -> 
     """The one of some parameters that is given; none is an error if ``give`` says what to give."""
     found = [name for name in names if name in given]
     if len(found) > 1:
-        both = " and ".join(found)
-        raise ModelError(f"{both} contradict each other: each says {what}; give one of them")
+        both = " and ".join(f"{{{name}}}" for name in found)
+        raise ParameterError(f"{both} contradict each other: each says {what}; give one of them")
     if give and not found:
-        raise ModelError(f"{what} is missing: give {give}")
+        raise ParameterError(f"{what} is missing: give {give}")
     return found[0] if found else ""
 
 
@@ -61,27 +67,72 @@ def loss(given: Given, release: Release) -> float:
     >>> loss({"drop_height": 4.0, "rebound_height": 4.0}, Release.DISPLACEMENT)
     0.0
     """
-    ways = "damping, damping_ratio, restitution, measured_restitution, or drop_height and"
-    name = _one_of(given, LOSSY, "how much the contact loses", f"one of {ways} rebound_height")
+    single = ", ".join(f"{{{name}}}" for name in LOSSY[:-1])
+    ways = f"one of {single}, or {{drop_height}} and {{rebound_height}}"
+    name = _one_of(given, LOSSY, "how much the contact loses", ways)
     if name == "damping":
-        raise ModelError("damping needs stiffness, which is missing; a restitution does not")
+        raise ParameterError(
+            "{damping} needs {stiffness}, which is missing; a restitution does not"
+        )
     if name == "damping_ratio":
-        return _oscillating(given[name], release)
+        return _oscillating(given[name], release, "{damping_ratio}")
     if name != "rebound_height":
         rule = Release.DISPLACEMENT if name == "restitution" else release
         return float(damping_ratio(given[name], rule))
     height, drop = given[name], given["drop_height"]
     if height > drop:
-        raise ModelError(f"rebound_height = {height:g} m is above drop_height = {drop:g} m")
+        raise ParameterError(f"{{rebound_height}} {height:g} m is above {{drop_height}} {drop:g} m")
     return float(damping_ratio(math.sqrt(height / drop), release))
 
 
-def _oscillating(zeta: float, release: Release) -> float:
+def _oscillating(zeta: float, release: Release, name: str) -> float:
     # Where no damper pulls, an overdamped ball comes back, too.
     pulls = release is Release.DISPLACEMENT
     bounces = not pulls or (zeta < 1 and SpringDamper(1.0, zeta, release).restitution > 0)
-    require(bounces, zeta, "damping_ratio", "so far below 1, the critical damping, that it bounces")
+    if not bounces:
+        enough = "so far below 1, the critical damping, that it bounces"
+        raise ParameterError(f"{name} = {zeta:.12g} is not {enough}")
     return zeta
+
+
+def reduced_modulus(given: Given) -> float | None:
+    """E* of a Hertz contact in Pa, given or by the materials of both bodies; None of another.
+
+    Raises
+    ------
+    ModelError
+        If a part of them is missing.
+
+    Examples
+    --------
+    The same material twice, without lateral contraction: half its modulus. Against a table that is
+    much stiffer, the ball's own:
+
+    >>> same = dict.fromkeys(MATERIALS, 0.0) | {"radius": 1.0}
+    >>> reduced_modulus(same | {"youngs_modulus": 2.0, "table_youngs_modulus": 2.0})
+    1.0
+    >>> round(reduced_modulus(same | {"youngs_modulus": 2.0, "table_youngs_modulus": 1e12}), 9)
+    2.0
+    """
+    known = [name for name in MATERIALS if name in given]
+    if known:
+        missing = " and ".join(f"{{{name}}}" for name in MATERIALS if name not in given)
+        if missing:
+            raise ParameterError(
+                f"{{{known[0]}}} needs {missing}: both bodies are elastic, each with E and ν"
+            )
+    elastic = "youngs_modulus" if known else "reduced_modulus"
+    if (elastic in given) != ("radius" in given):
+        ways = "{reduced_modulus}, or with {youngs_modulus} and the other data of both materials"
+        raise ParameterError(
+            f"{{{elastic}}} needs {{radius}}, the radius of curvature at the contact"
+            if elastic in given
+            else f"{{radius}} of a Hertz contact goes with {ways}"
+        )
+    if not known:
+        return given.get("reduced_modulus")
+    ball, ball_ratio, table, table_ratio = (given[name] for name in MATERIALS)
+    return 1 / ((1 - ball_ratio**2) / ball + (1 - table_ratio**2) / table)
 
 
 def hertz(mass: float, modulus: float, radius: float, restitution: float, table: Table) -> Tsuji:
@@ -101,13 +152,13 @@ def hertz(mass: float, modulus: float, radius: float, restitution: float, table:
 def table_of(given: Given) -> Table:
     """The table, from one of the ways to say how fast and one to say how far it moves."""
     fast = ("frequency", "angular_frequency", "period")
-    rate = _one_of(given, fast, "how fast the table moves", "frequency, such as 50 Hz")
-    ways = "amplitude, such as 0.1 mm, or acceleration, such as 2 g"
-    far = _one_of(given, ("amplitude", "acceleration"), "how far the table moves", ways)
+    rate = _one_of(given, fast, "how fast the table moves", "{frequency}, such as 50 Hz")
+    ways = "{acceleration}, such as 2 g, or {table_amplitude}, such as 0.1 mm"
+    far = _one_of(given, ("table_amplitude", "acceleration"), "how far the table moves", ways)
     value, turn = given[rate], 2 * math.pi
     omega = {"frequency": turn * value, "period": turn / value}.get(rate, value)
-    height = given["amplitude"] if far == "amplitude" else given["acceleration"] / omega**2
-    return Table(omega, height, given.get("gravity", STANDARD_GRAVITY))
+    moved = given[far] if far == "table_amplitude" else given["acceleration"] / omega**2
+    return Table(omega, moved, given.get("gravity", STANDARD_GRAVITY))
 
 
 def meant(asked: Sequence[int], restitution: float, amplitude: float) -> int:
@@ -132,28 +183,30 @@ def case_of(given: Given, table: Table, release: Release, asked: Sequence[int]) 
     """
     for first, second in _PAIRS.items():
         if (first in given) != (second in given):
-            raise ModelError(f"{first} and {second} are needed together")
+            raise ParameterError(f"{{{first}}} and {{{second}}} are needed together")
     if "mass" not in given:
-        raise ModelError("mass is missing: give it, such as 20 g")
+        raise ParameterError("the mass is missing: give {mass}, such as 20 g")
     stiff, mass = _one_of(given, STIFF, "how stiff the contact is"), given["mass"]
+    modulus = reduced_modulus(given)
     if not stiff:
         return None
     if stiff == "stiffness":
         omega = math.sqrt(given["stiffness"] / mass)
         if _one_of(given, LOSSY, "how much the contact loses") == "damping":
-            zeta = _oscillating(given["damping"] / (2 * mass * omega), release)
+            zeta = given["damping"] / (2 * mass * omega)
+            zeta = _oscillating(zeta, release, "damping ratio ζ of this {damping}")
         else:
             zeta = loss(given, release)
         return Case(mass, table, SpringDamper(omega / table.angular_frequency, zeta, release))
     # In the unit of time in which the contact's own frequency is 1.
     unit, law = SpringDamper(1.0, loss(given, release), release), None
-    if stiff == "contact_time":
+    if modulus is None:
         duration = given["contact_time"] / table.time
     else:
         if release is not Release.DISPLACEMENT:
             raise ModelError("a Hertz contact with Tsuji's damping is released at δ = 0: no force")
         r = float(unit.restitution)
-        law = hertz(mass, given["reduced_modulus"], given["radius"], r, table)
+        law = hertz(mass, modulus, given["radius"], r, table)
         speed = rigid_speed(meant(asked, r, table.amplitude), r)
         duration = float(free_impact(law, speed).duration)
     ratio = float(unit.free_duration) / duration

@@ -19,14 +19,14 @@ from bouncing_ball.calculator.results import (
     Needed,
     TimeStep,
 )
-from bouncing_ball.calculator.units import Unit, number, shown
+from bouncing_ball.calculator.units import Unit, number, percent
 from bouncing_ball.calculator.verdict import Verdict, assessed, chosen, notes
 from bouncing_ball.calls import Index, Rule
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.engines import engine_named
 from bouncing_ball.engines.engine import ERROR, Physical
-from bouncing_ball.errors import ModelError, NoOrbitError, require
+from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, require
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.signatures import Range
 
@@ -39,6 +39,7 @@ _FAMILIES = range(1, 9)
 # Beyond, the squares of ϖ and Λ leave no digits; as on the rest of the command line.
 _LARGEST = 1e8
 _LOSS = Unit("", "0.85", Range(0, 1, "(]"))
+_POISSON = Unit("", "0.3", Range(-1, 0.5, "(]"))
 _NONE_TOO = Range(0, 1e40, "[]")
 
 
@@ -48,12 +49,16 @@ def design(
     frequency: Annotated[Any, Unit("Hz", "50 Hz")] = None,
     angular_frequency: Annotated[Any, Unit("rad/s", "314 rad/s")] = None,
     period: Annotated[Any, Unit("s", "20 ms")] = None,
-    amplitude: Annotated[Any, Unit("m", "0.1 mm")] = None,
+    table_amplitude: Annotated[Any, Unit("m", "0.1 mm")] = None,
     acceleration: Annotated[Any, Unit("m/s^2", "2 g")] = None,
     gravity: Annotated[Any, Unit("m/s^2", "9.81 m/s^2")] = None,
     stiffness: Annotated[Any, Unit("N/m", "1e6 N/m")] = None,
     contact_time: Annotated[Any, Unit("s", "50 us")] = None,
     reduced_modulus: Annotated[Any, Unit("Pa", "115 GPa")] = None,
+    youngs_modulus: Annotated[Any, Unit("Pa", "210 GPa")] = None,
+    poissons_ratio: Annotated[Any, _POISSON] = None,
+    table_youngs_modulus: Annotated[Any, Unit("Pa", "210 GPa")] = None,
+    table_poissons_ratio: Annotated[Any, _POISSON] = None,
     radius: Annotated[Any, Unit("m", "5 mm")] = None,
     damping: Annotated[Any, Unit("N*s/m", "10 N s/m", _NONE_TOO)] = None,
     damping_ratio: Annotated[Any, Unit("", "0.05", _NONE_TOO)] = None,
@@ -64,7 +69,7 @@ def design(
     n: Index | None = None,
     release: Rule | None = None,
     quantity: str = "max_height",
-    tolerance: Annotated[Any, Unit("", "1 %")] = 0.01,
+    tolerance: Annotated[Any, Unit("", "1 %", Range(0, 1))] = 0.01,
     engine: str | None = None,
     restitution_error: Annotated[Any, Unit("", "0.001", Range(0, 1))] = ERROR,
 ) -> Design:
@@ -81,8 +86,8 @@ def design(
         Mass m of the ball.
     frequency, angular_frequency, period
         How fast the table moves: one of the three. Hz are cycles, rad/s are not.
-    amplitude, acceleration
-        How far the table moves: one of the two. "2 g" is twice the standard gravity.
+    table_amplitude, acceleration
+        How far the table moves, in m or m/s²: one of the two. "2 g" is twice the standard gravity.
     gravity
         9.80665 m/s² by default; in a gear pair the drag torque takes its part.
     stiffness
@@ -91,8 +96,12 @@ def design(
         Duration of a free impact, in place of the stiffness.
     reduced_modulus
         E* of a Hertz contact with the damping of Tsuji, with its radius.
+    youngs_modulus, poissons_ratio
+        E and ν of the ball, in place of E*: 1/E* = (1 - ν²)/E of the ball plus that of the table.
+    table_youngs_modulus, table_poissons_ratio
+        E and ν of the table.
     radius
-        R of a Hertz contact.
+        R of a Hertz contact: the radius of curvature, of a ball on a plane table its own.
     damping
         c of the contact, with its stiffness.
     damping_ratio
@@ -113,7 +122,7 @@ def design(
         What must be right: max_height, bounce_velocity, phase, apparent_restitution,
         saddle_node, period_doubling or permanent_contact.
     tolerance
-        How far it may be off.
+        How far it may be off, as a share: "5 %" or 0.05.
     engine
         The engine whose contact this is: generic, mujoco, lammps, liggghts, pybullet, drake or
         mercurydpm. Its release is that of the contact, and a restitution is met under it.
@@ -144,7 +153,26 @@ def design(
     table = table_of(given)
     lam, asked = table.amplitude, _FAMILIES if n is None else [n]
     require(lam < _LARGEST, lam, "Λ", f"below {_LARGEST:g}")
-    case = case_of(given, table, rule, asked)
+    try:
+        return _answer(given, table, rule, asked, quantity, epsilon, question)
+    except NoOrbitError as error:
+        bare = str(acceleration).strip()
+        if not bare.replace(".", "", 1).isdigit():
+            raise
+        raise NoOrbitError(f"{error}; did you mean {bare} g?") from None
+
+
+def _answer(
+    given: dict[str, float],
+    table: Table,
+    rule: Release,
+    asked: Sequence[int],
+    quantity: str,
+    epsilon: float,
+    question: dict[str, Any],
+) -> Design:
+    """The verdict on a contact that is given, or the contact that is needed."""
+    lam, case = table.amplitude, case_of(given, table, rule, asked)
     if case is not None:
         ratio = float(case.contact.frequency_ratio)
         require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
@@ -161,7 +189,7 @@ def design(
     if need.status == ThresholdStatus.NEVER_WITHIN:
         raise NoOrbitError(
             f"no contact up to ϖ = {RATIOS[-1]:g} has its {QUANTITIES[Quantity(quantity)]} within "
-            f"{shown(epsilon, '%')} of the restitution model with r = {r:.4g}"
+            f"{percent(epsilon)} of the restitution model with r = {r:.4g}"
         )
     stiff = replace(contact, frequency_ratio=need.frequency_ratio or float(RATIOS[0]))
     case = Case(given["mass"], table, stiff)
@@ -191,14 +219,17 @@ def contact(
     # At 1 rad/s the frequency ratio is the contact's own frequency.
     case = case_of(given, Table(1.0, 1.0, STANDARD_GRAVITY), rule, [1])
     if case is None:
-        raise ModelError("how stiff the contact is is missing: give stiffness, or contact_time")
+        raise ParameterError("no stiffness: give {stiffness}, or {contact_time}")
     if case.law is not None:
         raise ModelError("a Hertz contact needs a table: its duration depends on the speed")
     zeta, omega = float(case.contact.damping_ratio), float(case.contact.frequency_ratio)
-    physical = Physical(case.mass, case.mass * omega**2, 2 * zeta * case.mass * omega)
+    stiffness = given.get("stiffness", case.mass * omega**2)
+    damping = given.get("damping", 2 * zeta * case.mass * omega)
+    physical = Physical(case.mass, stiffness, damping)
     return Contact(
         *physical,
         zeta,
+        omega,
         physical.contact_time(rule),
         str(rule),
         physical.restitution(rule),
@@ -211,8 +242,8 @@ def _under(engine: str | None, release: str | None, given: dict[str, float]) -> 
     if engine is None:
         return Release.of(release or Release.DISPLACEMENT)
     rule = engine_named(engine).release(release)
-    if "reduced_modulus" in given:
-        raise ModelError(f"a Hertz contact is not written for {engine}: give stiffness")
+    if "reduced_modulus" in given or "youngs_modulus" in given:
+        raise ParameterError(f"a Hertz contact is not written for {engine}: give {{stiffness}}")
     if "measured_restitution" not in given and "restitution" in given:
         given["measured_restitution"] = given.pop("restitution")
     return rule
@@ -231,8 +262,14 @@ def _read(parameters: Mapping[str, Any]) -> dict[str, float]:
         if parameters.get(name) is not None:
             given[name] = value = number(name, parameters[name], kind)
             if value not in kind.allowed:
-                said = f"{name} = {value:g} {kind.name}".rstrip()
-                raise ModelError(f"{said} is not {kind.allowed}")
+                said, given_as = (
+                    f"{{{name}}} = {value:g} {kind.name}".rstrip(),
+                    str(parameters[name]),
+                )
+                # A share that is above one was meant in percent.
+                share = kind.allowed.high == 1 <= value < 100 and "%" not in given_as
+                meant = f": did you mean {value:g} %?" if share else ""
+                raise ParameterError(f"{said} is not {kind.allowed}{meant}")
     return given
 
 

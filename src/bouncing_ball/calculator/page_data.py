@@ -52,7 +52,7 @@ def page(design: Design) -> xr.Dataset:
         {
             "needed": (("simple", "restitution"), from_there_on),
             "time": ("time", angle * table.time),
-            "table": ("time", table.height * np.sin(angle)),
+            "table": ("time", table.table_amplitude * np.sin(angle)),
             "ball": (("model", "time"), heights(angle) * table.length),
             "since": ("since", since * table.time),
             "gap": (("model", "since"), gap * table.length),

@@ -141,12 +141,16 @@ class Corrected:
 
 @dataclass(frozen=True)
 class Contact:
-    """A contact without a table, in SI units; ``engine`` has the settings that it asks for."""
+    """A contact without a table, in SI units; ``engine`` has the settings that it asks for.
+
+    ``natural_frequency`` is ω = √(k/m) in rad/s: on a table that moves with Ω it gives ϖ = ω/Ω.
+    """
 
     mass: Annotated[float, Row("mass in kg")]
     stiffness: Annotated[float, Row("stiffness", "N/m")]
     damping: Annotated[float, Row("damping", "N s/m")]
     damping_ratio: Annotated[float, Row("damping ratio ζ")]
+    natural_frequency: Annotated[float, Row("natural frequency ω = ϖΩ", "rad/s")]
     contact_time: Annotated[float, Row("contact time", "s")]
     release: str
     measured_restitution: Annotated[float, Row("restitution of a free impact")]

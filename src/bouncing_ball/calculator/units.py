@@ -16,13 +16,14 @@ from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball.errors import ParameterError
 from bouncing_ball.signatures import Range
 
 # A number, and what is left.
 _TEXT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
 # Letters, products, quotients and powers of one digit. A power of a power would
-# be evaluated, however large.
+# be evaluated, however large. A digit after a letter is a power as well: m/s2.
+_POWER = re.compile(r"(?<=[^\W\d_])(?=\d(?!\d))")
 _UNIT = re.compile(r"(?:[^\W\d]|[ ·*/%°²³¹⁻]|\^-?\d(?![\d^])|_0|1(?= */)){1,40}")
 
 
@@ -76,16 +77,16 @@ def number(name: str, value: Any, kind: Unit) -> float:
     >>> number("frequency", "20 ms", frequency)
     Traceback (most recent call last):
     ...
-    bouncing_ball.errors.ModelError: frequency = 20 ms is of the dimension [time]: \
+    bouncing_ball.errors.ParameterError: frequency = 20 ms is of the dimension [time]: \
 write it as '50 Hz'
     """
     short = textwrap.shorten(str(value), 60, placeholder="…")
-    given, unit = f"{name} = {short}", ""
+    given, unit = f"{{{name}}} = {short}", ""
     if isinstance(value, str):
         found = _TEXT.fullmatch(value.strip())
         if found is None:
-            raise ModelError(
-                f"{name} = {short!r} does not begin with a number: write it as {kind.example!r}"
+            raise ParameterError(
+                f"{{{name}}} = {short!r} does not begin with a number: write it as {kind.example!r}"
             )
         value, unit = found.groups()
     elif hasattr(value, "magnitude") and hasattr(value, "units"):
@@ -93,10 +94,10 @@ write it as '50 Hz'
     try:
         plain = float(value)
     except (TypeError, ValueError):
-        raise ModelError(f"{name} = {value!r} is neither a number nor a text") from None
+        raise ParameterError(f"{{{name}}} = {value!r} is neither a number nor a text") from None
     found_value = _converted(given, plain, unit, kind) if unit else plain
     if not math.isfinite(found_value):
-        raise ModelError(f"{given} is not a finite number")
+        raise ParameterError(f"{given} is not a finite number")
     return found_value
 
 
@@ -106,16 +107,28 @@ def _converted(given: str, value: float, unit: str, kind: Unit) -> float:
     if (kind.name, unit) == ("m/s^2", "g"):
         unit = "standard_gravity"
     # pint raises whatever its tokenizer does.
+    unit = _POWER.sub("^", unit)
     with suppress(Exception):
         if _UNIT.fullmatch(unit.replace("**", "^")):
             one = registry.Quantity(value, registry.parse_units(unit))
             why = f"is of the dimension {one.dimensionality}"
             # To the last digit but one: the digits that a user wrote are kept.
             return float(f"{one.m_as(kind.name):.15g}")
-    raise ModelError(f"{given} {why}: write it as {kind.example!r}")
+    raise ParameterError(f"{given} {why}: write it as {kind.example!r}")
 
 
 _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n"}
+
+
+def percent(share: float) -> str:
+    """A share that was asked for, with the digits it was given with.
+
+    Examples
+    --------
+    >>> percent(0.01), percent(1e-6), percent(0.125)
+    ('1 %', '0.0001 %', '12.5 %')
+    """
+    return f"{100 * share:.6g} %"
 
 
 def shown(value: float | None, unit: str = "") -> str:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from bouncing_ball.accuracy.quantities import Quantity
 from bouncing_ball.calculator.case import Case
 from bouncing_ball.calculator.results import QUANTITIES, Family, Needed
-from bouncing_ball.calculator.units import shown
+from bouncing_ball.calculator.units import percent, shown
 from bouncing_ball.contacts.release import Release
 
 
@@ -38,7 +38,7 @@ def _disagreement(family: Family) -> str | None:
 
 def assessed(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
     """The verdict on a given contact: the orbits agree, and the error is within the tolerance."""
-    tolerance, subject = shown(needed.tolerance, "%"), _subject(needed.quantity, family.n)
+    tolerance, subject = percent(needed.tolerance), _subject(needed.quantity, family.n)
     error, wrong = family.errors[needed.quantity], _disagreement(family)
     if wrong is None and error is None:
         name = QUANTITIES[Quantity(needed.quantity)]
@@ -77,7 +77,7 @@ def _reason(needed: Needed, frequency_ratio: float, good: bool, tolerance: str) 
 
 def chosen(si: Mapping[str, float], needed: Needed, n: int) -> Verdict:
     """The verdict on the most compliant contact within the tolerance."""
-    tolerance = shown(needed.tolerance, "%")
+    tolerance = percent(needed.tolerance)
     sentence = (
         f"A simulation needs a contact of at least {shown(si['stiffness'], 'N/m')}, with a contact "
         f"time of {shown(si['contact_time'], 's')} or less and a damping of "

@@ -128,7 +128,7 @@ def simulate(amplitude, phase, velocity, impacts, **impact: Any) -> Answer:
     """The sequence of impacts of one ball, as lists; null for what does not happen."""
     of = calls.model_of_impact(amplitude, phase, velocity, **impact)
     found = of.simulate(amplitude, phase, velocity, impacts)
-    names = ("time", "phase", "impact_velocity", "contact_duration", "release_velocity")
+    names = ("time", "phase", "impact_velocity", "contact_duration", "bounce_velocity")
     columns = np.array([getattr(found, name) for name in names])
     there = columns[:, np.isfinite(found.time)]
     sequence = [[x if math.isfinite(x) else None for x in column] for column in there.tolist()]

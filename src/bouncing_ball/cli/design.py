@@ -3,24 +3,32 @@
 from collections.abc import Mapping
 from dataclasses import asdict, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from bouncing_ball.accuracy.quantities import OF_IMPACTS, Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.calculator import design as calculator
 from bouncing_ball.calculator.contact_data import LOSSY, STIFF
 from bouncing_ball.calculator.results import QUANTITIES, Contact, Design, Family, rows
-from bouncing_ball.calculator.units import number, shown
+from bouncing_ball.calculator.units import number, percent, shown
+from bouncing_ball.cli.options import option
 from bouncing_ball.engines import engine_named
 from bouncing_ball.engines.engine import EngineSettings
 from bouncing_ball.errors import ModelError, ParameterError, extra
 from bouncing_ball.signatures import takes
 
 _DRAWINGS = (".pdf", ".png", ".svg")
-
+_SIMPLE = "error law", "corrected"
 
 # What says that there is a table; for an engine there need not be one.
-_TABLE = ("frequency", "angular_frequency", "period", "amplitude", "acceleration")
+_TABLE = ("frequency", "angular_frequency", "period", "table_amplitude", "acceleration")
+
+
+class Answer(NamedTuple):
+    """What was found, and whether all of it is printed."""
+
+    found: Design | Contact
+    whole: bool = True
 
 
 @takes(calculator.design)
@@ -31,8 +39,9 @@ def design(
     solref: str | None = None,
     solimp: str | None = None,
     parameters: Mapping[str, float] | None = None,
+    all_families: bool = False,
     **given: Any,
-) -> Design | Contact:
+) -> Answer:
     """The calculator's answer, and the page to print; of an engine's contact without a table.
 
     Parameters
@@ -47,6 +56,8 @@ def design(
         Of MuJoCo: "DMIN DMAX WIDTH".
     parameters
         Of another engine: its parameter, such as kn=1e5.
+    all_families
+        All that is known of every family; else a line of each, unless one is asked for.
 
     Raises
     ------
@@ -69,11 +80,12 @@ def design(
             raise ParameterError("{plot} needs a table, such as {frequency} and {acceleration}")
         names = {"engine", "release", *calculator.quantities()}
         alone = {name: value for name, value in given.items() if name in names}
-        return replace(calculator.contact(**alone), notes=notes)
+        return Answer(replace(calculator.contact(**alone), notes=notes))
     found = calculator.design(**given)
     if plot is not None:
         _draw(found, plot)
-    return replace(found, notes=(*notes, *found.notes))
+    whole = all_families or given.get("n") is not None
+    return Answer(replace(found, notes=(*notes, *found.notes)), whole)
 
 
 def _read(
@@ -127,8 +139,9 @@ def _family_lines(one: Family) -> list[str]:
     return lines + [_error(one, quantity) for quantity in OF_IMPACTS]
 
 
-def document(found: Design | Contact) -> dict[str, Any]:
+def document(given: Answer) -> dict[str, Any]:
     """The answer as JSON has it, with the settings of the engine that it is for."""
+    found = given.found
     answer = asdict(found)
     if isinstance(found, Design) and found.question["engine"]:
         answer["engine"] = asdict(found.engine_settings())
@@ -154,16 +167,46 @@ def _engine_lines(engine: EngineSettings) -> list[str]:
     ]
 
 
-def lines(found: Design | Contact) -> list[str]:
+def _short(found: Design) -> list[str]:
+    """A line of each family, and how to have the rest."""
+    quantity = found.needed.quantity
+    error = f"{QUANTITIES[Quantity(quantity)]} off by"
+    head = (
+        f"{'orbit':<9}{'stable':<9}{'greatest height':<18}{'peak force':<13}{error:<40}corrected by"
+    )
+    rows = [
+        f"{f'{one.n}-T':<9}{('no', 'yes')[one.is_stable]:<9}{shown(one.max_height, 'm'):<18}"
+        f"{shown(one.peak_force, 'N'):<13}{shown(one.errors[quantity], '%'):<40}"
+        f"{shown(one.corrected_errors[quantity], '%')}"
+        for one in found.orbits
+    ]
+    about = (
+        f"{option('n')} {found.n} prints all that is known of one, {option('all_families')} of all"
+    )
+    return ["", head, *rows, f"({about}.)"]
+
+
+def _whole(found: Design) -> list[str]:
+    """All that is known of the families."""
+    return [
+        *(line for one in found.orbits for line in _family_lines(one)),
+        "",
+        # That of the permanent contact is the same in all families.
+        _line("relative error", "restitution", *_SIMPLE),
+        _error(found.orbits[0], Quantity.PERMANENT_CONTACT),
+    ]
+
+
+def lines(given: Answer) -> list[str]:
     """The answer to read, the verdict first."""
+    found = given.found
     if isinstance(found, Contact):
         about = [_line(*row) for row in rows(replace(found, engine=None))]
         about += [_line("release", found.release), *(f"Note: {note}." for note in found.notes)]
         return about + (_engine_lines(found.engine) if found.engine else [])
     engine = _engine_lines(found.engine_settings()) if found.question["engine"] else []
     need, always = found.needed, ThresholdStatus.ALWAYS_WITHIN
-    simple = "error law", "corrected"
-    asked = f"ϖ for {shown(need.tolerance, '%')} in the {QUANTITIES[Quantity(need.quantity)]}"
+    asked = f"ϖ for {percent(need.tolerance)} in the {QUANTITIES[Quantity(need.quantity)]}"
     exact = "any" if need.status == always else shown(need.frequency_ratio)
     corrected = "any" if need.corrected_status == always else shown(need.corrected)
     return [
@@ -175,11 +218,7 @@ def lines(found: Design | Contact) -> list[str]:
         *(_line(*row) for row in rows(found)),
         f"Time step: {found.time_step.rule}.",
         "",
-        _line(asked, "exact", *simple),
+        _line(asked, "exact", *_SIMPLE),
         _line("", exact, shown(need.by_law), corrected),
-        *(line for one in found.orbits for line in _family_lines(one)),
-        "",
-        # That of the permanent contact is the same in all families.
-        _line("relative error", "restitution", *simple),
-        _error(found.orbits[0], Quantity.PERMANENT_CONTACT),
+        *(_whole(found) if given.whole else _short(found)),
     ]

@@ -16,7 +16,8 @@ from bouncing_ball.cli.output import say
 from bouncing_ball.errors import escaped
 from bouncing_ball.signatures import Range
 
-_OTHER_NAMES = {"parameters": "set", "from_engine": "from", "amplitudes": "amplitude"}
+_OTHER_NAMES = {"parameters": "set", "from_engine": "from", "all_families": "all"}
+_OTHER_NAMES |= {"amplitudes": "amplitude"}
 
 
 class Parser(argparse.ArgumentParser):
@@ -114,6 +115,8 @@ def _reading(annotation: Any) -> dict[str, Any]:
             return {"choices": kinds}
         case builtins.tuple:
             return _reading(kinds[0]) | {"nargs": 2, "metavar": ("FROM", "TO")}
+        case builtins.bool:
+            return {"action": "store_true"}
         case collections.abc.Mapping:
             return {"type": _assignment, "action": "append", "metavar": "NAME=NUMBER"}
         case pathlib.Path:

@@ -1,8 +1,8 @@
 """The comparison of two folders of artifacts, with the result for each artifact.
 
 A folder holds ``figures/`` with datasets, pictures and tables, and
-``paper.md``; other files in it are ignored. Files of one name and different
-suffixes are one artifact.
+``paper.md``; other files in it are ignored, except ``config/engines.nc``, what physics engines
+gave. Files of one name and different suffixes are one artifact.
 """
 
 from collections.abc import Collection
@@ -13,6 +13,8 @@ from bouncing_ball.compare.parts import judge
 from bouncing_ball.errors import ModelError, printable
 
 _PAPER = "paper.md"
+# Compared where both folders have it, because not every machine has the engines.
+_MEASURED = Path("config/engines.nc")
 # In the order of comparison: the data first, because the judgement of the others depends on them.
 _SUFFIXES = (".nc", ".csv", ".png", ".svg", ".md", ".html")
 
@@ -37,6 +39,8 @@ def artifacts_in(*folders: Path) -> dict[str, set[str]]:
             raise ModelError(f"nothing to compare {where}")
         for file in files:
             found.setdefault(file.stem, set()).add(file.as_posix())
+    if all((folder / _MEASURED).is_file() for folder in folders):
+        found[_MEASURED.stem] = {_MEASURED.as_posix()}
     return found
 
 

@@ -1,9 +1,11 @@
 """Frozen dataclasses over arrays, one element per contact, ball or orbit.
 
-Their fields broadcast together, as arguments of a function do. A scalar field
-is that of all elements, and stays a scalar.
+Their fields broadcast together, like the arguments of a function. A scalar field
+applies to all elements and remains a scalar.
 """
 
+import functools
+import inspect
 import math
 from dataclasses import dataclass, fields, replace
 from typing import Any, Self
@@ -16,14 +18,14 @@ def _shape(value: Any) -> tuple[int, ...]:
 
 
 def _entry(value: Any, shape: tuple[int, ...], index: Any) -> Any:
-    """Some elements of a field; a scalar is that of all."""
+    """Some elements of a field; a scalar applies to all."""
     if isinstance(value, Batch):
         return value._entries(shape, index)
     return np.broadcast_to(value, shape)[index] if np.ndim(value) else value
 
 
 def in_words(value: Any) -> str:
-    """A number or an array, rounded and abbreviated.
+    """A number or an array as text, rounded and abbreviated.
 
     Examples
     --------
@@ -42,9 +44,65 @@ def in_words(value: Any) -> str:
     )
 
 
+def plain(value: Any) -> Any:
+    """A single number as Python's own; a single batch, or a method of one, as one that has them.
+
+    Examples
+    --------
+    >>> plain(np.array(0.5)), plain(np.bool_(True)), plain(np.array([0.5]))
+    (0.5, True, array([0.5]))
+    """
+    if isinstance(value, np.ndarray | np.generic) and not value.ndim:
+        return value.item()
+    if isinstance(value, Batch) and not value.shape:
+        return Single(value)
+    if type(value) is tuple:
+        return tuple(map(plain, value))
+    if inspect.ismethod(value):
+        return functools.wraps(value)(lambda *given, **more: plain(value(*given, **more)))
+    return value
+
+
+class Single:
+    """One element by itself: all that a batch without a shape offers, with Python's numbers.
+
+    Inside, a batch works with arrays of one element. A user who asks for one orbit has floats.
+
+    Examples
+    --------
+    >>> from bouncing_ball.contacts.spring_damper import SpringDamper
+    >>> one = Single(SpringDamper(np.array(5.0), 0.0))
+    >>> one.frequency_ratio, one.damped_frequency, isinstance(one, SpringDamper)
+    (5.0, 5.0, True)
+    """
+
+    __slots__ = ("_of",)
+
+    def __init__(self, of: Any) -> None:
+        self._of = of
+
+    @property  # type: ignore[misc]
+    def __class__(self) -> type:
+        return type(self._of)
+
+    def __reduce__(self) -> Any:
+        return Single, (self._of,)
+
+    def __getattr__(self, name: str) -> Any:
+        return plain(getattr(self._of, name))
+
+    def __dir__(self) -> list[str]:
+        return dir(self._of)
+
+    def __repr__(self) -> str:
+        return repr(self._of)
+
+
 @dataclass(frozen=True, repr=False)
 class Batch:
-    """What a frozen dataclass of arrays inherits: a shape, indexing, a length.
+    """Base class of frozen dataclasses of arrays: a shape, indexing, a length.
+
+    A single element, of shape (), has no length and cannot be indexed.
 
     Examples
     --------
@@ -60,12 +118,12 @@ class Batch:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Common shape of the fields."""
+        """The shape to which the fields broadcast."""
         return np.broadcast_shapes(*(_shape(getattr(self, f.name)) for f in fields(self)))
 
     @property
     def size(self) -> int:
-        """Number of elements."""
+        """The number of elements; 1 for a single one."""
         return math.prod(self.shape)
 
     def __len__(self) -> int:
@@ -83,11 +141,16 @@ class Batch:
         return self._entries(self.shape, index)
 
     def flat(self, shape: tuple[int, ...]) -> Self:
-        """One element for each entry of an array, in a row; a single one is that of all."""
+        """The elements broadcast to a shape and flattened to a row; a single one remains single.
+
+        It then applies to all elements of the row.
+        """
         if not self.shape:
             return self
         return self._entries(shape, np.unravel_index(np.arange(math.prod(shape)), shape))
 
     def take(self, which: Any) -> Self:
-        """Some elements of a row; a single one is that of all."""
+        """The elements of a row with these indices; a single one, which applies to all, is
+        unchanged.
+        """
         return self[which] if self.shape else self

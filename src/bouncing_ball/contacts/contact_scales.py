@@ -1,7 +1,7 @@
-"""Scales of a contact: how deep the ball goes, how fast, and so how long it takes.
+"""Scales of a contact: penetration, speed, and from both the duration.
 
-They set the steps of the numerical methods and the starts of their iterations; what
-comes out does not depend on them.
+They set the steps of the numerical methods and the starting points of their iterations; the
+results do not depend on them.
 """
 
 from typing import NamedTuple
@@ -11,22 +11,28 @@ import numpy as np
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.errors import ModelError
 
-# Newton's method for ln p: one step for a power law, a few for a sum of powers.
+# Newton's method for ln p, which takes one step for a power law, a few for a sum of powers.
 _ITERATIONS = 40
 _ENOUGH = 1e-3
-# Of ln p: for the slope, by differences, and the longest step.
+# Steps of ln p: the one for the slope by differences, and the longest of Newton's method.
 _DIFFERENCE, _LONGEST = 1e-4, 10.0
 
 
 class Scales(NamedTuple):
-    """Length P and speed V of a contact; it takes a few P/V."""
+    """Length P and speed V of a contact, arrays of one shape; the contact takes a few P/V."""
 
     length: np.ndarray
     speed: np.ndarray
 
 
 def depth(law: ContactLaw, rate: np.ndarray, power: float, wanted: np.ndarray) -> np.ndarray:
-    """p at which f(p, p′) p^power reaches a value."""
+    """The penetration p at which f(p, p′) p^power reaches a value, of the shape of ``wanted``.
+
+    Raises
+    ------
+    ModelError
+        If the force does not grow to any value with the penetration.
+    """
 
     def logarithm(log):
         p = np.exp(log)
@@ -50,8 +56,13 @@ def depth(law: ContactLaw, rate: np.ndarray, power: float, wanted: np.ndarray) -
 def scales(law: ContactLaw, speed: np.ndarray, load: np.ndarray) -> Scales:
     """Scales of contacts with an impact speed under a load of at most ``load``.
 
-    ``f(P, V) P = V²``, and V² is the speed's and what the load gains where the contact
-    carries it.
+    ``f(P, V) P = V²``, where V² is the square of the impact speed and the gain by the load until
+    the contact carries it.
+
+    Raises
+    ------
+    ModelError
+        If the law does not stop the ball.
 
     Examples
     --------

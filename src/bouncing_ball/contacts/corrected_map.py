@@ -1,4 +1,4 @@
-r"""The restitution model, corrected: an impact is an instant in the right place.
+"""The corrected restitution map: an impact is an instant at the right time and depth.
 
 At the instant the table has the phase ψ and the ball, in its continued flight,
 the absolute velocity p. It is below the table by h, and turns its closing
@@ -8,9 +8,9 @@ speed v into ``r_c v = r v + σ a`` with the load ``a = 1 - Λ sin ψ``::
     z = Λ sin ψ - h,                h = v t_c(v)
     w = Λ cos ψ + r(v) v + σ(v) a
 
-From (ψ, z, w) the ball flies until it is below the table by h again: the
+From (ψ, z, w) the ball flies until it is below the table by h again. This is the
 restitution map (Eq. 5) with the table lowered by h(v) and r replaced by
-``r_c = r + σ a/v``, and that map itself for t_c = σ = 0. The contact starts t_c
+``r_c = r + σ a/v``; for t_c = σ = 0 it is Eq. 5. The contact starts t_c
 before the instant, at φ = ψ - t_c with z′ = p + t_c, and ends D later; t_c, r, σ
 and D are the law's :mod:`signature <bouncing_ball.contacts.signature>`.
 
@@ -24,17 +24,17 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.signature import Instant, Signature
 
-# Iterations of ψ = φ + t_c(v), for laws whose delay depends on the speed. Each
-# gains a factor a dt_c/dv, of the order of a D/v.
+# Iterations of ψ = φ + t_c(v), for laws whose delay depends on the speed. Each one
+# reduces the error by a factor a dt_c/dv, of the order of a D/v.
 _ITERATIONS = 30
 _SETTLED = 1e-15
 
 
 class Hit(NamedTuple):
-    """An instant: phase ψ, velocity p before, and what follows from them.
+    """An instant: the phase ψ, the velocity ``arrival`` p before it, and the quantities after it.
 
-    ``speed`` is v, ``depth`` h, ``height`` and ``velocity`` the absolute z and w
-    just after; ``instant`` the signature at v.
+    ``speed`` is v, ``depth`` h, ``height`` and ``velocity`` are the absolute z and w
+    just after the instant, and ``instant`` is the signature at v.
     """
 
     phase: np.ndarray
@@ -47,7 +47,7 @@ class Hit(NamedTuple):
 
 
 def impact(signature: Signature, amplitude: ArrayLike, phase: ArrayLike, arrival: ArrayLike) -> Hit:
-    """The instant at a phase ψ of the table, with absolute velocity p before it.
+    """The instant at a phase ψ of the table, with the absolute velocity p before it.
 
     Examples
     --------
@@ -71,7 +71,7 @@ def impact(signature: Signature, amplitude: ArrayLike, phase: ArrayLike, arrival
 def meeting(
     signature: Signature, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike
 ) -> tuple[np.ndarray, np.ndarray]:
-    """(ψ, p) of a contact that starts at φ with the absolute velocity z′ of the ball.
+    """ψ and p of the instant of a contact that starts at φ with the ball's absolute velocity z′.
 
     Examples
     --------
@@ -92,7 +92,18 @@ def meeting(
 
 
 def start_of(amplitude: ArrayLike, hit: Hit) -> tuple[np.ndarray, np.ndarray]:
-    """(φ, δ′) of the start of contact, t_c before the instant."""
+    """φ and δ′ at the start of contact, t_c before the instant: the inverse of :func:`meeting`.
+
+    The velocity is relative to the table.
+
+    Examples
+    --------
+    >>> from bouncing_ball.contacts.signature import Signature
+    >>> from bouncing_ball.contacts.spring_damper import SpringDamper
+    >>> hit = impact(Signature(SpringDamper(np.pi, 0.0)), 0.0, 0.75, -2.0)
+    >>> [float(x) for x in start_of(0.0, hit)]
+    [0.25, -1.5]
+    """
     delay = hit.instant.delay
     phase = hit.phase - delay
     return phase, hit.arrival + delay - np.asarray(amplitude) * np.cos(phase)

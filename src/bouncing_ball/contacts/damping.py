@@ -4,7 +4,7 @@ Half a period of a free damped oscillator, without gravity, returns the
 velocity multiplied by ``r = exp(-π ζ / √(1 - ζ²))`` (Nagurka and Huang). If the
 contact ends where its force vanishes instead, at the angle π - 2 arcsin ζ, the
 velocity is multiplied by ``exp(-ζ (π - 2 arcsin ζ) / √(1 - ζ²))`` (Schwager and
-Pöschel, Granular Matter 9, 2007). Everything here is dimensionless.
+Pöschel, Granular Matter 9, 2007).
 """
 
 import numpy as np
@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import require
 
-# Newton steps for β in 2β cot β = -ln r; the start is within 10 %, and each
-# step doubles the digits.
+# Newton steps for β in 2β cot β = -ln r. The start has an error below 10 %, and each
+# step doubles the number of digits.
 _NEWTON_STEPS = 6
 
 
@@ -51,7 +51,7 @@ def damping_ratio(restitution: ArrayLike, release: Release = Release.DISPLACEMEN
         return decrement / np.hypot(np.pi, decrement)
     allowed = "in (e⁻², 1], the range of the force release with ζ < 1"
     require(decrement < 2, r, "restitution coefficient r", allowed)
-    # cos(π/2) is the rounding of π/2, no more than r = 1 itself is rounded by.
+    # cos(π/2) gives the rounding of π/2, which is below the rounding of r = 1.
     return np.where(decrement > 0, np.cos(_half_angle(decrement)), 0.0)
 
 

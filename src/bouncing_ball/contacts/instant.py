@@ -1,5 +1,4 @@
-"""What a contact is to the outside at one impact speed, see
-:mod:`bouncing_ball.contacts.signature`."""
+"""The signature of a contact at one impact speed, see :mod:`bouncing_ball.contacts.signature`."""
 
 from typing import NamedTuple
 
@@ -8,10 +7,11 @@ from numpy.typing import ArrayLike
 
 
 class Instant(NamedTuple):
-    """The signature at an impact speed v, and the derivatives along v.
+    """The signature at an impact speed v, and its derivatives along v.
 
-    ``delay`` t_c, ``restitution`` r, ``load`` σ and ``duration`` D; t_c, σ and D
-    are times, r is a number.
+    ``delay`` t_c, ``restitution`` r, ``load`` σ and ``duration`` D are arrays that broadcast; t_c,
+    σ and D are times in units of 1/Ω, r is a number. ``d_delay``, ``d_restitution`` and ``d_load``
+    are the derivatives of t_c, r and σ.
     """
 
     delay: np.ndarray
@@ -23,11 +23,12 @@ class Instant(NamedTuple):
     d_load: np.ndarray | float = 0.0
 
     def tangent(self, speed: ArrayLike, load: ArrayLike) -> "tuple[Instant, np.ndarray]":
-        """The constant signature that changes alike next to a speed v and load a.
+        """The constant signature that agrees to first order near a speed v and a load a.
 
-        Its restitution is ``b = ∂(r v + σ a)/∂v = r + r′ v + σ′ a`` and its delay
-        ``e = ∂(v t_c)/∂v = t_c + t_c′ v``; and what is left, ``(b - r) v``, so that
-        ``r_c v = b v + σ a - (b - r) v₀`` to first order. Itself and 0 for a constant one.
+        Its restitution is ``b = ∂(r v + σ a)/∂v = r + r′ v + σ′ a`` and its delay ``e = ∂(v t_c)/∂v
+        = t_c + t_c′ v``. The second result is the constant ``(b - r) v`` with which ``r_c v = b v +
+        σ a - (b - r) v₀`` to first order about v₀. A constant signature is its tangent, and this
+        constant is 0.
 
         Examples
         --------

@@ -1,8 +1,8 @@
-r"""The contact law with a given restitution coefficient and contact duration.
+"""The contact law with a given restitution coefficient and contact duration.
 
-In units of its own scales P and P/v a free impact has one number that its
-restitution depends on, the law's *group*, C v, C or C v/P. It is found for the
-r that is wanted, once; the duration D then gives P, and both give K and C.
+In units of the scales P and P/v the restitution of a free impact depends on a single
+number, the law's *group*: C v, C or C v/P. It is determined from r once; the duration D then
+gives P, and both give K and C.
 """
 
 from functools import lru_cache
@@ -18,13 +18,18 @@ from bouncing_ball.errors import ModelError, require
 
 Law = TypeVar("Law", bound=ContactLaw)
 
-# Groups tried until r is below the one wanted, and the absolute error of the one that has it.
+# Groups tried until r is below the required one, and the absolute error of the group found.
 _GROUPS = [0.25 * 2.0**k for k in range(8)]
 _SETTLED = 1e-15
 
 
 def law_named(name: str) -> type[ContactLaw]:
-    """The law of a name.
+    """The law with a name.
+
+    Raises
+    ------
+    ModelError
+        If there is no such law.
 
     Examples
     --------
@@ -37,14 +42,14 @@ def law_named(name: str) -> type[ContactLaw]:
 
 
 def _free(kind: type[ContactLaw], group: float):
-    """r and D of the free impact in the law's own units."""
+    """r and D of the free impact in units of the scales."""
     impact = free_impact(kind.of_scales(group, 1.0, 1.0), 1.0)
     return float(impact.restitution), float(impact.duration)
 
 
 @lru_cache(maxsize=1024)
 def reference(kind: type[ContactLaw], restitution: float) -> tuple[float, float]:
-    """The group with a restitution coefficient r, and D v/P there.
+    """The group with a restitution coefficient r, and D v/P of its free impact.
 
     Raises
     ------
@@ -71,7 +76,7 @@ def _search(kind: type[ContactLaw], restitution: float) -> float:
     def surplus(group):
         return np.log(_free(kind, group)[0] / restitution)
 
-    # A law that cannot be given by its impact says so itself.
+    # A law that cannot be given by its impact raises its error here.
     kind.of_scales(_GROUPS[0], 1.0, 1.0)
     try:
         enough = next(group for group in _GROUPS if surplus(group) <= 0)
@@ -96,10 +101,15 @@ def law_of_impact(
     duration, speed : array_like
         D > 0 and v > 0.
 
+    Returns
+    -------
+    ContactLaw
+        Of this kind, and of the shape to which D and v broadcast.
+
     Raises
     ------
     ModelError
-        If one is out of its range.
+        If a number is out of its range, or no law of this kind has these r and D.
 
     Examples
     --------

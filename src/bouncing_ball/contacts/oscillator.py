@@ -1,7 +1,7 @@
 r"""Exact response of a damped linear oscillator, for every damping.
 
 The contact is a linear oscillator, ``y″ + 2a y′ + q y = f(s)`` with
-``a = ζϖ`` and ``q = ϖ²``. Two responses are all that the model needs:
+``a = ζϖ`` and ``q = ϖ²``. The model needs two responses:
 
 * the impulse response *g* (f = 0, y(0) = 0, y′(0) = 1);
 * the exponential response *h* (f = e^{νs}, y(0) = y′(0) = 0), with ν = 0 for
@@ -15,8 +15,8 @@ of w, so that under-, critical and overdamped contacts are one case::
     h′ = ν h + g,                 ∂h/∂ν = [s e^{νs} - g - 2 (ν + a) h] / p(ν)
 
 *h* has a removable singularity at resonance, p(ν) = 0 (ζ = 0, ϖ = 1 for the
-table), and loses digits to cancellation for short times. There it is integrated
-instead, by as many of Gauss' nodes as leave nothing::
+table), and loses digits to cancellation for short times. There the integrals are
+computed instead, with enough Gauss nodes for double precision::
 
     h = ∫₀ˢ g(s - u) e^{νu} du,   ∂h/∂ν = ∫₀ˢ u g(s - u) e^{νu} du
 
@@ -29,28 +29,32 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-# Below this |p(ν)| s² the quotient for h is not taken: there the terms of the
-# numerator exceed the result, of order s²/2, by 4 or more.
+# Below this |p(ν)| s² the quotient for h is not used, because the terms of the
+# numerator exceed the result, of order s²/2, by a factor of 4 or more.
 _CANCELLATION = 4.0
-# Nodes of the integral, and one more for each radian of the table: the integrand
-# turns by (1 + ϖ) s ≤ 2s + 2 there, and 2N nodes more than half of that leave nothing.
+# Nodes of the integral, to which one is added for each radian of the table: the phase of the
+# integrand changes by (1 + ϖ) s ≤ 2s + 2 there, which so many nodes resolve to rounding.
 _NODES = 20
 # Longer integrals are cut into panels of at most so many radians of the table, because the
 # effort for the nodes of one panel grows with the cube of their number.
 _PANEL = 200
-# Contacts integrated at once: as many as keep the nodes in the cache.
+# Contacts integrated at the same time: so many that the nodes stay in the cache.
 _BLOCK = 512
 
 
 class Response(NamedTuple):
-    """A response and its rate of change, y(s) and y′(s)."""
+    """A response y(s) and its rate of change y′(s)."""
 
     value: np.ndarray
     rate: np.ndarray
 
 
 class Responses(NamedTuple):
-    """Impulse response g, response G to gravity and h = Q + iP to the table, and ∂h/∂ν."""
+    """The responses at a time, as arrays of one shape.
+
+    ``impulse`` is g, ``gravity`` the response G to a constant unit force, ``table`` is h = Q + iP,
+    the complex response to e^{is}, and ``by_table`` its derivative ∂h/∂ν at ν = i.
+    """
 
     impulse: Response
     gravity: Response
@@ -65,7 +69,7 @@ def _damped(s, a, q, w):
     c, sn = decay * np.cos(root * s), decay * np.where(root > 0, np.sin(root * s) / safe, s)
     over = w < 0
     if np.any(over):
-        # The slow exponent √-w - a is written -q/(√-w + a): no cancellation and,
+        # The slow exponent √-w - a is written as -q/(√-w + a), which has no cancellation and,
         # for a > 0, no overflow.
         slow = np.exp(np.where(over, -q / np.where(over, root + a, 1.0) * s, 0.0))
         lost = np.expm1(np.where(over, -2 * root * s, 0.0))
@@ -111,7 +115,7 @@ def responses(time: ArrayLike, frequency_ratio: ArrayLike, damping_ratio: ArrayL
     Parameters
     ----------
     time, frequency_ratio, damping_ratio : array_like
-        s, ϖ > 0 and ζ ≥ 0.
+        s, ϖ > 0 and ζ ≥ 0, which broadcast. They are not checked.
 
     Examples
     --------
@@ -127,7 +131,7 @@ def responses(time: ArrayLike, frequency_ratio: ArrayLike, damping_ratio: ArrayL
     """
     args = (np.asarray(x, dtype=float) for x in (time, frequency_ratio, damping_ratio))
     s, omega, zeta = np.broadcast_arrays(*args)
-    # Not q - a², which loses digits near ζ = 1.
+    # The product form of w keeps its digits near ζ = 1, which q - a² does not.
     a, q, w = zeta * omega, omega * omega, omega * omega * (1 - zeta) * (1 + zeta)
     c, g = _damped(s, a, q, w)
     impulse = Response(g, c - a * g)

@@ -1,6 +1,6 @@
-r"""When the ball never leaves the table (Eq. 9 and Eqs. 28-36).
+r"""Amplitudes at which the ball never leaves the table (Eq. 9 and Eqs. 28-36).
 
-A ball without contact stiffness stays down for Λ ≤ Λ_CR = 1. A ball on a
+A ball on a rigid table stays down for Λ ≤ Λ_CR = 1. A ball on a
 spring-damper oscillates steadily, and with the displacement release it stays
 down while its displacement relative to the table never becomes positive::
 
@@ -12,18 +12,19 @@ transmissibility (1 + 2iζ√x)/(1 - x + 2iζ√x), so that ::
 
     Λ ≤ Λ_F(ϖ) = √[((1 - x)² + 4ζ² x)/(1 + 4ζ² x)]
 
-For any other law there is no closed form. At the threshold the steady contact just
-touches its release once in a period. It is then a contact of duration 2π that starts and
-ends in the same state (p₀, p′₀), at which the grip g vanishes together with its rate of change::
+For any other law there is no closed form. At the threshold the release condition is met
+exactly once in a period, without being crossed. The steady motion is then a contact of duration
+2π that starts and ends in the same state (p₀, p′₀), at which the grip g vanishes together with
+its rate of change::
 
     B = 2π [1 - Λ sin(φ + 2π S) - f],   gain B = 0,   p′₀ + lift B = 0
     g(p₀, p′₀) = 0,   ∂g/∂p p′₀ + ∂g/∂p′ (1 - Λ sin φ - f) = 0
 
-with φ and Λ unknown too; for a release at p = 0 the last two are p₀ = p′₀ = 0. The nodes
-are those of :mod:`bouncing_ball.contacts.quadrature`. Next to the touch p goes as
+where φ and Λ are unknown too; for a release at p = 0 the last two are p₀ = p′₀ = 0. The nodes
+are those of :mod:`bouncing_ball.contacts.quadrature`. Near this state p is proportional to
 t², so that half as many roots as in an impact make the contact smooth. Newton's method
-starts from the contact that follows its load slowly; the nodes are doubled until
-the Legendre coefficients have fallen.
+starts from the contact that follows its load quasi-statically; the number of nodes is doubled
+until the Legendre coefficients have fallen.
 
 All quantities are dimensionless.
 """
@@ -42,8 +43,8 @@ from bouncing_ball.errors import ModelError, require
 _LEVELS = (48, 96, 192, 384)
 _PERIOD = 2 * np.pi
 _ITERATIONS = 25
-# Last step of φ and Λ, their longest step, and the last coefficients over the largest:
-# the threshold's error falls twice as fast.
+# The last step of φ and Λ, their longest step, and the ratio of the last coefficients to the
+# largest, of which the error of the threshold is the square.
 _SETTLED, _LONGEST, _SPECTRUM = 1e-11, 0.3, 1e-5
 _TAIL = 3
 _TINY = 1e-300
@@ -62,12 +63,12 @@ class Minimum(NamedTuple):
 def permanent_contact_threshold(
     frequency_ratio: ArrayLike, damping_ratio: ArrayLike, release: Release = Release.DISPLACEMENT
 ) -> np.ndarray:
-    """Largest Λ of permanent contact, Λ_SD(ϖ) (Eq. 33) or Λ_F(ϖ).
+    """Largest Λ of permanent contact, Λ_SD(ϖ) (Eq. 33) or Λ_F(ϖ), of the shape of ϖ and ζ.
 
     Raises
     ------
     ModelError
-        If ϖ ≤ 0 or ζ < 0.
+        If ϖ ≤ 0 or ζ < 0, or the release is unknown.
 
     Examples
     --------
@@ -85,11 +86,11 @@ def permanent_contact_threshold(
 def permanent_contact_minimum(
     damping_ratio: ArrayLike, release: Release = Release.DISPLACEMENT
 ) -> Minimum:
-    """Lowest threshold over ϖ: its derivative along x vanishes at ::
+    """Lowest threshold over ϖ, where its derivative along x = 1/ϖ² vanishes ::
 
         x = 2m/(1 + √(1 + 8 sin²α m)),     m = 1 - 2ζ² + 2 sin²α
 
-    For the displacement release 2ζ√(1 - ζ²) at ϖ = 1/√(1 - 2ζ²) (Eq. 36).
+    For the displacement release it is 2ζ√(1 - ζ²) at ϖ = 1/√(1 - 2ζ²) (Eq. 36).
 
     Raises
     ------
@@ -120,7 +121,10 @@ def _start(s: Scheme, law: ContactLaw) -> np.ndarray:
 
 
 def _touch(law: ContactLaw, unknowns: np.ndarray):
-    """The two conditions at the touch and their rows for (p₀, p′₀, φ, Λ)."""
+    """The two conditions at the state where the contact begins and ends.
+
+    Their rows of the Jacobian are for (p₀, p′₀, φ, Λ).
+    """
     p, u, phase, lam = unknowns
     if law.release is Release.DISPLACEMENT:
         return np.array([p, u]), np.eye(2, 4)
@@ -128,7 +132,7 @@ def _touch(law: ContactLaw, unknowns: np.ndarray):
     by, force = slopes_of(law.grip, inside, u), slopes_of(law.force, inside, u)
     push = 1 - lam * np.sin(phase) - law.force(inside, u)
     value = np.array([law.grip(p, u), by.by_penetration * u + by.by_rate * push])
-    # The slopes of the grip themselves are taken as constant.
+    # The second derivatives of the grip are neglected.
     rows = np.array(
         [
             [by.by_penetration, by.by_rate, 0.0, 0.0],
@@ -189,12 +193,12 @@ def _solved(s: Scheme, law: ContactLaw, z: np.ndarray) -> np.ndarray | None:
 
 
 def permanent_contact(law: ContactLaw) -> float:
-    """The threshold of one law.
+    """The threshold of one law, a value of Λ.
 
     Raises
     ------
     ModelError
-        If no steady contact was found that touches its release once.
+        If no steady contact was found that meets its release condition once.
 
     Examples
     --------

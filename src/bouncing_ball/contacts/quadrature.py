@@ -1,14 +1,14 @@
-r"""Spectral integration along a contact, exact for what the ends of a contact are like.
+r"""Spectral integration along a contact, whose motion is singular at its ends.
 
 Time in contact is ``t = D S(x)``, x from 0 to 1, with S′ proportional to
-``[x (1 - x)]^{m-1}``: next to both ends t goes as x^m, so that a function of t^{1/m} is
-analytic in x. It is known by its values at the Gauss-Legendre nodes, and the
-twofold integral of the acceleration A, with ``B = D A``, is one matrix each ::
+``[x (1 - x)]^{m-1}``. Near both ends t is proportional to x^m, so that a function of t^{1/m} is
+analytic in x. It is represented by its values at the Gauss-Legendre nodes. The first and the
+second integral of the acceleration A, with ``B = D A``, are products with one matrix each ::
 
     p′ = v + U B,              p = D (v S + P B)                    x ≤ 1/2
     p′ = p′_e + U B,           p = p_e + D (-p′_e (1 - S) + P B)    x > 1/2
 
-The second form counts back from the end of the contact, so that p keeps its
+The second form counts back from the end of the contact, in order that p keeps its
 digits where it vanishes.
 """
 
@@ -20,9 +20,13 @@ import numpy as np
 
 
 class Scheme(NamedTuple):
-    """The nodes x, S and 1 - S there, the matrices above, and of the whole contact:
-    ``gain @ B`` changes p′, ``D lift @ B`` is added to p. ``spectrum`` turns B into its
-    Legendre coefficients, ``early`` marks x ≤ 1/2."""
+    """Nodes and matrices of the spectral integration.
+
+    ``node`` is x, ``share`` and ``rest`` are S and 1 - S at the nodes, ``rate`` and ``path`` the
+    matrices U and P above. Over the entire contact ``gain @ B`` is the change of p′, and
+    ``D lift @ B`` is added to p. ``spectrum`` turns B into its Legendre coefficients, and ``early``
+    marks x ≤ 1/2; ``root`` is m.
+    """
 
     root: int
     node: np.ndarray
@@ -37,7 +41,7 @@ class Scheme(NamedTuple):
 
 
 def share(x: np.ndarray, root: int) -> np.ndarray:
-    """S(x): a sum of positive terms, which keeps its digits as x → 0.
+    """S(x) for m = ``root``: a sum of positive terms, which keeps its digits as x → 0.
 
     Examples
     --------
@@ -50,14 +54,20 @@ def share(x: np.ndarray, root: int) -> np.ndarray:
 
 
 def share_rate(x: np.ndarray, root: int) -> np.ndarray:
-    """S′(x)."""
+    """S′(x) for m = ``root``.
+
+    Examples
+    --------
+    >>> share_rate(np.array([0.0, 0.5]), 2).tolist()
+    [0.0, 1.5]
+    """
     degree = 2 * root - 1
     return degree * comb(degree - 1, root - 1) * (x * (1 - x)) ** (root - 1)
 
 
 @lru_cache(maxsize=32)
 def scheme(count: int, root: int) -> Scheme:
-    """The scheme with ``count`` nodes, even, for a law with m = ``root``.
+    """The scheme with ``count`` nodes, an even number, for a law with m = ``root``.
 
     Examples
     --------

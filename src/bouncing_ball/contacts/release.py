@@ -1,9 +1,9 @@
-r"""The rule that ends a contact, as a number and not as a case.
+"""The rule that ends a contact, as a number.
 
 A contact ends where ``δ + κ δ′ = 0``. With κ = 0 the ball is back at the
 table's level; with κ = 2ζ/ϖ the force of the contact vanishes. All formulas
-take the rule as ``sin α = κϖ/2``, which is 0 or ζ; a free contact is
-released at the angle π - 2α.
+contain the rule as ``sin α = κϖ/2``, which is 0 or ζ, so that they need no case distinction; a
+free contact is released at the angle π - 2α.
 """
 
 from enum import StrEnum
@@ -15,7 +15,7 @@ from bouncing_ball.errors import ModelError
 
 
 class Release(StrEnum):
-    """What ends a contact."""
+    """The condition that ends a contact."""
 
     DISPLACEMENT = "displacement"
     """The ball is back at the table's level, δ = 0 (Eq. 23, the paper's)."""
@@ -24,7 +24,7 @@ class Release(StrEnum):
 
     @classmethod
     def of(cls, rule: str) -> "Release":
-        """The rule of a name.
+        """The rule with this name.
 
         Raises
         ------
@@ -61,5 +61,5 @@ class Release(StrEnum):
         >>> float(Release.DISPLACEMENT.free_angle(0.5)) == np.pi
         True
         """
-        # Not π - 2 arcsin, which loses its digits as ζ → 1.
+        # The arccosine keeps its digits as ζ → 1, which π - 2 arcsin does not.
         return 2 * np.arccos(self.sine(damping_ratio))

@@ -7,32 +7,44 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.batch import Batch
 
-# Of the imaginary step, in parts of the speed: its square is lost in rounding.
+# The imaginary step as a part of the speed; its square is lost in rounding.
 _IMAGINARY = 1e-20
 
 
 class RestitutionLaw(Batch, ABC):
     """r(v), as a frozen dataclass of its parameters.
 
-    A law of one's own defines :meth:`restitution`, of numpy functions that are analytic in
-    v (or piecewise so); its derivative follows.
+    A subclass defines :meth:`restitution` with numpy functions that are analytic in v, or piecewise
+    analytic; the derivative follows.
+
+    Examples
+    --------
+    >>> from dataclasses import dataclass
+    >>> @dataclass(frozen=True, repr=False)
+    ... class Slowing(RestitutionLaw):
+    ...     scale: float
+    ...
+    ...     def restitution(self, speed):
+    ...         return 1 / (1 + speed / self.scale)
+    >>> float(Slowing(2.0).restitution(2.0)), round(float(Slowing(2.0).slope(2.0)), 12)
+    (0.5, 0.25)
     """
 
     @abstractmethod
     def restitution(self, speed: np.ndarray) -> np.ndarray:
-        """r of impacts with speeds v > 0."""
+        """r of impacts with speeds v > 0, of their shape."""
 
     def slope(self, speed: np.ndarray) -> np.ndarray:
-        """d(r v)/dv, by an imaginary step."""
+        """d(r v)/dv at speeds v > 0, by an imaginary step, exact up to rounding."""
         v = np.asarray(speed, dtype=float)
-        # Not a number where there is no impact.
+        # The speed is NaN where there is no impact.
         with np.errstate(invalid="ignore"):
             moved = v * (1 + 1j * _IMAGINARY)
             return np.imag(self.restitution(moved) * moved) / (_IMAGINARY * v)
 
 
 def rebound(law: RestitutionLaw | ArrayLike, speed: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """r and d(r v)/dv of a law, or of a number r, for which both are the same.
+    """r and d(r v)/dv of a law at impact speeds v > 0; for a number r both are r.
 
     Examples
     --------

@@ -1,23 +1,23 @@
-r"""What is left of a contact law outside the contact: the signature of an impact.
+r"""The effect of a contact on the motion outside it: the signature of an impact.
 
 In the table's frame the ball obeys δ″ = -a + F, with the load ``a = 1 - Λ sin τ``
 and F the contact force over the mass. Continue the free flights before and
 after the contact into it. Both fall with the same a, so that their distance
-grows as the impulse of F has come in, whatever the table does meanwhile::
+depends on the impulse of F only, whatever the motion of the table::
 
     δ_out(t) - δ_in(t) = ∫ F(s) (t - s) ds = J (t - t_c),    J = ∫ F ds
 
-They meet at one moment, the centroid of the force, ``t_c = ∫ s F ds / J``: to
-the outside a contact *is* an instantaneous impact at that moment, below the
+They meet at one moment, the centroid of the force, ``t_c = ∫ s F ds / J``: outside
+the contact, it is equivalent to an instantaneous impact at that moment, below the
 table's level, with the restitution ``r_c = -δ′_out/δ′_in`` of the continued
-flights. This much is exact. To second order in the duration of the contact
-its law enters by functions of one speed v = -δ′_in alone:
+flights. This is exact. To second order in the duration of the contact
+its law enters by functions of the speed v = -δ′_in alone:
 
 * the *delay* t_c(v), from the start of contact to the instant, and with it the
   depth h = v t_c of the instant below the table;
 * the *restitution* r(v) of the free impact, without load;
 * the *load sensitivity* σ(v), ``r_c = r + σ a/v``, v and a at the instant;
-* the *duration* D(v) of the contact, which says only when the ball leaves.
+* the *duration* D(v) of the contact, which determines only when the ball leaves.
 
 For the linear contact they are constants in closed form. It ends where δ + κ δ′ = 0, see
 :mod:`bouncing_ball.contacts.release`. The free impact ends with δ′ = r v and
@@ -27,9 +27,9 @@ For the linear contact they are constants in closed form. It ends where δ + κ 
 
 A constant load a adds -a G to δ, ``G = (1 - g′ - 2ζϖ g)/ϖ²`` with g the impulse
 response. The release then comes later by ``(1 + r) a/(r v ϖ²)``, and the
-velocity there is less by ``[2ζ(1 + r)/ϖ - κ] a``, to first order. From there
-back to the instant, and from the start on to it, the load acts for D in all,
-weighted by 1 and r: ``[D - (1 + r) t_c] a``. Together ::
+velocity there is less by ``[2ζ(1 + r)/ϖ - κ] a``, to first order. On the continued flights,
+from the release back to the instant and from the start on to it, the load acts during D - t_c
+with weight 1 and during t_c with weight -r, which gives ``[D - (1 + r) t_c] a``. Together ::
 
     σ = (1 - r)(D + κ) - 2ζ (1 + r)/ϖ
 
@@ -41,9 +41,9 @@ the instant ::
 
     σ = -∂p′_e/∂a + (D - t_c) - t_c d(r v)/dv
 
-All of it comes from one collocation at each speed. Between speeds the four
-functions are smooth in ln v: Chebyshev interpolation in panels, each a factor of
-eight of the speed wide and computed when it is first asked for.
+One collocation at each speed gives all of these. Between speeds the four functions are
+interpolated by Chebyshev polynomials in ln v, in which they are smooth. A panel covers a factor
+of eight in speed, and is computed when it is first needed.
 
 All quantities are dimensionless; all functions broadcast.
 """
@@ -61,22 +61,28 @@ from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.instant import Instant
 from bouncing_ball.errors import ModelError
 
-# Width of a panel in ln v and its nodes: a pole of r(v) at ln v = x ± iπ, like that of
-# 1/(1 + C v), leaves 6⁻²⁴.
+# Width of a panel in ln v, and its number of nodes: with a pole of r(v) at ln v = x ± iπ, like
+# that of 1/(1 + C v), the interpolation error is of the order of 6⁻²⁴.
 _WIDTH = np.log(8.0)
 _NODES = 24
-# Speeds beyond are those of the ends: no impact is so slow or so fast.
+# Speeds beyond these are replaced by them, because no impact is so slow or so fast.
 _SLOWEST, _FASTEST = 1e-30, 1e30
 
 
 def free_impact(law: ContactLaw, speed: ArrayLike) -> Instant:
-    """The signature at impact speeds v > 0, each by its own collocation where it is not known.
+    """The signature at impact speeds v > 0, by one collocation for each speed.
 
-    Its derivatives in v are left at zero but for that of r.
+    A law that knows its signature needs none. Derivatives in v are left at zero except that of r.
+
+    Raises
+    ------
+    ModelError
+        If the law does not release the ball.
 
     Examples
     --------
-    An elastic contact pushes symmetrically, and its load cancels:
+    An elastic contact pushes symmetrically, so that its centroid is in the middle and the effects
+    of the load cancel:
 
     >>> from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
     >>> impact = free_impact(HuntCrossley(100.0, 0.0), 2.0)
@@ -113,21 +119,23 @@ def _panel(law_type: type[ContactLaw], values: tuple, number: int) -> np.ndarray
 
 @dataclass(frozen=True, repr=False)
 class Signature(Batch):
-    """A contact law, seen from outside: tabulated, where the law does not know it.
+    """The signature of a contact law as a function of speed, interpolated where the law has no
+    formula.
 
     Parameters
     ----------
     law : ContactLaw
-        A single one if it is tabulated.
+        A single one, unless its signature has a formula.
 
     Raises
     ------
     ModelError
-        If the law does not let the ball go, or would be tabulated for arrays of parameters.
+        If the law does not release the ball, or would be interpolated for arrays of parameters.
 
     Examples
     --------
-    An elastic contact pushes symmetrically, and its load cancels:
+    An elastic contact pushes symmetrically, so that its centroid is in the middle and the effects
+    of the load cancel:
 
     >>> from bouncing_ball.contacts.spring_damper import SpringDamper
     >>> instant = Signature(SpringDamper(2.0, 0.0))()
@@ -148,12 +156,12 @@ class Signature(Batch):
 
     @cached_property
     def _known(self):
-        # A simulation asks at every impact.
+        # Cached, because a simulation needs it at every impact.
         return self.law.signature
 
     @property
     def is_constant(self) -> bool:
-        """Whether the impact speed changes nothing, as for a linear contact."""
+        """Whether the signature is the same at every impact speed, as for a linear contact."""
         return self._known is not None
 
     @property
@@ -162,7 +170,10 @@ class Signature(Batch):
         return self.law.label
 
     def __call__(self, speed: ArrayLike = 1.0) -> Instant:
-        """The signature of impacts with speeds v > 0 at the instant."""
+        """The signature of impacts with speeds v > 0 at the instant, of the shape of the speeds.
+
+        The shape of the law broadcasts with it.
+        """
         v = np.asarray(speed, dtype=float)
         if self.is_constant:
             return Instant(*(x + 0 * v for x in self._known))

@@ -5,7 +5,7 @@ With δ = z - w, the ball in contact obeys ::
     δ″ + 2ζϖ δ′ + ϖ² δ = -1 + Λ sin(s + φ)
 
 where s is the time since the contact started and φ the phase of the table at
-that moment. The paper writes the solution with constants A and B fitted to
+that moment. The paper writes the solution with constants A and B that follow from
 the start of contact; here they are eliminated, so that the flow is affine in
 (δ₀, δ′₀, Λ cos φ, Λ sin φ) and regular at the resonance ζ = 0, ϖ = 1::
 
@@ -37,7 +37,7 @@ ARGUMENTS = ("time", "displacement", "velocity", "phase", "amplitude", "frequenc
 
 
 class ContactFlow(NamedTuple):
-    """State δ, δ′ after a time in contact, δ″, and the exact Jacobian.
+    """State δ, δ′ after a time in contact, δ″, and the exact Jacobian; arrays of one shape.
 
     ``jacobian`` has shape (..., 2, 6): rows (δ, δ′), columns as in
     :data:`ARGUMENTS`.
@@ -51,16 +51,16 @@ class ContactFlow(NamedTuple):
 
 @dataclass(frozen=True, repr=False)
 class SpringDamper(ContactLaw):
-    """The paper's contact: ϖ, ζ and the rule that ends it, with f = ϖ² p + 2ζϖ p′.
+    """The paper's contact: ϖ, ζ and the rule that ends it, with f = ϖ² p + 2ζϖ p′ (Eq. 11).
 
-    The contact law whose motion is known in closed form.
+    It is the one contact law whose motion is known in closed form.
 
     Parameters
     ----------
     frequency_ratio, damping_ratio : float or array
         ϖ > 0 and ζ ≥ 0, dimensionless.
     release : Release or str
-        What ends the contact; the paper's choice is the default.
+        The condition that ends the contact; the paper's is the default.
 
     Raises
     ------
@@ -88,19 +88,19 @@ class SpringDamper(ContactLaw):
         object.__setattr__(self, "release", Release.of(self.release))
 
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """ϖ² p + 2ζϖ p′."""
+        """The force over the weight, ϖ² p + 2ζϖ p′."""
         omega = self.frequency_ratio
         return omega * (omega * penetration + 2 * self.damping_ratio * rate)
 
     @classmethod
     def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
-        """ϖ = v/P and ζ = group."""
+        """The contact with ϖ = v/P and ζ = group."""
         omega = np.asarray(speed, dtype=float) / np.asarray(length, dtype=float)
         return cls(omega, np.asarray(group, dtype=float) + 0 * omega)
 
     @classmethod
     def group_of(cls, restitution: float) -> float:
-        """ζ of a restitution coefficient, with the displacement release."""
+        """ζ of a restitution coefficient r in (0, 1], with the displacement release (Eq. 16)."""
         return float(damping_ratio(restitution))
 
     @classmethod
@@ -112,17 +112,22 @@ class SpringDamper(ContactLaw):
         *,
         measured: bool = False,
     ) -> SpringDamper:
-        """The contact whose damping is that of a restitution coefficient r.
+        """The contact whose damping follows from a restitution coefficient r.
 
         Parameters
         ----------
         restitution, frequency_ratio : array_like
             r in (0, 1] and ϖ.
         release : Release or str
-            What ends the contact.
+            The condition that ends the contact.
         measured : bool
-            Whether r is what a free impact with this release really has.
-            Otherwise it is the r of Eq. 16, that of the displacement release.
+            Whether r is that of a free impact with this release. Otherwise it is the r of
+            Eq. 16, that of the displacement release.
+
+        Raises
+        ------
+        ModelError
+            If r or ϖ is outside its range, or the release is unknown.
 
         Examples
         --------
@@ -135,7 +140,7 @@ class SpringDamper(ContactLaw):
 
     @property
     def release_sine(self) -> np.ndarray:
-        """sin α = κϖ/2."""
+        """sin α = κϖ/2: 0 for the displacement release, ζ for the force release."""
         return self.release.sine(self.damping_ratio)
 
     @property
@@ -145,31 +150,49 @@ class SpringDamper(ContactLaw):
 
     @property
     def restitution(self) -> np.ndarray:
-        """Restitution coefficient of a free impact with this release, ζ < 1."""
-        return restitution_coefficient(self.damping_ratio, self.release)
-
-    @property
-    def free_angle(self) -> np.ndarray:
-        """π - 2α: the angle ϖ_d s at which the free contact, unforced and weightless, ends.
+        """Restitution coefficient of a free impact with this release.
 
         Raises
         ------
         ModelError
-            If ζ ≥ 1: an overdamped contact has no oscillation to count in.
+            If ζ ≥ 1.
+        """
+        return restitution_coefficient(self.damping_ratio, self.release)
+
+    @property
+    def free_angle(self) -> np.ndarray:
+        """π - 2α: the angle ϖ_d s at which the free contact, without table and weight, ends.
+
+        Raises
+        ------
+        ModelError
+            If ζ ≥ 1: an overdamped contact does not oscillate.
         """
         self._require_underdamped()
         return self.release.free_angle(self.damping_ratio)
 
     @property
     def damped_frequency(self) -> np.ndarray:
-        """ϖ_d = ϖ√(1 - ζ²), for ζ < 1."""
+        """ϖ_d = ϖ√(1 - ζ²).
+
+        Raises
+        ------
+        ModelError
+            If ζ ≥ 1.
+        """
         self._require_underdamped()
         zeta = np.asarray(self.damping_ratio)
         return self.frequency_ratio * np.sqrt((1 - zeta) * (1 + zeta))
 
     @property
     def free_duration(self) -> np.ndarray:
-        """Duration of the free contact, (π - 2α)/ϖ_d."""
+        """Duration (π - 2α)/ϖ_d of the free contact.
+
+        Raises
+        ------
+        ModelError
+            If ζ ≥ 1.
+        """
         return self.free_angle / self.damped_frequency
 
     def _require_underdamped(self) -> None:
@@ -178,7 +201,7 @@ class SpringDamper(ContactLaw):
 
     @property
     def signature(self) -> Instant:
-        """In closed form; the speed changes nothing.
+        """The signature in closed form, which is the same at every speed.
 
         Raises
         ------
@@ -186,7 +209,7 @@ class SpringDamper(ContactLaw):
             If ζ ≥ 1: a free overdamped contact never ends.
         """
         duration, r = self.free_duration, self.restitution
-        # When the flight after the contact, continued, rises through δ = 0.
+        # The time at which the flight after the contact, continued, rises through δ = 0.
         through = duration + self.lag
         loss = 2 * np.asarray(self.damping_ratio) / self.frequency_ratio
         load = (1 - r) * through - loss * (1 + r)
@@ -200,7 +223,7 @@ class SpringDamper(ContactLaw):
         phase: ArrayLike,
         amplitude: ArrayLike,
     ) -> ContactFlow:
-        """Relative state of the ball a time ``s`` after (δ₀, δ′₀), in contact.
+        """The relative state of the ball a time s after (δ₀, δ′₀), in contact (Eqs. 12-13).
 
         Parameters
         ----------
@@ -210,7 +233,7 @@ class SpringDamper(ContactLaw):
         Returns
         -------
         ContactFlow
-            Shapes follow the broadcast of the arguments and of the contact.
+            Its fields have the shape to which the arguments and the contact broadcast.
 
         Examples
         --------

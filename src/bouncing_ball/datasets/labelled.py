@@ -85,11 +85,16 @@ class Grid:
         self.flat = self.single | {name: each.values.ravel() for name, each in whole.items()}
 
     @property
+    def size(self) -> int:
+        """Number of places."""
+        return math.prod(self.shape)
+
+    @property
     def rows(self) -> list[np.ndarray]:
         """A list of one array with an entry for each place, to broadcast with; empty without an
         axis.
         """
-        return [np.zeros(math.prod(self.shape))] if self.shape else []
+        return [np.zeros(self.size)] if self.shape else []
 
     def cells(self) -> list[dict[str, Any]]:
         """The arguments of each place, one after another."""

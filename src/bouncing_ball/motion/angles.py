@@ -1,14 +1,14 @@
 """Sine, cosine and reduction of angles, for large arrays.
 
-With t = tan(x/2), ``sin x = 2t/(1 + t²)`` and ``1 - cos x = 2t²/(1 + t²)``.
-One tangent replaces a sine and a cosine. NumPy computes it with vector
+With t = tan(x/2), ``sin x = 2t/(1 + t²)`` and ``1 - cos x = 2t²/(1 + t²)``, so that
+one tangent replaces a sine and a cosine. NumPy computes it with vector
 instructions where the processor has them, which it does not do for the sine
 in double precision; elsewhere it costs no more than the two calls.
 """
 
 import numpy as np
 
-# 2π = _TURN_HIGH + _TURN_LOW; the first has 33 significant bits, so that its
+# 2π = _TURN_HIGH + _TURN_LOW, of which the first has 33 significant bits, so that its
 # product with any integer below 2²⁰ is exact (Cody and Waite).
 _TURN_HIGH = float.fromhex("0x1.921fb544p+2")
 _TURN_LOW = float.fromhex("0x1.0b4611a626331p-32")
@@ -31,8 +31,7 @@ def sine_and_versine(angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def table(phase: np.ndarray, amplitude: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
-    """Λ cos φ and Λ sin φ: the table's velocity and height, and minus its jerk
-    and acceleration.
+    """Λ cos φ and Λ sin φ: velocity and height of the table, and minus its jerk and acceleration.
 
     Examples
     --------
@@ -48,7 +47,7 @@ def reduce_angle(angle: np.ndarray) -> np.ndarray:
 
     Examples
     --------
-    The second is what the double next to 2π lacks:
+    The second result is the difference between 2π and the double nearest to it:
 
     >>> float(reduce_angle(-1.0)), round(1e16 * float(reduce_angle(2 * np.pi)), 6)
     (-1.0, -2.449294)

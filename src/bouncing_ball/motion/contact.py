@@ -4,10 +4,10 @@ A state on the Poincaré section is (φ, δ′) at the start of contact. With a 
 vanishing force a contact may also start at δ < 0, see
 :mod:`bouncing_ball.motion.resumption`; each such start is an impact.
 
-A contact is followed by :func:`bouncing_ball.contacts.collocation.march`. That of an
-underdamped spring-damper is in closed form (:mod:`bouncing_ball.motion.linear_contact`),
-but for the undamped resonance: there the release is certified to be the first, and contacts
-that never end are known. Landings are certified to be the first for every law.
+A contact is followed by :func:`bouncing_ball.contacts.collocation.march`. The contact of an
+underdamped spring-damper has a closed form (:mod:`bouncing_ball.motion.linear_contact`),
+except at the undamped resonance. With the closed form the release is certified to be the first,
+and contacts that never end are recognised. Landings are certified to be the first for every law.
 """
 
 from dataclasses import dataclass
@@ -31,13 +31,13 @@ from bouncing_ball.motion.tangent import Deviation, Jacobian
 class ContactDynamics(Dynamics):
     """Contacts of any :class:`~bouncing_ball.contacts.contact_law.ContactLaw`, and flights."""
 
-    # The collocation has blocks of its own; fewer here share the few contacts that last long.
+    # The collocation divides into blocks itself; larger blocks here share the few long contacts.
     block: ClassVar[int] = 1 << 16
 
     def depart(self, impact: Impact) -> Departure:
-        """The end of each contact, undecided where none was found."""
+        """The end of each contact; undecided where none was found."""
         one = np.ones_like(impact.phase)
-        # -0 is no depth.
+        # Without the maximum a displacement of 0 gives the depth -0.
         depth = np.maximum(-impact.displacement, 0.0)
         start = Start(depth, -impact.velocity, impact.phase, self.amplitude * one, one)
         end = march(self.law, start, MOST_PANELS)
@@ -62,7 +62,7 @@ class ContactDynamics(Dynamics):
     def jacobian(
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
     ) -> Jacobian:
-        """Of the contact and of the flight; not a number from or to a resumption."""
+        """Derivative of the map over contact and flight; NaN from or to a resumption."""
         flight, one = departure.flight, np.ones_like(passed)
         start = Start(0 * one, -impact.velocity, impact.phase, self.amplitude * one, one)
         by = march(self.law, start, MOST_PANELS, differentiate=True).jacobian
@@ -80,10 +80,10 @@ class ContactDynamics(Dynamics):
         return Jacobian.of_columns(*columns)
 
     def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """Whether the contact lasts for twice that of a free impact of this speed.
+        """Whether the contact lasts for more than twice that of a free impact of this speed.
 
-        Without damping and with a constant load a ball that comes with no speed at all stays
-        so long: a longer contact is one that the load ends.
+        Without damping and with a constant load a contact that starts with zero speed lasts so
+        long, so that a longer contact is one that the load ends.
         """
         free = Signature(self.law)(np.maximum(-impact.velocity, np.finfo(float).tiny)).duration
         return departure.duration > 2 * free
@@ -91,19 +91,21 @@ class ContactDynamics(Dynamics):
 
 @dataclass(frozen=True, repr=False)
 class LinearContactDynamics(ContactDynamics):
-    """The same of an underdamped :class:`~bouncing_ball.contacts.spring_damper.SpringDamper`."""
+    """The dynamics of an underdamped
+    :class:`~bouncing_ball.contacts.spring_damper.SpringDamper`.
+    """
 
     block: ClassVar[int] = BLOCK
 
     def depart(self, impact: Impact) -> Departure:
-        """The end of each contact, or the proof that there is none."""
+        """The end of each contact, or the proof that it has none."""
         x, y = table(impact.phase, self.amplitude)
         state = impact.displacement, impact.velocity
         motion = ContactMotion(self.law, self.amplitude, *state, x, y)
         end = release(motion)
         phase = impact.phase + end.time
         x, y = table(phase, self.amplitude)
-        # Rounding may leave a touch of the table's level with a falling ball.
+        # Where the ball just touches the table's level, rounding may give it a downward velocity.
         displacement, velocity = motion.state(np.maximum(end.rate, 0.0), y)
         status = np.where(end.ended, Status.PERMANENT_CONTACT, Status.BOUNCING)
         status[end.undecided] = Status.UNDECIDED
@@ -120,7 +122,7 @@ class LinearContactDynamics(ContactDynamics):
     def jacobian(
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
     ) -> Jacobian:
-        """Of the contact, in closed form, and of the flight."""
+        """Derivative of the map over contact and flight, in closed form."""
         contact, flight, duration = self.law, departure.flight, departure.duration
         stiffness, loss = (
             contact.frequency_ratio**2,
@@ -137,7 +139,7 @@ class LinearContactDynamics(ContactDynamics):
         first = (y - 1) - loss * rate - stiffness * depth
         left, speed = flight.displacement, flight.velocity
         last = (flight.y - 1) - loss * speed - stiffness * left
-        # Along the motion nothing changes but the time.
+        # A deviation along the motion changes the time only.
         by_phase = Deviation(
             np.ones_like(passed),
             speed - level * rate - impulse * first,
@@ -161,9 +163,9 @@ class LinearContactDynamics(ContactDynamics):
         )
 
     def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """Whether the contact lasts longer than a whole damped oscillation.
+        """Whether the contact lasts longer than a damped oscillation.
 
-        Without damping and with a constant load a ball that comes with no speed at all stays
-        so long: a longer contact is one that the load ends.
+        Without damping and with a constant load a contact that starts with zero speed lasts so
+        long, so that a longer contact is one that the load ends.
         """
         return departure.duration * self.law.damped_frequency > 2 * np.pi

@@ -1,19 +1,19 @@
-r"""Impacts of the corrected restitution model: instant, release, flight, landing.
+"""Impacts of the corrected restitution model: instant, release, flight, landing.
 
 The impact is that of :mod:`bouncing_ball.contacts.corrected_map`; the flight that
-follows is looked at from the end of the contact on, D - t_c after the
+follows is considered from the end of the contact on, D - t_c after the
 instant. There the ball leaves if it rises and comes above the table's level.
-If not, the impact was too weak for its load, v of the order of a D, and the
-ball stays: until the table recedes with more than gravity, at Λ sin τ = 1 on
-the way up, or for ever if Λ ≤ 1.
+If it does not, the impact was too weak for its load, v of the order of a D, and the
+ball stays until the table recedes with more than gravity, at Λ sin τ = 1 on
+the way up. For Λ ≤ 1 it never leaves.
 
-The landing on the table's level is found as in both other models, certified to
-be the first. From there to the instant, where the ball is h = v t_c(v) deep, a
-few steps of Newton's method on the continued flight lead, from the solution
+The landing on the table's level is found as in both other models, and certified to
+be the first. From there Newton's method on the continued flight leads to the instant, where the
+ball has the depth h = v t_c(v), in a few steps that start from the solution
 for a constant load.
 
 A state on the Poincaré section is (φ, δ′) at the start of contact, t_c before
-the instant. There the continued flight meets the table's level but for a t_c²/2.
+the instant. There the continued flight meets the table's level up to a t_c²/2.
 """
 
 from dataclasses import dataclass
@@ -28,27 +28,26 @@ from bouncing_ball.motion.landing import Flight, emerge, land
 from bouncing_ball.motion.rest import lifted, stay
 from bouncing_ball.motion.tangent import Deviation, Jacobian
 
-# Newton steps from the landing to the instant: the start is right to the third
-# order in t_c, and each step doubles that.
+# Newton steps from the landing to the instant: the start has an error of third
+# order in t_c, and each step doubles the order.
 _DESCENT = 4
 
 
 @dataclass(frozen=True, repr=False)
 class CorrectedDynamics(Dynamics):
-    """Impacts and flights of the corrected model; ``law`` is the
-    :class:`~bouncing_ball.contacts.signature.Signature`."""
+    """Impacts and flights of the corrected model; ``law`` is the signature."""
 
     forgets: ClassVar[bool] = True
 
     def start(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
-        """First impacts, with their instants."""
+        """First impacts at the table's level, at phases φ with δ′, and their instants."""
         arrival = velocity + self.amplitude * np.cos(phase)
         instant = corrected_map.meeting(self.law, self.amplitude, phase, arrival)
         hit = corrected_map.impact(self.law, self.amplitude, *instant)
         return Impact.at_level(phase, velocity, hit)
 
     def depart(self, impact: Impact) -> Departure:
-        """The end of each contact by the flight from its instant, or a rest on the table."""
+        """The end of each contact on the flight from its instant, or a rest on the table."""
         hit, amplitude = impact.known, self.amplitude
         x, y = table(hit.phase, amplitude)
         rest = hit.instant.duration - hit.instant.delay
@@ -63,7 +62,7 @@ class CorrectedDynamics(Dynamics):
         return stay(departure, ~leaves, amplitude)
 
     def fly(self, departure: Departure) -> tuple[Impact, np.ndarray]:
-        """The start of the contact whose instant comes after the landing."""
+        """The start of the contact whose instant follows the landing, and the time until then."""
         flight = departure.flight
         landing = land(flight, np.maximum(departure.aloft, flight.sure()))
         at_level = departure.phase + landing.time
@@ -77,7 +76,7 @@ class CorrectedDynamics(Dynamics):
     def _descent(self, phase: np.ndarray, velocity: np.ndarray) -> np.ndarray:
         """Time from landings (phase, δ′) on the table's level to the instants.
 
-        There ``δ + h(-δ′) = 0``. With a constant load a and delay t_c,
+        At the instant ``δ + h(-δ′) = 0``. With a constant load a and delay t_c this is
         ``a s²/2 + (u - a t_c) s = u t_c`` for the landing speed u = -δ′.
         """
         x, y = table(phase, self.amplitude)
@@ -97,7 +96,10 @@ class CorrectedDynamics(Dynamics):
     def jacobian(
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
     ) -> Jacobian:
-        """From one instant to the next; zero where the ball sticks, as it forgets the first."""
+        """Derivative of the map from one instant to the next.
+
+        It is zero where the ball sticks, because its later motion does not depend on the impact.
+        """
         hit, then = impact.known, after.known
         (x, y), none = table(hit.phase, self.amplitude), np.zeros_like(passed)
         free = np.where(self.sticks(impact, departure), 0.0, 1.0)
@@ -116,7 +118,7 @@ class CorrectedDynamics(Dynamics):
         )
 
     def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """Whether the ball leaves by its lift-off."""
+        """Whether the ball leaves by lift-off."""
         return lifted(departure, self.amplitude)
 
     def section(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:

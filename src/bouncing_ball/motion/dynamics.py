@@ -1,4 +1,6 @@
-"""What a model of the impact is to the simulation: the contacts and flights of balls in a row."""
+"""The interface of a model of the impact to the simulation: contacts and flights of balls in a
+row.
+"""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -14,7 +16,7 @@ from bouncing_ball.motion.tangent import Jacobian
 
 
 class Impact(NamedTuple):
-    """Starts of contact: table phase, δ and δ′, and what a model has found out with them."""
+    """Starts of contact: table phase, δ and δ′, and further results of the model about them."""
 
     phase: np.ndarray
     displacement: np.ndarray
@@ -28,11 +30,12 @@ class Impact(NamedTuple):
 
 
 class Departure(NamedTuple):
-    """Ends of contact: table phase, the contact's duration, the flight from then on and the
+    """Ends of contact: table phase, the contact's duration, the flight that follows and the
     :class:`~bouncing_ball.motion.sequence.Status`.
 
     ``settling`` is the part of the duration in which the ball still bounces; ``aloft`` is a time
-    of flight by which the ball has not landed, where more is known than the flight itself says.
+    of flight before which the ball has not landed, where the model knows a better one than
+    :meth:`Flight.sure <bouncing_ball.motion.landing.Flight.sure>`.
     """
 
     phase: np.ndarray
@@ -47,8 +50,9 @@ class Departure(NamedTuple):
 class Dynamics(Batch, ABC):
     """A law of the impact on a table of amplitude Λ.
 
-    A kind of impact is a subclass that says how a contact ends, and where a flight does if
-    that is not simply the landing. ``block`` is how many balls are worked on at once, at most.
+    A kind of impact is a subclass that computes the end of a contact, and the end of a flight if
+    that is not the landing. All arrays are rows with an entry per ball, and ``block`` is the
+    largest number of balls computed at the same time.
     """
 
     law: Any
@@ -56,7 +60,7 @@ class Dynamics(Batch, ABC):
 
     block: ClassVar[int] = BLOCK
     forgets: ClassVar[bool] = False
-    """Whether a ball that sticks leaves in one state, whatever it did before."""
+    """Whether the state in which a ball leaves after sticking is independent of its past."""
 
     def start(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
         """First impacts at the table's level, at phases φ with δ′."""
@@ -64,10 +68,16 @@ class Dynamics(Batch, ABC):
 
     @abstractmethod
     def depart(self, impact: Impact) -> Departure:
-        """The ends of the contacts that start so."""
+        """The ends of the contacts that start with these impacts."""
 
     def fly(self, departure: Departure) -> tuple[Impact, np.ndarray]:
-        """The next impact of balls that leave, and the time until it from the last."""
+        """The next impact of balls that leave, and the time from the last impact to it.
+
+        Raises
+        ------
+        ModelError
+            If a flight is too long for floating point.
+        """
         landing = land(departure.flight, departure.flight.sure())
         impact = Impact.at_level(departure.phase + landing.time, -landing.rate)
         return impact, departure.duration + landing.time
@@ -76,11 +86,14 @@ class Dynamics(Batch, ABC):
     def jacobian(
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
     ) -> Jacobian:
-        """Derivative of the map from one impact to the next on the section of :meth:`section`."""
+        """Derivative of the map from one impact to the next, on the section of :meth:`section`.
+
+        ``passed`` is the time between the two.
+        """
 
     @abstractmethod
     def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """Whether the ball stays on the table until that lets it go."""
+        """Whether the ball stays on the table until the table recedes with more than gravity."""
 
     def section(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
         """The state (phase, relative velocity) of an impact by which motions are compared."""

@@ -1,17 +1,17 @@
-"""Many balls as flat arrays, worked on in blocks."""
+"""Many balls as flat arrays, computed in blocks."""
 
 from itertools import pairwise
 from typing import Any, Self
 
 import numpy as np
 
-# Balls computed at once, at most: as many as keep the arrays in the cache. Fewer
-# cost more, as a few late balls decide on the number of steps of each block.
+# Largest number of balls in a block: so many that the arrays stay in the cache. Smaller blocks
+# cost more, because a few slow balls determine the number of steps of each block.
 BLOCK = 8192
 
 
 def blocks(size: int, largest: int = BLOCK) -> list[slice]:
-    """Slices of about equal length that cover all balls, ``largest`` at most.
+    """Slices of about equal length that cover all balls, each of at most ``largest``.
 
     Examples
     --------
@@ -23,19 +23,26 @@ def blocks(size: int, largest: int = BLOCK) -> list[slice]:
 
 
 class Row:
-    """What has a flat array, or a number for all, of each of its attributes."""
+    """An object each of whose attributes is a flat array over balls, or a number that applies to
+    all.
+    """
 
     def take(self, which: Any) -> Self:
-        """Those of some of the balls."""
+        """The same object for some of the balls."""
         part = object.__new__(type(self))
         vars(part).update((name, pick(value, which)) for name, value in vars(self).items())
         return part
 
 
 def pick(value: Any, which: Any) -> Any:
-    """Some entries of a flat array, of a tuple of such, or of a :class:`Row`.
+    """Some entries of a flat array, of a tuple of arrays, or of a :class:`Row`.
 
-    A number is that of all.
+    A number applies to all balls and is returned unchanged.
+
+    Examples
+    --------
+    >>> pick(np.array([1.0, 2.0, 3.0]), [0, 2]).tolist(), pick(0.5, [0, 2])
+    ([1.0, 3.0], 0.5)
     """
     if isinstance(value, np.ndarray):
         return value[which] if value.ndim else value

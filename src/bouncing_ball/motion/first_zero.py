@@ -1,10 +1,10 @@
-r"""The first upward zero of a smooth function, which no step can pass over.
+r"""The first upward zero of a smooth function, by steps that cannot pass over a zero.
 
 Let y(s) < 0, with y″ ≤ K and \|y‴\| ≤ J from s on. Then ::
 
     y(s + h) ≤ y + y′ h + K h²/2
 
-so that no zero lies before the positive root h₀ of this parabola. Within any
+Hence no zero lies before the positive root h₀ of this parabola. Within any
 H ≥ h the bound may be replaced by a local one, with \|y⁗\| ≤ L ::
 
     K_H = min(K, y″ + H max(y‴, 0)/3 + L H²/12)
@@ -34,17 +34,17 @@ _SIMPLE = 0.25
 _CLOSE = 3e-4
 # Ratio of successive H.
 _REACH = 4.0
-# Steps after which a zero is given up as undecided. Each is a good part of the
-# shorter of the function's time scales, so this is hundreds of oscillations.
+# Steps after which the search ends as undecided. Each step is a considerable part of the
+# shorter of the function's time scales, so that this is hundreds of oscillations.
 _MAX_STEPS = 3000
 _TINY = 1e-300
 
 
 class State(NamedTuple):
-    """y and its derivatives at one time, and K, J, L from this time on.
+    """y and its derivatives at one time, and the bounds K, J, L from this time on.
 
-    ``ended`` marks where the search may stop without a zero, ``None`` for
-    nowhere.
+    ``ended`` marks entries for which the search may stop without a zero; ``None`` means
+    none of them.
     """
 
     value: np.ndarray
@@ -58,24 +58,25 @@ class State(NamedTuple):
 
 
 class Motion(Row, ABC):
-    """A row of functions of time whose first upward zeros are wanted."""
+    """A row of functions of time whose first upward zeros are computed."""
 
     @abstractmethod
     def __call__(self, time: np.ndarray) -> State:
-        """The functions at a time each."""
+        """The functions at one time each."""
 
     def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
-        """A later time up to which there is certainly no zero, or the time itself.
+        """A later time before which there is certainly no zero, or the time itself.
 
-        ``steps`` have been taken before; costly bounds may be skipped for a few.
+        ``steps`` is the number of steps taken; an expensive bound may wait for a few of them.
         """
         return time
 
 
 class Zero(NamedTuple):
-    """First upward zeros: time and y′ there, and where there is none.
+    """First upward zeros: the time and y′ there, with marks for functions without one.
 
-    ``ended`` are those whose motion said so, ``undecided`` those given up.
+    ``ended`` marks the functions whose motion ended the search, ``undecided`` those for which it
+    took too many steps.
     """
 
     time: np.ndarray
@@ -85,8 +86,10 @@ class Zero(NamedTuple):
 
 
 def _root(bound, v, rising, square, twice):
-    """Positive root of y + v h + (bound) h²/2, long if there is none; of v its sign and square,
-    and -2y."""
+    """Positive root of y + v h + (bound) h²/2; a long step if there is none.
+
+    The arguments are v, its sign and its square, and -2y.
+    """
     root = np.sqrt(np.maximum(square + bound * twice, 0.0))
     falling = (root - v) / np.maximum(bound, _TINY)
     return np.where(rising, twice / (v + root + _TINY), falling)
@@ -105,12 +108,12 @@ def safe_step(state: State) -> tuple[np.ndarray, np.ndarray]:
     [1.0]
     """
     v, rising, square = state.rate, state.rate > 0, state.rate * state.rate
-    # Rounding may put y above zero where it touches it from below.
+    # Where y touches zero from below, rounding may give a positive value.
     twice = -2 * np.minimum(state.value, 0.0)
     start = v, rising, square, twice
     first = _root(state.second_bound, *start)
     step = _prolonged(first, start, state)
-    # Falling faster and faster from y = y′ = 0: y ≤ y″ h²/2 + J h³/6.
+    # From y = y′ = 0 with y″ < 0 on, y ≤ y″ h²/2 + J h³/6.
     sinking = -3 * state.second / (state.third_bound + _TINY)
     step = np.maximum(step, np.where(rising, 0.0, sinking))
     bend = (np.abs(state.third) + state.fourth_bound * first) * (first * first)
@@ -129,7 +132,7 @@ def _prolonged(first, start, state: State):
         growth = np.maximum(third, 0.0) + 0.25 * fourth_bound * reach
         bound = np.minimum(second + reach * growth * (1 / 3), second_bound)
         longer = np.minimum(_root(bound, *start), reach)
-        # Where only the reach was in the way, it is worth another try.
+        # Where the reach limited the step, a longer reach is tried.
         further = np.flatnonzero((longer == reach) & (longer > now))
         now = np.maximum(now, longer)
         if step is first:
@@ -143,10 +146,10 @@ def _prolonged(first, start, state: State):
 
 
 def first_zero(motion: Motion, start: np.ndarray) -> Zero:
-    """First upward zero of each motion after a time that precedes it.
+    """First upward zero of each motion after the time ``start``, which must precede it.
 
-    There is no zero between 0 and ``start``, where the function may be zero
-    itself: if it rises there, that is the zero. One-dimensional arrays.
+    There is no zero between 0 and ``start``, where the function itself may be zero;
+    if it rises there, this is the zero. The arrays are one-dimensional.
     """
     time = np.array(start, dtype=float)
     ended = np.zeros(time.shape, dtype=bool)
@@ -155,7 +158,7 @@ def first_zero(motion: Motion, start: np.ndarray) -> Zero:
         state = part(now)
         step, done = safe_step(state)
         later = part.skip(now + step, steps)
-        # Zeros that are here: at the start, or where y touches zero to rounding.
+        # The current time is a zero: at the start, or where y touches zero up to rounding.
         rate = state.rate
         here = (state.value >= 0) & ((rate > 0) | ((rate == 0) & (state.second >= 0)))
         if state.ended is not None:
@@ -178,13 +181,13 @@ def first_zero(motion: Motion, start: np.ndarray) -> Zero:
 
 
 def _to_the_last_digit(motion, time):
-    """One step of the function's own parabola, and the rate of change after it."""
+    """The time improved by one step of the function's parabola, and the rate of change there."""
     state = motion(time)
     v, acceleration = state.rate, state.second
     twice = -2 * state.value
     square = v * v
     root = np.sqrt(np.maximum(square + acceleration * twice, 0.0))
-    # Where the zero is not certainly simple (a touch), the time stays as it is.
+    # Where the zero is not certainly simple (y touches zero), the time is not changed.
     simple = (v > 0) & (state.second_bound * np.abs(twice) <= square)
     step = np.where(simple, twice / (v + root + _TINY), 0.0)
     rate = v + step * (acceleration + 0.5 * step * state.third)

@@ -13,10 +13,10 @@ from bouncing_ball.motion.sequence import ImpactSequence, Status
 
 
 class History(NamedTuple):
-    """Height z and velocity z′ of the ball, height w of the table, and δ = z - w.
+    """Height z and velocity z′ of the ball, height w of the table, and δ = z - w, at each time.
 
-    ``touching`` is true in contact, false in flight. NaN before the first impact and
-    after the last contact, whose flight is not known to its end.
+    ``touching`` is true in contact and false in flight. Entries are NaN before the first impact and
+    after the last contact, because the end of its flight is not known.
     """
 
     time: np.ndarray
@@ -28,7 +28,7 @@ class History(NamedTuple):
 
 
 def history(sequence: ImpactSequence, time: ArrayLike) -> History:
-    """Where a ball is at given times since its first impact.
+    """The motion of a ball at given times since its first impact, of the shape of the times.
 
     Parameters
     ----------
@@ -48,17 +48,17 @@ def history(sequence: ImpactSequence, time: ArrayLike) -> History:
     >>> history(simulate(1.0, 0.0, 0.0, -2.0, 2), [0.0, 2.0, 4.0]).height.tolist()
     [0.0, 2.0, 0.0]
     """
-    if sequence.status.ndim:
+    if np.ndim(sequence.status):
         raise ValueError("the sequence has several balls: name one, as in sequence[0]")
     t, lam = np.asarray(time, dtype=float), sequence.amplitude
     last = int(sequence.impacts) - 1
     row = np.clip(np.searchsorted(sequence.time[: last + 1], t, side="right") - 1, 0, None)
     since, duration = t - sequence.time[row], sequence.contact_duration[row]
     touching = (since >= 0) & (since <= duration)
-    # The last flight is not known to its end.
+    # The end of the last flight is not known.
     flying = (since > duration) & ((row < last) | (sequence.status != Status.BOUNCING))
     left = sequence.phase[row] + np.where(flying, duration, 0.0)
-    state = sequence.release_displacement[row], sequence.relative_release_velocity[row]
+    state = sequence.release_displacement[row], sequence.relative_bounce_velocity[row]
     flight = Flight(*state, *table(left, lam), lam)
     gap, speed, _, _ = flight.gap(np.where(flying, since - duration, 0.0))
     gap, speed = (np.where(flying, x, np.nan) for x in (gap, speed))
@@ -77,5 +77,5 @@ def _in_contact(sequence: ImpactSequence, row: np.ndarray, since: np.ndarray):
         return law.flow(since, *at, lam)[:2]
     one = np.ones_like(since)
     start = Start(-at[0], -at[1], at[2], lam * one, one)
-    ends = -sequence.release_displacement[row], -sequence.relative_release_velocity[row]
+    ends = -sequence.release_displacement[row], -sequence.relative_bounce_velocity[row]
     return -np.array(states(law, start, (sequence.contact_duration[row], *ends), since))

@@ -7,7 +7,7 @@ velocity v, and with X = Λ cos φ_b, Y = Λ sin φ_b of the table's phase then:
     δ″   = -1 + Λ sin(φ_b + s) ≥ -(1 + Λ),    |δ‴| ≤ Λ
 
 which loses no digits in a short flight. The ball cannot land while it is
-above the table's highest point, z > Λ: that part is skipped.
+above the table's highest point, z > Λ, and the search skips this part.
 """
 
 import numpy as np
@@ -18,7 +18,7 @@ from bouncing_ball.motion.first_zero import Motion, State, Zero, first_zero
 
 
 class Flight(Motion):
-    """The motion y = -δ, whose first upward zero is the landing.
+    """The motion y = -δ of balls in flight, whose first upward zero is the landing.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class Flight(Motion):
         thrown = velocity + x
         over = thrown * thrown + 2 * (displacement + (y - amplitude))
         root = np.sqrt(np.maximum(over, 0.0))
-        # z > Λ between these two times; the second is the first or less if never.
+        # z > Λ between these two times; without such a range the second is not above the first.
         self.above, self.below = thrown - root, thrown + root
 
     def gap(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -60,13 +60,15 @@ class Flight(Motion):
         return np.where((time >= self.above) & (time < self.below), self.below, time)
 
     def room(self) -> np.ndarray:
-        """v² + 2(1 + Λ)δ_b: positive if the ball certainly comes above the table's level."""
+        """v² + 2(1 + Λ)δ_b, which is positive if the ball certainly rises above the table's
+        level.
+        """
         return self.velocity * self.velocity + 2 * (1 + self.amplitude) * self.displacement
 
     def sure(self) -> np.ndarray:
-        """A time by which the ball has not landed.
+        """A time before which the ball has certainly not landed.
 
-        That is the flight of a ball that is thrown with v from δ_b against the strongest
+        It is the flight time of a ball thrown with v from δ_b against the strongest
         relative gravity, 1 + Λ. From rest on a table that recedes, Y ≥ 1,
         ``δ ≥ (Y - 1) s²/2 + X s³/6 - Λ s⁴/24``.
         """
@@ -81,7 +83,7 @@ class Flight(Motion):
 
 
 class Rise(Motion):
-    """The motion δ of a ball that was let go below the table's level, while it rises."""
+    """The motion δ of balls released below the table's level, while they rise."""
 
     def __init__(self, flight: Flight):
         self.flight = flight
@@ -93,21 +95,23 @@ class Rise(Motion):
 
 
 def emerge(flight: Flight) -> tuple[np.ndarray, np.ndarray]:
-    """A time by which balls let go at the table's level or below it have not landed, and
-    whether they come above it."""
+    """Balls released at the table's level or below it: whether they rise above it.
+
+    The first result is a time before which they have certainly not landed.
+    """
     time, rising = flight.sure(), flight.velocity > 0
     unsure = np.flatnonzero(rising & (flight.room() <= 0))
     if unsure.size:
         part = flight.take(unsure)
         rise = first_zero(Rise(part), np.zeros(unsure.size))
         rising[unsure] = ~(rise.ended | rise.undecided) & (rise.rate > 0)
-        # From the table's level on, against the strongest relative gravity.
+        # From the table's level on the flight is against the strongest relative gravity.
         time[unsure] = rise.time + 2 * rise.rate / (1 + part.amplitude)
     return time, rising
 
 
 def land(flight: Flight, start: np.ndarray) -> Zero:
-    """The landing after a time ``start`` by which there is none.
+    """The landing after a time ``start`` before which there is none.
 
     ``rate`` of the result is minus the relative impact velocity.
 

@@ -1,6 +1,6 @@
-r"""Contact with the spring-damper, from touching to release.
+r"""Contact with the spring-damper, from its start to its release.
 
-What is followed is ``y = δ + κ δ′``, with κ = 0 for the displacement release
+The function followed is ``y = δ + κ δ′``, with κ = 0 for the displacement release
 and κ = 2ζ/ϖ for the force release, where ``-ϖ² y`` is the force of the table
 over the weight. In both cases y < 0 in contact, the release is the first
 upward zero, and ::
@@ -10,7 +10,7 @@ upward zero, and ::
 
 (Eqs. 12-13 for κ = 0). The transient's derivatives of order k are below
 ``ϖ^k R e^{-as}``, R = √(A² + B²), those of the steady part below ρ = √(C² + D²).
-Hence also the certificate that the contact never ends::
+The contact therefore never ends if at some time ::
 
     R e^{-as} + ρ ≤ 1/ϖ²
 """
@@ -21,22 +21,28 @@ from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.angles import sine_and_versine
 from bouncing_ball.motion.first_zero import Motion, State, Zero, first_zero
 
-# √γ below which the steady part has lost too many digits: ε/√γ remain.
+# √γ below which the steady part loses too many digits: its relative error is ε/√γ.
 _RESONANCE = 1e-4
-# Steps before the long view of :meth:`ContactMotion.skip` is taken.
+# Steps after which the expensive bound of :meth:`ContactMotion.skip` is used.
 _PATIENCE = 12
 # Rounding of the three terms of the certificate.
 _ROUNDING = 8 * np.finfo(float).eps
 
 
 def _resistance(contact: SpringDamper):
-    """ϖ² - 1 and 2ζϖ, whose squares add up to γ."""
+    """ϖ² - 1 and 2ζϖ, the sum of whose squares is γ."""
     omega = np.asarray(contact.frequency_ratio, dtype=float)
     return (omega - 1) * (omega + 1), 2 * np.asarray(contact.damping_ratio) * omega
 
 
 def has_closed_form(contact: SpringDamper) -> bool:
-    """Whether all contacts are underdamped and away from the undamped resonance."""
+    """Whether all contacts are underdamped and away from the undamped resonance ζ = 0, ϖ = 1.
+
+    Examples
+    --------
+    >>> has_closed_form(SpringDamper(2.0, 0.1)), has_closed_form(SpringDamper(1.0, 0.0))
+    (True, False)
+    """
     underdamped = np.all(np.asarray(contact.damping_ratio) < 1)
     return bool(underdamped and np.all(np.hypot(*_resistance(contact)) >= _RESONANCE))
 
@@ -53,11 +59,11 @@ class ContactMotion(Motion):
     displacement, velocity : array
         δ and δ′ at the start.
     x, y : array
-        Λ cos φ and Λ sin φ then.
+        Λ cos φ and Λ sin φ at the start.
     """
 
     def __init__(self, contact: SpringDamper, amplitude, displacement, velocity, x, y):
-        # By arrays of one element, so that one ball is computed as many are.
+        # Arrays of one element, so that one ball is computed in the same way as many.
         omega, zeta, lam, lag, detuning, loss = (
             np.atleast_1d(np.asarray(value, dtype=float))
             for value in (
@@ -97,7 +103,7 @@ class ContactMotion(Motion):
         return displacement + self.lag * velocity, velocity + self.lag * acceleration
 
     def state(self, displacement_rate, y):
-        """δ and δ′ at a release with rate y′, where Λ sin τ is ``y``."""
+        """δ and δ′ at a release with the rate y′, where Λ sin τ is ``y``."""
         lag = self.lag
         velocity = displacement_rate - lag * (y - 1)
         return -lag * velocity, velocity
@@ -130,10 +136,10 @@ class ContactMotion(Motion):
         )
 
     def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
-        """No zero while even the transient's envelope leaves y negative.
+        """A time up to which even the transient's envelope leaves y negative.
 
-        That is until the steady part rises through 1/ϖ² - R e^{-as}: a stiff,
-        weakly damped contact would oscillate about ϖ times before.
+        This holds until the steady part rises through 1/ϖ² - R e^{-as}; a stiff,
+        weakly damped contact would need steps for about ϖ oscillations otherwise.
         """
         if steps < _PATIENCE:
             return time
@@ -143,21 +149,21 @@ class ContactMotion(Motion):
         rising = np.arcsin(np.where(inside, ratio, 0.0))
         now = time + np.arctan2(self.cosine, self.sine)
         below = inside & (np.sin(now) < ratio)
-        # Short of the crossing by more than its rounding.
+        # The time stays before the crossing by more than the rounding of the crossing.
         wait = np.mod(rising - now, 2 * np.pi) - 1e-9
         return time + np.where(below, np.maximum(wait, 0.0), 0.0)
 
     def sure(self) -> np.ndarray:
-        r"""A time by which the contact has not ended, within half a period.
+        """A time before which the contact has certainly not ended, within half a period.
 
         With a constant forcing P, the largest within the half period, the
-        contact would end earlier (the impulse response is positive there).
+        contact would end earlier, because the impulse response is positive there.
         That contact is ``e^{-as} (A′ cos θ + B′ sin θ) + P/ϖ²``, which is
         negative where ``A′ cos θ + B′ sin θ < -e^{aπ/ϖ_d} P/ϖ²``; once it is
-        positive it stays so for longer than half a period.
+        positive it remains positive for longer than half a period.
         """
         half = np.pi / self.damped
-        # Nearly critical: any number so large excludes the bound that uses it.
+        # Near critical damping any number of this size makes the bound that uses it ineffective.
         growth = np.exp(np.minimum(self.decay * half, 690.0))
         forcing = np.minimum(self.push + self.forcing * half, self.forcing) - 1
         level = np.maximum(forcing, 0.0) / self.stiffness
@@ -165,12 +171,12 @@ class ContactMotion(Motion):
         b = (self.start_rate + self.decay * a) / self.damped
         radius = np.sqrt(a * a + b * b)
         depth = growth * level / np.maximum(radius, 1e-300)
-        # atan2 of the point turned by half a turn, so that a < 0 gives no jump.
+        # atan2 of the point rotated by half a turn, which avoids a jump for a < 0.
         angle = np.arctan2(-b, -a) + (np.pi / 2 - np.arcsin(np.minimum(depth, 1.0)))
         angle = np.where((depth < 1) & (angle > 0), angle, 0.0)
         return angle / self.damped
 
 
 def release(motion: ContactMotion) -> Zero:
-    """The end of the contact; ``ended`` where it is permanent."""
+    """The end of the contact, a :class:`Zero`; ``ended`` marks permanent contact."""
     return first_zero(motion, motion.sure())

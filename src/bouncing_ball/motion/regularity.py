@@ -1,10 +1,10 @@
-r"""Whether a motion repeats, and how fast its neighbours leave it.
+"""Periods of motions, and the rate at which neighbouring motions separate.
 
 The largest Lyapunov exponent is the mean logarithm of the stretching of a small
 perturbation from impact to impact, here by the exact Jacobian of the impact map.
-Positive: neighbours part exponentially. It is a mean over a finite motion. A
-ball that sticks to the table forgets where it came from, and the motion after it
-is that of any other ball that sticks: what is measured ends there.
+If it is positive, neighbours separate exponentially. It is a mean over a finite motion. After a
+ball has stuck to the table its later motion does not depend on earlier impacts, so that the
+measurement ends there.
 """
 
 from typing import NamedTuple
@@ -17,27 +17,27 @@ from bouncing_ball.motion.sequence import ImpactSequence
 
 
 def period(sequence: ImpactSequence, longest: int, closeness: float) -> np.ndarray:
-    """After how many impacts each motion repeats at its end; 0 if it does not.
+    """The number of impacts after which each motion repeats at its end; 0 if it does not.
 
     Parameters
     ----------
     sequence : ImpactSequence
     longest : int
-        Periods looked for, at most; the last ``longest`` impacts must all have
+        The longest period considered; the last ``longest`` impacts must all have
         a partner one period earlier.
     closeness : float
         Differences in phase and relative velocity that count as none.
+
+    Raises
+    ------
+    ValueError
+        If the sequence is shorter than twice the longest period.
 
     Examples
     --------
     >>> from bouncing_ball.motion.simulation import simulate
     >>> period(simulate(1.0, 0.0, 0.0, -np.pi, 8), 4, 1e-9).tolist()
     1
-
-    Raises
-    ------
-    ValueError
-        If the sequence is shorter than twice the longest period.
     """
     rows = len(sequence.time)
     if rows < 2 * longest:
@@ -65,9 +65,9 @@ def exact_map_jacobian(
 ) -> np.ndarray:
     """Jacobian of the exact map (τ, v) → (τ₁, v₁) (Eq. 5), shape (..., 2, 2).
 
-    ``flight_time`` must solve the landing condition. Differentiating it,
-    ``ds = -(∂gap/∂τ dτ + s dv)/(v - s - Λ cos τ₁)``. The determinant is
-    ``r² (v - Λ cos τ)/(v₁ - Λ cos τ₁)`` in these coordinates.
+    ``phase`` and ``velocity`` are τ and v just after an impact, in absolute terms; ``flight_time``
+    s must solve the landing condition, whose differential is ``ds = -(∂gap/∂τ dτ + s dv)/(v - s - Λ
+    cos τ₁)``. The determinant is ``r² (v - Λ cos τ)/(v₁ - Λ cos τ₁)`` in these coordinates.
     """
     s, tau, v, lam, r = np.broadcast_arrays(flight_time, phase, velocity, amplitude, restitution)
     landing = tau + s
@@ -81,13 +81,13 @@ def exact_map_jacobian(
 
 
 class Stretching(NamedTuple):
-    """Logarithm of the growth of a perturbation, and the impacts that it took, by ball."""
+    """Logarithm of the growth of a perturbation, and the number of impacts, for each ball."""
 
     logarithm: np.ndarray
     impacts: np.ndarray
 
     def exponent(self) -> tuple[np.ndarray, np.ndarray]:
-        """Largest Lyapunov exponent per impact over the balls of the last axis, and its standard
+        """Largest Lyapunov exponent per impact over the balls of the last axis, with its standard
         error.
 
         NaN where no ball has an impact.
@@ -106,7 +106,7 @@ class Stretching(NamedTuple):
 
 
 def stretching(sequence: ImpactSequence, restitution: float, skip: int) -> Stretching:
-    """How balls of the restitution model part from their neighbours, until they stick.
+    """The separation of balls of the restitution model from their neighbours, until they stick.
 
     Parameters
     ----------
@@ -115,12 +115,12 @@ def stretching(sequence: ImpactSequence, restitution: float, skip: int) -> Stret
     restitution : float
         r.
     skip : int
-        Impacts that are left out at the start; they turn the perturbation into
+        Impacts that are left out at the start, during which the perturbation turns into
         the direction of growth.
 
     Examples
     --------
-    On a table at rest a velocity only shrinks, and a phase stays off for ever:
+    On a table at rest a deviation of the velocity shrinks, and one of the phase remains:
 
     >>> from bouncing_ball.motion.simulation import simulate
     >>> parting = stretching(simulate(0.5, 0.0, 0.0, [-8.0, -6.0], 16), 0.5, 12)
@@ -134,7 +134,7 @@ def stretching(sequence: ImpactSequence, restitution: float, skip: int) -> Stret
     jacobian[free] = exact_map_jacobian(
         flight[free],
         sequence.phase[:-1][free],
-        sequence.release_velocity[:-1][free],
+        sequence.bounce_velocity[:-1][free],
         np.broadcast_to(sequence.amplitude, flight.shape)[free],
         restitution,
     )

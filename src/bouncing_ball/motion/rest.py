@@ -1,7 +1,8 @@
-r"""When a ball that stays on the table leaves it: where the table recedes with more than gravity.
+"""Rest on the table, and the lift-off that ends it.
 
-It is at rest on the table while g = 1 - Λ sin τ > 0. It leaves at Λ sin τ = 1 on the way
-up, or at once where g ≤ 0 already, and never if Λ ≤ 1.
+A ball rests on the table while g = 1 - Λ sin τ > 0. It leaves at Λ sin τ = 1 on the way
+up, where the table begins to recede with more than gravity, or at once where g ≤ 0 already; for
+Λ ≤ 1 it never leaves.
 """
 
 import numpy as np
@@ -26,14 +27,20 @@ def lift_off_phase(amplitude: ArrayLike) -> np.ndarray:
 
 
 def pressed(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Whether a ball at rest stays, where Λ cos τ = x and Λ sin τ = y."""
+    """Whether a ball at rest stays on the table, where Λ cos τ = x and Λ sin τ = y.
+
+    Examples
+    --------
+    >>> pressed(np.zeros(2), np.array([0.5, 1.5])).tolist()
+    [True, False]
+    """
     return (y < 1) | ((y == 1) & (x <= 0))
 
 
 def stay(departure: Departure, rests: np.ndarray, amplitude: np.ndarray) -> Departure:
-    """Departures of which some, where ``rests``, are no more than a rest on the table.
+    """Departures in which the balls marked by ``rests`` rest on the table first.
 
-    These balls lie on the table from the departure's phase on, and leave it by their lift-off.
+    These balls lie on the table from the departure's phase on, and leave it by lift-off.
     """
     if not rests.any():
         return departure
@@ -42,7 +49,7 @@ def stay(departure: Departure, rests: np.ndarray, amplitude: np.ndarray) -> Depa
     top = np.maximum(amplitude, 1.0)
     lift = np.arcsin(1 / top)
     wait = np.where(held, np.mod(reduce_angle(lift - departure.phase), 2 * np.pi), 0.0)
-    # Rounding must not turn a lift-off that is due now into one a turn later.
+    # Rounding must not delay a lift-off that is due now by a turn.
     wait = np.where(wait > 2 * np.pi - 1e-9, 0.0, wait)
     # At lift-off Λ sin τ = 1 exactly.
     x, y = np.where(held, np.sqrt((top - 1) * (top + 1)), x), np.where(held, 1.0, y)
@@ -58,6 +65,6 @@ def stay(departure: Departure, rests: np.ndarray, amplitude: np.ndarray) -> Depa
 
 
 def lifted(departure: Departure, amplitude: np.ndarray) -> np.ndarray:
-    """Whether balls leave by their lift-off, in the one state that all of them have then."""
+    """Whether balls leave by lift-off, in the state that all balls have then."""
     at = departure.phase == lift_off_phase(amplitude)
     return at & (departure.flight.velocity == 0) & (departure.flight.displacement == 0)

@@ -1,14 +1,14 @@
-r"""Impacts with a restitution coefficient: flight, impact, chattering, sticking.
+"""Impacts with a restitution coefficient: flight, impact, chattering, sticking.
 
 An impact turns δ′ into ``-r δ′`` (Eq. 5). Where the table recedes with less
-than gravity, g = 1 - Λ sin τ > 0, ever smaller bounces pile up in a finite
-time: for v = δ′ after an impact, with g growing at the rate ``g′ = -Λ cos τ``,
+than gravity, g = 1 - Λ sin τ > 0, infinitely many ever smaller bounces take a finite
+time. For v = δ′ after an impact, with g growing at the rate ``g′ = -Λ cos τ``, it is
 
     T = T₀ (1 - g′ T₀/(3g) + ...),    T₀ = 2v/(g (1 - r))
 
 This sum replaces the bounces once Λ T₀ and T₀ are below 10⁻⁵ g, where the
 next term is below 10⁻¹⁵. The ball then sticks to the table until it lifts off,
-at Λ sin τ = 1 on the way up; for Λ ≤ 1 it stays for ever.
+at Λ sin τ = 1 on the way up; for Λ ≤ 1 it stays.
 """
 
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ from bouncing_ball.motion.tangent import Deviation, Jacobian
 
 # Λ T₀/g and T₀/g below which chattering is summed up.
 _CHATTER = 1e-5
-# A time that no clock shows is not worth resolving either, where g is tiny (Λ next to 1).
+# A time below rounding is not resolved either, where g is tiny (Λ next to 1).
 _INSTANT = np.finfo(float).eps
 
 
@@ -36,14 +36,14 @@ class RestitutionDynamics(Dynamics):
     forgets: ClassVar[bool] = True
 
     def depart(self, impact: Impact) -> Departure:
-        """The flight after each impact, or the rest on the table after the last."""
+        """The flight after each impact, or the rest on the table after the last one."""
         r, amplitude = self.law, self.amplitude
         if isinstance(r, RestitutionLaw):
             r = r.restitution(np.maximum(-impact.velocity, np.finfo(float).tiny))
         velocity = -r * impact.velocity
         x, y = table(impact.phase, amplitude)
         gravity, down = 1 - y, pressed(x, y)
-        # Where the ball is not pressed, or r = 1, T₀ is not used.
+        # T₀ is not used where the table recedes faster than the ball falls, or for r = 1.
         loss = gravity * (1 - r)
         usable = down & (loss > 0)
         total = np.where(usable, 2 * velocity, 0.0) / np.where(usable, loss, 1.0)
@@ -62,7 +62,10 @@ class RestitutionDynamics(Dynamics):
     def jacobian(
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
     ) -> Jacobian:
-        """Of the impact and of the flight; zero where the ball sticks, as it forgets both."""
+        """Derivative of the map over impact and flight.
+
+        It is zero where the ball sticks, because its later motion does not depend on either.
+        """
         slope = rebound(self.law, np.maximum(-impact.velocity, np.finfo(float).tiny))[1]
         flight, none = departure.flight, np.zeros_like(passed)
         free = np.where(self.sticks(impact, departure), 0.0, 1.0)
@@ -79,5 +82,5 @@ class RestitutionDynamics(Dynamics):
         )
 
     def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """Whether the ball leaves by its lift-off."""
+        """Whether the ball leaves by lift-off."""
         return lifted(departure, self.amplitude)

@@ -1,18 +1,18 @@
-r"""What follows a release by vanishing force, below the table's level.
+r"""Flight after a release by vanishing force, below the table's level.
 
-With a release by force the ball is let go at δ_b < 0, rising, where the grip vanishes:
+With a release by force the ball is released at δ_b < 0, rising, where the grip vanishes:
 y = δ + κ δ′ = 0 for the laws with a lag κ. In free flight y first rises from 0. Either δ
-reaches 0 first, and the flight ends by a landing like any other; or y falls back to 0
+reaches 0 first, and the flight ends with a landing like any other; or y falls back to 0
 while δ < 0, and the contact resumes there, at δ < 0 and with the ball still rising.
 
 Most balls leave fast: with G = 1 + Λ the strongest relative gravity,
 
     v² + 2Gδ_b > 0   and   √(v² + 2Gδ_b) ≥ κ G
 
-are enough for δ to reach 0 with y increasing all the way. Only the rest are
-followed, by the same certified steps. Where a law has no lag, κ is that of its grip's
-slopes at the release, and the grip of slow balls is sampled until they are out of the
-table: that it does not return between two samples is not certified.
+are sufficient for δ to reach 0 while y increases. Only the other balls are
+followed, by the same certified steps. If a law has no lag, κ follows from the slopes of its grip
+at the release, and the grip of slow balls is sampled until they are out of the
+table; it is not certified that the grip does not return between two samples.
 """
 
 import numpy as np
@@ -27,7 +27,7 @@ _BISECTIONS = 60
 
 
 class _Unloaded(Motion):
-    """The motion -y in free flight; it ends where δ ≥ 0."""
+    """The motion -y in free flight, which ends where δ ≥ 0."""
 
     def __init__(self, flight: Flight, lag):
         self.flight, self.lag = flight, lag
@@ -36,7 +36,7 @@ class _Unloaded(Motion):
     def __call__(self, time: np.ndarray) -> State:
         lag, forcing = self.lag, self.forcing
         displacement, rate, second, third = self.flight.gap(time)
-        # Exactly zero at the release, which rounding must not turn into a zero.
+        # y is exactly zero at the release, which must not count as the zero that is looked for.
         y = np.where(time == 0, 0.0, displacement + lag * rate)
         # The fourth derivative of δ is minus that of the table.
         falls = -(rate + lag * second), -(second + lag * third), -(third - lag * (1 + second))
@@ -44,7 +44,10 @@ class _Unloaded(Motion):
 
 
 def resumption(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.ndarray]:
-    """A time without landing of balls that were let go, and whether they are held again then."""
+    """A time before which released balls have certainly not landed, and whether they are held then.
+
+    A ball that is held again at this time resumes its contact.
+    """
     time, resumed = flight.sure(), np.zeros(flight.velocity.shape, dtype=bool)
     if np.any(law.lag != 0):
         slow = np.flatnonzero(~_leaves_fast(flight, law))
@@ -66,13 +69,13 @@ def _leaves_fast(flight: Flight, law: ContactLaw) -> np.ndarray:
 
 
 def _certified(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.ndarray]:
-    """When y falls back to 0, or δ reaches it, and whether it is the former."""
+    """The time at which y falls back to 0 or δ reaches 0, and whether it is the former."""
     found = first_zero(_Unloaded(flight, law.lag), np.zeros_like(flight.velocity))
     return found.time, ~found.ended
 
 
 def _sampled(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.ndarray]:
-    """When the grip returns, or δ reaches 0, and whether it is the former."""
+    """The time at which the grip returns or δ reaches 0, and whether it is the former."""
 
     def held(time):
         displacement, rate, _, _ = flight.gap(time)

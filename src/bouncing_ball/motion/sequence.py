@@ -12,13 +12,13 @@ from bouncing_ball.motion.angles import reduce_angle
 
 RECORDED = (
     *("time", "phase", "displacement", "relative_velocity", "contact_duration"),
-    *("release_displacement", "relative_release_velocity", "settling"),
+    *("release_displacement", "relative_bounce_velocity", "settling"),
 )
 """The arrays of an :class:`ImpactSequence` with a row for each impact, in order."""
 
 
 class Status(IntEnum):
-    """What a ball is doing after its last recorded impact."""
+    """The state of a ball after its last recorded impact."""
 
     BOUNCING = 0
     """More impacts follow."""
@@ -29,9 +29,9 @@ class Status(IntEnum):
 
 
 class Cycle(NamedTuple):
-    """The next impact: phase in [-π, π], relative velocity, δ, and the time until it.
+    """The next impact: phase in [-π, π], relative velocity δ′ ≤ 0, δ, and the time until it.
 
-    NaN, with an infinite time, after a contact that never ends.
+    The state is NaN and the time infinite after a contact that never ends.
     """
 
     phase: np.ndarray
@@ -57,18 +57,18 @@ class ImpactSequence:
     time, phase : array
         Time of the impact since the first one, and the table's phase, in [-π, π].
     displacement, relative_velocity : array
-        δ and δ′ at the impact. δ = 0 but where a contact that ended by its
+        δ and δ′ at the impact. δ = 0, except where a contact that ended by its
         force resumes below the table's level, with δ′ > 0.
     contact_duration : array
         Time until the ball leaves; 0 for an impact with a restitution coefficient
         unless the ball sticks; infinite for permanent contact.
-    release_displacement, relative_release_velocity : array
+    release_displacement, relative_bounce_velocity : array
         δ and δ′ when the ball leaves.
     status : array of int
         :class:`Status` of each ball.
     settling : array
-        The part of ``contact_duration`` taken by the infinitely many impacts of the restitution
-        model that are left out before a ball sticks; 0 for the other models.
+        The part of ``contact_duration`` in which infinitely many impacts of the restitution
+        model are summed up before a ball sticks; 0 for the other models.
     """
 
     amplitude: np.ndarray
@@ -79,15 +79,17 @@ class ImpactSequence:
     relative_velocity: np.ndarray
     contact_duration: np.ndarray
     release_displacement: np.ndarray
-    relative_release_velocity: np.ndarray
+    relative_bounce_velocity: np.ndarray
     status: np.ndarray
     settling: np.ndarray
 
     def __repr__(self) -> str:
-        balls = f" of {self.status.size} balls" if self.status.ndim else ""
+        balls = f" of each of {self.status.size} balls" if self.status.ndim else ""
+        least, most = np.min(self.impacts), np.max(self.impacts)
+        count = f"{least}" if least == most else f"{least} to {most}"
         doing = (Status(int(k)).name.lower().replace("_", " ") for k in np.unique(self.status))
-        head = f"ImpactSequence: {len(self.time)} impacts{balls}, then {' or '.join(doing)}"
-        names = ("time", "phase", "impact_velocity", "contact_duration", "release_velocity")
+        head = f"ImpactSequence: {count} impacts{balls}, then {' or '.join(doing)}"
+        names = ("time", "phase", "impact_velocity", "contact_duration", "bounce_velocity")
         values = (f"  {name:<22}{in_words(getattr(self, name))}" for name in names)
         return "\n".join([head, *values])
 
@@ -107,19 +109,19 @@ class ImpactSequence:
 
     @property
     def impact_velocity(self) -> np.ndarray:
-        """Absolute velocity z′_i of the ball at the impact."""
+        """Absolute velocity z′_i of the ball at each impact, before it."""
         return self.relative_velocity + self.amplitude * np.cos(self.phase)
 
     @property
     def release_phase(self) -> np.ndarray:
-        """Phase of the table when the ball leaves, in [-π, π]; NaN if it never does."""
+        """Phase of the table at each release, in [-π, π]; NaN if the contact never ends."""
         finite = np.isfinite(self.contact_duration)
         return reduce_angle(self.phase + np.where(finite, self.contact_duration, np.nan))
 
     @property
-    def release_velocity(self) -> np.ndarray:
-        """Absolute velocity z′_b of the ball when it leaves."""
-        return self.relative_release_velocity + self.amplitude * np.cos(self.release_phase)
+    def bounce_velocity(self) -> np.ndarray:
+        """Absolute velocity z′_b of the ball at each release."""
+        return self.relative_bounce_velocity + self.amplitude * np.cos(self.release_phase)
 
     @property
     def impacts(self) -> np.ndarray:

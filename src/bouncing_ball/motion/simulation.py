@@ -1,4 +1,4 @@
-"""Balls followed from impact to impact, whatever the impact is made of."""
+"""The simulation of balls from impact to impact, for any kind of impact."""
 
 from typing import Any
 
@@ -22,7 +22,7 @@ from bouncing_ball.motion.sequence import RECORDED, Cycle, ImpactSequence, Statu
 Law = ContactLaw | Signature | RestitutionLaw | ArrayLike
 """A contact's law, its signature, or the restitution coefficient, a law r(v) or a number."""
 
-# A ball at rest on the table may come out of rounding as rising by a little.
+# Rounding may give a ball at rest on the table a small upward velocity.
 _ROUNDING = 8 * np.finfo(float).eps
 
 
@@ -73,15 +73,13 @@ def simulate(
 ) -> ImpactSequence:
     """Follow balls from an impact through a number of impacts, the first included.
 
-    Everything is dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g.
-
     Parameters
     ----------
     law : ContactLaw, Signature, RestitutionLaw or array_like
         The contact with its duration; or its signature, for the corrected model; or r, a law
-        or a number in (0, 1]. Arrays of parameters give each ball its own.
+        or a number in (0, 1]. Arrays of parameters have one entry per ball.
     amplitude : array_like
-        Λ.
+        Λ ≥ 0.
     phase, velocity : array_like
         Table phase φ and absolute velocity z′_i of the ball at the first impact, before it.
     impacts : int

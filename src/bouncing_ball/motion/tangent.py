@@ -1,12 +1,12 @@
-r"""How small deviations of a ball grow from one impact to the next.
+"""Growth of small deviations of a ball from one impact to the next.
 
 A deviation (dφ, dδ, dδ′) is carried by the linearised flow of a flight or of a contact, and
-then along the motion to the next event, ``δ + κ δ′ = 0``. That is the landing with κ = 0; the
+then along the motion to the next event, ``δ + κ δ′ = 0``. This is the landing with κ = 0; the
 release or the resumption of a contact by its force with the lag κ; and with κ = -dh/dv the
-instant of the corrected model at the depth h(v). On such a section ``dδ = -κ dδ′``, so that
-two numbers are left, (dφ, dδ′).
+instant of the corrected model at the depth h(v). On such a section ``dδ = -κ dδ′``, which leaves
+two numbers, (dφ, dδ′).
 
-The flow of a flight needs the table at its two ends only. With X = Λ cos φ, Y = Λ sin φ, and
+The flow of a flight depends on the table at its two ends only. With X = Λ cos φ, Y = Λ sin φ, and
 the index 1 for the end after a time T::
 
     ∂δ/∂φ = X - X₁ - Y T,    ∂δ′/∂φ = Y₁ - Y,    ∂δ/∂δ′ = T
@@ -18,14 +18,14 @@ import numpy as np
 
 
 class Deviation(NamedTuple):
-    """dφ, dδ and dδ′ of each ball."""
+    """The deviations dφ, dδ and dδ′, with an entry per ball."""
 
     phase: np.ndarray
     displacement: np.ndarray
     velocity: np.ndarray
 
     def to_event(self, velocity, acceleration, lag) -> Self:
-        """The same at the event δ + κ δ′ = 0, for δ′ and δ″ there."""
+        """The deviation at the event δ + κ δ′ = 0, where the motion has δ′ and δ″."""
         missing = self.displacement + lag * self.velocity
         later = -missing / (velocity + lag * acceleration)
         return type(self)(
@@ -35,7 +35,10 @@ class Deviation(NamedTuple):
         )
 
     def flown(self, start, end, time, velocity, lag) -> Self:
-        """After a flight between the table's (X, Y) at its ends, that meets the next event."""
+        """The deviation at the next event, after a flight with the table's (X, Y) at its ends.
+
+        ``time`` is the time of flight, ``velocity`` δ′ at the event and ``lag`` its κ.
+        """
         (x, y), (x1, y1) = start, end
         fall = self.displacement + self.velocity * time + self.phase * (x - x1 - y * time)
         pace = self.velocity + self.phase * (y1 - y)
@@ -43,7 +46,7 @@ class Deviation(NamedTuple):
 
 
 class Jacobian(NamedTuple):
-    """∂(φ₁, δ′₁)/∂(φ, δ′), row by row."""
+    """∂(φ₁, δ′₁)/∂(φ, δ′), row by row, with an entry per ball."""
 
     a: np.ndarray
     b: np.ndarray
@@ -52,21 +55,21 @@ class Jacobian(NamedTuple):
 
     @classmethod
     def of_columns(cls, first: Deviation, second: Deviation) -> Self:
-        """From what becomes of (1, 0) and of (0, 1)."""
+        """The matrix whose columns are the images of (1, 0) and of (0, 1)."""
         return cls(first.phase, second.phase, first.velocity, second.velocity)
 
     @classmethod
     def identity(cls, balls: int) -> Self:
-        """No change."""
+        """The identity."""
         one, zero = np.ones(balls), np.zeros(balls)
         return cls(one, zero, zero.copy(), one.copy())
 
     def apply(self, phase: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """What becomes of a deviation."""
+        """The image of a deviation (dφ, dδ′)."""
         return self.a * phase + self.b * velocity, self.c * phase + self.d * velocity
 
     def after(self, first: "Jacobian") -> "Jacobian":
-        """The product: ``first``, then this."""
+        """The product of this matrix with ``first``, which acts first."""
         a, c = self.apply(first.a, first.c)
         b, d = self.apply(first.b, first.d)
         return Jacobian(a, b, c, d)

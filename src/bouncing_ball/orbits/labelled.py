@@ -18,8 +18,11 @@ from bouncing_ball.motion.angles import table
 from bouncing_ball.motion.history import History, history
 from bouncing_ball.motion.landing import Flight, land
 from bouncing_ball.motion.sequence import Status
-from bouncing_ball.orbits.columns import branch_columns, orbits_in_columns
+from bouncing_ball.orbits.columns import branch_columns, columns, orbits_in_columns
+from bouncing_ball.orbits.orbit import OBSERVABLES
+from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.orbits.stability import Side
 
 # Impacts of one ball that are simulated at first, and at most.
 _FIRST, _MOST = 64, 65_536
@@ -119,6 +122,50 @@ def branches(
     if amplitude_max is not None:
         grid.attrs["amplitude_max"] = float(amplitude_max)
     return grid.unfold(whole.assign_attrs(kind="branch"))
+
+
+def orbits(grid: Grid, models: Callable[..., Any], side: str) -> Labelled:
+    """The orbit on a side of the saddle-node at each place of a grid; NaN where there is none."""
+
+    def found(n: Any, amplitude: Any, **impact: Any) -> dict[str, np.ndarray]:
+        orbit = models(n, amplitude, Side(side), **impact).orbit(n, amplitude, Side(side))
+        return columns(orbit, *(name for name in OBSERVABLES if name != "amplitude"))
+
+    return _each_case(grid, found, "orbit")
+
+
+def limits(grid: Grid, models: Callable[..., Any]) -> Labelled:
+    """Amplitude and phase of saddle-node and period doubling at each place of a grid."""
+
+    def found(n: Any, **impact: Any) -> dict[str, np.ndarray]:
+        model = models(n, **impact)
+        ends = {"saddle_node": model.saddle_node(n), "period_doubling": model.period_doubling(n)}
+        parts = ("amplitude", "phase")
+        return {f"{end}_{x}": getattr(orbit, x) for end, orbit in ends.items() for x in parts}
+
+    return _each_case(grid, found, "limits")
+
+
+def _each_case(grid: Grid, found: Callable[..., dict[str, np.ndarray]], kind: str) -> Labelled:
+    """What is found at each place of a grid, of all at once but for a law by name.
+
+    A law's group is looked for, for one r at a time.
+    """
+    if "law" in grid.flat:
+        cells = [_one_case(found, cell) for cell in grid.cells()]
+        whole = xr.concat(cells, CASE)
+    else:
+        values = {name: np.broadcast_to(x, grid.size) for name, x in found(**grid.flat).items()}
+        whole = xr.Dataset({name: (CASE, x) for name, x in values.items()})
+    return grid.unfold(describe(whole).assign_attrs(kind=kind))
+
+
+def _one_case(found: Callable[..., dict[str, np.ndarray]], cell: dict[str, Any]) -> xr.Dataset:
+    try:
+        return xr.Dataset(found(**cell))
+    except NoOrbitError:
+        none = RestitutionModel(1.0).orbit(1, -1.0)
+        return xr.Dataset(columns(none, *(name for name in OBSERVABLES if name != "amplitude")))
 
 
 def branch(model: Any, n: int, amplitude_max: float | None, points: int) -> xr.Dataset:

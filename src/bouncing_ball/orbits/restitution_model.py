@@ -101,7 +101,9 @@ class RestitutionModel(_Instants):
         """The n-T orbits at Λ on a side of the saddle-node (Eq. 6); NaN below it."""
         fold, lam = formulas.saddle_node(n, self.restitution), np.asarray(amplitude, dtype=float)
         there = lam >= fold
-        phase = formulas.phase(n, self.restitution, np.where(there, lam, fold), side == Side.STABLE)
+        phase = formulas.phase(
+            n, self.restitution, np.where(there, lam, fold), Side(side) is Side.STABLE
+        )
         return self.orbit_of(n, lam, np.where(there, phase, np.nan))
 
     def saddle_node(self, n: ArrayLike) -> RestitutionOrbit:

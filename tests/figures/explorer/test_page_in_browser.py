@@ -182,7 +182,7 @@ def test_address_slider_and_typed_values(seen):
         "verdict": "", "command": "", "shown": 0,
     }  # fmt: skip
     assert seen["valid"]["refused"] == "" and seen["valid"]["verdict"] and seen["valid"]["shown"]
-    assert "left out: a = 0." in seen["still"]["refused"]
+    assert "left out: a = 0 (in its place 0.8)." in seen["still"]["refused"]
     assert "r = 0.1 is not above e⁻² = 0.1353" in seen["tooLossy"]["refused"]
     assert seen["tooLossy"]["verdict"] == seen["tooLossy"]["command"] == ""
 

@@ -39,7 +39,8 @@ function parse(hash) {
       : range && text.trim() !== "" && value >= range[0] && value <= range[1]
         && (name !== "n" || Number.isInteger(value)))
       state[name] = name in CHOICES ? text : value;
-    else refused.push(`${name} = ${text}`);
+    else refused.push(`${name} = ${text}`
+      + (name in DEFAULTS ? ` (in its place ${DEFAULTS[name]})` : ""));
   }
   if (state.tab === "design" && state.engine !== "none") {
     // The engine's own rule, where it has not the one that is chosen.

@@ -20,7 +20,10 @@ ALLOWED = {
     "continuation": (set(), {"numpy", "scipy"}),
     "motion": ({"contacts"}, {"numpy"}),
     "orbits": ({"datasets", "contacts", "continuation", "motion"}, {"numpy", "scipy", "xarray"}),
-    "attractors": ({"datasets", "contacts", "motion", "orbits"}, {"numpy", "xarray"}),
+    "attractors": (
+        {"datasets", "contacts", "continuation", "motion", "orbits"},
+        {"numpy", "xarray"},
+    ),
     "calls": ({"datasets", "contacts", "motion", "orbits", "attractors"}, {"numpy"}),
     "surveys": ({"datasets", "orbits", "calls"}, set()),
     "long_run": ({"datasets", "orbits", "attractors", "calls"}, {"numpy"}),

@@ -113,7 +113,7 @@ def _reading(annotation: Any) -> dict[str, Any]:
             return {"type": _within(kinds[1], kinds[0]), "metavar": "N" if kinds[0] is int else "X"}
         case typing.Literal:
             return {"choices": kinds}
-        case builtins.tuple:
+        case builtins.tuple if kinds[-1] is not ...:
             return _reading(kinds[0]) | {"nargs": 2, "metavar": ("FROM", "TO")}
         case builtins.bool:
             return {"action": "store_true"}

@@ -22,7 +22,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 # One thing after another: clean, run and compare share results/.
 .NOTPARALLEL:
-.PHONY: all setup lint test quick test-cluster test-long setup-engines test-engines gallery mutants diff accept report clean ci setup-newest newest config-docs lock
+.PHONY: all setup lint test quick test-cluster test-long setup-engines test-engines docs test-docs gallery mutants diff accept report clean ci setup-newest newest config-docs lock
 
 all: $(SETUP)
 	$(BIN)/snakemake --cores 2 $(QUIETLY)
@@ -57,7 +57,7 @@ test: $(SETUP)
 # What computes: no run of the pipeline, no comparison with the record, no picture, and
 # nothing that takes seconds.
 quick: $(SETUP)
-	$(PYTEST) $(addprefix --ignore=tests/,workflow figures) -m "not long and not slow and not cluster and not engines"
+	$(PYTEST) $(addprefix --ignore=tests/,workflow figures) -m "not long and not slow and not cluster and not engines and not docs"
 
 # The atlas on a Slurm of its own: mostly waiting, and skipped without one.
 test-cluster: $(SETUP)
@@ -78,9 +78,24 @@ setup-engines: $(SETUP)
 test-engines: $(SETUP)
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m engines tests/engines
 
-# The pictures of docs/gallery, each from its script.
+# The site from the docs, the docstrings, the article and the explorer: results/site/index.html.
+docs: $(SETUP) $(VENV)/.docs
+	$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going -c docs . results/site
+	@echo "The site: results/site/index.html"
+
+$(VENV)/.docs: requirements-docs.lock
+	$(PIP) --require-hashes --only-binary :all: --requirement requirements-docs.lock
+	@touch $@
+
+# Every page of the site in Chromium: links, pictures, errors. Weekly in CI.
+test-docs: docs
+	$(BIN)/python -m pytest -m docs tests/test_site.py
+
+# The pictures of the gallery and of the lesson, and the lesson as a notebook.
 gallery: $(SETUP)
 	cd docs/gallery && for script in *.py; do $(abspath $(BIN))/python $$script || exit; done
+	cd docs/lesson && $(abspath $(BIN))/python -m doctest -o ELLIPSIS ../lesson.md
+	$(BIN)/python docs/notebook.py
 
 # Do the tests notice a wrong line? 200 single faults, one at a time.
 mutants: $(SETUP)
@@ -122,4 +137,5 @@ config-docs: setup
 # For maintainers; needs uv.
 lock:
 	uv pip compile pyproject.toml --extra test --extra pdf --extra lint --extra slurm --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate --upgrade --output-file requirements.lock
+	uv pip compile pyproject.toml --extra docs --constraint requirements.lock --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate --upgrade --output-file requirements-docs.lock
 	printf 'flit_core\nsetuptools\nwheel\n' | uv pip compile - --constraint requirements.lock --universal --python-version 3.11 --generate-hashes --no-header --no-annotate --upgrade --output-file requirements-build.lock

@@ -1,7 +1,7 @@
 """Shared by all tests: the hypothesis profile and reference implementations.
 
-The references use nothing of the package: a matrix exponential, the paper's
-own solution of the contact, Brent's method, and free flight.
+The references use nothing of the package: they are a matrix exponential, the paper's
+solution of the contact, Brent's method, and free flight.
 """
 
 import ast
@@ -94,7 +94,7 @@ def _cycle(phase, u, n, lam, omega, zeta, duration, force_release=False):
     """One cycle from the start of contact: (landing phase, relative landing velocity).
 
     ``duration`` is a guess of the contact time; both events are bracketed
-    around the guesses and closed by Brent's method to the last digits.
+    around the guesses and located by Brent's method to the last digits.
     """
 
     state = _paper_contact(u, phase, lam, omega, zeta)
@@ -155,7 +155,7 @@ def one_line():
 
 @pytest.fixture(scope="session")
 def described():
-    """Asserts that all of a dataset is named and described."""
+    """Asserts that every variable and dimension of a dataset has a name and a description."""
 
     def check(dataset):
         for name in dataset.variables:
@@ -184,7 +184,7 @@ CHROMIUM = next(
 
 
 def _browse(folder, url, *options):
-    """Run the browser once, in a folder of its own for what it keeps."""
+    """Run the browser once, with a temporary folder for its profile."""
     done = subprocess.run(
         [
             CHROMIUM,

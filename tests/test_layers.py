@@ -20,7 +20,7 @@ ALLOWED = {
     "continuation": (set(), {"numpy", "scipy"}),
     "motion": ({"contacts"}, {"numpy"}),
     "orbits": ({"datasets", "contacts", "continuation", "motion"}, {"numpy", "scipy", "xarray"}),
-    "attractors": ({"contacts", "motion", "orbits"}, {"numpy"}),
+    "attractors": ({"contacts", "continuation", "motion", "orbits"}, {"numpy"}),
     "calls": ({"datasets", "contacts", "motion", "orbits", "attractors"}, {"numpy"}),
     "surveys": ({"datasets", "orbits", "calls"}, set()),
     "accuracy": ({"contacts", "continuation", "motion", "orbits"}, {"numpy", "scipy"}),
@@ -75,7 +75,7 @@ ALLOWED = {
 
 
 def imports(tree: ast.AST):
-    """Absolute names of what a module imports; relative imports are not used."""
+    """Absolute names of the modules that a module imports; relative imports are not used."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)

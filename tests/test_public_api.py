@@ -1,4 +1,4 @@
-"""What users import from the top, as README shows it."""
+"""The names that users import from the package, as README shows them."""
 
 import doctest
 import pickle

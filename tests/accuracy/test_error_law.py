@@ -37,7 +37,9 @@ def sample(seed, size, release, r, places=(0.0, 1.0)):
 
 @pytest.mark.parametrize("release", RELEASES)
 def test_the_coefficients_are_the_limits_of_the_exact_errors(release):
-    """q = ϖ times the error; (8 q(4ϖ) - 6 q(2ϖ) + q(ϖ))/3 is without the next two orders."""
+    """K is the limit of q = ϖ times the error; (8 q(4ϖ) - 6 q(2ϖ) + q(ϖ))/3 eliminates two
+    orders.
+    """
     n, zeta, lam, _ = sample(21, 200, release, (0.25, 0.97), (0.2, 1.0))
     base = 2000.0
     once, twice, four = (
@@ -54,7 +56,7 @@ def test_the_coefficients_are_the_limits_of_the_exact_errors(release):
 
 @pytest.mark.parametrize("release", RELEASES)
 def test_the_corrected_model_leaves_the_second_order(release):
-    """Doubling ϖ halves the restitution model's error, and quarters the corrected one's."""
+    """Doubling ϖ halves the restitution model's error, and quarters the corrected model's."""
     n, zeta, lam, _ = sample(22, 200, release, (0.25, 0.97), (0.2, 0.95))
     once, twice = (
         np.abs(errors(SpringDamper(np.full(lam.shape, ratio), zeta, release), n, lam))
@@ -90,7 +92,7 @@ def test_the_remainder_where_the_law_is_stated_to_hold(release):
 
 
 def test_the_scales_by_hand():
-    """Λ sin ψ₀ = 0.4, so that a₀ = 0.6 and the line turns ψ by σ a₀/((1 + r) Λ sin ψ₀) = 0.1."""
+    """Λ sin ψ₀ = 0.4, so that a₀ = 0.6 and the load moves ψ by σ a₀/((1 + r) Λ sin ψ₀) = 0.1."""
     half, delay, r, load, duration = 2 * np.pi, 0.05, 0.5, 0.1, 0.1
     fold, speed, lift = half / 3, 2 * half / 1.5, 0.4
     instant, lam = Instant(delay, r, load, duration), np.hypot(fold, lift)
@@ -128,7 +130,9 @@ def test_the_permanent_contact_is_right_to_second_order(release):
 
 
 def test_nothing_to_be_relative_to():
-    """At r = 1 the saddle-node is at Λ = 0; at the saddle-node the phase is 0."""
+    """Errors relative to 0: at r = 1 the saddle-node is at Λ = 0; at the saddle-node the phase is
+    0.
+    """
     assert not np.isfinite(coefficients(1, 0.0, 1.0)["saddle_node"])
     r = float(restitution_coefficient(0.1))
     assert not np.isfinite(

@@ -20,13 +20,12 @@ SMALL = {
 
 @pytest.fixture(scope="session")
 def small():
-    """The small atlas, some of its parameters changed."""
+    """The small atlas, with some of its parameters changed."""
     return lambda **changed: Plan(**(SMALL | changed))
 
 
 @pytest.fixture(scope="session")
 def every_node():
-    """All nodes of a row."""
     return lambda plan, row: plan.nodes(row, np.arange(plan.nodes_per_row))
 
 

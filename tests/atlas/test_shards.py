@@ -1,4 +1,4 @@
-"""Answers of tiles, whatever the pieces they are computed in."""
+"""Answers of tiles do not depend on the pieces in which they are computed."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The summary of answers made by hand, by hand."""
+"""The summary of an atlas with answers made by hand, against numbers computed by hand."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Readings of Table 1: the altered equations against a return map of the test's own."""
+"""Readings of Table 1: the altered equations against an independent return map."""
 
 import numpy as np
 import pytest
@@ -28,7 +28,7 @@ def study(described):
 
 
 def cycle(phase, u, orbit, reference, *, weight, rise):
-    """One altered cycle, its events closed by Brent's method."""
+    """One altered cycle, with its events located by Brent's method."""
     omega, zeta = float(orbit.law.frequency_ratio), float(orbit.law.damping_ratio)
     lam, duration = float(orbit.amplitude), float(orbit.contact_duration)
     flight = float(orbit.flight_time)

@@ -1,4 +1,4 @@
-"""The checks of the printed formulas, checked: each row sees its own formula."""
+"""The checks of the printed formulas: each row fails when its formula is changed."""
 
 import inspect
 

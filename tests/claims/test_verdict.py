@@ -1,4 +1,4 @@
-"""Numbers against printed digits, and conditions."""
+"""Verdicts on numbers against printed digits, and on conditions."""
 
 import numpy as np
 import pytest

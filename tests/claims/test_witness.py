@@ -1,4 +1,4 @@
-"""The cross-check: what the accepted datasets show agrees, and what is wrong is seen."""
+"""The cross-check: the accepted datasets agree, and a wrong orbit is detected."""
 
 from dataclasses import replace
 

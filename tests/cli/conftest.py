@@ -1,4 +1,4 @@
-"""What a call of the command line says, as it succeeds or fails."""
+"""Calls of the command line, and their outputs when they succeed or fail."""
 
 import contextlib
 import io
@@ -42,7 +42,7 @@ def said(outcome):
 
 @pytest.fixture(scope="session")
 def ask(said):
-    """The JSON answer of a call that succeeds, on one line."""
+    """The JSON answer of a call that succeeds, which must be one line."""
 
     def ask(*arguments):
         out = said(*arguments, "--json")

@@ -1,4 +1,4 @@
-"""What the subcommands answer: the numbers of the models, and one line for each mistake."""
+"""Answers of the subcommands: the numbers of the models, and one line for each mistake."""
 
 import json
 import math
@@ -160,7 +160,7 @@ def test_a_law_by_its_free_impact_at_the_orbits_own_speed(ask):
 
 
 class _OfItsParameters(HuntCrossley):
-    """A law that does not say how it is scaled."""
+    """A law that does not define how it is scaled."""
 
     name = "rubber"
     of_scales = classmethod(ContactLaw.of_scales.__func__)

@@ -43,7 +43,7 @@ class Pair:
         write_dataset(data, self.new / "figures" / f"{name}.nc")
 
     def variable(self, name: str, variable: str):
-        """The worst row of one variable, everything else being as it was."""
+        """The worst row of one variable, after a check that nothing else differs."""
         rows = self.part(f"figures/{name}.nc").moved
         assert {row.name for row in rows} == {variable}
         return rows[0]
@@ -57,7 +57,7 @@ class Pair:
 
 
 def _put(source: Path, target: Path) -> None:
-    """A copy; of a picture a smaller one, which is read and compared ten times as fast."""
+    """Copy a file; of a picture a smaller version, which is read and compared ten times as fast."""
     if source.suffix != ".png":
         shutil.copyfile(source, target)
         return
@@ -81,7 +81,6 @@ def _record(tmp_path_factory) -> Path:
 
 @pytest.fixture
 def pair(_record, tmp_path) -> Pair:
-    """Two equal folders."""
     for side in ("record", "new"):
         shutil.copytree(_record, tmp_path / side)
     return Pair(tmp_path / "record", tmp_path / "new")

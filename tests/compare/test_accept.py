@@ -1,4 +1,4 @@
-"""What may replace the accepted record, and what is copied."""
+"""Which results may replace the accepted record, and which files are copied."""
 
 import subprocess
 

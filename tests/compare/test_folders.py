@@ -1,4 +1,4 @@
-"""Texts, pictures and whole folders, falsified in ways that people meet, and the reports."""
+"""Texts, pictures and folders with typical falsifications, and the reports on them."""
 
 import os
 import shutil

@@ -1,7 +1,7 @@
-"""The page as a real browser shows it: Chromium without a window and without a network.
+"""The page in a real browser: Chromium without a window and without a network.
 
 The page holds no script. Another page, made here, shows it in a frame and
-writes down what the browser made of it.
+writes down how the browser laid it out.
 """
 
 import json
@@ -67,7 +67,7 @@ addEventListener("load", () => {
 
 
 def observe(browse, folder, width):
-    """What the browser made of page.html in a window so wide."""
+    """The layout of page.html in a window of this width, as the browser reports it."""
     observer = folder / "observer.html"
     observer.write_text(OBSERVER.replace("WIDTH", str(width)), encoding="utf-8")
     text = browse(folder, observer, "--virtual-time-budget=20000", "--dump-dom")

@@ -1,4 +1,4 @@
-"""Files of the configuration that are no YAML, or not there."""
+"""Configuration files that do not exist or are not valid YAML."""
 
 import re
 from pathlib import Path

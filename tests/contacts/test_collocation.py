@@ -1,4 +1,6 @@
-"""Single contacts: exact answers, and what is no contact. See also the contract of all laws."""
+"""Single contacts: exact answers, and starts without a contact. See also the contract of all
+laws.
+"""
 
 import numpy as np
 import pytest
@@ -60,7 +62,7 @@ class _Pulling(ContactLaw):
 
 
 class _Sinking(ContactLaw):
-    """Overdamped: a free ball comes back to the table's level after an infinite time."""
+    """Overdamped: a free ball takes an infinite time to return to the table's level."""
 
     name = "sinking"
 

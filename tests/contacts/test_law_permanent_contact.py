@@ -1,4 +1,4 @@
-"""Permanent contact of any law: the closed form, and what a touch is."""
+"""Permanent contact of any law against the closed form, and the motion at the threshold."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ def test_a_contact_below_the_threshold_is_held_and_above_it_is_not(kind):
     threshold = permanent_contact(law)
 
     def lowest(*shares):
-        """The least grip in the last period of motions that have settled, at shares of the Λ."""
+        """The smallest grip in the last period of settled motions, at shares of the threshold."""
         lam = threshold * np.array(shares)
 
         def rates(t, state):

@@ -38,7 +38,7 @@ def slope(s, a, q):
 
 
 def exact(function, s, omega, zeta):
-    """The fields of a Response, in their order."""
+    """The fields of a Response, in order, in 130 digits."""
     with mpmath.workdps(130):
         s, omega, zeta = mpmath.mpf(s), mpmath.mpf(omega), mpmath.mpf(zeta)
         a, q = zeta * omega + NUDGE, omega * omega + NUDGE / 3
@@ -46,10 +46,10 @@ def exact(function, s, omega, zeta):
 
 
 def sizes(name, s, omega, g):
-    """Natural sizes of the fields: what a rounding of the phase is relative to.
+    """Natural sizes of the fields, to which the rounding of the phase is relative.
 
-    ``m`` is the shorter of the time and the oscillator's own time, for the impulse times
-    the free oscillation left. The derivative by ν costs a time.
+    ``m`` is the shorter of the time and 1/ϖ, for the impulse times the remaining amplitude of the
+    free oscillation. The derivative by ν has a further factor of time.
     """
     if name == "impulse":
         return np.hypot(abs(g[1]), omega * abs(g[0])) * np.array([min(s, 1 / omega), 1])

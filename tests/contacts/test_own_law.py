@@ -1,4 +1,4 @@
-"""The documentation's worked example of a law of one's own, run as it stands."""
+"""The worked example of a user's law in the documentation, run as it stands."""
 
 import doctest
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Permanent contact (Eqs. 28-36)."""
+"""Permanent contact of the spring-damper: its threshold and the minimum of that (Eqs. 28-36)."""
 
 import mpmath
 import numpy as np

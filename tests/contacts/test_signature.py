@@ -1,4 +1,4 @@
-"""The signature of the linear contact against the contact's own motion."""
+"""The signature of the linear contact against the motion in the contact."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
 
 
 def test_flights_continued_into_any_contact_meet_at_the_centroid_of_its_force():
-    """Exact, whatever the table does meanwhile: the identity that the model is built on."""
+    """This is exact for any motion of the table; the corrected model is built on this identity."""
     rng = np.random.default_rng(11)
     for release in RELEASES:
         for _ in range(50):

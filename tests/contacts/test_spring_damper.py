@@ -32,7 +32,7 @@ def flow_of(time, displacement, velocity, phase, amplitude, frequency_ratio, dam
 
 
 def size(start, s):
-    """Bounds on δ and δ′ reached within a time s, and so the size of errors."""
+    """Bounds of δ and δ′ within a time s, which set the scale of errors."""
     push = 1 + start["amplitude"]
     v = abs(start["velocity"]) + start["frequency_ratio"] * abs(start["displacement"]) + push * s
     return np.array([abs(start["displacement"]) + v * min(s, 1 / start["frequency_ratio"]), v])

@@ -178,7 +178,7 @@ def test_a_corner_ends_the_branch():
 
 
 def jump(terminal, reason=""):
-    """A sign change without a zero, at p = 0.3."""
+    """A test function that changes its sign without a zero, at p = 0.3."""
     return Event("jump", lambda y: np.where(y[..., 1] < 0.3, 1.0, -1.0), terminal, reason)
 
 

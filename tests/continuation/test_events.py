@@ -10,7 +10,7 @@ SETTINGS = NewtonSettings()
 
 
 class Circle:
-    """x² + p² = 1."""
+    """The branch x² + p² = 1."""
 
     def residual(self, y):
         return np.sum(y * y, axis=-1, keepdims=True) - 1
@@ -20,7 +20,7 @@ class Circle:
 
 
 class Line:
-    """x = p."""
+    """The branch x = p."""
 
     def residual(self, y):
         return y[..., :1] - y[..., 1:]

@@ -1,4 +1,4 @@
-"""The adaptive step."""
+"""The adaptive step: its change with the iterations and the angle, and its bounds."""
 
 import pytest
 

@@ -1,8 +1,8 @@
-"""A law of the impact of one's own: restitution that falls with the speed.
+"""An example of a user's model: restitution that falls with the speed.
 
 Plastic spheres keep ``r = (c/v)^¼`` of a speed v above the yield speed c, and
-all of a lower one (K. L. Johnson, Contact Mechanics, 1985, §11.5). This is all that a model
-needs: its orbits, their stability and bifurcations, its simulation follow.
+all of a lower one (K. L. Johnson, Contact Mechanics, 1985, §11.5). The law is all that such a model
+needs: its orbits, their stability and bifurcations, and its simulation follow.
 """
 
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What every contact law keeps: its release, its energy, its derivatives, and its simulation.
+"""The contract of every contact law: its release, energy, derivatives, and simulation.
 
 A new law is one more line of :data:`LAWS`. The spring-damper as a law without a closed form
 (:class:`Spring`) is compared with the closed form everywhere.
@@ -27,7 +27,7 @@ from bouncing_ball.motion.simulation import next_impact, simulate
 
 @dataclass(frozen=True, repr=False)
 class Spring(ContactLaw):
-    """The spring-damper, of which only the force and the release are known."""
+    """The spring-damper as a law with nothing but its force and its release."""
 
     frequency_ratio: float | np.ndarray
     damping_ratio: float | np.ndarray

@@ -1,4 +1,4 @@
-"""Files: whole or not there, and the same bytes every time."""
+"""Files are written completely or not at all, with the same bytes every time."""
 
 import numpy as np
 import pytest

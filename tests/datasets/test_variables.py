@@ -1,4 +1,4 @@
-"""The vocabulary of the datasets."""
+"""The vocabulary of the datasets: its rows are complete, and unknown names are refused."""
 
 import numpy as np
 import pytest

@@ -23,7 +23,7 @@ def landing_gap(s, phase, velocity, amplitude):
 
 
 def sampled(orbit):
-    """The definition, on 2000 samples of contact and flight each."""
+    """Admissibility by its definition, on 2000 samples of contact and flight each."""
     omega, zeta = orbit.law.frequency_ratio, orbit.law.damping_ratio
     u, lam = orbit.relative_impact_velocity, orbit.amplitude
     flow = SpringDamper(omega, zeta).flow(SHARES * orbit.contact_duration, 0.0, u, orbit.phase, lam)

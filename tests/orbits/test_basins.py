@@ -48,10 +48,10 @@ def test_no_ball_leaves_a_trap_and_all_come_to_the_orbit(model, amplitude):
     ids=["balls that rise", "a ring that grows", "the greatest"],
 )
 def test_the_radius_of_a_trap(velocity, grows, radius):
-    """A map that halves the distance from its fixed point, but in a ring where it grows.
+    """A map that halves the distance from its fixed point, except in a ring where it grows.
 
-    The trap ends where the ring begins, though the map shrinks wider circles again; and where
-    states begin that are no impacts, δ′ > 0.
+    The trap ends where the ring begins, although the map shrinks wider circles again; it also ends
+    at states that are not impacts, δ′ > 0.
     """
 
     def cycle(amplitude, phase, speed):

@@ -1,4 +1,4 @@
-"""Random contacts of the whole range: no bifurcation is false, none is missing."""
+"""Random contacts over the entire range: no bifurcation is false, and none is missing."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Limits of admissibility along a branch of a known problem."""
+"""Limits of admissibility along a branch of a problem whose solution is known."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from bouncing_ball.orbits.grazing import grazing_points
 
 
 class Circle:
-    """x² + p² = 1."""
+    """The branch x² + p² = 1."""
 
     def residual(self, y):
         return np.sum(y * y, axis=-1, keepdims=True) - 1

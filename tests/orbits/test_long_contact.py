@@ -1,4 +1,4 @@
-"""Windows of the orbits with a long contact: an independent scan, their ends, limits."""
+"""Windows of the orbits with a long contact: an independent scan, their ends, and limits."""
 
 import numpy as np
 import pytest
@@ -26,12 +26,12 @@ def contact(r, ratio, release=Release.DISPLACEMENT):
 
 @pytest.fixture(scope="module")
 def window():
-    """At r = 0.85, one of each kind."""
+    """The windows at r = 0.85, of contacts with each kind of end."""
     return stable_window(contact(0.85, RATIOS))
 
 
 def test_windows_found_by_another_program(window):
-    """A referee's, from simulations at steps in Λ: the ends are known to such a step."""
+    """A referee's program found the ends by simulations at steps in Λ, hence to such a step."""
     begins = SpringDamperModel(contact(0.85, RATIOS)).permanent_contact_threshold()
     assert begins == pytest.approx([0.3175, 0.7518, 0.9602, 0.9901], abs=1e-4)
     assert window.amplitude == pytest.approx([0.3342, 1.0955, 1.0054, 1.042], abs=2e-3)

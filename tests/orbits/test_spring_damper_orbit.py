@@ -1,4 +1,4 @@
-"""What is read from an orbit of the spring-damper model."""
+"""Observables of an orbit of the spring-damper model."""
 
 from types import SimpleNamespace
 

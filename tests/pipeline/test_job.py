@@ -1,4 +1,4 @@
-"""The adapter around a job: what it takes, and what is said when it fails."""
+"""The adapter around a job: its arguments, its files, and its message when it fails."""
 
 from types import SimpleNamespace
 
@@ -11,7 +11,7 @@ from bouncing_ball.pipeline.job import logged, read_input
 
 @pytest.fixture
 def interruptible(monkeypatch):
-    """An interrupted job ends at once, but the tests are not to."""
+    """The tests must survive the signal handler with which an interrupted job ends at once."""
     monkeypatch.setattr("signal.signal", lambda *_: None)
 
 

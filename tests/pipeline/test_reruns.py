@@ -1,4 +1,4 @@
-"""What a change makes again, as far as parameters and imports decide it.
+"""The jobs that a change makes run again, as far as parameters and imports determine them.
 
 That Snakemake follows them is tested in tests/workflow/test_reruns.py.
 """
@@ -62,7 +62,7 @@ def test_a_changed_module(stages, file, expected):
 
 
 def test_the_modules_of_a_stage_are_those_it_imports():
-    """Followed in the sources, and as Python really imports them."""
+    """The modules found in the sources are those that Python really imports."""
     code = (
         "import sys, bouncing_ball.studies.orbit_branches\n"
         "print(*sorted(m.__file__ for n, m in sys.modules.items()"
@@ -75,7 +75,7 @@ def test_the_modules_of_a_stage_are_those_it_imports():
 
 
 def test_no_import_statement_is_missed():
-    """Those that are found by their form are those that Python's parser finds."""
+    """The statements found by regular expressions are those that Python's parser finds."""
     for path in sorted((ROOT / "src" / "bouncing_ball").rglob("*.py")):
         named = set()
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):

@@ -1,4 +1,4 @@
-"""``bouncing-ball explain``: what a file is made from, and how to make it again."""
+"""``bouncing-ball explain``: the origin of a file, and the commands that make it again."""
 
 import json
 import subprocess

@@ -29,14 +29,14 @@ ORBITS = 2000
 
 
 def spent(run) -> tuple[float, object]:
-    """Processor time, and what came out."""
+    """Processor time of a call, and its result."""
     start = time.process_time()
     result = run()
     return time.process_time() - start, result
 
 
 def per_impact(run) -> float:
-    """Microseconds per impact."""
+    """Processor time per impact of a simulation, in microseconds."""
     seconds, sequence = spent(run)
     return seconds / int(np.isfinite(sequence.time).sum()) * 1e6
 
@@ -74,7 +74,7 @@ def orbits(repetitions: int) -> None:
 
 
 def branch(law) -> None:
-    """Both bifurcations of a law that has not been asked before."""
+    """Both bifurcations of a law that has no cached results."""
     model = LawModel(law)
     assert model.saddle_node(1).amplitude < model.period_doubling(1).amplitude
 

@@ -44,7 +44,7 @@ def reduce_to_imports(script: Path) -> None:
 
 
 def cold_run(tree: Path) -> float:
-    """Seconds of one run from clean."""
+    """Seconds that one run takes from a clean tree."""
     for folder in ("results", ".snakemake"):
         shutil.rmtree(tree / folder, ignore_errors=True)
     command = [Path(sys.executable).with_name("snakemake"), "--cores", "2", "--quiet", "all"]

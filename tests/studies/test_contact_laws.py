@@ -86,8 +86,11 @@ def law_at_rigid_speed(name, duration):
 
 
 def height_by_one_impact(law):
-    """Greatest height of the corrected model in the trial's way: not by the signature, which is
-    linear in the load, but by r_c, t_c and h of one impact under the orbit's own load."""
+    """Greatest height of the corrected model in the way of the trial.
+
+    It uses r_c, t_c and h of one impact under the load of the orbit, in place of the signature,
+    which is linear in the load.
+    """
     psi, delay = np.arccos(np.pi * 0.35 / 1.65), 0.0
     for _ in range(40):
         speed, load = np.pi + np.cos(psi), 1 - np.sin(psi)
@@ -118,7 +121,7 @@ def test_the_errors_are_those_of_the_trial(name):
 
 
 def unit(value):
-    """A unit of the second digit."""
+    """One unit of the second digit of a number."""
     return 10.0 ** (np.floor(np.log10(value)) - 1)
 
 

@@ -1,4 +1,4 @@
-"""Kinds of motion beside the 1-T orbit."""
+"""Kinds of motion of balls that start beside the 1-T orbit."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The stages of the corrected model: what they find, and where it stands."""
+"""The datasets of the corrected model: errors, orders and thresholds, and where they stand."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The references are orbits: of the stable range and beyond, under both rules."""
+"""The reference orbits solve the equations, in the stable range and beyond, under both rules."""
 
 import numpy as np
 

@@ -6,7 +6,7 @@ own, also at the ends of the contact where p = 0 ::
     dq/ds = p′,    dp′/ds = F = λ [a - f(p, p′)],    dt/ds = λ = m q^{m-1}
 
 with the load ``a = w - Λ sin(φ + t)``. The contact is cut into panels. Over each, the values of
-p′ at Gauss' 16 nodes are found by Picard's iteration, for many contacts at once; a sweep
+p′ at Gauss' 12 nodes are found by Picard's iteration, for many contacts at once; a sweep
 is three products with one small matrix. The length of the panel that reaches the
 release is found in the same sweeps, by Newton's method.
 
@@ -31,7 +31,7 @@ from bouncing_ball.contacts.contact_law import ContactLaw, slopes_of
 from bouncing_ball.contacts.contact_scales import scales
 from bouncing_ball.contacts.release import Release
 
-_NODES = 16
+_NODES = 12
 # Sweeps at most, and the last change of p′ in parts of V at which they stop, and at which the
 # panel is good enough: the next change would be a hundredth of it. The few that converge late
 # are tried again, as they would keep the others waiting.
@@ -40,16 +40,21 @@ _MOST = 0.95
 # What may be left of the grip, or of the time, relative to its change over the panel: it is
 # added to first order. And the sweep from which on the panel's end is looked at.
 _REACHED, _LOOK = 1e-12, 2
-# Last Legendre coefficients of what is integrated, over V or P/V; and the change in a
-# sweep early on, which tells how many there will be.
-_SPECTRUM, _TAIL = 1e-6, 2
+# Last Legendre coefficients of what is integrated, over V or P/V, for the end and where its
+# derivatives are wanted, whose own coefficients are larger by about the number of nodes; and
+# the change in a sweep early on, which tells how many there will be.
+_SPECTRUM, _FINER, _TAIL = 1e-6, 3e-8, 2
 _EARLY, _CHANGE = 5, 1e-3
-# Length of the first panel in parts of P^{1/m}/V.
-_FIRST = 0.8
+# Length of the first panel in parts of P^{1/m}/V, at the coefficients of the end.
+_FIRST = 0.65
 # Bounds of the change from one length to the next, and of that of a refused panel.
 _SHORTER, _LONGER, _SAFETY, _AGAIN = 0.3, 1.3, 0.9, 0.6
 # Contacts worked on at once: their nodes fit into the cache.
 _BLOCK = 1024
+# Bytes that come and go once, after which glibc keeps freed memory for what comes next: until
+# then it gives the temporaries of each sweep back to the system, and a third of the time goes
+# into asking for them again.
+_KEPT = 1 << 24
 # Panels of one contact at most: a dozen oscillations of an orbit's, some hundreds in a
 # simulation.
 _PANELS, MOST_PANELS = 120, 2000
@@ -146,9 +151,10 @@ class _Panel(NamedTuple):
         return _Panel(*(x[..., which] for x in self))
 
 
-def _lever(m: int, root):
+def _lever(m: int, root, out=None):
     """λ = dp/dq, by products, which cost less than a power."""
-    lever = np.full_like(root, m)
+    lever = np.empty_like(root) if out is None else out
+    lever[...] = m
     for _ in range(m - 1):
         lever *= root
     return lever
@@ -156,8 +162,14 @@ def _lever(m: int, root):
 
 def _load(start: Start, time):
     """a = w - Λ sin(φ + t), by the tangent of the half angle, which costs less than a sine."""
-    tangent = np.tan((start.phase + time) / 2)
-    return start.weight - 2 * start.amplitude * tangent / (1 + tangent * tangent)
+    tangent = start.phase + time
+    tangent *= 0.5
+    np.tan(tangent, out=tangent)
+    square = tangent * tangent
+    square += 1
+    tangent *= 2 * start.amplitude
+    tangent /= square
+    return np.subtract(start.weight, tangent, out=tangent)
 
 
 def _grip(law: ContactLaw, m: int, root, rate):
@@ -187,27 +199,52 @@ def _falls(law: ContactLaw, m: int, now: _Motion, root, rate, final, step, until
     return falls, np.abs(falls) * step
 
 
-def _panel(law: ContactLaw, m: int, start: Start, now: _Motion, until: np.ndarray | None) -> _Panel:
+def _summed(begin, step, values, out):
+    """The integral of a rate up to the nodes and the end, added to a value at the start."""
+    np.matmul(_rule().integral, values, out=out)
+    out *= step
+    out += begin
+    return out
+
+
+def _panel(
+    law: ContactLaw,
+    m: int,
+    start: Start,
+    now: _Motion,
+    until: np.ndarray | None,
+    spectrum: float = _SPECTRUM,
+) -> _Panel:
     """The next panel of each ball, to the release, or to a time, if that comes first."""
-    node, integral, tail, end = _rule()
-    rate = now.rate + node * (now.step * now.push)
+    node, _, tail, end = _rule()
+    force = law.force if m == 1 else law.root_force
+    # Written over in each sweep: memory that is asked for again and again costs as much as what
+    # is computed in it.
+    q, t, old, new = (np.empty((_NODES + 1, now.step.size)) for _ in range(4))
+    push, inside = np.empty((_NODES, now.step.size)), q[:-1]
+    lever = np.ones_like(push)
+    new[:-1] = now.rate + node * (now.step * now.push)
     last, more = np.zeros(now.step.size, dtype=bool), np.zeros(now.step.size)
     step = longer = now.step
-    reached, push = ~last, more
+    reached = ~last
     for sweep in range(_SWEEPS):
+        old, new = new, old
+        rate = old[:-1]
         # The nodes move with the end.
         moved = longer is not step
-        rate = rate + node * ((longer - step) * push) if moved else rate
+        if moved:
+            rate += node * ((longer - step) * push)
         step = longer
-        q = now.root + step * (integral @ rate)
+        _summed(now.root, step, rate, q)
         # In plain time, m = 1, these are known.
         if m > 1 or moved or sweep == 0:
-            lever = _lever(m, q[:-1])
-            t = now.time + step * (integral @ lever)
+            _lever(m, inside, lever)
+            _summed(now.time, step, lever, t)
             load = _load(start, t[:-1])
-        push = lever * (load - law.force(q[:-1] * lever / m, rate))
-        new = now.rate + step * (integral @ push)
-        before, rate = rate, new[:-1]
+        np.subtract(load, force(inside, rate), out=push)
+        if m > 1:
+            push *= lever
+        _summed(now.rate, step, push, new)
         if sweep < _LOOK:
             continue
         left = _grip(law, m, q[-1], new[-1]) if until is None else until - t[-1]
@@ -220,11 +257,13 @@ def _panel(law: ContactLaw, m: int, start: Start, now: _Motion, until: np.ndarra
             longer = step + more
         if sweep < _EARLY:
             continue
-        change = np.abs(rate - before).max(axis=0) / now.speed
+        rate -= new[:-1]
+        change = np.abs(rate, out=rate).max(axis=0) / now.speed
         if sweep == _EARLY:
             early = change
         if np.mean(reached & (change <= _SETTLED)) >= _MOST:
             break
+    rate = new[:-1]
     # What is still left, to first order.
     q[-1] += new[-1] * more
     t[-1] += _lever(m, q[-1]) * more
@@ -233,9 +272,9 @@ def _panel(law: ContactLaw, m: int, start: Start, now: _Motion, until: np.ndarra
     by_rate, by_time = (np.abs(tail @ x).max(axis=0) for x in (push, lever))
     error = np.maximum(by_rate / now.speed, by_time * now.speed / now.length) * step
     held = ((q[:-1] > 0) & (_grip(law, m, q[:-1], rate) > 0)).all(axis=0)
-    good = reached & held & (change <= _ENOUGH) & (error <= _SPECTRUM)
+    good = reached & held & (change <= _ENOUGH) & (error <= spectrum)
     slower = np.minimum(
-        (error / _SPECTRUM) ** (-1 / _NODES), (early / _CHANGE) ** (-1 / (2 * _EARLY))
+        (error / spectrum) ** (-1 / _NODES), (early / _CHANGE) ** (-1 / (2 * _EARLY))
     )
     factor = np.where(np.isnan(slower), _SHORTER, np.clip(_SAFETY * slower, _SHORTER, _LONGER))
     following = np.where(good, step * factor, now.step * np.minimum(factor, _AGAIN))
@@ -368,6 +407,7 @@ def march(
     >>> march(SpringDamper(np.pi, 0.0), start, until=np.full(1, 0.5)).penetration.round(12).tolist()
     [1.0]
     """
+    np.empty(_KEPT, dtype=np.int8)
     size = start.rate.size
     by, strain = np.zeros((size, 3, 4)), np.zeros(size)
     by[:, 1, 1] = 1.0
@@ -378,6 +418,8 @@ def march(
         state = np.full((len(_Motion._fields), size), np.nan)
         state[:, active] = _begin(law.take(active), start.take(active))
         plain = law.root > 1 and not differentiate
+        spectrum = _FINER if differentiate else _SPECTRUM
+        state[4] *= (spectrum / _SPECTRUM) ** (1 / _NODES)
         for _ in range(panels if active.size else 0):
             for here in np.array_split(active, -(-active.size // _BLOCK)):
                 limit = None if until is None else until[here]
@@ -386,7 +428,7 @@ def march(
                 panel = (
                     _next(some, own, now, limit)
                     if plain
-                    else _panel(some, law.root, own, now, limit)
+                    else _panel(some, law.root, own, now, limit, spectrum)
                 )
                 state[4, here] = panel.following
                 good = np.flatnonzero(panel.good)

@@ -69,6 +69,10 @@ class ContactLaw(Batch, ABC):
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """f(p, p′) for p > 0: force over the weight, positive when it pushes."""
 
+    def root_force(self, root: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """The same as a function of q = p^{1/m} and p′."""
+        return self.force(root**self.root, rate)
+
     @property
     def lag(self) -> Any:
         """κ of a contact that ends where p + κ p′ = 0; None where the force itself is needed."""

@@ -56,6 +56,7 @@ class Liggghts(Lammps):
 
     def snippet(self, contact: Physical, release: Release, time_step: float) -> str:
         kn, gamma = self.parameters(contact).values()
+        # LIGGGHTS reads the settings of a model after the wall only.
         limit = " limitForce on" if release is Release.FORCE else ""
         pair = "all property/global"
         return f"""\
@@ -69,4 +70,4 @@ fix kt {pair} kt peratomtypepair 1 0
 fix gamman {pair} gamman peratomtypepair 1 {gamma!r}
 fix gammat {pair} gammat peratomtypepair 1 0
 fix xmu {pair} coefficientFriction peratomtypepair 1 0
-fix wall all wall/gran model hooke/stiffness{limit} primitive type 1 zplane 0.0"""
+fix wall all wall/gran model hooke/stiffness primitive type 1 zplane 0.0{limit}"""

@@ -216,7 +216,7 @@ class ImpactModel(Batch, ABC):
         periods: float = 10.0,
         samples: int = 200,
     ) -> Labelled:
-        """A ball that is let go at rest: :func:`bouncing_ball.drop`."""
+        """A ball that is released at rest: :func:`bouncing_ball.drop`."""
         from bouncing_ball.orbits import labelled
 
         grid = self._grid(height=height, amplitude=amplitude, phase=phase)

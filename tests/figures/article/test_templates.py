@@ -23,7 +23,7 @@ HEADING = re.compile(r"^#+ .*$", re.MULTILINE)
 
 
 def prose(text: str) -> str:
-    """What is left of a template when all that may hold a digit is gone."""
+    """The text of a template without the parts that may hold a digit."""
     for pattern in (JINJA, DISPLAY, INLINE, CODE, CITATION, NAMED, FAMILY):
         text = pattern.sub(" ", text)
     return text

@@ -1,5 +1,6 @@
 """What the laws of a ball share: Hertz' stiffness, and a number for the damping."""
 
+from abc import abstractmethod
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -25,6 +26,15 @@ class Hertz(ContactLaw):
     def __post_init__(self):
         check_positive(self.stiffness, "stiffness K")
         check_damping(self.damping, "damping C")
+
+    def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """f(p, p′) by the root, of which the force is a polynomial."""
+        root = np.sqrt(penetration)
+        return self.root_force(np.sqrt(root) if self.root == 4 else root, rate)
+
+    @abstractmethod
+    def root_force(self, root: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """f as a function of q = p^{1/m} and p′."""
 
     @classmethod
     def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:

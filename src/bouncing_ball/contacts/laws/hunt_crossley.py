@@ -40,10 +40,9 @@ class HuntCrossley(Hertz):
     name: ClassVar[str] = "hunt-crossley"
     formula: ClassVar[str] = "K p^1.5 (1 + C p′)"
 
-    def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """K p^{3/2} (1 + C p′)."""
-        elastic = self.stiffness * (penetration * np.sqrt(penetration))
-        return elastic * (1 + self.damping * rate)
+    def root_force(self, root: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """K q³ (1 + C p′)."""
+        return self.stiffness * (root * root * root) * (1 + self.damping * rate)
 
     @staticmethod
     def damping_unit(length: np.ndarray, speed: np.ndarray) -> np.ndarray:

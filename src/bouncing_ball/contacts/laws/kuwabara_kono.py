@@ -45,9 +45,9 @@ class KuwabaraKono(Hertz):
     formula: ClassVar[str] = "K (p^1.5 + C √p p′)"
     release = Release.FORCE
 
-    def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """K √p (p + C p′)."""
-        return self.stiffness * np.sqrt(penetration) * (penetration + self.damping * rate)
+    def root_force(self, root: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """K q (q² + C p′)."""
+        return self.stiffness * root * (root * root + self.damping * rate)
 
     @property
     def lag(self) -> float | np.ndarray:

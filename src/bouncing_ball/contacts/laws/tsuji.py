@@ -65,11 +65,11 @@ class Tsuji(Hertz):
         c = np.asarray(self.damping, dtype=float)
         require(c < np.sqrt(5), c, "damping C", "below √5: with more the ball does not leave")
 
-    def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """K p^{3/2} + C √K p^{1/4} p′."""
-        half = np.sqrt(penetration)
+    def root_force(self, root: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """K q⁶ + C √K q p′."""
+        square = root * root
         loss = self.damping * np.sqrt(self.stiffness)
-        return self.stiffness * penetration * half + loss * np.sqrt(half) * rate
+        return (self.stiffness * (square * square * square)) + loss * root * rate
 
     @classmethod
     def group_of(cls, restitution: float) -> float:

@@ -60,7 +60,8 @@ def of_family(case: Case, family: Family) -> Motion:
     ideal = family.standing[simple]
     if ideal.exists and ideal.is_stable and ideal.is_admissible:
         # Where stability is weak the mapper may not see that it repeats.
-        other = replace(other, kind=Kind.ORBIT, periods=family.n, impacts=1)
+        stays: dict[str, Any] = {"kind": Kind.ORBIT, "periods": family.n, "impacts": 1}
+        other = replace(other, **stays)
     same = all(getattr(one, x) == getattr(other, x) for x in ("kind", "periods", "impacts"))
     values: dict[str, Any] = {}
     if same and int(one.periods) and one.kind != Kind.PERMANENT_CONTACT:

@@ -109,11 +109,13 @@ def test_what_is_refused():
         LawModel(Tsuji(1e3, 0.3)).nearest(None)
 
 
-def test_far_above_the_fold_orbits_are_walked_to_or_said_not_to_be_found():
+def test_far_above_the_fold_orbits_are_walked_to_or_said_not_to_be_found(monkeypatch):
     model = LawModel(Tsuji(1e3, 0.3))
     orbit = model.require_orbit(20, 300.0, Side.UNSTABLE)
     # The contact is one of the collocation's; the equations hold to rounding of z ≈ Λ.
     assert np.abs(orbit.residual()).max() < 1e-12 * 300
     assert orbit.trace_and_determinant()[0] > 2
+    # A walk of a few steps does not arrive, and one of 300 takes seconds.
+    monkeypatch.setattr("bouncing_ball.orbits.continued._POINTS", 20)
     with pytest.raises(NoOrbitError, match="none was found, and there may be one"):
         model.require_orbit(20, 1000.0, Side.UNSTABLE)

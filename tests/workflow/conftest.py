@@ -1,7 +1,8 @@
 """Copies of the tree in which the workflow is run as a user runs it.
 
 A whole run costs as much as hundreds of other tests: there is one, killed and
-resumed on its way, which all workers share, and copies of it.
+resumed on its way, which all workers share, and copies of it. What is not killed is
+started by ``warm.py``, which has imported numpy and its like once for all jobs.
 """
 
 import compileall
@@ -15,8 +16,8 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
@@ -139,7 +140,8 @@ class Tree:
     ) -> None:
         """Start a run and stop it once so many results are there."""
         running = subprocess.Popen(
-            [self.python, "-m", "snakemake", *arguments],
+            # In one group of processes with its jobs.
+            [sys.executable, "-m", "snakemake", *arguments],
             cwd=self.path,
             env=self.environment(),
             stdout=subprocess.DEVNULL,
@@ -156,11 +158,10 @@ class Tree:
             shutil.rmtree(self.path / ".snakemake" / "locks")
 
 
-def copy_tree(source: Path, target: Path, *, with_git: bool = False) -> Tree:
+def copy_tree(tree: Tree, target: Path, ignored: Callable | None = None) -> Tree:
     """A copy of the repository, or of one of these trees with its git and its results."""
-    ignored = None if with_git else IGNORED
-    shutil.copytree(source, target, ignore=ignored, copy_function=shutil.copy2)
-    return Tree(target)
+    shutil.copytree(tree.path, target, ignore=ignored, copy_function=shutil.copy2)
+    return replace(tree, path=target)
 
 
 @pytest.fixture(scope="session")
@@ -170,7 +171,22 @@ def shared(tmp_path_factory) -> Path:
     return base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
 
 
-def made_once(target: Path, make: Callable[[Path], None]) -> Tree:
+@pytest.fixture(scope="session")
+def warm(tmp_path_factory) -> Iterator[str]:
+    """A Python that is as quick to start as a fork."""
+    folder = tmp_path_factory.mktemp("warm")
+    server = subprocess.Popen([sys.executable, Path(__file__).with_name("warm.py"), folder])
+    try:
+        while not (folder / "ready").exists():
+            assert server.poll() is None, "the warm Python did not start"
+            time.sleep(0.02)
+        yield str(folder / "python")
+    finally:
+        server.terminate()
+        server.wait()
+
+
+def made_once(target: Path, make: Callable[[Path], None], python: str) -> Tree:
     """A tree that the first worker who needs it makes; the others wait for it."""
     with open(target.with_suffix(".lock"), "w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
@@ -179,21 +195,21 @@ def made_once(target: Path, make: Callable[[Path], None]) -> Tree:
             shutil.rmtree(part, ignore_errors=True)
             make(part)
             part.rename(target)
-    return Tree(target)
+    return Tree(target, python)
 
 
 @pytest.fixture(scope="session")
-def cloned(shared) -> Tree:
+def cloned(shared, warm) -> Tree:
     """A fresh clone: the repository in a repository of its own with one commit."""
 
     def make(folder: Path) -> None:
-        tree = copy_tree(ROOT, folder)
+        tree = copy_tree(Tree(ROOT), folder, IGNORED)
         tree.git("init", "--quiet")
         tree.commit("All")
         # Once, and not by every process of every copy.
         compileall.compile_dir(folder / "src", quiet=2)
 
-    return made_once(shared / "cloned", make)
+    return made_once(shared / "cloned", make, warm)
 
 
 @pytest.fixture(scope="session")
@@ -205,7 +221,7 @@ def pristine(shared, cloned) -> Tree:
     """
 
     def make(folder: Path) -> None:
-        tree = copy_tree(cloned.path, folder, with_git=True)
+        tree = copy_tree(cloned, folder)
         # Of quick figures, at the first: what was begun then is done twice.
         quick = ("--cores", "2", "fig11", "fig12")
         tree.interrupt(signal.SIGKILL, *quick, after=1, of="figures/[!.]*.nc")
@@ -214,16 +230,16 @@ def pristine(shared, cloned) -> Tree:
         found = json.dumps({"early": early, "last": last})
         (shared / "resumed.json").write_text(found, encoding="utf-8")
 
-    return made_once(shared / "pristine", make)
+    return made_once(shared / "pristine", make, cloned.python)
 
 
 @pytest.fixture
 def fresh(cloned, tmp_path) -> Tree:
     """A fresh clone, nothing run."""
-    return copy_tree(cloned.path, tmp_path / "tree", with_git=True)
+    return copy_tree(cloned, tmp_path / "tree")
 
 
 @pytest.fixture
 def complete(pristine, tmp_path) -> Tree:
     """A complete run that a test may change."""
-    return copy_tree(pristine.path, tmp_path / "tree", with_git=True)
+    return copy_tree(pristine, tmp_path / "tree")

@@ -5,6 +5,7 @@ import shutil
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -38,7 +39,7 @@ def resumed(cloned, tmp_path_factory):
     """A run killed as the second of its files was there, and resumed; what it found and said."""
     folder = tmp_path_factory.mktemp("atlas") / "tree"
     shutil.copytree(cloned.path, folder, copy_function=shutil.copy2)
-    tree = prepared(type(cloned)(folder))
+    tree = prepared(replace(cloned, path=folder))
     tree.interrupt(signal.SIGKILL, "--cores", "1", *ATLAS, after=2, of="atlas/shards/[0-9l]*.nc")
     shards = folder / "results/atlas/shards"
     found = tree.checksums("results/atlas/shards")

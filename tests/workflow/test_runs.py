@@ -4,6 +4,7 @@ import json
 import re
 import shutil
 import signal
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -48,7 +49,7 @@ def test_a_run_that_nothing_interrupts_gives_the_same_bytes(pristine, fresh):
 
 def test_two_figures_by_name_interrupted_and_resumed_elsewhere(pristine, tmp_path):
     # In another folder, and few at once: the same bytes as those of a whole run.
-    elsewhere = type(pristine)(tmp_path / "elsewhere", package=str(pristine.path / "src"))
+    elsewhere = replace(pristine, path=tmp_path / "elsewhere", package=str(pristine.path / "src"))
     shutil.copytree(pristine.path / "config", elsewhere.path / "config")
     run = ("--snakefile", str(pristine.path / "Snakefile"), "--cores", "1", "fig11", "fig12")
     expected, found = pristine.contents("results"), []

@@ -46,6 +46,12 @@ class CorrectedDynamics(Dynamics):
         hit = corrected_map.impact(self.law, self.amplitude, *instant)
         return Impact.at_level(phase, velocity, hit)
 
+    def at_section(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
+        """Impacts with instants at phases ψ, with the relative velocity before them."""
+        arrival = velocity + self.amplitude * np.cos(phase)
+        hit = corrected_map.impact(self.law, self.amplitude, phase, arrival)
+        return Impact.at_level(*corrected_map.start_of(self.amplitude, hit), hit)
+
     def depart(self, impact: Impact) -> Departure:
         """The end of each contact on the flight from its instant, or a rest on the table."""
         hit, amplitude = impact.known, self.amplitude

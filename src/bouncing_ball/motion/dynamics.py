@@ -66,6 +66,10 @@ class Dynamics(Batch, ABC):
         """First impacts at the table's level, at phases φ with δ′."""
         return Impact.at_level(phase, velocity)
 
+    def at_section(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
+        """The impacts with a state of :meth:`section`."""
+        return self.start(phase, velocity)
+
     @abstractmethod
     def depart(self, impact: Impact) -> Departure:
         """The ends of the contacts that start with these impacts."""

@@ -41,8 +41,14 @@ def _dynamics(law: Law, amplitude: ArrayLike) -> Dynamics:
     return RestitutionDynamics(law, lam)
 
 
-def _in_a_row(law: Law, amplitude: ArrayLike, *states: ArrayLike):
-    """The dynamics and the states of balls in a row, and their shape."""
+def in_a_row(law: Law, amplitude: ArrayLike, *states: ArrayLike):
+    """The dynamics and the states of balls in a row, and the shape of all of them.
+
+    Raises
+    ------
+    ModelError
+        If r or Λ is outside its range.
+    """
     dynamics = _dynamics(law, amplitude)
     arrays = [np.asarray(x, dtype=float) for x in states]
     shape = np.broadcast_shapes(dynamics.shape, *(x.shape for x in arrays))
@@ -59,7 +65,7 @@ def first_impacts(
     ModelError
         If r, Λ or a state is outside its range, or if a ball rises from the table.
     """
-    dynamics, (start, before), shape = _in_a_row(law, amplitude, phase, velocity)
+    dynamics, (start, before), shape = in_a_row(law, amplitude, phase, velocity)
     if not np.all(np.isfinite(start) & np.isfinite(before)):
         raise ModelError("the phase and the velocity of the impact must be finite")
     relative = before - table(start, dynamics.amplitude)[0]
@@ -168,7 +174,7 @@ def next_impact(
     >>> round(float(cycle.relative_velocity), 11)
     -2.0
     """
-    dynamics, (start, velocity), shape = _in_a_row(law, amplitude, phase, relative_velocity)
+    dynamics, (start, velocity), shape = in_a_row(law, amplitude, phase, relative_velocity)
     out = np.full((len(Cycle._fields), start.size), np.nan)
     out[-1] = np.inf
     for part in blocks(start.size, dynamics.block):

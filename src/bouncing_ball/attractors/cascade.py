@@ -1,0 +1,171 @@
+r"""Cascades of period doublings of the n-T orbits, for every model.
+
+An orbit with m = 2ᵏ impacts repeats after m n periods of the table. It is a fixed point of the
+m-th iterate of the map P from impact to impact, and its period doubles where a multiplier is -1,
+
+    Pᵐ(s) = s,    1 + tr M + det M = 0,    M = DPᵐ(s).
+
+Newton's method solves both together, on the orbit itself. The orbit of twice the period leaves
+from there along the eigenvector of that multiplier. Because it attracts balls, a few of its turns
+lead next to it.
+"""
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from bouncing_ball.continuation.corrector import NewtonSettings, newton
+from bouncing_ball.continuation.events import vanishing
+from bouncing_ball.errors import require
+from bouncing_ball.motion.angles import reduce_angle
+from bouncing_ball.motion.simulation import Law, in_a_row
+from bouncing_ball.motion.tangent import Jacobian
+from bouncing_ball.orbits.orbit import Orbit
+
+FEIGENBAUM = 4.669201609102990
+"""Limit of the ratio of successive distances between period doublings of a dissipative map
+(M. J. Feigenbaum, 1978)."""
+
+# Step of the central difference in Λ, which says how fast Newton's method converges, not where to.
+_DIFFERENCE = 3e-7
+_SETTINGS = NewtonSettings(max_iterations=25, longest=0.3)
+# The doubled orbit is met at this part of the distance to its own doubling, which is at first
+# a typical one and then that of the ratio above. Balls start a little off the old orbit, by this
+# part of the square root of the distance, and turn so often.
+_SHARE, _FIRST, _ASIDE, _TURNS = 0.7, 0.12, 0.1, 60
+MOST = 8
+"""Doublings that double precision still resolves."""
+
+
+class Cascade(NamedTuple):
+    """Orbits at their period doublings, shape (doublings, ...); NaN from where one is not found.
+
+    ``amplitude`` is Λ; ``phase`` and ``velocity`` are φ and δ′ of one of the 2ᵏ impacts, for the
+    corrected model at its instant. Everything is dimensionless.
+    """
+
+    amplitude: np.ndarray
+    phase: np.ndarray
+    velocity: np.ndarray
+
+    def ratios(self) -> np.ndarray:
+        """Ratios (Λ_k - Λ_{k-1})/(Λ_{k+1} - Λ_k), shape (doublings - 2, ...)."""
+        steps = np.diff(self.amplitude, axis=0)
+        return steps[:-1] / steps[1:]
+
+
+@dataclass(frozen=True)
+class Turns:
+    """Orbits with m impacts in m n periods, as a
+    :class:`~bouncing_ball.continuation.problem.Problem` with y = (φ, δ′, Λ).
+
+    Parameters
+    ----------
+    law : Law
+        One law of the impact, or an array with an entry for each orbit.
+    n : int
+        Table periods from impact to impact, in the mean.
+    impacts : int
+        m.
+    """
+
+    law: Law
+    n: Any
+    impacts: int
+
+    def after(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, Jacobian]:
+        """φ, δ′ and the time after m impacts, and M; each of the leading shape of y."""
+        phase, velocity, amplitude = np.moveaxis(y, -1, 0)
+        dynamics, (phase, velocity), shape = in_a_row(self.law, amplitude, phase, velocity)
+        impact = dynamics.at_section(phase, velocity)
+        change, time = Jacobian.identity(phase.size), np.zeros(phase.size)
+        for _ in range(self.impacts):
+            departure = dynamics.depart(impact)
+            after, passed = dynamics.fly(departure)
+            change = dynamics.jacobian(impact, departure, after, passed).after(change)
+            # Between two instants another time passes than between two contacts.
+            (start, _), (end, velocity) = dynamics.section(impact), dynamics.section(after)
+            time += passed + reduce_angle(end - start - passed)
+            impact = after
+        end, velocity, time, *entries = (x.reshape(shape) for x in (end, velocity, time, *change))
+        return end, velocity, time, Jacobian(*entries)
+
+    def residual(self, y: np.ndarray) -> np.ndarray:
+        """Time and velocity by which Pᵐ misses s, shape (..., 2)."""
+        _, velocity, time, _ = self.after(y)
+        return self._defects(y, velocity, time)
+
+    def _defects(self, y: np.ndarray, velocity: np.ndarray, time: np.ndarray) -> np.ndarray:
+        late = time - 2 * np.pi * np.asarray(self.n) * self.impacts
+        return np.stack([late, velocity - y[..., 1]], axis=-1)
+
+    def jacobian(self, y: np.ndarray) -> np.ndarray:
+        """Jacobian of the residual, shape (..., 2, 3); the column of Λ by differences."""
+        step = np.array([[0, 0, 0], [0, 0, _DIFFERENCE], [0, 0, -_DIFFERENCE]])
+        moved = y + step.reshape(3, *(1,) * (y.ndim - 1), 3)
+        _, velocity, time, change = self.after(moved)
+        defects, here = self._defects(moved, velocity, time), [x[0] for x in change]
+        by_state = np.stack(here, axis=-1).reshape(*y.shape[:-1], 2, 2) - np.eye(2)
+        by_amplitude = (defects[1] - defects[2]) / (2 * _DIFFERENCE)
+        return np.concatenate([by_state, by_amplitude[..., np.newaxis]], axis=-1)
+
+    def doubling(self, y: np.ndarray) -> np.ndarray:
+        """1 + tr M + det M."""
+        change = self.after(y)[-1]
+        return 1 + change.a + change.d + change.a * change.d - change.b * change.c
+
+
+def cascade(orbit: Orbit, doublings: int) -> Cascade:
+    """Period doublings of the orbits with 1, 2, 4, … impacts, in order.
+
+    Parameters
+    ----------
+    orbit : Orbit
+        The n-T orbits at their period doubling, which is the first: one, or an array of them.
+    doublings : int
+        How many are looked for, the first included, from 1 to 8.
+
+    Raises
+    ------
+    ModelError
+        If the number of doublings is outside its range.
+
+    Examples
+    --------
+    >>> from bouncing_ball.orbits.restitution_model import RestitutionModel
+    >>> found = cascade(RestitutionModel(0.5).period_doubling(1), 4)
+    >>> found.amplitude.round(6).tolist(), found.ratios().round(2).tolist()
+    ([1.526824, 1.667131, 1.696781, 1.703181], [4.73, 4.63])
+    """
+    require(1 <= doublings <= MOST, doublings, "number of period doublings", f"from 1 to {MOST}")
+    shape, row = orbit.shape, orbit.flat(orbit.shape)
+    dynamics, start, _ = in_a_row(row.law, row.amplitude, row.phase, row.relative_impact_velocity)
+    first = dynamics.section(dynamics.start(*start))
+    y = np.stack(np.broadcast_arrays(*first, row.amplitude), axis=-1)
+    found, gap = [y], np.full(len(y), _FIRST)
+    for k in range(1, doublings):
+        old = Turns(row.law, row.n, 2 ** (k - 1))
+        turns = Turns(row.law, row.n, 2**k)
+        near = _doubled(old, turns, y, _SHARE * gap)
+        solved = newton(turns, near, vanishing(turns.doubling), _SETTINGS)
+        # A cascade goes up in Λ; the orbit that doubles below is the one before.
+        good = solved.converged & (solved.point[:, -1] > y[:, -1])
+        y = np.where(good[:, np.newaxis], solved.point, np.nan)
+        found.append(y)
+        gap = (y[:, -1] - found[-2][:, -1]) / FEIGENBAUM
+    phase, velocity, amplitude = (np.stack(found)[..., c].reshape(-1, *shape) for c in range(3))
+    return Cascade(amplitude, reduce_angle(phase), velocity)
+
+
+def _doubled(old: Turns, turns: Turns, y: np.ndarray, above: np.ndarray) -> np.ndarray:
+    """Points of the attracting orbits of twice the period, at Λ a little above their birth."""
+    change = old.after(y)[-1]
+    # (M - a₂₂, a₂₁) of an eigenvalue μ is its eigenvector.
+    along = np.stack([-1 - change.d, change.c], axis=-1)
+    aside = _ASIDE * np.sqrt(above) / np.hypot(*np.moveaxis(along, -1, 0))
+    y = y + np.concatenate([along * aside[:, np.newaxis], above[:, np.newaxis]], axis=-1)
+    for _ in range(_TURNS):
+        phase, velocity, _, _ = turns.after(y)
+        y[:, 0], y[:, 1] = reduce_angle(phase), velocity
+    return y

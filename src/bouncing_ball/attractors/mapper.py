@@ -1,21 +1,22 @@
 r"""From the start of a ball to the motion on which it ends, for every model.
 
-A motion repeats if its state returns and its neighbours come closer. A ball is compared
-with itself at a mark, an impact that is moved on from time to time (Brent's method), and
-the derivative M of the motion since then is kept. At the first impact at which the orbit that is
-fixed under it,
+A motion repeats if its state returns and its neighbours approach it. A ball is compared
+with its state at a mark, an impact that is moved forward from time to time (Brent's method), and
+the derivative M of the motion since the mark is kept. Consider the first impact at which the orbit
+that is fixed under the motion since the mark,
 
     s* = s + (I - M)⁻¹ (F(s) - s),
 
-is nearer to the state s of the mark than a small distance, and the multipliers of M are
-smaller than 1 by a margin, the mark is moved there; if the ball returns to it again in as many
-impacts or fewer, it repeats. The distance is far above rounding and far below what
-separates two orbits whose multipliers have that margin, so that neither decides.
+is nearer to the state s of the mark than a small distance, and at which the multipliers of M are
+smaller than 1 by a margin. The mark is then moved to this impact, and the motion repeats if the
+ball returns to it again in as many impacts or fewer. The distance is far above rounding and far
+below the distance of two orbits whose multipliers have that margin, so that neither affects the
+result.
 
-A ball of a model with impacts in an instant forgets everything when it sticks: it leaves in
-the one state of the lift-off. If it sticks twice it repeats, unless rounding errors grow
-to its size on the way. In a contact of finite stiffness it forgets by a finite factor, and
-the state decides as for any other motion.
+With instantaneous impacts the motion after sticking does not depend on earlier impacts, because a
+ball always leaves in the state of the lift-off. A motion that sticks twice therefore repeats,
+unless rounding errors grow to its size in between. In a contact of finite stiffness the
+dependence decreases by a finite factor, and the state is compared as for any other motion.
 """
 
 from typing import Any, NamedTuple
@@ -32,13 +33,13 @@ from bouncing_ball.motion.simulation import Law, first_impacts
 from bouncing_ball.motion.tangent import Jacobian
 
 IMPACTS = 2000
-"""Impacts after which a ball that has not repeated is given up."""
+"""Number of impacts after which the search for a repetition ends."""
 
 # Distance of a state from the orbit at which a ball is taken to be on it, and on its second
 # turn: an angle, and a velocity over 1 + Λ. Multipliers are then known to their product with the
 # curvature of the map; they must be below 1 by the margin.
 _NEAR, _AGAIN, _MARGIN = 1e-7, 1e-6, 1e-3
-# Returns farther away than this are not looked at.
+# Returns farther away than this are ignored.
 _SIGHT = 1e-2
 # A mark is moved on after this part of all impacts, and these.
 _SHARE, _LEAST = 0.5, 8
@@ -138,8 +139,13 @@ def label(
         As in :func:`bouncing_ball.motion.simulation.simulate`: φ and the absolute velocity z′
         before the impact.
     impacts : int
-        After which a ball that has not repeated is given up. A motion is found if it repeats
-        within about a third of them.
+        Number of impacts after which the search for a repetition ends. A motion is found if it
+        repeats within about a third of them.
+
+    Returns
+    -------
+    Motions
+        Of the shape to which the arguments broadcast.
 
     Raises
     ------
@@ -148,7 +154,7 @@ def label(
 
     Examples
     --------
-    Before and beyond the period doubling at Λ = 1.527, and where a ball forgets all it did:
+    Below and above the period doubling at Λ = 1.527, and a motion that sticks to the table:
 
     >>> found = label(0.5, [1.2, 1.6, 2.5], 1.0, -3.0)
     >>> found.kind.tolist(), found.periods.tolist(), found.impacts.tolist()[:2]

@@ -32,7 +32,7 @@ ALLOWED = {
     ),
     # Units are parsed at the edge, and pint is imported there when it is asked for.
     "calculator": (
-        {"contacts", "orbits", "calls", "accuracy", "engines"},
+        {"contacts", "motion", "orbits", "attractors", "calls", "accuracy", "engines"},
         {"numpy", "xarray", "pint"},
     ),
     "atlas": ({"datasets", "contacts", "orbits", "accuracy"}, {"numpy", "xarray", "pydantic"}),

@@ -58,6 +58,9 @@ class Motions(Batch):
         The reason for which a motion is undecided.
     followed : array of int
         Impacts after which the kind was known.
+    end_phase, end_velocity : array
+        Table phase φ and absolute velocity z′_i at the last of these impacts, before it: a start
+        from which the ball is on the motion. NaN in permanent contact.
     """
 
     kind: np.ndarray
@@ -67,3 +70,5 @@ class Motions(Batch):
     exponent_error: np.ndarray
     reason: np.ndarray
     followed: np.ndarray
+    end_phase: np.ndarray
+    end_velocity: np.ndarray

@@ -54,7 +54,7 @@ _TINY = 1e-300
 
 
 class _Ball(NamedTuple):
-    """What is known of each ball that is followed."""
+    """The state of each ball that is followed."""
 
     lane: np.ndarray
     amplitude: np.ndarray
@@ -104,7 +104,7 @@ def _new(index: np.ndarray, amplitude: np.ndarray, impact: Impact) -> _Ball:
 
 
 class _Found(NamedTuple):
-    """The fields of :class:`Motions`, with numbers for words."""
+    """The fields of :class:`Motions`, with numbers in place of texts."""
 
     kind: np.ndarray
     periods: np.ndarray
@@ -117,7 +117,7 @@ class _Found(NamedTuple):
     end_velocity: np.ndarray
 
     def write(self, ball: _Ball, which: np.ndarray, kind, reason=Reason.NONE, **values) -> None:
-        """What some of the balls that are followed do."""
+        """Store the results for some of the balls that are followed."""
         index = ball.lane[which]
         self.kind[index], self.reason[index] = _KINDS.index(kind), _REASONS.index(reason)
         self.followed[index] = ball.seen[which]
@@ -179,7 +179,7 @@ def label(
 
 
 def _follow(dynamics: Dynamics, start: np.ndarray, relative: np.ndarray, impacts: int) -> _Found:
-    """Follow all balls, in a block that is filled up again when some are done."""
+    """Follow all balls, in a block that is refilled when some of its balls are done."""
     size, block = start.size, min(dynamics.block, BLOCK)
     whole, real = np.zeros((5, size), dtype=int), np.full((4, size), np.nan)
     found = _Found(*whole[:3], *real[:2], *whole[3:], *real[2:])
@@ -219,7 +219,7 @@ def _follow(dynamics: Dynamics, start: np.ndarray, relative: np.ndarray, impacts
 
 
 def _those(which: np.ndarray, *rows: Any) -> Any:
-    """Some of the balls, in everything that is known of them."""
+    """Some of the balls, from all arrays about them."""
     return (x.take(which) if isinstance(x, Dynamics) else pick(x, which) for x in rows)
 
 
@@ -234,7 +234,7 @@ def _end(ball: _Ball, impact: Impact, going: np.ndarray, found: _Found) -> None:
 
 
 def _joined(one: Any, other: Any) -> Any:
-    """Two rows as one; a number is that of all."""
+    """Two rows as one; a number applies to all balls."""
     if isinstance(one, tuple):
         joined = (_joined(a, b) for a, b in zip(one, other, strict=True))
         return type(one)(*joined) if hasattr(one, "_fields") else tuple(joined)
@@ -244,7 +244,7 @@ def _joined(one: Any, other: Any) -> Any:
 def _resting(
     dynamics: Dynamics, impact: Impact, departure: Departure, ball: _Ball, found: _Found
 ) -> np.ndarray:
-    """Write down which balls stay on the table, or stick for the second time; the others."""
+    """Store which balls stay on the table, or stick for the second time; return the others."""
     status = departure.status
     done = status != Status.BOUNCING
     if done.any():
@@ -269,7 +269,7 @@ def _resting(
 
 
 def _lost(ball: _Ball) -> np.ndarray:
-    """Whether a rounding error since the ball last forgot everything has grown too much."""
+    """Whether a rounding error has grown too much since the ball last stuck."""
     return ball.growth - ball.least > _FORGOTTEN
 
 
@@ -282,7 +282,7 @@ def _periods(time: np.ndarray) -> np.ndarray:
 
 
 def _move(ball: _Ball, change: Jacobian, passed: np.ndarray, sticks: np.ndarray) -> None:
-    """Carry everything on to the next impact."""
+    """Advance all arrays to the next impact."""
     ball.seen[:] += 1
     ball.time[:] += passed
     ball.stuck[:] += sticks
@@ -321,7 +321,9 @@ def _move(ball: _Ball, change: Jacobian, passed: np.ndarray, sticks: np.ndarray)
 def _returning(
     ball: _Ball, state: tuple[np.ndarray, np.ndarray], impacts: int, found: _Found
 ) -> np.ndarray:
-    """Compare balls with their marks, and write down which repeat or are given up; the others."""
+    """Compare balls with their marks, and store which repeat or reach the last impact; return the
+    others.
+    """
     phase, velocity = state
     scale = 1 + ball.amplitude
     turned, faster = reduce_angle(phase - ball.phase), (velocity - ball.velocity) / scale
@@ -366,7 +368,7 @@ def _returning(
 
 
 def _mark(ball: _Ball, here: np.ndarray, phase: np.ndarray, velocity: np.ndarray) -> None:
-    """Move the marks of some balls to where they are; for one turn after a first return."""
+    """Move the marks of some balls to their current impact; for one turn after a first return."""
     if not here.size:
         return
     count = ball.seen[here]
@@ -385,7 +387,7 @@ def _mark(ball: _Ball, here: np.ndarray, phase: np.ndarray, velocity: np.ndarray
 
 
 def _give_up(ball: _Ball, which: np.ndarray, found: _Found) -> None:
-    """Write down which of the balls that have not repeated are chaotic."""
+    """Store which of the balls that have not repeated are chaotic."""
     number, growth, time, square, product, times = ball.sums[which].T
     rate = growth / time
     # The error of a ratio of means, each over a stretch of the motion.

@@ -231,7 +231,10 @@ class ImpactModel(Batch, ABC):
         return labelled.branches(self._grid(n=n), lambda n: self, amplitude_max, points)
 
     def _grid(self, **given: Any) -> Grid:
-        """The arguments of a labelled result, which one model has; several have axes of names."""
+        """The arguments of a labelled result of a single model.
+
+        Several models have no labels, so that a call with names for their parameters is needed.
+        """
         from bouncing_ball.datasets.labelled import Grid
 
         if self.shape:

@@ -32,5 +32,6 @@ DRAWINGS = {
     "ext_orders": "model_errors.orders",
     "ext_laws": "model_errors.contact_laws",
     "ext_hertz": "model_errors.figures_of_laws",
+    "ext_cascades": "cascades.cascades",
 }
 """Where each figure is drawn: ``module.function`` of this package."""

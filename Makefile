@@ -91,9 +91,11 @@ $(VENV)/.docs: requirements-docs.lock
 test-docs: docs
 	$(BIN)/python -m pytest -m docs tests/test_site.py
 
-# The pictures of docs/gallery, each from its script.
+# The pictures of the gallery and of the lesson, and the lesson as a notebook.
 gallery: $(SETUP)
 	cd docs/gallery && for script in *.py; do $(abspath $(BIN))/python $$script || exit; done
+	cd docs/lesson && $(abspath $(BIN))/python -m doctest -o ELLIPSIS ../lesson.md
+	$(BIN)/python docs/notebook.py
 
 # Do the tests notice a wrong line? 200 single faults, one at a time.
 mutants: $(SETUP)

@@ -46,7 +46,14 @@ html_math_renderer = "mathml"
 suppress_warnings = ["ref.python"]
 
 PARTS = {
-    "Use": ["docs/gallery", "docs/design", "docs/engines", "docs/contact-laws", "docs/atlas"],
+    "Use": [
+        "docs/lesson",
+        "docs/gallery",
+        "docs/design",
+        "docs/engines",
+        "docs/contact-laws",
+        "docs/atlas",
+    ],
     "Theory": ["docs/impact-as-an-instant", "docs/error-law", "docs/closed-form"],
     "Replication": ["paper", "figures/*", "docs/atlas/*", "config/README", "docs/record"],
     "Code": ["results/api/modules", "CONTRIBUTING", "CHANGELOG"],

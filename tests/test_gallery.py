@@ -25,6 +25,7 @@ def test_there_are_twelve_and_the_page_shows_all():
         assert f"## {title}\n" in page and text[1:] in " ".join(page.split())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
 def test_a_script_ends_in_a_picture(script, tmp_path, monkeypatch):
     text = script.read_text(encoding="utf-8")

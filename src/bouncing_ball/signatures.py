@@ -31,7 +31,7 @@ class Range(NamedTuple):
 
     @property
     def whole(self) -> str:
-        """The whole numbers that are allowed."""
+        """The range as that of a whole number, in words."""
         return f"a whole number from {self.low:g} to {self.high:.0f}"
 
     def __contains__(self, value: Any) -> bool:

@@ -1,6 +1,6 @@
 # Beyond the paper: the release rule, the orbits of permanent contact, the corrected restitution
-# model with its error law, contacts of other laws, and the explorer. What dimensions each dataset
-# has is in the docstring of its study.
+# model with its error law, contacts of other laws, physics engines, and the explorer. What
+# dimensions each dataset has is in the docstring of its study.
 
 BEYOND_THE_PAPER = {
     "ext_release": "studies.release_rules.release_rules",
@@ -12,8 +12,10 @@ BEYOND_THE_PAPER = {
     "ext_laws": "studies.contact_laws.law_errors",
     "ext_hertz": "studies.contact_laws.figures_of_laws",
     "ext_cascades": "studies.cascades.cascades",
+    "ext_engines": "studies.engines.conformance",
     "explorer": "studies.reference_orbits.reference_orbits",
 }
+READS |= {"ext_engines": ["engines"]}
 
 
 use rule study as beyond_the_paper with:

@@ -36,6 +36,8 @@ logger.addFilter(lambda record: not str(record.msg).startswith(("Select jobs", "
 
 # The study of each artifact, and the artifacts whose datasets it reads.
 STUDIES, READS = {}, {}
+# Datasets that no job makes: accepted by hand.
+ACCEPTED = {"engines": "config/engines.nc"}
 TITLES = read_yaml(Path(ROOT, "workflow/report/titles.yaml"))
 
 

@@ -6,7 +6,9 @@ rule study:
     message:
         "{wildcards.artifact}: {params.title}"
     input:
-        data=lambda w: expand("results/figures/{x}.nc", x=READS.get(w.artifact, [])),
+        data=lambda w: [
+            ACCEPTED.get(x, f"results/figures/{x}.nc") for x in READS.get(w.artifact, [])
+        ],
         source=lambda wildcards: modules(STUDIES[wildcards.artifact].rpartition(".")[0]),
     output:
         data="results/figures/{artifact}.nc",

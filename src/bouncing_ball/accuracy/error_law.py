@@ -178,7 +178,7 @@ def scale(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> ByQuantity:
 
 
 class Remainder(NamedTuple):
-    """Errors against the law, by which ``factor`` ≤ M where it holds (``stated``)."""
+    """Errors against the law: where it holds (``stated``), ``factor`` is at most M."""
 
     law: np.ndarray
     """The errors by the law, shape (quantity, ...)."""

@@ -74,10 +74,10 @@ ARTIFACTS: dict[str, dict[str, Budget]] = {
     "ext_orders": {"relative_error": Budget(1e-11)},
     # Collocated orbits, each with an error of some 1e-13.
     "ext_hertz": _each("bifurcation_amplitude phase", Budget(1e-12)),
-    # An engine of another version meets its walls elsewhere in a time step. Each r is within the
-    # tolerance of the one asked for. Mean heights are within 6 times what a step may move them,
-    # and single bounces scatter by up to 21 times, of which these are the next powers of ten.
-    # Times are another machine's, versions another day's.
+    # In an engine of another version an impact falls on another part of a time step. Each r is
+    # within the tolerance of the requested one. Mean heights are within 6 times the change that a
+    # step may cause, and single bounces scatter by up to 21 times that; the budgets are the next
+    # powers of ten. Times differ between machines, and versions change.
     "engines": {
         "measured_restitution": Budget(2, scale="tolerance"),
         "height_error": Budget(10, scale="step_allowance"),

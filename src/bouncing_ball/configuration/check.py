@@ -22,7 +22,7 @@ class _Sections(Parameters, strict=False):
 
 
 def configuration_model(studies: Mapping[str, str], config: Mapping[str, Any]) -> type[BaseModel]:
-    """The type of the whole configuration.
+    """The type of the complete configuration.
 
     Parameters
     ----------

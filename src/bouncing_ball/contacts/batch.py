@@ -45,7 +45,9 @@ def in_words(value: Any) -> str:
 
 
 def plain(value: Any) -> Any:
-    """A single number as Python's own; a single batch, or a method of one, as one that has them.
+    """Results for a user: a single number as a Python number, a single batch as a :class:`Single`.
+
+    Arrays are unchanged. A method is wrapped, so that its result is converted in the same way.
 
     Examples
     --------
@@ -64,9 +66,10 @@ def plain(value: Any) -> Any:
 
 
 class Single:
-    """One element by itself: all that a batch without a shape offers, with Python's numbers.
+    """One element of a batch, whose numbers are Python numbers.
 
-    Inside, a batch works with arrays of one element. A user who asks for one orbit has floats.
+    Internally a batch computes with arrays of one element, whereas a user who requests one orbit
+    receives floats.
 
     Examples
     --------

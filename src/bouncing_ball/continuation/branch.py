@@ -141,19 +141,19 @@ def continue_branch(
     ----------
     problem : Problem
     start : ndarray, shape (N + 1,)
-        A solution, or close to one: it is corrected at its own parameter.
+        A solution, or close to one: it is corrected at its parameter.
     increasing : bool
         Whether the parameter increases at the start.
     events : sequence of Event
-        Those to locate; terminal ones end the branch exactly on their zero.
+        Events to be located; a terminal one ends the branch exactly on its zero.
     control, settings : StepControl, NewtonSettings
     max_points : int
-        The branch ends after so many points.
+        Number of points after which the branch is left unfinished.
 
     Returns
     -------
     Branch
-        With the reason why it ends.
+        From ``start`` on, with the reason for its end.
 
     Raises
     ------
@@ -210,8 +210,8 @@ def continue_branch(
 def continue_both_ways(problem: Problem, start: np.ndarray, **options) -> Branch:
     """Follow the branch through ``start`` to both sides, as one branch.
 
-    The parameter increases at ``start``. Options are those of
-    :func:`continue_branch`, but for ``increasing``.
+    The parameter increases at ``start``. Options and errors are those of
+    :func:`continue_branch`, except ``increasing``.
     """
     back = continue_branch(problem, start, increasing=False, **options)
     ahead = continue_branch(problem, start, increasing=True, **options)
@@ -221,7 +221,7 @@ def continue_both_ways(problem: Problem, start: np.ndarray, **options) -> Branch
 
 
 # Rounds of equalising the chords between resampled points; each gains two to
-# four digits, and the corrector's own rounding is reached after five or six.
+# four digits, and the rounding of the corrector is reached after five or six.
 _EQUALISING_ROUNDS = 8
 
 

@@ -1,8 +1,8 @@
 """Labelled results of a call: an :class:`xarray.Dataset` that draws itself in one line.
 
 ``found.plot()`` is the figure of the dataset's ``kind``, an attribute; ``found.plot("name.png")``
-writes it as well. Which function draws a kind is written in ``PLOTS`` of the package of figures,
-which is imported when a picture is asked for: computing needs no matplotlib.
+writes it as well. ``PLOTS`` of the package of figures says which function draws a kind. It is
+imported by the first picture, because computations need no matplotlib.
 """
 
 import math
@@ -97,7 +97,7 @@ class Grid:
         return [np.zeros(self.size)] if self.shape else []
 
     def cells(self) -> list[dict[str, Any]]:
-        """The arguments of each place, one after another."""
+        """The arguments at each place of the grid, one after another."""
         rows = {name: self.flat[name].tolist() for name in self.coords}
         places = zip(*rows.values(), strict=True) if rows else [()]
         return [self.single | dict(zip(rows, each, strict=True)) for each in places]

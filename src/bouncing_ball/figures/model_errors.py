@@ -1,7 +1,7 @@
 """Errors of the restitution and of the corrected model, quantity by quantity.
 
 They are shown on linear contacts (ext_orders) and on contacts of other laws (ext_laws), together
-with Figures 8, 14 and 16 on the latter (ext_hertz).
+with Figures 8, 14 and 16 on the latter (ext_hertz), and beside physics engines (ext_engines).
 """
 
 from itertools import cycle
@@ -10,11 +10,20 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogFormatterSciNotation
 
+from bouncing_ball.datasets.selection import each
 from bouncing_ball.figures.canvas import WIDE, canvas, legend_below, logarithmic
-from bouncing_ball.figures.labels import QUANTITIES, parameters
-from bouncing_ball.figures.style import GUIDE, LAWS, MODELS, RESTITUTION, Look
+from bouncing_ball.figures.labels import QUANTITIES, note, number, parameters
+from bouncing_ball.figures.style import COLOURS, GUIDE, LAWS, MODELS, RESTITUTION, Look
 
+# Time stepping of engines by dashes, and engines by shapes.
+_SCHEMES: dict[str, Look] = {
+    "semi-implicit Euler": {"color": COLOURS[1], "linewidth": 1.3},
+    "implicit Euler": {"color": COLOURS[2], "linewidth": 1.3, "linestyle": (0, (6, 1.5, 1, 1.5))},
+}
+_ENGINES = "osxD"
+_MARKED: Look = {"linestyle": "none", "color": "black", "markerfacecolor": "none", "markersize": 4}
 # The linear contact, whose threshold is smooth, comes first.
 _SHAPES = ("", "o", "s", "^")
 
@@ -89,6 +98,51 @@ def figures_of_laws(data: xr.Dataset) -> Figure:
         axes.set_title(title, fontsize=8)
     legend_below(figure, marked, labels=data["law"].values, ncols=len(marked))
     return figure
+
+
+def engines(data: xr.Dataset) -> Figure:
+    """Draw the errors of a bounce's height over the time steps in a period (ext_engines).
+
+    There is a panel for each ϖ, with a line for each scheme of time stepping, marks of the engines
+    and a level for each model without steps.
+    """
+    figure, slots = canvas(
+        WIDE, 3.3, columns=data.sizes["frequency_ratio"], sharex=True, sharey=True
+    )
+    shown = data.sel({name: data.attrs[name] for name in ("n", "restitution", "release")})
+    for axes, part in zip(slots, each(shown, "frequency_ratio"), strict=True):
+        for scheme in map(str, data.scheme.values):
+            _draw_steps(axes, part.sel(scheme=scheme), scheme)
+        for one, shape in zip(each(part, "engine"), _ENGINES, strict=True):
+            look = _MARKED | {"marker": shape, "label": one.engine.item()}
+            axes.plot(one.bounce_steps, one.bounce_error, **look)
+        for model in ("restitution", "corrected"):
+            level = abs(float(part.sel(model=model).model_error))
+            axes.axhline(level, label=f"{model} model, no steps", **MODELS[model])
+            look = {"va": "bottom", "fontsize": 8, "transform": axes.get_yaxis_transform()}
+            axes.text(0.02, level, f"{100 * level:.2g} %", **look)
+        title = rf"$\varpi={part.frequency_ratio.item():g}$"
+        logarithmic(axes, yscale="log", xlabel="time steps in a period", title=title)
+        axes.xaxis.set_major_formatter(LogFormatterSciNotation())
+    slots[0].set(
+        ylabel="error of the height of a bounce", ylim=(0.4 * slots[0].get_ylim()[0], None)
+    )
+    figure.suptitle(f"{parameters(data, 'n', 'restitution')}, {data.attrs['release']} release")
+    legend_below(figure, ncols=4)
+    return figure
+
+
+def _draw_steps(axes: Axes, part: xr.Dataset, scheme: str) -> None:
+    """The error of a scheme over its steps, thin where it is continued by its slope."""
+    steps, error = part.steps_in_bounce.values, part.step_error.values
+    axes.plot(steps, error, label=scheme, **_SCHEMES[scheme])
+    end = float(part.equal_steps)
+    level = error[-1] * steps[-1] / end
+    axes.plot([steps[-1], end], [error[-1], level], **_SCHEMES[scheme] | {"linewidth": 0.6})
+    axes.plot(end, level, marker="|", markersize=9, color="black")
+    if scheme == "semi-implicit Euler":
+        name = f"${number(float(f'{end:.2g}'))}$ steps"
+        note(axes, name, (end, level), (2, -5), ha="right", va="top", fontsize=8)
 
 
 def _by_quantity(data: xr.Dataset, height: float, xlabel: str) -> tuple[Figure, dict[str, Axes]]:

@@ -16,7 +16,7 @@ zero. They are taken until
 
 * ``2K \|y\| ≤ θ y′²``, y′ > 0: the next zero is then simple and near (Newton
   and Kantorovich), and
-* ``(\|y‴\| + L h₀) h₀² ≤ κ y′``: one more step, by the function's own parabola
+* ``(\|y‴\| + L h₀) h₀² ≤ κ y′``: one more step, by the parabola of the function
   and without the safeguard, reaches the last digit; its error is of order κ⁴ h₀.
 
 Flight and contact are both *motions* of this kind, see :class:`Motion`.

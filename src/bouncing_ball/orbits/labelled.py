@@ -1,4 +1,8 @@
-"""Results of a model as labelled datasets: balls over time, and a branch over Λ."""
+"""Results of a model as labelled datasets: balls over time, and a branch over Λ.
+
+All quantities are dimensionless, and times are in units of 1/Ω. Dimensions of the arguments come
+first in every result.
+"""
 
 import math
 from collections.abc import Callable, Sequence
@@ -24,21 +28,30 @@ from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Side
 
-# Impacts of one ball that are simulated at first, and at most.
+# Number of impacts of a ball that are simulated at first, and the largest number.
 _FIRST, _MOST = 64, 65_536
-# A branch ends so far beyond its period doubling, if nothing else is asked for; a fold below
-# this Λ is one of an elastic contact; orbits from which a branch may start.
+# By default a branch ends at this multiple of the Λ of its period doubling. A fold below the
+# second number belongs to an elastic contact. The third is the number of orbits that are tried as
+# starting points of a branch.
 _BEYOND, _LOWEST, _STARTS = 1.4, 1e-4, 16
 _STEPS = StepControl(largest=0.1)
 
 
 def instants(periods: float, samples: int) -> np.ndarray:
-    """Times over some periods of the table, with a number of samples in each."""
+    """Times over some periods of the table, with ``samples`` of them in each period.
+
+    Examples
+    --------
+    >>> (instants(1.0, 4) / np.pi).tolist()
+    [0.0, 0.5, 1.0, 1.5, 2.0]
+    """
     return np.linspace(0.0, 2 * np.pi * periods, math.ceil(periods * samples) + 1)
 
 
 def _followed(model: Any, start: Sequence[np.ndarray], time: np.ndarray) -> list[History]:
-    """A row of balls from their first impacts on, (Λ, φ, z′_i), at times (ball, sample) since."""
+    """The histories of balls from their first impacts (Λ, φ, z′_i), at times (ball, sample) since
+    then.
+    """
     impacts = _FIRST
     while True:
         found = model.simulate(*start, impacts)
@@ -50,19 +63,27 @@ def _followed(model: Any, start: Sequence[np.ndarray], time: np.ndarray) -> list
 
 
 def from_impact(model: Any, grid: Grid, time: np.ndarray) -> Labelled:
-    """Balls and table over time from a first impact, (Λ, φ, z′_i) of a grid."""
+    """Balls and table over time from a first impact, with the (Λ, φ, z′_i) of a grid.
+
+    ``ball``, ``ball_velocity``, ``table`` and ``contact`` are over (…, time).
+
+    Raises
+    ------
+    ModelError
+        If a ball has too many impacts in this time, or a parameter is outside its range.
+    """
     start = np.atleast_1d(*(grid.flat[name] for name in ("amplitude", "phase", "velocity")))
     start = np.broadcast_arrays(*start, *grid.rows)[:3]
     return _over_time(grid, time, _followed(model, start, np.tile(time, (start[0].size, 1))))
 
 
 def fall(grid: Grid) -> tuple[np.ndarray, ...]:
-    """Λ, φ and z′_i at the first impacts of balls let go at rest, and the times of fall.
+    """Λ, φ and z′_i at the first impacts of balls released at rest, and the times of fall.
 
     Raises
     ------
     ModelError
-        If a ball is let go below the table.
+        If a ball is released below the table.
     """
     values = (np.atleast_1d(grid.flat[name]) for name in ("amplitude", "phase", "height"))
     lam, phi, z = (x * 1.0 for x in np.broadcast_arrays(*values, *grid.rows)[:3])
@@ -74,7 +95,16 @@ def fall(grid: Grid) -> tuple[np.ndarray, ...]:
 
 
 def from_rest(model: Any, grid: Grid, time: np.ndarray) -> Labelled:
-    """Balls and table over time since the balls were let go at rest, (h, Λ, φ) of a grid."""
+    """Balls and table over time since the balls were released at rest, with the (h, Λ, φ) of a
+    grid.
+
+    The variables are those of :func:`from_impact`.
+
+    Raises
+    ------
+    ModelError
+        If a ball is released below the table, or has too many impacts in this time.
+    """
     *start, falling = fall(grid)
     balls = _followed(model, start, time - falling[:, np.newaxis])
     height = np.broadcast_to(grid.flat["height"], falling.shape)
@@ -104,7 +134,16 @@ def _over_time(grid: Grid, time: np.ndarray, balls: list[History]) -> Labelled:
 def branches(
     grid: Grid, models: Callable[..., Any], amplitude_max: float | None, points: int
 ) -> Labelled:
-    """The branch at each place of a grid; NaN, with the reason, where there is none."""
+    """The branch at each place of a grid; NaN, with the reason, where there is none.
+
+    The variables are those of :func:`~bouncing_ball.orbits.columns.orbits_in_columns`, behind the
+    axes of the grid. ``models`` gives the model of n and the other arguments.
+
+    Raises
+    ------
+    NoOrbitError
+        If a grid of one place has no branch.
+    """
     rows = []
     for cell in grid.cells():
         n = cell.pop("n")
@@ -125,7 +164,10 @@ def branches(
 
 
 def orbits(grid: Grid, models: Callable[..., Any], side: str) -> Labelled:
-    """The orbit on a side of the saddle-node at each place of a grid; NaN where there is none."""
+    """The orbit on a side of the saddle-node at each place of a grid; NaN where there is none.
+
+    The variables are the observables, ``stable`` and ``admissible``, over the axes of the grid.
+    """
 
     def found(n: Any, amplitude: Any, **impact: Any) -> dict[str, np.ndarray]:
         orbit = models(n, amplitude, Side(side), **impact).orbit(n, amplitude, Side(side))
@@ -135,7 +177,10 @@ def orbits(grid: Grid, models: Callable[..., Any], side: str) -> Labelled:
 
 
 def limits(grid: Grid, models: Callable[..., Any]) -> Labelled:
-    """Amplitude and phase of saddle-node and period doubling at each place of a grid."""
+    """Amplitude and phase of saddle-node and period doubling at each place of a grid.
+
+    NaN where a family has no such bifurcation.
+    """
 
     def found(n: Any, **impact: Any) -> dict[str, np.ndarray]:
         model = models(n, **impact)
@@ -147,9 +192,9 @@ def limits(grid: Grid, models: Callable[..., Any]) -> Labelled:
 
 
 def _each_case(grid: Grid, found: Callable[..., dict[str, np.ndarray]], kind: str) -> Labelled:
-    """What is found at each place of a grid, of all at once but for a law by name.
+    """The results at each place of a grid, in one computation unless a law is given by its name.
 
-    A law's group is looked for, for one r at a time.
+    The parameters of a law follow from a search, for one r at a time.
     """
     if "law" in grid.flat:
         cells = [_one_case(found, cell) for cell in grid.cells()]

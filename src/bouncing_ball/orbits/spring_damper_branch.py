@@ -15,8 +15,8 @@ time D (see :mod:`bouncing_ball.contacts.spring_damper`), they read
 * landing (Eqs. 25, 19): ``δ_b + Λ sin(φ + D) + (u + X + T) T - T²/2 = Y``
   with ``δ_b = -κ δ′_b``.
 
-One 3×3 solve gives the orbit, so D runs along the whole branch: saddle-node
-and period doubling included, ``Λ = √(X² + Y²)``, ``φ = atan2(Y, X)``.
+One 3×3 solve gives the orbit. D is therefore a parameter of the entire branch, saddle-node
+and period doubling included, with ``Λ = √(X² + Y²)`` and ``φ = atan2(Y, X)``.
 
 For a stiff contact the branch occupies a range of D of order 1/ϖ² around the
 free half period, in which D has too few digits to tell its points apart. The curve is

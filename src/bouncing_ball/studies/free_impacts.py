@@ -1,7 +1,7 @@
 """A free impact of a spring-damper contact, by the damping ratio (beyond the paper).
 
-What a user of a physics engine has to know: without gravity, k, c and m act through ω = √(k/m) and
-ζ = c/(2√(km)) alone. Times are ωt, as those of a contact with ϖ = 1.
+Without gravity, k, c and m act through ω = √(k/m) and ζ = c/(2√(km)) alone, which users of physics
+engines need to know. Times are ωt, as those of a contact with ϖ = 1.
 """
 
 import numpy as np
@@ -15,7 +15,7 @@ from bouncing_ball.parameters import LossyRestitution, Parameters, Samples
 
 
 class FreeImpacts(Parameters):
-    """The contact whose force is drawn over time; and up to which loss r and duration are."""
+    """The contact whose force is drawn over time, and the smallest r of the curves over ζ."""
 
     restitution: LossyRestitution
     restitution_min: LossyRestitution
@@ -23,10 +23,12 @@ class FreeImpacts(Parameters):
 
 
 def free_impacts(parameters: FreeImpacts) -> xr.Dataset:
-    """r and duration by release and ζ, shape (release, ζ); the force of one contact, shape (time,).
+    """Free impacts by release rule and ζ, and the force during one contact.
 
-    ``free_force`` is that of the contact with r by the displacement release, over mω times the
-    impact speed; ``contact_end`` is where each release ends it, with ``end_restitution``.
+    The dataset has ``restitution`` and ``contact_duration``, in units of 1/ω, over (release,
+    damping_ratio); ``free_force`` over ``time``, for the contact with r by the displacement
+    release, divided by mω times the impact speed; ``contact_end``, the time at which each release
+    ends that contact, and ``end_restitution``, over ``release``.
     """
     zeta = np.linspace(0.0, damping_ratio(parameters.restitution_min), parameters.samples)
     shown = float(damping_ratio(parameters.restitution))

@@ -1,4 +1,4 @@
-"""The claims as a page of their own: what the columns mean, the table, what decides each claim."""
+"""The page of the claims: the meaning of the columns, the table, and what decides each claim."""
 
 import xarray as xr
 
@@ -53,7 +53,7 @@ _WHY = "\n## Why claims are close or contradicted\n\n"
 
 
 def page(data: xr.Dataset) -> str:
-    """The page from the dataset of the claims."""
+    """The page in Markdown, from the dataset of the claims."""
     about: dict[str, list[str]] = {}
     for one in each(data, "claim"):
         about.setdefault(_notes(one), []).append(one.claim.item())
@@ -69,7 +69,7 @@ def page(data: xr.Dataset) -> str:
 
 
 def _notes(claim: xr.Dataset) -> str:
-    """The datasets, and what is said of one claim in sentences."""
+    """The datasets that decide a claim, and sentences about it."""
     said = {name: str(claim[name].item()) for name in claim.data_vars if not claim[name].ndim}
     open_claim = said["verdict"] in ("close", "contradicted")
     found = {

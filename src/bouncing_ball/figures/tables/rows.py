@@ -192,3 +192,58 @@ def ext_laws(data: xr.Dataset) -> Table:
         number(part.error_threshold, ".4g") if part["quantity"] == "max_height" else "–"
     )
     return table(each(data, "quantity", "law"), columns)
+
+
+_OF_ENGINES = (
+    *("free_steps", "measured_restitution", "contact_steps", "height_scatter"),
+    "limit_error",
+)
+
+
+def ext_engines(data: xr.Dataset) -> Table:
+    """Physics engines and models: restitution, steps, and the height of one orbit.
+
+    Errors are those at the smaller step, the mean of the bounces ± their scatter; at its limit the
+    first order of the step is taken off. Times are over the simulation's, from event to event.
+    """
+    ratios = [f"{ratio:g}" for ratio in data.frequency_ratio.values]
+    tolerance = data.tolerance.max()
+    columns: Columns = {
+        "engine or model": text("engine"),
+        "release": text("release"),
+        "r": value("restitution", "g"),
+        f"steps in a contact for {100 * tolerance.item():g} % in r": value("free_steps", ".0f"),
+        "r got": value("measured_restitution", ".4f"),
+        "steps in a contact": lambda part: number(part.contact_steps.max(), ".0f"),
+        **{
+            f"height error, ϖ = {ratio}": at(_height, frequency_ratio=place)
+            for ratio, place in zip(ratios, data.frequency_ratio.values, strict=True)
+        },
+        "at the step's limit": lambda part: _listed(100 * part.limit_error, "+.2f", " %"),
+        f"time of a bounce, ϖ = {', '.join(ratios)}": lambda part: _listed(part.bounce_time, ".1f"),
+    }
+    # The keyword is another argument of sel.
+    shown = data.sel({"n": data.attrs["n"], "tolerance": tolerance}).isel(refinement=-1)
+    parts: list[xr.Dataset] = []
+    for case in each(shown, "release", "restitution"):
+        parts += [one for one in each(case, "engine") if np.isfinite(one.free_steps)]
+        for one in each(case, "model"):
+            of_engines = one[[*_OF_ENGINES]].isel(engine=0, drop=True) * np.nan
+            name, error = f"{one.model.item()} model", one.model_error
+            own = {"engine": name, "height_error": error, "bounce_time": one.model_time}
+            parts.append(of_engines.assign(own))
+    return table(parts, columns)
+
+
+def _listed(values: xr.DataArray, form: str, unit: str = "") -> str:
+    """Numbers in a cell; rounding has no sign."""
+    known = values.values[np.isfinite(values.values)].ravel()
+    return ", ".join(f"{value:{form}}" for value in known + 0.0) + unit if known.size else "–"
+
+
+def _height(part: xr.Dataset) -> str:
+    """The mean error of a height and the scatter, in per cent."""
+    error, scatter = 100 * float(part.height_error), 100 * float(part.height_scatter)
+    # Rounding has no sign.
+    mean = f"{round(error, 3) + 0.0:+.3f}"
+    return f"{mean} ± {scatter:.2f} %" if np.isfinite(scatter) else f"{mean} %"

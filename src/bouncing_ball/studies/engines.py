@@ -1,0 +1,167 @@
+r"""What the time steps of physics engines cost, against the models (beyond the paper).
+
+An engine's contact in N time steps has the restitution :math:`r_N` of its scheme, which depends
+on where in a step the contact begins (:mod:`bouncing_ball.engines.scheme`). So its ball is
+simulated here from event to event with the exact contact that has this r, another one at each
+impact. The error of a height is ``z_N/z - 1`` with z of the exact n-T orbit. What the engines
+really did is read from the accepted dataset of their runs.
+"""
+
+from collections.abc import Mapping
+from typing import Annotated
+
+import numpy as np
+import xarray as xr
+from pydantic import AfterValidator, Strict
+
+from bouncing_ball.accuracy.errors import SIMPLE, models
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.datasets.selection import index_of
+from bouncing_ball.datasets.variables import describe
+from bouncing_ball.engines.scheme import Scheme, restitution_in_steps
+from bouncing_ball.motion.simulation import next_impact
+from bouncing_ball.orbits.orbit import Orbit
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.parameters import Family, Many, Parameters, Restitution, Seed, number
+
+Steps = Annotated[int, number("time steps in a contact; fewer than 8 are none", ge=8, le=4096)]
+
+
+class EngineOrbit(Parameters):
+    """One of the orbits that the engines ran, and simulations of it in few and many steps."""
+
+    n: Family
+    restitution: Restitution
+    release: Annotated[Release, Strict(False)]
+    steps: Annotated[Many[Steps], AfterValidator(sorted)]
+    balls: Annotated[int, number("balls in each simulation", ge=1, le=1000)]
+    transient: Annotated[int, number("impacts that are not looked at", ge=0, le=1000)]
+    impacts: Annotated[int, number("impacts that are looked at", ge=1, le=1000)]
+    seed: Seed
+
+
+def greatest_heights(orbit: Orbit, restitution: np.ndarray) -> np.ndarray:
+    """Greatest heights of balls that start on orbits, each impact with an r of its own.
+
+    Parameters
+    ----------
+    orbit : Orbit
+        Of spring-damper contacts, shape (...).
+    restitution : ndarray, shape (impacts, ...)
+
+    Returns
+    -------
+    ndarray, shape (impacts, ...)
+        Of the flights after the impacts.
+
+    Examples
+    --------
+    >>> from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+    >>> orbit = SpringDamperModel(SpringDamper(10.0, damping_ratio(0.85))).orbit(1, 1.0)
+    >>> tops = greatest_heights(orbit, np.full(5, 0.85))
+    >>> bool(np.all(abs(tops / orbit.max_height - 1) < 1e-12))
+    True
+    """
+    contact, lam, tops = orbit.law, orbit.amplitude, []
+    phase, speed = orbit.phase, orbit.relative_impact_velocity
+    for r in restitution:
+        zeta = damping_ratio(r, contact.release)
+        law = SpringDamper(contact.frequency_ratio, zeta, contact.release)
+        phase, speed, *_ = next_impact(law, lam, phase, speed)
+        velocity = lam * np.cos(phase) + speed
+        tops.append(lam * np.sin(phase) + velocity * velocity / 2)
+    return np.array(tops)
+
+
+def step_errors(orbit: Orbit, parameters: EngineOrbit) -> np.ndarray:
+    """Root mean square errors of the height of a bounce, shape (scheme, orbit, steps).
+
+    Each impact begins at a random place of a time step. All simulations have the same places.
+    """
+    p, zeta = parameters, float(orbit.law.damping_ratio[0])
+    tables = np.array(
+        [[restitution_in_steps(x, zeta, p.release, k) for k in p.steps] for x in Scheme]
+    )
+    rng = np.random.default_rng(p.seed)
+    places = rng.integers(tables.shape[-1], size=(p.transient + p.impacts, p.balls))
+    # (impact, scheme, orbit, steps, ball)
+    drawn = np.moveaxis(tables[..., places], 2, 0)[:, :, np.newaxis]
+    drawn = np.broadcast_to(drawn, (*drawn.shape[:2], orbit.size, *drawn.shape[3:]))
+    every = orbit[:, np.newaxis, np.newaxis]
+    tops = greatest_heights(every, drawn)[p.transient :]
+    return np.sqrt(np.mean((tops / every.max_height - 1) ** 2, axis=(0, -1)))
+
+
+def model_errors(orbit: Orbit, impacts: int) -> np.ndarray:
+    """Relative errors of the height in the simple models and the simulation, shape (model, ...).
+
+    The simulation runs from event to event, and its error is the largest of some impacts.
+    """
+    _, *simple = models(orbit.law)
+    off = [one.orbit(orbit.n, orbit.amplitude).max_height / orbit.max_height - 1 for one in simple]
+    own = np.broadcast_to(orbit.law.restitution, (impacts, *orbit.amplitude.shape))
+    tops = greatest_heights(orbit, own) / orbit.max_height
+    return np.array([*off, np.max(np.abs(tops - 1), axis=0)])
+
+
+def conformance(data: Mapping[str, xr.Dataset], parameters: EngineOrbit) -> xr.Dataset:
+    """The accepted runs of the engines beside the models, and what their schemes explain.
+
+    Parameters
+    ----------
+    data : mapping
+        ``engines``, the dataset of the runs.
+    parameters : EngineOrbit
+        The orbit of which bounces are simulated over the steps in a contact.
+
+    Returns
+    -------
+    xarray.Dataset
+        The variables of the runs, and over their dimensions ``bounce_steps``, the time steps in a
+        period; ``bounce_error``, the root mean square error of a bounce; ``limit_error``, the mean
+        error without the first order of the step (Richardson's extrapolation of two steps). Over
+        (release, model, restitution, n, frequency_ratio) ``model_error``, of the spring-damper
+        that of its simulation. Of one orbit ``step_error`` over (scheme, frequency_ratio, steps),
+        see :func:`step_errors`, with the time steps in a period, ``steps_in_bounce``; and
+        ``equal_steps`` over (scheme, frequency_ratio), those with the corrected model's error.
+
+    Raises
+    ------
+    ModelError
+        If the engines did not run this orbit.
+    """
+    runs = data["engines"]
+    along = ("restitution", "n", "frequency_ratio")
+    r, n, ratio = (runs[name].values for name in along)
+    place = [index_of(runs[name], name, getattr(parameters, name)) for name in along[:2]]
+    shown = index_of(runs.release, "release", parameters.release)
+    off, per_step, orbits = [], [], []
+    for rule in map(Release.of, runs.release.values):
+        contact = SpringDamper(ratio, damping_ratio(r[:, np.newaxis, np.newaxis], rule), rule)
+        lam = runs.amplitude.sel(release=rule).transpose(*along).values
+        orbits.append(SpringDamperModel(contact).orbit(n[:, np.newaxis], lam))
+        off.append(model_errors(orbits[-1], parameters.transient + parameters.impacts))
+        per_step.append(2 * np.pi * n[:, np.newaxis] / contact.free_duration)
+    off, per_step = np.array(off), np.array(per_step)
+    simulated = step_errors(orbits[shown][*place], parameters)
+    corrected = np.abs(off[shown, SIMPLE.index("corrected")][*place])
+    in_bounce = per_step[shown][*place, :, np.newaxis] * parameters.steps
+    steps, error = runs.contact_steps, runs.height_error
+    found = {
+        "bounce_steps": steps * xr.DataArray(per_step, dims=("release", *along)),
+        "bounce_error": np.hypot(error, runs.height_scatter),
+        "limit_error": (steps * error).diff("refinement") / steps.diff("refinement"),
+        "model_error": (("release", "model", *along), off),
+        "step_error": (("scheme", "frequency_ratio", "steps"), simulated),
+        "steps_in_bounce": (("frequency_ratio", "steps"), in_bounce),
+        # Beyond the last N the error falls as 1/N.
+        "equal_steps": (
+            ("scheme", "frequency_ratio"),
+            in_bounce[:, -1] * simulated[..., -1] / corrected,
+        ),
+    }
+    found["limit_error"] = found["limit_error"].isel(refinement=0, drop=True)
+    axes = {"model": [*SIMPLE, "spring-damper"], "scheme": [*Scheme], "steps": [*parameters.steps]}
+    return describe(runs.assign_coords(axes).assign(found).drop_attrs(deep=False))

@@ -1,0 +1,26 @@
+"""The lesson prints and draws what its page shows, and its notebook is made from the page."""
+
+import doctest
+import re
+import runpy
+from pathlib import Path
+
+import pytest
+
+DOCS = Path(__file__).parents[1] / "docs"
+PAGE = DOCS / "lesson.md"
+
+
+@pytest.mark.slow
+def test_the_lesson_prints_and_draws_what_it_says(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = doctest.testfile(str(PAGE), module_relative=False, optionflags=doctest.ELLIPSIS)
+    assert result.failed == 0 and result.attempted > 20
+    shown = re.findall(r"!\[.+\]\(lesson/(.+)\)", PAGE.read_text(encoding="utf-8"))
+    drawn = sorted(path.name for path in tmp_path.iterdir())
+    assert drawn == sorted(shown) == sorted(path.name for path in (DOCS / "lesson").iterdir())
+
+
+def test_the_notebook_is_made_from_the_page():
+    made = runpy.run_path(str(DOCS / "notebook.py"))["notebook"](PAGE.read_text(encoding="utf-8"))
+    assert made == PAGE.with_suffix(".ipynb").read_text(encoding="utf-8")

@@ -23,7 +23,9 @@ class Parser(argparse.ArgumentParser):
     """A parser whose errors are one line and exit status 2."""
 
     def __init__(self, *args: Any, **options: Any) -> None:
-        super().__init__(*args, **options)
+        # The explanation and the examples have lines of their own.
+        plain = argparse.RawDescriptionHelpFormatter
+        super().__init__(*args, formatter_class=plain, **options)
         # A value such as -1e6 or -5N/m is no option; Python 3.14 reads them so itself.
         self._negative_number_matcher = re.compile(r"-\.?\d")
 

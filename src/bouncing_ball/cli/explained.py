@@ -79,7 +79,7 @@ EXPLAINED = {
 def explained(command: str) -> str:
     """The end of the help of a subcommand: explanation, symbols and examples."""
     text, examples = EXPLAINED[command]
-    lines = textwrap.wrap(text, _WIDTH) + [""]
+    lines = [*textwrap.wrap(text, _WIDTH), ""]
     if command not in ("design", "explain", "diff"):
         for symbol, meaning in _SYMBOLS.items():
             lines += textwrap.wrap(f"{symbol}  {meaning}", _WIDTH, subsequent_indent="   ")

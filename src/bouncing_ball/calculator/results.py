@@ -1,4 +1,4 @@
-"""The results of the calculator: each stands once, with its words and its unit.
+"""The results of the calculator, each of which stands once, with its words and its unit.
 
 JSON has all of them under their names; the text and the page list those that have words.
 """
@@ -24,18 +24,18 @@ QUANTITIES = {
     Quantity.PERIOD_DOUBLING: "period doubling",
     Quantity.PERMANENT_CONTACT: "threshold of permanent contact",
 }
-"""The quantities as a sentence calls them."""
+"""The names of the quantities in sentences."""
 
 
 class Row(NamedTuple):
-    """How a result is listed: its words, and the unit of :func:`~.units.shown`."""
+    """How a result is listed: its words, and its unit for :func:`~.units.shown`."""
 
     words: str
     unit: str = ""
 
 
 def rows(result: Any) -> list[tuple[str, str]]:
-    """Words and text of all results that are listed, in order, those of parts within.
+    """Words and text of all results that are listed, in order, with those of parts within.
 
     Examples
     --------
@@ -55,7 +55,7 @@ def rows(result: Any) -> list[tuple[str, str]]:
 
 @dataclass(frozen=True)
 class Standing:
-    """Where a case stands in its family, in one model.
+    """The place of a case in its family, in one model.
 
     ``saddle_node`` and ``period_doubling`` are Λ; the margins are the shares by
     which Λ may fall to the one, ``1 - Λ_SN/Λ``, and rise to the other,
@@ -73,12 +73,12 @@ class Standing:
 
 @dataclass(frozen=True)
 class Family:
-    """The n-T orbit of a case, in SI units, and how wrong the simple models are.
+    """The n-T orbit of a case, in SI units, and the errors of the simple models.
 
     ``exists``, ``is_stable`` and ``is_admissible`` are those of the exact model, which comes
-    first in ``standing``. The errors are the moduli of relative errors: ``errors`` of the
+    first in ``standing``. The errors are moduli of relative errors: ``errors`` of the
     restitution and ``corrected_errors`` of the corrected model, ``law_errors`` those of the
-    restitution model by the error law, which is stated where ``law_holds``.
+    restitution model by the error law, which holds where ``law_holds``.
     """
 
     n: int
@@ -137,7 +137,7 @@ class Needed:
     ``frequency_ratio`` is the largest ϖ at which the restitution model's error
     crosses the tolerance, if its ``status`` is "found"; ``by_law`` is |K|/ε of the error
     law (the root of |K₂|/ε for the permanent contact), ``corrected`` the largest crossing
-    of the corrected model. None where there is none; the status says why.
+    of the corrected model. None where there is none; the status gives the reason.
     """
 
     quantity: str
@@ -151,7 +151,7 @@ class Needed:
 
 @dataclass(frozen=True)
 class TimeStep:
-    """The largest time step that resolves the contact, in s, and where the rule is from."""
+    """The largest time step that resolves the contact, in s, and the origin of this rule."""
 
     largest: Annotated[float, Row("largest time step", "s")]
     rule: str
@@ -173,7 +173,7 @@ class Corrected:
 
 @dataclass(frozen=True)
 class Contact:
-    """A contact without a table, in SI units; ``engine`` has the settings that it asks for.
+    """A contact without a table, in SI units, and the settings of the engine that it is for.
 
     ``natural_frequency`` is ω = √(k/m) in rad/s: on a table that moves with Ω it gives ϖ = ω/Ω.
     """

@@ -232,7 +232,10 @@ class ImpactModel(Batch, ABC):
         return labelled.branches(self._grid(n=n), lambda n: self, amplitude_max, points)
 
     def _grid(self, **given: Any) -> Any:
-        """The arguments of a labelled result, which one model has; several have axes of names."""
+        """The arguments of a labelled result of a single model.
+
+        Several models have no labels, so that a call with names for their parameters is needed.
+        """
         if self.shape:
             call = "bouncing_ball.history(…, frequency_ratio=[5, 10])"
             raise ModelError(f"several models have no labels: give their parameters to {call}")

@@ -48,6 +48,20 @@ EXPLAINED = {
             "simulate --amplitude 0 --restitution 0.5 --velocity -4 --impacts 5",
         ),
     ),
+    "motion": (
+        "In the end a ball repeats itself on an orbit or with a multiple of its period "
+        "(subharmonic), repeats itself and sticks to the table on the way (locked), stays on the "
+        "table, or never repeats itself (chaotic).",
+        (
+            "motion --amplitude 1.1 --restitution 0.85",
+            "motion --amplitude 3 --restitution 0.5 --phase 1 --velocity -4",
+        ),
+    ),
+    "diagram": (
+        "Balls from some starts are followed at each amplitude, and the motions are listed on "
+        "which they end.",
+        ("diagram --amplitude 0.9 1.1 --points 5 --restitution 0.85",),
+    ),
     "design": (
         "With a stiffness: will a restitution coefficient do for this contact? Without one: which "
         'contact does a simulation need? A number has its unit behind it, such as "50 Hz"; a '

@@ -108,14 +108,14 @@ class Mean:
 
 @dataclass(frozen=True)
 class Motion:
-    """What a ball does in the end that starts on the orbit of the verdict, or beside it.
+    """The motion on which a ball ends that starts on the orbit of the verdict, or beside it.
 
     ``kind`` is "orbit", "subharmonic", "locked", "permanent contact", "chaotic" or "undecided" in
     the exact model, with the periods of the table and the impacts after which it repeats, 0 if it
-    does not; ``laid`` that of a ball laid on the table, None if it is the same. Where the orbit is
-    not stable the same follows for the restitution model, and by model either the ``greatest``
-    height of motions that repeat alike, or means over time of the height and of the power that
-    the table gives.
+    does not; ``laid`` is the kind for a ball laid on the table, None if it is the same. If the
+    orbit is not stable, the same numbers follow for the restitution model, and for each model
+    either the ``greatest`` height, of motions that repeat in the same way, or means over time of
+    the height and of the power that the table transfers.
     """
 
     kind: str
@@ -192,12 +192,12 @@ class Contact:
 
 @dataclass(frozen=True)
 class Design:
-    """What an engineer needs to know of a contact; times in s, lengths in m, forces in N.
+    """The answer of the calculator about a contact; times in s, lengths in m, forces in N.
 
-    ``frequency_ratio``, ``damping_ratio`` and ``amplitude`` are ϖ, ζ and Λ; ``restitution``
-    is that of a free impact by the release rule, ``measured_restitution`` that by the rule of
-    this contact; ``n`` is the family of the verdict and ``question`` what was asked. Up to
-    ``permanent_contact`` a ball may stay down; it is None of a Hertz contact.
+    ``frequency_ratio``, ``damping_ratio`` and ``amplitude`` are ϖ, ζ and Λ; ``restitution`` is that
+    of a free impact by the release rule, ``measured_restitution`` that by the rule of this contact;
+    ``n`` is the family of the verdict and ``question`` holds the arguments of the call. Up to Λ =
+    ``permanent_contact`` a ball may stay down; it is None for a Hertz contact.
     """
 
     frequency_ratio: Annotated[float, Row("frequency ratio ϖ")]
@@ -229,17 +229,17 @@ class Design:
     question: dict[str, Any]
 
     def engine(self, name: str, release: str | None = None) -> EngineSettings:
-        """What to write into an engine, see :mod:`bouncing_ball.engines`, and what it will do.
+        """The settings to write into an engine, see :mod:`bouncing_ball.engines`, and their effect.
 
-        A restitution that was asked for is met under the engine's own release, whichever that
-        of this design is.
+        A given restitution is met under the release of the engine, whichever release this design
+        has.
 
         Raises
         ------
         ModelError
             If there is no such engine, or it has no such release or no such contact.
         NoOrbitError
-            If the contact that the engine then has is in no orbit.
+            If the contact of the engine then has no orbit.
         """
         # It makes designs of this class.
         from bouncing_ball.calculator.design import design
@@ -249,7 +249,7 @@ class Design:
         return found.engine_settings()
 
     def engine_settings(self) -> EngineSettings:
-        """The settings of the engine that this design was asked for."""
+        """The settings of the engine for which this design was made."""
         contact = Physical(self.case.mass, self.stiffness, self.damping)
         engine, one = engine_named(self.question["engine"]), self.judged
         rule, error = self.case.contact.release, self.question["restitution_error"]

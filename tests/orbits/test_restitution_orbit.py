@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.motion.regularity import exact_map_jacobian
+from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import (
     ImpactMap,
     RestitutionOrbit,
@@ -175,3 +176,8 @@ def test_no_orbit_below_the_saddle_node(lam, one_line):
         phase(1, 0.85, lam)
     # Of several Λ the first one without an orbit is named.
     one_line(error, f"no 1-T orbit at Λ = {np.ravel(lam)[-1]:g}", "saddle-node at Λ = 0.254724")
+
+
+def test_of_both_sides_the_larger_phase_comes_first():
+    phase = RestitutionModel(0.85).orbits(1, 1.0).phase
+    assert phase[0] == -phase[1] > 0

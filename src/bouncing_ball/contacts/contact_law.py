@@ -85,8 +85,24 @@ class ContactLaw(Batch, ABC):
         """
         return 0.0 if self.release is Release.DISPLACEMENT else None
 
-    def grip(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """The function that is positive in contact, and zero where the ball is released."""
+    @property
+    def impedance(self) -> Any:
+        """d of a contact that takes this part of the load off the ball; None where it is all felt.
+
+        Then p″ = (1 - d) a - f, the force on the ball is f + d a, and the ball is released where
+        the grip vanishes, which knows the load, or p, whichever is first.
+        """
+        return None
+
+    has_kink: ClassVar[bool] = False
+    """Whether the force is smooth only where :meth:`kink` does not change its sign."""
+
+    def kink(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """Changes its sign where the force, which is continuous, has a kink."""
+        return np.ones_like(penetration)
+
+    def grip(self, penetration: np.ndarray, rate: np.ndarray, load: Any = 0.0) -> np.ndarray:
+        """Positive in contact, and zero where the ball is released."""
         lag = self.lag
         return self.force(penetration, rate) if lag is None else penetration + lag * rate
 
@@ -95,6 +111,11 @@ class ContactLaw(Batch, ABC):
         """The signature of free impacts if it has a formula and is the same at every speed, else
         None.
         """
+        return None
+
+    @property
+    def permanent_contact(self) -> Any:
+        """Λ up to which a steady contact is held, if it has a formula, else None."""
         return None
 
     @classmethod

@@ -76,7 +76,8 @@ def model(
     Parameters
     ----------
     restitution : array_like, optional
-        Restitution coefficient r in (0, 1]; of a contact it gives the damping by Eq. 16.
+        Restitution coefficient r in (0, 1]; a contact has then the damping ratio ζ with
+        r = exp(-πζ/√(1 - ζ²)), Eq. 16 of the paper.
     frequency_ratio : array_like, optional
         Frequency ratio ϖ of a spring-damper contact; without it an impact is an instant.
     release : str, optional

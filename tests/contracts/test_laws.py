@@ -105,7 +105,7 @@ def integrated(law, speed, phase, amplitude):
         p = np.float64(max(q, 0.0) ** m)
         if law.lag is not None and np.all(law.lag == 0):
             return q
-        return float(law.grip(p, np.float64(u), load_at(phase, amplitude, t)))
+        return float(law.loaded_grip(p, np.float64(u), load_at(phase, amplitude, t)))
 
     def surfaced(_, state):
         # Once the ball is down: it starts from p = 0.
@@ -177,7 +177,7 @@ def test_the_force_does_the_work_and_the_release_is_the_first(law):
         time, part = start + long * x * x * (3 - 2 * x), 3 * long * weight * x * (1 - x)
         depth, rate = path(law, end, time, *START)
         load = load_at(PHASE, AMPLITUDE, time)
-        assert np.all(depth > 0) and np.all(law.grip(depth, rate, load) > 0)
+        assert np.all(depth > 0) and np.all(law.loaded_grip(depth, rate, load) > 0)
         table = AMPLITUDE * np.cos(PHASE + time)
         work += part @ (pushed(law, depth, rate, load) * (table - rate))
 

@@ -250,7 +250,7 @@ def test_nothing_happens_between_the_events(name, n, above, side):
     if orbit.contact_duration > 0 and not name.startswith("corrected"):
         depth, rate = (-x for x in orbit.contact_motion(share * orbit.contact_duration))
         angle = orbit.phase + share * orbit.contact_duration
-        assert np.all(orbit.law.grip(depth, rate, 1 - orbit.amplitude * np.sin(angle)) > 0)
+        assert np.all(orbit.law.loaded_grip(depth, rate, 1 - orbit.amplitude * np.sin(angle)) > 0)
     time = float(orbit.contact_duration) + share * float(orbit.flight_time)
     gap = orbit.path(time)[0] - orbit.amplitude * np.sin(orbit.phase + time)
     rising = gap > 0

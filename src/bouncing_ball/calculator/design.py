@@ -108,7 +108,8 @@ def design(
     damping_ratio
         Damping ratio ζ.
     restitution
-        Restitution coefficient r by Eq. 16; for an engine, r under its release.
+        Restitution coefficient of a free impact that ends at the table's level,
+        r = exp(-πζ/√(1 - ζ²)), Eq. 16 of the paper; for an engine, r under its release.
     measured_restitution
         Restitution coefficient that a free impact has under the release rule.
     drop_height

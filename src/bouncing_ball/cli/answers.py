@@ -120,7 +120,8 @@ def error_law(n=1, **given: Any) -> Answer:
 def permanent_contact(*, frequency_ratio: calls.FrequencyRatio, **given: Any) -> Answer:
     """The Λ up to which the ball stays on the table."""
     of: Any = calls.model(model="spring-damper", frequency_ratio=frequency_ratio, **given)
-    return {"threshold": float(of.permanent_contact_threshold())} | _described(of.contact)
+    threshold = float(of.permanent_contact_threshold())
+    return {"threshold_amplitude": threshold} | _described(of.contact)
 
 
 @takes(calls.simulate)

@@ -8,6 +8,7 @@ from importlib import import_module
 from typing import Any
 
 from bouncing_ball import __version__
+from bouncing_ball.cli.explained import explained
 from bouncing_ball.cli.options import Parser, add_options, in_options, positional
 from bouncing_ball.cli.output import fail, say
 from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, extra
@@ -18,7 +19,7 @@ _COMMANDS = {
     "orbit": ("the n-T orbit at an amplitude", "cli.answers"),
     "limits": ("saddle-node and period doubling of the n-T orbits", "cli.answers"),
     "error-law": ("error of the restitution model to first order, K/ϖ", "cli.answers"),
-    "permanent-contact": ("the amplitude up to which the ball stays down", "cli.answers"),
+    "permanent-contact": ("the amplitude up to which the ball stays on the table", "cli.answers"),
     "simulate": ("a sequence of impacts from any initial impact", "cli.answers"),
     "motion": ("the motion on which a ball ends", "cli.long_run"),
     "diagram": ("the motions on which balls end, over the amplitude", "cli.long_run"),
@@ -51,12 +52,13 @@ def parser(arguments: list[str]) -> Parser:
     top = Parser(
         prog="bouncing-ball",
         description="Periodic orbits of a ball on a vibrating table. All quantities are "
-        "dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g.",
+        "dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g; only design has units.",
+        epilog="bouncing-ball COMMAND --help explains a command and has examples of it",
     )
     top.add_argument("--version", action="version", version=f"{top.prog} {__version__}")
     commands = top.add_subparsers(dest="command", parser_class=Parser)
     for name, (text, _) in _COMMANDS.items():
-        sub = commands.add_parser(name, help=text, description=text)
+        sub = commands.add_parser(name, help=text, description=text, epilog=explained(name))
         if name in arguments:
             add_options(sub, _call(name))
             if hasattr(_module(name), "lines"):

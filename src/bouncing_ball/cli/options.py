@@ -24,6 +24,8 @@ class Parser(argparse.ArgumentParser):
     """A parser whose errors are one line and exit status 2."""
 
     def __init__(self, *args: Any, **options: Any) -> None:
+        # The explanation and the examples have lines of their own.
+        options["formatter_class"] = argparse.RawDescriptionHelpFormatter
         super().__init__(*args, **options)
         # A value such as -1e6 or -5N/m is no option; Python 3.14 reads them so itself.
         self._negative_number_matcher = re.compile(r"-\.?\d")

@@ -87,10 +87,10 @@ class ContactLaw(Batch, ABC):
 
     @property
     def impedance(self) -> Any:
-        """d of a contact that takes this part of the load off the ball; None where it is all felt.
+        """The part d of the load that the contact takes off the ball; None if there is none.
 
-        Then p″ = (1 - d) a - f, the force on the ball is f + d a, and the ball is released where
-        the grip vanishes, which knows the load, or p, whichever is first.
+        Then p″ = (1 - d) a - f, and the force on the ball is f + d a. The ball is released where
+        the grip under the load vanishes, or where p = 0, whichever comes first.
         """
         return None
 
@@ -101,10 +101,14 @@ class ContactLaw(Batch, ABC):
         """Changes its sign where the force, which is continuous, has a kink."""
         return np.ones_like(penetration)
 
-    def grip(self, penetration: np.ndarray, rate: np.ndarray, load: Any = 0.0) -> np.ndarray:
+    def grip(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """Positive in contact, and zero where the ball is released."""
         lag = self.lag
         return self.force(penetration, rate) if lag is None else penetration + lag * rate
+
+    def loaded_grip(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
+        """The grip under a load a: another one only if the law has an impedance."""
+        return self.grip(penetration, rate)
 
     @property
     def signature(self) -> Instant | None:

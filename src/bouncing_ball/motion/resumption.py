@@ -66,7 +66,7 @@ def _leaves_fast(flight: Flight, law: ContactLaw) -> np.ndarray:
         slopes = slopes_of(law.grip, *state)
         lag = slopes.by_rate / slopes.by_penetration
         # A grip that knows the load changes with it too, by Λ a unit of time at most.
-        late = (law.grip(*state, 1.0) - law.grip(*state)) / slopes.by_penetration
+        late = (law.loaded_grip(*state, 1.0) - law.loaded_grip(*state, 0.0)) / slopes.by_penetration
     inside, table = flight.room(), flight.amplitude
     return (inside > 0) & (np.sqrt(np.maximum(inside, 0.0)) >= lag * (1 + table) + late * table)
 
@@ -82,7 +82,7 @@ def _sampled(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.ndarray]:
 
     def held(time):
         displacement, rate, second, _ = flight.gap(time)
-        return law.grip(np.maximum(-displacement, 0.0), -rate, -second) > 0
+        return law.loaded_grip(np.maximum(-displacement, 0.0), -rate, -second) > 0
 
     rise = first_zero(Rise(flight), np.zeros_like(flight.velocity))
     share = np.linspace(0, 1, _SAMPLES)[1:-1, np.newaxis]

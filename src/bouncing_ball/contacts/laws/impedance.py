@@ -49,7 +49,7 @@ class Impedance(ContactLaw):
     Examples
     --------
     >>> law = Impedance(2.0, 0.5, 0.75)
-    >>> float(law.grip(1.0, -2.0)), float(law.grip(1.0, -2.0, 4.0))
+    >>> float(law.grip(1.0, -2.0)), float(law.loaded_grip(1.0, -2.0, 4.0))
     (0.0, 0.75)
     """
 
@@ -82,10 +82,14 @@ class Impedance(ContactLaw):
         """ϖ² p + 2ζϖ p′, to which d of the load is added."""
         return self._spring.force(penetration, rate)
 
-    def grip(self, penetration: np.ndarray, rate: np.ndarray, load: Any = 0.0) -> np.ndarray:
+    def grip(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """p + κ p′, without load."""
+        return penetration + self._spring.lag * rate
+
+    def loaded_grip(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
         """p + κ p′ + d a/ϖ²."""
         held = self.share * load / np.asarray(self.frequency_ratio) ** 2
-        return penetration + self._spring.lag * rate + held
+        return self.grip(penetration, rate) + held
 
     @property
     def signature(self) -> Instant:

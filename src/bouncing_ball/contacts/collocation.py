@@ -208,7 +208,7 @@ def _grip_slopes(law: ContactLaw, m: int, root, rate):
 
 def _loading(law: ContactLaw, root):
     """The derivative of the grip by the load."""
-    return 0.0 if law.impedance is None else law.loaded_grip(0 * root, 0.0, 1.0)
+    return 0.0 if law.impedance is None else law.loaded_grip(0 * root, 0 * root, 1.0)
 
 
 def _left(law: ContactLaw, m: int, start: Start, now: _Motion, until, root, rate, time):
@@ -528,8 +528,9 @@ def march(
                     by[here], more = _derivatives(some, own, panel, by[here])
                     strain[here] += more
                     end = np.flatnonzero(panel.last)
-                    jacobian[here[end]], contraction[here[end]] = _at_release(
-                        *(x.take(end) for x in (some, own, panel)), by[here[end]], strain[here[end]]
+                    ended = here[end]
+                    jacobian[ended], contraction[ended] = _at_release(
+                        some.take(end), own.take(end), panel.take(end), by[ended], strain[ended]
                     )
             active = active[~done[active]]
             if not active.size:

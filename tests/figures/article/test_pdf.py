@@ -37,8 +37,8 @@ def uris(reader):
                 yield str(action["/URI"])
 
 
-def test_the_article_is_set_with_its_headings_captions_figures_and_links(record, texts):
-    text = texts(record)["article"]
+def test_the_article_is_set_with_its_headings_captions_figures_and_links(accepted):
+    text = accepted["article"]
     reader = PdfReader(io.BytesIO(article_pdf(text, TEMPLATE, ROOT)))
     words = re.sub(r"\s+", "", "".join(page.extract_text() for page in reader.pages))
     headings = re.findall(r"^##+ (.*)$", text, re.MULTILINE)

@@ -20,9 +20,13 @@ ALLOWED = {
     "continuation": (set(), {"numpy", "scipy"}),
     "motion": ({"contacts"}, {"numpy"}),
     "orbits": ({"datasets", "contacts", "continuation", "motion"}, {"numpy", "scipy", "xarray"}),
-    "attractors": ({"contacts", "continuation", "motion", "orbits"}, {"numpy"}),
+    "attractors": (
+        {"datasets", "contacts", "continuation", "motion", "orbits"},
+        {"numpy", "xarray"},
+    ),
     "calls": ({"datasets", "contacts", "motion", "orbits", "attractors"}, {"numpy"}),
     "surveys": ({"datasets", "orbits", "calls"}, set()),
+    "long_run": ({"datasets", "orbits", "attractors", "calls"}, {"numpy"}),
     "accuracy": ({"contacts", "continuation", "motion", "orbits"}, {"numpy", "scipy"}),
     # No engine is imported.
     "engines": ({"contacts"}, {"numpy"}),
@@ -32,7 +36,7 @@ ALLOWED = {
     ),
     # Units are parsed at the edge, and pint is imported there when it is asked for.
     "calculator": (
-        {"contacts", "orbits", "calls", "accuracy", "engines"},
+        {"contacts", "motion", "orbits", "attractors", "calls", "accuracy", "engines"},
         {"numpy", "xarray", "pint"},
     ),
     "atlas": ({"datasets", "contacts", "orbits", "accuracy"}, {"numpy", "xarray", "pydantic"}),
@@ -61,6 +65,7 @@ ALLOWED = {
             "motion",
             "orbits",
             "calls",
+            "long_run",
             "accuracy",
             "engines",
             "calculator",

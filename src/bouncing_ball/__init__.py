@@ -27,6 +27,7 @@ The layers, each importing only what lies above it in this list (and ``errors`` 
 ``attractors``    the motions on which balls end: repeating, locked, chaotic
 ``calls``         the calls that most people need: a model, an orbit, its limits, a simulation
 ``surveys``       calls with labelled datasets: a ball over time, a drop, a branch over Λ
+``long_run``      calls about the motion on which a ball ends, over Λ and of many starts
 ``accuracy``      errors of one model against another, their thresholds, the error law
 ``engines``       the contact of physics engines: their parameters, their time stepping
 ``studies``       the stages of the pipeline: parameters in, datasets out
@@ -56,6 +57,10 @@ _PUBLIC = {
     "history": "surveys",
     "drop": "surveys",
     "branch": "surveys",
+    "motion_of": "long_run",
+    "lyapunov_exponent": "long_run",
+    "orbit_diagram": "long_run",
+    "basins": "long_run",
     "design": "calculator.design",
     "SpringDamper": "contacts.spring_damper",
     "SpringDamperModel": "orbits.spring_damper_model",

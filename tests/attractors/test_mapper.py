@@ -75,7 +75,7 @@ def test_the_cascade(r):
 )
 def test_the_exponent_of_an_orbit_is_that_of_its_multiplier(model):
     amplitude, n = np.array([0.8, 0.9, 1.0, 1.6]), np.array([1, 1, 1, 2])
-    found = label(model._law, amplitude, *beside(model, n, amplitude))
+    found = label(model.impact_law, amplitude, *beside(model, n, amplitude))
     assert set(found.kind) == {Kind.ORBIT}
     assert found.periods.tolist() == n.tolist()
     assert set(found.impacts) == {1}

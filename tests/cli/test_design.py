@@ -43,7 +43,8 @@ def test_the_text_begins_with_the_verdict_of_the_readme(said):
     text = said(*CASE, *STIFF, "--all")
     lines = text.splitlines()
     readme = (Path(__file__).parents[2] / "README.md").read_text("utf-8")
-    assert lines[0] in readme and lines[1] in readme
+    assert lines[0].startswith("A ball on the 1-T orbit stays on it")
+    assert all(line in readme for line in lines[:3])
     words = ("contact time", "peak force", "force over weight", "largest time step", "3-T orbit")
     assert all(word in text for word in words)
     # It does not depend on n.
@@ -62,7 +63,7 @@ def test_without_a_family_each_has_one_line(said):
 
 def test_choosing(said):
     out = said(*CASE, "--quantity", "phase", "--tolerance", "0.1 %")
-    assert out.startswith("A simulation needs a contact of at least ")
+    assert out.splitlines()[1].startswith("A simulation needs a contact of at least ")
     words = "the phase of impact of the 1-T orbit is then within 0.1 % of the restitution model's"
     assert words in out
 

@@ -1,6 +1,7 @@
 """The shards of the atlas, the limits of all families, and the merged dataset."""
 
-from collections.abc import Iterable
+from collections.abc import Hashable, Iterable
+from itertools import chain
 
 import numpy as np
 import xarray as xr
@@ -65,18 +66,27 @@ def merge(plan: Plan, shards: Iterable[xr.Dataset], limits: xr.Dataset) -> xr.Da
     ModelError
         If the shards do not hold each row of the plan once.
     """
-    found = xr.concat(list(shards), "row", coords="minimal", compat="override", join="exact")
-    seen = np.bincount(found.row, minlength=np.prod(plan.shape))
+    seen, first = np.zeros(np.prod(plan.shape), dtype=int), None
+    whole: dict[str, tuple[tuple[Hashable, ...], np.ndarray]] = {}
+    coords: dict[str, object] = {}
+    # One shard at a time: what is held is the whole, and never all of its parts beside it.
+    for part in chain(shards, [limits]):
+        first = part.coords.to_dataset() if first is None else first
+        xr.align(first, part, join="exact", exclude={"row"})
+        coords |= {str(x): part[x].values for x in part.coords if x != "row"}
+        seen[part.row] += part is not limits
+        for name, values in part.items():
+            if name not in whole:
+                empty = 0 if values.dtype.kind == "i" else np.nan
+                rows = np.full((seen.size, *values.shape[1:]), empty, values.dtype)
+                whole[str(name)] = (*_PLACE, *values.dims[1:]), rows
+            whole[str(name)][1][part.row] = values
     for row in plan.rows[seen[plan.rows] != 1]:
         raise ModelError(f"row {row} of the atlas is in {seen[row]} shards, not in one")
-    whole = xr.merge([found, limits], join="outer", compat="no_conflicts")
-    empty = {name: 0 if part.dtype.kind == "i" else np.nan for name, part in whole.items()}
-    whole = whole.reindex(row=np.arange(len(seen)), fill_value=empty)
     data = {
-        str(name): ((*_PLACE, *part.dims[1:]), part.values.reshape(*plan.shape, *part.shape[1:]))
-        for name, part in whole.items()
+        name: (dims, rows.reshape(*plan.shape, *rows.shape[1:]))
+        for name, (dims, rows) in whole.items()
     }
-    coords: dict[str, object] = {str(x): whole[x].values for x in whole.coords if x != "row"}
     places = [str(rule) for rule in plan.release], list(plan.n), _middle(plan.edges)
     coords |= dict(zip(_PLACE, places, strict=True)) | {"position": _middle(plan.positions)}
     return described(data, coords)

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.attractors.motions import Kind, Motions, Reason
-from bouncing_ball.motion.angles import reduce_angle
+from bouncing_ball.motion.angles import reduce_angle, table
 from bouncing_ball.motion.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.motion.ensembles import BLOCK, pick
 from bouncing_ball.motion.sequence import Status
@@ -79,6 +79,9 @@ class _Ball(NamedTuple):
     across: np.ndarray
     growth: np.ndarray
     least: np.ndarray
+    # The least since the mark, and the most by which it has grown since.
+    lowest: np.ndarray
+    worst: np.ndarray
     # Growth and time at the last mean; the number of means, sums of growth and time over them and
     # of their products.
     mean_growth: np.ndarray
@@ -93,7 +96,7 @@ def _new(index: np.ndarray, amplitude: np.ndarray, impact: Impact) -> _Ball:
     fresh = (
         *(index, amplitude + zero, none, zero, none, zero, impact.phase, impact.velocity),
         *(Jacobian.identity(balls), none, none + _LEAST, none, none + 1, none - 1, zero),
-        *(zero + 1, zero, zero, zero, zero, zero, np.zeros((balls, 6))),
+        *(zero + 1, zero, zero, zero, zero, zero, zero, zero, np.zeros((balls, 6))),
     )
     columns: Any = (x if isinstance(x, tuple) else x.copy() for x in fresh)
     return _Ball(*columns)
@@ -109,6 +112,8 @@ class _Found(NamedTuple):
     exponent_error: np.ndarray
     reason: np.ndarray
     followed: np.ndarray
+    end_phase: np.ndarray
+    end_velocity: np.ndarray
 
     def write(self, ball: _Ball, which: np.ndarray, kind, reason=Reason.NONE, **values) -> None:
         """What some of the balls that are followed do."""
@@ -170,8 +175,8 @@ def label(
 def _follow(dynamics: Dynamics, start: np.ndarray, relative: np.ndarray, impacts: int) -> _Found:
     """Follow all balls, in a block that is filled up again when some are done."""
     size, block = start.size, min(dynamics.block, BLOCK)
-    whole, real = np.zeros((5, size), dtype=int), np.full((2, size), np.nan)
-    found = _Found(*whole[:3], *real, *whole[3:])
+    whole, real = np.zeros((5, size), dtype=int), np.full((4, size), np.nan)
+    found = _Found(*whole[:3], *real[:2], *whole[3:], *real[2:])
     ahead = 0
     now: Any = None
     ball: Any = None
@@ -188,6 +193,7 @@ def _follow(dynamics: Dynamics, start: np.ndarray, relative: np.ndarray, impacts
         departure = now.depart(impact)
         going = _resting(now, impact, departure, ball, found)
         if going.size < ball.lane.size:
+            _end(ball, impact, going, found)
             now, impact, departure, ball = _those(going, now, impact, departure, ball)
         if going.size:
             sticks = now.sticks(impact, departure)
@@ -197,6 +203,7 @@ def _follow(dynamics: Dynamics, start: np.ndarray, relative: np.ndarray, impacts
             _move(ball, change, passed, sticks)
             going = _returning(ball, now.section(impact), impacts, found)
             if going.size < ball.lane.size:
+                _end(ball, impact, going, found)
                 now, impact, ball = _those(going, now, impact, ball)
         if not ball.lane.size:
             if ahead == size:
@@ -208,6 +215,16 @@ def _follow(dynamics: Dynamics, start: np.ndarray, relative: np.ndarray, impacts
 def _those(which: np.ndarray, *rows: Any) -> Any:
     """Some of the balls, in everything that is known of them."""
     return (x.take(which) if isinstance(x, Dynamics) else pick(x, which) for x in rows)
+
+
+def _end(ball: _Ball, impact: Impact, going: np.ndarray, found: _Found) -> None:
+    """Write down where those are that go no further."""
+    last = np.delete(np.arange(ball.lane.size), going)
+    lane, phase = ball.lane[last], impact.phase[last]
+    rests = found.kind[lane] == _KINDS.index(Kind.PERMANENT_CONTACT)
+    thrown = impact.velocity[last] + table(phase, ball.amplitude[last])[0]
+    found.end_phase[lane] = np.where(rests, np.nan, phase)
+    found.end_velocity[lane] = np.where(rests, np.nan, thrown)
 
 
 def _joined(one: Any, other: Any) -> Any:
@@ -275,11 +292,13 @@ def _move(ball: _Ball, change: Jacobian, passed: np.ndarray, sticks: np.ndarray)
     forgot = np.flatnonzero(sticks & (ball.growth + grown < ball.least - _DIGITS))
     if forgot.size:
         _doubt(ball, forgot[_lost(ball)[forgot]], Reason.ROUNDING)
-        for values in (ball.growth, ball.least, ball.mean_growth, grown):
+        for values in (ball.growth, ball.least, ball.lowest, ball.mean_growth, grown):
             values[forgot] = 0
         ball.mean_time[forgot] = ball.time[forgot]
     ball.growth[:] += grown
     np.minimum(ball.least, ball.growth, out=ball.least)
+    np.minimum(ball.lowest, ball.growth, out=ball.lowest)
+    np.maximum(ball.worst, ball.growth - ball.lowest, out=ball.worst)
     mean = np.flatnonzero(ball.seen % _BATCH == 0)
     if mean.size:
         growth, time = (
@@ -309,7 +328,8 @@ def _returning(
         away = np.maximum(np.abs(step[0]), np.abs(step[1]) / unit)
         radius, second = change.spectral_radius(), ball.turn[near] > 0
         periods = _periods(ball.time[near] - ball.mark_time[near])
-        back = (away <= np.where(second, _AGAIN, _NEAR)) & (radius <= 1 - _MARGIN) & (periods > 0)
+        back = (away <= np.where(second, _AGAIN, _NEAR)) & (radius <= 1 - _MARGIN)
+        back &= (periods > 0) & (ball.worst[near] <= _FORGOTTEN)
         close = np.maximum(np.abs(turned[near]), np.abs(faster[near])) < _AGAIN
         _doubt(ball, near[close & (np.abs(radius - 1) < _MARGIN)], Reason.MARGINAL)
         count = ball.seen[near] - ball.marked[near]
@@ -351,7 +371,8 @@ def _mark(ball: _Ball, here: np.ndarray, phase: np.ndarray, velocity: np.ndarray
     ball.phase[here], ball.velocity[here] = phase[here], velocity[here]
     for values, one in zip(ball.since, (1.0, 0.0, 0.0, 1.0), strict=True):
         values[here] = one
-    ball.stuck[here] = 0
+    ball.stuck[here] = ball.worst[here] = 0
+    ball.lowest[here] = ball.growth[here]
     ball.moves[here] = count + np.where(
         turn, turn + 1, np.maximum(_LEAST, (_SHARE * count).astype(int))
     )

@@ -58,6 +58,9 @@ class Motions(Batch):
         Why it is undecided.
     followed : array of int
         Impacts after which this was known.
+    end_phase, end_velocity : array
+        Table phase φ and absolute velocity z′_i at the last of them, before it: a start from which
+        the ball is on the motion. Not a number in permanent contact.
     """
 
     kind: np.ndarray
@@ -67,3 +70,5 @@ class Motions(Batch):
     exponent_error: np.ndarray
     reason: np.ndarray
     followed: np.ndarray
+    end_phase: np.ndarray
+    end_velocity: np.ndarray

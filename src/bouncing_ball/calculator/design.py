@@ -9,6 +9,7 @@ from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.calculator.case import Case, Table
 from bouncing_ball.calculator.contact_data import STANDARD_GRAVITY, case_of, loss, meant, table_of
 from bouncing_ball.calculator.families import families, finite
+from bouncing_ball.calculator.motion import headline, of_family
 from bouncing_ball.calculator.needed import RATIOS, needed
 from bouncing_ball.calculator.results import (
     QUANTITIES,
@@ -20,7 +21,7 @@ from bouncing_ball.calculator.results import (
     TimeStep,
 )
 from bouncing_ball.calculator.units import Unit, number, percent
-from bouncing_ball.calculator.verdict import Verdict, assessed, chosen, notes
+from bouncing_ball.calculator.verdict import Verdict, assessed, chosen, judged_by_motion, notes
 from bouncing_ball.calls import Index, Rule
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
@@ -179,7 +180,7 @@ def _answer(
         found = families(case, asked)
         one = _judged(found)
         need = needed(quantity, epsilon, case.contact, one.n, lam)
-        return _design(case, found, one, need, assessed(one, need, ratio), question)
+        return _design(case, found, one, need, assessed(one, need, ratio), question, True)
     contact = SpringDamper(1.0, loss(given, rule), rule)
     r = float(contact.restitution)
     index = meant(asked, r, lam)
@@ -195,7 +196,7 @@ def _answer(
     case = Case(given["mass"], table, stiff)
     found = families(case, asked)
     one = next((one for one in found if one.n == index), _judged(found))
-    return _design(case, found, one, need, chosen(case.in_si(), need, index), question)
+    return _design(case, found, one, need, chosen(case.in_si(), need, index), question, False)
 
 
 def contact(
@@ -285,9 +286,16 @@ def _design(
     need: Needed,
     verdict: Verdict,
     question: dict[str, Any],
+    is_given: bool,
 ) -> Design:
-    """Everything that is known of a contact; `one` is the family of the verdict."""
+    """Everything that is known of a contact, given or chosen; `one` is the verdict's family."""
     contact, table = case.contact, case.table
+    # A threshold of permanent contact is none of an orbit.
+    motion = of_family(case, one)
+    if motion.restitution_kind is not None and need.quantity in OF_ORBITS:
+        judged = judged_by_motion(motion, need.tolerance, one.n)
+        before = "" if is_given else f"{verdict.verdict} "
+        verdict = judged._replace(verdict=before + judged.verdict)
     si: dict[str, Any] = case.in_si()
     delay, r, load = map(float, case.instant(one.n)[:3])
     return Design(
@@ -304,6 +312,8 @@ def _design(
         corrected=Corrected(delay * table.time, r, load * table.time),
         orbits=found,
         needed=need,
+        motion=motion,
+        headline=headline(motion, one),
         **verdict._asdict(),
         notes=notes(case, one),
         case=case,

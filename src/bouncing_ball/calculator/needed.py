@@ -8,7 +8,7 @@ from bouncing_ball.accuracy.thresholds import search
 from bouncing_ball.calculator.families import finite
 from bouncing_ball.calculator.results import Needed
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.errors import NoOrbitError
 
 # From contacts that last a good part of the table's period to stiffer ones than
 # any simulation has; so fine that no two crossings are seen as none.
@@ -32,12 +32,13 @@ def needed(
     (10.0, 10.0)
     """
     zeta, rule = contact.damping_ratio, contact.release
-    simple = RestitutionModel(contact.restitution)
-    if quantity in OF_ORBITS and not simple.orbit(n, amplitude).exists:
+    # The law of a limit does not depend on Λ, which may be too small for an orbit: the
+    # saddle-node is below nπ.
+    there = amplitude if quantity in OF_ORBITS else max(amplitude, n * np.pi)
+    try:
+        by_law = finite(law_thresholds(n, zeta, there, rule, tolerance)[Quantity(quantity)])
+    except NoOrbitError:
         return Needed(quantity, tolerance, None, None, None, NO_ORBIT, NO_ORBIT)
     found = search(zeta, rule, n, amplitude, RATIOS, tolerance, (quantity,))
-    # That of a limit does not depend on Λ, which may be too small for an orbit.
-    there = np.maximum(amplitude, simple.saddle_node(n).amplitude)
-    by_law = finite(law_thresholds(n, zeta, there, rule, tolerance)[Quantity(quantity)])
     ratio, corrected = map(finite, found.threshold[:, 0, 0])
     return Needed(quantity, tolerance, ratio, by_law, corrected, *map(str, found.status[:, 0, 0]))

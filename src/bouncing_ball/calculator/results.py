@@ -99,6 +99,38 @@ class Family:
 
 
 @dataclass(frozen=True)
+class Mean:
+    """A mean, and half the width of its confidence interval of 95 %, in SI units."""
+
+    value: float
+    half_width: float
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What a ball does in the end that starts on the orbit of the verdict, or beside it.
+
+    ``kind`` is "orbit", "subharmonic", "locked", "permanent contact", "chaotic" or "undecided" in
+    the exact model, with the periods of the table and the impacts after which it repeats, 0 if it
+    does not; ``laid`` that of a ball laid on the table, None if it is the same. Where the orbit is
+    not stable the same follows for the restitution model, and by model either the ``greatest``
+    height of motions that repeat alike, or means over time of the height and of the power that
+    the table gives.
+    """
+
+    kind: str
+    periods: int
+    impacts: int
+    laid: str | None = None
+    restitution_kind: str | None = None
+    restitution_periods: int | None = None
+    restitution_impacts: int | None = None
+    greatest: dict[str, float] | None = None
+    mean_height: dict[str, Mean | None] | None = None
+    mean_power: dict[str, Mean | None] | None = None
+
+
+@dataclass(frozen=True)
 class Needed:
     """The contact from which on the error of a quantity stays within a tolerance.
 
@@ -186,6 +218,8 @@ class Design:
     corrected: Corrected
     orbits: tuple[Family, ...]
     needed: Needed
+    motion: Motion
+    headline: str
     is_good_enough: bool
     verdict: str
     reason: str

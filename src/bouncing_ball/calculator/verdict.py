@@ -4,8 +4,9 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from bouncing_ball.accuracy.quantities import Quantity
+from bouncing_ball.attractors.motions import Kind
 from bouncing_ball.calculator.case import Case
-from bouncing_ball.calculator.results import QUANTITIES, Family, Needed
+from bouncing_ball.calculator.results import QUANTITIES, Family, Motion, Needed
 from bouncing_ball.calculator.units import percent, shown
 from bouncing_ball.contacts.release import Release
 
@@ -50,6 +51,53 @@ def assessed(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
     found = f"good enough: {off}" if good else f"not good enough: {wrong or off}{instead}"
     reason = _reason(needed, frequency_ratio, good, tolerance)
     return Verdict(good, f"The restitution model is {found}.", reason)
+
+
+def judged_by_motion(motion: Motion, tolerance: float, n: int) -> Verdict:
+    """The verdict where no ball keeps to the orbit: on the motion that it ends on."""
+    about = f"the errors of the {n}-T orbit are those of a motion that no ball has"
+    kinds = motion.kind, motion.restitution_kind
+    if kinds == (Kind.PERMANENT_CONTACT,) * 2:
+        return Verdict(True, "The restitution model is good enough: the ball comes to rest.", about)
+    # Locked and chaotic motions of long periods are alike in the mean, but no others are.
+    if len({*kinds}) > 1 and {*kinds} & {Kind.PERMANENT_CONTACT, Kind.ORBIT, Kind.SUBHARMONIC}:
+        sentence = f"its motion is {_named(kinds[1])}, and the contact's is {_named(kinds[0])}"
+        return Verdict(False, f"The restitution model is not good enough: {sentence}.", about)
+    if motion.greatest is not None:
+        exact, simple = motion.greatest.values()
+        error = abs(simple / exact - 1)
+        found = f"the greatest height of this motion is {shown(error, '%')} off"
+        return _within(error, 0.0, tolerance, found, about)
+    errors = []
+    for name, means in (("height", motion.mean_height), ("power", motion.mean_power)):
+        exact, simple = (means or {"": None, "no": None}).values()
+        if exact is None or simple is None:
+            sentence = "Whether the restitution model is good enough for this motion is not known."
+            return Verdict(False, sentence, f"{about}, and some balls come to rest")
+        off = abs(simple.value / exact.value - 1)
+        errors.append((off, (exact.half_width + simple.half_width) / abs(exact.value), name))
+    found = " and ".join(
+        f"the mean {x} is {shown(e, '%')} ± {shown(h, '%')} off" for e, h, x in errors
+    )
+    worst = max(errors)
+    return _within(worst[0], worst[1], tolerance, found, f"{about}: means over time are compared")
+
+
+def _named(kind: str | None) -> str:
+    words: dict[str | None, str] = {Kind.ORBIT: "periodic", Kind.SUBHARMONIC: "doubled"}
+    return words.get(kind, str(kind))
+
+
+def _within(error: float, margin: float, tolerance: float, found: str, why: str) -> Verdict:
+    """Whether an error that is known within a margin is within a tolerance."""
+    asked = percent(tolerance)
+    if error + margin <= tolerance:
+        return Verdict(True, f"The restitution model is good enough: {found}, within {asked}.", why)
+    if error - margin > tolerance:
+        sentence = f"The restitution model is not good enough: {found}, beyond {asked}."
+        return Verdict(False, sentence, why)
+    sentence = f"Whether the restitution model is good enough is open: {found}, of {asked} allowed."
+    return Verdict(False, sentence, f"{why}; the sample is too small to decide")
 
 
 def _instead(family: Family, needed: Needed) -> str:

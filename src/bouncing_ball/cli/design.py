@@ -210,6 +210,7 @@ def lines(given: Answer) -> list[str]:
     exact = "any" if need.status == always else shown(need.frequency_ratio)
     corrected = "any" if need.corrected_status == always else shown(need.corrected)
     return [
+        found.headline,
         found.verdict,
         f"Reason: {found.reason}.",
         *(f"Note: {note}." for note in found.notes),

@@ -20,6 +20,8 @@ _COMMANDS = {
     "error-law": ("error of the restitution model to first order, K/ϖ", "cli.answers"),
     "permanent-contact": ("the amplitude up to which the ball stays down", "cli.answers"),
     "simulate": ("a sequence of impacts from any initial impact", "cli.answers"),
+    "motion": ("the motion on which a ball ends", "cli.long_run"),
+    "diagram": ("the motions on which balls end, over the amplitude", "cli.long_run"),
     "design": ("whether a restitution coefficient is enough, or which contact is", "cli.design"),
     "explain": ("where an artifact comes from, and how it is made again", "provenance.explain"),
     "diff": ("whether two folders of artifacts say the same", "cli.diff"),

@@ -17,6 +17,7 @@ from bouncing_ball.errors import escaped
 from bouncing_ball.signatures import Range
 
 _OTHER_NAMES = {"parameters": "set", "from_engine": "from", "all_families": "all"}
+_OTHER_NAMES |= {"amplitudes": "amplitude"}
 
 
 class Parser(argparse.ArgumentParser):
@@ -112,6 +113,8 @@ def _reading(annotation: Any) -> dict[str, Any]:
             return {"type": _within(kinds[1], kinds[0]), "metavar": "N" if kinds[0] is int else "X"}
         case typing.Literal:
             return {"choices": kinds}
+        case builtins.tuple if kinds[-1] is not ...:
+            return _reading(kinds[0]) | {"nargs": 2, "metavar": ("FROM", "TO")}
         case builtins.bool:
             return {"action": "store_true"}
         case collections.abc.Mapping:

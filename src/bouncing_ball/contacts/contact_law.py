@@ -1,4 +1,4 @@
-r"""What a contact law is: a force, the rule that ends the contact, and its roots.
+"""The interface of a contact law: a force, the rule that ends the contact, and its roots.
 
 With the penetration p = -δ of the ball into the table a contact obeys ::
 
@@ -7,8 +7,8 @@ With the penetration p = -δ of the ball into the table a contact obeys ::
 All quantities are dimensionless (times Ωt, lengths Ω²y/g); f is the force over
 the weight of the ball. The laws in use are not smooth where p = 0, but they are
 analytic functions of ``p^{1/m}`` and p′, with m = 2 for a force like p^{3/2} or
-p^{1/2}, and m = 4 for one like p^{1/4}. That number m is part of a law: it is what the
-numerical methods need to know to lose no order at the ends of the contact.
+p^{1/2}, and m = 4 for one like p^{1/4}. The number m is part of a law, because the
+numerical methods need it to keep their order at the ends of the contact.
 """
 
 from abc import ABC, abstractmethod
@@ -24,19 +24,19 @@ from bouncing_ball.contacts.instant import Instant
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import ModelError, require
 
-# Of the imaginary step, in parts of p or of 1: its square is lost in rounding.
+# The imaginary step, as a part of p or of 1; its square is lost in rounding.
 _IMAGINARY = 1e-20
 
 
 class Slopes(NamedTuple):
-    """Derivatives of a function of (p, p′)."""
+    """Derivatives of a function of (p, p′), of the shape of the arguments."""
 
     by_penetration: np.ndarray
     by_rate: np.ndarray
 
 
 def slopes_of(function: Callable, penetration: ArrayLike, rate: ArrayLike) -> Slopes:
-    """Derivatives by imaginary steps, exact to rounding for an analytic expression.
+    """Derivatives by imaginary steps, exact up to rounding for an analytic expression.
 
     Examples
     --------
@@ -55,42 +55,51 @@ def slopes_of(function: Callable, penetration: ArrayLike, rate: ArrayLike) -> Sl
 class ContactLaw(Batch, ABC):
     """A contact law: a frozen dataclass of its dimensionless parameters.
 
-    A law of one's own defines :meth:`force`; the rest has defaults. ``root`` is m,
-    ``release`` what ends the contact. Parameters are checked in ``__post_init__``.
+    A subclass defines :meth:`force`; everything else has a default. ``root`` is m and
+    ``release`` the rule that ends the contact. A subclass checks its parameters in
+    ``__post_init__`` and raises :class:`~bouncing_ball.errors.ModelError`.
     """
 
     name: ClassVar[str]
     formula: ClassVar[str]
-    """The force as the command line's help shows it."""
+    """The force, as the help of the command line shows it."""
     root: ClassVar[int] = 2
     release = Release.DISPLACEMENT
 
     @abstractmethod
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """f(p, p′) for p > 0: force over the weight, positive when it pushes."""
+        """f(p, p′) for p > 0: the force over the weight, positive when it pushes the ball away.
+
+        The result has the shape to which p and p′ broadcast with the parameters. Complex arguments
+        must be allowed, because derivatives are taken by imaginary steps.
+        """
 
     def root_force(self, root: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """The same as a function of q = p^{1/m} and p′."""
+        """The force as a function of q = p^{1/m} and p′."""
         return self.force(root**self.root, rate)
 
     @property
     def lag(self) -> Any:
-        """κ of a contact that ends where p + κ p′ = 0; None where the force itself is needed."""
+        """κ of a contact that ends where p + κ p′ = 0; None where the release depends on the force
+        itself.
+        """
         return 0.0 if self.release is Release.DISPLACEMENT else None
 
     def grip(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """Positive in contact, and zero where the ball is released."""
+        """The function that is positive in contact, and zero where the ball is released."""
         lag = self.lag
         return self.force(penetration, rate) if lag is None else penetration + lag * rate
 
     @property
     def signature(self) -> Instant | None:
-        """What the contact is to the outside where that is known and the same at every speed."""
+        """The signature of free impacts if it has a formula and is the same at every speed, else
+        None.
+        """
         return None
 
     @classmethod
     def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
-        """The law that at a speed v has the scale P of length, and a dissipation.
+        """The law that at a speed v has the scale P of length, and a given dissipation.
 
         In units of P and P/v the impact at v is that of stiffness 1, damping
         ``group`` and speed 1.
@@ -98,27 +107,29 @@ class ContactLaw(Batch, ABC):
         Raises
         ------
         ModelError
-            If the law does not say how.
+            If the law does not define this.
         """
         raise ModelError(f"{cls.name} is given by its parameters, not by restitution and duration")
 
     @classmethod
     def group_of(cls, restitution: float) -> float | None:
-        """The dissipation that has a restitution coefficient, if that has a closed form."""
+        """The dissipation ``group`` of a restitution coefficient r, if it has a closed form, else
+        None.
+        """
         return None
 
     @classmethod
     def parameter_names(cls) -> list[str]:
-        """Names of the numbers of the law."""
+        """Names of the law's numbers, which are its fields except the release."""
         return [field.name for field in fields(cls) if field.name != "release"]
 
     def parameters(self) -> dict[str, Any]:
-        """Names and values of the numbers of the law."""
+        """Names and values of the law's numbers."""
         return {name: getattr(self, name) for name in self.parameter_names()}
 
     @property
     def label(self) -> str:
-        """The law and its numbers, in words; of a single law."""
+        """The name and the numbers of a single law as text."""
         numbers = (f"{name.replace('_', ' ')} {float(x):.6g}" for name, x in
                    self.parameters().items())  # fmt: skip
         return f"{self.name} with {', '.join(numbers)}"

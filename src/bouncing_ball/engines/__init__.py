@@ -1,6 +1,6 @@
-"""Physics engines: their contact parameters from k, c and m, and what comes out of them.
+"""Physics engines: their contact parameters from k, c and m, and the contacts that they produce.
 
-None of them is imported here, and none needs to be installed.
+Quantities are in SI units here. None of the engines is imported, and none needs to be installed.
 """
 
 from bouncing_ball.engines.drake import Drake
@@ -19,12 +19,12 @@ ENGINES: dict[str, Engine] = {engine.name: engine for engine in _ALL}
 
 
 def engine_named(name: str) -> Engine:
-    """The engine of a name.
+    """The engine with this name.
 
     Raises
     ------
     ModelError
-        If there is none, with those that there are.
+        If there is none; the message lists the engines.
 
     Examples
     --------

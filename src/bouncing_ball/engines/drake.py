@@ -9,10 +9,10 @@ from bouncing_ball.engines.scheme import Scheme
 
 
 class Drake(Engine):
-    """Discrete plant with the approximation "sap", whose contact is the linear spring-damper.
+    """A discrete plant with the approximation "sap", whose contact is the linear spring-damper.
 
-    Two bodies are combined: their springs in series, their relaxation times summed. With the
-    same numbers on ball and table these are 2k in N/m and τ/2 = c/(2k) in s. The other
+    Drake combines two bodies: their springs are in series, and their relaxation times are added.
+    With the same numbers for ball and table these are 2k in N/m and τ/2 = c/(2k) in s. The other
     approximations, and ``hunt_crossley_dissipation``, are another contact law.
 
     Examples

@@ -1,4 +1,4 @@
-"""What every engine has: parameters from k, c and m, a release, a scheme, a text to paste."""
+"""The interface of an engine: parameters from k, c and m, a release, a scheme, a text to paste."""
 
 import math
 from abc import ABC, abstractmethod
@@ -11,7 +11,7 @@ from bouncing_ball.engines.scheme import Scheme, free_impact, steps_for
 from bouncing_ball.errors import ModelError, require
 
 ERROR = 0.001
-"""What a time step may leave of error in the restitution of a free impact."""
+"""The error of a free impact's restitution that a time step may cause, by default."""
 
 Parameters = Mapping[str, float | list[float]]
 
@@ -32,12 +32,12 @@ class Physical(NamedTuple):
 
     @property
     def angular_frequency(self) -> float:
-        """ω = √(k/m), in rad/s."""
+        """ω = √(k/m) of the contact, in rad/s."""
         return math.sqrt(self.stiffness / self.mass)
 
     @property
     def damping_ratio(self) -> float:
-        """ζ = c/(2mω)."""
+        """ζ = c/(2mω) of the contact."""
         return self.damping / (2 * self.mass * self.angular_frequency)
 
     def restitution(self, release: Release) -> float:
@@ -46,23 +46,29 @@ class Physical(NamedTuple):
         Raises
         ------
         ModelError
-            If ζ ≥ 1 and the damper pulls: the ball does not come back.
+            If ζ ≥ 1 with the displacement release, by which the ball does not come back.
         """
         return free_impact(self.damping_ratio, release)[1]
 
     def contact_time(self, release: Release) -> float:
-        """Duration of a free impact, in s."""
+        """Duration of a free impact, in s.
+
+        Raises
+        ------
+        ModelError
+            If ζ ≥ 1 with the displacement release.
+        """
         return free_impact(self.damping_ratio, release)[0] / self.angular_frequency
 
 
 @dataclass(frozen=True)
 class EngineSettings:
-    """What to write into an engine, and what it will do.
+    """The settings to write into an engine, and the restitution that they produce.
 
-    ``parameters`` are in the engine's units, under its names. ``time_step`` is in s: ``steps``
-    of it in a contact leave the ``restitution`` of a free impact within ``error``;
+    ``parameters`` are in the engine's units, under its names. ``time_step`` is in s: with ``steps``
+    of it in a contact the ``restitution`` of a free impact is within ``error``;
     ``restitutions`` are those of the same contact by each release that the engine has. Of the
-    orbit that a design is about are ``max_height`` and ``penetration`` in m and
+    orbit that a design is about, ``max_height`` and ``penetration`` are in m and
     ``contact_duration`` in s; None where there is no orbit.
     """
 
@@ -84,8 +90,8 @@ class EngineSettings:
 class Engine(ABC):
     """A physics engine and its linear contact between a ball and a wall at rest or moved.
 
-    A subclass says its ``name``, the ``names`` of its parameters, its ``releases``, the one it
-    has by default first, and the ``scheme`` that moves a ball in contact.
+    A subclass defines its ``name``, the ``names`` of its parameters, its ``releases`` with the
+    default first, and the ``scheme`` by which it moves a ball in contact.
     """
 
     name: ClassVar[str]
@@ -95,22 +101,28 @@ class Engine(ABC):
 
     @abstractmethod
     def parameters(self, contact: Physical) -> Parameters:
-        """What the engine calls the contact, in its own units."""
+        """The parameters of a contact, in the units and under the names of the engine."""
 
     @abstractmethod
     def snippet(self, contact: Physical, release: Release, time_step: float) -> str:
-        """The text to paste, with units in its comments."""
+        """The text to paste for a contact, with a time step in s; its comments give the units."""
 
     @abstractmethod
     def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
-        """The contact of parameters in the engine's own units and of a mass in kg."""
+        """The contact that has these parameters, in the engine's units, and a mass in kg.
+
+        Raises
+        ------
+        ModelError
+            If a parameter or the mass is missing, unknown, or outside its range.
+        """
 
     def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
-        """What a spring and a damper would do otherwise than the engine with these parameters."""
+        """Sentences on how the engine with these parameters differs from a spring and a damper."""
         return ()
 
     def release(self, asked: str | None = None) -> Release:
-        """The release that is asked for, or that of the engine's default.
+        """The release with this name, or the engine's default.
 
         Raises
         ------
@@ -126,7 +138,14 @@ class Engine(ABC):
         return release
 
     def restitutions(self, contact: Physical, release: Release) -> dict[Release, float]:
-        """r of a free impact by a release, and by the others of the engine that have one."""
+        """r of a free impact by a release, and by the engine's other releases at which the ball
+        returns.
+
+        Raises
+        ------
+        ModelError
+            If ζ ≥ 1 and this is the displacement release.
+        """
         slow = contact.damping_ratio < 1
         rules = [rule for rule in self.releases if rule is release or slow]
         return {rule: contact.restitution(rule) for rule in rules}
@@ -134,15 +153,16 @@ class Engine(ABC):
     def settings(
         self, contact: Physical, release: str | None = None, error: float = ERROR
     ) -> EngineSettings:
-        """What to write into the engine for a contact, and what comes out of a free impact.
+        """The settings for a contact, so that r of a free impact is within ``error``.
 
         Raises
         ------
         ModelError
-            If the engine has no such release, or the contact does not bounce.
+            If the engine has no such release, the contact does not bounce, or the error is not
+            positive.
         """
         rule = self.release(release)
-        # To twelve digits: those of a product are not written.
+        # Twelve digits, so that the rounding of products is not written.
         contact = Physical(*(float(f"{value:.12g}") for value in contact))
         restitution = contact.restitution(rule)
         steps = steps_for(self.scheme, contact.damping_ratio, rule, error)
@@ -156,7 +176,7 @@ class Engine(ABC):
         )
 
     def _given(self, parameters: Mapping[str, Any], mass: float | None) -> float:
-        """The mass, if it is given and all parameters are the engine's."""
+        """The mass, after a check that it is given and that all parameters belong to the engine."""
         if unknown := set(parameters) - set(self.names):
             names = " and ".join(self.names)
             raise ModelError(f"{self.name} has no {sorted(unknown)[0]!r}: its contact has {names}")
@@ -166,7 +186,7 @@ class Engine(ABC):
         return float(mass)
 
     def _two(self, parameters: Mapping[str, Any], mass: float | None) -> tuple[float, float, float]:
-        """The mass, the stiffness, which is positive, and the loss, in the engine's units."""
+        """The mass, the stiffness, which must be positive, and the loss, in the engine's units."""
         m, found = self._given(parameters, mass), []
         for name in self.names:
             if name not in parameters:
@@ -182,13 +202,13 @@ class Engine(ABC):
 
 
 class Proportional(Engine):
-    """An engine whose two parameters are a k and b c, with factors that know the mass alone.
+    """An engine whose two parameters are a k and b c, with factors that depend on the mass alone.
 
-    The factors are 1 where a subclass has no others.
+    The factors are 1 unless a subclass defines others.
     """
 
     def factors(self, mass: float) -> tuple[float, float]:
-        """The factors a and b, by which k and c are multiplied."""
+        """The factors a and b for k and c, for a ball of this mass in kg."""
         return 1.0, 1.0
 
     def parameters(self, contact: Physical) -> Parameters:

@@ -1,4 +1,4 @@
-"""Any engine or script of one's own: a spring, a damper and a rule that ends the contact."""
+"""Any engine or script: a spring, a damper and a rule that ends the contact."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -11,7 +11,7 @@ _ENDS = {Release.DISPLACEMENT: "at p = 0", Release.FORCE: "where the force vanis
 
 
 class Generic(Proportional):
-    """m, k and c as they are, moved by semi-implicit Euler: what a first script has.
+    """m, k and c unchanged, with semi-implicit Euler steps, as in a simple script.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""MercuryDPM: a linear viscoelastic species, whose damper pulls until the ball is off."""
+"""MercuryDPM: a linear viscoelastic species, whose damper pulls until the ball has left."""
 
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.engines.engine import Physical, Proportional

@@ -1,16 +1,17 @@
-r"""MuJoCo: ``solref`` and ``solimp``, a spring-damper of accelerations that is weighed by d.
+r"""MuJoCo: ``solref`` and ``solimp``, a spring-damper of accelerations that is weighted by d.
 
 A contact's acceleration is ``a₁ = (1 - d) a₀ - d (b v + κ x)``, with a₀ that of all other forces,
 x < 0 in contact and the impedance d of ``solimp`` (dmin at the surface, dmax from the depth
 ``width`` on). From a ``solref`` of two negative numbers (-K, -B), the direct form, MuJoCo takes
 ``κ = K d/dmax²`` and ``b = B/dmax``; from two positive ones, the time constant T and the damping
-ratio ζ, ``κ = d/(dmax² T² ζ²)`` and ``b = 2/(dmax T)``. Where d = dmax, the impedance is out of
-it, and the contact has ::
+ratio ζ, ``κ = d/(dmax² T² ζ²)`` and ``b = 2/(dmax T)``. Where d = dmax, the impedance cancels,
+and the contact has ::
 
     k/m = K = 1/(T² ζ²),   c/m = B = 2/T,   c/(2√(km)) = ζ
 
-per unit of mass. What d is left in is the load: gravity, and the table that accelerates, push in
-contact with their (1 - d)-th part. A spring and a damper have d = 0, and MuJoCo's least is 10⁻⁴.
+per unit of mass. The impedance then affects the load only: in contact the ball feels the share
+1 - d of gravity and of the table's acceleration. A spring and a damper have d = 0, and the smallest
+d of MuJoCo is 10⁻⁴.
 """
 
 from collections.abc import Mapping, Sequence
@@ -25,12 +26,12 @@ from bouncing_ball.errors import ModelError
 
 # dmin, dmax, width in m, midpoint and power of MuJoCo's default.
 _DEFAULT = (0.9, 0.95, 0.001, 0.5, 2.0)
-# MuJoCo's own limits of an impedance.
+# The limits that MuJoCo imposes on an impedance.
 _LEAST, _MOST = 1e-4, 0.9999
 
 
 def _numbers(name: str, value: str | Sequence[float], counts: range) -> list[float]:
-    """The numbers of an attribute, as XML or as a sequence has them."""
+    """The numbers of an attribute, which is a text as in XML, or a sequence."""
     parts = value.split() if isinstance(value, str) else np.ravel(value).tolist()
     allowed = f"{counts[0]} numbers" if len(counts) == 1 else f"{counts[0]} to {counts[-1]} numbers"
     try:
@@ -49,7 +50,7 @@ def impedance(solimp: str | Sequence[float] = ()) -> list[float]:
     Raises
     ------
     ModelError
-        If they are not up to five numbers, or an impedance is not between 0 and 1.
+        If there are more than five numbers, or an impedance is not between 0 and 1.
 
     Examples
     --------
@@ -65,7 +66,7 @@ def impedance(solimp: str | Sequence[float] = ()) -> list[float]:
 
 
 class MuJoCo(Engine):
-    """The direct form of ``solref``, and the least impedance.
+    """Contacts by the direct form of ``solref``, with the smallest impedance.
 
     Examples
     --------
@@ -87,7 +88,7 @@ class MuJoCo(Engine):
     scheme = Scheme.SEMI_IMPLICIT
 
     def parameters(self, contact: Physical) -> dict[str, list[float]]:
-        # A difference, so that no damping is 0.0 and not -0.0.
+        # A difference, because the negative of no damping would be -0.0.
         per_mass = [0.0 - value / contact.mass for value in contact[1:]]
         return {"solref": per_mass, "solimp": [_LEAST, _LEAST, 0.001]}
 

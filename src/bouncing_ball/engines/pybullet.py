@@ -6,9 +6,9 @@ from bouncing_ball.engines.scheme import Scheme
 
 
 class PyBullet(Proportional):
-    """``changeDynamics`` of both bodies: springs are in series, and dampers are summed.
+    """``changeDynamics`` of both bodies, whose springs are in series and whose dampers are added.
 
-    With the same numbers on ball and table these are 2k in N/m and c/2 in N s/m.
+    With the same numbers for ball and table these are 2k in N/m and c/2 in N s/m.
 
     Examples
     --------

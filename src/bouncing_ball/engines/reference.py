@@ -1,6 +1,6 @@
 """The engines as data: their texts with places for numbers, and settings to compare with.
 
-For the explorer's page, which writes the same texts in the reader's browser.
+The explorer's page writes the same texts in the reader's browser.
 """
 
 import json

@@ -1,8 +1,8 @@
-r"""A free impact as an engine's time stepping computes it.
+r"""A free impact as the time stepping of an engine computes it.
 
-In a free impact p″ = -p - 2ζ p′, with the time in units of 1/ω, ω = √(k/m), the height x = -p
-of the ball over the wall and its speed v are moved by a step h in one of two ways. Engines
-write their contacts in many words; these are the maps that come out of them:
+In a free impact p″ = -p - 2ζ p′, with the time in units of 1/ω, ω = √(k/m). The height x = -p
+of the ball over the wall and its velocity v are advanced by a step h in one of two ways. Engines
+implement their contacts differently, but they amount to one of these maps:
 
 * *semi-implicit Euler*: ``v⁺ = v - h(x + 2ζv)``, ``x⁺ = x + h v⁺``. MuJoCo's Euler integrator
   with its constraint force; also LAMMPS, LIGGGHTS and MercuryDPM, whose velocity Verlet takes
@@ -11,8 +11,8 @@ write their contacts in many words; these are the maps that come out of them:
   constraints with ``cfm`` and ``erp``, and Drake's discrete contact (SAP).
 
 A ball is in contact in a step if x < 0 before it, and a contact with the force release only
-pushes. The wall is met somewhere within a step, and so r is scattered: it is computed for many
-places of the first step that begins below the surface.
+pushes. r depends on the part of a step in which the ball meets the wall. It is therefore computed
+for many values of this part.
 """
 
 from enum import StrEnum
@@ -24,15 +24,15 @@ from bouncing_ball.contacts.damping import restitution_coefficient
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import ModelError, require
 
-# The first step that begins in contact does so a share of a step after the surface.
+# Times from the surface to the first step that begins in contact, in steps.
 _FRACTIONS = np.linspace(1e-9, 1.0, 33)
-# From so many steps on the error is that share of it which 1/N leaves.
+# From so many steps N on the error is proportional to 1/N.
 _ASYMPTOTIC = 4096
 _FEWEST = 8
 
 
 class Scheme(StrEnum):
-    """How an engine moves a ball in contact."""
+    """The scheme by which an engine moves a ball in contact."""
 
     SEMI_IMPLICIT = "semi-implicit Euler"
     IMPLICIT = "implicit Euler"
@@ -80,7 +80,7 @@ def restitution_in_steps(
     steps: int,
     fraction: ArrayLike = _FRACTIONS,
 ) -> np.ndarray:
-    """Restitution of free impacts in time steps that are an N-th of the contact's duration.
+    """Restitution of free impacts in time steps of 1/N of the contact's duration.
 
     Parameters
     ----------
@@ -88,11 +88,16 @@ def restitution_in_steps(
     damping_ratio : float
         ζ, below 1 with the displacement release.
     release : Release
-        What ends the contact.
+        The rule that ends the contact.
     steps : int
-        N, the steps in a contact.
+        N, the number of steps in a contact.
     fraction : array_like
         In (0, 1]: the time from the surface to the first step that begins in contact, in steps.
+
+    Returns
+    -------
+    ndarray
+        Of the shape of ``fraction``.
 
     Raises
     ------
@@ -101,8 +106,8 @@ def restitution_in_steps(
 
     Examples
     --------
-    An undamped contact of semi-implicit Euler keeps x² - h x v + v², and with it the speed
-    where it leaves at the fraction at which it came; implicit Euler damps it:
+    Without damping semi-implicit Euler conserves x² - h x v + v², and with it the speed of a ball
+    that leaves at the fraction at which it came; implicit Euler damps it:
 
     >>> r = restitution_in_steps(Scheme.SEMI_IMPLICIT, 0.0, Release.DISPLACEMENT, 50)
     >>> bool(abs(r.mean() - 1) < 1e-3)
@@ -117,7 +122,7 @@ def restitution_in_steps(
     h = free_impact(zeta, release)[0] / steps
     power, lag = _step(scheme, zeta, h)
     start = np.asarray(fraction, dtype=float).ravel()
-    # All states of all impacts, twice as many with each power of the step.
+    # The states of all impacts, whose number doubles with each power of the step.
     states = np.stack([-h * start, -np.ones_like(start)])[:, None]
     while states.shape[1] < 2 * steps:
         states = np.concatenate([states, np.tensordot(power, states, 1)], axis=1)
@@ -128,7 +133,12 @@ def restitution_in_steps(
 
 
 def error_in_steps(scheme: Scheme, damping_ratio: float, release: Release, steps: int) -> float:
-    """The largest |r_N - r| of a contact in N steps, wherever within a step it begins.
+    """The largest |r_N - r| of a contact in N steps, over the part of a step in which it begins.
+
+    Raises
+    ------
+    ModelError
+        If there are fewer than eight steps in a contact, or ζ is out of range.
 
     Examples
     --------
@@ -140,10 +150,10 @@ def error_in_steps(scheme: Scheme, damping_ratio: float, release: Release, steps
 
 
 def steps_for(scheme: Scheme, damping_ratio: float, release: Release, error: float) -> int:
-    """The least number of steps in a contact from which on r is within an error.
+    """The smallest number of steps in a contact from which on r is within an error.
 
-    The error falls like 1/N, and it does not rise again: N is found by doubling and bisection
-    below 4096, and beyond by that law.
+    The error falls like 1/N, and it does not rise again. N is found by doubling and bisection
+    below 4096, and by this law above.
 
     Raises
     ------
@@ -161,7 +171,7 @@ def steps_for(scheme: Scheme, damping_ratio: float, release: Release, error: flo
         return int(np.ceil(_ASYMPTOTIC * last / error))
     good, bad = _ASYMPTOTIC, _FEWEST - 1
     while good - bad > 1:
-        # Halves while the least is not bracketed: the error at few steps follows no law.
+        # Halving until the number is bracketed, because the error at few steps follows no law.
         middle = max(good // 2, bad + 1) if bad < _FEWEST else (good + bad) // 2
         if error_in_steps(scheme, damping_ratio, release, middle) <= error:
             good = middle

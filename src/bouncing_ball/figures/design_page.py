@@ -30,11 +30,12 @@ def draw(design: Mapping[str, Any], data: xr.Dataset, values: Sequence[tuple[str
         The numbers to list, by name, as texts.
     """
     figure = Figure(figsize=_PAGE)
+    # Room for the titles of the panels.
+    top = min(0.86, _title(figure, design) - 0.045)
     grid = figure.add_gridspec(
-        3, 2, left=0.12, right=0.95, top=0.86, bottom=0.06, hspace=0.34, wspace=0.42,
+        3, 2, left=0.12, right=0.95, top=top, bottom=0.06, hspace=0.34, wspace=0.42,
         height_ratios=(1.0, 1.05, 1.05),
     )  # fmt: skip
-    _title(figure, design)
     _chart(figure.add_subplot(grid[0, 0]), design, data)
     _errors(figure.add_subplot(grid[0, 1]), design)
     motion, contact = figure.add_subplot(grid[1, :]), figure.add_subplot(grid[2, 0])
@@ -47,12 +48,18 @@ def draw(design: Mapping[str, Any], data: xr.Dataset, values: Sequence[tuple[str
     return figure
 
 
-def _title(figure: Figure, design: Mapping[str, Any]) -> None:
-    verdict = textwrap.fill(design["verdict"], 88)
-    figure.text(0.06, 0.965, verdict, fontsize=12, weight="bold", va="top")
-    reason = textwrap.fill(f"Reason: {design['reason']}.", 112)
-    below = 0.96 - 0.021 * (1 + verdict.count("\n"))
-    figure.text(0.06, below, reason, fontsize=9.5, va="top")
+def _title(figure: Figure, design: Mapping[str, Any]) -> float:
+    """What the ball does, the verdict and the reason; the place below them."""
+    top = 0.972
+    for text, width, size, weight, step in (
+        (design["headline"], 112, 9.5, "normal", 0.0165),
+        (design["verdict"], 88, 12, "bold", 0.0205),
+        (f"Reason: {design['reason']}.", 112, 9.5, "normal", 0.0165),
+    ):
+        lines = textwrap.wrap(text, width)
+        figure.text(0.06, top, "\n".join(lines), fontsize=size, weight=weight, va="top")
+        top -= step * len(lines) + 0.006
+    return top
 
 
 def _chart(axes: Axes, design: Mapping[str, Any], data: xr.Dataset) -> None:

@@ -60,6 +60,11 @@ def parameters(data: xr.Dataset, *names: str, of: str = "") -> str:
     return ", ".join(f"${_SYMBOLS[name]}={number(data.attrs[of + name])}$" for name in names)
 
 
+def symbol(name: str) -> str:
+    """The symbol of a parameter, or its name in words."""
+    return f"${_SYMBOLS[name]}$" if name in _SYMBOLS else name.replace("_", " ")
+
+
 def title(data: xr.Dataset) -> str:
     """The parameters that a labelled dataset has as attributes, and the names of its model and
     law.

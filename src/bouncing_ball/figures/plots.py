@@ -13,6 +13,10 @@ from bouncing_ball.figures.style import style
 PLOTS = {
     "history": "histories.over_time",
     "branch": "branches.over_amplitude",
+    "diagram": "diagram.orbit_diagram",
+    "motions": "diagram.motions",
+    "exponent": "diagram.exponent",
+    "basins": "diagram.basins",
 }
 """Where each kind is drawn: ``module.function`` of this package."""
 

@@ -80,7 +80,7 @@ class ImpactModel(Batch, ABC):
     @property
     def label(self) -> str:
         """The parameters of a single model as text."""
-        return self._law.label
+        return self.impact_law.label
 
     @abstractmethod
     def signature(self, speed: ArrayLike) -> Instant:
@@ -98,7 +98,7 @@ class ImpactModel(Batch, ABC):
     def system(self, n: int | np.ndarray) -> OrbitSystem:
         """The equations of the orbits as a continuation problem in Λ (route CONTINUATION)."""
         orbits: Any = self.orbit_type
-        return ContactSystem(n, self._law, orbits.at)
+        return ContactSystem(n, self.impact_law, orbits.at)
 
     def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> Any:
         """The n-T orbits at given Λ, on one side of the saddle-node.
@@ -190,7 +190,7 @@ class ImpactModel(Batch, ABC):
 
         The arguments are those of :func:`bouncing_ball.motion.simulation.simulate`.
         """
-        return simulate(self._law, amplitude, phase, velocity, impacts)
+        return simulate(self.impact_law, amplitude, phase, velocity, impacts)
 
     def history(
         self,
@@ -246,16 +246,18 @@ class ImpactModel(Batch, ABC):
 
         The arguments are those of :func:`bouncing_ball.motion.simulation.next_impact`.
         """
-        return next_impact(self._law, amplitude, phase, relative_velocity)
+        return next_impact(self.impact_law, amplitude, phase, relative_velocity)
 
     @property
-    def _law(self) -> Any:
+    def impact_law(self) -> Any:
+        """What the model is made of, as :func:`bouncing_ball.motion.simulation.simulate` takes
+        it."""
         (law,) = (getattr(self, field.name) for field in fields(self))
         return law
 
     def orbit_of(self, n: ArrayLike, amplitude: ArrayLike, *numbers: ArrayLike) -> Any:
         """Orbits from their numbers Λ, φ, D and z′_i, as datasets store them: :meth:`Orbit.of`."""
-        return self.orbit_type.of(n, self._law, amplitude, *numbers)
+        return self.orbit_type.of(n, self.impact_law, amplitude, *numbers)
 
     def require_admissible(self, n: int, amplitude: float, side: Side = Side.STABLE) -> Orbit:
         """The orbit of :meth:`require_orbit`, if the simulated ball follows it.

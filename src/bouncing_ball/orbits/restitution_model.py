@@ -25,7 +25,7 @@ class _Instants(ImpactModel):
     def signature(self, speed: ArrayLike) -> Instant:
         """The restitution r(v), without delay, load sensitivity and duration."""
         v = np.asarray(speed, dtype=float)
-        r, slope = rebound(self._law, v)
+        r, slope = rebound(self.impact_law, v)
         none = np.zeros_like(v)
         return Instant(none, r + none, none, none, d_restitution=(slope - r) / v)
 

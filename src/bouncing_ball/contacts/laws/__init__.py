@@ -1,4 +1,4 @@
-"""Contact laws: what pushes the ball, one short module each."""
+"""Contact laws, one short module for each."""
 
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
@@ -9,4 +9,4 @@ from bouncing_ball.contacts.spring_damper import SpringDamper
 LAWS: dict[str, type[ContactLaw]] = {
     law.name: law for law in (HuntCrossley, Tsuji, KuwabaraKono, SpringDamper)
 }
-"""The laws by the names that users call them by."""
+"""The laws by their names on the command line and in calls."""

@@ -1,4 +1,4 @@
-"""What the laws of a ball share: Hertz' stiffness, and a number for the damping."""
+"""Base class of the laws of a ball: Hertz' stiffness, and a number for the damping."""
 
 from abc import abstractmethod
 from dataclasses import dataclass
@@ -18,6 +18,11 @@ class Hertz(ContactLaw):
     ----------
     stiffness, damping : float or array
         K > 0 and C ≥ 0.
+
+    Raises
+    ------
+    ModelError
+        If K or C is outside its range.
     """
 
     stiffness: float | np.ndarray
@@ -28,7 +33,7 @@ class Hertz(ContactLaw):
         check_damping(self.damping, "damping C")
 
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """f(p, p′) by the root, of which the force is a polynomial."""
+        """f(p, p′) as a function of the root q = p^{1/m}, in which it is a polynomial."""
         root = np.sqrt(penetration)
         return self.root_force(np.sqrt(root) if self.root == 4 else root, rate)
 
@@ -38,12 +43,12 @@ class Hertz(ContactLaw):
 
     @classmethod
     def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
-        """K = v²/P^{5/2}, and C = group in its own unit."""
+        """The law with K = v²/P^{5/2}, and C equal to ``group`` times :meth:`damping_unit`."""
         scale, v = np.asarray(length, dtype=float), np.asarray(speed, dtype=float)
         stiffness = v * v / scale**2.5
         return cls(stiffness, group * cls.damping_unit(scale, v) + 0 * stiffness)
 
     @staticmethod
     def damping_unit(length: np.ndarray, speed: np.ndarray) -> Any:
-        """What C is 1 for in units of the scales P and P/v; C is a number by default."""
+        """The unit of C in terms of the scales P and v; 1 by default, where C is a number."""
         return 1.0

@@ -1,7 +1,7 @@
 r"""Hertz contact with Hunt and Crossley's damping.
 
-``f = K p^{3/2} (1 + C p′)``, released at p = 0, where the force vanishes too: it never
-pulls, as a free ball leaves with p′ > -1/C. The restitution coefficient
+``f = K p^{3/2} (1 + C p′)``, released at p = 0, where the force vanishes too. The force never
+pulls, because a free ball leaves with p′ > -1/C. The restitution coefficient
 depends on C v alone and falls with the speed, as 1 - (2/3) C v for a slow impact.
 
 Physical parameters: a ball of mass m on a plane with the force
@@ -46,5 +46,5 @@ class HuntCrossley(Hertz):
 
     @staticmethod
     def damping_unit(length: np.ndarray, speed: np.ndarray) -> np.ndarray:
-        """1/v."""
+        """The unit 1/v of C."""
         return 1 / speed

@@ -51,10 +51,10 @@ class KuwabaraKono(Hertz):
 
     @property
     def lag(self) -> float | np.ndarray:
-        """C: the force vanishes with p + C p′."""
+        """C, because the force vanishes together with p + C p′."""
         return self.damping
 
     @staticmethod
     def damping_unit(length: np.ndarray, speed: np.ndarray) -> np.ndarray:
-        """P/v."""
+        """The unit P/v of C."""
         return length / speed

@@ -30,7 +30,7 @@ from bouncing_ball.errors import require
 
 
 def tsuji_damping(restitution: ArrayLike) -> np.ndarray:
-    """C of a restitution coefficient r in (0, 1].
+    """C of a restitution coefficient r in (0, 1], ``√5 (-ln r)/√(π² + ln² r)``; r is not checked.
 
     Examples
     --------
@@ -49,6 +49,11 @@ class Tsuji(Hertz):
     ----------
     stiffness, damping : float or array
         K > 0 and C in [0, √5).
+
+    Raises
+    ------
+    ModelError
+        If K or C is outside its range.
 
     Examples
     --------
@@ -73,5 +78,5 @@ class Tsuji(Hertz):
 
     @classmethod
     def group_of(cls, restitution: float) -> float:
-        """C of a restitution coefficient."""
+        """C of a restitution coefficient r in (0, 1]."""
         return float(tsuji_damping(restitution))

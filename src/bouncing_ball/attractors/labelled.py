@@ -1,0 +1,175 @@
+"""Motions on which balls end as labelled datasets: of starts, over the amplitude, of a grid."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.attractors.mapper import label
+from bouncing_ball.attractors.motions import Kind, Motions
+from bouncing_ball.datasets.labelled import CASE, Grid, Labelled
+from bouncing_ball.datasets.variables import describe
+from bouncing_ball.errors import ParameterError
+
+MOST_BALLS = 20_000_000
+"""Balls that are followed at once, at most: they take some gigabytes of memory."""
+
+# How many amplitudes further balls start again from where one ended; the fractional parts of
+# multiples of these two numbers cover a square evenly.
+_FURTHER = (1, 1, 2, 4)
+# Families of orbits beside which balls start, at so large an angle.
+_FAMILIES, _BESIDE = (1, 2, 3), 1e-3
+_EVEN = np.array([0.7548776662466927, 0.5698402909980532])
+
+
+def require_memory(balls: int, what: str) -> None:
+    """Raise :class:`ParameterError` if there are more balls than fit into memory.
+
+    Examples
+    --------
+    >>> require_memory(10**9, "starts")
+    Traceback (most recent call last):
+    ...
+    bouncing_ball.errors.ParameterError: starts: 1000000000 balls are more than fit into memory, \
+20000000 are allowed
+    """
+    if balls > MOST_BALLS:
+        raise ParameterError(
+            f"{what}: {balls} balls are more than fit into memory, {MOST_BALLS} are allowed"
+        )
+
+
+def _columns(found: Motions, dims: tuple[str, ...]) -> dict[str, Any]:
+    names = {"exponent": "lyapunov_exponent", "exponent_error": "lyapunov_error"}
+    return {
+        names.get(name, name): (dims, value)
+        for name, value in vars(found).items()
+        if name != "followed"
+    }
+
+
+def _described(data: Labelled, **attributes: Any) -> Any:
+    return describe(data).assign_attrs(attributes)
+
+
+def motions(model: Any, grid: Grid, impacts: int) -> Labelled:
+    """The motions on which the balls of a grid (Λ, φ, z′_i) end."""
+    start = (grid.flat[name] for name in ("amplitude", "phase", "velocity"))
+    start = np.broadcast_arrays(*np.atleast_1d(*start), *grid.rows)[:3]
+    require_memory(start[0].size, "a grid of starts")
+    found = label(model.impact_law, *start, impacts=impacts)
+    rows = describe(xr.Dataset(_columns(found, (CASE,))))
+    return grid.unfold((rows if grid.shape else rows.isel({CASE: 0})).assign_attrs(kind="motions"))
+
+
+def fastest(model: Any, amplitude: Any) -> np.ndarray:
+    """A speed of impact above which a ball that meets the table at random slows down.
+
+    With r of a free impact the balls that gain most, by 2Λ(1 + r) at an impact, have it.
+    """
+    lam = np.asarray(amplitude, dtype=float)
+    r = np.asarray(model.signature(2 * np.pi).restitution)
+    return (1 + r) * np.maximum(lam, 1.0) / np.maximum(1 - r, 0.05)
+
+
+def diagram(model: Any, amplitude: np.ndarray, starts: int, samples: int, impacts: int) -> Labelled:
+    """The attractors over Λ, of several starts and of the neighbours' motions.
+
+    Every ball then starts again from where that of the next lower Λ ended, and of the next
+    higher one, several times, so that an attractor is followed in both directions beyond
+    the Λ at which a start finds it.
+    """
+    require_memory(amplitude.size * (starts + 2) * samples, "amplitudes, starts and samples")
+    lam = amplitude[:, np.newaxis]
+    even = np.mod(0.5 + np.arange(1, starts + 1)[:, np.newaxis] * _EVEN, 1.0)
+    # And beside the orbits with one impact, which may attract few of these.
+    orbit = model.orbit(np.array(_FAMILIES), np.where(lam > 0, lam, np.nan))
+    phase = 2 * np.pi * even[:, 0] - np.pi + 0 * lam, orbit.phase + _BESIDE
+    speed = even[:, 1] * fastest(model, lam), -orbit.relative_impact_velocity
+    found = _ends(model, lam, np.concatenate(phase, 1), np.concatenate(speed, 1), impacts)
+    swept = found[:, [0, 0]]
+    for step in _FURTHER:
+        # From where a ball at a lower Λ ended, and one at a higher Λ.
+        place = np.arange(amplitude.size)[:, np.newaxis] + step * np.array([-1, 1])
+        place = np.clip(place, 0, amplitude.size - 1), [0, 1]
+        phase, velocity = swept.end_phase[place], swept.end_velocity[place]
+        speed = amplitude[place[0]] * np.cos(phase) - velocity
+        swept = _ends(model, lam, phase, speed, impacts)
+    columns = (np.concatenate(x, 1) for x in zip(_values(found), _values(swept), strict=True))
+    found = Motions(*columns)
+    seen = _impacts(model, lam, found, samples)
+    dims = ("amplitude", "start")
+    data = Labelled(
+        {
+            **_columns(found, dims),
+            "impact_phase": ((*dims, "impact"), seen[0]),
+            "impact_speed": ((*dims, "impact"), seen[1]),
+        },
+        coords={"amplitude": amplitude},
+    )
+    return _described(data, kind="diagram")
+
+
+def _values(found: Motions) -> list[np.ndarray]:
+    return list(vars(found).values())
+
+
+def _ends(
+    model: Any, amplitude: np.ndarray, phase: np.ndarray, speed: np.ndarray, impacts: int
+) -> Motions:
+    """The motions of balls that start with impacts of these speeds.
+
+    Where there is none, as for a ball that stays on the table, it is dropped onto it.
+    """
+    phase, speed = np.nan_to_num(phase), np.where(speed > 0, speed, 1.0)
+    return label(model.impact_law, amplitude, phase, amplitude * np.cos(phase) - speed,
+                 impacts=impacts)  # fmt: skip
+
+
+def _impacts(model: Any, amplitude: np.ndarray, found: Motions, samples: int) -> np.ndarray:
+    """Phase and speed of impacts on the motions, shape (2, ..., samples); NaN beyond a period."""
+    seen = np.full((2, samples, *found.shape), np.nan)
+    lam = np.broadcast_to(amplitude, found.shape)
+    falls = found.end_velocity < lam * np.cos(found.end_phase)
+    if falls.any():
+        sequence = model.simulate(
+            lam[falls], found.end_phase[falls], found.end_velocity[falls], samples
+        )
+        seen[:, :, falls] = sequence.phase, -sequence.relative_velocity
+    length = np.where(found.impacts > 0, found.impacts, samples)
+    late = np.arange(samples).reshape(-1, *(1,) * length.ndim) >= length
+    return np.moveaxis(np.where(late, np.nan, seen), 1, -1)
+
+
+def basins(model: Any, amplitude: float, starts: int, fast: float | None, impacts: int) -> Labelled:
+    """The motions on which a grid of impacts (φ, δ′) ends, with their shares."""
+    require_memory(starts * starts, "a grid of starts")
+    middle = (np.arange(starts) + 0.5) / starts
+    top = float(fastest(model, amplitude)) if fast is None else fast
+    phase, speed = 2 * np.pi * middle - np.pi, top * middle
+    phi, towards = np.meshgrid(phase, speed)
+    law = model.impact_law
+    found = label(law, amplitude, phi, amplitude * np.cos(phi) - towards, impacts=impacts)
+    key = np.stack([_order(found.kind), found.periods, found.impacts], axis=-1).reshape(-1, 3)
+    known, which, count = np.unique(key, axis=0, return_inverse=True, return_counts=True)
+    share = count / which.size
+    dims = ("start_speed", "start_phase")
+    data = Labelled(
+        {
+            "destination": (dims, which.reshape(found.shape)),
+            "lyapunov_exponent": (dims, found.exponent),
+            "motion_kind": ("motion", np.array([str(kind) for kind in Kind])[known[:, 0]]),
+            "motion_periods": ("motion", known[:, 1]),
+            "motion_impacts": ("motion", known[:, 2]),
+            "share": ("motion", share),
+            "share_error": ("motion", np.sqrt(share * (1 - share) / which.size)),
+        },
+        coords={"start_phase": phase, "start_speed": speed},
+    )
+    return _described(data, kind="basins", amplitude=amplitude)
+
+
+def _order(kinds: np.ndarray) -> np.ndarray:
+    """The place of each kind among all."""
+    names = np.array([str(kind) for kind in Kind])
+    return np.argmax(kinds[..., np.newaxis] == names, axis=-1)

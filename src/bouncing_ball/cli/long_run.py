@@ -1,0 +1,97 @@
+"""``bouncing-ball motion`` and ``diagram``: the motions on which balls end."""
+
+import math
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+
+from bouncing_ball import long_run
+from bouncing_ball.calls import AnyAmplitude
+from bouncing_ball.cli.readable import lines as readable
+from bouncing_ball.datasets.labelled import Labelled
+from bouncing_ball.errors import ParameterError
+from bouncing_ball.signatures import Range, takes
+
+Answer = dict[str, Any]
+Interval = tuple[AnyAmplitude, AnyAmplitude]
+Points = Annotated[int, Range(2, 100_000, "[]")]
+
+
+def _motion(found: Labelled) -> Answer:
+    """What is said of one motion; null for an exponent that is infinite or not known."""
+    exponents = {name: float(found[name]) for name in ("lyapunov_exponent", "lyapunov_error")}
+    answer: Answer = {name: found[name].item() for name in ("kind", "periods", "impacts")}
+    answer |= {name: x if math.isfinite(x) else None for name, x in exponents.items()}
+    return answer | ({"reason": found.reason.item()} if found.reason.item() else {})
+
+
+@takes(long_run.motion_of)
+def motion(amplitude, **given: Any) -> Answer:
+    """The motion on which the ball ends."""
+    return _motion(long_run.motion_of(amplitude, **given))
+
+
+@takes(long_run.orbit_diagram)
+def diagram(
+    *,
+    amplitudes: Interval,
+    points: Points = 300,
+    plot: Path | None = None,
+    **given: Any,
+) -> Answer:
+    """The motions at each amplitude with their shares of the starts, and the figure.
+
+    Parameters
+    ----------
+    amplitudes
+        First and last excitation amplitude Λ.
+    points
+        Amplitudes, at equal steps.
+    plot
+        A figure: .pdf, .png or .svg.
+
+    Raises
+    ------
+    ParameterError
+        If the range is empty.
+    """
+    low, high = amplitudes
+    if not low < high:
+        raise ParameterError(f"{{amplitudes}} {low:g} {high:g} is empty: the second is larger")
+    found = long_run.orbit_diagram(np.linspace(low, high, points), **given)
+    if plot is not None:
+        found.plot(plot)
+    return {
+        "diagram": [
+            {"amplitude": float(at.amplitude), "motions": _shares(at)}
+            for at in (found.isel(amplitude=k) for k in range(points))
+        ]
+    }
+
+
+def _shares(at: Labelled) -> list[Answer]:
+    """The motions at one amplitude, the most frequent first."""
+    names = ("kind", "periods", "impacts")
+    each = list(zip(*(at[name].values.tolist() for name in names), strict=True))
+    number = {motion: each.count(motion) for motion in each}
+    ordered = sorted(number, key=lambda motion: -number[motion])
+    return [
+        dict(zip(names, motion, strict=True)) | {"share": number[motion] / len(each)}
+        for motion in ordered
+    ]
+
+
+def _words(motion: Answer) -> str:
+    period = f" {motion['periods']}/{motion['impacts']}" if motion["periods"] else ""
+    return f"{motion['kind']}{period} ({motion['share']:.0%})"
+
+
+def lines(answer: Answer) -> list[str]:
+    """The motion, or a line for each amplitude: kind, periods/impacts and share of the starts."""
+    if "diagram" not in answer:
+        return readable(answer)
+    return [
+        f"{at['amplitude']:<12.8g}" + ", ".join(map(_words, at["motions"]))
+        for at in answer["diagram"]
+    ]

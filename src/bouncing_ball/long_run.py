@@ -1,0 +1,220 @@
+"""Calls about the long run: the motion on which a ball ends, over Λ, and of many starts.
+
+Each returns a labelled dataset, as the calls of :mod:`bouncing_ball.surveys` do, and takes the
+parameters of a model.
+"""
+
+import math
+from typing import Annotated, Any
+
+import numpy as np
+
+from bouncing_ball.attractors import labelled
+from bouncing_ball.calls import AnyAmplitude, Finite, Positive, model, model_of_impact
+from bouncing_ball.datasets.labelled import Grid, Labelled
+from bouncing_ball.errors import ParameterError
+from bouncing_ball.signatures import Range, check, takes
+
+# Impacts of one ball; and numbers along one axis.
+Followed = Annotated[int, Range(10, 10_000_000, "[]")]
+Starts = Annotated[int, Range(1, 100_000, "[]")]
+Samples = Annotated[int, Range(1, 100_000, "[]")]
+
+
+@takes(model)
+def motion_of(
+    amplitude: AnyAmplitude,
+    *,
+    phase: Finite = 0.0,
+    velocity: Finite = -math.pi,
+    impacts: Followed = 4000,
+    **impact: Any,
+) -> Labelled:
+    """The motion on which a ball ends that starts with an impact.
+
+    Parameters
+    ----------
+    amplitude : array_like
+        Excitation amplitude Λ.
+    phase : array_like
+        Phase of the table at the first impact.
+    velocity : array_like
+        Absolute velocity of the ball before the first impact.
+    impacts : int
+        Impacts after which a ball that has not repeated is given up.
+    impact
+        The parameters of :func:`bouncing_ball.model`.
+
+    Returns
+    -------
+    Labelled
+        ``kind``, one of "orbit", "subharmonic", "locked", "permanent contact", "chaotic" and
+        "undecided" (:class:`bouncing_ball.attractors.motions.Kind`), the ``periods`` of the table
+        and the ``impacts`` until it repeats, its ``lyapunov_exponent`` per period of the table
+        with ``lyapunov_error``, the ``reason`` of an undecided one, and an impact on it.
+
+    Raises
+    ------
+    ModelError
+        If a parameter is missing, out of range or contradicts another.
+
+    Examples
+    --------
+    A ball that sticks and is thrown again, for ever the same:
+
+    >>> found = motion_of(3.0, restitution=0.6)
+    >>> found.kind.item(), found.periods.item()
+    ('locked', 13)
+    """
+    check(motion_of, locals())
+    grid = Grid(amplitude=amplitude, phase=phase, velocity=velocity, **impact)
+    return labelled.motions(model_of_impact(**grid.flat), grid, impacts)
+
+
+@takes(motion_of)
+def lyapunov_exponent(amplitude: AnyAmplitude, **given: Any) -> Labelled:
+    """The largest Lyapunov exponent of the motion on which a ball ends, per period of the table.
+
+    Parameters
+    ----------
+    amplitude : array_like
+        Excitation amplitude Λ.
+    given
+        The parameters of :func:`motion_of`.
+
+    Returns
+    -------
+    Labelled
+        ``lyapunov_exponent`` with ``lyapunov_error``, its standard error, and the ``kind`` of the
+        motion. Of one that repeats it is that of the larger multiplier: negative, and -∞ where
+        a ball forgets everything.
+
+    Examples
+    --------
+    The multipliers of the 1-T orbit are complex, of modulus r:
+
+    >>> found = lyapunov_exponent(1.0, restitution=0.85, phase=1.1)
+    >>> abs(round(float(found.lyapunov_exponent) - math.log(0.85), 6))
+    0.0
+    """
+    found = motion_of(amplitude, **given)
+    return found[["lyapunov_exponent", "lyapunov_error", "kind"]].assign_attrs(kind="exponent")
+
+
+@takes(model)
+def orbit_diagram(
+    amplitudes: AnyAmplitude,
+    *,
+    starts: Starts = 6,
+    samples: Samples = 64,
+    impacts: Followed = 1000,
+    **impact: Any,
+) -> Labelled:
+    """The attractors over Λ: from several starts, and followed to both sides.
+
+    Parameters
+    ----------
+    amplitudes : array_like
+        Excitation amplitudes Λ in rising order.
+    starts : int
+        Balls that start at each of them, spread evenly over phases and speeds, before those
+        that start beside the n-T orbits up to n = 3.
+    samples : int
+        Impacts shown of a motion that does not repeat, and at most of one that does.
+    impacts : int
+        Impacts after which a ball that has not repeated is given up.
+    impact
+        The parameters of :func:`bouncing_ball.model`.
+
+    Returns
+    -------
+    Labelled
+        As :func:`motion_of` of each ``start``, and of two balls that are followed upwards and
+        downwards in Λ; ``impact_phase`` and ``impact_speed`` of each ``impact`` on the motion.
+
+    Raises
+    ------
+    ModelError
+        If a parameter is missing, out of range or contradicts another, if there are no
+        amplitudes or if they do not rise, or if there are more balls than fit into memory.
+
+    Examples
+    --------
+    Before and beyond the period doubling, of the ball that starts beside the 1-T orbit:
+
+    >>> found = orbit_diagram([1.5, 1.6], restitution=0.5, impacts=200)
+    >>> found.impacts.isel(start=6).values.tolist()
+    [1, 2]
+    """
+    check(orbit_diagram, locals())
+    values = np.atleast_1d(np.asarray(amplitudes, dtype=float))
+    if not values.size or values.ndim > 1 or np.any(np.diff(values) <= 0):
+        raise ParameterError("{amplitudes} must be at least one Λ, in rising order")
+    of = _single(values[0], impact)
+    return _of(impact, labelled.diagram(of, values, starts, samples, impacts))
+
+
+@takes(model)
+def basins(
+    amplitude: AnyAmplitude,
+    *,
+    starts: Starts = 200,
+    velocity_max: Positive | None = None,
+    impacts: Followed = 2000,
+    **impact: Any,
+) -> Labelled:
+    """The motions on which a grid of impacts ends, and their shares.
+
+    Parameters
+    ----------
+    amplitude : float
+        Excitation amplitude Λ.
+    starts : int
+        Starts along each of the axes, phase of the table and relative speed.
+    velocity_max : float, optional
+        Greatest relative speed of the first impact; by default one that balls seldom exceed.
+    impacts : int
+        Impacts after which a ball that has not repeated is given up.
+    impact
+        The parameters of :func:`bouncing_ball.model`.
+
+    Returns
+    -------
+    Labelled
+        ``destination``, the number of a ``motion`` for each start, and of each motion its kind,
+        periods, impacts and ``share`` with its standard error.
+
+    Raises
+    ------
+    ModelError
+        If a parameter is missing, out of range or contradicts another, or if there are more
+        balls than fit into memory.
+
+    Examples
+    --------
+    >>> found = basins(1.2, restitution=0.5, starts=20)
+    >>> set(found.motion_kind.values.tolist()) == {"orbit", "locked"}, float(found.share.sum())
+    (True, 1.0)
+    """
+    check(basins, locals())
+    if np.ndim(amplitude):
+        raise ParameterError("{amplitude} must be a single Λ")
+    of = _single(amplitude, impact)
+    found = labelled.basins(of, float(amplitude), starts, velocity_max, impacts)
+    return _of(impact, found)
+
+
+def _of(impact: dict[str, Any], found: Labelled) -> Labelled:
+    """With the parameters of the model as attributes."""
+    return found.assign_attrs({k: v for k, v in impact.items() if isinstance(v, str | int | float)})
+
+
+def _single(amplitude: float, impact: dict[str, Any]) -> Any:
+    """The model of single parameters."""
+    for name, value in impact.items():
+        if np.ndim(value):
+            raise ParameterError(f"{{{name}}} must be a single number here")
+    impact = {name: value for name, value in impact.items() if value is not None}
+    if "duration" in impact and "speed" not in impact:
+        raise ParameterError("{duration} needs {speed}, as the starts have many")
+    return model_of_impact(amplitude, 0.0, -math.pi, **impact)

@@ -1,0 +1,128 @@
+"""Calls about the long run, and their datasets, against orbits and each other."""
+
+import json
+
+import numpy as np
+import pytest
+
+import bouncing_ball as bb
+from bouncing_ball.cli.main import main
+
+R = {"restitution": 0.5}
+MODELS = [R, R | {"frequency_ratio": 100.0}, R | {"frequency_ratio": 100.0, "model": "corrected"}]
+
+
+@pytest.mark.parametrize("given", MODELS)
+def test_the_end_of_a_motion_is_on_it(given):
+    lam = np.array([0.5, 1.3, 1.6, 2.5, 4.0])
+    found = bb.motion_of(lam, phase=0.4, **given)
+    again = bb.motion_of(
+        lam[1:], phase=found.end_phase[1:], velocity=found.end_velocity[1:], **given
+    )
+    assert found.kind[0] == "permanent contact"
+    for name in ("kind", "periods", "impacts"):
+        assert again[name].values.tolist() == found[name][1:].values.tolist()
+    # From there the next impacts of a ball that repeats are the same, one period later.
+    for each in (found.isel(amplitude=k) for k in range(1, lam.size)):
+        rows, start = int(each.impacts), (float(each.end_phase), float(each.end_velocity))
+        if each.kind in ("orbit", "subharmonic"):
+            of = bb.model(**given)
+            sequence = of.simulate(float(each.amplitude), *start, rows + 1)
+            time = sequence.time[rows] / (2 * np.pi)
+            assert time == pytest.approx(int(each.periods), abs=1e-5)
+
+
+@pytest.mark.parametrize("given", MODELS)
+def test_the_diagram_has_the_orbits_and_their_period_doubling(given):
+    limits = bb.limits(1, **given)
+    ends = [float(x.amplitude) for x in limits]
+    lam = np.linspace(ends[0] + 0.02, ends[1] + 0.05, 8)
+    found = bb.orbit_diagram(lam, starts=2, **given)
+    orbit = bb.model(**given).orbit(1, lam)
+    for k, exact in enumerate(orbit.phase):
+        at = found.isel(amplitude=k)
+        of = at.where((at.kind == "orbit") & (at.periods == 1) & (at.impacts == 1), drop=True)
+        assert (of.start.size > 0) == (lam[k] < ends[1])
+        assert of.impact_phase.count("impact").max(initial=1) == 1
+        # The corrected model's orbit is compared at the start of contact, as others are.
+        np.testing.assert_allclose(of.impact_phase.isel(impact=0), exact, atol=1e-5)
+    doubled = found.isel(amplitude=-1)
+    assert (doubled.impact_phase.where(doubled.kind == "subharmonic").count("impact") == 2).any()
+
+
+def test_an_attractor_is_followed_from_where_starts_find_it():
+    lam = np.linspace(1.6, 1.7, 11)
+    found = bb.orbit_diagram(lam, starts=1, impacts=300, **R)
+    # The orbit of period 2 at all of them up to its own doubling, 1.667.
+    for k in np.flatnonzero(lam < 1.66):
+        at = found.isel(amplitude=k)
+        assert "subharmonic" in at.kind.values
+
+
+def test_shares_are_those_of_balls_one_by_one():
+    found = bb.basins(1.2, starts=12, velocity_max=8.0, **R)
+    assert float(found.share.sum()) == pytest.approx(1.0)
+    phase, speed = np.meshgrid(found.start_phase, found.start_speed)
+    velocity = 1.2 * np.cos(phase) - speed
+    for k in range(0, 144, 29):
+        one = bb.motion_of(1.2, phase=phase.flat[k], velocity=velocity.flat[k], **R)
+        motion = found.isel(motion=int(found.destination.values.flat[k]))
+        assert (one.kind, one.periods) == (motion.motion_kind, motion.motion_periods)
+
+
+def test_the_exponent_is_that_of_the_motion():
+    lam = [1.0, 2.0]
+    found = bb.lyapunov_exponent(lam, phase=1.1, restitution=0.85, impacts=1500)
+    assert found.kind.values.tolist() == ["orbit", "chaotic"]
+    both = bb.motion_of(lam, phase=1.1, restitution=0.85, impacts=1500)
+    assert found.lyapunov_exponent.identical(both.lyapunov_exponent)
+
+
+@pytest.mark.parametrize(
+    ("call", "text"),
+    [
+        (lambda: bb.motion_of(-1.0, **R), "amplitude = -1.0 is not a number in [0, 1e+08]"),
+        (lambda: bb.orbit_diagram([], **R), "amplitudes must be at least one Λ, in rising order"),
+        (lambda: bb.orbit_diagram([2.0, 1.0], **R), "must be at least one Λ, in rising order"),
+        (lambda: bb.basins(1.0, starts=100_000, **R), "10000000000 balls are more than fit into"),
+        (lambda: bb.basins([1.0, 2.0], **R), "amplitude must be a single Λ"),
+        (lambda: bb.basins(1.0, restitution=[0.5, 0.6]), "restitution must be a single number"),
+    ],
+)
+def test_a_mistake_is_one_line_with_what_is_allowed(call, text):
+    with pytest.raises(bb.ModelError) as error:
+        call()
+    assert text in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    "given", [{}, {"amplitude": [1.0, 2.0, 3.0]}, {"phase": [0.1, 0.2], "amplitude": [1.0, 2.0]}]
+)
+def test_every_answer_draws_itself(given, tmp_path):
+    given = {"amplitude": 3.0} | given
+    for k, found in enumerate((
+        bb.motion_of(**given, impacts=200, **R),
+        bb.lyapunov_exponent(**given, impacts=200, **R),
+        bb.orbit_diagram(given["amplitude"], starts=1, impacts=50, **R),
+        bb.basins(3.0, starts=5, impacts=200, **R),
+    )):  # fmt: skip
+        found.plot(tmp_path / f"{k}.png")
+        assert (tmp_path / f"{k}.png").stat().st_size > 1000
+
+
+def test_the_command_line_says_the_same(capsys, tmp_path):
+    main("motion --restitution 0.6 --amplitude 3 --frequency-ratio 80 --json".split())
+    answer = json.loads(capsys.readouterr().out)
+    assert (answer["kind"], answer["periods"], answer["impacts"]) == ("locked", 8, 11)
+    picture = tmp_path / "found.png"
+    wanted = "diagram --restitution 0.5 --amplitude 1 2 --points 5 --impacts 300 --json"
+    wanted += f" --plot {picture}"
+    main(wanted.split())
+    rows = json.loads(capsys.readouterr().out)["diagram"]
+    assert [row["amplitude"] for row in rows] == [1.0, 1.25, 1.5, 1.75, 2.0]
+    assert all(sum(x["share"] for x in row["motions"]) == pytest.approx(1) for row in rows)
+    assert picture.exists()
+    with pytest.raises(SystemExit):
+        main("diagram --restitution 0.5 --amplitude 2 1".split())
+    assert capsys.readouterr().err.count("\n") == 1

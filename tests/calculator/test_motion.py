@@ -1,0 +1,129 @@
+"""What a ball does in the end: labels, statistics and the verdict on them."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball import design
+from bouncing_ball.calculator.motion import height_and_power
+from bouncing_ball.calculator.results import Mean, Motion
+from bouncing_ball.calculator.verdict import judged_by_motion
+from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.motion.history import history
+from bouncing_ball.motion.simulation import simulate
+
+UNIT = {"mass": 1.0, "angular_frequency": 1.0, "gravity": 1.0, "restitution": 0.85, "n": 1}
+
+
+@pytest.mark.parametrize("law", [1.0, SpringDamper(4.0, 0.0), SpringDamper(40.0, 0.0)])
+def test_an_elastic_ball_has_the_energy_that_the_table_gives_it(law):
+    found = simulate(law, 1.7, 0.4, -4.0, 40)
+    _, power = height_and_power(found, 3)
+    level, speed = 1.7 * np.sin(found.phase), found.impact_velocity
+    energy = speed**2 / 2 + level
+    given = power * (found.time[-1] - found.time[3])
+    # The nodes of a contact are right to rounding; so is the simulation.
+    assert given == pytest.approx(energy[-1] - energy[3], rel=1e-9, abs=1e-9)
+
+
+def test_an_instant_takes_its_impulse_times_the_speed_of_the_table():
+    found = simulate(0.6, 2.3, 0.4, -4.0, 60)
+    impulse = -1.6 * found.relative_velocity[:-1]
+    work = np.sum(impulse * 2.3 * np.cos(found.phase[:-1]))
+    assert height_and_power(found)[1] == pytest.approx(work / found.time[-1], rel=1e-12)
+
+
+def test_the_mean_height_is_that_of_a_dense_history():
+    found = simulate(SpringDamper(5.0, 0.1), 1.3, 0.4, -4.0, 12)
+    times = np.linspace(0.0, found.time[-1] * (1 - 1e-12), 400_001)
+    dense = np.trapezoid(history(found, times).height, times) / times[-1]
+    # The trapezoidal rule's error, with the force of the contact as the second derivative.
+    assert height_and_power(found)[0] == pytest.approx(dense, rel=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("amplitude", "kind", "says"),
+    [
+        (
+            0.8,
+            "orbit",
+            "A ball on the 1-T orbit stays on it: it is stable. Laid on the table a ball st",
+        ),
+        (1.1, "subharmonic", "(doubled), every 2 periods of the table and 2 impacts."),
+        (2.0, "chaotic", "one that starts beside it ends in chaotic motion."),
+    ],
+)
+def test_the_headline_says_what_the_ball_does(amplitude, kind, says):
+    found = design(**UNIT, acceleration=amplitude, stiffness=5000.0, tolerance="20 %")
+    assert found.motion.kind == kind and says in found.headline
+    assert found.headline != found.verdict
+    if kind == "orbit":
+        assert found.motion.laid == "permanent contact"
+        return
+    assert found.motion.restitution_kind == kind
+    # An orbit that no ball has is not judged.
+    assert "1-T orbit" not in found.verdict
+    if kind == "chaotic":
+        for means in (found.motion.mean_height, found.motion.mean_power):
+            exact, simple = means.values()
+            error = abs(simple.value / exact.value - 1)
+            assert f"{100 * error:.2g} %" in found.verdict
+            assert 0 < exact.half_width < 0.1 * exact.value
+        # What the table gives, the impacts lose: (1 - r²)/2 of the squared relative speed.
+        impacts = simulate(0.85, 2.0, 1.4, np.linspace(-3.2, -3.0, 64), 500)
+        lost = (1 - 0.85**2) / 2 * np.sum(impacts.relative_velocity[100:-1] ** 2, axis=0)
+        power = lost / (impacts.time[-1] - impacts.time[100])
+        margin = 4 * (power.std() / 8 + simple.half_width / 2)
+        assert simple.value == pytest.approx(power.mean(), abs=margin)
+
+
+def motion(kind, other, **more):
+    return Motion(kind, 0, 0, None, other, 0, 0, **more)
+
+
+@pytest.mark.parametrize(
+    ("found", "good", "says"),
+    [
+        (motion("permanent contact", "permanent contact"), True, "the ball comes to rest"),
+        (motion("locked", "permanent contact"), False, "its motion is permanent contact, and the"),
+        (
+            motion("subharmonic", "orbit"),
+            False,
+            "its motion is periodic, and the contact's is doubled",
+        ),
+        (
+            motion("locked", "locked", greatest={"a": 1.0, "b": 1.04}),
+            True,
+            "is 4 % off, within 5 %",
+        ),
+        (
+            motion("locked", "locked", greatest={"a": 1.0, "b": 1.06}),
+            False,
+            "is 6 % off, beyond 5 %",
+        ),
+        (motion("chaotic", "chaotic"), False, "is not known"),
+        *(
+            (
+                motion(
+                    *("chaotic", "locked"),
+                    mean_height={"a": Mean(2.0, width), "b": Mean(2.0 * (1 + off), width)},
+                    mean_power={"a": Mean(1.0, 0.0), "b": Mean(1.01, 0.0)},
+                ),
+                good,
+                says,
+            )
+            for off, width, good, says in (
+                (
+                    0.02,
+                    0.01,
+                    True,
+                    "the mean height is 2 % ± 1 % off and the mean power is 1 % ± 0 %",
+                ),
+                (0.02, 0.04, False, "is open: the mean height is 2 % ± 4 % off"),
+                (0.12, 0.01, False, "not good enough: the mean height is 12 % ± 1 % off"),
+            )
+        ),
+    ],
+)
+def test_the_verdict_on_a_motion(found, good, says):
+    verdict = judged_by_motion(found, 0.05, 1)
+    assert verdict.is_good_enough is good and says in verdict.verdict

@@ -37,7 +37,11 @@ autodoc_typehints = "none"
 myst_enable_extensions = ["dollarmath", "html_image"]
 myst_heading_anchors = 3
 html_theme = "alabaster"
-html_theme_options = {"page_width": "1280px", "body_max_width": "none", "description": "A ball on a vibrating table"}
+html_theme_options = {
+    "page_width": "1280px",
+    "body_max_width": "none",
+    "description": "A ball on a vibrating table",
+}
 html_extra_path = [f"../{EXPLORER}"]
 html_show_sourcelink = False
 html_copy_source = False

@@ -295,6 +295,11 @@ def _on_grid(result: str, *more: Any, **arguments: Any) -> Any:
 def model_of_limits(n: int, **impact: Any) -> ImpactModel:
     """The model; a law given by r and D has them at the impact speed of the restitution model's
     orbits.
+
+    Examples
+    --------
+    >>> model_of_limits(1, restitution=0.85)
+    RestitutionModel(restitution=0.85)
     """
     return _model(impact, lambda kind, r, d: law_of_impact(kind, r, d, rigid_speed(n, r)))
 

@@ -85,7 +85,6 @@ def test_a_contact_shifts_the_cascade_by_the_first_order_and_corrected_by_the_se
     assert np.all(np.abs(away[:, 1:]) < 0.6 * np.abs(away[:, :-1])) and np.max(np.abs(away)) < 0.25
 
 
-def test_a_cascade_of_no_doublings_or_too_many_is_refused(one_line):
-    with pytest.raises(ModelError) as error:
+def test_a_cascade_of_no_doublings_or_too_many_is_refused(refusal):
+    with refusal(ModelError, "number of period doublings = 9", "from 1 to 8"):
         cascade(RestitutionModel(R).period_doubling(1), 9)
-    one_line(error, "number of period doublings = 9", "from 1 to 8")

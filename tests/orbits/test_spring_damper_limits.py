@@ -168,26 +168,24 @@ def test_table_of_the_model_notes():
             assert amplitudes(SpringDamper(omega, zeta), n) == pytest.approx(row, abs=5.1e-5)
 
 
-def test_a_required_orbit_that_is_missing(one_line):
+def test_a_required_orbit_that_is_missing(refusal):
     contact = SpringDamper(10.0, float(damping_ratio(0.85)))
-    with pytest.raises(NoOrbitError) as error:
-        SpringDamperModel(contact).require_orbit(1, 0.2)
     # The saddle-node of the model notes' table, 0.2400.
-    one_line(error, "no 1-T orbit at Λ = 0.2 for ϖ = 10", "below the saddle-node at Λ = 0.239988")
+    with refusal(
+        NoOrbitError, "no 1-T orbit at Λ = 0.2 for ϖ = 10", "below the saddle-node at Λ = 0.239988"
+    ):
+        SpringDamperModel(contact).require_orbit(1, 0.2)
     # Without a saddle-node Λ ends at permanent contact, 0.97, on its one side.
     soft = SpringDamper(2.592, float(damping_ratio(0.0893)))
-    with pytest.raises(NoOrbitError) as error:
+    with refusal(NoOrbitError, "no 1-T orbit at Λ = 0.5 for ϖ = 2.592", "does not reach this Λ"):
         SpringDamperModel(soft).require_orbit(1, 0.5)
-    one_line(error, "no 1-T orbit at Λ = 0.5 for ϖ = 2.592", "does not reach this Λ")
-    with pytest.raises(NoOrbitError) as error:
+    with refusal(NoOrbitError, "Λ = 2.5", "no saddle-node, and so no other side"):
         SpringDamperModel(soft).require_orbit(1, 2.5, Side.UNSTABLE)
-    one_line(error, "Λ = 2.5", "no saddle-node, and so no other side")
     # The unstable side of r = 0.85, ϖ = 2 turns at Λ = 1.176.
-    with pytest.raises(NoOrbitError) as error:
+    with refusal(NoOrbitError, "Λ = 1.3", "does not reach this Λ"):
         SpringDamperModel(SpringDamper(2.0, float(damping_ratio(0.85)))).require_orbit(
             1, 1.3, Side.UNSTABLE
         )
-    one_line(error, "Λ = 1.3", "does not reach this Λ")
 
 
 def test_without_a_fold():

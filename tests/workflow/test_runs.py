@@ -1,4 +1,4 @@
-"""What a user sees: targets by name, reproducible bytes, interruptions."""
+"""Runs as a user sees them: targets by name, reproducible bytes, interruptions."""
 
 import json
 import re

@@ -47,8 +47,7 @@ _SPECTRUM, _FINER, _TAIL = 1e-6, 3e-8, 2
 _EARLY, _CHANGE = 5, 1e-3
 # Length of the first panel in parts of P^{1/m}/V, at the coefficients of the end.
 _FIRST = 0.65
-# Time of a panel of a ball that goes down, in parts of P/V: it may be as long even where the
-# one before was shorter.
+# Time of a panel of a descending ball over P/V, which is allowed even after a shorter panel.
 _DOWN = 0.7
 # Bounds of the change from one length to the next, and of that of a refused panel.
 _SHORTER, _LONGER, _SAFETY, _AGAIN = 0.3, 1.3, 0.9, 0.6
@@ -127,8 +126,10 @@ def _rule() -> _Rule:
 
 
 class _Motion(NamedTuple):
-    """Balls in contact: q, p′, t and F, the length of the next panel, the scales P and V, and
-    on which side of the law's kink the ball is."""
+    """Balls in contact: q, p′, t and F, the length of the next panel, and the scales P and V.
+
+    ``side`` is the sign of the law's :meth:`~.ContactLaw.kink` at the ball.
+    """
 
     root: np.ndarray
     rate: np.ndarray
@@ -214,8 +215,8 @@ def _loading(law: ContactLaw, root):
 def _left(law: ContactLaw, m: int, start: Start, now: _Motion, until, root, rate, time):
     """Functions that are positive up to the end of a panel, one in each row.
 
-    They are the grip, or the time that is left, q of a law with an impedance, because its load may
-    hold the ball up to p = 0, and the function that changes its sign at the law's kink.
+    They are the grip, or the time left; for a law with an impedance q, because its load may
+    hold the ball up to p = 0; and the function that changes its sign at the law's kink.
     """
     if until is None:
         rows = [_grip(law, m, root, rate, None if law.impedance is None else _load(start, time))]
@@ -228,7 +229,7 @@ def _left(law: ContactLaw, m: int, start: Start, now: _Motion, until, root, rate
 
 
 def _falls(law: ContactLaw, m: int, start: Start, now: _Motion, until, root, rate, time, final):
-    """The derivatives of these in s."""
+    """The derivatives of the functions of :func:`_left` in s."""
     lever = _lever(m, root)
     if until is None:
         by_root, by_rate = _grip_slopes(law, m, root, rate)
@@ -332,7 +333,7 @@ def _panel(
         (error / spectrum) ** (-1 / _NODES), (early / _CHANGE) ** (-1 / (2 * _EARLY))
     )
     factor = np.where(np.isnan(slower), _SHORTER, np.clip(_SAFETY * slower, _SHORTER, _LONGER))
-    # The length up to a kink says nothing of the next.
+    # The length of a panel up to a kink is no measure for the next one.
     taken = np.where(turned, now.step, step)
     following = np.where(good, taken * factor, now.step * np.minimum(factor, _AGAIN))
     ends = last & ~turned, surfaced & ~turned, turned
@@ -396,7 +397,7 @@ def _derivatives(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray):
 
     by_root = column(bend * panel.push.T / lever - lever * lever * slopes.by_penetration.T)
     by_rate = column(-lever * slopes.by_rate.T)
-    # The share of the load that is felt.
+    # The share of the load that acts on the ball.
     felt = lever if law.impedance is None else lever * np.reshape(1 - law.impedance, (-1, 1))
     by_time = column(-felt * start.amplitude[:, np.newaxis] * np.cos(angle))
     step = panel.step[:, np.newaxis, np.newaxis]
@@ -426,7 +427,7 @@ def _at_release(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray, st
     by_load = np.where(panel.surfaced, 0.0, _loading(law, root))
     turning = -start.amplitude * np.cos(angle)
     falls = by_root * rate + by_rate * final + by_load * turning * lever
-    # The grip vanishes at another rate where the force makes a step there.
+    # If the force has a step at the release, the grip vanishes at another rate.
     force = law.force(root**law.root, rate)
     if law.impedance is not None:
         force = force + law.impedance * _load(start, panel.time[-1])
@@ -472,9 +473,9 @@ def march(
     panels : int
         How many are tried for each contact; an oscillation takes about eight.
     until : array, optional
-        Times within the contacts at which p and p′ are wanted, in place of the release.
+        Times within the contacts at which p and p′ are computed, in place of the release.
     differentiate : bool
-        Whether the derivatives are wanted, of contacts that start at p = 0; else they are NaN.
+        Whether derivatives are computed, for contacts that start at p = 0; otherwise they are NaN.
 
     Examples
     --------

@@ -87,7 +87,7 @@ class ContactLaw(Batch, ABC):
 
     @property
     def impedance(self) -> Any:
-        """The part d of the load that the contact takes off the ball; None if there is none.
+        """The share d of the load that does not act on the ball in contact; None if there is none.
 
         Then p″ = (1 - d) a - f, and the force on the ball is f + d a. The ball is released where
         the grip under the load vanishes, or where p = 0, whichever comes first.
@@ -98,16 +98,18 @@ class ContactLaw(Batch, ABC):
     """Whether the force is smooth only where :meth:`kink` does not change its sign."""
 
     def kink(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """Changes its sign where the force, which is continuous, has a kink."""
+        """A function that changes its sign where the force, which is continuous, has a kink."""
         return np.ones_like(penetration)
 
     def grip(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """Positive in contact, and zero where the ball is released."""
+        """The function that is positive in contact, and zero where the ball is released."""
         lag = self.lag
         return self.force(penetration, rate) if lag is None else penetration + lag * rate
 
     def loaded_grip(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
-        """The grip under a load a: another one only if the law has an impedance."""
+        """The grip under a load a, which differs from :meth:`grip` only if the law has an
+        impedance.
+        """
         return self.grip(penetration, rate)
 
     @property

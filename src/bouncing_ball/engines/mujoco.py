@@ -124,8 +124,8 @@ class MuJoCo(Engine):
             loads = (Impedance(*own, d).signature.load for d in (most, 0.0))
             new, old = (float(load) for load in loads)
             found.append(
-                f"under a load a this r is r + σ a/v with σ = {new:.4g} s, and that of a spring and "
-                f"a damper has {old:.4g} s"
+                f"under a load a this r is r + σ a/v with σ = {new:.4g} s, and {old:.4g} s for "
+                "a spring and a damper"
             )
         if least != most:
             found.append(

@@ -63,10 +63,9 @@ def test_a_short_one():
     assert sorted(uris(reader)) == ["../config/config.yaml", "figures/fig07.nc"]
 
 
-def test_what_cannot_be_set_is_said_in_one_line(tmp_path, one_line):
-    with pytest.raises(ModelError) as error:
+def test_what_cannot_be_set_is_said_in_one_line(tmp_path, refusal):
+    with refusal(ModelError, "the article cannot be set: "):
         article_pdf(SMALL, TEMPLATE, tmp_path)
-    one_line(error, "the article cannot be set: ")
 
 
 def test_addresses_stay():

@@ -1,9 +1,9 @@
 r"""A linear spring whose damper gives at most the spring's force: Modelica's ElastoBacklash2.
 
-``f = k p + min(c p′, k p)``, and never below zero: on the way in the damper at most doubles the
-spring's force, which so grows from nothing; on the way out it at most takes it away, and the
-ball is released where p + κ p′ = 0, κ = c/k. The kink is where p = κ p′, at the time κ of a short
-impact. The law is homogeneous, so that the restitution is the same at every speed.
+``f = k p + min(c p′, k p)``, and never negative. During compression the damper at most doubles the
+force of the spring, so that the force grows from zero. During restitution it at most cancels it,
+and the ball is released where p + κ p′ = 0, κ = c/k. The force has a kink where p = κ p′, at the
+time κ of a short impact. The law is homogeneous, so that r is the same at every speed.
 
 Physical parameters: ``k = m Ω² ϖ²``, ``c = 2 m Ω ζϖ``.
 
@@ -23,12 +23,17 @@ from bouncing_ball.contacts.release import Release
 
 @dataclass(frozen=True, repr=False)
 class ElastoBacklash(ContactLaw):
-    """A spring-damper with |damping| ≤ spring.
+    """A spring-damper whose damping force is at most that of the spring.
 
     Parameters
     ----------
     frequency_ratio, damping_ratio : float or array
         ϖ > 0 and ζ ≥ 0.
+
+    Raises
+    ------
+    ModelError
+        If ϖ or ζ is outside its range.
 
     Examples
     --------
@@ -52,21 +57,21 @@ class ElastoBacklash(ContactLaw):
 
     @property
     def lag(self) -> np.ndarray:
-        """κ = 2ζ/ϖ."""
+        """κ = 2ζ/ϖ, because the force vanishes with p + κ p′."""
         return 2 * np.asarray(self.damping_ratio) / self.frequency_ratio
 
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """ϖ² (p + κ p′), or 2ϖ² p where that is less."""
+        """ϖ² (p + κ p′), or 2ϖ² p where that is smaller."""
         pushed = self.lag * rate
         limited = np.where(np.real(pushed) < np.real(penetration), pushed, penetration)
         return self.frequency_ratio**2 * (penetration + limited)
 
     def kink(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """p - κ p′, which does not change its sign without damping."""
+        """p - κ p′, whose zero is the kink; without damping it has no zero."""
         return np.where(self.lag == 0, 1.0, penetration - self.lag * rate)
 
     @classmethod
     def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
-        """ϖ = v/P, and ζ."""
+        """The law with ϖ = v/P and ζ = group."""
         ratio = np.asarray(speed, dtype=float) / np.asarray(length, dtype=float)
         return cls(ratio, group + 0 * ratio)

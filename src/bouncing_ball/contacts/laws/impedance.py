@@ -1,16 +1,16 @@
-r"""MuJoCo's contact with a constant impedance d: it takes a part of the load off the ball.
+r"""MuJoCo's contact with a constant impedance d, which reduces the load on the ball.
 
-MuJoCo gives the acceleration ``a₁ = (1 - d) a₀ - d (b v + κ x)`` to a contact, a₀ that of all
-other forces. With direct ``solref``, d is divided out of stiffness and damping, and is left in
+MuJoCo gives a contact the acceleration ``a₁ = (1 - d) a₀ - d (b v + κ x)``, with a₀ that of all
+other forces. With direct ``solref``, d cancels in stiffness and damping, and affects
 the load alone ::
 
     p″ = (1 - d) a - ϖ² p - 2ζϖ p′,   force  ϖ² p + 2ζϖ p′ + d a ≥ 0
 
 The ball is released where this force vanishes, or where p = 0 if that comes first. Without load
-the impact is that of the spring-damper with its force release: t_c, r and D are the same. With
-it the ball in contact moves by 1 - d of what the spring-damper's does, and where it is released,
-at p + κ p′ = -d a/ϖ², its acceleration without load is zero, so that ∂p′_e/∂a is 1 - d of the
-spring-damper's too, while the flights outside feel all of a. Hence, with κ = 2ζ/ϖ, ::
+the impact is that of the spring-damper with its force release, with the same t_c, r and D. A load
+a moves the ball in contact by the share 1 - d of its effect on the spring-damper. At the release,
+where p + κ p′ = -d a/ϖ², the acceleration without load is zero, so that ∂p′_e/∂a is also 1 - d of
+that of the spring-damper, whereas the flights outside feel all of a. Hence, with κ = 2ζ/ϖ, ::
 
     σ_d = (1 - r) D - (2 - d) κ r = σ + d κ r
 
@@ -37,7 +37,7 @@ from bouncing_ball.errors import require
 
 @dataclass(frozen=True, repr=False)
 class Impedance(ContactLaw):
-    """A spring-damper that feels the part 1 - d of the load.
+    """A spring-damper on which only the share 1 - d of the load acts.
 
     Parameters
     ----------
@@ -45,6 +45,11 @@ class Impedance(ContactLaw):
         ϖ > 0 and ζ in [0, 1).
     share : float or array
         d in [0, 1); 0.95 below the depth ``width`` is MuJoCo's default.
+
+    Raises
+    ------
+    ModelError
+        If ϖ, ζ or d is outside its range.
 
     Examples
     --------
@@ -64,7 +69,7 @@ class Impedance(ContactLaw):
     lag: ClassVar[None] = None
 
     def __post_init__(self):
-        # It knows the ranges of ϖ and ζ.
+        # The spring-damper checks the ranges of ϖ and ζ.
         _ = self._spring.signature
         d = np.asarray(self.share, dtype=float)
         require((d >= 0) & (d < 1), d, "impedance d", "in [0, 1)")
@@ -75,31 +80,37 @@ class Impedance(ContactLaw):
 
     @property
     def impedance(self) -> Any:
-        """d."""
+        """The impedance d, by the name that all laws have."""
         return self.share
 
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """ϖ² p + 2ζϖ p′, to which d of the load is added."""
+        """ϖ² p + 2ζϖ p′, the force over the weight without the share d of the load."""
         return self._spring.force(penetration, rate)
 
     def grip(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """p + κ p′, without load."""
+        """p + κ p′, the grip without load."""
         return penetration + self._spring.lag * rate
 
     def loaded_grip(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
-        """p + κ p′ + d a/ϖ²."""
+        """p + κ p′ + d a/ϖ², the grip with a load a."""
         held = self.share * load / np.asarray(self.frequency_ratio) ** 2
         return self.grip(penetration, rate) + held
 
     @property
     def signature(self) -> Instant:
-        """That of the spring-damper, with another σ."""
+        """The signature of the spring-damper with σ_d in place of σ.
+
+        Raises
+        ------
+        ModelError
+            If ζ ≥ 1.
+        """
         free, spring = self._spring.signature, self._spring
         return free._replace(load=free.load + self.share * spring.lag * free.restitution)
 
     @property
     def permanent_contact(self) -> np.ndarray:
-        """Λ up to which a steady contact is held."""
+        """Λ up to which a steady contact never releases the ball, of the law's shape."""
         omega, zeta = np.asarray(self.frequency_ratio), np.asarray(self.damping_ratio)
         stiffness, loss = omega * omega, 2 * zeta * omega
         held = np.maximum(stiffness, np.hypot(stiffness - self.share, loss))
@@ -107,11 +118,11 @@ class Impedance(ContactLaw):
 
     @classmethod
     def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
-        """ϖ = v/P, and ζ."""
+        """The law with ϖ = v/P and ζ = group, and the default d."""
         ratio = np.asarray(speed, dtype=float) / np.asarray(length, dtype=float)
         return cls(ratio, group + 0 * ratio)
 
     @classmethod
     def group_of(cls, restitution: float) -> float:
-        """ζ of a restitution coefficient."""
+        """ζ of a restitution coefficient r in (e⁻², 1], with the force release."""
         return float(damping_ratio(restitution, Release.FORCE))

@@ -131,6 +131,25 @@ def test_a_plot_shows_the_data_and_is_a_picture(data, tmp_path):
             "amplitude has 2 axes without names",
         ),
         (lambda: bb.drop(0.5, 1.0, phase=1.0, restitution=0.5), "height = 0.5 is not at or above"),
+        (lambda: bb.history(None, restitution=0.5), "amplitude is missing"),
+        (lambda: bb.history([], restitution=0.5), "amplitude has no entries"),
+        (
+            lambda: bb.history(1.0, restitution=0.5, periods=10_000, samples=10_000),
+            "100000001 states in all are more than 10000000",
+        ),
+        (
+            lambda: bb.drop(9.0, law="tsuji", restitution=[0.5, 0.6], duration=0.1),
+            "restitution of law tsuji is one number",
+        ),
+        (
+            lambda: bb.drop(9.0, law="tsuji", parameters={"stiffness": [9.0, 8.0], "damping": 1.0}),
+            "parameters are numbers here",
+        ),
+        (lambda: bb.history(1.0, restitution=0.5, foo=3), "unknown parameter 'foo': a model has"),
+        (
+            lambda: bb.history(1.0, **CONTACT, release=["force", "displacement"]),
+            "release is one value, or an array of numbers",
+        ),
         (lambda: bb.branch(0, restitution=0.5), "n = 0 is not a whole number from 1 to 1000"),
         (lambda: bb.branch(1, restitution=0.5, amplitude_max=0.1), "no 1-T orbit up to Λ = 0.1"),
         (lambda: bb.model([0.5, 0.6]).branch(1), "several models have no labels"),

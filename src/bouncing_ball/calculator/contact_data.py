@@ -180,7 +180,15 @@ def table_of(given: Given) -> Table:
 
 
 def meant(asked: Sequence[int], restitution: float, amplitude: float) -> int:
-    """The lowest of the families that is stable in the restitution model, or the first one."""
+    """The lowest of the families that is stable in the restitution model, or the first one.
+
+    Examples
+    --------
+    With r = 0.85 and Λ = 1.1 the 1-T orbit is beyond its period doubling:
+
+    >>> meant([1, 2, 3], 0.85, 1.1)
+    2
+    """
     orbits = RestitutionModel(restitution).orbit(np.array(asked), amplitude)
     return asked[int(np.argmax(orbits.exists & orbits.is_stable()))]
 

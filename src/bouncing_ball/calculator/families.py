@@ -37,7 +37,10 @@ def _loads(orbit: Any) -> tuple[float, float]:
 
     def loads(time: np.ndarray) -> np.ndarray:
         displacement, velocity = orbit.contact_motion(time)
-        return np.array([-displacement, orbit.law.force(np.maximum(-displacement, 0.0), -velocity)])
+        force = orbit.law.force(np.maximum(-displacement, 0.0), -velocity)
+        if orbit.law.impedance is not None:
+            force += orbit.law.impedance * (1 - orbit.amplitude * np.sin(orbit.phase + time))
+        return np.array([-displacement, force])
 
     duration = float(orbit.contact_duration)
     times = np.linspace(0.0, duration, _SAMPLES + int(_IN_A_RADIAN * duration))

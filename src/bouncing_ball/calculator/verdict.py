@@ -58,7 +58,7 @@ def assessed(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
 
 
 def judged_by_motion(motion: Motion, tolerance: float, n: int) -> Verdict:
-    """The verdict where no ball keeps to the orbit: on the motion that it ends on."""
+    """The verdict where no ball stays on the orbit: about the motion on which it ends."""
     about = f"the errors of the {n}-T orbit are those of a motion that no ball has"
     kinds = motion.kind, motion.restitution_kind
     if kinds == (Kind.PERMANENT_CONTACT,) * 2:

@@ -1,8 +1,8 @@
-"""What ``--help`` says of a subcommand beside its options: an explanation, and examples to run."""
+"""Additions to the ``--help`` of a subcommand: an explanation, and examples to run."""
 
 import textwrap
 
-# Of the commands without units.
+# Symbols of the commands whose quantities are dimensionless.
 _SYMBOLS = {
     "n": "index of the orbit: it repeats itself after n periods of the table, with one impact",
     "Λ": "amplitude: the greatest acceleration of the table over gravity",

@@ -39,7 +39,7 @@ from bouncing_ball.orbits.system import ContactSystem, OrbitSystem
 def _labelled() -> Any:
     """The labelled results of models, which need xarray and are made of models themselves.
 
-    Imported when they are asked for: no stage of the pipeline depends on them.
+    The module is imported on first use, because no stage of the pipeline depends on it.
     """
     return import_module("bouncing_ball.orbits.labelled")
 

@@ -1,7 +1,7 @@
-"""How much of a run is done, and about how long the rest takes.
+"""The progress of a run, and an estimate of the time that remains.
 
-The run notes when it began and how many jobs it has, and each job that ends adds a line. Snakemake
-counts its own steps too, in three lines for each, and says nothing of time.
+A run notes when it began and the number of its jobs, and each job that ends adds a line. Snakemake
+counts its steps too, in three lines for each, but does not estimate the time.
 """
 
 import time
@@ -17,10 +17,12 @@ def begin(jobs: int) -> None:
 
 
 def advance() -> str:
-    """Note that a job has ended: the share that is done, or an empty text outside of a run."""
+    """Note that a job has ended; the result is the share done, or an empty text outside of a
+    run.
+    """
     if not _NOTES.is_file():
         return ""
-    # A line is appended whole, whatever other jobs do.
+    # A line is appended completely, whatever other jobs do.
     with _NOTES.open("a", encoding="ascii") as notes:
         notes.write("done\n")
     head, *ended = _NOTES.read_text(encoding="ascii").splitlines()
@@ -29,7 +31,7 @@ def advance() -> str:
 
 
 def share(done: int, jobs: int, seconds: float) -> str:
-    """The share that is done, and the time left if the jobs to come are like those before.
+    """The share done, and the time left if the remaining jobs take as long as those before.
 
     Examples
     --------

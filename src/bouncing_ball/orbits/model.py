@@ -210,7 +210,7 @@ class ImpactModel(Batch, ABC):
         """A ball over time from a first impact: :func:`bouncing_ball.history`."""
         labelled = _labelled()
         grid = self._grid(amplitude=amplitude, phase=phase, velocity=velocity)
-        return labelled.from_impact(self, grid, labelled.instants(periods, samples))
+        return labelled.from_impact(self, grid, labelled.instants(periods, samples, grid.size))
 
     def drop(
         self,
@@ -224,7 +224,7 @@ class ImpactModel(Batch, ABC):
         """A ball that is released at rest: :func:`bouncing_ball.drop`."""
         labelled = _labelled()
         grid = self._grid(height=height, amplitude=amplitude, phase=phase)
-        return labelled.from_rest(self, grid, labelled.instants(periods, samples))
+        return labelled.from_rest(self, grid, labelled.instants(periods, samples, grid.size))
 
     def branch(self, n: ArrayLike, *, amplitude_max: float | None = None, points: int = 300) -> Any:
         """The branch of n-T orbits over Λ: :func:`bouncing_ball.branch`."""

@@ -17,7 +17,7 @@ RUN = read_yaml(CONFIG / "config.yaml")
 
 
 # More than two seconds each.
-SLOW = {"ext_basins", "ext_hertz", "ext_laws"}
+SLOW = {"ext_basins", "ext_hertz", "ext_laws", "ext_locking"}
 
 
 def drifts(stages, recorded, artifacts):

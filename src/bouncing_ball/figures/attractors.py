@@ -1,5 +1,7 @@
 """What balls end on in the three models, side by side on the same axes."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib import colormaps
@@ -27,8 +29,15 @@ _DOTS: dict[str, Look] = {
     "chaotic": {"marker": ".", "markersize": 1.3, "color": "#AA3A00", "markeredgewidth": 0},
     "undecided": {"marker": "x", "markersize": 1.6, "color": "#000000", "markeredgewidth": 0.3},
 }
-# Exponents below are drawn as this.
+# Exponents beyond are drawn as these.
 _LOWEST, _HIGHEST = -1.5, 1.5
+# Lighter throughout, from blue below 0 to yellow above.
+_RATES = ListedColormap(
+    [
+        *colormaps["Blues_r"](np.linspace(0, 0.65, 128)),
+        *colormaps["YlOrBr_r"](np.linspace(0.5, 1, 128)),
+    ]
+).with_extremes(bad=_OTHERS["permanent contact"])
 _LOOKS = {"all": ("all nodes", COLOURS[0], "o"), "orbit": ("n-T orbits", COLOURS[4], "s"),
           "locked, 1 to 4 T": ("locked, 1 to 4 T", COLOURS[2], "^"),
           "locked": ("locked", COLOURS[1], "D"),
@@ -40,7 +49,8 @@ def locking(data: xr.Dataset) -> Figure:
     of nodes on which the contact agrees with each simple model along ϖ.
     """
     figure = Figure(figsize=(WIDE, 8.0), layout="constrained")
-    maps, exponents, below = figure.subfigures(3, 1, height_ratios=(2.8, 2.8, 2.4))
+    parts: Any = figure.subfigures(3, 1, height_ratios=(2.8, 2.8, 2.4))
+    maps, exponents, below = parts
     kinds = maps.subplots(1, data.sizes["model"], sharex=True, sharey=True)
     rates = exponents.subplots(1, data.sizes["model"], sharex=True, sharey=True)
     ratio = number(float(data.frequency_ratio[0]))
@@ -82,7 +92,7 @@ def _draw_kinds(axes: Axes, one: xr.Dataset) -> None:
 
 
 def _draw_exponent(axes: Axes, one: xr.Dataset):
-    look: Look = {"cmap": "RdBu_r", "vmin": _LOWEST, "vmax": _HIGHEST}
+    look: Look = {"cmap": _RATES, "vmin": _LOWEST, "vmax": _HIGHEST}
     image = _mesh(axes, one, one.lyapunov_exponent.values.clip(_LOWEST), **look)
     _draw_bifurcations(axes, one)
     return image

@@ -160,25 +160,25 @@ def locking(parameters: Locking, release: Release) -> xr.Dataset:
     lam, r = parameters.amplitude.grid(), parameters.restitution.grid()
     phase, speed = parameters.phase, parameters.impact_speed
     velocity = lam * np.cos(phase) - speed
-    shown, shares, alike = [], [], []
+    compared, shares = [], []
+    first: list[Motions] = []
     for ratio in parameters.frequency_ratio:
-        compared = models(r[:, np.newaxis], ratio, release)
+        models_here = models(r[:, np.newaxis], ratio, release)
+        compared.append(models_here)
         # The restitution model is the same at every ϖ.
-        found = [
+        found = first[:1] + [
             label(each.impact_law, lam, phase, velocity, impacts=parameters.impacts)
-            for each in compared[len(alike) :]
+            for each in models_here[len(first[:1]) :]
         ]
-        alike = alike or found[:1]
-        found = found if len(found) == len(MODELS) else alike + found
-        shown = shown or [compared, found]
+        first = first or found
         shares.append([agreement(one, found[-1], parameters.confidence) for one in found[:-1]])
-    compared, found = shown
+    found = first
     dims = ("model", "restitution", "amplitude")
     of_shares = ("simple", "frequency_ratio", "motion_group")
     nodes, share, low, high = np.transpose(shares, (2, 1, 0, 3))
     ends = {
-        "saddle_node_amplitude": [each.saddle_node(1).amplitude[:, 0] for each in compared],
-        "period_doubling_amplitude": [each.period_doubling(1).amplitude[:, 0] for each in compared],
+        "saddle_node_amplitude": [each.saddle_node(1) for each in compared[0]],
+        "period_doubling_amplitude": [each.period_doubling(1) for each in compared[0]],
     }
     return described(
         {
@@ -187,7 +187,10 @@ def locking(parameters: Locking, release: Release) -> xr.Dataset:
             "impacts": (dims, np.stack([each.impacts for each in found])),
             "lyapunov_exponent": (dims, np.stack([each.exponent for each in found])),
             "lyapunov_error": (dims, np.maximum(_KNOWN, [each.exponent_error for each in found])),
-            **{name: (dims[:2], np.stack(values)) for name, values in ends.items()},
+            **{
+                name: (dims[:2], np.stack([orbit.amplitude[:, 0] for orbit in orbits]))
+                for name, orbits in ends.items()
+            },
             "agreement": (of_shares, share),
             "agreement_low": (of_shares, low),
             "agreement_high": (of_shares, high),

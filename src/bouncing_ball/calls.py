@@ -5,6 +5,7 @@ are a spring-damper contact with the damping of r by Eq. 16, a law is a contact 
 The command line has the same calls, with the options from their signatures.
 """
 
+import inspect
 import math
 from collections.abc import Callable, Mapping
 from typing import Annotated, Any, Literal, NamedTuple
@@ -76,7 +77,8 @@ def model(
     Parameters
     ----------
     restitution : array_like, optional
-        Restitution coefficient r in (0, 1]; of a contact it gives the damping by Eq. 16.
+        Restitution coefficient r in (0, 1]; a contact has then the damping ratio ζ with
+        r = exp(-πζ/√(1 - ζ²)), Eq. 16 of the paper.
     frequency_ratio : array_like, optional
         Frequency ratio ϖ of a spring-damper contact; without it an impact is an instant.
     release : str, optional
@@ -127,6 +129,9 @@ def _demand(fulfilled: bool, text: str) -> None:
 def _model(given: Mapping[str, Any], law_at: LawAt | None) -> ImpactModel:
     """The model of the parameters that are not None."""
     given = {name: value for name, value in given.items() if value is not None}
+    known = inspect.signature(model).parameters
+    for name in given:
+        _demand(name in known, f"unknown parameter {name!r}: a model has {', '.join(known)}")
     check(model, given)
     losses = [name for name in LOSS if name in given]
     for other in losses[1:]:
@@ -173,6 +178,10 @@ def _law(given: Mapping[str, Any], law_at: LawAt | None) -> ContactLaw:
     if r is None or duration is None:
         raise ParameterError(f"{{law}} {name} needs {needs}, or {{restitution}} and {{duration}}")
     _refuse(given, ("release",), "goes with {law} linear and {parameters} only")
+    if np.ndim(r):
+        raise ParameterError(
+            f"{{restitution}} of {{law}} {name} is one number: its law is found for it"
+        )
     if "speed" in given:
         return law_of_impact(kind, r, duration, given["speed"])
     if law_at is None:
@@ -270,12 +279,14 @@ def orbit(
 
 
 def _model_of_orbit(n: int, amplitude: float, side: Side, **impact: Any) -> ImpactModel:
-    """The model; a law that is given by r and D has them at the speed of this orbit."""
+    """The model; a law given by r and D has them at the impact speed of this orbit."""
     return _model(impact, lambda kind, r, d: law_at_orbit(kind, r, d, n, amplitude, side))
 
 
 def _arrays(impact: Mapping[str, Any], *given: Any) -> bool:
-    """Whether any of the arguments is an array; those of a law by name may come as pairs."""
+    """Whether any of the arguments is an array, except the parameters of a law, which are a
+    mapping.
+    """
     numbers = (value for name, value in impact.items() if name != "parameters")
     return any(np.ndim(x) > 0 for x in (*given, *numbers))
 
@@ -290,7 +301,14 @@ def _on_grid(result: str, *more: Any, **arguments: Any) -> Any:
 
 
 def model_of_limits(n: int, **impact: Any) -> ImpactModel:
-    """The model; a law that is given by r and D has them at the restitution model's speed."""
+    """The model; a law given by r and D has them at the impact speed of the restitution model's
+    orbits.
+
+    Examples
+    --------
+    >>> model_of_limits(1, restitution=0.85)
+    RestitutionModel(restitution=0.85)
+    """
     return _model(impact, lambda kind, r, d: law_of_impact(kind, r, d, rigid_speed(n, r)))
 
 
@@ -332,8 +350,8 @@ def limits(n: Index, **impact: Any) -> Any:
 
 
 def model_of_impact(amplitude: Any, phase: Any, velocity: Any, **impact: Any) -> ImpactModel:
-    """The model; a law that is given by r and D has them at the speed of this impact."""
-    speed = amplitude * np.cos(phase) - velocity
+    """The model; a law given by r and D has them at the speed of this impact."""
+    speed = np.asarray(amplitude) * np.cos(phase) - velocity
     return _model(impact, lambda kind, r, d: law_of_impact(kind, r, d, speed))
 
 

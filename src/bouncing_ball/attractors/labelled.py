@@ -78,6 +78,12 @@ def fastest(model: Any, amplitude: Any) -> np.ndarray:
     """A speed of impact above which a ball that meets the table at a random phase slows down.
 
     It is the speed of the balls that gain most, 2Λ(1 + r) at an impact with the r of a free impact.
+
+    Examples
+    --------
+    >>> from bouncing_ball.orbits.restitution_model import RestitutionModel
+    >>> float(fastest(RestitutionModel(0.5), 2.0))
+    6.0
     """
     lam = np.asarray(amplitude, dtype=float)
     r = np.asarray(model.signature(2 * np.pi).restitution)

@@ -23,6 +23,8 @@ from bouncing_ball.calculator.results import (
 from bouncing_ball.calculator.units import Unit, number, percent
 from bouncing_ball.calculator.verdict import Verdict, assessed, chosen, judged_by_motion, notes
 from bouncing_ball.calls import Index, Rule
+from bouncing_ball.contacts.contact_law import ContactLaw
+from bouncing_ball.contacts.law_choice import law_named
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.engines import engine_named
@@ -32,12 +34,12 @@ from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.signatures import Range
 
 STEPS = 50
-"""Steps in one contact."""
+"""Time steps in one contact, for the rule of the largest time step."""
 STEP_RULE = f"a contact takes {STEPS} steps, the default of MFiX-Exa (mfix.tcoll_ratio)"
 
-# Families looked at if none is asked for: as many as the paper shows, and some more.
+# The families by default: those that the paper shows, and some more.
 _FAMILIES = range(1, 9)
-# Beyond, the squares of ϖ and Λ leave no digits; as on the rest of the command line.
+# Beyond this the squares of ϖ and Λ leave no digits; the rest of the command line has the same.
 _LARGEST = 1e8
 _LOSS = Unit("", "0.85", Range(0, 1, "(]"))
 _POISSON = Unit("", "0.3", Range(-1, 0.5, "(]"))
@@ -69,6 +71,7 @@ def design(
     rebound_height: Annotated[Any, Unit("m", "70 cm")] = None,
     n: Index | None = None,
     release: Rule | None = None,
+    law: str | None = None,
     quantity: str = "max_height",
     tolerance: Annotated[Any, Unit("", "1 %", Range(0, 1))] = 0.01,
     engine: str | None = None,
@@ -86,11 +89,11 @@ def design(
     mass
         Mass m of the ball.
     frequency, angular_frequency, period
-        How fast the table moves: one of the three. Hz are cycles, rad/s are not.
+        Rate of the table: give one of the three. Hz are cycles, rad/s are not.
     table_amplitude, acceleration
-        How far the table moves, in m or m/s²: one of the two. "2 g" is twice the standard gravity.
+        Motion of the table, in m or m/s²: give one of the two. "2 g" is twice standard gravity.
     gravity
-        9.80665 m/s² by default; in a gear pair the drag torque takes its part.
+        g, 9.80665 m/s² by default; in a gear pair the drag torque over the inertia.
     stiffness
         k of the contact. Without any stiffness a contact is chosen.
     contact_time
@@ -102,13 +105,14 @@ def design(
     table_youngs_modulus, table_poissons_ratio
         E and ν of the table.
     radius
-        R of a Hertz contact: the radius of curvature, of a ball on a plane table its own.
+        R of a Hertz contact: the radius of curvature, which for a ball on a plane is its radius.
     damping
         c of the contact, with its stiffness.
     damping_ratio
         Damping ratio ζ.
     restitution
-        Restitution coefficient r by Eq. 16; for an engine, r under its release.
+        Restitution coefficient of a free impact that ends at the table's level,
+        r = exp(-πζ/√(1 - ζ²)), Eq. 16 of the paper; for an engine, r under its release.
     measured_restitution
         Restitution coefficient that a free impact has under the release rule.
     drop_height
@@ -118,17 +122,20 @@ def design(
     n
         Index of the family; by default the first eight, and a verdict on the first stable one.
     release
-        "displacement", the default without an engine, or "force": what ends a contact.
+        What ends a contact: "displacement", the default without an engine, or "force".
+    law
+        The law of the contact, such as hunt-crossley, in place of the linear one. It has the
+        restitution and the contact time of a free impact at the orbit's speed.
     quantity
-        What must be right: max_height, bounce_velocity, phase, apparent_restitution,
-        saddle_node, period_doubling or permanent_contact.
+        The quantity that must be accurate: max_height, bounce_velocity, phase,
+        apparent_restitution, saddle_node, period_doubling or permanent_contact.
     tolerance
-        How far it may be off, as a share: "5 %" or 0.05.
+        Relative error of the quantity that is allowed: "5 %" or 0.05.
     engine
         The engine whose contact this is: generic, mujoco, lammps, liggghts, pybullet, drake or
         mercurydpm. Its release is that of the contact, and a restitution is met under it.
     restitution_error
-        What the engine's time step may leave of error in the restitution of a free impact.
+        Error of a free impact's restitution that the engine's time step may cause.
 
     Raises
     ------
@@ -146,6 +153,7 @@ def design(
     """
     given = _read(locals())
     question = given | {"n": n, "release": release, "quantity": quantity, "engine": engine}
+    question["law"], kind = law, _of_law(law, engine, release, given)
     rule, epsilon = _under(engine, release, given), given.pop("tolerance")
     if quantity not in QUANTITIES:
         raise ModelError(f"unknown quantity {quantity!r}: one of {', '.join(QUANTITIES)}")
@@ -155,7 +163,7 @@ def design(
     lam, asked = table.amplitude, _FAMILIES if n is None else [n]
     require(lam < _LARGEST, lam, "Λ", f"below {_LARGEST:g}")
     try:
-        return _answer(given, table, rule, asked, quantity, epsilon, question)
+        return _answer(given, table, rule, asked, quantity, epsilon, question, kind)
     except NoOrbitError as error:
         bare = str(acceleration).strip()
         if not bare.replace(".", "", 1).isdigit():
@@ -171,9 +179,10 @@ def _answer(
     quantity: str,
     epsilon: float,
     question: dict[str, Any],
+    kind: type[ContactLaw] | None,
 ) -> Design:
     """The verdict on a contact that is given, or the contact that is needed."""
-    lam, case = table.amplitude, case_of(given, table, rule, asked)
+    lam, case = table.amplitude, case_of(given, table, rule, asked, kind)
     if case is not None:
         ratio = float(case.contact.frequency_ratio)
         require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
@@ -200,14 +209,18 @@ def _answer(
 
 
 def contact(
-    *, engine: str | None = None, release: Rule | None = None, **parameters: Any
+    *,
+    engine: str | None = None,
+    release: Rule | None = None,
+    law: str | None = None,
+    **parameters: Any,
 ) -> Contact:
     """A contact without a table, for an engine, from the parameters of :func:`design`.
 
     Raises
     ------
     ModelError
-        In one line, if something is missing, contradictory or of the wrong kind.
+        One line, if something is missing, contradictory or of the wrong kind.
 
     Examples
     --------
@@ -216,8 +229,9 @@ def contact(
     (0.75, 'force')
     """
     given = _read(parameters)
+    _of_law(law, engine, release, given)
     rule, error = _under(engine, release, given), given.get("restitution_error", ERROR)
-    # At 1 rad/s the frequency ratio is the contact's own frequency.
+    # With a table of 1 rad/s the frequency ratio is the frequency of the contact.
     case = case_of(given, Table(1.0, 1.0, STANDARD_GRAVITY), rule, [1])
     if case is None:
         raise ParameterError("no stiffness: give {stiffness}, or {contact_time}")
@@ -238,8 +252,30 @@ def contact(
     )
 
 
+def _of_law(
+    name: str | None, engine: str | None, release: str | None, given: dict[str, float]
+) -> type[ContactLaw] | None:
+    """The kind of a contact law, which a free impact gives its parameters; None if it is linear."""
+    kind = None if name is None else law_named(name)
+    if kind is None or kind is SpringDamper:
+        return None
+    if engine is not None:
+        raise ParameterError(f"{{law}} {name} is not written for {engine}: leave {{law}} out")
+    if release is not None:
+        raise ParameterError(f"{{release}} does not go with {{law}} {name}, which has its own")
+    for other in ("stiffness", "damping", "damping_ratio", "reduced_modulus", "youngs_modulus"):
+        if other in given:
+            instead = "give {contact_time} and {restitution}"
+            raise ParameterError(f"{{{other}}} does not go with {{law}} {name}: {instead}")
+    if "contact_time" not in given:
+        raise ParameterError(f"{{law}} {name} needs {{contact_time}}, of a free impact")
+    if "restitution" in given:
+        given["measured_restitution"] = given.pop("restitution")
+    return kind
+
+
 def _under(engine: str | None, release: str | None, given: dict[str, float]) -> Release:
-    """The release of a contact; a restitution is then that under the release of the engine."""
+    """The release of a contact; a restitution is then the one under the release of the engine."""
     if engine is None:
         return Release.of(release or Release.DISPLACEMENT)
     rule = engine_named(engine).release(release)
@@ -275,7 +311,7 @@ def _read(parameters: Mapping[str, Any]) -> dict[str, float]:
 
 
 def _judged(found: Sequence[Family]) -> Family:
-    """The family that a verdict is about: the first stable one, or the first there is."""
+    """The family that a verdict is about: the first stable one, or the first that exists."""
     return max(found, key=lambda one: (one.exists, one.is_stable and one.is_admissible))
 
 

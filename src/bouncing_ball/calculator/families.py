@@ -37,7 +37,10 @@ def _loads(orbit: Any) -> tuple[float, float]:
 
     def loads(time: np.ndarray) -> np.ndarray:
         displacement, velocity = orbit.contact_motion(time)
-        return np.array([-displacement, orbit.law.force(np.maximum(-displacement, 0.0), -velocity)])
+        force = orbit.law.force(np.maximum(-displacement, 0.0), -velocity)
+        if orbit.law.impedance is not None:
+            force += orbit.law.impedance * (1 - orbit.amplitude * np.sin(orbit.phase + time))
+        return np.array([-displacement, force])
 
     duration = float(orbit.contact_duration)
     times = np.linspace(0.0, duration, _SAMPLES + int(_IN_A_RADIAN * duration))
@@ -66,6 +69,8 @@ def by_error_law(case: Case, n: int) -> tuple[Errors, bool]:
         first = error_law.first_order(n, instant, lam)
         law[: len(first)] = [*first.values()]
         holds = bool(error_law.small_parameter(n, instant, lam) < error_law.STATED)
+        # A law whose r depends on the speed has the r of the restitution model at one speed only.
+        holds = holds and case.has_its_restitution(n)
     if case.law is None:
         second = error_law.permanent_contact_coefficient(contact.damping_ratio, contact.release)
         law[-1] = second / contact.frequency_ratio**2

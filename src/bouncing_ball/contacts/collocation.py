@@ -47,8 +47,7 @@ _SPECTRUM, _FINER, _TAIL = 1e-6, 3e-8, 2
 _EARLY, _CHANGE = 5, 1e-3
 # Length of the first panel in parts of P^{1/m}/V, at the coefficients of the end.
 _FIRST = 0.65
-# Time of a panel of a ball that goes down, in parts of P/V: it may be as long even where the
-# one before was shorter.
+# Time of a panel of a descending ball over P/V, which is allowed even after a shorter panel.
 _DOWN = 0.7
 # Bounds of the change from one length to the next, and of that of a refused panel.
 _SHORTER, _LONGER, _SAFETY, _AGAIN = 0.3, 1.3, 0.9, 0.6
@@ -127,7 +126,10 @@ def _rule() -> _Rule:
 
 
 class _Motion(NamedTuple):
-    """Balls in contact: q, p′, t and F, the length of the next panel, and the scales P and V."""
+    """Balls in contact: q, p′, t and F, the length of the next panel, and the scales P and V.
+
+    ``side`` is the sign of the law's :meth:`~.ContactLaw.kink` at the ball.
+    """
 
     root: np.ndarray
     rate: np.ndarray
@@ -136,6 +138,7 @@ class _Motion(NamedTuple):
     step: np.ndarray
     length: np.ndarray
     speed: np.ndarray
+    side: np.ndarray
 
     def take(self, which) -> "_Motion":
         return _Motion(*(x[which] for x in self))
@@ -145,7 +148,8 @@ class _Panel(NamedTuple):
     """A panel of each ball: q, p′ and t at its nodes and its end, and F at the nodes.
 
     ``final`` is F at the end, ``step`` its length and ``following`` the length of the next one;
-    ``good`` tells whether it is accurate, and ``last`` whether it ends the contact.
+    ``good`` tells whether it is accurate, and ``last`` whether it ends the contact, which is by
+    p = 0 and not by the grip if it has ``surfaced``. ``turned`` panels end at the law's kink.
     """
 
     root: np.ndarray
@@ -157,6 +161,8 @@ class _Panel(NamedTuple):
     following: np.ndarray
     good: np.ndarray
     last: np.ndarray
+    surfaced: np.ndarray
+    turned: np.ndarray
 
     def take(self, which) -> "_Panel":
         return _Panel(*(x[..., which] for x in self))
@@ -183,11 +189,11 @@ def _load(start: Start, time):
     return np.subtract(start.weight, tangent, out=tangent)
 
 
-def _grip(law: ContactLaw, m: int, root, rate):
+def _grip(law: ContactLaw, m: int, root, rate, load):
     """The function that vanishes at the release: the grip, or q if the grip is a power of q."""
     if law.release is Release.DISPLACEMENT:
         return root
-    grip = law.grip(root**m, rate)
+    grip = law.loaded_grip(root**m, rate, load)
     return grip if law.lag is None else np.where(law.lag == 0, root, grip)
 
 
@@ -201,13 +207,42 @@ def _grip_slopes(law: ContactLaw, m: int, root, rate):
     return by_root if law.lag is None else np.where(law.lag == 0, one, by_root), by.by_rate
 
 
-def _falls(law: ContactLaw, m: int, now: _Motion, root, rate, final, step, until):
-    """The derivative in s of the function that vanishes at the end of the contact, and its unit."""
-    if until is not None:
-        return -_lever(m, root), 1e-4 * now.length / now.speed
-    by_root, by_rate = _grip_slopes(law, m, root, rate)
-    falls = by_root * rate + by_rate * final
-    return falls, np.abs(falls) * step
+def _loading(law: ContactLaw, root):
+    """The derivative of the grip by the load."""
+    return 0.0 if law.impedance is None else law.loaded_grip(0 * root, 0 * root, 1.0)
+
+
+def _left(law: ContactLaw, m: int, start: Start, now: _Motion, until, root, rate, time):
+    """Functions that are positive up to the end of a panel, one in each row.
+
+    They are the grip, or the time left; for a law with an impedance q, because its load may
+    hold the ball up to p = 0; and the function that changes its sign at the law's kink.
+    """
+    if until is None:
+        rows = [_grip(law, m, root, rate, None if law.impedance is None else _load(start, time))]
+    else:
+        rows = [until - time]
+    rows += [root] * (law.impedance is not None and until is None)
+    if law.has_kink:
+        rows.append(now.side * law.kink(root**m, rate))
+    return np.array(rows)
+
+
+def _falls(law: ContactLaw, m: int, start: Start, now: _Motion, until, root, rate, time, final):
+    """The derivatives of the functions of :func:`_left` in s."""
+    lever = _lever(m, root)
+    if until is None:
+        by_root, by_rate = _grip_slopes(law, m, root, rate)
+        rows = [by_root * rate + by_rate * final]
+        if law.impedance is not None:
+            turning = start.amplitude * np.cos(start.phase + time) * lever
+            rows = [rows[0] - _loading(law, root) * turning, rate]
+    else:
+        rows = [-lever]
+    if law.has_kink:
+        by = slopes_of(law.kink, root**m, rate)
+        rows.append(now.side * (by.by_penetration * lever * rate + by.by_rate * final))
+    return np.array(rows)
 
 
 def _summed(begin, step, values, out):
@@ -237,7 +272,8 @@ def _panel(
     new[:-1] = now.rate + node * (now.step * now.push)
     last, more = np.zeros(now.step.size, dtype=bool), np.zeros(now.step.size)
     step = longer = now.step
-    reached = ~last
+    reached, first = ~last, np.zeros(last.size, dtype=int)
+    share = None if law.impedance is None else 1 - law.impedance
     for sweep in range(_SWEEPS):
         old, new = new, old
         rate = old[:-1]
@@ -252,19 +288,25 @@ def _panel(
             _lever(m, inside, lever)
             _summed(now.time, step, lever, t)
             load = _load(start, t[:-1])
+            if share is not None:
+                load *= share
         np.subtract(load, force(inside, rate), out=push)
         if m > 1:
             push *= lever
         _summed(now.rate, step, push, new)
         if sweep < _LOOK:
             continue
-        left = _grip(law, m, q[-1], new[-1]) if until is None else until - t[-1]
-        last |= left <= 0
+        state = q[-1], new[-1], t[-1]
+        left = _left(law, m, start, now, until, *state)
+        last |= (left <= 0).any(axis=0)
         if last.any():
-            falls, unit = _falls(law, m, now, q[-1], new[-1], end @ push, step, until)
-            more = np.where(falls < 0, -left / falls, -step)
+            falls = _falls(law, m, start, now, until, *state, end @ push)
+            near = np.where(falls < 0, -left / falls, np.where(left > 0, np.inf, -step))
+            first = near.argmin(axis=0)
+            more, falls = (np.take_along_axis(x, first[np.newaxis], 0)[0] for x in (near, falls))
+            unit = np.abs(falls) * step if until is None else 1e-4 * now.length / now.speed
+            reached = ~last | (np.abs(more * falls) <= _REACHED * unit)
             more = np.where(last, np.maximum(np.minimum(more, step / 2), -step / 2), 0.0)
-            reached = ~last | (np.abs(left) <= _REACHED * unit)
             longer = step + more
         if sweep < _EARLY:
             continue
@@ -282,14 +324,20 @@ def _panel(
     new[-1] += final * more
     by_rate, by_time = (np.abs(tail @ x).max(axis=0) for x in (push, lever))
     error = np.maximum(by_rate / now.speed, by_time * now.speed / now.length) * step
-    held = ((q[:-1] > 0) & (_grip(law, m, q[:-1], rate) > 0)).all(axis=0)
+    full = None if share is None else _load(start, t[:-1])
+    held = ((q[:-1] > 0) & (_grip(law, m, q[:-1], rate, full) > 0)).all(axis=0)
+    turned = last & (first == len(left) - 1) if law.has_kink else np.zeros_like(last)
+    surfaced = first == 1 if share is not None and until is None else np.zeros_like(last)
     good = reached & held & (change <= _ENOUGH) & (error <= spectrum)
     slower = np.minimum(
         (error / spectrum) ** (-1 / _NODES), (early / _CHANGE) ** (-1 / (2 * _EARLY))
     )
     factor = np.where(np.isnan(slower), _SHORTER, np.clip(_SAFETY * slower, _SHORTER, _LONGER))
-    following = np.where(good, step * factor, now.step * np.minimum(factor, _AGAIN))
-    return _Panel(q, new, t, push, final, step, following, good, last)
+    # The length of a panel up to a kink is no measure for the next one.
+    taken = np.where(turned, now.step, step)
+    following = np.where(good, taken * factor, now.step * np.minimum(factor, _AGAIN))
+    ends = last & ~turned, surfaced & ~turned, turned
+    return _Panel(q, new, t, push, final, step, following, good, *ends)
 
 
 def _in_time(law: ContactLaw, start: Start, now: _Motion, until: np.ndarray | None) -> _Panel:
@@ -349,7 +397,9 @@ def _derivatives(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray):
 
     by_root = column(bend * panel.push.T / lever - lever * lever * slopes.by_penetration.T)
     by_rate = column(-lever * slopes.by_rate.T)
-    by_time = column(-lever * start.amplitude[:, np.newaxis] * np.cos(angle))
+    # The share of the load that acts on the ball.
+    felt = lever if law.impedance is None else lever * np.reshape(1 - law.impedance, (-1, 1))
+    by_time = column(-felt * start.amplitude[:, np.newaxis] * np.cos(angle))
     step = panel.step[:, np.newaxis, np.newaxis]
     whole = step * integral
     once, weight = whole[:, :-1], whole[:, -1:]
@@ -359,8 +409,8 @@ def _derivatives(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray):
     root = root0 + step * node * rate0
     known = by_root * root + by_rate * rate0 + by_time * (time0 + bent @ root)
     known[:, :, 0] += by_time[:, :, 0]
-    known[:, :, 2] -= lever * np.sin(angle)
-    known[:, :, 3] += lever
+    known[:, :, 2] -= felt * np.sin(angle)
+    known[:, :, 3] += felt
     matrix = np.eye(_NODES) - by_root * twice - by_rate * once - by_time * (bent @ twice)
     pushed = np.linalg.solve(matrix, known)
     root, rate = root + twice @ pushed, rate0 + once @ pushed
@@ -368,18 +418,26 @@ def _derivatives(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray):
     return np.concatenate(ends, axis=1), (weight @ by_rate)[:, 0, 0]
 
 
-def _at_release(law: ContactLaw, panel: _Panel, by: np.ndarray, strain: np.ndarray):
+def _at_release(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray, strain: np.ndarray):
     """The derivatives of (D, p_e, p′_e), and the contraction, of panels that end with a release."""
-    depth, rate, final = panel.root[-1] ** law.root, panel.rate[-1], panel.final
-    lever = _lever(law.root, panel.root[-1])
-    by_root, by_rate = _grip_slopes(law, law.root, panel.root[-1], rate)
-    falls = by_root * rate + by_rate * final
+    root, rate, final = panel.root[-1], panel.rate[-1], panel.final
+    lever, angle = _lever(law.root, root), start.phase + panel.time[-1]
+    by_root, by_rate = _grip_slopes(law, law.root, root, rate)
+    by_root, by_rate = np.where(panel.surfaced, 1.0, by_root), np.where(panel.surfaced, 0, by_rate)
+    by_load = np.where(panel.surfaced, 0.0, _loading(law, root))
+    turning = -start.amplitude * np.cos(angle)
+    falls = by_root * rate + by_rate * final + by_load * turning * lever
     # If the force has a step at the release, the grip vanishes at another rate.
-    step = np.where(by_rate == 0, 0.0, by_rate * lever * law.force(depth, rate))
-    by_root, by_rate, whole, lever, rate, final = (
-        x[:, np.newaxis] for x in (by_root, by_rate, falls, lever, rate, final)
+    force = law.force(root**law.root, rate)
+    if law.impedance is not None:
+        force = force + law.impedance * _load(start, panel.time[-1])
+    step = np.where(by_rate == 0, 0.0, by_rate * lever * force)
+    load = turning[:, np.newaxis] * by[:, 2]
+    load += np.stack([turning, 0 * angle, -np.sin(angle), np.ones_like(angle)], axis=1)
+    by_root, by_rate, by_load, whole, lever, rate, final = (
+        x[:, np.newaxis] for x in (by_root, by_rate, by_load, falls, lever, rate, final)
     )
-    later = -(by_root * by[:, 0] + by_rate * by[:, 1]) / whole
+    later = -(by_root * by[:, 0] + by_rate * by[:, 1] + by_load * load) / whole
     ends = by[:, 2] + lever * later, lever * (by[:, 0] + rate * later), by[:, 1] + final * later
     return np.stack(ends, axis=1), np.exp(strain) * falls / (falls + step)
 
@@ -392,7 +450,8 @@ def _begin(law: ContactLaw, start: Start) -> np.ndarray:
     step = _FIRST * scale.length ** (1 / law.root) / scale.speed
     root = start.depth ** (1 / law.root)
     zero = np.zeros_like(rate)
-    return np.stack([root, rate, zero, zero, step, scale.length, scale.speed])
+    side = zero if not law.has_kink else np.where(law.kink(start.depth, rate) < 0, -1.0, 1.0)
+    return np.stack([root, rate, zero, zero, step, scale.length, scale.speed, side])
 
 
 def march(
@@ -414,9 +473,9 @@ def march(
     panels : int
         How many are tried for each contact; an oscillation takes about eight.
     until : array, optional
-        Times within the contacts at which p and p′ are wanted, in place of the release.
+        Times within the contacts at which p and p′ are computed, in place of the release.
     differentiate : bool
-        Whether the derivatives are wanted, of contacts that start at p = 0; else they are NaN.
+        Whether derivatives are computed, for contacts that start at p = 0; otherwise they are NaN.
 
     Examples
     --------
@@ -464,13 +523,15 @@ def march(
                 )
                 ends = panel.root[-1], panel.rate[-1], panel.time[-1], panel.final
                 state[:4, here] = ends
+                state[-1, here[panel.turned]] *= -1
                 done[here] = panel.last
                 if differentiate and here.size:
                     by[here], more = _derivatives(some, own, panel, by[here])
                     strain[here] += more
                     end = np.flatnonzero(panel.last)
-                    jacobian[here[end]], contraction[here[end]] = _at_release(
-                        some.take(end), panel.take(end), by[here[end]], strain[here[end]]
+                    ended = here[end]
+                    jacobian[ended], contraction[ended] = _at_release(
+                        some.take(end), own.take(end), panel.take(end), by[ended], strain[ended]
                     )
             active = active[~done[active]]
             if not active.size:

@@ -76,17 +76,17 @@ class BranchPoint(NamedTuple):
 
     @property
     def trace(self) -> np.ndarray:
-        """Trace of the monodromy."""
+        """Trace of the monodromy, from its determinant and 1 - tr + det."""
         return 1 + self.determinant - self.saddle_node
 
     @property
     def amplitude(self) -> np.ndarray:
-        """Λ."""
+        """Λ = √(X² + Y²)."""
         return np.sqrt(self.x * self.x + self.y * self.y)
 
     @property
     def phase(self) -> np.ndarray:
-        """φ in (-π, π]."""
+        """φ = atan2(Y, X), in (-π, π]."""
         return np.arctan2(self.y, self.x)
 
     @property
@@ -272,6 +272,13 @@ def nearest_excess(
     -------
     ndarray
         Of the shape to which the arguments broadcast.
+
+    Examples
+    --------
+    >>> contact = SpringDamper(5.0, 0.1)
+    >>> point = branch_point(0.25, contact, 1)
+    >>> round(float(nearest_excess(contact, 1, point.x, point.y, np.array(0.25))), 12)
+    0.25
     """
     own = excess
     for _ in range(_ITERATIONS):

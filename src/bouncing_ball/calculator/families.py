@@ -69,6 +69,8 @@ def by_error_law(case: Case, n: int) -> tuple[Errors, bool]:
         first = error_law.first_order(n, instant, lam)
         law[: len(first)] = [*first.values()]
         holds = bool(error_law.small_parameter(n, instant, lam) < error_law.STATED)
+        # A law whose r depends on the speed has the r of the restitution model at one speed only.
+        holds = holds and case.has_its_restitution(n)
     if case.law is None:
         second = error_law.permanent_contact_coefficient(contact.damping_ratio, contact.release)
         law[-1] = second / contact.frequency_ratio**2

@@ -120,9 +120,11 @@ def families(case: Case, asked: Sequence[int]) -> tuple[Family, ...]:
     if not there.any():
         lowest = values[0, len(OF_ORBITS), 0]
         which = f"{asked[0]}-T orbit" if len(asked) == 1 else "n-T orbit"
+        laid = lam <= case.permanent_contact
+        rests = ", and a ball laid on the table stays at rest" if laid else ""
         raise NoOrbitError(
-            f"no {which} in any model: the table's acceleration is Λ = {lam:.4g} of gravity, "
-            f"and the {asked[0]}-T orbit needs {lowest:.4g}"
+            f"no {which} in any model{rests}: the table's acceleration is Λ = {lam:.4g} of "
+            f"gravity, and the {asked[0]}-T orbit needs {lowest:.4g}"
         )
     return tuple(
         _family(case, asked[k], [orbit[k] for orbit in orbits], values[:, :, k])

@@ -9,6 +9,7 @@ import math
 import os
 import shutil
 import subprocess
+from contextlib import contextmanager
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -149,6 +150,19 @@ def one_line():
         assert "\n" not in message, message
         for part in parts:
             assert part in message, message
+
+    return check
+
+
+@pytest.fixture(scope="session")
+def refusal(one_line):
+    """As ``pytest.raises``, with such a message: ``with refusal(ModelError, "part", …):``."""
+
+    @contextmanager
+    def check(kind, *parts):
+        with pytest.raises(kind) as error:
+            yield
+        one_line(error, *parts)
 
     return check
 

@@ -31,7 +31,10 @@ ALLOWED = {
     # No engine is imported.
     "engines": ({"contacts"}, {"numpy"}),
     "studies": (
-        {"datasets", "contacts", "continuation", "motion", "orbits", "accuracy", "engines"},
+        {
+            *("datasets", "contacts", "continuation", "motion", "orbits", "attractors"),
+            *("accuracy", "engines"),
+        },
         {"numpy", "scipy", "xarray", "pydantic"},
     ),
     # Units are parsed at the edge, and pint is imported there when it is asked for.

@@ -34,10 +34,11 @@ def test_help_shows_the_way_in():
 
 
 @pytest.mark.parametrize("impacts", [0, -1, 2.5])
-def test_what_the_command_line_refuses_is_refused(impacts, one_line):
-    with pytest.raises(bouncing_ball.ModelError) as error:
+def test_what_the_command_line_refuses_is_refused(impacts, refusal):
+    with refusal(
+        bouncing_ball.ModelError, f"impacts = {impacts} is not a whole number from 1 to 100000"
+    ):
         bouncing_ball.simulate(1.0, restitution=0.85, impacts=impacts)
-    one_line(error, f"impacts = {impacts} is not a whole number from 1 to 100000")
 
 
 def test_the_package_itself_needs_no_numpy():
@@ -107,7 +108,6 @@ def test_arrays_give_labelled_orbits_and_limits(given):
         (lambda: bouncing_ball.orbit(1, "a", restitution=0.85), "amplitude = 'a' is not a number"),
     ],
 )
-def test_wrong_values_are_refused_with_the_allowed_ones(call, says, one_line):
-    with pytest.raises(bouncing_ball.ModelError) as error:
+def test_wrong_values_are_refused_with_the_allowed_ones(call, says, refusal):
+    with refusal(bouncing_ball.ModelError, says):
         call()
-    one_line(error, says)

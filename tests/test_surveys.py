@@ -128,7 +128,6 @@ def test_a_plot_shows_the_data_and_is_a_picture(data, tmp_path):
         (lambda: Labelled().plot(), "a dataset of the kind None has no figure: history, branch"),
     ],
 )
-def test_a_mistake_is_one_line(call, text, one_line):
-    with pytest.raises(ValueError) as error:
+def test_a_mistake_is_one_line(call, text, refusal):
+    with refusal(ValueError, text):
         call()
-    one_line(error, text)

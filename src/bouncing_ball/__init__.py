@@ -12,9 +12,12 @@ restitution coefficient, with ``frequency_ratio`` a spring-damper contact::
     bouncing_ball.simulate(amplitude=1.0, restitution=0.85, frequency_ratio=10.0)
 
 Behind them are the models, :class:`SpringDamperModel` of a :class:`SpringDamper` and
-:class:`RestitutionModel`, with one interface
-(:mod:`bouncing_ball.orbits.model`); they work on arrays. Everything is
-dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g.
+:class:`RestitutionModel`, with one interface (:mod:`bouncing_ball.orbits.model`).
+
+Everything is dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g, and phases and angles are
+in radians. Functions take arrays, which broadcast as in numpy; a docstring gives the shape of a
+result if it is not that to which the arguments broadcast. NaN stands for a number that does not
+exist, such as the phase of an orbit below its saddle-node.
 
 The layers, each importing only what lies above it in this list (and ``errors`` and
 ``parameters``):
@@ -31,7 +34,7 @@ The layers, each importing only what lies above it in this list (and ``errors`` 
 ``accuracy``      errors of one model against another, their thresholds, the error law
 ``engines``       the contact of physics engines: their parameters, their time stepping
 ``studies``       the stages of the pipeline: parameters in, datasets out
-``calculator``    units, cases and verdicts for an engineer's own contact
+``calculator``    units, cases and verdicts for an engineer's contact
 ``atlas``         how stiff is stiff enough, for all orbits: tiles, shards, one file
 ``configuration`` the parameters of a run, read and checked
 ``claims``        what the paper claims and prints, and the verdict on each
@@ -47,7 +50,7 @@ from typing import Any
 
 __version__ = "0.1.0"
 
-# What users import from here, and where it is. Imported when it is asked for:
+# The names that users import from here, and their modules. A module is imported on first use:
 # the command line's --help needs no numpy.
 _PUBLIC = {
     "orbit": "calls",

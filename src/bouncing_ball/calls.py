@@ -76,7 +76,8 @@ def model(
     Parameters
     ----------
     restitution : array_like, optional
-        Restitution coefficient r in (0, 1]; of a contact it gives the damping by Eq. 16.
+        Restitution coefficient r in (0, 1]; a contact has then the damping ratio ζ with
+        r = exp(-πζ/√(1 - ζ²)), Eq. 16 of the paper.
     frequency_ratio : array_like, optional
         Frequency ratio ϖ of a spring-damper contact; without it an impact is an instant.
     release : str, optional
@@ -270,12 +271,14 @@ def orbit(
 
 
 def _model_of_orbit(n: int, amplitude: float, side: Side, **impact: Any) -> ImpactModel:
-    """The model; a law that is given by r and D has them at the speed of this orbit."""
+    """The model; a law given by r and D has them at the impact speed of this orbit."""
     return _model(impact, lambda kind, r, d: law_at_orbit(kind, r, d, n, amplitude, side))
 
 
 def _arrays(impact: Mapping[str, Any], *given: Any) -> bool:
-    """Whether any of the arguments is an array; those of a law by name may come as pairs."""
+    """Whether any of the arguments is an array, except the parameters of a law, which are a
+    mapping.
+    """
     numbers = (value for name, value in impact.items() if name != "parameters")
     return any(np.ndim(x) > 0 for x in (*given, *numbers))
 
@@ -290,7 +293,14 @@ def _on_grid(result: str, *more: Any, **arguments: Any) -> Any:
 
 
 def model_of_limits(n: int, **impact: Any) -> ImpactModel:
-    """The model; a law that is given by r and D has them at the restitution model's speed."""
+    """The model; a law given by r and D has them at the impact speed of the restitution model's
+    orbits.
+
+    Examples
+    --------
+    >>> model_of_limits(1, restitution=0.85)
+    RestitutionModel(restitution=0.85)
+    """
     return _model(impact, lambda kind, r, d: law_of_impact(kind, r, d, rigid_speed(n, r)))
 
 
@@ -332,7 +342,7 @@ def limits(n: Index, **impact: Any) -> Any:
 
 
 def model_of_impact(amplitude: Any, phase: Any, velocity: Any, **impact: Any) -> ImpactModel:
-    """The model; a law that is given by r and D has them at the speed of this impact."""
+    """The model; a law given by r and D has them at the speed of this impact."""
     speed = amplitude * np.cos(phase) - velocity
     return _model(impact, lambda kind, r, d: law_of_impact(kind, r, d, speed))
 

@@ -41,7 +41,7 @@ def motion_of(
     velocity : array_like
         Absolute velocity of the ball before the first impact.
     impacts : int
-        Impacts after which a ball that has not repeated is given up.
+        Number of impacts after which the search for a repetition ends.
     impact
         The parameters of :func:`bouncing_ball.model`.
 
@@ -60,7 +60,7 @@ def motion_of(
 
     Examples
     --------
-    A ball that sticks and is thrown again, for ever the same:
+    A ball that sticks and is thrown again in the same way each time:
 
     >>> found = motion_of(3.0, restitution=0.6)
     >>> found.kind.item(), found.periods.item()
@@ -87,7 +87,7 @@ def lyapunov_exponent(amplitude: AnyAmplitude, **given: Any) -> Labelled:
     Labelled
         ``lyapunov_exponent`` with ``lyapunov_error``, its standard error, and the ``kind`` of the
         motion. Of one that repeats it is that of the larger multiplier: negative, and -∞ where
-        a ball forgets everything.
+        the later motion does not depend on earlier impacts.
 
     Examples
     --------
@@ -122,7 +122,7 @@ def orbit_diagram(
     samples : int
         Impacts shown of a motion that does not repeat, and at most of one that does.
     impacts : int
-        Impacts after which a ball that has not repeated is given up.
+        Number of impacts after which the search for a repetition ends.
     impact
         The parameters of :func:`bouncing_ball.model`.
 
@@ -174,7 +174,7 @@ def basins(
     velocity_max : float, optional
         Greatest relative speed of the first impact; by default one that balls seldom exceed.
     impacts : int
-        Impacts after which a ball that has not repeated is given up.
+        Number of impacts after which the search for a repetition ends.
     impact
         The parameters of :func:`bouncing_ball.model`.
 
@@ -205,12 +205,12 @@ def basins(
 
 
 def _of(impact: dict[str, Any], found: Labelled) -> Labelled:
-    """With the parameters of the model as attributes."""
+    """The dataset with the parameters of the model as attributes."""
     return found.assign_attrs({k: v for k, v in impact.items() if isinstance(v, str | int | float)})
 
 
 def _single(amplitude: float, impact: dict[str, Any]) -> Any:
-    """The model of single parameters."""
+    """The model of parameters that are single numbers."""
     for name, value in impact.items():
         if np.ndim(value):
             raise ParameterError(f"{{{name}}} must be a single number here")

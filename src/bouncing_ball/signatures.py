@@ -87,7 +87,7 @@ def takes(other: Callable, *names: str) -> Callable[[_Call], _Call]:
 
 
 def _entries(value: Any) -> list:
-    """Those of an array, a list or a labelled array; a single value is one."""
+    """The entries of an array, a list or a labelled array; a single value is one entry."""
     value = getattr(value, "values", value)
     if hasattr(value, "ravel"):
         return value.ravel().tolist()
@@ -97,7 +97,7 @@ def _entries(value: Any) -> list:
 def check(call: Callable, given: Mapping[str, Any]) -> None:
     """Raise :class:`ParameterError` unless each argument is one that the call's signature allows.
 
-    Of an array every entry has to be.
+    For an array every entry must be allowed.
 
     Examples
     --------

@@ -140,7 +140,6 @@ def test_nothing_to_be_relative_to():
     )
 
 
-def test_no_law_below_the_saddle_node(one_line):
-    with pytest.raises(NoOrbitError) as error:
+def test_no_law_below_the_saddle_node(refusal):
+    with refusal(NoOrbitError, "below the saddle-node"):
         coefficients(1, 0.2, 0.1)
-    one_line(error, "below the saddle-node")

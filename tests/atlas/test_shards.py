@@ -34,10 +34,9 @@ def test_neither_shards_nor_blocks_change_a_byte(small, atlas, limits, order, bl
 
 
 @pytest.mark.parametrize("chosen", [(0, 1), (0, 1, 2, 1)])
-def test_a_shard_too_few_or_too_many_is_refused(small, parts, limits, one_line, chosen):
-    with pytest.raises(ModelError) as error:
+def test_a_shard_too_few_or_too_many_is_refused(small, parts, limits, refusal, chosen):
+    with refusal(ModelError, "of the atlas is in", "shards, not in one"):
         shards.merge(small(), (parts[k] for k in chosen), limits)
-    one_line(error, "of the atlas is in", "shards, not in one")
 
 
 def test_the_answers_are_those_of_all_errors_at_once(small, every_node, monkeypatch):

@@ -79,7 +79,6 @@ def test_a_contact_without_a_table_is_that_of_one_with_it():
         ),
     ],
 )
-def test_mistakes(given, says, one_line):
-    with pytest.raises(ModelError) as error:
+def test_mistakes(given, says, refusal):
+    with refusal(ModelError, says):
         contact(**{"engine": "mujoco", "mass": 1.0, "stiffness": 1e5, "restitution": 0.8} | given)
-    one_line(error, says)

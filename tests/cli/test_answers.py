@@ -100,7 +100,7 @@ def test_permanent_contact(ask):
         answer = ask(*call, "6", "--release", release)
         contact = SpringDamper.from_restitution(0.65, 6.0, release)
         exact = SpringDamperModel(contact).permanent_contact_threshold()
-        assert answer["threshold"] == exact
+        assert answer["threshold_amplitude"] == exact
 
 
 def test_the_error_law_is_about_the_contacts_own_r(ask):

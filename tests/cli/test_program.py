@@ -3,6 +3,7 @@
 import inspect
 import json
 import os
+import shlex
 import shutil
 import subprocess
 import sys
@@ -12,6 +13,7 @@ import pytest
 
 import bouncing_ball
 from bouncing_ball import calls
+from bouncing_ball.cli.explained import EXPLAINED
 from bouncing_ball.cli.options import meanings
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -88,3 +90,27 @@ def test_diff_for_nobody_who_reads(tmp_path):
     os.close(writer)
     # The texts differ.
     assert (done.returncode, done.stderr) == (1, "")
+
+
+@pytest.mark.parametrize(
+    "example",
+    [
+        pytest.param(each, id=each.split(" --mass")[0])
+        for name, (_, examples) in EXPLAINED.items()
+        for each in examples
+        # The comparison needs a run; its calls are tested with it.
+        if name != "diff"
+    ],
+)
+def test_the_examples_of_the_help_run(example, said, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    command, *given = shlex.split(example)
+    assert said(command, *given)
+    assert f"bouncing-ball {example}" in said(command, "--help")
+
+
+def test_every_command_is_explained_and_its_symbols_are(said):
+    for command in EXPLAINED:
+        shown = said(command, "--help")
+        assert "examples:" in shown
+        assert "Eq. 16" not in shown or "exp(-πζ/√(1 - ζ²))" in " ".join(shown.split())

@@ -54,7 +54,7 @@ def test_what_has_moved_is_copied_and_the_rest_is_not(pair, run):
     assert run() == ["Nothing to accept: the record says what the results say."]
 
 
-def test_what_is_named_is_copied_and_nothing_else(pair, run, one_line):
+def test_what_is_named_is_copied_and_nothing_else(pair, run, refusal):
     drift(pair)
     pair.rewrite("paper.md", "reproduced", "contradicted")
     data = pair.dataset("fig08")
@@ -62,9 +62,8 @@ def test_what_is_named_is_copied_and_nothing_else(pair, run, one_line):
     assert {*run("fig08", "paper")[:-1]} == {"copied figures/fig08.nc", "copied paper.md"}
     assert not pair.artifact("fig05").outcome.agrees
     before = contents(pair)
-    with pytest.raises(ModelError) as error:
+    with refusal(ModelError, "unknown artifact fig99"):
         run("fig05", "fig99")
-    one_line(error, "unknown artifact fig99")
     assert contents(pair) == before
 
 
@@ -78,19 +77,18 @@ def test_what_is_named_is_copied_and_nothing_else(pair, run, one_line):
         (Revision("1f0e", "no"), 0, "force", "fig17.png is not made by this workflow: remove it"),
     ],
 )
-def test_a_refusal_changes_nothing(pair, run, monkeypatch, one_line, state, left, config, said):
+def test_a_refusal_changes_nothing(pair, run, monkeypatch, refusal, state, left, config, said):
     drift(pair)
     monkeypatch.setattr(module, "revision", lambda _: state)
     monkeypatch.setattr(module, "jobs_left", lambda *_: left)
     (pair.new / "figures" / "fig17.png").touch()
     before = contents(pair)
-    with pytest.raises(RefusedError) as error:
+    with refusal(RefusedError, said):
         run(config={"release": config})
-    one_line(error, said)
     assert contents(pair) == before
 
 
-def test_the_jobs_left_are_those_of_a_dry_run(monkeypatch, tmp_path, one_line):
+def test_the_jobs_left_are_those_of_a_dry_run(monkeypatch, tmp_path, refusal):
     ends = iter([(0, "job  count\nall 1\ntotal 4\n", ""), (0, "", ""), (1, "", "many\nwords\n")])
 
     def done(*_, **__):
@@ -99,6 +97,5 @@ def test_the_jobs_left_are_those_of_a_dry_run(monkeypatch, tmp_path, one_line):
     monkeypatch.setattr(module.subprocess, "run", done)
     assert module.jobs_left(tmp_path, []) == 4
     assert module.jobs_left(tmp_path, []) == 0
-    with pytest.raises(RefusedError) as error:
+    with refusal(RefusedError, "a dry run fails: words"):
         module.jobs_left(tmp_path, [])
-    one_line(error, "a dry run fails: words")

@@ -108,11 +108,10 @@ def test_a_mistake_is_named_in_one_line(model, stages, keys, value, message):
     assert bool(message) == bool(said), said
 
 
-def test_a_study_that_is_not_there(one_line):
+def test_a_study_that_is_not_there(refusal):
     for study in ("studies.nothing.here", "studies.orbit_branches.nothing"):
-        with pytest.raises(ConfigurationError) as error:
+        with refusal(ConfigurationError, study, "nothing"):
             configuration_model({"fig08": study}, CONFIG)
-        one_line(error, study, "nothing")
 
 
 def test_nothing_raw_in_a_refusal(model, one_line):

@@ -46,10 +46,9 @@ def test_a_mistake_is_one_line(tmp_path, one_line, content, said):
         ("a: 1\n---\nb: 1", "not YAML in line 2: "),
     ],
 )
-def test_what_is_said_twice_or_hidden(one_line, text, said):
-    with pytest.raises(ConfigurationError) as error:
+def test_what_is_said_twice_or_hidden(refusal, text, said):
+    with refusal(ConfigurationError, said):
         parse_yaml(text)
-    one_line(error, said)
 
 
 def test_an_alias_stands_for_what_it_names():

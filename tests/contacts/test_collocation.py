@@ -10,6 +10,7 @@ from bouncing_ball.contacts.collocation import contacts, path
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
+from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji, tsuji_damping
 from bouncing_ball.contacts.signature import free_impact
@@ -36,6 +37,15 @@ def test_tsujis_damping_gives_its_restitution_at_every_speed(restitution):
     speed = np.array([1e-3, 1.0, 50.0])
     end = contacts(law, speed, weight=0.0)
     np.testing.assert_allclose(-end.rate / speed, restitution, rtol=1e-12)
+
+
+def test_a_load_holds_an_undamped_impedance_up_to_the_level():
+    # p = b sin ωt + c (1 - cos ωt), b = v/ω, c = (1 - d)/ω²: zero where tan(ωt/2) = -b/c.
+    end = contacts(Impedance(3.0, 0.0, 0.5), 2.0)
+    np.testing.assert_allclose(end.rate, -2.0, rtol=1e-13)
+    assert abs(end.penetration) < 1e-14
+    expected = 2 * (np.pi - np.arctan2(2 / 3, 0.5 / 9)) / 3
+    np.testing.assert_allclose(end.duration, expected, rtol=1e-13)
 
 
 def test_a_contact_is_found_whatever_its_neighbours():

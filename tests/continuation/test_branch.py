@@ -225,22 +225,25 @@ def test_an_event_that_cannot_be_located_gives_way_to_the_end():
     assert branch.points[-1] == pytest.approx(np.array([0.58, 0.29]), abs=EXACT)
 
 
-def test_no_start(one_line):
-    with pytest.raises(ContinuationError) as error:
+def test_no_start(refusal):
+    with refusal(
+        ContinuationError,
+        "no solution near the starting guess [1. 2.]",
+        "residual",
+        "8 Newton iterations",
+    ):
         solve_at(CIRCLE, np.array([1.0, 2.0]))
-    one_line(
-        error, "no solution near the starting guess [1. 2.]", "residual", "8 Newton iterations"
-    )
     with pytest.raises(ContinuationError):
         continue_branch(CIRCLE, np.array([1.0, 2.0]), increasing=True)
 
 
-def test_a_start_beyond_a_terminal_event(one_line):
+def test_a_start_beyond_a_terminal_event(refusal):
     for bound, upper in ((0.5, True), (0.7, False)):
         events = [parameter_bound(bound, upper, "the window")]
-        with pytest.raises(ContinuationError) as error:
+        with refusal(
+            ContinuationError, "the start [0.8 0.6] lies beyond the end of the branch: the window"
+        ):
             continue_branch(CIRCLE, np.array([0.8, 0.6]), increasing=True, events=events)
-        one_line(error, "the start [0.8 0.6] lies beyond the end of the branch: the window")
 
 
 def test_start_is_corrected_at_its_own_parameter():
@@ -279,7 +282,7 @@ def test_resampled_points_do_not_depend_on_the_step_control():
         assert angle == pytest.approx(expected, abs=1e-10)
 
 
-def test_resampling_with_too_long_steps(one_line):
+def test_resampling_with_too_long_steps(refusal):
     # Between two far points of a fast wave Newton runs out of iterations.
     wave = Scalar(
         lambda x, p: x - np.sin(40 * p), lambda x, p: 1.0, lambda x, p: -40 * np.cos(40 * p)
@@ -287,6 +290,5 @@ def test_resampling_with_too_long_steps(one_line):
     ends = np.array([[0.0, 0.0], [np.sin(40.0), 1.0]])
     tangents = np.array([[1.0, 0.0], [1.0, 0.0]])
     branch = Branch(ends, tangents, (), STARTED, STARTED)
-    with pytest.raises(ContinuationError) as error:
+    with refusal(ContinuationError, "resampling to 5 points failed with residual"):
         resample(wave, branch, 5, NewtonSettings(max_iterations=3))
-    one_line(error, "resampling to 5 points failed with residual")

@@ -1,10 +1,13 @@
 """The vocabulary of the datasets: its rows are complete, and unknown names are refused."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import xarray as xr
 
 from bouncing_ball.compare.budgets import ARTIFACTS, budget_of
+from bouncing_ball.datasets import variables
 from bouncing_ball.datasets.variables import VARIABLES, describe
 
 
@@ -15,7 +18,9 @@ def test_every_entry_is_complete():
         assert entry["units"] == ("rad" if name.endswith("phase") else "1")
         assert entry["long_name"] and entry["long_name"] == entry["long_name"].strip()
         assert not entry["equation"] or entry["equation"].startswith(("Eq", "Table"))
-    # Two names must not mean the same.
+    # A name stands once, and two names do not mean the same.
+    rows = (Path(variables.__file__).with_suffix(".csv")).read_text(encoding="utf-8").splitlines()
+    assert len(rows) == len(VARIABLES) + 1
     pairs = [(entry["long_name"], entry["symbol"]) for entry in VARIABLES.values()]
     assert len(set(pairs)) == len(pairs)
 

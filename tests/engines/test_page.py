@@ -1,14 +1,13 @@
 """The commands and the scripts of docs/engines.md print what the page says."""
 
-import os
 import re
+import runpy
 import shlex
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
+from bouncing_ball.cli.main import main
 from bouncing_ball.engines import ENGINES
 
 ROOT = Path(__file__).parents[2]
@@ -18,14 +17,14 @@ BLOCKS = re.findall(r"```\n\$ (.*)\n([^`]*)```", PAGE)
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("command", "printed"), BLOCKS)
-def test_a_command_prints_what_the_page_says(command, printed):
+def test_a_command_prints_what_the_page_says(command, printed, monkeypatch, capsys):
     program, *arguments = shlex.split(command)
-    run = [Path(sys.executable).with_name(program), *arguments]
-    env = os.environ | {"PYTHONIOENCODING": "utf-8"}
-    found = subprocess.run(
-        run, cwd=ROOT, env=env, capture_output=True, encoding="utf-8", check=True
-    ).stdout
-    assert found.rstrip() == printed.rstrip()
+    monkeypatch.chdir(ROOT)
+    if program == "bouncing-ball":
+        main(arguments)
+    else:
+        runpy.run_path(*arguments, run_name="__main__")
+    assert capsys.readouterr().out.rstrip() == printed.rstrip()
 
 
 def test_every_script_and_every_engine_is_on_the_page():

@@ -95,8 +95,7 @@ def test_many_steps_follow_the_law_of_few():
         ((-0.1, 50), "damping ratio ζ = -0.1 is not in [0, 1)"),
     ],
 )
-def test_mistakes(arguments, says, one_line):
+def test_mistakes(arguments, says, refusal):
     zeta, steps = arguments
-    with pytest.raises(ModelError) as error:
+    with refusal(ModelError, says):
         restitution_in_steps(Scheme.IMPLICIT, zeta, Release.FORCE, steps)
-    one_line(error, says)

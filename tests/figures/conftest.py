@@ -42,3 +42,9 @@ def all_texts(data):
 def texts():
     """Makes all tables in all formats, and the article, from datasets by name."""
     return all_texts
+
+
+@pytest.fixture(scope="session")
+def accepted(record):
+    """Those of the record."""
+    return all_texts(record)

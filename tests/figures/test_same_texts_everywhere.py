@@ -32,12 +32,7 @@ def perturbed(data, rng):
     return other
 
 
-@pytest.fixture(scope="module")
-def accepted(record, texts):
-    return texts(record)
-
-
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_rounding_changes_no_text(record, texts, accepted, seed):
     rng = np.random.default_rng(seed)
     noisy = {name: perturbed(data, rng) for name, data in record.items()}

@@ -133,12 +133,12 @@ def test_permanent_contact_begins_and_ends_at_its_threshold(omega, zeta, release
     threshold = float(permanent_contact_threshold(omega, zeta, release))
     # Of the threshold some roundings are unknown.
     lam = threshold * np.array([1 - 1e-12, 1 + 1e-12])
-    sequence = simulate(contact, lam, 0.2, lam * np.cos(0.2) - 1e-3, 300)
+    sequence = simulate(contact, lam, 0.2, lam * np.cos(0.2) - 1e-3, 100)
     assert sequence.status.tolist() == [Status.PERMANENT_CONTACT, Status.BOUNCING]
     last = sequence.impacts[0] - 1
     assert sequence.contact_duration[last, 0] == np.inf
     assert np.all(np.isnan(sequence.time[last + 1 :, 0]))
-    assert sequence.impacts[1] == 300
+    assert sequence.impacts[1] == 100
 
 
 def test_cycle_of_a_permanent_contact():
@@ -206,15 +206,14 @@ def test_the_ball_is_where_its_state_says(lam, omega, zeta, phase, speed, releas
     assert np.all(loaded[~flying] <= noise)
 
 
-def test_errors_are_one_line(one_line):
+def test_errors_are_one_line(refusal):
     for arguments, part in (
         ((SpringDamper(2.0, 0.1), -1.0, 0.0, -1.0, 2), "amplitude"),
         ((SpringDamper(2.0, 0.1), 1.0, 0.0, 1 + 1e-12, 2), "rises"),
         ((SpringDamper(2.0, 0.1), 1.0, np.nan, 1.5, 2), "finite"),
     ):
-        with pytest.raises(ModelError) as error:
+        with refusal(ModelError, part):
             simulate(*arguments)
-        one_line(error, part)
 
 
 def test_a_stiff_undamped_contact_ends_in_the_end():

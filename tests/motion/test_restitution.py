@@ -115,7 +115,7 @@ def test_no_balls_are_no_error():
     assert next_impact(0.5, 1.0, np.zeros((0, 2)), -1.0).time.shape == (0, 2)
 
 
-def test_errors_are_one_line(one_line):
+def test_errors_are_one_line(refusal):
     for arguments, part in (
         ((0.0, 1.0, 0.0, 3.0, 2), "(0, 1]"),
         ((0.5, -1.0, 0.0, 3.0, 2), "amplitude"),
@@ -123,6 +123,5 @@ def test_errors_are_one_line(one_line):
         ((0.5, 1.0, 0.0, 1 + 1e-12, 2), "rises"),
         ((0.5, 1.0, np.inf, 0.5, 2), "finite"),
     ):
-        with pytest.raises(ModelError) as error:
+        with refusal(ModelError, part):
             simulate(*arguments)
-        one_line(error, part)

@@ -180,10 +180,9 @@ def test_long_arrays_are_the_same_as_single_points():
 
 
 @pytest.mark.parametrize("zeta", [1.0, 1.5])
-def test_overdamped_contacts_are_refused(zeta, one_line):
-    with pytest.raises(ModelError) as error:
+def test_overdamped_contacts_are_refused(zeta, refusal):
+    with refusal(ModelError, f"ζ = {zeta}", "not below 1"):
         branch_point(0.0, SpringDamper(10.0, zeta), 1)
-    one_line(error, f"ζ = {zeta}", "not below 1")
 
 
 # The nearest point of the branch.

@@ -2,8 +2,6 @@
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
-from hypothesis import strategies as st
 from scipy.optimize import minimize_scalar
 
 from bouncing_ball.contacts.damping import damping_ratio
@@ -23,12 +21,20 @@ from bouncing_ball.orbits.stability import Bifurcation, Side, is_stable
 
 EPS = np.finfo(float).eps
 
-# r from 0.35 on: below, a soft contact's branch may have no fold (see
-# test_without_a_fold). Nearly elastic contacts have a test of their own.
-families = st.integers(1, 5)
-coefficients = st.one_of(st.floats(0.35, 0.9999), st.just(1.0))
-log_ratios = st.floats(np.log(2.0), np.log(1e4))
-releases = st.sampled_from(list(Release))
+every_release = pytest.mark.parametrize("release", list(Release))
+
+
+@pytest.fixture(scope="module", params=list(Release))
+def drawn(request):
+    """Random contacts, the corners of their range among them; n, r and shares for Λ."""
+    rng, size = np.random.default_rng(11), 400
+    n, share = rng.integers(1, 6, size), rng.uniform(0.01, 0.99, size)
+    omega = np.exp(rng.uniform(*np.log([2.0, 1e4]), size))
+    # Below r = 0.35 a soft contact's branch may have no fold (see test_without_a_fold).
+    # Nearly elastic contacts have a test of their own.
+    r = rng.uniform(0.35, 0.9999, size)
+    omega[::10], omega[1::10], r[::7], r[1::7] = 2.0, 1e4, 0.35, 1.0
+    return SpringDamper(omega, damping_ratio(r), request.param), n, r, share
 
 
 def stability(orbit):
@@ -37,105 +43,77 @@ def stability(orbit):
 
 
 def stable(orbit):
-    return bool(is_stable(*stability(orbit)))
+    return is_stable(*stability(orbit))
 
 
-def check_orbit(orbit, n, lam):
-    """The orbit is at Λ, and solves the paper's equations."""
-    assert float(orbit.amplitude) == pytest.approx(lam, rel=1e-13, abs=1e-13)
-    assert 0 < orbit.contact_duration < 2 * np.pi * n
+def check_orbits(orbit, n, lam):
+    """The orbits are at Λ, and solve the paper's equations."""
+    np.testing.assert_allclose(orbit.amplitude, lam, rtol=1e-13, atol=1e-13)
+    assert np.all((0 < orbit.contact_duration) & (orbit.contact_duration < 2 * np.pi * n))
     # Heights of the landing equation are of order (2πn)².
-    scale = np.array([1, 1, 2 * np.pi * n]) * (2 * np.pi * n)
+    scale = np.stack([n**0, n**0, 2 * np.pi * n], axis=-1) * (2 * np.pi * n)[:, np.newaxis]
     assert np.all(np.abs(orbit.residual()) < 1e-12 * scale)
-    assert float(orbit.relative_impact_velocity) < 0
-    assert float(orbit.apparent_restitution) > 0
+    assert np.all(orbit.relative_impact_velocity < 0)
+    assert np.all(orbit.apparent_restitution > 0)
 
 
 def amplitudes(contact, n):
     """Λ at the saddle-node and the period doubling."""
     return tuple(
-        float(branch_point(find(contact, n), contact, n).amplitude)
+        branch_point(find(contact, n), contact, n).amplitude
         for find in (saddle_node, period_doubling)
     )
 
 
-@given(families, coefficients, log_ratios, releases)
-def test_the_saddle_node_is_the_lowest_amplitude(n, r, log_omega, release):
-    contact = SpringDamper(float(np.exp(log_omega)), float(damping_ratio(r)), release)
-    excess = float(saddle_node(contact, n))
+def test_the_saddle_node_is_the_lowest_amplitude(drawn):
+    contact, n, r, _ = drawn
+    excess = saddle_node(contact, n)
     point = branch_point(excess, contact, n)
     # ½ d(Λ²)/dε is a sum of X dX and Y dY, with X and Y from equations of
     # order one: the 3 × 3 solve leaves some tens of their roundings.
-    size = float((1 + point.amplitude) * np.hypot(point.d_x, point.d_y))
-    assert abs(float(point.fold)) <= 200 * EPS * size
+    size = (1 + point.amplitude) * np.hypot(point.d_x, point.d_y)
+    assert np.all(np.abs(point.fold) <= 200 * EPS * size)
     # Λ rises to both sides, in steps of the fold's own scale.
-    step = 0.05 / contact.frequency_ratio
-    around = branch_point(excess + step * np.array([-2, -1, 1, 2]), contact, n).amplitude
-    assert np.all(around > float(point.amplitude))
-    assert around[0] > around[1] and around[3] > around[2]
+    steps = np.array([[-2], [-1], [1], [2]]) * 0.05 / contact.frequency_ratio
+    around = branch_point(excess + steps, contact, n).amplitude
+    assert np.all(around > point.amplitude)
+    assert np.all((around[0] > around[1]) & (around[3] > around[2]))
     # Λ vanishes at the fold of an elastic contact, and the phase is then
     # undefined; else a multiplier is one.
-    assume(r < 0.999)
-    trace, det = stability(SpringDamperOrbit.from_branch(point, contact, n))
-    assert abs(float(Bifurcation.SADDLE_NODE.test(trace, det))) <= 1e-10
+    trace, det = stability(SpringDamperOrbit.from_branch(point, contact, n)[r < 0.999])
+    assert np.all(np.abs(Bifurcation.SADDLE_NODE.test(trace, det)) <= 1e-10)
 
 
-@given(families, coefficients, log_ratios, releases)
-def test_a_multiplier_is_minus_one_at_the_period_doubling(n, r, log_omega, release):
-    contact = SpringDamper(float(np.exp(log_omega)), float(damping_ratio(r)), release)
-    node, excess = float(saddle_node(contact, n)), float(period_doubling(contact, n))
-    assert excess < node
+def test_a_multiplier_is_minus_one_at_the_period_doubling(drawn):
+    contact, n, _, _ = drawn
+    excess = period_doubling(contact, n)
+    assert np.all(excess < saddle_node(contact, n))
     orbit = SpringDamperOrbit.from_branch(branch_point(excess, contact, n), contact, n)
     trace, det = stability(orbit)
     # A root to the last digit; the trace has lost two or three.
-    assert abs(float(Bifurcation.PERIOD_DOUBLING.test(trace, det))) <= 1e-11 * (1 + n)
-    assert -1 < float(det) <= 1 + 1e-12
+    assert np.all(np.abs(Bifurcation.PERIOD_DOUBLING.test(trace, det)) <= 1e-11 * (1 + n))
+    assert np.all((-1 < det) & (det <= 1 + 1e-12))
 
 
-@given(families, st.floats(0.2, 1.0), log_ratios, releases, st.floats(0.01, 0.99))
-def test_orbits_on_the_stable_side(n, r, log_omega, release, share):
-    contact = SpringDamper(float(np.exp(log_omega)), float(damping_ratio(r)), release)
+def test_orbits_on_both_sides_of_the_saddle_node(drawn):
+    contact, n, r, share = drawn
+    lossy = r < 0.999
+    contact, n, share = contact[lossy], n[lossy], share[lossy]
     node, doubling = amplitudes(contact, n)
-    assume(np.isfinite(node) and np.isfinite(doubling) and r < 0.9999)
+    fold = branch_point(saddle_node(contact, n), contact, n).contact_duration
     lam = node + share * (doubling - node)
     orbit = orbit_at(contact, n, lam)
-    check_orbit(orbit, n, lam)
-    fold = float(branch_point(saddle_node(contact, n), contact, n).contact_duration)
-    assert orbit.contact_duration < fold
-    assert stable(orbit)
-
-
-# From ϖ = 10 the unstable side reaches up to the period doubling; a soft one
-# may turn before.
-@given(
-    families, coefficients, st.floats(np.log(10.0), np.log(1e4)), releases, st.floats(0.01, 0.99)
-)
-def test_orbits_on_the_unstable_side(n, r, log_omega, release, share):
-    contact = SpringDamper(float(np.exp(log_omega)), float(damping_ratio(r)), release)
-    node, doubling = amplitudes(contact, n)
-    lam = node + share * (doubling - node)
-    orbit = orbit_at(contact, n, lam, Side.UNSTABLE)
-    check_orbit(orbit, n, lam)
-    fold = float(branch_point(saddle_node(contact, n), contact, n).contact_duration)
-    assert orbit.contact_duration > fold
-    assert not stable(orbit)
-
-
-@given(families, st.floats(0.35, 0.999), log_ratios, releases, st.floats(1e-6, 0.5))
-def test_not_stable_beyond_the_period_doubling(n, r, log_omega, release, beyond):
-    contact = SpringDamper(float(np.exp(log_omega)), float(damping_ratio(r)), release)
-    _, doubling = amplitudes(contact, n)
-    orbit = orbit_at(contact, n, doubling * (1 + beyond))
-    assert float(orbit.contact_duration) > 0
-    assert not stable(orbit)
-
-
-@given(families, coefficients, log_ratios, releases, st.floats(1e-9, 0.5))
-def test_nothing_below_the_saddle_node_on_the_stable_side(n, r, log_omega, release, below):
-    contact = SpringDamper(float(np.exp(log_omega)), float(damping_ratio(r)), release)
-    node, _ = amplitudes(contact, n)
-    assume(node > 1e-6)
-    assert np.isnan(orbit_at(contact, n, node * (1 - below)).contact_duration)
+    check_orbits(orbit, n, lam)
+    assert np.all(orbit.contact_duration < fold) and np.all(stable(orbit))
+    # From ϖ = 10 the unstable side reaches up to the period doubling; a soft one
+    # may turn before.
+    stiff = contact.frequency_ratio >= 10
+    orbit = orbit_at(contact[stiff], n[stiff], lam[stiff], Side.UNSTABLE)
+    check_orbits(orbit, n[stiff], lam[stiff])
+    assert np.all(orbit.contact_duration > fold[stiff]) and not np.any(stable(orbit))
+    beyond = orbit_at(contact, n, doubling * (1 + share / 2))
+    assert np.all(beyond.contact_duration > 0) and not np.any(stable(beyond))
+    assert not np.any(orbit_at(contact, n, node * (1 - share / 2)).exists)
 
 
 def limit_errors(n, r, omega, release):
@@ -166,7 +144,7 @@ def limit_errors(n, r, omega, release):
     )
 
 
-@pytest.mark.parametrize("release", list(Release))
+@every_release
 @pytest.mark.parametrize(("n", "r"), [(1, 0.85), (1, 0.65), (2, 0.5), (3, 0.3)])
 def test_stiff_contacts_converge_to_the_restitution_model(n, r, release):
     errors = [limit_errors(n, r, omega, release) for omega in (1e3, 1e4, 1e5)]
@@ -190,26 +168,24 @@ def test_table_of_the_model_notes():
             assert amplitudes(SpringDamper(omega, zeta), n) == pytest.approx(row, abs=5.1e-5)
 
 
-def test_a_required_orbit_that_is_missing(one_line):
+def test_a_required_orbit_that_is_missing(refusal):
     contact = SpringDamper(10.0, float(damping_ratio(0.85)))
-    with pytest.raises(NoOrbitError) as error:
-        SpringDamperModel(contact).require_orbit(1, 0.2)
     # The saddle-node of the model notes' table, 0.2400.
-    one_line(error, "no 1-T orbit at Λ = 0.2 for ϖ = 10", "below the saddle-node at Λ = 0.239988")
+    with refusal(
+        NoOrbitError, "no 1-T orbit at Λ = 0.2 for ϖ = 10", "below the saddle-node at Λ = 0.239988"
+    ):
+        SpringDamperModel(contact).require_orbit(1, 0.2)
     # Without a saddle-node Λ ends at permanent contact, 0.97, on its one side.
     soft = SpringDamper(2.592, float(damping_ratio(0.0893)))
-    with pytest.raises(NoOrbitError) as error:
+    with refusal(NoOrbitError, "no 1-T orbit at Λ = 0.5 for ϖ = 2.592", "does not reach this Λ"):
         SpringDamperModel(soft).require_orbit(1, 0.5)
-    one_line(error, "no 1-T orbit at Λ = 0.5 for ϖ = 2.592", "does not reach this Λ")
-    with pytest.raises(NoOrbitError) as error:
+    with refusal(NoOrbitError, "Λ = 2.5", "no saddle-node, and so no other side"):
         SpringDamperModel(soft).require_orbit(1, 2.5, Side.UNSTABLE)
-    one_line(error, "Λ = 2.5", "no saddle-node, and so no other side")
     # The unstable side of r = 0.85, ϖ = 2 turns at Λ = 1.176.
-    with pytest.raises(NoOrbitError) as error:
+    with refusal(NoOrbitError, "Λ = 1.3", "does not reach this Λ"):
         SpringDamperModel(SpringDamper(2.0, float(damping_ratio(0.85)))).require_orbit(
             1, 1.3, Side.UNSTABLE
         )
-    one_line(error, "Λ = 1.3", "does not reach this Λ")
 
 
 def test_without_a_fold():
@@ -242,7 +218,7 @@ def test_the_unstable_side_of_a_very_soft_contact(omega):
     assert np.isnan(orbit.contact_duration) or 0 < float(orbit.contact_duration) < 2 * np.pi
 
 
-@pytest.mark.parametrize("release", list(Release))
+@every_release
 @pytest.mark.parametrize(("n", "omega", "zeta"), [(1, 2.0, 0.05), (2, 2.0, 0.05), (1, 10.0, 0.2)])
 def test_just_above_the_fold_there_are_two_orbits_and_just_below_none(n, omega, zeta, release):
     # The bracket between the last point of the scan and the fold is one of D's last digits.

@@ -88,8 +88,7 @@ def test_jacobian_against_differences(values):
 
 
 @pytest.mark.parametrize("release", list(Release))
-@pytest.mark.parametrize("omega", [2.0, 10.0, 1e4])
-@pytest.mark.parametrize("n", [1, 2, 3])
+@pytest.mark.parametrize(("n", "omega"), [(1, 2.0), (2, 10.0), (3, 1e4), (1, 1e4), (3, 2.0)])
 def test_continuation_finds_the_bifurcations_of_the_closed_form(n, omega, release):
     zeta = float(damping_ratio(0.85))
     contact = SpringDamper(omega, zeta, release)

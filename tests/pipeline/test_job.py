@@ -31,13 +31,12 @@ def test_a_failure_is_one_line(tmp_path, interruptible, one_line, error, said):
     assert "Traceback" in log.read_text(encoding="utf-8")
 
 
-def test_an_input_is_whole_or_its_command_is_named(tmp_path, one_line):
+def test_an_input_is_whole_or_its_command_is_named(tmp_path, refusal):
     path = tmp_path / "fig08.nc"
 
     def refused(said):
-        with pytest.raises(DatasetError) as error:
+        with refusal(DatasetError, f"{said}: make it again, snakemake --cores 2 --force {path}"):
             read_input(str(path))
-        one_line(error, f"{said}: make it again, snakemake --cores 2 --force {path}")
 
     refused(f"no dataset {path}")
     write_dataset(xr.Dataset(attrs={"n": 1}), path)

@@ -16,7 +16,8 @@ CONFIG = Path(__file__).parents[2] / "config"
 RUN = read_yaml(CONFIG / "config.yaml")
 
 
-# More than two seconds each.
+# More than two seconds each: `make test` takes theirs from its run of the pipeline
+# (tests/workflow/test_runs.py).
 SLOW = {"ext_basins", "ext_hertz", "ext_laws"}
 
 
@@ -44,6 +45,6 @@ def test_the_studies_give_the_accepted_datasets(stages, recorded):
     assert len(stages) > 20 and drifts(stages, recorded, stages.keys() - SLOW) == []
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_slow_studies_give_the_accepted_datasets(stages, recorded):
     assert drifts(stages, recorded, SLOW) == []

@@ -53,7 +53,7 @@ class Tree:
         return done
 
     def refusal(self, *arguments: str) -> str:
-        """The one line with which a run ends before anything is run."""
+        """The one line with which a run ends before any job is run."""
         done = self.run("--cores", "1", *arguments, check=False)
         assert done.returncode == 1
         # Snakemake itself says which profile and files it uses; the rest is ours.
@@ -65,7 +65,7 @@ class Tree:
         return os.environ | {"PYTHONPATH": str(self.path / self.package)}
 
     def git(self, *arguments: str) -> str:
-        """Git in this tree, deaf to the settings of whoever runs the tests."""
+        """Git in this tree, without the settings of the user who runs the tests."""
         # A fixed date: the same files give the same commit.
         who = {f"GIT_{x}_{y}": "tests" for x in ("AUTHOR", "COMMITTER") for y in ("NAME", "EMAIL")}
         when = {f"GIT_{x}_DATE": "2011-08-28T00:00:00Z" for x in ("AUTHOR", "COMMITTER")}
@@ -88,7 +88,9 @@ class Tree:
         return self.git("rev-parse", "HEAD")
 
     def planned(self, *arguments: str) -> set[str]:
-        """Messages of the jobs that a run would execute, up to a colon; not of the last one."""
+        """Messages of the jobs that a run would execute, up to a colon, except that of the last
+        job.
+        """
         done = self.run("--cores", "1", "--dry-run", *arguments)
         jobs = set(re.findall(r"^Job \d+: ([^:\n]*)", done.stdout + done.stderr, re.MULTILINE))
         return jobs - {"All figures, tables and the paper are up to date"}
@@ -116,9 +118,10 @@ class Tree:
         path.write_text(text.replace(old, new), encoding="utf-8")
 
     def contents(self, folder: str = "") -> dict[str, bytes]:
-        """All files under a folder but logs, measurements and Snakemake's own.
+        """All files under a folder except logs, measurements and Snakemake's files.
 
-        Neither what was being written when a run was killed: it has another name.
+        Files that were being written when a run was killed have other names, and are left out as
+        well.
         """
         base = self.path / folder
         files = (path for path in sorted(base.rglob("*")) if path.is_file())
@@ -131,14 +134,14 @@ class Tree:
         }
 
     def checksums(self, folder: str = "") -> dict[str, str]:
-        """Those of :meth:`contents`."""
+        """Checksums of the files of :meth:`contents`."""
         files = self.contents(folder)
         return {name: hashlib.sha256(content).hexdigest() for name, content in files.items()}
 
     def interrupt(
         self, sign: signal.Signals, *arguments: str, after: int, of: str = "figures/*"
     ) -> None:
-        """Start a run and stop it once so many results are there."""
+        """Start a run and stop it as soon as it has made so many results."""
         running = subprocess.Popen(
             # In one group of processes with its jobs.
             [sys.executable, "-m", "snakemake", *arguments],
@@ -187,7 +190,7 @@ def warm(tmp_path_factory) -> Iterator[str]:
 
 
 def made_once(target: Path, make: Callable[[Path], None], python: str) -> Tree:
-    """A tree that the first worker who needs it makes; the others wait for it."""
+    """A tree that the first worker who needs it makes, while the others wait for it."""
     with open(target.with_suffix(".lock"), "w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not target.exists():
@@ -235,7 +238,7 @@ def pristine(shared, cloned) -> Tree:
 
 @pytest.fixture
 def fresh(cloned, tmp_path) -> Tree:
-    """A fresh clone, nothing run."""
+    """A fresh clone in which nothing was run."""
     return copy_tree(cloned, tmp_path / "tree")
 
 

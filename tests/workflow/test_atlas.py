@@ -36,7 +36,9 @@ def prepared(tree):
 
 @pytest.fixture(scope="module")
 def resumed(cloned, tmp_path_factory):
-    """A run killed as the second of its files was there, and resumed; what it found and said."""
+    """A run killed as soon as its second file existed, and resumed; with its files and its
+    messages.
+    """
     folder = tmp_path_factory.mktemp("atlas") / "tree"
     shutil.copytree(cloned.path, folder, copy_function=shutil.copy2)
     tree = prepared(replace(cloned, path=folder))

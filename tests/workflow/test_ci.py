@@ -13,13 +13,13 @@ WORKFLOW = ROOT / ".github" / "workflows" / "ci.yml"
 
 
 def without_make() -> dict[str, str]:
-    """The environment, whatever make has started these tests."""
+    """The environment without the variables of the make that has started these tests."""
     ours = ("MAKE", "MFLAGS", "CI")
     return {name: value for name, value in os.environ.items() if not name.startswith(ours)}
 
 
 def dry(*arguments: str) -> str:
-    """What make would do."""
+    """The commands that make would run."""
     command = ["make", "--dry-run", "--always-make", *arguments]
     return subprocess.check_output(command, cwd=ROOT, env=without_make(), text=True)
 

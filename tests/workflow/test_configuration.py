@@ -1,4 +1,4 @@
-"""What a run refuses before anything is run: one line, and nothing is touched."""
+"""Configurations that a run refuses before any job is run: one line, and no file is changed."""
 
 import shutil
 import subprocess

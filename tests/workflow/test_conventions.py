@@ -1,4 +1,4 @@
-"""The datasets by the CF conventions, as far as they bear on what is no field on Earth."""
+"""The datasets by the CF conventions, as far as these apply to data without a place on Earth."""
 
 import re
 from pathlib import Path

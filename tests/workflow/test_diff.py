@@ -26,7 +26,7 @@ def recorded(complete):
 
 
 def drifted(tree, budgets):
-    """Move one number of the record by a multiple of its budget."""
+    """Move one number of the record of a tree by a multiple of its budget."""
     path = tree.path / "figures" / "fig11.nc"
     data = read_dataset(path)
     size = budget_of("fig11", "threshold_amplitude").size * span(data.threshold_amplitude)

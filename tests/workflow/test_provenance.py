@@ -1,4 +1,4 @@
-"""What the artifacts of a run carry: the commit, the configuration, and a command that works."""
+"""The provenance of the artifacts of a run: commit, configuration, and a command that works."""
 
 import os
 import subprocess

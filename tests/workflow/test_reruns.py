@@ -1,7 +1,7 @@
-"""What runs again after a change, and what does not.
+"""The jobs that run again after a change, and those that do not.
 
-Which stages a parameter or a module decides is tested in tests/pipeline/test_reruns.py;
-here, that Snakemake runs these, and what is made from them, and nothing else.
+Which stages depend on a parameter or a module is tested in tests/pipeline/test_reruns.py.
+Here it is tested that Snakemake runs these, and all jobs that depend on them, and no others.
 """
 
 

@@ -1,4 +1,4 @@
-"""What a user sees: targets by name, reproducible bytes, interruptions."""
+"""Runs as a user sees them: targets by name, reproducible bytes, interruptions."""
 
 import json
 import re
@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from bouncing_ball.compare.data import compare_datasets
+from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.figures import DRAWINGS
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -22,6 +24,13 @@ def test_a_run_makes_every_figure_and_table(pristine, stages):
     texts = {f"figures/{name}.{kind}" for name in recorded for kind in ("csv", "md")}
     pages = {"figures/explorer.html", "paper.md", "tally.txt"}
     assert made == pictures | data | texts | pages
+
+
+def test_a_run_gives_the_accepted_datasets(pristine, recorded, stages):
+    for name in stages:
+        made = read_dataset(pristine.path / f"results/figures/{name}.nc")
+        rows = compare_datasets(name, recorded[name], made)
+        assert [row for row in rows if not row.outcome.agrees] == [], name
 
 
 def test_a_run_touches_no_tracked_file(pristine, cloned):

@@ -11,6 +11,7 @@ BEYOND_THE_PAPER = {
     "ext_orders": "studies.model_errors.orders",
     "ext_laws": "studies.contact_laws.law_errors",
     "ext_hertz": "studies.contact_laws.figures_of_laws",
+    "ext_cascades": "studies.cascades.cascades",
     "ext_engines": "studies.engines.conformance",
     "explorer": "studies.reference_orbits.reference_orbits",
 }

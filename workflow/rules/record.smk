@@ -2,6 +2,7 @@
 # Both rules have no outputs, so that Snakemake runs them at each call.
 
 from bouncing_ball.pipeline.conclusion import concluded
+from bouncing_ball.pipeline.progress import begin
 
 
 # ONLY='fig08 table1' snakemake --cores 1 accept; without ONLY, all artifacts that have moved.
@@ -29,6 +30,11 @@ rule diff:
         "results/logs/diff.log",
     script:
         "../scripts/diff.py"
+
+
+# Each job that makes a file says how many of them are done.
+onstart:
+    begin(sum(bool(job.is_script and job.output) for job in workflow.dag.needrun_jobs()))
 
 
 # A difference or a refusal is not a failure of its job: it gives one line, and exit status 1.

@@ -32,6 +32,11 @@ def models(contact: SpringDamper) -> tuple[SpringDamperModel, RestitutionModel, 
     ------
     ModelError
         If ζ ≥ 1.
+
+    Examples
+    --------
+    >>> [model.name for model in models(SpringDamper(5.0, 0.0))]
+    ['spring-damper', 'restitution', 'corrected']
     """
     return (
         SpringDamperModel(contact),

@@ -198,6 +198,15 @@ def search(
     -------
     Search
         The restitution model has the r that a free impact on the contact has.
+
+    Examples
+    --------
+    Without damping, Λ_SD = 1 - 1/ϖ²:
+
+    >>> grid, rule = np.geomspace(1.0, 1e3, 31), Release.DISPLACEMENT
+    >>> found = search(0.0, rule, 1, 1.0, grid, 0.01, ["permanent_contact"])
+    >>> found.threshold[0].round(9).tolist()
+    [[10.0]]
     """
     damping, index, lam = (np.atleast_1d(x) for x in np.broadcast_arrays(zeta, n, amplitude))
     size = len(quantities), len(SIMPLE), lam.size

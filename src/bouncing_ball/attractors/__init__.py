@@ -1,1 +1,4 @@
-"""What balls do in the end: the motions on which they end, and how they are told apart."""
+"""The motions on which balls end, their classification, and cascades of period doublings.
+
+All quantities are dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g.
+"""

@@ -1,13 +1,13 @@
-r"""Cascades of period doublings of the n-T orbits, for every model.
+"""Cascades of period doublings of the n-T orbits, for every model.
 
 An orbit with m = 2ᵏ impacts repeats after m n periods of the table. It is a fixed point of the
 m-th iterate of the map P from impact to impact, and its period doubles where a multiplier is -1,
 
     Pᵐ(s) = s,    1 + tr M + det M = 0,    M = DPᵐ(s).
 
-Newton's method solves both together, on the orbit itself. The orbit of twice the period leaves
-from there along the eigenvector of that multiplier. Because it attracts balls, a few of its turns
-lead next to it.
+Newton's method solves both together, on the orbit itself. The orbit of twice the period branches
+off there along the eigenvector of that multiplier. Because it attracts balls, iterating the map
+leads to a point near it.
 """
 
 from dataclasses import dataclass
@@ -27,15 +27,15 @@ FEIGENBAUM = 4.669201609102990
 """Limit of the ratio of successive distances between period doublings of a dissipative map
 (M. J. Feigenbaum, 1978)."""
 
-# Step of the central difference in Λ, which says how fast Newton's method converges, not where to.
+# Step of the central difference in Λ, which affects the convergence of Newton's method only.
 _DIFFERENCE = 3e-7
 _SETTINGS = NewtonSettings(max_iterations=25, longest=0.3)
-# The doubled orbit is met at this part of the distance to its own doubling, which is at first
-# a typical one and then that of the ratio above. Balls start a little off the old orbit, by this
-# part of the square root of the distance, and turn so often.
-_SHARE, _FIRST, _ASIDE, _TURNS = 0.7, 0.12, 0.1, 60
+# The doubled orbit is computed at this part of the estimated distance in Λ to its next doubling,
+# which is at first the second number and then follows from the ratio above. The map starts beside
+# the old orbit, by this part of the square root of the distance, and is iterated so often.
+_SHARE, _FIRST, _ASIDE, _TURNS = 0.7, 0.12, 0.1, 30
 MOST = 8
-"""Doublings that double precision still resolves."""
+"""Largest number of doublings that double precision resolves."""
 
 
 class Cascade(NamedTuple):
@@ -92,7 +92,7 @@ class Turns:
         return end, velocity, time, Jacobian(*entries)
 
     def residual(self, y: np.ndarray) -> np.ndarray:
-        """Time and velocity by which Pᵐ misses s, shape (..., 2)."""
+        """The differences in time and velocity between Pᵐ(s) and s, shape (..., 2)."""
         _, velocity, time, _ = self.after(y)
         return self._defects(y, velocity, time)
 
@@ -111,7 +111,7 @@ class Turns:
         return np.concatenate([by_state, by_amplitude[..., np.newaxis]], axis=-1)
 
     def doubling(self, y: np.ndarray) -> np.ndarray:
-        """1 + tr M + det M."""
+        """1 + tr M + det M, of the leading shape of y."""
         change = self.after(y)[-1]
         return 1 + change.a + change.d + change.a * change.d - change.b * change.c
 
@@ -139,23 +139,31 @@ def cascade(orbit: Orbit, doublings: int) -> Cascade:
     ([1.526824, 1.667131, 1.696781, 1.703181], [4.73, 4.63])
     """
     require(1 <= doublings <= MOST, doublings, "number of period doublings", f"from 1 to {MOST}")
-    shape, row = orbit.shape, orbit.flat(orbit.shape)
+    whole = orbit.flat(orbit.shape)
+    there = np.flatnonzero(np.broadcast_to(orbit.exists, orbit.shape))
+    found = np.full((doublings, orbit.size, 3), np.nan)
+    if there.size:
+        found[:, there] = _followed(whole.take(there), doublings)
+    phase, velocity, amplitude = np.moveaxis(found, -1, 0).reshape(3, doublings, *orbit.shape)
+    return Cascade(amplitude, reduce_angle(phase), velocity)
+
+
+def _followed(row: Orbit, doublings: int) -> np.ndarray:
+    """Points at the doublings of orbits in a row, shape (doublings, orbits, 3)."""
     dynamics, start, _ = in_a_row(row.law, row.amplitude, row.phase, row.relative_impact_velocity)
     first = dynamics.section(dynamics.start(*start))
     y = np.stack(np.broadcast_arrays(*first, row.amplitude), axis=-1)
-    found, gap = [y], np.full(len(y), _FIRST)
+    found, gap, good = [y], np.full(len(y), _FIRST), np.full(len(y), True)
     for k in range(1, doublings):
-        old = Turns(row.law, row.n, 2 ** (k - 1))
-        turns = Turns(row.law, row.n, 2**k)
+        old, turns = (Turns(row.law, row.n, 2**m) for m in (k - 1, k))
         near = _doubled(old, turns, y, _SHARE * gap)
         solved = newton(turns, near, vanishing(turns.doubling), _SETTINGS)
-        # A cascade goes up in Λ; the orbit that doubles below is the one before.
-        good = solved.converged & (solved.point[:, -1] > y[:, -1])
-        y = np.where(good[:, np.newaxis], solved.point, np.nan)
-        found.append(y)
-        gap = (y[:, -1] - found[-2][:, -1]) / FEIGENBAUM
-    phase, velocity, amplitude = (np.stack(found)[..., c].reshape(-1, *shape) for c in range(3))
-    return Cascade(amplitude, reduce_angle(phase), velocity)
+        # A cascade rises in Λ; a doubling below the previous one is that of the old orbit.
+        good &= solved.converged & (solved.point[:, -1] > y[:, -1])
+        gap = np.where(good, (solved.point[:, -1] - y[:, -1]) / FEIGENBAUM, gap)
+        y = np.where(good[:, np.newaxis], solved.point, y)
+        found.append(np.where(good[:, np.newaxis], y, np.nan))
+    return np.stack(found)
 
 
 def _doubled(old: Turns, turns: Turns, y: np.ndarray, above: np.ndarray) -> np.ndarray:

@@ -1,4 +1,7 @@
-"""Motions on which balls end as labelled datasets: of starts, over the amplitude, of a grid."""
+"""Motions on which balls end as labelled datasets: of starts, over the amplitude, of a grid.
+
+All quantities are dimensionless, and phases are in radians.
+"""
 
 from typing import Any
 
@@ -12,12 +15,12 @@ from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import ParameterError
 
 MOST_BALLS = 20_000_000
-"""Balls that are followed at once, at most: they take some gigabytes of memory."""
+"""Largest number of balls that are followed at the same time: they take some gigabytes."""
 
-# How many amplitudes further balls start again from where one ended; the fractional parts of
-# multiples of these two numbers cover a square evenly.
+# Balls start again from the ends of balls so many amplitudes away. The fractional parts of
+# multiples of the two numbers in _EVEN cover a square evenly.
 _FURTHER = (1, 1, 2, 4)
-# Families of orbits beside which balls start, at so large an angle.
+# Families of orbits beside which balls start, and the difference of their phase from the orbit's.
 _FAMILIES, _BESIDE = (1, 2, 3), 1e-3
 _EVEN = np.array([0.7548776662466927, 0.5698402909980532])
 
@@ -53,7 +56,16 @@ def _described(data: Labelled, **attributes: Any) -> Any:
 
 
 def motions(model: Any, grid: Grid, impacts: int) -> Labelled:
-    """The motions on which the balls of a grid (Λ, φ, z′_i) end."""
+    """The motions on which the balls of a grid (Λ, φ, z′_i) end.
+
+    The variables are the fields of :class:`~bouncing_ball.attractors.motions.Motions`, except
+    ``followed``, over the axes of the grid.
+
+    Raises
+    ------
+    ModelError
+        If there are too many balls, or a state is outside its range.
+    """
     start = (grid.flat[name] for name in ("amplitude", "phase", "velocity"))
     start = np.broadcast_arrays(*np.atleast_1d(*start), *grid.rows)[:3]
     require_memory(start[0].size, "a grid of starts")
@@ -63,9 +75,15 @@ def motions(model: Any, grid: Grid, impacts: int) -> Labelled:
 
 
 def fastest(model: Any, amplitude: Any) -> np.ndarray:
-    """A speed of impact above which a ball that meets the table at random slows down.
+    """A speed of impact above which a ball that meets the table at a random phase slows down.
 
-    With r of a free impact the balls that gain most, by 2Λ(1 + r) at an impact, have it.
+    It is the speed of the balls that gain most, 2Λ(1 + r) at an impact with the r of a free impact.
+
+    Examples
+    --------
+    >>> from bouncing_ball.orbits.restitution_model import RestitutionModel
+    >>> float(fastest(RestitutionModel(0.5), 2.0))
+    6.0
     """
     lam = np.asarray(amplitude, dtype=float)
     r = np.asarray(model.signature(2 * np.pi).restitution)
@@ -73,23 +91,29 @@ def fastest(model: Any, amplitude: Any) -> np.ndarray:
 
 
 def diagram(model: Any, amplitude: np.ndarray, starts: int, samples: int, impacts: int) -> Labelled:
-    """The attractors over Λ, of several starts and of the neighbours' motions.
+    """The attractors over Λ, from several starts and from the motions at neighbouring Λ.
 
-    Every ball then starts again from where that of the next lower Λ ended, and of the next
-    higher one, several times, so that an attractor is followed in both directions beyond
-    the Λ at which a start finds it.
+    Every ball then starts again from the end of the ball at the next lower Λ, and at the next
+    higher one, several times, so that an attractor is followed in both directions beyond the Λ at
+    which a start finds it. The motions are over (amplitude, start), and ``impact_phase`` and
+    ``impact_speed`` over (amplitude, start, impact), NaN beyond a period.
+
+    Raises
+    ------
+    ModelError
+        If there are too many balls.
     """
     require_memory(amplitude.size * (starts + 2) * samples, "amplitudes, starts and samples")
     lam = amplitude[:, np.newaxis]
     even = np.mod(0.5 + np.arange(1, starts + 1)[:, np.newaxis] * _EVEN, 1.0)
-    # And beside the orbits with one impact, which may attract few of these.
+    # Further balls start beside the orbits with one impact, which may attract few of the others.
     orbit = model.orbit(np.array(_FAMILIES), np.where(lam > 0, lam, np.nan))
     phase = 2 * np.pi * even[:, 0] - np.pi + 0 * lam, orbit.phase + _BESIDE
     speed = even[:, 1] * fastest(model, lam), -orbit.relative_impact_velocity
     found = _ends(model, lam, np.concatenate(phase, 1), np.concatenate(speed, 1), impacts)
     swept = found[:, [0, 0]]
     for step in _FURTHER:
-        # From where a ball at a lower Λ ended, and one at a higher Λ.
+        # The ends of a ball at a lower Λ and of one at a higher Λ.
         place = np.arange(amplitude.size)[:, np.newaxis] + step * np.array([-1, 1])
         place = np.clip(place, 0, amplitude.size - 1), [0, 1]
         phase, velocity = swept.end_phase[place], swept.end_velocity[place]
@@ -119,7 +143,7 @@ def _ends(
 ) -> Motions:
     """The motions of balls that start with impacts of these speeds.
 
-    Where there is none, as for a ball that stays on the table, it is dropped onto it.
+    A ball without such a speed, for example one that stays on the table, starts with the speed 1.
     """
     phase, speed = np.nan_to_num(phase), np.where(speed > 0, speed, 1.0)
     return label(model.impact_law, amplitude, phase, amplitude * np.cos(phase) - speed,
@@ -142,7 +166,17 @@ def _impacts(model: Any, amplitude: np.ndarray, found: Motions, samples: int) ->
 
 
 def basins(model: Any, amplitude: float, starts: int, fast: float | None, impacts: int) -> Labelled:
-    """The motions on which a grid of impacts (φ, δ′) ends, with their shares."""
+    """The motions on which a grid of impacts (φ, δ′) ends, with their shares.
+
+    ``destination`` (start_speed, start_phase) is an index along ``motion``, over which
+    ``motion_kind``, ``motion_periods``, ``motion_impacts``, ``share`` and its standard error
+    ``share_error`` are given; ``lyapunov_exponent`` is over the starts.
+
+    Raises
+    ------
+    ModelError
+        If there are too many starts.
+    """
     require_memory(starts * starts, "a grid of starts")
     middle = (np.arange(starts) + 0.5) / starts
     top = float(fastest(model, amplitude)) if fast is None else fast

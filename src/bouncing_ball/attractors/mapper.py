@@ -1,21 +1,22 @@
 r"""From the start of a ball to the motion on which it ends, for every model.
 
-A motion repeats if its state returns and its neighbours come closer. A ball is compared
-with itself at a mark, an impact that is moved on from time to time (Brent's method), and
-the derivative M of the motion since then is kept. At the first impact at which the orbit that is
-fixed under it,
+A motion repeats if its state returns and its neighbours approach it. A ball is compared
+with its state at a mark, an impact that is moved forward from time to time (Brent's method), and
+the derivative M of the motion since the mark is kept. Consider the first impact at which the orbit
+that is fixed under the motion since the mark,
 
     s* = s + (I - M)⁻¹ (F(s) - s),
 
-is nearer to the state s of the mark than a small distance, and the multipliers of M are
-smaller than 1 by a margin, the mark is moved there; if the ball returns to it again in as many
-impacts or fewer, it repeats. The distance is far above rounding and far below what
-separates two orbits whose multipliers have that margin, so that neither decides.
+is nearer to the state s of the mark than a small distance, and at which the multipliers of M are
+smaller than 1 by a margin. The mark is then moved to this impact, and the motion repeats if the
+ball returns to it again in as many impacts or fewer. The distance is far above rounding and far
+below the distance of two orbits whose multipliers have that margin, so that neither affects the
+result.
 
-A ball of a model with impacts in an instant forgets everything when it sticks: it leaves in
-the one state of the lift-off. If it sticks twice it repeats, unless rounding errors grow
-to its size on the way. In a contact of finite stiffness it forgets by a finite factor, and
-the state decides as for any other motion.
+With instantaneous impacts the motion after sticking does not depend on earlier impacts, because a
+ball always leaves in the state of the lift-off. A motion that sticks twice therefore repeats,
+unless rounding errors grow to its size in between. In a contact of finite stiffness the
+dependence decreases by a finite factor, and the state is compared as for any other motion.
 """
 
 from typing import Any, NamedTuple
@@ -32,13 +33,13 @@ from bouncing_ball.motion.simulation import Law, first_impacts
 from bouncing_ball.motion.tangent import Jacobian
 
 IMPACTS = 2000
-"""Impacts after which a ball that has not repeated is given up."""
+"""Number of impacts after which the search for a repetition ends."""
 
 # Distance of a state from the orbit at which a ball is taken to be on it, and on its second
 # turn: an angle, and a velocity over 1 + Λ. Multipliers are then known to their product with the
 # curvature of the map; they must be below 1 by the margin.
 _NEAR, _AGAIN, _MARGIN = 1e-7, 1e-6, 1e-3
-# Returns farther away than this are not looked at.
+# Returns farther away than this are ignored.
 _SIGHT = 1e-2
 # A mark is moved on after this part of all impacts, and these.
 _SHARE, _LEAST = 0.5, 8
@@ -55,7 +56,7 @@ _TINY = 1e-300
 
 
 class _Ball(NamedTuple):
-    """What is known of each ball that is followed."""
+    """The state of each ball that is followed."""
 
     lane: np.ndarray
     amplitude: np.ndarray
@@ -105,7 +106,7 @@ def _new(index: np.ndarray, amplitude: np.ndarray, impact: Impact) -> _Ball:
 
 
 class _Found(NamedTuple):
-    """The fields of :class:`Motions`, with numbers for words."""
+    """The fields of :class:`Motions`, with numbers in place of texts."""
 
     kind: np.ndarray
     periods: np.ndarray
@@ -118,7 +119,7 @@ class _Found(NamedTuple):
     end_velocity: np.ndarray
 
     def write(self, ball: _Ball, which: np.ndarray, kind, reason=Reason.NONE, **values) -> None:
-        """What some of the balls that are followed do."""
+        """Store the results for some of the balls that are followed."""
         index = ball.lane[which]
         self.kind[index], self.reason[index] = _KINDS.index(kind), _REASONS.index(reason)
         self.followed[index] = ball.seen[which]
@@ -145,8 +146,13 @@ def label(
         As in :func:`bouncing_ball.motion.simulation.simulate`: φ and the absolute velocity z′
         before the impact.
     impacts : int
-        After which a ball that has not repeated is given up. A motion is found if it repeats
-        within about a third of them.
+        Number of impacts after which the search for a repetition ends. A motion is found if it
+        repeats within about a third of them.
+
+    Returns
+    -------
+    Motions
+        Of the shape to which the arguments broadcast.
 
     Raises
     ------
@@ -155,7 +161,7 @@ def label(
 
     Examples
     --------
-    Before and beyond the period doubling at Λ = 1.527, and where a ball forgets all it did:
+    Below and above the period doubling at Λ = 1.527, and a motion that sticks to the table:
 
     >>> found = label(0.5, [1.2, 1.6, 2.5], 1.0, -3.0)
     >>> found.kind.tolist(), found.periods.tolist(), found.impacts.tolist()[:2]
@@ -175,7 +181,7 @@ def label(
 
 
 def _follow(dynamics: Dynamics, start: np.ndarray, relative: np.ndarray, impacts: int) -> _Found:
-    """Follow all balls, in a block that is filled up again when some are done."""
+    """Follow all balls, in a block that is refilled when some of its balls are done."""
     size, block = start.size, _BLOCK
     whole, real = np.zeros((5, size), dtype=int), np.full((4, size), np.nan)
     found = _Found(*whole[:3], *real[:2], *whole[3:], *real[2:])
@@ -215,7 +221,7 @@ def _follow(dynamics: Dynamics, start: np.ndarray, relative: np.ndarray, impacts
 
 
 def _those(which: np.ndarray, *rows: Any) -> Any:
-    """Some of the balls, in everything that is known of them."""
+    """Some of the balls, from all arrays about them."""
     return (x.take(which) if isinstance(x, Dynamics) else pick(x, which) for x in rows)
 
 
@@ -230,7 +236,7 @@ def _end(ball: _Ball, impact: Impact, going: np.ndarray, found: _Found) -> None:
 
 
 def _joined(one: Any, other: Any) -> Any:
-    """Two rows as one; a number is that of all."""
+    """Two rows as one; a number applies to all balls."""
     if isinstance(one, tuple):
         joined = (_joined(a, b) for a, b in zip(one, other, strict=True))
         return type(one)(*joined) if hasattr(one, "_fields") else tuple(joined)
@@ -240,7 +246,7 @@ def _joined(one: Any, other: Any) -> Any:
 def _resting(
     dynamics: Dynamics, impact: Impact, departure: Departure, ball: _Ball, found: _Found
 ) -> np.ndarray:
-    """Write down which balls stay on the table, or stick for the second time; the others."""
+    """Store which balls stay on the table, or stick for the second time; return the others."""
     status = departure.status
     done = status != Status.BOUNCING
     if done.any():
@@ -265,7 +271,7 @@ def _resting(
 
 
 def _lost(ball: _Ball) -> np.ndarray:
-    """Whether a rounding error since the ball last forgot everything has grown too much."""
+    """Whether a rounding error has grown too much since the ball last stuck."""
     return ball.growth - ball.least > _FORGOTTEN
 
 
@@ -278,7 +284,7 @@ def _periods(time: np.ndarray) -> np.ndarray:
 
 
 def _move(ball: _Ball, change: Jacobian, passed: np.ndarray, sticks: np.ndarray) -> None:
-    """Carry everything on to the next impact."""
+    """Advance all arrays to the next impact."""
     ball.seen[:] += 1
     ball.time[:] += passed
     ball.stuck[:] += sticks
@@ -317,7 +323,9 @@ def _move(ball: _Ball, change: Jacobian, passed: np.ndarray, sticks: np.ndarray)
 def _returning(
     ball: _Ball, state: tuple[np.ndarray, np.ndarray], impacts: int, found: _Found
 ) -> np.ndarray:
-    """Compare balls with their marks, and write down which repeat or are given up; the others."""
+    """Compare balls with their marks, and store which repeat or reach the last impact; return the
+    others.
+    """
     phase, velocity = state
     scale = 1 + ball.amplitude
     turned, faster = reduce_angle(phase - ball.phase), (velocity - ball.velocity) / scale
@@ -362,7 +370,7 @@ def _returning(
 
 
 def _mark(ball: _Ball, here: np.ndarray, phase: np.ndarray, velocity: np.ndarray) -> None:
-    """Move the marks of some balls to where they are; for one turn after a first return."""
+    """Move the marks of some balls to their current impact; for one turn after a first return."""
     if not here.size:
         return
     count = ball.seen[here]
@@ -381,7 +389,7 @@ def _mark(ball: _Ball, here: np.ndarray, phase: np.ndarray, velocity: np.ndarray
 
 
 def _give_up(ball: _Ball, which: np.ndarray, found: _Found) -> None:
-    """Write down which of the balls that have not repeated are chaotic."""
+    """Store which of the balls that have not repeated are chaotic."""
     number, growth, time, square, product, times = ball.sums[which].T
     rate = growth / time
     # The error of a ratio of means, each over a stretch of the motion.

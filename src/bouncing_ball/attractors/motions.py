@@ -1,4 +1,4 @@
-"""The motions on which balls end, as arrays with an entry for each ball."""
+"""The motions on which balls end, as arrays with an entry per ball."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -9,7 +9,7 @@ from bouncing_ball.contacts.batch import Batch
 
 
 class Kind(StrEnum):
-    """What a ball does in the end."""
+    """The kind of motion on which a ball ends."""
 
     ORBIT = "orbit"
     """It repeats after n periods of the table and k impacts that have no common divisor: an n-T
@@ -39,7 +39,7 @@ class Reason(StrEnum):
 
 @dataclass(frozen=True, repr=False)
 class Motions(Batch):
-    """The motions on which balls end.
+    """The motions on which balls end, arrays of one shape.
 
     Parameters
     ----------
@@ -47,20 +47,20 @@ class Motions(Batch):
     periods : array of int
         Periods of the table after which the motion repeats; 0 if it does not.
     impacts : array of int
-        Impacts until then, of the restitution model without those that are summed up before
-        the ball sticks, which are infinitely many. 0 in permanent contact.
+        Impacts after which it repeats, for the restitution model without the infinitely many that
+        are summed up before the ball sticks. 0 in permanent contact.
     exponent : array
-        Largest Lyapunov exponent per period of the table: of a motion that repeats by the larger
-        of its multipliers, -∞ where that is zero; NaN where nothing is known.
+        Largest Lyapunov exponent per period of the table. For a motion that repeats it follows from
+        the larger multiplier, and is -∞ if that is zero; NaN where nothing is known.
     exponent_error : array
         Its standard error; 0 for a motion that repeats.
     reason : array of Reason
-        Why it is undecided.
+        The reason for which a motion is undecided.
     followed : array of int
-        Impacts after which this was known.
+        Impacts after which the kind was known.
     end_phase, end_velocity : array
-        Table phase φ and absolute velocity z′_i at the last of them, before it: a start from which
-        the ball is on the motion. Not a number in permanent contact.
+        Table phase φ and absolute velocity z′_i at the last of these impacts, before it: a start
+        from which the ball is on the motion. NaN in permanent contact.
     """
 
     kind: np.ndarray

@@ -38,7 +38,7 @@ class Table:
 
     @property
     def amplitude(self) -> float:
-        """Λ = AΩ²/g."""
+        """Λ = AΩ²/g, the amplitude of the table's acceleration over gravity."""
         return self.table_amplitude * self.angular_frequency**2 / self.gravity
 
     @property
@@ -64,7 +64,7 @@ class Case:
     contact : SpringDamper
         ϖ, ζ and the release rule.
     law : Tsuji, optional
-        A Hertz contact; the linear one has then its restitution coefficient, and its
+        A Hertz contact; the linear one then has its restitution coefficient, and its
         duration at the orbit's impact speed.
 
     Examples
@@ -81,7 +81,9 @@ class Case:
 
     @cached_property
     def models(self) -> dict[str, ImpactModel]:
-        """By name: the exact model first, then the simple ones with the contact's own r."""
+        """The models by name: the exact one first, then the simple ones with the r of a free
+        impact.
+        """
         if self.law is None:
             return {model.name: model for model in models(self.contact)}
         return {
@@ -91,15 +93,17 @@ class Case:
         }
 
     def instant(self, n: int) -> Instant:
-        """The signature of the contact at the impact speed of the restitution model's orbit."""
+        """The signature of the contact at the impact speed of the restitution model's n-T orbit."""
         r = self.contact.restitution
-        # That of a law is interpolated, and may be above 1 by rounding.
+        # The r of a law is interpolated, and may exceed 1 by rounding.
         return self.models["corrected"].signature(rigid_speed(n, r))._replace(restitution=r)
 
     def in_si(self) -> dict[str, float]:
-        """Stiffness k = mω² and damping c = 2ζmω, ω = ϖΩ; contact time; static deflection mg/k.
+        """Stiffness k = mω² and damping c = 2ζmω with ω = ϖΩ, contact time, and static deflection
+        mg/k.
 
-        Of a Hertz contact that is where K p^{3/2} = 1.
+        They are in N/m, N s/m, s and m. For a Hertz contact the deflection is that at which K
+        p^{3/2} = 1.
         """
         omega = float(self.contact.frequency_ratio) * self.table.angular_frequency
         deflection = self.table.gravity / omega**2
@@ -116,7 +120,7 @@ class Case:
     def permanent_contact(self) -> float:
         """Λ up to which the ball stays down; NaN for a Hertz contact.
 
-        At rest that contact has the stiffness of its static deflection, not k.
+        Such a contact at rest has the stiffness of its static deflection, and not k.
         """
         if self.law is not None:
             return math.nan

@@ -1,13 +1,13 @@
-r"""The case from what is known of it: a table, and a contact that two numbers fix.
+r"""The case from its data: a table, and a contact that two numbers determine.
 
-Of the free impact that ends at the angle π - 2α (:mod:`bouncing_ball.contacts.release`) ::
+A free impact ends at the angle π - 2α (:mod:`bouncing_ball.contacts.release`), so that ::
 
     ω_d t = π - 2α,   ω_d = ω√(1 - ζ²),   ω² = k/m,   c = 2ζmω
 
-A drop test measures r = √(h′/h), whatever releases the contact. A Hertz contact has the
-force ``k x^{3/2} + C √(mk) x^{1/4} x′``, k = (4/3) E* √R, with the damping of Tsuji: its r
-is the same at every speed (:mod:`bouncing_ball.contacts.laws.tsuji`), and so E*, R and r are
-all of it. Of two elastic bodies, the ball and the table (Hertz), ::
+A drop test measures r = √(h′/h) under any release rule. A Hertz contact has the
+force ``k x^{3/2} + C √(mk) x^{1/4} x′``, k = (4/3) E* √R, with the damping of Tsuji. Its r
+is the same at every speed (:mod:`bouncing_ball.contacts.laws.tsuji`), so that E*, R and r
+determine it. For two elastic bodies, the ball and the table (Hertz), ::
 
     1/E* = (1 - ν₁²)/E₁ + (1 - ν₂²)/E₂
 
@@ -29,11 +29,11 @@ from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
 
-# What says how stiff a contact is; a modulus goes with a radius.
+# Parameters that determine the stiffness of a contact; a modulus goes with a radius.
 STIFF = ("stiffness", "contact_time", "reduced_modulus", "youngs_modulus")
 MATERIALS = ("youngs_modulus", "poissons_ratio", "table_youngs_modulus", "table_poissons_ratio")
 """Moduli E and Poisson's ratios ν of the ball and of the table, from which E* follows."""
-# What says how much it loses; the height of a rebound goes with that of the drop.
+# Parameters that determine its loss; the height of a rebound goes with that of the drop.
 LOSSY = ("damping", "damping_ratio", "restitution", "measured_restitution", "rebound_height")
 _PAIRS = {"rebound_height": "drop_height"}
 
@@ -44,7 +44,11 @@ STANDARD_GRAVITY = 9.80665
 
 
 def _one_of(given: Given, names: tuple[str, ...], what: str, give: str = "") -> str:
-    """The one of some parameters that is given; none is an error if ``give`` says what to give."""
+    """The one of some parameters that is given.
+
+    If none is given, it is an error if ``give`` names what to give, and otherwise the name is
+    empty.
+    """
     found = [name for name in names if name in given]
     if len(found) > 1:
         both = " and ".join(f"{{{name}}}" for name in found)
@@ -55,12 +59,13 @@ def _one_of(given: Given, names: tuple[str, ...], what: str, give: str = "") -> 
 
 
 def loss(given: Given, release: Release) -> float:
-    """Damping ratio ζ of a contact whose stiffness it does not need.
+    """Damping ratio ζ of a contact whose loss is given without its stiffness.
 
     Raises
     ------
     ModelError
-        If nothing says it, or two parameters do, or a damping c, or if r or ζ is out of range.
+        If no parameter gives the loss, or two do, or a damping c, which needs the stiffness, or if
+        r or ζ is out of range.
 
     Examples
     --------
@@ -86,7 +91,7 @@ def loss(given: Given, release: Release) -> float:
 
 
 def _oscillating(zeta: float, release: Release, name: str) -> float:
-    # Where no damper pulls, an overdamped ball comes back, too.
+    # If the damper does not pull, a ball on an overdamped contact comes back as well.
     pulls = release is Release.DISPLACEMENT
     bounces = not pulls or (zeta < 1 and SpringDamper(1.0, zeta, release).restitution > 0)
     if not bounces:
@@ -96,17 +101,18 @@ def _oscillating(zeta: float, release: Release, name: str) -> float:
 
 
 def reduced_modulus(given: Given) -> float | None:
-    """E* of a Hertz contact in Pa, given or by the materials of both bodies; None of another.
+    """E* of a Hertz contact in Pa, given or from the materials of both bodies; None for another
+    contact.
 
     Raises
     ------
     ModelError
-        If a part of them is missing.
+        If a part of the data is missing.
 
     Examples
     --------
-    The same material twice, without lateral contraction: half its modulus. Against a table that is
-    much stiffer, the ball's own:
+    For two bodies of the same material, without lateral contraction, it is half the modulus; on a
+    much stiffer table it is the modulus of the ball:
 
     >>> same = dict.fromkeys(MATERIALS, 0.0) | {"radius": 1.0}
     >>> reduced_modulus(same | {"youngs_modulus": 2.0, "table_youngs_modulus": 2.0})
@@ -136,7 +142,8 @@ def reduced_modulus(given: Given) -> float | None:
 
 
 def hertz(mass: float, modulus: float, radius: float, restitution: float, table: Table) -> Tsuji:
-    """The law of a Hertz contact with E* and R, dimensionless: K = k √g/(mΩ³), C of r.
+    """The dimensionless law of a Hertz contact with E* in Pa and R in m: K = k √g/(mΩ³), and C of
+    r.
 
     Examples
     --------
@@ -150,7 +157,18 @@ def hertz(mass: float, modulus: float, radius: float, restitution: float, table:
 
 
 def table_of(given: Given) -> Table:
-    """The table, from one of the ways to say how fast and one to say how far it moves."""
+    """The table, from one parameter for its rate and one for its displacement.
+
+    Raises
+    ------
+    ModelError
+        If one of them is missing or given twice.
+
+    Examples
+    --------
+    >>> table_of({"period": 2 * math.pi, "acceleration": 3.0, "gravity": 1.0}).table_amplitude
+    3.0
+    """
     fast = ("frequency", "angular_frequency", "period")
     rate = _one_of(given, fast, "how fast the table moves", "{frequency}, such as 50 Hz")
     ways = "{acceleration}, such as 2 g, or {table_amplitude}, such as 0.1 mm"
@@ -162,13 +180,30 @@ def table_of(given: Given) -> Table:
 
 
 def meant(asked: Sequence[int], restitution: float, amplitude: float) -> int:
-    """The lowest family that is stable in the restitution model, or the first asked for."""
+    """The lowest of the families that is stable in the restitution model, or the first one.
+
+    Examples
+    --------
+    With r = 0.85 and Λ = 1.1 the 1-T orbit is beyond its period doubling:
+
+    >>> meant([1, 2, 3], 0.85, 1.1)
+    2
+    """
     orbits = RestitutionModel(restitution).orbit(np.array(asked), amplitude)
     return asked[int(np.argmax(orbits.exists & orbits.is_stable()))]
 
 
 def case_of(given: Given, table: Table, release: Release, asked: Sequence[int]) -> Case | None:
     """The case whose contact is given; None without any stiffness.
+
+    Parameters
+    ----------
+    given : mapping of str to float
+        Parameters in SI units, by name.
+    table : Table
+    release : Release
+    asked : sequence of int
+        Families n, of which the first stable one gives the impact speed of a Hertz contact.
 
     Raises
     ------
@@ -198,7 +233,7 @@ def case_of(given: Given, table: Table, release: Release, asked: Sequence[int]) 
         else:
             zeta = loss(given, release)
         return Case(mass, table, SpringDamper(omega / table.angular_frequency, zeta, release))
-    # In the unit of time in which the contact's own frequency is 1.
+    # In the unit of time in which the frequency of the contact is 1.
     unit, law = SpringDamper(1.0, loss(given, release), release), None
     if modulus is None:
         duration = given["contact_time"] / table.time

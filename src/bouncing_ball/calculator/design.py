@@ -32,12 +32,12 @@ from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.signatures import Range
 
 STEPS = 50
-"""Steps in one contact."""
+"""Time steps in one contact, for the rule of the largest time step."""
 STEP_RULE = f"a contact takes {STEPS} steps, the default of MFiX-Exa (mfix.tcoll_ratio)"
 
-# Families looked at if none is asked for: as many as the paper shows, and some more.
+# The families by default: those that the paper shows, and some more.
 _FAMILIES = range(1, 9)
-# Beyond, the squares of ϖ and Λ leave no digits; as on the rest of the command line.
+# Beyond this the squares of ϖ and Λ leave no digits; the rest of the command line has the same.
 _LARGEST = 1e8
 _LOSS = Unit("", "0.85", Range(0, 1, "(]"))
 _POISSON = Unit("", "0.3", Range(-1, 0.5, "(]"))
@@ -86,11 +86,11 @@ def design(
     mass
         Mass m of the ball.
     frequency, angular_frequency, period
-        How fast the table moves: one of the three. Hz are cycles, rad/s are not.
+        Rate of the table: give one of the three. Hz are cycles, rad/s are not.
     table_amplitude, acceleration
-        How far the table moves, in m or m/s²: one of the two. "2 g" is twice the standard gravity.
+        Motion of the table, in m or m/s²: give one of the two. "2 g" is twice standard gravity.
     gravity
-        9.80665 m/s² by default; in a gear pair the drag torque takes its part.
+        g, 9.80665 m/s² by default; in a gear pair the drag torque over the inertia.
     stiffness
         k of the contact. Without any stiffness a contact is chosen.
     contact_time
@@ -102,13 +102,14 @@ def design(
     table_youngs_modulus, table_poissons_ratio
         E and ν of the table.
     radius
-        R of a Hertz contact: the radius of curvature, of a ball on a plane table its own.
+        R of a Hertz contact: the radius of curvature, which for a ball on a plane is its radius.
     damping
         c of the contact, with its stiffness.
     damping_ratio
         Damping ratio ζ.
     restitution
-        Restitution coefficient r by Eq. 16; for an engine, r under its release.
+        Restitution coefficient of a free impact that ends at the table's level,
+        r = exp(-πζ/√(1 - ζ²)), Eq. 16 of the paper; for an engine, r under its release.
     measured_restitution
         Restitution coefficient that a free impact has under the release rule.
     drop_height
@@ -118,17 +119,17 @@ def design(
     n
         Index of the family; by default the first eight, and a verdict on the first stable one.
     release
-        "displacement", the default without an engine, or "force": what ends a contact.
+        What ends a contact: "displacement", the default without an engine, or "force".
     quantity
-        What must be right: max_height, bounce_velocity, phase, apparent_restitution,
-        saddle_node, period_doubling or permanent_contact.
+        The quantity that must be accurate: max_height, bounce_velocity, phase,
+        apparent_restitution, saddle_node, period_doubling or permanent_contact.
     tolerance
-        How far it may be off, as a share: "5 %" or 0.05.
+        Relative error of the quantity that is allowed: "5 %" or 0.05.
     engine
         The engine whose contact this is: generic, mujoco, lammps, liggghts, pybullet, drake or
         mercurydpm. Its release is that of the contact, and a restitution is met under it.
     restitution_error
-        What the engine's time step may leave of error in the restitution of a free impact.
+        Error of a free impact's restitution that the engine's time step may cause.
 
     Raises
     ------
@@ -207,7 +208,7 @@ def contact(
     Raises
     ------
     ModelError
-        In one line, if something is missing, contradictory or of the wrong kind.
+        One line, if something is missing, contradictory or of the wrong kind.
 
     Examples
     --------
@@ -217,7 +218,7 @@ def contact(
     """
     given = _read(parameters)
     rule, error = _under(engine, release, given), given.get("restitution_error", ERROR)
-    # At 1 rad/s the frequency ratio is the contact's own frequency.
+    # With a table of 1 rad/s the frequency ratio is the frequency of the contact.
     case = case_of(given, Table(1.0, 1.0, STANDARD_GRAVITY), rule, [1])
     if case is None:
         raise ParameterError("no stiffness: give {stiffness}, or {contact_time}")
@@ -239,7 +240,7 @@ def contact(
 
 
 def _under(engine: str | None, release: str | None, given: dict[str, float]) -> Release:
-    """The release of a contact; a restitution is then that under the release of the engine."""
+    """The release of a contact; a restitution is then the one under the release of the engine."""
     if engine is None:
         return Release.of(release or Release.DISPLACEMENT)
     rule = engine_named(engine).release(release)
@@ -275,7 +276,7 @@ def _read(parameters: Mapping[str, Any]) -> dict[str, float]:
 
 
 def _judged(found: Sequence[Family]) -> Family:
-    """The family that a verdict is about: the first stable one, or the first there is."""
+    """The family that a verdict is about: the first stable one, or the first that exists."""
     return max(found, key=lambda one: (one.exists, one.is_stable and one.is_admissible))
 
 

@@ -15,9 +15,9 @@ from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits.orbit import Orbit
 
-# A contact is sampled at so many times, and at some more in each radian of the table, because a
-# long one has several tops. The two steps around the greatest are sampled again: they are then
-# a 10⁻⁶th of the contact, and what a parabola has above its samples is 10⁻¹¹ of it.
+# Samples of a contact, and further ones for each radian of the table, because a long contact has
+# several maxima. The two steps around the greatest are sampled again: their length is then
+# a 10⁻⁶th of the contact, and a parabola exceeds its samples by 10⁻¹¹ of its height.
 _SAMPLES, _IN_A_RADIAN = 1001, 16
 
 
@@ -37,7 +37,10 @@ def _loads(orbit: Any) -> tuple[float, float]:
 
     def loads(time: np.ndarray) -> np.ndarray:
         displacement, velocity = orbit.contact_motion(time)
-        return np.array([-displacement, orbit.law.force(np.maximum(-displacement, 0.0), -velocity)])
+        force = orbit.law.force(np.maximum(-displacement, 0.0), -velocity)
+        if orbit.law.impedance is not None:
+            force += orbit.law.impedance * (1 - orbit.amplitude * np.sin(orbit.phase + time))
+        return np.array([-displacement, force])
 
     duration = float(orbit.contact_duration)
     times = np.linspace(0.0, duration, _SAMPLES + int(_IN_A_RADIAN * duration))
@@ -50,7 +53,7 @@ def _loads(orbit: Any) -> tuple[float, float]:
 def by_error_law(case: Case, n: int) -> tuple[Errors, bool]:
     """Moduli of the restitution model's errors by the error law, and whether it holds there.
 
-    That of the permanent contact, |K₂|/ϖ², is not known of a Hertz contact.
+    The error of the permanent contact, |K₂|/ϖ², is not known for a Hertz contact.
 
     Examples
     --------
@@ -87,12 +90,12 @@ def _standing(orbit: Orbit, values: np.ndarray, amplitude: float) -> Standing:
 
 
 def families(case: Case, asked: Sequence[int]) -> tuple[Family, ...]:
-    """The families, of those asked for, in which some model has an orbit.
+    """Those of the families ``asked`` in which some model has an orbit.
 
     Raises
     ------
     NoOrbitError
-        If no model has any of them, with the acceleration that the lowest needs.
+        If no model has one; the message gives the acceleration that the lowest family needs.
 
     Examples
     --------

@@ -1,13 +1,14 @@
-r"""What a ball does in the end, and how well the restitution model has it.
+r"""The motion on which a ball ends, and how accurately the restitution model predicts it.
 
-A ball on a stable orbit stays there. Next to an unstable one it leaves, and the mapper says for
-what (:mod:`bouncing_ball.attractors.mapper`). Motions that repeat alike in both models are compared
-by their greatest height. Of others only means make sense: of the height over time, and of the power
-that the table gives the ball. In a contact, per unit of mass, that is ::
+A ball on a stable orbit stays there. A ball near an unstable one leaves, and the mapper computes
+the motion on which it ends (:mod:`bouncing_ball.attractors.mapper`). Motions that repeat in the
+same way in both models are compared by their greatest height. Other motions are compared by means
+over time of the height, and of the power that the table transfers to the ball. Its work in a
+contact is, per unit of mass, ::
 
     ∫ (z″ + 1) w′ dt = [z′ w′ + w] + ∫ z′ w dt
 
-because w″ = -w. At an instant it is the first term alone, the impulse times w′.
+because w″ = -w. At an instantaneous impact it is the first term alone, the impulse times w′.
 """
 
 from collections.abc import Mapping
@@ -23,28 +24,28 @@ from bouncing_ball.calculator.results import Family, Mean, Motion
 from bouncing_ball.motion.history import history
 from bouncing_ball.motion.sequence import ImpactSequence, Status
 
-# Of a start beside an unstable orbit.
+# Relative change of the velocity of an orbit, for a start beside it.
 _BESIDE = 1e-3
-# Impacts after which a ball that has not repeated is given up.
+# Number of impacts after which the search for a repetition ends.
 _IMPACTS = 600
-# Balls and impacts of a mean, and impacts left out before: of a linear contact, and of a law, which
-# takes a hundred times as long.
+# Balls and impacts of a mean, and impacts left out before, for a linear contact and for a law,
+# which takes a hundred times as long.
 _SAMPLES = {"spring-damper": (128, 500, 100), "hertz": (32, 120, 40)}
-# Of 32 balls or more: 95 % of Student's distribution.
+# Quantile of Student's distribution for an interval of 95 %, with 32 balls or more.
 _STUDENT = 2.04
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 
 @dataclass(frozen=True)
 class _Start:
-    """A first impact."""
+    """A first impact: phase of the table and absolute velocity of the ball."""
 
     phase: float
     velocity: float
 
 
 def of_family(case: Case, family: Family) -> Motion:
-    """What the ball does that starts on the orbit, or beside it if it is not stable."""
+    """The motion of a ball that starts on the orbit, or beside it if it is not stable."""
     lam = case.table.amplitude
     exact, simple = list(case.models)[:2]
     if family.exists and family.is_stable and family.is_admissible:
@@ -59,7 +60,7 @@ def of_family(case: Case, family: Family) -> Motion:
     one, other = found[exact], found[simple]
     ideal = family.standing[simple]
     if ideal.exists and ideal.is_stable and ideal.is_admissible:
-        # Where stability is weak the mapper may not see that it repeats.
+        # If the stability is weak, the mapper may not recognise that the motion repeats.
         stays: dict[str, Any] = {"kind": Kind.ORBIT, "periods": family.n, "impacts": 1}
         other = replace(other, **stays)
     same = all(getattr(one, x) == getattr(other, x) for x in ("kind", "periods", "impacts"))
@@ -92,7 +93,7 @@ def _law(case: Case, name: str) -> Any:
 
 
 def _laid(case: Case, family: Family) -> str | None:
-    """What a ball does that is laid on the table; None if it does the same as on the orbit."""
+    """The motion of a ball that is laid on the table; None if it is that of the orbit."""
     lam = case.table.amplitude
     if lam <= case.permanent_contact:
         return str(Kind.PERMANENT_CONTACT)
@@ -136,13 +137,14 @@ def _means(case: Case, name: str, start: _Start, exact: str) -> tuple[Mean | Non
 
 
 def height_and_power(sequence: ImpactSequence, before: int = 0) -> tuple[float, float]:
-    """Means over time of a ball's height and of the power that the table gives it, dimensionless.
+    """Means over time of a ball's height and of the power that the table transfers, dimensionless.
 
-    From the impact ``before`` to the last one recorded.
+    They are taken from the impact number ``before`` to the last one recorded.
 
     Examples
     --------
-    An elastic ball on a table at rest flies at two thirds of its height, and takes nothing:
+    An elastic ball on a table at rest has two thirds of its greatest height in the mean, and
+    receives no power:
 
     >>> from bouncing_ball.motion.simulation import simulate
     >>> height, power = height_and_power(simulate(1.0, 0.0, 0.0, -2.0, 5))
@@ -158,20 +160,20 @@ def height_and_power(sequence: ImpactSequence, before: int = 0) -> tuple[float, 
     low = sequence.release_displacement[part] + left
     flown = (low + (bounce / 2 - flight / 6) * flight) * flight
     work = bounce * lam * np.cos(end) - impact * lam * np.cos(phase) + left - lift
-    # In contact by Gauss's rule.
+    # The integrals over the contact are computed by Gauss's rule.
     half = duration[:, np.newaxis] / 2
     inside = history(sequence, (time[part, np.newaxis] + half * (1 + _NODES)).ravel())
     shape = (*duration.shape, _NODES.size)
     height, pushed = inside.height, inside.velocity * inside.table
     held, moved = (half[:, 0] * (x.reshape(shape) @ _WEIGHTS) for x in (height, pushed))
-    # Where a contact is an instant the nodes are at its start.
+    # If a contact is an instant all nodes are at its start, and the integral is zero.
     held, moved = (np.where(duration > 0, x, 0.0) for x in (held, moved))
     total = time[-1] - time[before]
     return float(np.sum(flown + held) / total), float(np.sum(work + moved) / total)
 
 
 def headline(motion: Motion, family: Family) -> str:
-    """What the ball will do, in one sentence."""
+    """The motion of the ball, in one sentence."""
     orbit = f"{family.n}-T orbit"
     if motion.kind == Kind.ORBIT and motion.restitution_kind is None:
         said = f"A ball on the {orbit} stays on it: it is stable"

@@ -1,4 +1,4 @@
-"""The stiffness that a tolerance needs: the exact error, inverted by a root."""
+"""The stiffness that a tolerance needs, by a root of the exact error."""
 
 import numpy as np
 
@@ -10,18 +10,29 @@ from bouncing_ball.calculator.results import Needed
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import NoOrbitError
 
-# From contacts that last a good part of the table's period to stiffer ones than
-# any simulation has; so fine that no two crossings are seen as none.
+# From contacts that last a considerable part of the table's period to stiffer ones than
+# any simulation has; fine enough not to miss two crossings between neighbours.
 RATIOS = np.geomspace(1.0, 1e6, 97)
 
 NO_ORBIT = "the restitution model has no such orbit"
-"""One more :class:`~bouncing_ball.accuracy.thresholds.ThresholdStatus`."""
+"""A status in addition to :class:`~bouncing_ball.accuracy.thresholds.ThresholdStatus`."""
 
 
 def needed(
     quantity: str, tolerance: float, contact: SpringDamper, n: int, amplitude: float
 ) -> Needed:
-    """The ϖ that a tolerance needs, for contacts with the damping and release of this one.
+    """The ϖ that a tolerance needs, for contacts with the damping and the release of a given one.
+
+    Parameters
+    ----------
+    quantity : str
+        One of :class:`~bouncing_ball.accuracy.quantities.Quantity`.
+    tolerance : float
+        Relative error tolerated.
+    contact : SpringDamper
+    n : int
+    amplitude : float
+        Λ.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What the page of a design shows, computed: the validity chart and the motion."""
+"""The data of a design's page: the validity chart and the motion."""
 
 import numpy as np
 import xarray as xr
@@ -10,22 +10,23 @@ from bouncing_ball.calculator.results import Design
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.release import Release
 
-# Restitution coefficients of the chart: as many as make the lines smooth, and from
-# which on. A linear contact that only pushes has r > e⁻².
+# Number of restitution coefficients of the chart, enough for smooth lines, and the smallest of
+# them: a linear contact that only pushes has r > e⁻².
 _CHART = 33
 _LEAST = {Release.DISPLACEMENT: 0.05, Release.FORCE: 0.15}
 _SAMPLES = 1201
-# Of the enlarged contact: how many contact times are shown before it and in all.
+# The enlarged contact shows so many contact times before it, and so many in all.
 _BEFORE, _SHOWN = 0.75, 3.0
 
 
 def page(design: Design) -> xr.Dataset:
     """The validity chart over r, heights over one cycle, and the gap in one contact, in SI units.
 
-    Variables are NaN where there is no orbit or no threshold.
+    The dataset has ``needed`` (simple, restitution), a ϖ; ``table`` (time,) and ``ball`` (model,
+    time); ``gap`` (model, since). NaN where there is no orbit or no threshold.
     """
     table, rule = design.case.table, design.case.contact.release
-    # Below the first r the family does not exist at Λ; the contact's own r is shown.
+    # Below the first r the family does not exist at Λ; the r of the contact is always shown.
     half, lam = design.n * np.pi, table.amplitude
     least = (half - lam) / (half + lam)
     least = min(max(least, _LEAST[rule]), design.corrected.restitution)
@@ -38,13 +39,13 @@ def page(design: Design) -> xr.Dataset:
     # One cycle from the table's phase 0, and a bit of the next.
     angle = np.linspace(0.0, 2 * np.pi * (design.n + 0.25), _SAMPLES)
     orbits = {name: model.orbit(design.n, lam) for name, model in design.case.models.items()}
-    # About the contact of the exact model, or of the first there is.
+    # Around the contact of the exact model, or of the first model with an orbit.
     start = next(float(orbit.phase) for orbit in orbits.values() if orbit.exists)
     duration = float(design.case.contact.free_duration)
     since = np.linspace(-_BEFORE * duration, (_SHOWN - _BEFORE) * duration, _SAMPLES)
 
     def heights(at: np.ndarray) -> np.ndarray:
-        """In units of length, by model."""
+        """Heights at phases of the table in units of length, by model."""
         return np.array([orbit.path(at - orbit.phase)[0] for orbit in orbits.values()])
 
     gap = heights(start + since) - lam * np.sin(start + since)

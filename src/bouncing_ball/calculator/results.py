@@ -1,4 +1,4 @@
-"""The results of the calculator: each stands once, with its words and its unit.
+"""The results of the calculator, each of which stands once, with its words and its unit.
 
 JSON has all of them under their names; the text and the page list those that have words.
 """
@@ -24,18 +24,18 @@ QUANTITIES = {
     Quantity.PERIOD_DOUBLING: "period doubling",
     Quantity.PERMANENT_CONTACT: "threshold of permanent contact",
 }
-"""The quantities as a sentence calls them."""
+"""The names of the quantities in sentences."""
 
 
 class Row(NamedTuple):
-    """How a result is listed: its words, and the unit of :func:`~.units.shown`."""
+    """How a result is listed: its words, and its unit for :func:`~.units.shown`."""
 
     words: str
     unit: str = ""
 
 
 def rows(result: Any) -> list[tuple[str, str]]:
-    """Words and text of all results that are listed, in order, those of parts within.
+    """Words and text of all results that are listed, in order, with those of parts within.
 
     Examples
     --------
@@ -55,7 +55,7 @@ def rows(result: Any) -> list[tuple[str, str]]:
 
 @dataclass(frozen=True)
 class Standing:
-    """Where a case stands in its family, in one model.
+    """The place of a case in its family, in one model.
 
     ``saddle_node`` and ``period_doubling`` are Λ; the margins are the shares by
     which Λ may fall to the one, ``1 - Λ_SN/Λ``, and rise to the other,
@@ -73,12 +73,12 @@ class Standing:
 
 @dataclass(frozen=True)
 class Family:
-    """The n-T orbit of a case, in SI units, and how wrong the simple models are.
+    """The n-T orbit of a case, in SI units, and the errors of the simple models.
 
     ``exists``, ``is_stable`` and ``is_admissible`` are those of the exact model, which comes
-    first in ``standing``. The errors are the moduli of relative errors: ``errors`` of the
+    first in ``standing``. The errors are moduli of relative errors: ``errors`` of the
     restitution and ``corrected_errors`` of the corrected model, ``law_errors`` those of the
-    restitution model by the error law, which is stated where ``law_holds``.
+    restitution model by the error law, which holds where ``law_holds``.
     """
 
     n: int
@@ -108,14 +108,14 @@ class Mean:
 
 @dataclass(frozen=True)
 class Motion:
-    """What a ball does in the end that starts on the orbit of the verdict, or beside it.
+    """The motion on which a ball ends that starts on the orbit of the verdict, or beside it.
 
     ``kind`` is "orbit", "subharmonic", "locked", "permanent contact", "chaotic" or "undecided" in
     the exact model, with the periods of the table and the impacts after which it repeats, 0 if it
-    does not; ``laid`` that of a ball laid on the table, None if it is the same. Where the orbit is
-    not stable the same follows for the restitution model, and by model either the ``greatest``
-    height of motions that repeat alike, or means over time of the height and of the power that
-    the table gives.
+    does not; ``laid`` is the kind for a ball laid on the table, None if it is the same. If the
+    orbit is not stable, the same numbers follow for the restitution model, and for each model
+    either the ``greatest`` height, of motions that repeat in the same way, or means over time of
+    the height and of the power that the table transfers.
     """
 
     kind: str
@@ -137,7 +137,7 @@ class Needed:
     ``frequency_ratio`` is the largest ϖ at which the restitution model's error
     crosses the tolerance, if its ``status`` is "found"; ``by_law`` is |K|/ε of the error
     law (the root of |K₂|/ε for the permanent contact), ``corrected`` the largest crossing
-    of the corrected model. None where there is none; the status says why.
+    of the corrected model. None where there is none; the status gives the reason.
     """
 
     quantity: str
@@ -151,7 +151,7 @@ class Needed:
 
 @dataclass(frozen=True)
 class TimeStep:
-    """The largest time step that resolves the contact, in s, and where the rule is from."""
+    """The largest time step that resolves the contact, in s, and the origin of this rule."""
 
     largest: Annotated[float, Row("largest time step", "s")]
     rule: str
@@ -173,7 +173,7 @@ class Corrected:
 
 @dataclass(frozen=True)
 class Contact:
-    """A contact without a table, in SI units; ``engine`` has the settings that it asks for.
+    """A contact without a table, in SI units, and the settings of the engine that it is for.
 
     ``natural_frequency`` is ω = √(k/m) in rad/s: on a table that moves with Ω it gives ϖ = ω/Ω.
     """
@@ -192,12 +192,12 @@ class Contact:
 
 @dataclass(frozen=True)
 class Design:
-    """What an engineer needs to know of a contact; times in s, lengths in m, forces in N.
+    """The answer of the calculator about a contact; times in s, lengths in m, forces in N.
 
-    ``frequency_ratio``, ``damping_ratio`` and ``amplitude`` are ϖ, ζ and Λ; ``restitution``
-    is that of a free impact by the release rule, ``measured_restitution`` that by the rule of
-    this contact; ``n`` is the family of the verdict and ``question`` what was asked. Up to
-    ``permanent_contact`` a ball may stay down; it is None of a Hertz contact.
+    ``frequency_ratio``, ``damping_ratio`` and ``amplitude`` are ϖ, ζ and Λ; ``restitution`` is that
+    of a free impact by the release rule, ``measured_restitution`` that by the rule of this contact;
+    ``n`` is the family of the verdict and ``question`` holds the arguments of the call. Up to Λ =
+    ``permanent_contact`` a ball may stay down; it is None for a Hertz contact.
     """
 
     frequency_ratio: Annotated[float, Row("frequency ratio ϖ")]
@@ -229,17 +229,17 @@ class Design:
     question: dict[str, Any]
 
     def engine(self, name: str, release: str | None = None) -> EngineSettings:
-        """What to write into an engine, see :mod:`bouncing_ball.engines`, and what it will do.
+        """The settings to write into an engine, see :mod:`bouncing_ball.engines`, and their effect.
 
-        A restitution that was asked for is met under the engine's own release, whichever that
-        of this design is.
+        A given restitution is met under the release of the engine, whichever release this design
+        has.
 
         Raises
         ------
         ModelError
             If there is no such engine, or it has no such release or no such contact.
         NoOrbitError
-            If the contact that the engine then has is in no orbit.
+            If the contact of the engine then has no orbit.
         """
         # It makes designs of this class.
         from bouncing_ball.calculator.design import design
@@ -249,7 +249,7 @@ class Design:
         return found.engine_settings()
 
     def engine_settings(self) -> EngineSettings:
-        """The settings of the engine that this design was asked for."""
+        """The settings of the engine for which this design was made."""
         contact = Physical(self.case.mass, self.stiffness, self.damping)
         engine, one = engine_named(self.question["engine"]), self.judged
         rule, error = self.case.contact.release, self.question["restitution_error"]

@@ -1,6 +1,6 @@
-"""Quantities with units, read at the edge: SI floats inside.
+"""Quantities with units, converted at the interface: SI numbers inside.
 
-A text is one number and, after it, its unit: ``50 Hz``, ``0.5 mm``, ``2e6 N/m``.
+A text is a number followed by its unit: ``50 Hz``, ``0.5 mm``, ``2e6 N/m``.
 A plain number is in SI units. Only the unit is given to pint, and never an
 expression: texts of a command line are not evaluated.
 
@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.signatures import Range
 
-# A number, and what is left.
+# A number, and the rest of the text.
 _TEXT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
 # Letters, products, quotients and powers of one digit. A power of a power would
 # be evaluated, however large. A digit after a letter is a power as well: m/s2.
@@ -28,9 +28,9 @@ _UNIT = re.compile(r"(?:[^\W\d]|[ ·*/%°²³¹⁻]|\^-?\d(?![\d^])|_0|1(?= */))
 
 
 class Unit(NamedTuple):
-    """What a parameter is, as its annotation: its SI unit, an example, and its range.
+    """The annotation of a parameter: its SI unit, an example, and its range.
 
-    Products and powers of a few numbers in the default range stay floating-point numbers.
+    Products and powers of a few numbers in the default range remain floating-point numbers.
     """
 
     name: str
@@ -40,7 +40,7 @@ class Unit(NamedTuple):
 
 @cache
 def _registry() -> Any:
-    # Imported where it is needed: it takes half a second, and plain numbers do without.
+    # Imported where it is needed, because it takes half a second and plain numbers do not need it.
     import pint
 
     registry: Any = pint.UnitRegistry(None, on_redefinition="ignore")
@@ -56,16 +56,16 @@ def number(name: str, value: Any, kind: Unit) -> float:
     Parameters
     ----------
     name : str
-        What the parameter is called in an error.
+        The name of the parameter in an error.
     value : float, str or pint.Quantity
         A plain number is in SI units.
     kind : Unit
-        What it is; its range is not checked here.
+        Its unit and an example; its range is not checked here.
 
     Raises
     ------
     ModelError
-        In one line, if it is not a finite number with a unit of the right kind.
+        One line, if it is not a finite number with a unit of the right kind.
 
     Examples
     --------
@@ -102,7 +102,7 @@ write it as '50 Hz'
 
 
 def _converted(given: str, value: float, unit: str, kind: Unit) -> float:
-    """A value in a unit as one in SI units; as an acceleration g is not the gram."""
+    """A value in SI units; for an acceleration the unit g is standard gravity, and not the gram."""
     registry, why = _registry(), "has an unknown unit"
     if (kind.name, unit) == ("m/s^2", "g"):
         unit = "standard_gravity"
@@ -112,7 +112,7 @@ def _converted(given: str, value: float, unit: str, kind: Unit) -> float:
         if _UNIT.fullmatch(unit.replace("**", "^")):
             one = registry.Quantity(value, registry.parse_units(unit))
             why = f"is of the dimension {one.dimensionality}"
-            # To the last digit but one: the digits that a user wrote are kept.
+            # Fifteen digits, so that the digits that a user wrote are kept.
             return float(f"{one.m_as(kind.name):.15g}")
     raise ParameterError(f"{given} {why}: write it as {kind.example!r}")
 
@@ -121,7 +121,7 @@ _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n"}
 
 
 def percent(share: float) -> str:
-    """A share that was asked for, with the digits it was given with.
+    """A share as a percentage, with six digits at most.
 
     Examples
     --------
@@ -132,7 +132,7 @@ def percent(share: float) -> str:
 
 
 def shown(value: float | None, unit: str = "") -> str:
-    """A value to read: four digits, with a prefix of its unit; a share in "%", two digits.
+    """A value as text: four digits with a prefix of its unit, or a share in "%" with two digits.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The answer in one sentence, and why."""
+"""The verdict in one sentence, with its reason."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -12,7 +12,7 @@ from bouncing_ball.contacts.release import Release
 
 
 class Verdict(NamedTuple):
-    """Whether the restitution model is good enough, in one sentence, and the reason."""
+    """Whether the restitution model is good enough, the verdict in one sentence, and the reason."""
 
     is_good_enough: bool
     verdict: str
@@ -25,7 +25,9 @@ def _subject(quantity: str, n: int) -> str:
 
 
 def _disagreement(family: Family) -> str | None:
-    """What the restitution model says of the orbit that is not so, before any number."""
+    """A qualitative disagreement of the restitution model's orbit with the exact one, if there is
+    any.
+    """
     simple, orbit = family.standing["restitution"], f"{family.n}-T orbit"
     if family.exists != simple.exists:
         missed = f"it misses the {orbit}, which the contact has"
@@ -38,7 +40,9 @@ def _disagreement(family: Family) -> str | None:
 
 
 def assessed(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
-    """The verdict on a given contact: the orbits agree, and the error is within the tolerance."""
+    """The verdict on a given contact: whether the orbits agree and the error is within the
+    tolerance.
+    """
     tolerance, subject = percent(needed.tolerance), _subject(needed.quantity, family.n)
     error, wrong = family.errors[needed.quantity], _disagreement(family)
     if wrong is None and error is None:
@@ -101,7 +105,7 @@ def _within(error: float, margin: float, tolerance: float, found: str, why: str)
 
 
 def _instead(family: Family, needed: Needed) -> str:
-    """Whether the corrected model will do."""
+    """Whether the corrected model is good enough instead."""
     error, corrected = family.corrected_errors[needed.quantity], family.standing["corrected"]
     same = (family.exists, family.is_stable) == (corrected.exists, corrected.is_stable)
     if same and error is not None and error <= needed.tolerance:
@@ -110,7 +114,7 @@ def _instead(family: Family, needed: Needed) -> str:
 
 
 def _reason(needed: Needed, frequency_ratio: float, good: bool, tolerance: str) -> str:
-    """The contact's ϖ against the one that the tolerance needs."""
+    """The ϖ of the contact compared with the one that the tolerance needs."""
     if needed.frequency_ratio is None:
         return f"the error is {needed.status}"
     place = "above" if frequency_ratio >= needed.frequency_ratio else "below"

@@ -1,1 +1,1 @@
-"""The command line, ``bouncing-ball``: one orbit, its limits, one simulation."""
+"""The command line, ``bouncing-ball``: orbits, limits, simulations and designs, and artifacts."""

@@ -1,6 +1,6 @@
-"""What each subcommand answers, as plain dictionaries.
+"""The answers of the subcommands, as plain dictionaries.
 
-Options come from the signatures: of the public calls, and of what is added to them here.
+Options come from signatures: those of the public calls, and of the functions here.
 """
 
 import math
@@ -25,7 +25,7 @@ __all__ = ["error_law", "limits", "lines", "orbit", "permanent_contact", "simula
 
 
 def _described(of: Any, speed: float = math.nan) -> Answer:
-    """r and ζ of a contact; of a contact law its parameters, and r and D at an impact speed."""
+    """r and ζ of a contact; for a contact law its parameters, and r and D at an impact speed."""
     match of:
         case SpringDamper():
             return {
@@ -73,7 +73,7 @@ def limits(n=1, **impact: Any) -> Answer:
     Raises
     ------
     NoOrbitError
-        If the branch has not both.
+        If the branch lacks one of them.
     """
     of = calls.model_of_limits(n, **impact)
     found: Answer = {}
@@ -84,7 +84,7 @@ def limits(n=1, **impact: Any) -> Answer:
             raise NoOrbitError(f"no {what} was found on {branch}")
         found[name] = {key: float(getattr(orbit, key)) for key in OBSERVABLES[:3]}
         found[name]["is_admissible"] = bool(orbit.is_admissible())
-    # The limits have two impact speeds; a law is described at the restitution model's.
+    # The limits have two impact speeds; a law is described at that of the restitution model.
     return found | _described(orbit.law, float(restitution_speed(n, of)[0]))
 
 
@@ -92,8 +92,8 @@ def limits(n=1, **impact: Any) -> Answer:
 def error_law(n=1, **given: Any) -> Answer:
     """K of each quantity: the modulus of its relative error is K/ϖ + O(1/ϖ²).
 
-    The restitution model has the contact's own r. ``signed`` has the sign of the
-    exact value minus the restitution model's; what has no first-order law is null.
+    The restitution model has the r of a free impact on the contact. ``signed`` has the sign of the
+    exact value minus the restitution model's; a quantity without a first-order law is null.
 
     Raises
     ------
@@ -120,12 +120,13 @@ def error_law(n=1, **given: Any) -> Answer:
 def permanent_contact(*, frequency_ratio: calls.FrequencyRatio, **given: Any) -> Answer:
     """The Λ up to which the ball stays on the table."""
     of: Any = calls.model(model="spring-damper", frequency_ratio=frequency_ratio, **given)
-    return {"threshold": float(of.permanent_contact_threshold())} | _described(of.contact)
+    threshold = float(of.permanent_contact_threshold())
+    return {"threshold_amplitude": threshold} | _described(of.contact)
 
 
 @takes(calls.simulate)
 def simulate(amplitude, phase, velocity, impacts, **impact: Any) -> Answer:
-    """The sequence of impacts of one ball, as lists; null for what does not happen."""
+    """The sequence of impacts of one ball, as lists; null for an event that does not happen."""
     of = calls.model_of_impact(amplitude, phase, velocity, **impact)
     found = of.simulate(amplitude, phase, velocity, impacts)
     names = ("time", "phase", "impact_velocity", "contact_duration", "bounce_velocity")

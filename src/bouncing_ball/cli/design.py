@@ -1,4 +1,4 @@
-"""``bouncing-ball design``: the calculator's answer, as JSON or to read."""
+"""``bouncing-ball design``: the calculator's answer, as JSON or as text."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, replace
@@ -25,7 +25,7 @@ _TABLE = ("frequency", "angular_frequency", "period", "table_amplitude", "accele
 
 
 class Answer(NamedTuple):
-    """What was found, and whether all of it is printed."""
+    """The result, and whether all of it is printed."""
 
     found: Design | Contact
     whole: bool = True
@@ -57,7 +57,7 @@ def design(
     parameters
         Of another engine: its parameter, such as kn=1e5.
     all_families
-        All that is known of every family; else a line of each, unless one is asked for.
+        Print all results for every family; by default a line for each, unless n is given.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def design(
 def _read(
     name: str, parameters: Mapping[str, Any], given: Mapping[str, Any]
 ) -> tuple[dict[str, Any], tuple[str, ...]]:
-    """An engine's parameters as k and c, and what else is to be said of them."""
+    """An engine's parameters as k and c, and remarks on them."""
     engine = engine_named(name)
     for other in (*STIFF, *LOSSY):
         if given.get(other) is not None:
@@ -101,7 +101,7 @@ def _read(
         parameters, None if mass is None else number("mass", mass, calculator.quantities()["mass"])
     )
     found = {"stiffness": contact.stiffness, "damping": contact.damping}
-    # For another engine it is that one's release.
+    # For another engine the release is the one of that engine.
     rule = given.get("release")
     rule = rule if given.get("engine") else str(engine.release(rule))
     return {**given, **found, "release": rule}, engine.remarks(parameters)
@@ -140,7 +140,7 @@ def _family_lines(one: Family) -> list[str]:
 
 
 def document(given: Answer) -> dict[str, Any]:
-    """The answer as JSON has it, with the settings of the engine that it is for."""
+    """The answer as its JSON has it, with the settings of the engine that it is for."""
     found = given.found
     answer = asdict(found)
     if isinstance(found, Design) and found.question["engine"]:
@@ -168,7 +168,7 @@ def _engine_lines(engine: EngineSettings) -> list[str]:
 
 
 def _short(found: Design) -> list[str]:
-    """A line of each family, and how to have the rest."""
+    """A line for each family, and the options that print the rest."""
     quantity = found.needed.quantity
     error = f"{QUANTITIES[Quantity(quantity)]} off by"
     head = (
@@ -187,18 +187,18 @@ def _short(found: Design) -> list[str]:
 
 
 def _whole(found: Design) -> list[str]:
-    """All that is known of the families."""
+    """All results for each family."""
     return [
         *(line for one in found.orbits for line in _family_lines(one)),
         "",
-        # That of the permanent contact is the same in all families.
+        # The error of the permanent contact is the same in all families.
         _line("relative error", "restitution", *_SIMPLE),
         _error(found.orbits[0], Quantity.PERMANENT_CONTACT),
     ]
 
 
 def lines(given: Answer) -> list[str]:
-    """The answer to read, the verdict first."""
+    """The answer as text, with the verdict first."""
     found = given.found
     if isinstance(found, Contact):
         about = [_line(*row) for row in rows(replace(found, engine=None))]

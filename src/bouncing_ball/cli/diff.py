@@ -14,9 +14,9 @@ from bouncing_ball.datasets.files import write_text
 def diff(
     record: Path, results: Path, artifacts: tuple[str, ...] = (), /, *, html: Path | None = None
 ) -> NoReturn:
-    """Compare, write the page if it is asked for, print the short table.
+    """Compare, write the page if ``html`` is given, and print the short table.
 
-    Exits with 0 if the artifacts say the same, 1 if they differ, and 2 if
+    Exits with 0 if the artifacts agree, 1 if they differ, and 2 if
     something could not be compared.
 
     Parameters
@@ -26,7 +26,7 @@ def diff(
     results
         Folder with the new artifacts.
     artifacts
-        As fig08 or table1; all of them if none is named.
+        Such as fig08 or table1; all of them if none is named.
     html
         One page with all pictures.
     """

@@ -19,7 +19,7 @@ Points = Annotated[int, Range(2, 100_000, "[]")]
 
 
 def _motion(found: Labelled) -> Answer:
-    """What is said of one motion; null for an exponent that is infinite or not known."""
+    """The answer about one motion; null for an exponent that is infinite or not known."""
     exponents = {name: float(found[name]) for name in ("lyapunov_exponent", "lyapunov_error")}
     answer: Answer = {name: found[name].item() for name in ("kind", "periods", "impacts")}
     answer |= {name: x if math.isfinite(x) else None for name, x in exponents.items()}
@@ -47,7 +47,7 @@ def diagram(
     amplitudes
         First and last excitation amplitude Λ.
     points
-        Amplitudes, at equal steps.
+        Number of amplitudes, at equal steps.
     plot
         A figure: .pdf, .png or .svg.
 

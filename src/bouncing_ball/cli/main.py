@@ -1,4 +1,4 @@
-"""Entry point of ``bouncing-ball``."""
+"""Entry point of ``bouncing-ball``: one subcommand, its answer, and the exit status."""
 
 import json
 import sys
@@ -8,17 +8,18 @@ from importlib import import_module
 from typing import Any
 
 from bouncing_ball import __version__
+from bouncing_ball.cli.explained import explained
 from bouncing_ball.cli.options import Parser, add_options, in_options, positional
 from bouncing_ball.cli.output import fail, say
 from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, extra
 
-# What each subcommand is for, and the module of its call. A module is imported when its
-# subcommand is used: the list of subcommands needs no numpy.
+# The purpose of each subcommand, and the module of its call. A module is imported when its
+# subcommand is used, because the list of subcommands needs no numpy.
 _COMMANDS = {
     "orbit": ("the n-T orbit at an amplitude", "cli.answers"),
     "limits": ("saddle-node and period doubling of the n-T orbits", "cli.answers"),
     "error-law": ("error of the restitution model to first order, K/ϖ", "cli.answers"),
-    "permanent-contact": ("the amplitude up to which the ball stays down", "cli.answers"),
+    "permanent-contact": ("the amplitude up to which the ball stays on the table", "cli.answers"),
     "simulate": ("a sequence of impacts from any initial impact", "cli.answers"),
     "motion": ("the motion on which a ball ends", "cli.long_run"),
     "diagram": ("the motions on which balls end, over the amplitude", "cli.long_run"),
@@ -29,7 +30,7 @@ _COMMANDS = {
 
 
 def _module(command: str) -> Any:
-    """The module of a subcommand: its call, and ``lines`` that make its answer readable."""
+    """The module of a subcommand, with its call, and ``lines``, which makes its answer readable."""
     try:
         with extra("pipeline"):
             return import_module(f"bouncing_ball.{_COMMANDS[command][1]}")
@@ -42,21 +43,22 @@ def _call(command: str) -> Callable[..., Any]:
 
 
 def _document(answer: Any) -> dict[str, Any]:
-    """An answer as JSON has it, where its module does not say it otherwise."""
+    """An answer as JSON has it, for modules that do not define this."""
     return answer if isinstance(answer, dict) else asdict(answer)
 
 
 def parser(arguments: list[str]) -> Parser:
-    """The parser of all subcommands, with the options of those that are named."""
+    """The parser of all subcommands, with the options of those that are named in the arguments."""
     top = Parser(
         prog="bouncing-ball",
         description="Periodic orbits of a ball on a vibrating table. All quantities are "
-        "dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g.",
+        "dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g; only design has units.",
+        epilog="bouncing-ball COMMAND --help explains a command and has examples of it",
     )
     top.add_argument("--version", action="version", version=f"{top.prog} {__version__}")
     commands = top.add_subparsers(dest="command", parser_class=Parser)
     for name, (text, _) in _COMMANDS.items():
-        sub = commands.add_parser(name, help=text, description=text)
+        sub = commands.add_parser(name, help=text, description=text, epilog=explained(name))
         if name in arguments:
             add_options(sub, _call(name))
             if hasattr(_module(name), "lines"):
@@ -65,7 +67,7 @@ def parser(arguments: list[str]) -> Parser:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Answer one subcommand; exit 1 where there is no answer, 2 on a mistake.
+    """Answer one subcommand; exit with 1 if there is no answer, and with 2 on a mistake.
 
     For ``diff`` see :mod:`bouncing_ball.cli.diff`.
     """

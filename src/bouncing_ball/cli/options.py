@@ -24,15 +24,17 @@ class Parser(argparse.ArgumentParser):
     """A parser whose errors are one line and exit status 2."""
 
     def __init__(self, *args: Any, **options: Any) -> None:
+        # The explanation and the examples have lines of their own.
+        options["formatter_class"] = argparse.RawDescriptionHelpFormatter
         super().__init__(*args, **options)
-        # A value such as -1e6 or -5N/m is no option; Python 3.14 reads them so itself.
+        # A value such as -1e6 or -5N/m is not an option, as in Python 3.14.
         self._negative_number_matcher = re.compile(r"-\.?\d")
 
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"{self.prog}: {escaped(message)}\n")
 
     def _print_message(self, message: str, file: Any = None) -> None:
-        # argparse itself says nothing where the help cannot be written.
+        # argparse has no message for help that cannot be written.
         if file is sys.stdout:
             say(message.rstrip("\n"))
         else:
@@ -51,12 +53,18 @@ def option(name: str) -> str:
 
 
 def in_options(text: str) -> str:
-    """A text with ``{parameter}`` as its option."""
+    """A text in which ``{parameter}`` is replaced by its option.
+
+    Examples
+    --------
+    >>> in_options("{duration} needs {law}")
+    '--duration needs --law'
+    """
     return re.sub(r"{(\w+)}", lambda found: option(found[1]), text)
 
 
 def meanings(call: Callable) -> dict[str, str]:
-    """What the docstring says of each parameter, and of those that are handed on.
+    """The description of each parameter in the docstring, with those of parameters handed on.
 
     Examples
     --------
@@ -74,7 +82,7 @@ def meanings(call: Callable) -> dict[str, str]:
 
 
 def _number(text: str, kind: Any = float) -> float:
-    """What a text says; not a number if it does not say one."""
+    """The number that a text gives; NaN if it gives none."""
     try:
         return int(text) if kind is int else float(text)
     except ValueError:
@@ -103,10 +111,10 @@ def _within(allowed: Range, kind: Any) -> Callable[[str], Any]:
 
 
 def _reading(annotation: Any) -> dict[str, Any]:
-    """How argparse reads a value of a type."""
+    """The settings with which argparse reads a value of a type."""
     kinds = typing.get_args(annotation)
     if type(None) in kinds:
-        # X | None is read as X is.
+        # X | None is read as X.
         return _reading(kinds[0])
     match typing.get_origin(annotation) or annotation:
         case typing.Annotated if isinstance(kinds[1], Range):
@@ -121,12 +129,12 @@ def _reading(annotation: Any) -> dict[str, Any]:
             return {"type": _assignment, "action": "append", "metavar": "NAME=NUMBER"}
         case pathlib.Path:
             return {"type": pathlib.Path, "metavar": "FILE"}
-    # A text, or a quantity with its unit, which the call itself reads.
+    # A text, or a quantity with its unit, which is read by the call.
     return {"metavar": "X"}
 
 
 def positional(call: Callable) -> list[str]:
-    """The parameters that are given by their places."""
+    """The parameters that are given by position."""
     found = inspect.signature(call).parameters.values()
     return [p.name for p in found if p.kind is p.POSITIONAL_ONLY]
 
@@ -138,7 +146,7 @@ def add_options(parser: argparse.ArgumentParser, call: Callable) -> None:
         reading, text = _reading(parameter.annotation), texts.get(name, "")
         required, default = parameter.default is parameter.empty, parameter.default
         if parameter.kind is parameter.POSITIONAL_ONLY:
-            # Several arguments need a default, or argparse calls them required.
+            # Without a default argparse would call several arguments required.
             several: dict[str, Any] = {} if required else {"nargs": "*", "default": []}
             reading["metavar"] = name.upper()
             parser.add_argument(name, **reading, **several, help=text)

@@ -1,10 +1,10 @@
-"""Answers to read: a table of values, and a simulation as columns."""
+"""Answers as text: a table of values, and a simulation as columns."""
 
 from typing import Any
 
 
 def _value(value: Any) -> str:
-    """Ten digits of a number, and words for the rest."""
+    """Ten digits of a number, and words for anything else."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):
@@ -27,7 +27,7 @@ def _rows(answer: dict[str, Any], prefix: str = "") -> list[str]:
 
 
 def _columns(sequence: dict[str, list]) -> list[str]:
-    """One line for each impact."""
+    """A heading, and a line for each impact."""
     head = "".join(f"{name.replace('_', ' '):>24}" for name in sequence)
     body = [
         "".join(f"{'never' if value is None else format(value, '.12g'):>24}" for value in line)

@@ -1,24 +1,24 @@
 r"""One contact of any law, from its start to its release: Gauss collocation by panels.
 
-A law with m roots is smooth in ``q = p^{1/m}`` and p′, and so is the motion in a time s of its
-own, also at the ends of the contact where p = 0 ::
+A law with m roots is smooth in ``q = p^{1/m}`` and p′. The motion is therefore smooth in a new
+time s, also at the ends of the contact where p = 0 ::
 
     dq/ds = p′,    dp′/ds = F = λ [a - f(p, p′)],    dt/ds = λ = m q^{m-1}
 
-with the load ``a = w - Λ sin(φ + t)``. The contact is cut into panels. Over each, the values of
-p′ at Gauss' 12 nodes are found by Picard's iteration, for many contacts at once; a sweep
+with the load ``a = w - Λ sin(φ + t)``. The contact is divided into panels. In each, the values of
+p′ at 12 Gauss nodes are found by Picard's iteration, for many contacts at the same time; a sweep
 is three products with one small matrix. The length of the panel that reaches the
 release is found in the same sweeps, by Newton's method.
 
-A panel is good if the sweeps have converged, if the last Legendre coefficients of what
-is integrated are small, and if the ball is held at all nodes; else it is tried again, shorter.
-The error of a panel's end falls twice as fast as these coefficients (Gauss), so that D, p
-and p′ are right to better than 10⁻¹² of their scales. What is not certified: that the
-grip has not vanished and come back between two nodes, a small part of an oscillation;
-and no contact is proved to last for ever.
+A panel is good if the sweeps have converged, if the last Legendre coefficients of the
+integrands are small, and if the ball is held at all nodes; otherwise it is tried again, shorter.
+The error at the end of a panel is of the order of the square of these coefficients (Gauss), so
+that the errors of D, p and p′ are below 10⁻¹² of their scales. It is not certified that the
+grip does not vanish and return between two nodes, which are a small part of an oscillation apart,
+and no contact is proved never to end.
 
-The derivatives of the end are those of the collocation's own equations, one linear system
-for each panel.
+The derivatives of the end follow from the linearised equations of the collocation, one linear
+system for each panel.
 """
 
 from functools import lru_cache
@@ -32,44 +32,48 @@ from bouncing_ball.contacts.contact_scales import scales
 from bouncing_ball.contacts.release import Release
 
 _NODES = 12
-# Sweeps at most, and the last change of p′ in parts of V at which they stop, and at which the
-# panel is good enough: the next change would be a hundredth of it. The few that converge late
-# are tried again, as they would keep the others waiting.
+# The largest number of sweeps; the last change of p′ over V at which they stop; and the one at
+# which a panel is good enough, because the next change would be a hundredth of it. The few
+# panels that converge slowly are tried again, because they would delay all others.
 _SWEEPS, _SETTLED, _ENOUGH = 22, 3e-13, 1e-12
 _MOST = 0.95
-# What may be left of the grip, or of the time, relative to its change over the panel: it is
-# added to first order. And the sweep from which on the panel's end is looked at.
+# The remainder of the grip, or of the time, relative to its change over the panel, that is
+# corrected to first order; and the sweep from which on the end of the panel is computed.
 _REACHED, _LOOK = 1e-12, 2
-# Last Legendre coefficients of what is integrated, over V or P/V, for the end and where its
-# derivatives are wanted, whose own coefficients are larger by about the number of nodes; and
-# the change in a sweep early on, which tells how many there will be.
+# Bounds of the last Legendre coefficients of the integrands over V or P/V: for the end, and for
+# its derivatives, whose coefficients are larger by about the number of nodes. The number of these
+# coefficients. An early sweep, and its change, which predicts the number of sweeps.
 _SPECTRUM, _FINER, _TAIL = 1e-6, 3e-8, 2
 _EARLY, _CHANGE = 5, 1e-3
 # Length of the first panel in parts of P^{1/m}/V, at the coefficients of the end.
 _FIRST = 0.65
+# Time of a panel of a descending ball over P/V, which is allowed even after a shorter panel.
+_DOWN = 0.7
 # Bounds of the change from one length to the next, and of that of a refused panel.
 _SHORTER, _LONGER, _SAFETY, _AGAIN = 0.3, 1.3, 0.9, 0.6
-# Contacts worked on at once: their nodes fit into the cache.
+# Contacts computed at the same time: so many that their nodes fit into the cache.
 _BLOCK = 1024
-# Bytes that come and go once, after which glibc keeps freed memory for what comes next: until
-# then it gives the temporaries of each sweep back to the system, and a third of the time goes
-# into asking for them again.
+# Bytes that are allocated and freed once, after which glibc keeps freed memory. Before that it
+# returns the temporary arrays of each sweep to the system, and a third of the time is spent on
+# allocating them again.
 _KEPT = 1 << 24
-# Panels of one contact at most: a dozen oscillations of an orbit's, some hundreds in a
-# simulation.
+# The largest number of panels of one contact: a dozen oscillations for orbits, some hundreds in
+# a simulation.
 _PANELS, MOST_PANELS = 120, 2000
-# Change of p in a panel, in parts of p, up to which plain time will do: p = 0 is then at
-# more than a panel away.
+# Change of p in a panel, as a part of p, up to which plain time is used: p = 0 is then more
+# than a panel away.
 _FAR = 0.7
-# A ball at rest on the table, in parts of V: its q is slow, and its time is not.
+# The speed over V given to a ball at rest on the table, without which q would not change.
 _AT_REST = 1e-9
-# The end of the contact is taken where less than this part of it is left.
+# A time is that of the end if less than this part of the contact remains.
 _END = 1e-12
 
 
 class Start(NamedTuple):
-    """Starts of contact, one-dimensional: p, p′, the table's phase φ, Λ, and the ball's
-    weight w (1, or 0 for a free impact)."""
+    """Starts of contact, one-dimensional arrays.
+
+    They are p, p′, the table's phase φ, Λ, and the weight w of the ball: 1, or 0 for a free impact.
+    """
 
     depth: np.ndarray
     rate: np.ndarray
@@ -78,16 +82,16 @@ class Start(NamedTuple):
     weight: np.ndarray
 
     def take(self, which) -> "Start":
-        """Some of the contacts."""
+        """The starts with these indices."""
         return Start(*(x[which] for x in self))
 
 
 class Contacts(NamedTuple):
-    """Contacts by their ends. NaN where none was found.
+    """Contacts by their ends D, p_e and p′_e; NaN where none was found.
 
-    ``jacobian`` has the derivatives of the end (D, p_e, p′_e) in the start (φ, v), Λ and
-    the weight, shape (..., 3, 4). ``contraction`` is by what the contact multiplies areas
-    of the phase plane, exp(-∫ ∂f/∂p′ dt), and the step of the force at the release.
+    ``jacobian`` has the derivatives of the end (D, p_e, p′_e) in the start (φ, v), Λ and the
+    weight, shape (..., 3, 4). ``contraction`` is the factor by which the contact multiplies areas
+    of the phase plane: exp(-∫ ∂f/∂p′ dt), and the effect of a step of the force at the release.
     """
 
     duration: np.ndarray
@@ -98,8 +102,11 @@ class Contacts(NamedTuple):
 
 
 class _Rule(NamedTuple):
-    """Gauss' nodes in (0, 1), the integrals up to them and up to 1, the last Legendre
-    coefficients, and the value at 1."""
+    """Gauss nodes in (0, 1) and the matrices of the integrals up to them and up to 1.
+
+    ``tail`` gives the last Legendre coefficients of the values at the nodes, ``end`` the value at
+    1.
+    """
 
     node: np.ndarray
     integral: np.ndarray
@@ -119,7 +126,10 @@ def _rule() -> _Rule:
 
 
 class _Motion(NamedTuple):
-    """Balls in contact: q, p′, t and F, the length of the next panel, and the scales P and V."""
+    """Balls in contact: q, p′, t and F, the length of the next panel, and the scales P and V.
+
+    ``side`` is the sign of the law's :meth:`~.ContactLaw.kink` at the ball.
+    """
 
     root: np.ndarray
     rate: np.ndarray
@@ -128,14 +138,19 @@ class _Motion(NamedTuple):
     step: np.ndarray
     length: np.ndarray
     speed: np.ndarray
+    side: np.ndarray
 
     def take(self, which) -> "_Motion":
         return _Motion(*(x[which] for x in self))
 
 
 class _Panel(NamedTuple):
-    """A panel: q, p′ and t at its nodes and its end, F at the nodes and at the end, its length,
-    that of the next, whether it is good, and whether it ends the contact."""
+    """A panel of each ball: q, p′ and t at its nodes and its end, and F at the nodes.
+
+    ``final`` is F at the end, ``step`` its length and ``following`` the length of the next one;
+    ``good`` tells whether it is accurate, and ``last`` whether it ends the contact, which is by
+    p = 0 and not by the grip if it has ``surfaced``. ``turned`` panels end at the law's kink.
+    """
 
     root: np.ndarray
     rate: np.ndarray
@@ -146,13 +161,15 @@ class _Panel(NamedTuple):
     following: np.ndarray
     good: np.ndarray
     last: np.ndarray
+    surfaced: np.ndarray
+    turned: np.ndarray
 
     def take(self, which) -> "_Panel":
         return _Panel(*(x[..., which] for x in self))
 
 
 def _lever(m: int, root, out=None):
-    """λ = dp/dq, by products, which cost less than a power."""
+    """λ = dp/dq, by products, which are cheaper than a power."""
     lever = np.empty_like(root) if out is None else out
     lever[...] = m
     for _ in range(m - 1):
@@ -161,7 +178,7 @@ def _lever(m: int, root, out=None):
 
 
 def _load(start: Start, time):
-    """a = w - Λ sin(φ + t), by the tangent of the half angle, which costs less than a sine."""
+    """a = w - Λ sin(φ + t), by the tangent of the half angle, which is cheaper than a sine."""
     tangent = start.phase + time
     tangent *= 0.5
     np.tan(tangent, out=tangent)
@@ -172,16 +189,16 @@ def _load(start: Start, time):
     return np.subtract(start.weight, tangent, out=tangent)
 
 
-def _grip(law: ContactLaw, m: int, root, rate):
-    """What vanishes at the release: the grip, or q where that is a power of q."""
+def _grip(law: ContactLaw, m: int, root, rate, load):
+    """The function that vanishes at the release: the grip, or q if the grip is a power of q."""
     if law.release is Release.DISPLACEMENT:
         return root
-    grip = law.grip(root**m, rate)
+    grip = law.loaded_grip(root**m, rate, load)
     return grip if law.lag is None else np.where(law.lag == 0, root, grip)
 
 
 def _grip_slopes(law: ContactLaw, m: int, root, rate):
-    """Its derivatives by q and p′."""
+    """The derivatives of this function by q and p′."""
     one = np.ones_like(root)
     if law.release is Release.DISPLACEMENT:
         return one, 0 * one
@@ -190,13 +207,42 @@ def _grip_slopes(law: ContactLaw, m: int, root, rate):
     return by_root if law.lag is None else np.where(law.lag == 0, one, by_root), by.by_rate
 
 
-def _falls(law: ContactLaw, m: int, now: _Motion, root, rate, final, step, until):
-    """The derivative in s of what vanishes at the end of the contact, and its unit."""
-    if until is not None:
-        return -_lever(m, root), 1e-4 * now.length / now.speed
-    by_root, by_rate = _grip_slopes(law, m, root, rate)
-    falls = by_root * rate + by_rate * final
-    return falls, np.abs(falls) * step
+def _loading(law: ContactLaw, root):
+    """The derivative of the grip by the load."""
+    return 0.0 if law.impedance is None else law.loaded_grip(0 * root, 0 * root, 1.0)
+
+
+def _left(law: ContactLaw, m: int, start: Start, now: _Motion, until, root, rate, time):
+    """Functions that are positive up to the end of a panel, one in each row.
+
+    They are the grip, or the time left; for a law with an impedance q, because its load may
+    hold the ball up to p = 0; and the function that changes its sign at the law's kink.
+    """
+    if until is None:
+        rows = [_grip(law, m, root, rate, None if law.impedance is None else _load(start, time))]
+    else:
+        rows = [until - time]
+    rows += [root] * (law.impedance is not None and until is None)
+    if law.has_kink:
+        rows.append(now.side * law.kink(root**m, rate))
+    return np.array(rows)
+
+
+def _falls(law: ContactLaw, m: int, start: Start, now: _Motion, until, root, rate, time, final):
+    """The derivatives of the functions of :func:`_left` in s."""
+    lever = _lever(m, root)
+    if until is None:
+        by_root, by_rate = _grip_slopes(law, m, root, rate)
+        rows = [by_root * rate + by_rate * final]
+        if law.impedance is not None:
+            turning = start.amplitude * np.cos(start.phase + time) * lever
+            rows = [rows[0] - _loading(law, root) * turning, rate]
+    else:
+        rows = [-lever]
+    if law.has_kink:
+        by = slopes_of(law.kink, root**m, rate)
+        rows.append(now.side * (by.by_penetration * lever * rate + by.by_rate * final))
+    return np.array(rows)
 
 
 def _summed(begin, step, values, out):
@@ -215,18 +261,19 @@ def _panel(
     until: np.ndarray | None,
     spectrum: float = _SPECTRUM,
 ) -> _Panel:
-    """The next panel of each ball, to the release, or to a time, if that comes first."""
+    """The next panel of each ball, up to the release, or to a time if that comes first."""
     node, _, tail, end = _rule()
     force = law.force if m == 1 else law.root_force
-    # Written over in each sweep: memory that is asked for again and again costs as much as what
-    # is computed in it.
+    # These arrays are overwritten in each sweep, because allocating them again would take as long
+    # as the computation.
     q, t, old, new = (np.empty((_NODES + 1, now.step.size)) for _ in range(4))
     push, inside = np.empty((_NODES, now.step.size)), q[:-1]
     lever = np.ones_like(push)
     new[:-1] = now.rate + node * (now.step * now.push)
     last, more = np.zeros(now.step.size, dtype=bool), np.zeros(now.step.size)
     step = longer = now.step
-    reached = ~last
+    reached, first = ~last, np.zeros(last.size, dtype=int)
+    share = None if law.impedance is None else 1 - law.impedance
     for sweep in range(_SWEEPS):
         old, new = new, old
         rate = old[:-1]
@@ -236,24 +283,30 @@ def _panel(
             rate += node * ((longer - step) * push)
         step = longer
         _summed(now.root, step, rate, q)
-        # In plain time, m = 1, these are known.
+        # In plain time, m = 1, these do not change with the sweeps.
         if m > 1 or moved or sweep == 0:
             _lever(m, inside, lever)
             _summed(now.time, step, lever, t)
             load = _load(start, t[:-1])
+            if share is not None:
+                load *= share
         np.subtract(load, force(inside, rate), out=push)
         if m > 1:
             push *= lever
         _summed(now.rate, step, push, new)
         if sweep < _LOOK:
             continue
-        left = _grip(law, m, q[-1], new[-1]) if until is None else until - t[-1]
-        last |= left <= 0
+        state = q[-1], new[-1], t[-1]
+        left = _left(law, m, start, now, until, *state)
+        last |= (left <= 0).any(axis=0)
         if last.any():
-            falls, unit = _falls(law, m, now, q[-1], new[-1], end @ push, step, until)
-            more = np.where(falls < 0, -left / falls, -step)
+            falls = _falls(law, m, start, now, until, *state, end @ push)
+            near = np.where(falls < 0, -left / falls, np.where(left > 0, np.inf, -step))
+            first = near.argmin(axis=0)
+            more, falls = (np.take_along_axis(x, first[np.newaxis], 0)[0] for x in (near, falls))
+            unit = np.abs(falls) * step if until is None else 1e-4 * now.length / now.speed
+            reached = ~last | (np.abs(more * falls) <= _REACHED * unit)
             more = np.where(last, np.maximum(np.minimum(more, step / 2), -step / 2), 0.0)
-            reached = ~last | (np.abs(left) <= _REACHED * unit)
             longer = step + more
         if sweep < _EARLY:
             continue
@@ -264,25 +317,33 @@ def _panel(
         if np.mean(reached & (change <= _SETTLED)) >= _MOST:
             break
     rate = new[:-1]
-    # What is still left, to first order.
+    # The remainder, to first order.
     q[-1] += new[-1] * more
     t[-1] += _lever(m, q[-1]) * more
     final = end @ push
     new[-1] += final * more
     by_rate, by_time = (np.abs(tail @ x).max(axis=0) for x in (push, lever))
     error = np.maximum(by_rate / now.speed, by_time * now.speed / now.length) * step
-    held = ((q[:-1] > 0) & (_grip(law, m, q[:-1], rate) > 0)).all(axis=0)
+    full = None if share is None else _load(start, t[:-1])
+    held = ((q[:-1] > 0) & (_grip(law, m, q[:-1], rate, full) > 0)).all(axis=0)
+    turned = last & (first == len(left) - 1) if law.has_kink else np.zeros_like(last)
+    surfaced = first == 1 if share is not None and until is None else np.zeros_like(last)
     good = reached & held & (change <= _ENOUGH) & (error <= spectrum)
     slower = np.minimum(
         (error / spectrum) ** (-1 / _NODES), (early / _CHANGE) ** (-1 / (2 * _EARLY))
     )
     factor = np.where(np.isnan(slower), _SHORTER, np.clip(_SAFETY * slower, _SHORTER, _LONGER))
-    following = np.where(good, step * factor, now.step * np.minimum(factor, _AGAIN))
-    return _Panel(q, new, t, push, final, step, following, good, last)
+    # The length of a panel up to a kink is no measure for the next one.
+    taken = np.where(turned, now.step, step)
+    following = np.where(good, taken * factor, now.step * np.minimum(factor, _AGAIN))
+    ends = last & ~turned, surfaced & ~turned, turned
+    return _Panel(q, new, t, push, final, step, following, good, *ends)
 
 
 def _in_time(law: ContactLaw, start: Start, now: _Motion, until: np.ndarray | None) -> _Panel:
-    """The next panels, in plain time: that costs half, and will do where q hardly changes."""
+    """The next panels in plain time, which costs half as much and suffices where q hardly
+    changes.
+    """
     m, lever = law.root, _lever(law.root, now.root)
     now = now._replace(root=now.root**m, push=now.push / lever, step=now.step * lever)
     panel = _panel(law, 1, start, now, until)
@@ -309,11 +370,19 @@ def _next(law: ContactLaw, start: Start, now: _Motion, until: np.ndarray | None)
     return _Panel(*(np.concatenate(x, axis=-1)[..., order] for x in zip(*panels, strict=True)))
 
 
-def _derivatives(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray):
-    """The derivatives of (q, p′, t) at the end of panels by (φ, v, Λ, w), shape (..., 3, 4),
-    from those at the start; and ∫ ∂F/∂p′ ds.
+def _longest(m: int, now: _Motion, panel: _Panel) -> np.ndarray:
+    """The length of the next panels that will do: time runs faster the deeper a ball is."""
+    root, rate = panel.root[-1], panel.rate[-1]
+    time = np.maximum(_LONGER * (panel.time[-1] - now.time), _DOWN * now.length / now.speed)
+    deeper = (root**m + rate * time) ** (1 / m)
+    return np.where(rate > 0, (deeper - root) / rate, np.inf)
 
-    They solve the collocation's equations, linearised at the nodes ::
+
+def _derivatives(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray):
+    """The derivatives of (q, p′, t) at the end of panels by (φ, v, Λ, w), and ∫ ∂F/∂p′ ds.
+
+    ``by`` are the derivatives at the start, shape (..., 3, 4). The result solves the equations of
+    the collocation, linearised at the nodes ::
 
         δF = F_q δq + F_u δp′ + F_t (δφ + δt) + F_Λ δΛ + F_w δw
     """
@@ -328,7 +397,9 @@ def _derivatives(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray):
 
     by_root = column(bend * panel.push.T / lever - lever * lever * slopes.by_penetration.T)
     by_rate = column(-lever * slopes.by_rate.T)
-    by_time = column(-lever * start.amplitude[:, np.newaxis] * np.cos(angle))
+    # The share of the load that acts on the ball.
+    felt = lever if law.impedance is None else lever * np.reshape(1 - law.impedance, (-1, 1))
+    by_time = column(-felt * start.amplitude[:, np.newaxis] * np.cos(angle))
     step = panel.step[:, np.newaxis, np.newaxis]
     whole = step * integral
     once, weight = whole[:, :-1], whole[:, -1:]
@@ -338,8 +409,8 @@ def _derivatives(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray):
     root = root0 + step * node * rate0
     known = by_root * root + by_rate * rate0 + by_time * (time0 + bent @ root)
     known[:, :, 0] += by_time[:, :, 0]
-    known[:, :, 2] -= lever * np.sin(angle)
-    known[:, :, 3] += lever
+    known[:, :, 2] -= felt * np.sin(angle)
+    known[:, :, 3] += felt
     matrix = np.eye(_NODES) - by_root * twice - by_rate * once - by_time * (bent @ twice)
     pushed = np.linalg.solve(matrix, known)
     root, rate = root + twice @ pushed, rate0 + once @ pushed
@@ -347,18 +418,26 @@ def _derivatives(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray):
     return np.concatenate(ends, axis=1), (weight @ by_rate)[:, 0, 0]
 
 
-def _at_release(law: ContactLaw, panel: _Panel, by: np.ndarray, strain: np.ndarray):
-    """The derivatives of (D, p_e, p′_e), and the contraction, of panels that end in releases."""
-    depth, rate, final = panel.root[-1] ** law.root, panel.rate[-1], panel.final
-    lever = _lever(law.root, panel.root[-1])
-    by_root, by_rate = _grip_slopes(law, law.root, panel.root[-1], rate)
-    falls = by_root * rate + by_rate * final
-    # The grip vanishes at another rate where the force makes a step there.
-    step = np.where(by_rate == 0, 0.0, by_rate * lever * law.force(depth, rate))
-    by_root, by_rate, whole, lever, rate, final = (
-        x[:, np.newaxis] for x in (by_root, by_rate, falls, lever, rate, final)
+def _at_release(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray, strain: np.ndarray):
+    """The derivatives of (D, p_e, p′_e), and the contraction, of panels that end with a release."""
+    root, rate, final = panel.root[-1], panel.rate[-1], panel.final
+    lever, angle = _lever(law.root, root), start.phase + panel.time[-1]
+    by_root, by_rate = _grip_slopes(law, law.root, root, rate)
+    by_root, by_rate = np.where(panel.surfaced, 1.0, by_root), np.where(panel.surfaced, 0, by_rate)
+    by_load = np.where(panel.surfaced, 0.0, _loading(law, root))
+    turning = -start.amplitude * np.cos(angle)
+    falls = by_root * rate + by_rate * final + by_load * turning * lever
+    # If the force has a step at the release, the grip vanishes at another rate.
+    force = law.force(root**law.root, rate)
+    if law.impedance is not None:
+        force = force + law.impedance * _load(start, panel.time[-1])
+    step = np.where(by_rate == 0, 0.0, by_rate * lever * force)
+    load = turning[:, np.newaxis] * by[:, 2]
+    load += np.stack([turning, 0 * angle, -np.sin(angle), np.ones_like(angle)], axis=1)
+    by_root, by_rate, by_load, whole, lever, rate, final = (
+        x[:, np.newaxis] for x in (by_root, by_rate, by_load, falls, lever, rate, final)
     )
-    later = -(by_root * by[:, 0] + by_rate * by[:, 1]) / whole
+    later = -(by_root * by[:, 0] + by_rate * by[:, 1] + by_load * load) / whole
     ends = by[:, 2] + lever * later, lever * (by[:, 0] + rate * later), by[:, 1] + final * later
     return np.stack(ends, axis=1), np.exp(strain) * falls / (falls + step)
 
@@ -371,7 +450,8 @@ def _begin(law: ContactLaw, start: Start) -> np.ndarray:
     step = _FIRST * scale.length ** (1 / law.root) / scale.speed
     root = start.depth ** (1 / law.root)
     zero = np.zeros_like(rate)
-    return np.stack([root, rate, zero, zero, step, scale.length, scale.speed])
+    side = zero if not law.has_kink else np.where(law.kink(start.depth, rate) < 0, -1.0, 1.0)
+    return np.stack([root, rate, zero, zero, step, scale.length, scale.speed, side])
 
 
 def march(
@@ -431,6 +511,9 @@ def march(
                     else _panel(some, law.root, own, now, limit, spectrum)
                 )
                 state[4, here] = panel.following
+                if law.root > 1:
+                    longest = np.where(panel.good, _longest(law.root, now, panel), np.inf)
+                    state[4, here] = np.minimum(panel.following, longest)
                 good = np.flatnonzero(panel.good)
                 some, own, here, panel = (
                     some.take(good),
@@ -440,13 +523,15 @@ def march(
                 )
                 ends = panel.root[-1], panel.rate[-1], panel.time[-1], panel.final
                 state[:4, here] = ends
+                state[-1, here[panel.turned]] *= -1
                 done[here] = panel.last
                 if differentiate and here.size:
                     by[here], more = _derivatives(some, own, panel, by[here])
                     strain[here] += more
                     end = np.flatnonzero(panel.last)
-                    jacobian[here[end]], contraction[here[end]] = _at_release(
-                        some.take(end), panel.take(end), by[here[end]], strain[here[end]]
+                    ended = here[end]
+                    jacobian[ended], contraction[ended] = _at_release(
+                        some.take(end), own.take(end), panel.take(end), by[ended], strain[ended]
                     )
             active = active[~done[active]]
             if not active.size:
@@ -459,7 +544,10 @@ def march(
 
 
 def states(law: ContactLaw, start: Start, end, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """p and p′ at times within contacts in a row, of which the end (D, p_e, p′_e) is known."""
+    """p and p′ at times within contacts in a row, whose ends (D, p_e, p′_e) are known.
+
+    The arrays have one entry per contact.
+    """
     inside = np.flatnonzero((time > 0) & (time < (1 - _END) * end[0]))
     found = march(law.take(inside), start.take(inside), MOST_PANELS, time[inside])
     depth = np.where(time > 0, end[1], start.depth)

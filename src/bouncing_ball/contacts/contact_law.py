@@ -85,16 +85,43 @@ class ContactLaw(Batch, ABC):
         """
         return 0.0 if self.release is Release.DISPLACEMENT else None
 
+    @property
+    def impedance(self) -> Any:
+        """The share d of the load that does not act on the ball in contact; None if there is none.
+
+        Then p″ = (1 - d) a - f, and the force on the ball is f + d a. The ball is released where
+        the grip under the load vanishes, or where p = 0, whichever comes first.
+        """
+        return None
+
+    has_kink: ClassVar[bool] = False
+    """Whether the force is smooth only where :meth:`kink` does not change its sign."""
+
+    def kink(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """A function that changes its sign where the force, which is continuous, has a kink."""
+        return np.ones_like(penetration)
+
     def grip(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """The function that is positive in contact, and zero where the ball is released."""
         lag = self.lag
         return self.force(penetration, rate) if lag is None else penetration + lag * rate
+
+    def loaded_grip(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
+        """The grip under a load a, which differs from :meth:`grip` only if the law has an
+        impedance.
+        """
+        return self.grip(penetration, rate)
 
     @property
     def signature(self) -> Instant | None:
         """The signature of free impacts if it has a formula and is the same at every speed, else
         None.
         """
+        return None
+
+    @property
+    def permanent_contact(self) -> Any:
+        """Λ up to which a steady contact is held, if it has a formula, else None."""
         return None
 
     @classmethod

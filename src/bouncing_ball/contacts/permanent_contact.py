@@ -208,6 +208,8 @@ def permanent_contact(law: ContactLaw) -> float:
     >>> round(permanent_contact(SpringDamper(2.0, 0.5)) / 13**0.5, 12)
     0.25
     """
+    if law.permanent_contact is not None:
+        return float(law.permanent_contact)
     with np.errstate(all="ignore"):
         for count in _LEVELS:
             s = scheme(count, max(1, law.root // 2))

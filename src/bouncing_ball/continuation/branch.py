@@ -159,6 +159,22 @@ def continue_branch(
     ------
     ContinuationError
         If there is no solution near ``start``, or it lies outside the domain.
+
+    Examples
+    --------
+    The circle x² + p² = 1 turns in p at (0, 1):
+
+    >>> from bouncing_ball.continuation.events import fold
+    >>> class Circle:
+    ...     def residual(self, y):
+    ...         return np.sum(y * y, axis=-1, keepdims=True) - 1
+    ...
+    ...     def jacobian(self, y):
+    ...         return 2 * y[..., np.newaxis, :]
+    >>> start, turn = np.array([1.0, 0.0]), fold(Circle())
+    >>> found = continue_branch(Circle(), start, increasing=True, events=[turn], max_points=30)
+    >>> [np.abs(special.point.round(12)).tolist() for special in found.special]
+    [[0.0, 1.0]]
     """
     y = solve_at(problem, np.asarray(start, dtype=float), settings)
     direction = tangent(problem.jacobian(y), np.eye(y.size)[-1] * (1.0 if increasing else -1.0))

@@ -56,5 +56,10 @@ def described(variables: Mapping[str, Any], coords: Mapping[str, Any] | None = N
     ------
     KeyError
         If a name is not in :data:`VARIABLES`.
+
+    Examples
+    --------
+    >>> described({"phase": ("point", [0.0])}).phase.attrs["units"]
+    'rad'
     """
     return describe(xr.Dataset(variables, coords))

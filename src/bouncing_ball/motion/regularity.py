@@ -68,6 +68,13 @@ def exact_map_jacobian(
     ``phase`` and ``velocity`` are τ and v just after an impact, in absolute terms; ``flight_time``
     s must solve the landing condition, whose differential is ``ds = -(∂gap/∂τ dτ + s dv)/(v - s - Λ
     cos τ₁)``. The determinant is ``r² (v - Λ cos τ)/(v₁ - Λ cos τ₁)`` in these coordinates.
+
+    Examples
+    --------
+    On a table at rest a flight of 2v returns to the velocity r v:
+
+    >>> np.abs(exact_map_jacobian(4.0, 0.0, 2.0, 0.0, 0.5)).tolist()
+    [[1.0, 2.0], [0.0, 0.5]]
     """
     s, tau, v, lam, r = np.broadcast_arrays(flight_time, phase, velocity, amplitude, restitution)
     landing = tau + s

@@ -60,12 +60,15 @@ def resumption(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.ndarray]
 
 def _leaves_fast(flight: Flight, law: ContactLaw) -> np.ndarray:
     """Whether δ certainly reaches 0 before the force can return."""
-    lag = law.lag
+    lag, late = law.lag, 0.0
     if lag is None:
-        slopes = slopes_of(law.grip, -flight.displacement, -flight.velocity)
+        state = -flight.displacement, -flight.velocity
+        slopes = slopes_of(law.grip, *state)
         lag = slopes.by_rate / slopes.by_penetration
-    inside = flight.room()
-    return (inside > 0) & (np.sqrt(np.maximum(inside, 0.0)) >= lag * (1 + flight.amplitude))
+        # A grip that knows the load changes with it too, by Λ a unit of time at most.
+        late = (law.loaded_grip(*state, 1.0) - law.loaded_grip(*state, 0.0)) / slopes.by_penetration
+    inside, table = flight.room(), flight.amplitude
+    return (inside > 0) & (np.sqrt(np.maximum(inside, 0.0)) >= lag * (1 + table) + late * table)
 
 
 def _certified(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.ndarray]:
@@ -78,8 +81,8 @@ def _sampled(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.ndarray]:
     """The time at which the grip returns or δ reaches 0, and whether it is the former."""
 
     def held(time):
-        displacement, rate, _, _ = flight.gap(time)
-        return law.grip(np.maximum(-displacement, 0.0), -rate) > 0
+        displacement, rate, second, _ = flight.gap(time)
+        return law.loaded_grip(np.maximum(-displacement, 0.0), -rate, -second) > 0
 
     rise = first_zero(Rise(flight), np.zeros_like(flight.velocity))
     share = np.linspace(0, 1, _SAMPLES)[1:-1, np.newaxis]

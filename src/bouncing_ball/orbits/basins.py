@@ -125,6 +125,15 @@ def destinations(
         φ and δ′ of the first impacts.
     impacts : int
         Impacts after which a ball is given up.
+
+    Examples
+    --------
+    Below Λ = 1 a ball of the restitution model comes to rest where it has no orbit:
+
+    >>> from bouncing_ball.orbits.restitution_model import RestitutionModel
+    >>> states = np.zeros(2), np.array([-1.0, -3.0])
+    >>> destinations(RestitutionModel(0.5), 0.5, [], *states, 100).orbit.tolist()
+    [-1, -1]
     """
     traps = [trap(model, orbit) for orbit in orbits]
     found = np.full(phase.shape, ELSEWHERE)

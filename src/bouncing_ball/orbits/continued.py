@@ -145,6 +145,16 @@ def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Any:
     ------
     ModelError
         If n is not a positive integer.
+
+    Examples
+    --------
+    The restitution model, whose orbits have a closed form:
+
+    >>> from bouncing_ball.orbits.restitution_model import RestitutionModel
+    >>> model = RestitutionModel(0.5)
+    >>> found = orbit_at(model, [1, 2], 2.5, Side.STABLE)
+    >>> bool(np.all(found.distance(model.orbit([1, 2], 2.5)) < 1e-12))
+    True
     """
     search, (lam,), shape = _Search.of(model, n, amplitude)
     psi = corrected.instant_phase(search.n, search.instant, lam, side is Side.STABLE)
@@ -261,6 +271,13 @@ def bifurcation(model: Any, n: ArrayLike, kind: Bifurcation) -> Any:
 
     Newton's method starts from the bifurcation of the corrected model. Where it fails, the branch
     is followed: its first saddle-node, or its last period doubling, is taken.
+
+    Examples
+    --------
+    >>> from bouncing_ball.orbits.restitution_model import RestitutionModel
+    >>> found = bifurcation(RestitutionModel(0.5), 1, Bifurcation.SADDLE_NODE)
+    >>> round(float(found.amplitude * 3 / np.pi), 10)
+    1.0
     """
     search, _, shape = _Search.of(model, n)
     index = search.n

@@ -178,6 +178,11 @@ def joined(contact: SpringDamper) -> np.ndarray:
     If they are, the unstable side of the branch with a short contact leads to the orbits
     with a long one. False where the branch has no saddle-node. It is decided on 600 orbits
     between the two, because the inadmissible part opens with the root of the distance in ϖ.
+
+    Examples
+    --------
+    >>> joined(SpringDamper.from_restitution(0.85, np.array([1.9, 3.0]))).tolist()
+    [True, False]
     """
     node = SpringDamperModel(contact).saddle_node(1).contact_duration
     found = np.isfinite(node)

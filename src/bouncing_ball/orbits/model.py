@@ -18,7 +18,8 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import fields
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any, ClassVar
+from importlib import import_module
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -34,8 +35,13 @@ from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.stability import Bifurcation, Side
 from bouncing_ball.orbits.system import ContactSystem, OrbitSystem
 
-if TYPE_CHECKING:
-    from bouncing_ball.datasets.labelled import Grid, Labelled
+
+def _labelled() -> Any:
+    """The labelled results of models, which need xarray and are made of models themselves.
+
+    Imported when they are asked for: no stage of the pipeline depends on them.
+    """
+    return import_module("bouncing_ball.orbits.labelled")
 
 
 class Route(StrEnum):
@@ -200,10 +206,9 @@ class ImpactModel(Batch, ABC):
         *,
         periods: float = 10.0,
         samples: int = 200,
-    ) -> Labelled:
+    ) -> Any:
         """A ball over time from a first impact: :func:`bouncing_ball.history`."""
-        from bouncing_ball.orbits import labelled
-
+        labelled = _labelled()
         grid = self._grid(amplitude=amplitude, phase=phase, velocity=velocity)
         return labelled.from_impact(self, grid, labelled.instants(periods, samples))
 
@@ -215,29 +220,26 @@ class ImpactModel(Batch, ABC):
         *,
         periods: float = 10.0,
         samples: int = 200,
-    ) -> Labelled:
+    ) -> Any:
         """A ball that is released at rest: :func:`bouncing_ball.drop`."""
-        from bouncing_ball.orbits import labelled
-
+        labelled = _labelled()
         grid = self._grid(height=height, amplitude=amplitude, phase=phase)
         return labelled.from_rest(self, grid, labelled.instants(periods, samples))
 
-    def branch(
-        self, n: ArrayLike, *, amplitude_max: float | None = None, points: int = 300
-    ) -> Labelled:
+    def branch(self, n: ArrayLike, *, amplitude_max: float | None = None, points: int = 300) -> Any:
         """The branch of n-T orbits over Λ: :func:`bouncing_ball.branch`."""
-        from bouncing_ball.orbits import labelled
-
+        labelled = _labelled()
         return labelled.branches(self._grid(n=n), lambda n: self, amplitude_max, points)
 
-    def _grid(self, **given: Any) -> Grid:
-        """The arguments of a labelled result, which one model has; several have axes of names."""
-        from bouncing_ball.datasets.labelled import Grid
+    def _grid(self, **given: Any) -> Any:
+        """The arguments of a labelled result of a single model.
 
+        Several models have no labels, so that a call with names for their parameters is needed.
+        """
         if self.shape:
             call = "bouncing_ball.history(…, frequency_ratio=[5, 10])"
             raise ModelError(f"several models have no labels: give their parameters to {call}")
-        found = Grid(**given)
+        found = _labelled().Grid(**given)
         found.attrs["model"] = self.label
         return found
 

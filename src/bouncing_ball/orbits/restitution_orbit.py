@@ -35,7 +35,15 @@ class ImpactMap(StrEnum):
 
 
 def check_family(n: ArrayLike, restitution: ArrayLike) -> None:
-    """Raise :class:`ModelError` unless n is a positive integer and 0 < r ≤ 1."""
+    """Raise :class:`ModelError` unless n is a positive integer and 0 < r ≤ 1.
+
+    Examples
+    --------
+    >>> check_family(1, 1.5)
+    Traceback (most recent call last):
+    ...
+    bouncing_ball.errors.ModelError: restitution coefficient r = 1.5 is not in (0, 1]
+    """
     check_index(n)
     r = np.asarray(restitution, dtype=float)
     require((r > 0) & (r <= 1), r, "restitution coefficient r", "in (0, 1]")

@@ -272,6 +272,13 @@ def nearest_excess(
     -------
     ndarray
         Of the shape to which the arguments broadcast.
+
+    Examples
+    --------
+    >>> contact = SpringDamper(5.0, 0.1)
+    >>> point = branch_point(0.25, contact, 1)
+    >>> round(float(nearest_excess(contact, 1, point.x, point.y, np.array(0.25))), 12)
+    0.25
     """
     own = excess
     for _ in range(_ITERATIONS):

@@ -196,6 +196,14 @@ def period_doubling(contact: SpringDamper, n: ArrayLike) -> np.ndarray:
 
     NaN where the stable side has none. Arguments, shape and errors are those of
     :func:`saddle_node`.
+
+    Examples
+    --------
+    For a stiff elastic contact it is at Λ = 1, as in the restitution model:
+
+    >>> contact = SpringDamper(1e6, 0.0)
+    >>> bool(abs(branch_point(period_doubling(contact, 1), contact, 1).amplitude - 1) < 1e-5)
+    True
     """
 
     def search(curves: _Curves) -> np.ndarray:

@@ -24,6 +24,7 @@ from bouncing_ball.datasets.netcdf import (
     read_dataset,
     write_dataset,
 )
+from bouncing_ball.pipeline.progress import advance
 from bouncing_ball.provenance.origin import gather
 
 REFERENCE = (
@@ -57,7 +58,8 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
         outputs = list(snakemake.output)
         write_text(log, "".join(f"{line}\n" for line in lines))
         if outputs:
-            print("made", *outputs, flush=True)
+            done = advance()
+            print("made", *outputs, *([f"({done})"] if done else []), flush=True)
     except Exception as error:
         kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
         # Writing the log fails if the disk is full.

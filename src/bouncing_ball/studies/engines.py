@@ -1,10 +1,10 @@
-r"""What the time steps of physics engines cost, against the models (beyond the paper).
+r"""Errors by the time steps of physics engines, against those of the models (beyond the paper).
 
-An engine's contact in N time steps has the restitution :math:`r_N` of its scheme, which depends
-on where in a step the contact begins (:mod:`bouncing_ball.engines.scheme`). So its ball is
-simulated here from event to event with the exact contact that has this r, another one at each
-impact. The error of a height is ``z_N/z - 1`` with z of the exact n-T orbit. What the engines
-really did is read from the accepted dataset of their runs.
+An engine's contact in N time steps has the restitution r_N of its scheme, which depends
+on the part of a step in which the contact begins (:mod:`bouncing_ball.engines.scheme`). The ball
+is therefore simulated here from event to event with the exact contact that has this r, which
+changes from impact to impact. The error of a height is ``z_N/z - 1`` with z of the exact n-T orbit.
+The results of the engines are read from the accepted dataset of their runs.
 """
 
 from collections.abc import Mapping
@@ -30,7 +30,9 @@ Steps = Annotated[int, number("time steps in a contact; fewer than 8 are none", 
 
 
 class EngineOrbit(Parameters):
-    """One of the orbits that the engines ran, and simulations of it in few and many steps."""
+    """One of the orbits that the engines ran, and the simulations of it in few and many time
+    steps.
+    """
 
     n: Family
     restitution: Restitution
@@ -43,7 +45,7 @@ class EngineOrbit(Parameters):
 
 
 def greatest_heights(orbit: Orbit, restitution: np.ndarray) -> np.ndarray:
-    """Greatest heights of balls that start on orbits, each impact with an r of its own.
+    """Greatest heights of balls that start on orbits, with a given r at each impact.
 
     Parameters
     ----------
@@ -78,7 +80,7 @@ def greatest_heights(orbit: Orbit, restitution: np.ndarray) -> np.ndarray:
 def step_errors(orbit: Orbit, parameters: EngineOrbit) -> np.ndarray:
     """Root mean square errors of the height of a bounce, shape (scheme, orbit, steps).
 
-    Each impact begins at a random place of a time step. All simulations have the same places.
+    Each impact begins in a random part of a time step. All simulations have the same random parts.
     """
     p, zeta = parameters, float(orbit.law.damping_ratio[0])
     tables = np.array(
@@ -107,7 +109,7 @@ def model_errors(orbit: Orbit, impacts: int) -> np.ndarray:
 
 
 def conformance(data: Mapping[str, xr.Dataset], parameters: EngineOrbit) -> xr.Dataset:
-    """The accepted runs of the engines beside the models, and what their schemes explain.
+    """The accepted runs of the engines beside the models, and the part that their schemes explain.
 
     Parameters
     ----------
@@ -121,11 +123,12 @@ def conformance(data: Mapping[str, xr.Dataset], parameters: EngineOrbit) -> xr.D
     xarray.Dataset
         The variables of the runs, and over their dimensions ``bounce_steps``, the time steps in a
         period; ``bounce_error``, the root mean square error of a bounce; ``limit_error``, the mean
-        error without the first order of the step (Richardson's extrapolation of two steps). Over
-        (release, model, restitution, n, frequency_ratio) ``model_error``, of the spring-damper
-        that of its simulation. Of one orbit ``step_error`` over (scheme, frequency_ratio, steps),
-        see :func:`step_errors`, with the time steps in a period, ``steps_in_bounce``; and
-        ``equal_steps`` over (scheme, frequency_ratio), those with the corrected model's error.
+        error without the first order of the step (Richardson's extrapolation of two steps).
+        ``model_error`` is over (release, model, restitution, n, frequency_ratio), and for the
+        spring-damper it is the error of its simulation. For one orbit there are ``step_error`` over
+        (scheme, frequency_ratio, steps), see :func:`step_errors`, ``steps_in_bounce``, the time
+        steps in a period, and ``equal_steps`` over (scheme, frequency_ratio), the steps with the
+        corrected model's error.
 
     Raises
     ------

@@ -78,13 +78,13 @@ class OrbitParameters(Parameters):
 
 
 class OrbitsAlongRatio(OrbitParameters):
-    """One orbit along ϖ."""
+    """One orbit of the restitution model, on contacts along a grid of ϖ."""
 
     frequency_ratio: Span
 
 
 class OrbitErrors(OrbitsAlongRatio):
-    """One orbit along ϖ, and the error tolerated of a simple model."""
+    """One orbit along ϖ, and the relative error tolerated of a simple model."""
 
     tolerance: Tolerance
 

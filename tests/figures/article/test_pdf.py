@@ -37,8 +37,8 @@ def uris(reader):
                 yield str(action["/URI"])
 
 
-def test_the_article_is_set_with_its_headings_captions_figures_and_links(record, texts):
-    text = texts(record)["article"]
+def test_the_article_is_set_with_its_headings_captions_figures_and_links(accepted):
+    text = accepted["article"]
     reader = PdfReader(io.BytesIO(article_pdf(text, TEMPLATE, ROOT)))
     words = re.sub(r"\s+", "", "".join(page.extract_text() for page in reader.pages))
     headings = re.findall(r"^##+ (.*)$", text, re.MULTILINE)
@@ -63,10 +63,9 @@ def test_a_short_one():
     assert sorted(uris(reader)) == ["../config/config.yaml", "figures/fig07.nc"]
 
 
-def test_what_cannot_be_set_is_said_in_one_line(tmp_path, one_line):
-    with pytest.raises(ModelError) as error:
+def test_what_cannot_be_set_is_said_in_one_line(tmp_path, refusal):
+    with refusal(ModelError, "the article cannot be set: "):
         article_pdf(SMALL, TEMPLATE, tmp_path)
-    one_line(error, "the article cannot be set: ")
 
 
 def test_addresses_stay():

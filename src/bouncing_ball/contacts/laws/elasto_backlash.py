@@ -1,0 +1,77 @@
+r"""A linear spring whose damper gives at most the spring's force: Modelica's ElastoBacklash2.
+
+``f = k p + min(c p′, k p)``, and never negative. During compression the damper at most doubles the
+force of the spring, so that the force grows from zero. During restitution it at most cancels it,
+and the ball is released where p + κ p′ = 0, κ = c/k. The force has a kink where p = κ p′, at the
+time κ of a short impact. The law is homogeneous, so that r is the same at every speed.
+
+Physical parameters: ``k = m Ω² ϖ²``, ``c = 2 m Ω ζϖ``.
+
+Source: Modelica Standard Library, ``Mechanics.Rotational.Components.ElastoBacklash2``, and its
+issue 2247.
+"""
+
+from dataclasses import dataclass
+from typing import ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.contacts.contact_law import ContactLaw, check_damping, check_positive
+from bouncing_ball.contacts.release import Release
+
+
+@dataclass(frozen=True, repr=False)
+class ElastoBacklash(ContactLaw):
+    """A spring-damper whose damping force is at most that of the spring.
+
+    Parameters
+    ----------
+    frequency_ratio, damping_ratio : float or array
+        ϖ > 0 and ζ ≥ 0.
+
+    Raises
+    ------
+    ModelError
+        If ϖ or ζ is outside its range.
+
+    Examples
+    --------
+    >>> law = ElastoBacklash(2.0, 0.5)
+    >>> [float(law.force(1.0, rate)) for rate in (1.0, 4.0)]
+    [6.0, 8.0]
+    """
+
+    frequency_ratio: float | np.ndarray
+    damping_ratio: float | np.ndarray
+
+    name: ClassVar[str] = "elasto-backlash"
+    formula: ClassVar[str] = "ϖ² p + min(2ζϖ p′, ϖ² p)"
+    root: ClassVar[int] = 1
+    release = Release.FORCE
+    has_kink: ClassVar[bool] = True
+
+    def __post_init__(self):
+        check_positive(self.frequency_ratio, "frequency ratio ϖ")
+        check_damping(self.damping_ratio, "damping ratio ζ")
+
+    @property
+    def lag(self) -> np.ndarray:
+        """κ = 2ζ/ϖ, because the force vanishes with p + κ p′."""
+        return 2 * np.asarray(self.damping_ratio) / self.frequency_ratio
+
+    def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """ϖ² (p + κ p′), or 2ϖ² p where that is smaller."""
+        pushed = self.lag * rate
+        limited = np.where(np.real(pushed) < np.real(penetration), pushed, penetration)
+        return self.frequency_ratio**2 * (penetration + limited)
+
+    def kink(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """p - κ p′, whose zero is the kink; without damping it has no zero."""
+        return np.where(self.lag == 0, 1.0, penetration - self.lag * rate)
+
+    @classmethod
+    def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
+        """The law with ϖ = v/P and ζ = group."""
+        ratio = np.asarray(speed, dtype=float) / np.asarray(length, dtype=float)
+        return cls(ratio, group + 0 * ratio)

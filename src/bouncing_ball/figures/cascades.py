@@ -1,0 +1,42 @@
+"""How the contact shifts cascades of period doublings, and what is left of it in both models."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from bouncing_ball.figures.canvas import WIDE, canvas, legend_below, logarithmic
+from bouncing_ball.figures.labels import parameters
+from bouncing_ball.figures.style import COLOURS, GUIDE, MODELS
+
+_DASHES = ("-", (0, (6, 1.5)), (0, (4, 1.5, 1, 1.5)), (0, (2, 1)), (0, (1, 1.5)))
+
+
+def cascades(data: xr.Dataset) -> Figure:
+    """Errors of both models at each doubling along ϖ; K over the doublings for each r."""
+    figure, (errors, law) = canvas(WIDE, 3.2, columns=2)
+    shown = data.isel(restitution=data.sizes["restitution"] // 2)
+    ratio = data.frequency_ratio.values
+    lines = []
+    for order, model in enumerate(data["model"].values, 1):
+        one = np.abs(shown.cascade_error.sel(model=model))
+        look = MODELS[model] | {"linewidth": 0.9}
+        lines.append(errors.plot(ratio, one.transpose("frequency_ratio", ...), **look)[0])
+        guide = float(one.isel(doubling=-1, frequency_ratio=-1)) * (ratio[-1] / ratio) ** order
+        errors.plot(ratio, guide, **GUIDE)
+    logarithmic(errors, xlabel=r"frequency ratio $\varpi$", yscale="log", ylim=(1e-8, 1))
+    errors.set_ylabel(r"relative error of $\Lambda$ at the period doublings")
+    chosen = parameters(data, "n")
+    errors.set_title(
+        rf"{chosen}, $r$ = {float(shown.restitution):g}; all doublings; dotted: slopes 1, 2"
+    )
+    for r, colour, dashes in zip(data.restitution.values, COLOURS, _DASHES, strict=False):
+        one = data.cascade_coefficient.sel(restitution=r)
+        name = rf"$r$ = {r:g}"
+        law.plot(data.doubling, one, "o", color=colour, linestyle=dashes, markersize=3, label=name)
+    law.axhline(0, color="#8c8c8c", linewidth=0.6)
+    law.set(xlabel=r"$k$ of the orbit of $2^k$ impacts", ylabel=r"$K_k$ of the error $K_k/\varpi$")
+    law.set_title("$K_k$ has a limit: the cascade shifts as a whole")
+    law.set_xticks(data.doubling)
+    law.legend(loc="best")
+    legend_below(figure, lines, labels=[f"{x} model" for x in data["model"].values], ncols=2)
+    return figure

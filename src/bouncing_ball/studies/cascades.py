@@ -1,0 +1,96 @@
+"""How a contact of finite stiffness shifts the cascades of period doublings (beyond the paper).
+
+Errors are relative to the simple model as in Eqs. 37-38, with their sign: (Λ_SD - Λ)/Λ, with Λ of
+the restitution model, or of the corrected one, at the same doubling.
+"""
+
+from typing import Annotated
+
+import numpy as np
+import xarray as xr
+from pydantic import Field
+
+from bouncing_ball.attractors.cascade import MOST, Cascade, cascade
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
+from bouncing_ball.datasets.variables import described
+from bouncing_ball.orbits.corrected_model import CorrectedModel
+from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.parameters import Family, LossyRestitution, Many, Parameters, Span
+
+
+class Cascades(Parameters):
+    """Cascades of the n-T orbits for several r, along ϖ."""
+
+    n: Family
+    restitution: Many[LossyRestitution]
+    frequency_ratio: Span
+    doublings: Annotated[
+        int,
+        Field(
+            description="period doublings of each cascade; the ratio needs three, and beyond "
+            f"{MOST} rounding decides",
+            ge=3,
+            le=MOST,
+        ),
+    ]
+
+
+_STIFF = np.array([1000.0, 2000.0])
+"""Two ϖ for K: below, higher orders contribute; far above, rounding does."""
+
+
+def _of_models(
+    n: int, restitution: np.ndarray, ratios: np.ndarray, release: Release, doublings: int
+) -> tuple[Cascade, Cascade, Cascade]:
+    """Cascades of the restitution model, shape (k, r, 1), and of the corrected model and the
+    contact, shape (k, r, ϖ). r is the one that the contact really has."""
+    contact = SpringDamper.from_restitution(restitution[:, np.newaxis], ratios, release)
+    models = (
+        RestitutionModel(contact.restitution[:, :1]),
+        CorrectedModel.of_contact(contact),
+        SpringDamperModel(contact),
+    )
+    simple, corrected, exact = (cascade(m.period_doubling(n), doublings) for m in models)
+    return simple, corrected, exact
+
+
+def cascades(parameters: Cascades, release: Release) -> xr.Dataset:
+    """Λ at the period doublings of the orbits of 2ᵏ n table periods, k = 0, 1, …
+
+    ``restitution_cascade`` (restitution, doubling) is Λ of the restitution model, and
+    ``cascade_ratio`` (restitution, step) the ratios of its distances, which tend to Feigenbaum's
+    number; ``contact_cascade_ratio`` (restitution, step, ϖ) is the contact's.
+    ``cascade_error`` (model, restitution, doubling, ϖ) is the signed relative error of each simple
+    model. The restitution model's is K/ϖ to first order with K = ``cascade_coefficient``
+    (restitution, doubling), and the corrected model's C/ϖ² with C = ``cascade_second_order``, both
+    measured at two stiff contacts with the next order eliminated (Richardson). NaN where a
+    doubling was not found.
+    """
+    r, ratios = np.array(parameters.restitution), parameters.frequency_ratio.grid()
+    along = np.concatenate([ratios, _STIFF])
+    simple, corrected, exact = _of_models(parameters.n, r, along, release, parameters.doublings)
+    errors = np.stack([exact.amplitude / x.amplitude - 1 for x in (simple, corrected)])
+    once, twice = np.moveaxis(
+        errors[..., -2:] * _STIFF ** np.array([1, 2]).reshape(2, 1, 1, 1), -1, 0
+    )
+    first, second = (2 * twice - once).swapaxes(1, 2)
+    error = errors[..., : ratios.size].swapaxes(1, 2)
+    of_contact = exact.ratios()[..., : ratios.size].swapaxes(0, 1)
+    return described(
+        {
+            "restitution_cascade": (("restitution", "doubling"), simple.amplitude[..., 0].T),
+            "cascade_ratio": (("restitution", "step"), simple.ratios()[..., 0].T),
+            "contact_cascade_ratio": (("restitution", "step", "frequency_ratio"), of_contact),
+            "cascade_error": (("model", "restitution", "doubling", "frequency_ratio"), error),
+            "cascade_coefficient": (("restitution", "doubling"), first),
+            "cascade_second_order": (("restitution", "doubling"), second),
+        },
+        coords={
+            "model": ["restitution", "corrected"],
+            "restitution": r,
+            "doubling": np.arange(parameters.doublings),
+            "step": np.arange(1, parameters.doublings - 1),
+            "frequency_ratio": ratios,
+        },
+    )

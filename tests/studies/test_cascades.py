@@ -1,0 +1,46 @@
+"""The study of cascades, against the closed law of the first doubling's error."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.accuracy.error_law import coefficients
+from bouncing_ball.configuration.study import typed
+from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.studies.cascades import cascades
+
+R = [0.5, 0.85]
+STIFF = {"min": 500.0, "max": 1000.0, "samples": 2}
+CONFIG = {"n": 1, "restitution": R, "frequency_ratio": STIFF, "doublings": 3}
+
+
+@pytest.fixture(scope="module", params=list(Release))
+def study(request):
+    return request.param, typed(cascades)(CONFIG, request.param)
+
+
+def test_k_of_the_first_doubling_is_that_of_the_error_law(study):
+    """Measured on orbits here, and there a closed form."""
+    release, data = study
+    law = coefficients(1, damping_ratio(np.array(R)), data.restitution_cascade[:, 0], release)
+    # Of the error's expansion the third order is left, over the two ϖ.
+    assert np.allclose(data.cascade_coefficient[:, 0], law["period_doubling"], rtol=1e-4)
+
+
+def test_errors_tend_to_the_two_laws(study):
+    _, data = study
+    error, ratio = data.cascade_error, data.frequency_ratio
+    missed = error.sel(model="restitution") * ratio - data.cascade_coefficient
+    # The next order is one of 1/ϖ: twice as stiff a contact misses half as much.
+    halves = missed.isel(frequency_ratio=0) / missed.isel(frequency_ratio=1)
+    assert np.allclose(halves, 2, atol=0.1)
+    # The corrected model's third order may nearly vanish; at ϖ = 500 it is below one per cent.
+    left = error.sel(model="corrected") * ratio**2 / data.cascade_second_order - 1
+    assert np.all(np.abs(left) < 0.01)
+
+
+def test_a_contact_keeps_the_ratio_of_the_doublings(study):
+    _, data = study
+    shift = data.contact_cascade_ratio / data.cascade_ratio - 1
+    assert np.all(shift != 0) and np.max(np.abs(shift)) < 1e-2
+    assert np.allclose(shift.isel(frequency_ratio=0) / shift.isel(frequency_ratio=1), 2, atol=0.05)

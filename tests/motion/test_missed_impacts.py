@@ -8,6 +8,7 @@ from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion import first_zero
 from bouncing_ball.motion.simulation import next_impact, simulate
+from bouncing_ball.orbits.long_contact import orbit_with_flight
 
 MODELS = ("restitution", "spring-damper", "corrected")
 
@@ -103,3 +104,14 @@ def test_chattering_is_summed_up_as_its_bounces_add_up(ratio):
     assert bounces > 20
     # What restitution.py says of the next term.
     assert abs(float(found.settling[0] - time)) < 1e-15
+
+
+def test_a_release_that_is_due_now_is_not_put_off_by_a_turn():
+    # Long contacts whose steady part alone decides: the 1-T orbit of each is a contact of nearly
+    # a period, and by rounding a step may lie on the crossing itself.
+    ratio = np.linspace(60.0, 70.0, 2000)
+    orbit = orbit_with_flight(SpringDamper.from_restitution(0.65, ratio), 0.19)
+    cycle = orbit.cycle(orbit.phase, orbit.relative_impact_velocity)
+    good = orbit.is_stable()
+    assert good.sum() > 1000
+    np.testing.assert_allclose(cycle.time[good], 2 * np.pi, rtol=1e-9)

@@ -153,6 +153,8 @@ class ContactMotion(Motion):
         below = inside & (sine_and_versine(now)[0] < ratio)
         # The time stays before the crossing by more than the rounding of the crossing.
         wait = np.mod(rising - now, 2 * np.pi) - 1e-9
+        # Rounding must not turn a crossing that is due now into one a turn later.
+        wait = np.where(wait > 2 * np.pi - 1e-6, 0.0, wait)
         return time + np.where(below, np.maximum(wait, 0.0), 0.0)
 
     def sure(self) -> np.ndarray:

@@ -37,7 +37,11 @@ autodoc_typehints = "none"
 myst_enable_extensions = ["dollarmath", "html_image"]
 myst_heading_anchors = 3
 html_theme = "alabaster"
-html_theme_options = {"page_width": "1150px", "description": "A ball on a vibrating table"}
+html_theme_options = {
+    "page_width": "1280px",
+    "body_max_width": "none",
+    "description": "A ball on a vibrating table",
+}
 html_extra_path = [f"../{EXPLORER}"]
 html_show_sourcelink = False
 html_copy_source = False
@@ -66,6 +70,8 @@ def prepare(app, name, text):
 
     def link(found):
         path, _, place = found[2].partition("#")
+        if not path:
+            return found[0]
         target = Path(os.path.normpath(folder / path))
         if str(target) == EXPLORER:
             up = os.path.relpath("explorer.html", folder)

@@ -87,6 +87,8 @@ def test_a_family_that_does_not_exist_says_why_beside_the_others():
     [
         pytest.param(lambda: bb.history([0.5, 1.0], **CONTACT, periods=2.0), id="history"),
         pytest.param(lambda: bb.branch([1, 2], **CONTACT, points=40), id="branch"),
+        pytest.param(lambda: bb.orbit([1, 2], [0.6, 1.0, 1.3], **CONTACT), id="orbit"),
+        pytest.param(lambda: bb.limits([1, 2], restitution=[0.5, 0.85]), id="limits"),
     ],
 )
 def test_a_plot_shows_the_data_and_is_a_picture(data, tmp_path):
@@ -96,6 +98,15 @@ def test_a_plot_shows_the_data_and_is_a_picture(data, tmp_path):
     drawn = {line.get_label(): line for line in figure.axes[0].get_lines()}
     if found.kind == "history":
         np.testing.assert_array_equal(drawn[r"$\Lambda=0.5$"].get_ydata(), found.ball[0])
+    elif found.kind == "orbit":
+        np.testing.assert_array_equal(
+            drawn["$n=1$"].get_ydata(), (found.phase[0] / np.pi).where(found.stable[0])
+        )
+        # Beyond the period doubling.
+        assert np.isnan(drawn["$n=1$"].get_ydata()).tolist() == [False, False, True]
+    elif found.kind == "limits":
+        ends = drawn["period doubling, $n=2$"].get_ydata()
+        np.testing.assert_array_equal(ends, found.period_doubling_amplitude[1])
     else:
         y = np.concatenate([line.get_ydata() for line in figure.axes[0].get_lines()])
         assert float(found.phase.max() / np.pi) in y
@@ -121,6 +132,25 @@ def test_a_plot_shows_the_data_and_is_a_picture(data, tmp_path):
             "amplitude has 2 axes without names",
         ),
         (lambda: bb.drop(0.5, 1.0, phase=1.0, restitution=0.5), "height = 0.5 is not at or above"),
+        (lambda: bb.history(None, restitution=0.5), "amplitude is missing"),
+        (lambda: bb.history([], restitution=0.5), "amplitude has no entries"),
+        (
+            lambda: bb.history(1.0, restitution=0.5, periods=10_000, samples=10_000),
+            "100000001 states in all are more than 10000000",
+        ),
+        (
+            lambda: bb.drop(9.0, law="tsuji", restitution=[0.5, 0.6], duration=0.1),
+            "restitution of law tsuji is one number",
+        ),
+        (
+            lambda: bb.drop(9.0, law="tsuji", parameters={"stiffness": [9.0, 8.0], "damping": 1.0}),
+            "parameters are numbers here",
+        ),
+        (lambda: bb.history(1.0, restitution=0.5, foo=3), "unknown parameter 'foo': a model has"),
+        (
+            lambda: bb.history(1.0, **CONTACT, release=["force", "displacement"]),
+            "release is one value, or an array of numbers",
+        ),
         (lambda: bb.branch(0, restitution=0.5), "n = 0 is not a whole number from 1 to 1000"),
         (lambda: bb.branch(1, restitution=0.5, amplitude_max=0.1), "no 1-T orbit up to Λ = 0.1"),
         (lambda: bb.model([0.5, 0.6]).branch(1), "several models have no labels"),

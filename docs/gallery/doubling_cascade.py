@@ -5,14 +5,19 @@ import numpy as np
 
 import bouncing_ball
 
+amplitudes = np.linspace(1.48, 1.76, 400)
 doubling = bouncing_ball.limits(1, restitution=0.5).period_doubling
-amplitudes = np.linspace(1.48, 1.76, 700)
-found = bouncing_ball.simulate(
-    amplitudes, phase=doubling.phase + 0.01, velocity=-np.pi, restitution=0.5, impacts=600
-)
+start = {"phase": doubling.phase + 0.01, "velocity": -np.pi, "restitution": 0.5}
+impacts = bouncing_ball.motion_of(amplitudes, **start).impacts
+balls = bouncing_ball.simulate(amplitudes, **start, impacts=600)
 figure, axes = plt.subplots(figsize=(8, 4.5), layout="constrained")
-axes.plot(amplitudes, found.phase[-64:].T / np.pi, ",", color="black")
-axes.axvline(doubling.amplitude, color="grey", linestyle="--", linewidth=1)
-axes.set(xlabel="amplitude Λ (dashed: first period doubling)", ylabel="phase of impact over π")
-axes.set(title="r = 0.5: the last 64 of 600 impacts that begin beside the 1-T orbit")
+axes.plot(amplitudes, balls.phase[-64:].T / np.pi, ",", color="black")
+for number in (2, 4, 8):
+    first = float(impacts.amplitude[impacts == number].min())
+    axes.axvline(first, color="grey", linewidth=0.8)
+    axes.text(first, 0.48, f"{number} ", color="grey", ha="right")
+axes.set(xlabel="amplitude Λ (lines: the motion repeats after 2, 4, 8 impacts)")
+axes.set(
+    ylabel="phase of impact over π", title="r = 0.5, from balls that start beside the 1-T orbit"
+)
 figure.savefig("doubling_cascade.png")

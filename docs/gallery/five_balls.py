@@ -7,7 +7,7 @@ from matplotlib.animation import FuncAnimation, PillowWriter
 import bouncing_ball
 
 speeds = np.pi + 1e-3 * np.arange(5)
-found = bouncing_ball.history(1.5, velocity=-speeds, restitution=0.7, periods=14.0, samples=8)
+found = bouncing_ball.history(1.85, velocity=-speeds, restitution=0.7, periods=12.0, samples=6)
 figure, axes = plt.subplots(figsize=(4, 4), dpi=60)
 figure.subplots_adjust(left=0.17)
 balls = axes.scatter(range(5), np.zeros(5), s=120, color="tab:blue")
@@ -19,7 +19,7 @@ def draw(frame):
     now = found.isel(time=frame)
     balls.set_offsets(np.c_[np.arange(5), now.ball])
     table.set_ydata(np.full(2, now.table[0]))
-    axes.set_title(f"Λ = 1.5, r = 0.7, period {float(now.time) / (2 * np.pi):.1f}")
+    axes.set_title(f"Λ = 1.85, r = 0.7, period {float(now.time) / (2 * np.pi):.1f}")
 
 
-FuncAnimation(figure, draw, found.sizes["time"]).save("five_balls.gif", PillowWriter(fps=12))
+FuncAnimation(figure, draw, found.sizes["time"]).save("five_balls.gif", PillowWriter(fps=8))

@@ -1,15 +1,8 @@
-"""The orbit diagram: on which phases does the ball land when the first impacts are forgotten?"""
+"""The orbit diagram: on which phases does a ball land in the long run, for each amplitude?"""
 
-import matplotlib.pyplot as plt
 import numpy as np
 
 import bouncing_ball
 
-amplitudes = np.linspace(0.2, 2.5, 600)
-found = bouncing_ball.simulate(amplitudes, restitution=0.85, impacts=300)
-figure, axes = plt.subplots(figsize=(8, 4.5), layout="constrained")
-axes.plot(amplitudes, found.phase[-60:].T / np.pi, ",", color="black")
-axes.set(
-    xlabel="amplitude Λ", ylabel="phase of impact over π", title="r = 0.85, impacts 241 to 300"
-)
-figure.savefig("orbit_diagram.png")
+found = bouncing_ball.orbit_diagram(np.linspace(0.4, 2.0, 200), restitution=0.7)
+found.plot("orbit_diagram.png")

@@ -11,6 +11,14 @@ restitution coefficient, with ``frequency_ratio`` a spring-damper contact::
     bouncing_ball.limits(n=1, restitution=0.85, frequency_ratio=10.0)
     bouncing_ball.simulate(amplitude=1.0, restitution=0.85, frequency_ratio=10.0)
 
+Others return labelled datasets, whose ``plot()`` is their figure: a ball over time, one that is
+let go at a height, the branch of orbits over Λ, the motion on which a ball ends::
+
+    bouncing_ball.history(amplitude=1.0, restitution=0.85, frequency_ratio=10.0).plot()
+    bouncing_ball.drop(height=10.0, restitution=0.85).plot()
+    bouncing_ball.branch(n=1, restitution=0.85, frequency_ratio=[10.0, 2.0]).plot()
+    bouncing_ball.motion_of(amplitude=1.1, restitution=0.85)
+
 Behind them are the models, :class:`SpringDamperModel` of a :class:`SpringDamper` and
 :class:`RestitutionModel`, with one interface (:mod:`bouncing_ball.orbits.model`).
 

@@ -5,6 +5,7 @@ are a spring-damper contact with the damping of r by Eq. 16, a law is a contact 
 The command line has the same calls, with the options from their signatures.
 """
 
+import inspect
 import math
 from collections.abc import Callable, Mapping
 from typing import Annotated, Any, Literal, NamedTuple
@@ -128,6 +129,9 @@ def _demand(fulfilled: bool, text: str) -> None:
 def _model(given: Mapping[str, Any], law_at: LawAt | None) -> ImpactModel:
     """The model of the parameters that are not None."""
     given = {name: value for name, value in given.items() if value is not None}
+    known = inspect.signature(model).parameters
+    for name in given:
+        _demand(name in known, f"unknown parameter {name!r}: a model has {', '.join(known)}")
     check(model, given)
     losses = [name for name in LOSS if name in given]
     for other in losses[1:]:
@@ -174,6 +178,10 @@ def _law(given: Mapping[str, Any], law_at: LawAt | None) -> ContactLaw:
     if r is None or duration is None:
         raise ParameterError(f"{{law}} {name} needs {needs}, or {{restitution}} and {{duration}}")
     _refuse(given, ("release",), "goes with {law} linear and {parameters} only")
+    if np.ndim(r):
+        raise ParameterError(
+            f"{{restitution}} of {{law}} {name} is one number: its law is found for it"
+        )
     if "speed" in given:
         return law_of_impact(kind, r, duration, given["speed"])
     if law_at is None:
@@ -343,7 +351,7 @@ def limits(n: Index, **impact: Any) -> Any:
 
 def model_of_impact(amplitude: Any, phase: Any, velocity: Any, **impact: Any) -> ImpactModel:
     """The model; a law given by r and D has them at the speed of this impact."""
-    speed = amplitude * np.cos(phase) - velocity
+    speed = np.asarray(amplitude) * np.cos(phase) - velocity
     return _model(impact, lambda kind, r, d: law_of_impact(kind, r, d, speed))
 
 

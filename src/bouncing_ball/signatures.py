@@ -113,6 +113,8 @@ def check(call: Callable, given: Mapping[str, Any]) -> None:
     """
     for name, parameter in inspect.signature(call).parameters.items():
         if given.get(name) is None:
+            if name in given and parameter.default is parameter.empty:
+                raise ParameterError(f"{{{name}}} is missing")
             continue
         for hint in (parameter.annotation, *get_args(parameter.annotation)):
             kind, *_, allowed = get_args(hint) or (None, None)
@@ -124,7 +126,10 @@ def check(call: Callable, given: Mapping[str, Any]) -> None:
                     "one of " + ", ".join(get_args(hint)),
                 )
             elif get_origin(hint) is Annotated and isinstance(allowed, Range):
-                for value in _entries(given[name]):
+                entries = _entries(given[name])
+                if not entries:
+                    raise ParameterError(f"{{{name}}} has no entries")
+                for value in entries:
                     whole = kind is int
                     good = (
                         isinstance(value, int | float)

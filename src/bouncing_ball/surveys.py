@@ -73,7 +73,7 @@ def history(
     check(history, locals())
     grid = Grid(amplitude=amplitude, phase=phase, velocity=velocity, **impact)
     of = model_of_impact(**grid.flat)
-    return labelled.from_impact(of, grid, labelled.instants(periods, samples))
+    return labelled.from_impact(of, grid, labelled.instants(periods, samples, grid.size))
 
 
 @takes(model)
@@ -127,7 +127,7 @@ def drop(
     lam, phi, velocity, _ = labelled.fall(grid)
     at = dict.fromkeys(("amplitude", "phase", "velocity", "height"))
     of = model_of_impact(lam, phi, velocity, **{k: x for k, x in grid.flat.items() if k not in at})
-    return labelled.from_rest(of, grid, labelled.instants(periods, samples))
+    return labelled.from_rest(of, grid, labelled.instants(periods, samples, grid.size))
 
 
 @takes(model)

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import re
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from bouncing_ball.accuracy import error_law
 from bouncing_ball.accuracy.errors import errors
 from bouncing_ball.accuracy.quantities import Quantity
 from bouncing_ball.calculator.verdict import assessed, notes
+from bouncing_ball.contacts.laws import LAWS
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
@@ -281,7 +283,10 @@ FAINT = {"acceleration": "0.1 g"}
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        (FAINT, "no n-T orbit in any model: the table's"),
+        (
+            FAINT,
+            "no n-T orbit in any model, and a ball laid on the table stays at rest: the table's",
+        ),
         (FAINT | {"n": 1}, "and the 1-T orbit needs 0.2526"),
         (FAINT | {"stiffness": None}, "below the saddle-node"),
         ({"n": 9}, "no 9-T orbit in any model"),
@@ -345,3 +350,27 @@ def test_a_tolerance_in_percent_and_one_with_many_digits():
 def test_a_tolerance_that_every_contact_meets_needs_no_frequency_ratio():
     found = design(**STEEL, restitution=0.85, quantity="permanent_contact", tolerance=0.99)
     assert found.reason == "the error is within the tolerance at every frequency ratio scanned"
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_every_law_is_designed_for_by_its_impact(name):
+    given = {"mass": 0.02, "frequency": 50.0, "acceleration": "1 g", "contact_time": "0.3 ms"}
+    found = design(**given, restitution=0.65, law=name)
+    assert found.measured_restitution == pytest.approx(0.65, rel=1e-12)
+    assert found.contact_time == pytest.approx(3e-4, rel=1e-12)
+    one = found.orbits[0]
+    # The third order of small D = 0.094 against the second.
+    assert one.corrected_errors["max_height"] < 0.1 * one.errors["max_height"]
+    assert one.law_errors["max_height"] == pytest.approx(one.errors["max_height"], rel=0.1)
+
+
+def test_a_law_is_refused_with_what_it_does_not_have():
+    given = {"mass": 0.02, "frequency": 50.0, "acceleration": "1 g", "restitution": 0.65}
+    for more, said in [
+        ({"stiffness": 1e5}, "stiffness does not go with law hunt-crossley"),
+        ({}, "law hunt-crossley needs contact_time"),
+        ({"contact_time": 3e-4, "release": "force"}, "release does not go with law"),
+        ({"contact_time": 3e-4, "engine": "drake"}, "is not written for drake"),
+    ]:
+        with pytest.raises(ModelError, match=re.escape(said)):
+            design(**given, law="hunt-crossley", **more)

@@ -63,6 +63,8 @@ def test_what_a_solref_means_needs_no_table(ask, said):
     # The default impedance is told what it costs.
     text = said(*FROM, "--mass", "500 g")
     assert "0.95 a contact feels 0.05 of the load" in text
+    # σ_d = σ + 2ζ d r/ω.
+    assert "under a load a this r is r + σ a/v with σ = " in text
     assert "at the surface the spring is 0.9 and the damper 0.95" in text
     positive = ask(*BALL, "--from", "mujoco", "--solref", "0.02 0.3", "--solimp", "1e-4 1e-4")
     assert positive["damping_ratio"] == pytest.approx(0.3) and positive["notes"] == []

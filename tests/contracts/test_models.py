@@ -8,6 +8,7 @@ beside them.
 
 import runpy
 from functools import cache
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -73,7 +74,14 @@ every_side = pytest.mark.parametrize("side", list(Side))
 def some_orbit(name, n, above, side):
     model = MODELS[name]
     node = float(model.saddle_node(n).amplitude)
-    return model, model.require_orbit(n, (0.0 if np.isnan(node) else node) + above, side)
+    return model.require_orbit(n, (0.0 if np.isnan(node) else node) + above, side)
+
+
+@pytest.fixture(params=[*product(MODELS, CASES, Side)], ids=lambda case: "-".join(map(str, case)))
+def some(request):
+    """Name, model, n, and an orbit: of every model in every case on every side."""
+    name, (n, above), side = request.param
+    return name, MODELS[name], n, some_orbit(name, n, above, side)
 
 
 def differences(function, y, steps):
@@ -86,11 +94,8 @@ def differences(function, y, steps):
     return np.stack(columns, axis=-1)
 
 
-@every_side
-@every_case
-@every_model
-def test_an_orbit_solves_its_equations(name, n, above, side):
-    model, orbit = some_orbit(name, n, above, side)
+def test_an_orbit_solves_its_equations(some):
+    _, model, n, orbit = some
     # Heights of order (nπ)²; a contact's phase ϖD is rounded too.
     size = (1 + np.pi * n) ** 2 * (1 + float(orbit.clock) * float(orbit.contact_duration))
     assert orbit.defect() < 100 * EPS * size
@@ -100,11 +105,8 @@ def test_an_orbit_solves_its_equations(name, n, above, side):
     assert system.orbit(y).distance(orbit) < 100 * EPS * size
 
 
-@every_side
-@every_case
-@every_model
-def test_the_jacobian_of_the_equations(name, n, above, side):
-    model, orbit = some_orbit(name, n, above, side)
+def test_the_jacobian_of_the_equations(some):
+    _, model, n, orbit = some
     system = model.system(n)
     y = system.point(orbit)
     computed = system.jacobian(y)
@@ -113,11 +115,8 @@ def test_the_jacobian_of_the_equations(name, n, above, side):
     assert np.abs(computed - expected).max() < 1e-9 * (1 + np.abs(computed).max())
 
 
-@every_side
-@every_case
-@every_model
-def test_an_orbit_is_a_fixed_point_of_the_simulation(name, n, above, side):
-    model, orbit = some_orbit(name, n, above, side)
+def test_an_orbit_is_a_fixed_point_of_the_simulation(some):
+    name, model, n, orbit = some
     assert orbit.is_admissible()
     u = orbit.relative_impact_velocity
     growth = 1 + np.abs(orbit.monodromy()).max()
@@ -131,11 +130,8 @@ def test_an_orbit_is_a_fixed_point_of_the_simulation(name, n, above, side):
     assert sequence.contact_duration[0] == pytest.approx(orbit.contact_duration, abs=1e-13 * growth)
 
 
-@every_side
-@every_case
-@every_model
-def test_the_monodromy_is_the_jacobian_of_the_simulated_map(name, n, above, side):
-    _, orbit = some_orbit(name, n, above, side)
+def test_the_monodromy_is_the_jacobian_of_the_simulated_map(some):
+    _, _, _, orbit = some
 
     def cycle(state):
         at = orbit.cycle(state[0], state[1])
@@ -148,14 +144,16 @@ def test_the_monodromy_is_the_jacobian_of_the_simulated_map(name, n, above, side
     assert np.abs(computed - expected).max() < 1e-8 * (1 + np.abs(computed).max() ** 2)
 
 
-@every_side
-@every_case
 # The corrected model's impact is an instant, and no contact.
-@pytest.mark.parametrize("name", [name for name in MODELS if not name.startswith("corrected")])
-def test_the_jacobian_of_the_contact(name, n, above, side):
+@pytest.mark.parametrize(
+    "some",
+    [case for case in product(MODELS, CASES, Side) if not case[0].startswith("corrected")],
+    indirect=True,
+)
+def test_the_jacobian_of_the_contact(some):
     # Where the force vanishes the map does not feel the time of release, so that
     # the monodromy would not show an error in it.
-    model, orbit = some_orbit(name, n, above, side)
+    _, model, _, orbit = some
 
     def contact(state):
         phase, relative, lam = state
@@ -168,11 +166,8 @@ def test_the_jacobian_of_the_contact(name, n, above, side):
     assert np.abs(orbit.contact_jacobian() - expected).max() < 1e-9 * (1 + np.abs(expected).max())
 
 
-@every_side
-@every_case
-@every_model
-def test_the_determinant_is_the_contraction(name, n, above, side):
-    _, orbit = some_orbit(name, n, above, side)
+def test_the_determinant_is_the_contraction(some):
+    name, _, _, orbit = some
     matrix = orbit.monodromy()
     size = 1 + np.abs(matrix).max() ** 2
     missed = EXACT.get(name, 100 * EPS)
@@ -209,11 +204,8 @@ def test_sides_and_bifurcations(name, n, above):
         assert abs(found.point[-1] - orbit.amplitude) < 1e-9
 
 
-@every_side
-@every_case
-@every_model
-def test_the_path_is_continuous_and_closed(name, n, above, side):
-    _, orbit = some_orbit(name, n, above, side)
+def test_the_path_is_continuous_and_closed(some):
+    name, _, n, orbit = some
     period, duration = 2 * np.pi * n, float(orbit.contact_duration)
     height, velocity = orbit.path([0.0, period, -period, 5 * period])
     np.testing.assert_allclose(height, height[0], rtol=0, atol=1e-12 * n * n)
@@ -240,12 +232,9 @@ def test_the_path_is_continuous_and_closed(name, n, above, side):
     np.testing.assert_allclose(v * v / 2 + z, orbit.max_height, rtol=100 * EPS)
 
 
-@every_side
-@every_case
-@every_model
-def test_nothing_happens_between_the_events(name, n, above, side):
+def test_nothing_happens_between_the_events(some):
     # First events: the ball is held in contact, and above the table in flight.
-    _, orbit = some_orbit(name, n, above, side)
+    name, _, _, orbit = some
     share = np.linspace(0, 1, 2001)[1:-1]
     if orbit.contact_duration > 0 and not name.startswith("corrected"):
         depth, rate = (-x for x in orbit.contact_motion(share * orbit.contact_duration))
@@ -323,7 +312,7 @@ def test_a_closed_form_is_what_the_continuation_finds(name):
 @every_side
 @every_model
 def test_the_closed_form_is_nearest_to_its_own_orbits(name, side):
-    model, orbit = some_orbit(name, 1, 0.5, side)
+    model, orbit = MODELS[name], some_orbit(name, 1, 0.6, side)
     if Route.FORMULA not in model.routes:
         pytest.skip("no closed form")
     assert model.nearest(orbit).distance(orbit) < 1e-12

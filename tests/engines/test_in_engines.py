@@ -7,7 +7,9 @@ the heights over the table, and the seconds of processor time that its steps too
 """
 
 import ctypes
+import re
 import sys
+from dataclasses import replace
 from functools import cache
 from importlib.metadata import version
 from importlib.util import find_spec
@@ -21,7 +23,9 @@ import xarray as xr
 from pandas import DataFrame
 
 from bouncing_ball.calls import limits, simulate
+from bouncing_ball.contacts.collocation import contacts
 from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
@@ -312,6 +316,34 @@ def test_a_free_impact_has_the_promised_restitution(name, release, restitution, 
     assert found.restitution == pytest.approx(restitution, rel=1e-9)
     # The digits of the flight are those of a height of one, in steps.
     assert abs(farthest - restitution) <= error + 1e-5
+
+
+@pytest.mark.engines
+@pytest.mark.filterwarnings("default")
+@pytest.mark.parametrize("zeta", [0.1, 0.25])
+@pytest.mark.parametrize("share", [1e-4, 0.95, 0.9999])
+def test_the_impedance_takes_its_part_of_the_load(share, zeta):
+    """A drop with gravity, against the contact law: units of g, and Ω = ω/10."""
+    only_if_installed("mujoco")
+    ratio, speed, steps = 10.0, 10.0, 20_000
+    law = Impedance(ratio, zeta, share)
+    end = contacts(law, speed)
+    # Back at the table's level after the flight that follows.
+    back = np.sqrt(end.rate**2 - 2 * end.penetration)
+    found = settings("mujoco", Release.FORCE, float(law.signature.restitution), 1.0, ratio**2, 0.01)
+    step = 2 * float(end.duration) / steps
+    least = " ".join(map(repr, found.parameters["solimp"][:2]))
+    snippet = found.snippet.replace(least, f"{share!r} {share!r}")
+    assert snippet != found.snippet or share == 1e-4
+    found = replace(
+        found, time_step=step, snippet=re.sub('timestep="[^"]*"', f'timestep="{step!r}"', snippet)
+    )
+    heights, _ = mujoco(Trial(found, 1.0, speed * step / 2, -speed, steps, 1.0))
+    above = np.flatnonzero(heights > 0)[-1]
+    rise = (heights[above] - heights[above - 1]) / step
+    measured = np.sqrt(rise**2 + 2 * heights[above] - step * rise) / speed
+    # The contact has 10⁴ steps, and one of 450 leaves 0.001 (steps_for): 5e-5.
+    assert measured == pytest.approx(float(back) / speed, abs=1e-4)
 
 
 @pytest.mark.engines

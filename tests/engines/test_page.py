@@ -33,7 +33,7 @@ def test_every_script_and_every_engine_is_on_the_page():
     assert {f"python docs/engines/{path.name}" for path in scripts} < set(commands)
     assert all(len(path.read_text(encoding="utf-8").splitlines()) <= 30 for path in scripts)
     recipes = re.findall(r"^bouncing-ball design --engine (\w+)", "\n".join(commands), re.MULTILINE)
-    assert {*recipes, "generic"} == set(ENGINES) and len(BLOCKS) == len(recipes) + 5
+    assert {*recipes, "generic"} == set(ENGINES) and len(BLOCKS) == len(recipes) + 6
 
 
 def test_the_readme_shows_a_part_of_the_first_recipe():

@@ -15,6 +15,7 @@ from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.law_model import LawModel, law_at_orbit
 from bouncing_ball.orbits.orbit import OBSERVABLES
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.restitution_orbit import rigid_speed
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Side
 
@@ -119,3 +120,18 @@ def test_far_above_the_fold_orbits_are_walked_to_or_said_not_to_be_found(monkeyp
     monkeypatch.setattr("bouncing_ball.orbits.continued._POINTS", 20)
     with pytest.raises(NoOrbitError, match="none was found, and there may be one"):
         model.require_orbit(20, 1000.0, Side.UNSTABLE)
+
+
+@pytest.mark.parametrize(("r", "duration"), [(0.85, 0.3), (0.5, 0.6)])
+def test_just_above_the_fold_two_orbits_part_as_the_root_of_the_distance(r, duration):
+    model = LawModel(law_of_impact(HuntCrossley, r, duration, rigid_speed(1, r)))
+    fold = model.saddle_node(1)
+    apart = []
+    for above in (1e-6, 1e-4, 1e-2):
+        stable, unstable = (model.orbit(1, fold.amplitude * (1 + above), side) for side in Side)
+        assert stable.defect() < 1e-11 and unstable.defect() < 1e-11
+        assert stable.phase > fold.phase > unstable.phase
+        apart.append(float(stable.phase - unstable.phase))
+    # The next order of the root is smaller by the distance itself.
+    assert apart[1] / apart[0] == pytest.approx(10, rel=1e-3)
+    assert apart[2] / apart[1] == pytest.approx(10, rel=0.1)

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.motion.regularity import exact_map_jacobian
+from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import (
     ImpactMap,
     RestitutionOrbit,
@@ -173,3 +174,8 @@ def test_no_orbit_below_the_saddle_node(lam, refusal):
         NoOrbitError, f"no 1-T orbit at Λ = {np.ravel(lam)[-1]:g}", "saddle-node at Λ = 0.254724"
     ):
         phase(1, 0.85, lam)
+
+
+def test_of_both_sides_the_larger_phase_comes_first():
+    phase = RestitutionModel(0.85).orbits(1, 1.0).phase
+    assert phase[0] == -phase[1] > 0

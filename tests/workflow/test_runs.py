@@ -27,10 +27,9 @@ def test_a_run_makes_every_figure_and_table(pristine, stages):
 
 
 def test_a_run_gives_the_accepted_datasets(pristine, recorded, stages):
-    for name in stages:
-        made = read_dataset(pristine.path / f"results/figures/{name}.nc")
-        rows = compare_datasets(name, recorded[name], made)
-        assert [row for row in rows if not row.outcome.agrees] == [], name
+    made = {name: read_dataset(pristine.path / f"results/figures/{name}.nc") for name in stages}
+    rows = {name: compare_datasets(name, recorded[name], data) for name, data in made.items()}
+    assert [(name, row) for name in rows for row in rows[name] if not row.outcome.agrees] == []
 
 
 def test_a_run_touches_no_tracked_file(pristine, cloned):

@@ -53,8 +53,8 @@ def values(
     Examples
     --------
     >>> from bouncing_ball.orbits.restitution_model import RestitutionModel
-    >>> asked = "bounce_velocity", "permanent_contact"
-    >>> bool(np.all(values(RestitutionModel(0.5), 1, 2.0, asked) == [np.pi, 1.0]))
+    >>> names = "bounce_velocity", "permanent_contact"
+    >>> bool(np.all(values(RestitutionModel(0.5), 1, 2.0, names) == [np.pi, 1.0]))
     True
     """
     orbit = cache(lambda: model.orbit(n, amplitude))

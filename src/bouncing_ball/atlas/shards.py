@@ -69,7 +69,7 @@ def merge(plan: Plan, shards: Iterable[xr.Dataset], limits: xr.Dataset) -> xr.Da
     seen, first = np.zeros(np.prod(plan.shape), dtype=int), None
     whole: dict[str, tuple[tuple[Hashable, ...], np.ndarray]] = {}
     coords: dict[str, object] = {}
-    # One shard at a time: what is held is the whole, and never all of its parts beside it.
+    # One shard at a time, so that memory holds the result and one part, and never all parts.
     for part in chain(shards, [limits]):
         first = part.coords.to_dataset() if first is None else first
         xr.align(first, part, join="exact", exclude={"row"})

@@ -124,7 +124,7 @@ def cascade(orbit: Orbit, doublings: int) -> Cascade:
     orbit : Orbit
         The n-T orbits at their period doubling, which is the first: one, or an array of them.
     doublings : int
-        How many are looked for, the first included, from 1 to 8.
+        Number of period doublings to be computed, the first included, from 1 to 8.
 
     Raises
     ------

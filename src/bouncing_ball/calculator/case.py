@@ -4,7 +4,11 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
+
 from bouncing_ball.accuracy.errors import models
+from bouncing_ball.contacts.contact_law import ContactLaw
+from bouncing_ball.contacts.contact_scales import depth
 from bouncing_ball.contacts.laws.tsuji import Tsuji
 from bouncing_ball.contacts.signature import Instant, Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
@@ -13,6 +17,9 @@ from bouncing_ball.orbits.law_model import LawModel
 from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
+
+# Two restitution coefficients are one: the law is found, and interpolated, to 1e-12.
+_SAME = 1e-9
 
 
 @dataclass(frozen=True)
@@ -63,7 +70,7 @@ class Case:
     table : Table
     contact : SpringDamper
         ϖ, ζ and the release rule.
-    law : Tsuji, optional
+    law : ContactLaw, optional
         A Hertz contact; the linear one then has its restitution coefficient, and its
         duration at the orbit's impact speed.
 
@@ -77,7 +84,7 @@ class Case:
     mass: float
     table: Table
     contact: SpringDamper
-    law: Tsuji | None = None
+    law: ContactLaw | None = None
 
     @cached_property
     def models(self) -> dict[str, ImpactModel]:
@@ -87,7 +94,7 @@ class Case:
         if self.law is None:
             return {model.name: model for model in models(self.contact)}
         return {
-            "hertz": LawModel(self.law),
+            "hertz" if isinstance(self.law, Tsuji) else self.law.name: LawModel(self.law),
             "restitution": RestitutionModel(self.contact.restitution),
             "corrected": CorrectedModel(Signature(self.law)),
         }
@@ -97,6 +104,15 @@ class Case:
         r = self.contact.restitution
         # The r of a law is interpolated, and may exceed 1 by rounding.
         return self.models["corrected"].signature(rigid_speed(n, r))._replace(restitution=r)
+
+    def has_its_restitution(self, n: int) -> bool:
+        """Whether the r of the contact is that of the law at the impact speed of the n-T orbit."""
+        r = float(self.contact.restitution)
+        return (
+            self.law is None
+            or abs(float(self.models["corrected"].signature(rigid_speed(n, r)).restitution) - r)
+            < _SAME
+        )
 
     def in_si(self) -> dict[str, float]:
         """Stiffness k = mω² and damping c = 2ζmω with ω = ϖΩ, contact time, and static deflection
@@ -108,7 +124,8 @@ class Case:
         omega = float(self.contact.frequency_ratio) * self.table.angular_frequency
         deflection = self.table.gravity / omega**2
         if self.law is not None:
-            deflection = float(self.law.stiffness) ** (-2 / 3) * self.table.length
+            felt = np.array([1 - (self.law.impedance or 0.0)])
+            deflection = float(depth(self.law, 0 * felt, 0.0, felt)[0]) * self.table.length
         return {
             "stiffness": self.mass * omega**2,
             "damping": 2 * float(self.contact.damping_ratio) * self.mass * omega,

@@ -20,7 +20,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from bouncing_ball.calculator.case import Case, Table
+from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.laws.tsuji import Tsuji, tsuji_damping
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import free_impact
@@ -193,7 +195,13 @@ def meant(asked: Sequence[int], restitution: float, amplitude: float) -> int:
     return asked[int(np.argmax(orbits.exists & orbits.is_stable()))]
 
 
-def case_of(given: Given, table: Table, release: Release, asked: Sequence[int]) -> Case | None:
+def case_of(
+    given: Given,
+    table: Table,
+    release: Release,
+    asked: Sequence[int],
+    kind: type[ContactLaw] | None = None,
+) -> Case | None:
     """The case whose contact is given; None without any stiffness.
 
     Parameters
@@ -234,9 +242,14 @@ def case_of(given: Given, table: Table, release: Release, asked: Sequence[int]) 
             zeta = loss(given, release)
         return Case(mass, table, SpringDamper(omega / table.angular_frequency, zeta, release))
     # In the unit of time in which the frequency of the contact is 1.
-    unit, law = SpringDamper(1.0, loss(given, release), release), None
+    unit = SpringDamper(1.0, loss(given, release), release)
+    law: ContactLaw | None = None
     if modulus is None:
         duration = given["contact_time"] / table.time
+        if kind is not None:
+            r = float(unit.restitution)
+            speed = rigid_speed(meant(asked, r, table.amplitude), r)
+            law = law_of_impact(kind, r, duration, speed)
     else:
         if release is not Release.DISPLACEMENT:
             raise ModelError("a Hertz contact with Tsuji's damping is released at δ = 0: no force")

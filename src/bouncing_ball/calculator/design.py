@@ -23,6 +23,8 @@ from bouncing_ball.calculator.results import (
 from bouncing_ball.calculator.units import Unit, number, percent
 from bouncing_ball.calculator.verdict import Verdict, assessed, chosen, judged_by_motion, notes
 from bouncing_ball.calls import Index, Rule
+from bouncing_ball.contacts.contact_law import ContactLaw
+from bouncing_ball.contacts.law_choice import law_named
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.engines import engine_named
@@ -69,6 +71,7 @@ def design(
     rebound_height: Annotated[Any, Unit("m", "70 cm")] = None,
     n: Index | None = None,
     release: Rule | None = None,
+    law: str | None = None,
     quantity: str = "max_height",
     tolerance: Annotated[Any, Unit("", "1 %", Range(0, 1))] = 0.01,
     engine: str | None = None,
@@ -120,6 +123,9 @@ def design(
         Index of the family; by default the first eight, and a verdict on the first stable one.
     release
         What ends a contact: "displacement", the default without an engine, or "force".
+    law
+        The law of the contact, such as hunt-crossley, in place of the linear one. It has the
+        restitution and the contact time of a free impact at the orbit's speed.
     quantity
         The quantity that must be accurate: max_height, bounce_velocity, phase,
         apparent_restitution, saddle_node, period_doubling or permanent_contact.
@@ -147,6 +153,7 @@ def design(
     """
     given = _read(locals())
     question = given | {"n": n, "release": release, "quantity": quantity, "engine": engine}
+    question["law"], kind = law, _of_law(law, engine, release, given)
     rule, epsilon = _under(engine, release, given), given.pop("tolerance")
     if quantity not in QUANTITIES:
         raise ModelError(f"unknown quantity {quantity!r}: one of {', '.join(QUANTITIES)}")
@@ -156,7 +163,7 @@ def design(
     lam, asked = table.amplitude, _FAMILIES if n is None else [n]
     require(lam < _LARGEST, lam, "Λ", f"below {_LARGEST:g}")
     try:
-        return _answer(given, table, rule, asked, quantity, epsilon, question)
+        return _answer(given, table, rule, asked, quantity, epsilon, question, kind)
     except NoOrbitError as error:
         bare = str(acceleration).strip()
         if not bare.replace(".", "", 1).isdigit():
@@ -172,9 +179,10 @@ def _answer(
     quantity: str,
     epsilon: float,
     question: dict[str, Any],
+    kind: type[ContactLaw] | None,
 ) -> Design:
     """The verdict on a contact that is given, or the contact that is needed."""
-    lam, case = table.amplitude, case_of(given, table, rule, asked)
+    lam, case = table.amplitude, case_of(given, table, rule, asked, kind)
     if case is not None:
         ratio = float(case.contact.frequency_ratio)
         require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
@@ -201,7 +209,11 @@ def _answer(
 
 
 def contact(
-    *, engine: str | None = None, release: Rule | None = None, **parameters: Any
+    *,
+    engine: str | None = None,
+    release: Rule | None = None,
+    law: str | None = None,
+    **parameters: Any,
 ) -> Contact:
     """A contact without a table, for an engine, from the parameters of :func:`design`.
 
@@ -217,6 +229,7 @@ def contact(
     (0.75, 'force')
     """
     given = _read(parameters)
+    _of_law(law, engine, release, given)
     rule, error = _under(engine, release, given), given.get("restitution_error", ERROR)
     # With a table of 1 rad/s the frequency ratio is the frequency of the contact.
     case = case_of(given, Table(1.0, 1.0, STANDARD_GRAVITY), rule, [1])
@@ -237,6 +250,28 @@ def contact(
         physical.restitution(rule),
         engine_named(engine).settings(physical, rule, error) if engine else None,
     )
+
+
+def _of_law(
+    name: str | None, engine: str | None, release: str | None, given: dict[str, float]
+) -> type[ContactLaw] | None:
+    """The kind of a contact law, which a free impact gives its parameters; None if it is linear."""
+    kind = None if name is None else law_named(name)
+    if kind is None or kind is SpringDamper:
+        return None
+    if engine is not None:
+        raise ParameterError(f"{{law}} {name} is not written for {engine}: leave {{law}} out")
+    if release is not None:
+        raise ParameterError(f"{{release}} does not go with {{law}} {name}, which has its own")
+    for other in ("stiffness", "damping", "damping_ratio", "reduced_modulus", "youngs_modulus"):
+        if other in given:
+            instead = "give {contact_time} and {restitution}"
+            raise ParameterError(f"{{{other}}} does not go with {{law}} {name}: {instead}")
+    if "contact_time" not in given:
+        raise ParameterError(f"{{law}} {name} needs {{contact_time}}, of a free impact")
+    if "restitution" in given:
+        given["measured_restitution"] = given.pop("restitution")
+    return kind
 
 
 def _under(engine: str | None, release: str | None, given: dict[str, float]) -> Release:

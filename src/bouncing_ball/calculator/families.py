@@ -69,6 +69,8 @@ def by_error_law(case: Case, n: int) -> tuple[Errors, bool]:
         first = error_law.first_order(n, instant, lam)
         law[: len(first)] = [*first.values()]
         holds = bool(error_law.small_parameter(n, instant, lam) < error_law.STATED)
+        # A law whose r depends on the speed has the r of the restitution model at one speed only.
+        holds = holds and case.has_its_restitution(n)
     if case.law is None:
         second = error_law.permanent_contact_coefficient(contact.damping_ratio, contact.release)
         law[-1] = second / contact.frequency_ratio**2
@@ -118,9 +120,11 @@ def families(case: Case, asked: Sequence[int]) -> tuple[Family, ...]:
     if not there.any():
         lowest = values[0, len(OF_ORBITS), 0]
         which = f"{asked[0]}-T orbit" if len(asked) == 1 else "n-T orbit"
+        laid = lam <= case.permanent_contact
+        rests = ", and a ball laid on the table stays at rest" if laid else ""
         raise NoOrbitError(
-            f"no {which} in any model: the table's acceleration is Λ = {lam:.4g} of gravity, "
-            f"and the {asked[0]}-T orbit needs {lowest:.4g}"
+            f"no {which} in any model{rests}: the table's acceleration is Λ = {lam:.4g} of "
+            f"gravity, and the {asked[0]}-T orbit needs {lowest:.4g}"
         )
     return tuple(
         _family(case, asked[k], [orbit[k] for orbit in orbits], values[:, :, k])

@@ -30,7 +30,7 @@ _BESIDE = 1e-3
 _IMPACTS = 600
 # Balls and impacts of a mean, and impacts left out before, for a linear contact and for a law,
 # which takes a hundred times as long.
-_SAMPLES = {"spring-damper": (128, 500, 100), "hertz": (32, 120, 40)}
+_SAMPLES, _SAMPLES_OF_LAW = (128, 500, 100), (32, 120, 40)
 # Quantile of Student's distribution for an interval of 95 %, with 32 balls or more.
 _STUDENT = 2.04
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
@@ -70,7 +70,7 @@ def of_family(case: Case, family: Family) -> Motion:
             name: _greatest(case, name, start, found[name]) for name in (exact, simple)
         }
     elif Kind.PERMANENT_CONTACT not in (one.kind, other.kind):
-        means = {name: _means(case, name, start, exact) for name in (exact, simple)}
+        means = {name: _means(case, name, start) for name in (exact, simple)}
         values["mean_height"] = {name: pair[0] for name, pair in means.items()}
         values["mean_power"] = {name: pair[1] for name, pair in means.items()}
     return Motion(
@@ -118,9 +118,9 @@ def _greatest(case: Case, name: str, start: _Start, motion: Any) -> float:
     return float(np.nanmax(last)) * case.table.length
 
 
-def _means(case: Case, name: str, start: _Start, exact: str) -> tuple[Mean | None, Mean | None]:
+def _means(case: Case, name: str, start: _Start) -> tuple[Mean | None, Mean | None]:
     """Means over many balls that start beside each other, in m and W."""
-    balls, impacts, before = _SAMPLES[exact]
+    balls, impacts, before = _SAMPLES if case.law is None else _SAMPLES_OF_LAW
     table = case.table
     velocity = start.velocity * (1 + _BESIDE * np.arange(1, balls + 1) / balls)
     found = case.models[name].simulate(table.amplitude, start.phase, velocity, impacts)

@@ -8,6 +8,8 @@ from bouncing_ball.attractors.motions import Kind
 from bouncing_ball.calculator.case import Case
 from bouncing_ball.calculator.results import QUANTITIES, Family, Motion, Needed
 from bouncing_ball.calculator.units import percent, shown
+from bouncing_ball.contacts.contact_law import ContactLaw
+from bouncing_ball.contacts.laws.tsuji import Tsuji
 from bouncing_ball.contacts.release import Release
 
 
@@ -58,7 +60,7 @@ def assessed(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
 
 
 def judged_by_motion(motion: Motion, tolerance: float, n: int) -> Verdict:
-    """The verdict where no ball keeps to the orbit: on the motion that it ends on."""
+    """The verdict where no ball stays on the orbit: about the motion on which it ends."""
     about = f"the errors of the {n}-T orbit are those of a motion that no ball has"
     kinds = motion.kind, motion.restitution_kind
     if kinds == (Kind.PERMANENT_CONTACT,) * 2:
@@ -142,14 +144,24 @@ def chosen(si: Mapping[str, float], needed: Needed, n: int) -> Verdict:
     return Verdict(True, sentence, f"the error crosses {tolerance} for the last time {where}")
 
 
+def _contact(law: ContactLaw) -> str:
+    hertz = isinstance(law, Tsuji)
+    return "Hertz contact with Tsuji's damping" if hertz else f"{law.name} contact"
+
+
 def notes(case: Case, family: Family) -> tuple[str, ...]:
     """What a user should know beside the verdict."""
     found, contact, orbit = [], case.contact, f"{family.n}-T orbit"
     if case.law is not None:
         found.append(
             "stiffness, damping, ϖ and ζ, and the ϖ that is needed, are those of a linear contact: "
-            "it has the r of the Hertz contact with Tsuji's damping, and its duration at the impact"
+            f"it has the r of the {_contact(case.law)}, and its duration at the impact"
         )
+        if not all(case.has_its_restitution(n) for n in (family.n, family.n + 1)):
+            found.append(
+                "the restitution of this law depends on the speed: it is r at the speed of the "
+                "restitution model's lowest stable orbit"
+            )
     if not family.exists:
         found.append(f"at this Λ the contact has no {orbit}")
     elif not (family.is_stable and family.is_admissible):

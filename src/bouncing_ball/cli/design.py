@@ -78,7 +78,7 @@ def design(
     if (from_engine or given.get("engine")) and all(given.get(name) is None for name in _TABLE):
         if plot is not None:
             raise ParameterError("{plot} needs a table, such as {frequency} and {acceleration}")
-        names = {"engine", "release", *calculator.quantities()}
+        names = {"engine", "release", "law", *calculator.quantities()}
         alone = {name: value for name, value in given.items() if name in names}
         return Answer(replace(calculator.contact(**alone), notes=notes))
     found = calculator.design(**given)

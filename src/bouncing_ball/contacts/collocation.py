@@ -473,9 +473,9 @@ def march(
     panels : int
         How many are tried for each contact; an oscillation takes about eight.
     until : array, optional
-        Times within the contacts at which p and p′ are wanted, in place of the release.
+        Times within the contacts at which p and p′ are computed, in place of the release.
     differentiate : bool
-        Whether the derivatives are wanted, of contacts that start at p = 0; else they are NaN.
+        Whether derivatives are computed, for contacts that start at p = 0; otherwise they are NaN.
 
     Examples
     --------

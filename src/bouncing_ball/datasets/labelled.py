@@ -6,6 +6,7 @@ imported by the first picture, because computations need no matplotlib.
 """
 
 import math
+from collections.abc import Mapping
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -72,6 +73,9 @@ class Grid:
     """
 
     def __init__(self, **given: Any) -> None:
+        for name, value in given.items():
+            if isinstance(value, Mapping) and any(np.ndim(x) for x in value.values()):
+                raise ParameterError(f"{{{name}}} are numbers here: an array has no axis of a name")
         self.coords = {
             name: _axis(name, value).assign_attrs(VARIABLES.get(name, {}))
             for name, value in given.items()
@@ -125,4 +129,6 @@ def _axis(name: str, value: Any) -> xr.DataArray:
         raise ParameterError(
             f"{{{name}}} has {array.ndim} axes without names: give an xarray.DataArray"
         )
+    if array.dtype.kind not in "iuf":
+        raise ParameterError(f"{{{name}}} is one value, or an array of numbers")
     return xr.DataArray(array, dims=name, coords={name: array})

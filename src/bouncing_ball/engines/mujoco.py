@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.engines.engine import Engine, Physical
 from bouncing_ball.engines.scheme import Scheme
@@ -115,6 +116,16 @@ class MuJoCo(Engine):
             found.append(
                 f"with the impedance {most:g} a contact feels {1 - most:.2g} of the load (gravity, "
                 'table), and a spring and a damper all of it: solimp = "1e-4 1e-4 0.001"'
+            )
+        contact = self.read(parameters, 1.0) if "solref" in parameters else None
+        if found and contact is not None and contact.damping_ratio < 1:
+            # At 1 rad/s of a table the frequency ratio is the contact's own frequency.
+            own = contact.angular_frequency, contact.damping_ratio
+            loads = (Impedance(*own, d).signature.load for d in (most, 0.0))
+            new, old = (float(load) for load in loads)
+            found.append(
+                f"under a load a this r is r + σ a/v with σ = {new:.4g} s, and {old:.4g} s for "
+                "a spring and a damper"
             )
         if least != most:
             found.append(

@@ -1,4 +1,6 @@
-"""How the contact shifts cascades of period doublings, and what is left of it in both models."""
+"""The shift of cascades of period doublings by the contact, and the errors of both simple
+models.
+"""
 
 import numpy as np
 import xarray as xr

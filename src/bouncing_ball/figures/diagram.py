@@ -1,4 +1,7 @@
-"""The motions on which balls end: over the amplitude, of starts, and their basins."""
+"""Figures of the motions on which balls end: over the amplitude, of starts, and their basins.
+
+The datasets are those of :mod:`bouncing_ball.attractors.labelled`.
+"""
 
 import numpy as np
 import xarray as xr
@@ -16,9 +19,9 @@ from bouncing_ball.figures.style import COLOURS
 KINDS = ("orbit", "subharmonic", "locked", "permanent contact", "chaotic", "undecided")
 """The kinds of motion in the order of their colours."""
 
-# Paler where there is less to see: a motion that does not repeat fills its band.
+# Motions that do not repeat have pale colours, because they fill their bands.
 _HUES = dict(zip(KINDS, (*COLOURS[:4], "#9a9a9a", "#d9b8d9"), strict=True))
-# Basins are areas: in order of their share, light and dark in turn.
+# Basins are areas, coloured in order of their shares with light and dark colours in turn.
 _AREAS = ("#3F96CC", "#000000", "#E8B04A", "#AA3A00", "#B7DDF2", "#5B5B5B", "#F4E3B5", "#D9D9D9")
 
 
@@ -64,7 +67,7 @@ def _rows(data: xr.Dataset) -> tuple[xr.Dataset, np.ndarray, str]:
 
 
 def motions(data: xr.Dataset) -> Figure:
-    """Periods of the motions, in the colour of their kind; 0 where one does not repeat."""
+    """Periods of the motions, in the colour of their kind; 0 for a motion that does not repeat."""
     return _over_argument(data, "periods", "periods until it repeats")
 
 

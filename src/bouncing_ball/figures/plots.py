@@ -13,6 +13,8 @@ from bouncing_ball.figures.style import style
 PLOTS = {
     "history": "histories.over_time",
     "branch": "branches.over_amplitude",
+    "orbit": "sweeps.orbits",
+    "limits": "sweeps.limits",
     "diagram": "diagram.orbit_diagram",
     "motions": "diagram.motions",
     "exponent": "diagram.exponent",

@@ -1,5 +1,6 @@
 """One orbit followed along ϖ, curve by curve (Figs. 5, 6, 10, 13)."""
 
+from collections.abc import Iterator, Sequence
 from itertools import cycle
 
 import numpy as np
@@ -7,11 +8,19 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from bouncing_ball.datasets.labelled import CASE
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.figures.branches import draw_curve
-from bouncing_ball.figures.canvas import canvas, coloured, legend_below, logarithmic
-from bouncing_ball.figures.labels import note, number, parameters
-from bouncing_ball.figures.style import COLOURS, GUIDE, RESTITUTION, Look
+from bouncing_ball.figures.canvas import WIDE, WIDTH, canvas, coloured, legend_below, logarithmic
+from bouncing_ball.figures.labels import in_a_row, note, number, parameters, symbol, title
+from bouncing_ball.figures.style import (
+    COLOURS,
+    GUIDE,
+    PERIOD_DOUBLING,
+    RESTITUTION,
+    SADDLE_NODE,
+    Look,
+)
 
 _DASHES = ("-", (0, (5, 1.5)), (0, (1, 1)), (0, (5, 1.5, 1, 1.5)))
 # Above this frequency ratio the points are close to that of the restitution model.
@@ -65,6 +74,52 @@ def poincare_map(data: xr.Dataset) -> Figure:
     amplitudes = [rf"$\Lambda={number(x)}$" for x in data["amplitude"].values]
     axes.set_title(", ".join([parameters(data, "n", "restitution"), *amplitudes]))
     return figure
+
+
+def orbits(data: xr.Dataset) -> Figure:
+    """Phase of impact and greatest height of orbits over the last axis of a labelled dataset.
+
+    Solid where the orbit is stable, dashed where it is not; a curve for each place of the others.
+    """
+    figure, panels = canvas(WIDE, 2.8, columns=2)
+    figure.suptitle(title(data))
+    for curve, place, look in _curves(data, panels):
+        for axes, values in zip(panels, (curve.phase / np.pi, curve.max_height), strict=True):
+            axes.plot(place, values.where(curve.stable), **look)
+            axes.plot(place, values, **look | {"linestyle": "--", "linewidth": 0.8, "label": None})
+    panels[0].set(ylabel=r"phase of impact $\varphi/\pi$")
+    panels[1].set(ylabel=r"greatest height $\max\,z$")
+    if data.phase.ndim > 1:
+        legend_below(figure, ncols=4)
+    return figure
+
+
+def limits(data: xr.Dataset) -> Figure:
+    """Saddle-node and period doubling over the last axis of a labelled dataset."""
+    figure, axes = canvas(WIDTH, 2.8)
+    figure.suptitle(title(data))
+    for curve, place, look in _curves(data, [axes]):
+        for kind, dashes in ((SADDLE_NODE, "-"), (PERIOD_DOUBLING, "--")):
+            values = curve[f"{kind.replace('-', '_').replace(' ', '_')}_amplitude"]
+            label = ", ".join(x for x in (kind, look["label"]) if x)
+            axes.plot(place, values, **look | {"linestyle": dashes, "label": label})
+    axes.set(ylabel=r"amplitude $\Lambda$", ylim=(0, None))
+    legend_below(figure, ncols=2)
+    return figure
+
+
+def _curves(
+    data: xr.Dataset, panels: Sequence[Axes]
+) -> Iterator[tuple[xr.Dataset, np.ndarray, Look]]:
+    """Each curve of a labelled dataset with its look, over its last axis, which is named."""
+    along = str(list(data.dims)[-1])
+    rows, names = in_a_row(data, along)
+    place = data[along].values
+    wide = along == "frequency_ratio" and place.max() > 30 * place.min()
+    for axes in panels:
+        axes.set(xlabel=symbol(along), xscale="log" if wide else "linear")
+    for (curve, colour), name in zip(coloured(rows, CASE), names, strict=True):
+        yield curve, place, {"color": colour, "label": name, "marker": ".", "markersize": 3}
 
 
 def _draw_cases(axes: Axes, data: xr.Dataset, name: str, ylabel: str) -> None:

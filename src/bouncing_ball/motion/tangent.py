@@ -60,7 +60,7 @@ class Jacobian(NamedTuple):
 
     @classmethod
     def identity(cls, balls: int) -> Self:
-        """The identity."""
+        """The identity for so many balls."""
         one, zero = np.ones(balls), np.zeros(balls)
         return cls(one, zero, zero.copy(), one.copy())
 

@@ -124,7 +124,7 @@ def destinations(
     phase, velocity : ndarray, shape (balls,)
         φ and δ′ of the first impacts.
     impacts : int
-        Impacts after which a ball is given up.
+        Number of impacts after which a ball counts as :data:`ELSEWHERE`.
 
     Examples
     --------

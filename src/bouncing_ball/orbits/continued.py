@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.signature import Instant
 from bouncing_ball.continuation.branch import ContinuationError, continue_branch
-from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane
+from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane, tangent
 from bouncing_ball.continuation.events import Event, SpecialPoint, parameter_bound, vanishing
 from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.orbits import corrected_branch as corrected
@@ -40,6 +40,9 @@ _FARTHER = 4.0
 _LOWEST = 1e-4
 # Longest step as a part of Λ, where Λ is large.
 _STRIDE = 0.05
+# Length along the branch by which a fold's parabola is measured, and how far in Λ it is trusted,
+# in parts of its rise there.
+_BESIDE, _PARABOLA = 1e-2, 4.0
 _HERE = "this amplitude"
 
 
@@ -173,16 +176,42 @@ def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Any:
 
 def _on_branch(model: Any, n: int, amplitude: float, side: Side) -> np.ndarray | float:
     """The point at Λ on the part of the branch next to the fold, on one side of it, or NaN."""
-    if not amplitude >= float(model.saddle_node(n).amplitude):
+    fold = model.saddle_node(n)
+    if not amplitude >= float(fold.amplitude):
         return np.nan
+    y = _beside_fold(model.system(n), model.system(n).point(fold), amplitude, side)
+    if np.all(np.isfinite(y)):
+        return y
     found = continued(model, n, amplitude, farther=_ABOVE)
     names = [special.name for special in found]
     if Bifurcation.SADDLE_NODE not in names:
         return np.nan
     # The branch runs from the stable side over the fold.
-    fold = names.index(Bifurcation.SADDLE_NODE)
-    beside = found[:fold][::-1] if side is Side.STABLE else found[fold:]
+    at = names.index(Bifurcation.SADDLE_NODE)
+    beside = found[:at][::-1] if side is Side.STABLE else found[at:]
     return next((special.point for special in beside if special.name == _HERE), np.nan)
+
+
+def _beside_fold(system: Any, fold: np.ndarray, amplitude: float, side: Side) -> np.ndarray:
+    """The point at Λ on a side of a fold, by its parabola Λ - Λ_SN ~ s²; NaN where it ends.
+
+    A step of the continuation passes over both orbits where they are close to each other.
+    """
+    along = tangent(system.jacobian(fold), np.ones_like(fold))
+    beside = fold + _BESIDE * along
+    step = newton(system, beside, plane(along, beside), _SETTINGS).point - fold
+    y = np.full_like(fold, np.nan)
+    if not (step[-1] > 0 and amplitude - fold[-1] < _PARABOLA * step[-1]):
+        return y
+    share = np.sqrt((amplitude - fold[-1]) / step[-1])
+    guesses = fold + share * np.outer([1, -1], step)
+    guesses[:, -1] = amplitude
+    for guess in guesses:
+        found = newton(system, guess, plane(np.eye(fold.size)[-1], guess), _EXTENDED)
+        test = Bifurcation.SADDLE_NODE.test(*system.orbit(found.point).trace_and_determinant())
+        if found.converged and (test > 0) == (side is Side.STABLE):
+            y = found.point
+    return y
 
 
 def continued(

@@ -30,6 +30,8 @@ from bouncing_ball.orbits.stability import Side
 
 # Number of impacts of a ball that are simulated at first, and the largest number.
 _FIRST, _MOST = 64, 65_536
+# States of all balls, of some fifty bytes each, with as much again while they are computed.
+_STATES = 10_000_000
 # By default a branch ends at this multiple of the Λ of its period doubling. A fold below the
 # second number belongs to an elastic contact. The third is the number of orbits that are tried as
 # starting points of a branch.
@@ -37,15 +39,23 @@ _BEYOND, _LOWEST, _STARTS = 1.4, 1e-4, 16
 _STEPS = StepControl(largest=0.1)
 
 
-def instants(periods: float, samples: int) -> np.ndarray:
+def instants(periods: float, samples: int, balls: int) -> np.ndarray:
     """Times over some periods of the table, with ``samples`` of them in each period.
+
+    Raises
+    ------
+    ModelError
+        If the states of so many balls at all of them would fill the memory.
 
     Examples
     --------
-    >>> (instants(1.0, 4) / np.pi).tolist()
+    >>> (instants(1.0, 4, 1) / np.pi).tolist()
     [0.0, 0.5, 1.0, 1.5, 2.0]
     """
-    return np.linspace(0.0, 2 * np.pi * periods, math.ceil(periods * samples) + 1)
+    count = math.ceil(periods * samples) + 1
+    if count * balls > _STATES:
+        raise ModelError(f"{count * balls} states in all are more than {_STATES}: ask for less")
+    return np.linspace(0.0, 2 * np.pi * periods, count)
 
 
 def _followed(model: Any, start: Sequence[np.ndarray], time: np.ndarray) -> list[History]:

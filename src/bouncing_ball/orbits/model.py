@@ -39,7 +39,7 @@ from bouncing_ball.orbits.system import ContactSystem, OrbitSystem
 def _labelled() -> Any:
     """The labelled results of models, which need xarray and are made of models themselves.
 
-    Imported when they are asked for: no stage of the pipeline depends on them.
+    The module is imported on first use, because no stage of the pipeline depends on it.
     """
     return import_module("bouncing_ball.orbits.labelled")
 
@@ -210,7 +210,7 @@ class ImpactModel(Batch, ABC):
         """A ball over time from a first impact: :func:`bouncing_ball.history`."""
         labelled = _labelled()
         grid = self._grid(amplitude=amplitude, phase=phase, velocity=velocity)
-        return labelled.from_impact(self, grid, labelled.instants(periods, samples))
+        return labelled.from_impact(self, grid, labelled.instants(periods, samples, grid.size))
 
     def drop(
         self,
@@ -224,7 +224,7 @@ class ImpactModel(Batch, ABC):
         """A ball that is released at rest: :func:`bouncing_ball.drop`."""
         labelled = _labelled()
         grid = self._grid(height=height, amplitude=amplitude, phase=phase)
-        return labelled.from_rest(self, grid, labelled.instants(periods, samples))
+        return labelled.from_rest(self, grid, labelled.instants(periods, samples, grid.size))
 
     def branch(self, n: ArrayLike, *, amplitude_max: float | None = None, points: int = 300) -> Any:
         """The branch of n-T orbits over Λ: :func:`bouncing_ball.branch`."""

@@ -202,12 +202,12 @@ class Orbit(Batch, ABC):
 
     @property
     def relative_impact_velocity(self) -> np.ndarray:
-        """z′_i - w′_i."""
+        """δ′ = z′_i - w′_i at the start of contact, negative."""
         return self.impact_velocity - self.amplitude * np.cos(self.phase)
 
     @property
     def relative_bounce_velocity(self) -> np.ndarray:
-        """z′_b - w′_b."""
+        """δ′ = z′_b - w′_b at release, positive."""
         return self.bounce_velocity - self.amplitude * np.cos(self.release_phase)
 
     @property

@@ -76,17 +76,17 @@ class BranchPoint(NamedTuple):
 
     @property
     def trace(self) -> np.ndarray:
-        """Trace of the monodromy."""
+        """Trace of the monodromy, from its determinant and 1 - tr + det."""
         return 1 + self.determinant - self.saddle_node
 
     @property
     def amplitude(self) -> np.ndarray:
-        """Λ."""
+        """Λ = √(X² + Y²)."""
         return np.sqrt(self.x * self.x + self.y * self.y)
 
     @property
     def phase(self) -> np.ndarray:
-        """φ in (-π, π]."""
+        """φ = atan2(Y, X), in (-π, π]."""
         return np.arctan2(self.y, self.x)
 
     @property

@@ -41,7 +41,7 @@ class SpringDamperOrbit(Orbit):
 
     @property
     def clock(self) -> ArrayLike:
-        """ϖ."""
+        """ϖ, the frequency of the contact over that of the table."""
         return self.law.frequency_ratio
 
     def contact_flow(self, time: np.ndarray) -> Any:

@@ -1,4 +1,4 @@
-"""How a contact of finite stiffness shifts the cascades of period doublings (beyond the paper).
+"""The shift of cascades of period doublings by a contact of finite stiffness (beyond the paper).
 
 Errors are relative to the simple model as in Eqs. 37-38, with their sign: (Λ_SD - Λ)/Λ, with Λ of
 the restitution model, or of the corrected one, at the same doubling.
@@ -37,14 +37,17 @@ class Cascades(Parameters):
 
 
 _STIFF = np.array([1000.0, 2000.0])
-"""Two ϖ for K: below, higher orders contribute; far above, rounding does."""
+"""Two ϖ for K: higher orders contribute at smaller ϖ, and rounding at much larger ones."""
 
 
 def _of_models(
     n: int, restitution: np.ndarray, ratios: np.ndarray, release: Release, doublings: int
 ) -> tuple[Cascade, Cascade, Cascade]:
     """Cascades of the restitution model, shape (k, r, 1), and of the corrected model and the
-    contact, shape (k, r, ϖ). r is the one that the contact really has."""
+    contact.
+
+    The latter have shape (k, r, ϖ). The simple models have the r of a free impact on the contact.
+    """
     contact = SpringDamper.from_restitution(restitution[:, np.newaxis], ratios, release)
     models = (
         RestitutionModel(contact.restitution[:, :1]),

@@ -104,7 +104,7 @@ def stable_windows(parameters: Windows, release: Release) -> xr.Dataset:
 
 def _shared_period(model: SpringDamperModel, amplitude: float, ends: Destinations) -> int:
     """Number of impacts after which most motions on no n-T orbit repeat; 0 if there is none."""
-    # A ball that was given up while it rises, after a release below the table's level, has no
+    # A ball whose last recorded state is rising, after a release below the table's level, has no
     # impact to start from.
     left = np.flatnonzero((ends.orbit == ELSEWHERE) & (ends.velocity < 0))
     asked = left[:: max(1, left.size // _ASKED)]

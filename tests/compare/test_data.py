@@ -6,7 +6,7 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bouncing_ball.compare.budgets import ARTIFACTS, budget_of
+from bouncing_ball.compare.budgets import ARTIFACTS, PICTURES, budget_of
 from bouncing_ball.compare.data import compare_datasets
 from bouncing_ball.compare.drift import curve, pointwise, span
 from bouncing_ball.compare.outcome import Outcome
@@ -61,7 +61,10 @@ def test_counts_words_and_choices_are_exact(values, other):
 def test_no_budget_hides_what_a_reader_sees():
     # A tenth of a pixel of a picture of a thousand, but where rounding decides a whole sample.
     # What engines gave is a measurement, and no picture of the run is made of a new one.
-    computed = [own for name, own in ARTIFACTS.items() if name != "engines"]
+    # Where rounding decides about motions there are statistics, with their standard errors.
+    statistics = [budget for name in PICTURES for budget in ARTIFACTS[name].values()]
+    assert all(budget.share <= 0.05 and budget.size <= 5 for budget in statistics)
+    computed = [own for name, own in ARTIFACTS.items() if name not in ("engines", *PICTURES)]
     budgets = [budget for own in computed for budget in own.values()]
     assert len(budgets) > 20
     assert all(budget.size <= 1e-4 or budget.over == "point" for budget in budgets)

@@ -11,10 +11,11 @@ from PIL.PngImagePlugin import PngInfo
 
 from bouncing_ball.cli.main import main
 from bouncing_ball.compare import parts
+from bouncing_ball.compare.budgets import PICTURE
 from bouncing_ball.compare.folders import compare_folders
 from bouncing_ball.compare.outcome import Outcome
 from bouncing_ball.compare.page import to_html
-from bouncing_ball.compare.pictures import BUDGET, compare_pictures
+from bouncing_ball.compare.pictures import compare_pictures
 from bouncing_ball.compare.terminal import note, to_terminal
 from bouncing_ball.compare.texts import compare_texts
 from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
@@ -120,7 +121,7 @@ def test_pictures_by_their_pixels():
     assert compare_pictures(grey, grey) == []
     for moved, outcome in ((1, Outcome.WITHIN), (2, Outcome.DRIFTED)):
         (found,) = compare_pictures(grey, grey + moved)
-        assert (found.outcome, found.share) == (outcome, moved / BUDGET)
+        assert (found.outcome, found.share) == (outcome, moved / PICTURE)
     (found,) = compare_pictures(grey, grey[:, :-1])
     assert (found.outcome, found.record, found.new) == (Outcome.STRUCTURE, "50 × 40", "49 × 40")
 

@@ -54,6 +54,21 @@ def _beside(data: xr.Dataset, name: str, other: str) -> np.ndarray:
     return data[other].broadcast_like(data[name]).transpose(*data[name].dims).values
 
 
+def _allowed(drift: np.ndarray, share: float) -> np.ndarray:
+    """Drift over the budget, where a share of the entries may be beyond it.
+
+    Examples
+    --------
+    >>> _allowed(np.array([0.5, np.inf, 0.0, 0.0]), 0.5).tolist()
+    [0.5, 0.5, 0.0, 0.0]
+    >>> _allowed(np.array([np.inf, 0.0]), 0.4).tolist()
+    [inf, 0.0]
+    """
+    beyond = drift > 1
+    part = beyond.mean()
+    return np.where(beyond, part / share, drift) if 0 < part <= share else drift
+
+
 def shares(name: str, record: xr.Dataset, new: xr.Dataset, budget: Budget) -> np.ndarray:
     """Drift of a variable over its budget, entry by entry; ∞ where nothing may change.
 
@@ -63,7 +78,7 @@ def shares(name: str, record: xr.Dataset, new: xr.Dataset, budget: Budget) -> np
         A variable of both datasets, of the same shape and type.
     record, new : Dataset
     budget : Budget
-        For texts, counts and truth values only a budget over a curve has an effect.
+        For texts, counts and truth values only a curve or a share of the entries has an effect.
 
     Raises
     ------
@@ -81,6 +96,8 @@ def shares(name: str, record: xr.Dataset, new: xr.Dataset, budget: Budget) -> np
     a, b = record[name], new[name]
     if budget.size == IGNORED:
         return np.zeros(a.shape)
+    if budget.share:
+        return _allowed(shares(name, record, new, budget._replace(share=0.0)), budget.share)
     if budget.over:
         axis = a.dims.index("point")
         x, new_x = (_beside(data, name, budget.over) for data in (record, new))

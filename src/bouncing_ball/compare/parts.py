@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+from bouncing_ball.compare.budgets import PICTURE, PICTURES
 from bouncing_ball.compare.data import compare_datasets
 from bouncing_ball.compare.outcome import Outcome, Row, Whole
 from bouncing_ball.compare.pictures import compare_pictures, read_picture
@@ -62,7 +63,8 @@ def _rows(old: Path, now: Path, data: Outcome | None) -> list[Row]:
         case ".nc":
             return compare_datasets(old.stem, read_dataset(old), read_dataset(now))
         case ".png":
-            return compare_pictures(read_picture(old), read_picture(now))
+            budget = PICTURES.get(old.stem, PICTURE)
+            return compare_pictures(read_picture(old), read_picture(now), budget)
         case _:
             return compare_texts(words_of(old), words_of(now), data)
 

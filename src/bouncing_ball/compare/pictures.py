@@ -5,14 +5,8 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+from bouncing_ball.compare.budgets import PICTURE
 from bouncing_ball.compare.outcome import Outcome, Row
-
-BUDGET = 1.0
-"""Root mean square difference allowed, in grey levels of 255.
-
-Parameters that differ by two units in the last place, which change every rounding as another
-processor does, move the pixels of a figure by 0.092 at most (Fig. 15). The budget is the power of
-ten next above ten times that."""
 
 
 def read_picture(path: Path) -> np.ndarray:
@@ -29,7 +23,7 @@ def read_picture(path: Path) -> np.ndarray:
     return np.asarray(Image.alpha_composite(ground, whole).convert("RGB"), dtype=np.int16)
 
 
-def compare_pictures(record: np.ndarray, new: np.ndarray) -> list[Row]:
+def compare_pictures(record: np.ndarray, new: np.ndarray, budget: float = PICTURE) -> list[Row]:
     """The difference of two pictures of :func:`read_picture`: no row if all pixels are identical.
 
     Examples
@@ -44,6 +38,6 @@ def compare_pictures(record: np.ndarray, new: np.ndarray) -> list[Row]:
     changed = (new != record).any(axis=-1)
     if not changed.any():
         return []
-    share = float(np.sqrt(np.mean((new - record).astype(float) ** 2))) / BUDGET
+    share = float(np.sqrt(np.mean((new - record).astype(float) ** 2))) / budget
     outcome = Outcome.WITHIN if share <= 1 else Outcome.DRIFTED
     return [Row("pixels", outcome, share=share, note=f"{changed.sum()} of {changed.size} changed")]

@@ -1,0 +1,147 @@
+"""What balls end on in the three models, side by side on the same axes."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from bouncing_ball.figures.canvas import WIDE, logarithmic
+from bouncing_ball.figures.labels import number
+from bouncing_ball.figures.style import COLOURS, Look
+
+# Lowest period of each colour of a locked motion.
+_PERIODS = (1, 2, 3, 4, 5, 9, 17, 33)
+_LOCKED = colormaps["viridis_r"](np.linspace(0.08, 1, len(_PERIODS)))
+_OTHERS = {
+    "orbit": "#ffffff",
+    "subharmonic": "#d9d9d9",
+    "permanent contact": "#8c8c8c",
+    "chaotic": "#f3d3c1",
+    "undecided": "#ffffff",
+}
+# In grey too, what does not repeat is told by its dots, and what is unknown by crosses.
+_DOTS: dict[str, Look] = {
+    "chaotic": {"marker": ".", "markersize": 1.3, "color": "#AA3A00", "markeredgewidth": 0},
+    "undecided": {"marker": "x", "markersize": 1.6, "color": "#000000", "markeredgewidth": 0.3},
+}
+# Exponents beyond are drawn as these.
+_LOWEST, _HIGHEST = -1.5, 1.5
+# Lighter throughout, from blue below 0 to yellow above.
+_RATES = ListedColormap(
+    [
+        *colormaps["Blues_r"](np.linspace(0, 0.65, 128)),
+        *colormaps["YlOrBr_r"](np.linspace(0.5, 1, 128)),
+    ]
+).with_extremes(bad=_OTHERS["permanent contact"])
+_LOOKS = {"all": ("all nodes", COLOURS[0], "o"), "orbit": ("n-T orbits", COLOURS[4], "s"),
+          "locked, 1 to 4 T": ("locked, 1 to 4 T", COLOURS[2], "^"),
+          "locked": ("locked", COLOURS[1], "D"),
+          "locked, above 10 T": ("locked, above 10 T", COLOURS[3], "v")}  # fmt: skip
+
+
+def locking(data: xr.Dataset) -> Figure:
+    """Period of the locked orbit and largest exponent over (Λ, r) for each model; below, the share
+    of nodes on which the contact agrees with each simple model along ϖ.
+    """
+    figure = Figure(figsize=(WIDE, 8.0), layout="constrained")
+    parts: Any = figure.subfigures(3, 1, height_ratios=(2.8, 2.8, 2.4))
+    maps, exponents, below = parts
+    kinds = maps.subplots(1, data.sizes["model"], sharex=True, sharey=True)
+    rates = exponents.subplots(1, data.sizes["model"], sharex=True, sharey=True)
+    ratio = number(float(data.frequency_ratio[0]))
+    for model, upper, lower in zip(data["model"].values, kinds, rates, strict=True):
+        one = data.sel(model=model)
+        _draw_kinds(upper, one)
+        image = _draw_exponent(lower, one)
+        name = model if model == "restitution" else rf"{model}, $\varpi={ratio}$"
+        upper.set_title(name)
+        lower.set_xlabel(r"amplitude $\Lambda$")
+    kinds[0].set_ylabel("restitution coefficient $r$")
+    rates[0].set_ylabel("restitution coefficient $r$")
+    bar: Look = {"location": "bottom", "aspect": 60, "shrink": 0.6, "extend": "both"}
+    label = r"largest Lyapunov exponent $\lambda$ per period of the table"
+    exponents.colorbar(image, ax=list(rates), label=label, **bar)
+    maps.legend(handles=_key(data), loc="outside lower center", ncols=7, fontsize=7)
+    for simple, axes in zip(data.simple.values, below.subplots(1, 2, sharey=True), strict=True):
+        _draw_agreement(axes, data.sel(simple=simple))
+        axes.set_title(f"contact against the {simple} model")
+    handles = axes.get_legend_handles_labels()[0]
+    below.axes[0].set_ylabel("share of nodes with the\nsame kind and period")
+    below.legend(handles=handles, loc="outside lower center", ncols=len(handles), fontsize=7)
+    return figure
+
+
+def _draw_kinds(axes: Axes, one: xr.Dataset) -> None:
+    place = np.searchsorted(_PERIODS, one.periods.values, side="right") - 1
+    for k, kind in enumerate(_OTHERS, len(_PERIODS)):
+        place[(one.kind == kind).values] = k
+    colours = ListedColormap([*_LOCKED, *_OTHERS.values()])
+    _mesh(
+        axes, one, place, cmap=colours, norm=BoundaryNorm(np.arange(colours.N + 1) - 0.5, colours.N)
+    )
+    for kind, look in _DOTS.items():
+        r, lam = np.nonzero((one.kind == kind).values)
+        x, y = one.amplitude.values[lam], one.restitution.values[r]
+        axes.plot(x, y, linestyle="none", rasterized=True, **look)
+    _draw_bifurcations(axes, one)
+
+
+def _draw_exponent(axes: Axes, one: xr.Dataset):
+    look: Look = {"cmap": _RATES, "vmin": _LOWEST, "vmax": _HIGHEST}
+    image = _mesh(axes, one, one.lyapunov_exponent.values.clip(_LOWEST), **look)
+    _draw_bifurcations(axes, one)
+    return image
+
+
+def _mesh(axes: Axes, one: xr.Dataset, values: np.ndarray, **look):
+    axes.spines[["top", "right"]].set_visible(True)
+    x, y = one.amplitude.values, one.restitution.values
+    return axes.pcolormesh(x, y, values, rasterized=True, **look)
+
+
+def _draw_bifurcations(axes: Axes, one: xr.Dataset) -> None:
+    """Saddle-node (solid) and period doubling (dashed) of the 1-T orbit over r."""
+    limits = axes.get_xlim(), axes.get_ylim()
+    for name, dashes in (("saddle_node", "-"), ("period_doubling", (0, (3, 1.5)))):
+        lam = one[f"{name}_amplitude"]
+        axes.plot(lam, one.restitution, color="#000000", linewidth=0.9, linestyle=dashes)
+    axes.set(xlim=limits[0], ylim=limits[1])
+
+
+def _key(data: xr.Dataset) -> list:
+    edge: Look = {"edgecolor": "#000000", "linewidth": 0.4}
+    ends = [*(low - 1 for low in _PERIODS[1:]), None]
+    names = [
+        f"locked, {low} T"
+        if low == 1
+        else f"{low} T"
+        if low == end
+        else f"from {low} T"
+        if end is None
+        else f"{low} to {end} T"
+        for low, end in zip(_PERIODS, ends, strict=True)
+    ]
+    found = set(np.unique(data.kind))
+    patches = [Patch(facecolor=c, label=x, **edge) for c, x in zip(_LOCKED, names, strict=True)]
+    others = [(kind, fill) for kind, fill in _OTHERS.items() if kind in found]
+    for kind, fill in others:
+        hatch = {"chaotic": "......", "undecided": "xxxx"}.get(kind)
+        patches.append(Patch(facecolor=fill, label=kind, hatch=hatch, **edge))
+    return patches
+
+
+def _draw_agreement(axes: Axes, one: xr.Dataset) -> None:
+    ratio = one.frequency_ratio.values
+    for k, (group, (name, colour, marker)) in enumerate(_LOOKS.items()):
+        shown = one.sel(motion_group=group)
+        low, high = shown.agreement - shown.agreement_low, shown.agreement_high - shown.agreement
+        # Side by side.
+        place = ratio * 1.06 ** (k - 2)
+        look: Look = {"color": colour, "marker": marker, "markersize": 4, "linewidth": 0.8}
+        axes.errorbar(place, shown.agreement, [low, high], capsize=2, label=name, **look)
+    logarithmic(axes, xlabel=r"frequency ratio $\varpi$", ylim=(0, 1.03))

@@ -11,28 +11,7 @@ pytestmark = pytest.mark.docs
 
 SITE = Path(__file__).parents[1] / "results" / "site"
 # Loads the pages one after another and writes down what the browser made of each.
-OBSERVER = """<!doctype html><meta charset="utf-8">
-<iframe id="page" width="1200" height="900"></iframe><pre id="seen"></pre><script>
-const pages = PAGES, seen = {}, frame = document.getElementById("page");
-async function look(page) {
-  await new Promise(done => { frame.onload = done; frame.src = page; });
-  const found = frame.contentDocument, view = frame.contentWindow;
-  const fetched = view.performance.getEntriesByType("resource");
-  seen[page] = {
-    title: found.title,
-    missing: [...found.images].filter(image => !image.naturalWidth).map(image => image.src),
-    unread: [...found.querySelectorAll(".math, .problematic")].map(part => part.textContent),
-    ids: [...found.querySelectorAll("[id]")].map(part => part.id),
-    links: [...found.links].map(link => link.href),
-    fetched: fetched.map(entry => entry.name),
-    wide: found.documentElement.scrollWidth,
-  };
-}
-(async () => {
-  for (const page of pages) await look(page);
-  document.getElementById("seen").textContent = JSON.stringify(seen);
-})();
-</script>"""
+OBSERVER = Path(__file__).with_name("site_observer.html").read_text(encoding="utf-8")
 
 
 @pytest.fixture(scope="module")

@@ -7,11 +7,13 @@ Python does, in its own folder and environment. Nothing of this package is impor
 each program has that of its own tree.
 """
 
+import ctypes
 import gc
 import importlib
 import json
 import os
 import runpy
+import signal
 import socket
 import sys
 from contextlib import suppress
@@ -38,6 +40,8 @@ sys.exit(int(server.recv(4) or 1))
 
 def main(folder: Path) -> None:
     """Serve; in a fork, become the program that is asked for."""
+    # Nobody asks when the tests are gone, even if they were killed: PR_SET_PDEATHSIG.
+    ctypes.CDLL(None).prctl(1, signal.SIGTERM)
     for name in IMPORTED:
         importlib.import_module(name)
     gc.freeze()

@@ -49,7 +49,7 @@ def _with_parents(module: str) -> list[str]:
 
 
 def sources(*modules: str) -> list[str]:
-    """Files of this package that importing the modules executes, and their tables, sorted.
+    """Files that importing the modules executes, and their tables and texts, sorted.
 
     Raises
     ------
@@ -71,5 +71,5 @@ def sources(*modules: str) -> list[str]:
             if path is not None and path not in seen:
                 seen.add(path)
                 pending.extend(imports(path))
-    tables = (path.with_suffix(".csv") for path in seen)
-    return sorted(str(path) for path in [*seen, *filter(Path.is_file, tables)])
+    beside = (path.with_suffix(suffix) for path in seen for suffix in (".csv", ".md"))
+    return sorted(str(path) for path in [*seen, *filter(Path.is_file, beside)])

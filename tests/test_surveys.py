@@ -18,7 +18,8 @@ def test_a_ball_started_on_its_orbit_follows_the_path_of_the_orbit():
     # Stable: rounding of the start does not grow.
     np.testing.assert_allclose(found.ball, orbit.path(found.time.values)[0], atol=1e-12)
     share = float(found.contact.mean())
-    assert share == pytest.approx(float(orbit.contact_duration) / (2 * np.pi), abs=1 / 200)
+    # A sample at either end of a contact is in it or not by rounding.
+    assert share == pytest.approx(float(orbit.contact_duration) / (2 * np.pi), abs=2 / 200)
 
 
 def test_an_elastic_drop_on_a_spring_keeps_its_energy():

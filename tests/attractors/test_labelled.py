@@ -82,7 +82,7 @@ def test_the_exponent_is_that_of_the_motion():
     ("call", "text"),
     [
         (lambda: bb.motion_of(-1.0, **R), "amplitude = -1.0 is not a number in [0, 1e+08]"),
-        (lambda: bb.orbit_diagram([], **R), "amplitudes must be at least one Λ, in rising order"),
+        (lambda: bb.orbit_diagram([], **R), "amplitudes has no entries"),
         (lambda: bb.orbit_diagram([2.0, 1.0], **R), "must be at least one Λ, in rising order"),
         (lambda: bb.basins(1.0, starts=100_000, **R), "10000000000 balls are more than fit into"),
         (lambda: bb.basins([1.0, 2.0], **R), "amplitude must be a single Λ"),

@@ -56,7 +56,7 @@ def test_the_cascade(r):
     # Where the orbits of period 1, 2, 4 and 8 lose stability, by finite differences of the map.
     ends = {
         0.5: [1.526824, 1.667131, 1.696781, 1.703181],
-        0.85: [1.038304, 1.199733, 1.226661],
+        0.85: [1.038304, 1.199733],
     }[r]
     amplitude = np.array([ends[0] - 0.05, *(0.4 * a + 0.6 * b for a, b in pairwise(ends))])
     found = label(r, amplitude, *beside(RestitutionModel(r), 1, amplitude), impacts=20_000)

@@ -76,6 +76,15 @@ def test_the_headline_says_what_the_ball_does(amplitude, kind, says):
         assert simple.value == pytest.approx(power.mean(), abs=margin)
 
 
+def test_without_loss_a_ball_stays_beside_the_orbit():
+    lossless = UNIT | {"restitution": 1.0, "stiffness": 1e4, "tolerance": "5 %"}
+    found = design(**lossless, acceleration=0.5)
+    assert "nothing is lost" in found.headline and found.is_good_enough
+    # Beyond the period doubling at Λ = 1 neighbours leave it even so.
+    beyond = design(**lossless, acceleration=1.2)
+    assert "not stable" in beyond.headline and "1-T orbit" not in beyond.verdict
+
+
 def motion(kind, other, **more):
     return Motion(kind, 0, 0, None, other, 0, 0, **more)
 

@@ -1,13 +1,14 @@
 """Maps of what balls end on, against orbits, an independent trial, and a changed rounding."""
 
 import numpy as np
+import xarray as xr
 from scipy.stats import norm
 
 from bouncing_ball.attractors.mapper import label
 from bouncing_ball.compare.data import compare_datasets
 from bouncing_ball.configuration.study import typed
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.studies.attractors import GROUPS, agreement, locking, models
+from bouncing_ball.studies.attractors import GROUPS, agreement, locking, models, orbit_diagrams
 
 START = {"phase": 1.0, "impact_speed": 10.0, "impacts": 200, "confidence": 0.95}
 
@@ -50,6 +51,23 @@ def test_a_model_agrees_with_itself_and_wilsons_limits_are_closed_forms():
     assert nodes[GROUPS.index("all")] == np.sum(balls.kind != "undecided")
     assert np.all(share[known] == 1) and np.all(high[known] == 1)
     assert np.allclose(low[known], nodes[known] / (nodes[known] + z**2))
+
+
+def test_diagrams_have_the_stable_orbit_with_its_phase_and_exponent():
+    grid = {"min": 1.1, "max": 1.2, "samples": 2}
+    given = {"restitution": 0.6, "frequency_ratio": 100.0, "amplitude": grid, "bins": 20}
+    sizes = {"starts": 1, "samples": 10, "impacts": 200}
+    data = typed(orbit_diagrams)(given | sizes, Release.DISPLACEMENT)
+    assert np.allclose(data.phase_density.sum("phase_bin"), 1)
+    for k, model in enumerate(models(np.array(0.6), 100.0, Release.DISPLACEMENT)):
+        one, orbit = data.isel(model=k), model.orbit(1, data["amplitude"].values)
+        here = one.phase_density.sel(
+            phase_bin=xr.DataArray(orbit.phase, dims="x"), method="nearest"
+        )
+        assert np.all(np.diag(here) > 0)
+        # Every other motion there is locked, and attracts more strongly.
+        modulus = np.abs(orbit.multipliers()).max(axis=-1)
+        assert np.allclose(one.lyapunov_exponent, np.log(modulus), atol=1e-5)
 
 
 def test_rounding_may_decide_at_few_nodes_only(recorded):

@@ -12,6 +12,7 @@ BEYOND_THE_PAPER = {
     "ext_laws": "studies.contact_laws.law_errors",
     "ext_hertz": "studies.contact_laws.figures_of_laws",
     "ext_cascades": "studies.cascades.cascades",
+    "ext_diagram": "studies.attractors.orbit_diagrams",
     "ext_locking": "studies.attractors.locking",
     "ext_engines": "studies.engines.conformance",
     "explorer": "studies.reference_orbits.reference_orbits",

@@ -27,7 +27,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.attractors.motions import Kind, Motions, Reason
 from bouncing_ball.motion.angles import reduce_angle, table
 from bouncing_ball.motion.dynamics import Departure, Dynamics, Impact
-from bouncing_ball.motion.ensembles import BLOCK, pick
+from bouncing_ball.motion.ensembles import pick
 from bouncing_ball.motion.sequence import Status
 from bouncing_ball.motion.simulation import Law, first_impacts
 from bouncing_ball.motion.tangent import Jacobian
@@ -49,6 +49,8 @@ _FORGOTTEN = _DIGITS + float(np.log(_NEAR))
 # Impacts of a mean of the stretching, means left out, and standard errors by which an exponent is
 # positive: once in three million by chance.
 _BATCH, _TRANSIENT, _ERRORS = 32, 2, 5.0
+# Balls followed at once: the late ones among fewer decide on the number of steps.
+_BLOCK = 1 << 16
 # Stretching by less is as good as forgetting.
 _TINY = 1e-300
 
@@ -180,7 +182,7 @@ def label(
 
 def _follow(dynamics: Dynamics, start: np.ndarray, relative: np.ndarray, impacts: int) -> _Found:
     """Follow all balls, in a block that is refilled when some of its balls are done."""
-    size, block = start.size, min(dynamics.block, BLOCK)
+    size, block = start.size, _BLOCK
     whole, real = np.zeros((5, size), dtype=int), np.full((4, size), np.nan)
     found = _Found(*whole[:3], *real[:2], *whole[3:], *real[2:])
     ahead = 0

@@ -52,6 +52,9 @@ def of_family(case: Case, family: Family) -> Motion:
         return Motion(str(Kind.ORBIT), family.n, 1, _laid(case, family))
     orbits = (case.models[name].orbit(family.n, lam) for name in (exact, simple, "corrected"))
     orbit = next(orbit for orbit in orbits if orbit.exists)
+    lossless = float(case.contact.restitution) == 1 and family.exists and family.is_admissible
+    if lossless and abs(float(orbit.trace_and_determinant()[0])) < 2:
+        return Motion(str(Kind.UNDECIDED), 0, 0)
     start = _Start(float(orbit.phase), float(orbit.impact_velocity) * (1 + _BESIDE))
     found = {
         name: label(_law(case, name), lam, start.phase, start.velocity, impacts=_IMPACTS)
@@ -182,6 +185,8 @@ def headline(motion: Motion, family: Family) -> str:
         rests = motion.laid == Kind.PERMANENT_CONTACT
         does = "stays at rest" if rests else _DOES[motion.laid]
         return f"{said}. Laid on the table a ball {does}."
+    if motion.restitution_kind is None:
+        return f"A ball beside the {orbit} stays beside it: nothing is lost, and it ends nowhere."
     does = _DOES[motion.kind]
     if motion.periods > 1 and motion.kind != Kind.PERMANENT_CONTACT:
         does += f", every {motion.periods} periods of the table and {motion.impacts} impacts"

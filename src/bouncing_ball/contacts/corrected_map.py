@@ -22,6 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.elementary import sine_and_cosine
 from bouncing_ball.contacts.signature import Instant, Signature
 
 # Iterations of ψ = φ + t_c(v), for laws whose delay depends on the speed. Each one
@@ -60,7 +61,8 @@ def impact(signature: Signature, amplitude: ArrayLike, phase: ArrayLike, arrival
     (2.0, 1.0)
     """
     lam, psi, p = (np.asarray(x, dtype=float) for x in (amplitude, phase, arrival))
-    x, y = lam * np.cos(psi), lam * np.sin(psi)
+    sine, cosine = sine_and_cosine(psi)
+    x, y = lam * cosine, lam * sine
     speed = x - p
     law = signature(speed)
     depth = speed * law.delay
@@ -82,10 +84,10 @@ def meeting(
     (0.75, -2.0)
     """
     lam, phi, z = (np.asarray(x, dtype=float) for x in (amplitude, phase, velocity))
-    delay = signature(lam * np.cos(phi) - z).delay
+    delay = signature(lam * sine_and_cosine(phi)[1] - z).delay
     for _ in range(0 if signature.is_constant else _ITERATIONS):
         before = delay
-        delay = signature(lam * np.cos(phi + delay) - (z - delay)).delay
+        delay = signature(lam * sine_and_cosine(phi + delay)[1] - (z - delay)).delay
         if np.all((np.abs(delay - before) <= _SETTLED * delay) | np.isnan(delay)):
             break
     return phi + delay, z - delay
@@ -106,4 +108,4 @@ def start_of(amplitude: ArrayLike, hit: Hit) -> tuple[np.ndarray, np.ndarray]:
     """
     delay = hit.instant.delay
     phase = hit.phase - delay
-    return phase, hit.arrival + delay - np.asarray(amplitude) * np.cos(phase)
+    return phase, hit.arrival + delay - np.asarray(amplitude) * sine_and_cosine(phase)[1]

@@ -10,12 +10,15 @@ Pöschel, Granular Matter 9, 2007).
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.elementary import exponential, logarithm, sine_and_versine
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import require
 
 # Newton steps for β in 2β cot β = -ln r. The start has an error below 10 %, and each
 # step doubles the number of digits.
 _NEWTON_STEPS = 6
+# π/2 without the double next to it.
+_REST = 6.123233995736766e-17
 
 
 def damping_ratio(restitution: ArrayLike, release: Release = Release.DISPLACEMENT) -> np.ndarray:
@@ -46,13 +49,18 @@ def damping_ratio(restitution: ArrayLike, release: Release = Release.DISPLACEMEN
     """
     r = np.asarray(restitution, dtype=float)
     require((r > 0) & (r <= 1), r, "restitution coefficient r", "in (0, 1]")
-    decrement = -np.log(r) + 0.0  # + 0.0 turns -0 into 0 at r = 1
+    decrement = -logarithm(r) + 0.0  # + 0.0 turns -0 into 0 at r = 1
     if release is Release.DISPLACEMENT:
-        return decrement / np.hypot(np.pi, decrement)
+        return decrement / np.sqrt(np.pi * np.pi + decrement * decrement)
     allowed = "in (e⁻², 1], the range of the force release with ζ < 1"
     require(decrement < 2, r, "restitution coefficient r", allowed)
     # cos(π/2) gives the rounding of π/2, which is below the rounding of r = 1.
-    return np.where(decrement > 0, np.cos(_half_angle(decrement)), 0.0)
+    return np.where(decrement > 0, _cosine(_half_angle(decrement)), 0.0)
+
+
+def _cosine(beta: np.ndarray) -> np.ndarray:
+    """cos β with all its digits next to π/2, whose rounding is added."""
+    return sine_and_versine((np.pi / 2 - beta) + _REST)[0]
 
 
 def _half_angle(decrement: np.ndarray) -> np.ndarray:
@@ -65,7 +73,7 @@ def _half_angle(decrement: np.ndarray) -> np.ndarray:
     start = np.pi / 2 * np.sqrt(1 - decrement / 2)
     beta = np.maximum(start, np.finfo(float).tiny)
     for _ in range(_NEWTON_STEPS):
-        sine, cosine = np.sin(beta), np.cos(beta)
+        sine, cosine = sine_and_versine(beta)[0], _cosine(beta)
         value = 2 * beta * cosine / sine - decrement
         slope = 2 * (cosine * sine - beta) / (sine * sine)
         beta = beta - value / slope
@@ -101,4 +109,4 @@ def restitution_coefficient(
     allowed = "in [0, 1): an overdamped contact has no restitution coefficient"
     require((zeta >= 0) & (zeta < 1), zeta, "damping ratio ζ", allowed)
     angle = Release.of(release).free_angle(zeta)
-    return np.exp(-angle * zeta / np.sqrt((1 - zeta) * (1 + zeta)))
+    return exponential(-angle * zeta / np.sqrt((1 - zeta) * (1 + zeta)))

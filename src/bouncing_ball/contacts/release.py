@@ -11,6 +11,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.elementary import arctangent
 from bouncing_ball.errors import ModelError
 
 
@@ -62,4 +63,5 @@ class Release(StrEnum):
         True
         """
         # The arccosine keeps its digits as ζ → 1, which π - 2 arcsin does not.
-        return 2 * np.arccos(self.sine(damping_ratio))
+        sine = self.sine(damping_ratio)
+        return 2 * arctangent(np.sqrt((1 - sine) * (1 + sine)), sine)

@@ -33,6 +33,7 @@ DRAWINGS = {
     "ext_laws": "model_errors.contact_laws",
     "ext_hertz": "model_errors.figures_of_laws",
     "ext_cascades": "cascades.cascades",
+    "ext_diagram": "attractors.orbit_diagrams",
     "ext_locking": "attractors.locking",
     "ext_engines": "model_errors.engines",
 }

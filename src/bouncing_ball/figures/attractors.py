@@ -10,9 +10,9 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from bouncing_ball.figures.canvas import WIDE, logarithmic
-from bouncing_ball.figures.labels import number
-from bouncing_ball.figures.style import COLOURS, Look
+from bouncing_ball.figures.canvas import WIDE, canvas, legend_below, logarithmic
+from bouncing_ball.figures.labels import number, parameters
+from bouncing_ball.figures.style import COLOURS, GUIDE, MODELS, Look
 
 # Lowest period of each colour of a locked motion.
 _PERIODS = (1, 2, 3, 4, 5, 9, 17, 33)
@@ -145,3 +145,28 @@ def _draw_agreement(axes: Axes, one: xr.Dataset) -> None:
         look: Look = {"color": colour, "marker": marker, "markersize": 4, "linewidth": 0.8}
         axes.errorbar(place, shown.agreement, [low, high], capsize=2, label=name, **look)
     logarithmic(axes, xlabel=r"frequency ratio $\varpi$", ylim=(0, 1.03))
+
+
+def orbit_diagrams(data: xr.Dataset) -> Figure:
+    """Density of the phases of impact over Λ for each model; below, the largest exponents."""
+    models = data["model"].values
+    ratios = [1.0] * len(models) + [0.6]
+    figure, panels = canvas(WIDE, 8.0, rows=len(ratios), sharex=True, height_ratios=ratios)
+    lam, phase = data["amplitude"].values, data.phase_bin.values / np.pi
+    for axes, model in zip(panels, models, strict=False):
+        one = data.sel(model=model)
+        # The root shows an orbit and a chaotic motion in one picture.
+        density = one.phase_density.values.T
+        shade = np.sqrt(np.where(density > 0, density, np.nan))
+        axes.pcolormesh(lam, phase, shade, cmap="magma_r", vmin=-0.1, vmax=0.5, rasterized=True)
+        axes.set(ylabel=r"phase of impact $\varphi/\pi$", ylim=(-1, 1))
+        axes.spines[["top", "right"]].set_visible(True)
+        exponent = one.lyapunov_exponent.values.clip(_LOWEST, _HIGHEST)
+        panels[-1].plot(lam, exponent, label=f"{model} model", **MODELS[model])
+    panels[-1].axhline(0, **GUIDE)
+    panels[-1].set(xlabel=r"amplitude $\Lambda$", ylabel=r"largest $\lambda$ per $T$")
+    panels[0].set_title(f"restitution model; {parameters(data, 'restitution')}")
+    for axes, model in zip(panels[1:-1], models[1:], strict=True):
+        axes.set_title(f"{model} model; {parameters(data, 'restitution', 'frequency_ratio')}")
+    legend_below(figure, panels[-1].get_legend_handles_labels()[0], ncols=3)
+    return figure

@@ -16,6 +16,7 @@ from typing import ClassVar
 import numpy as np
 
 from bouncing_ball.contacts.collocation import MOST_PANELS, Start, march
+from bouncing_ball.contacts.elementary import exponential
 from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.motion.angles import reduce_angle, sine_and_versine, table
 from bouncing_ball.motion.dynamics import Departure, Dynamics, Impact
@@ -130,7 +131,7 @@ class LinearContactDynamics(ContactDynamics):
         )
         damped, lag = contact.damped_frequency, contact.lag
         sine, versine = sine_and_versine(damped * duration)
-        decay = np.exp(-loss / 2 * duration)
+        decay = exponential(-loss / 2 * duration)
         impulse = decay * sine / damped
         impulse_rate = decay * (1 - versine) - loss / 2 * impulse
         level = impulse_rate + loss * impulse

@@ -41,14 +41,14 @@ class CorrectedDynamics(Dynamics):
 
     def start(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
         """First impacts at the table's level, at phases φ with δ′, and their instants."""
-        arrival = velocity + self.amplitude * np.cos(phase)
+        arrival = velocity + table(phase, self.amplitude)[0]
         instant = corrected_map.meeting(self.law, self.amplitude, phase, arrival)
         hit = corrected_map.impact(self.law, self.amplitude, *instant)
         return Impact.at_level(phase, velocity, hit)
 
     def at_section(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
         """Impacts with instants at phases ψ, with the relative velocity before them."""
-        arrival = velocity + self.amplitude * np.cos(phase)
+        arrival = velocity + table(phase, self.amplitude)[0]
         hit = corrected_map.impact(self.law, self.amplitude, phase, arrival)
         return Impact.at_level(*corrected_map.start_of(self.amplitude, hit), hit)
 

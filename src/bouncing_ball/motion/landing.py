@@ -94,6 +94,19 @@ class Rise(Motion):
         return State(displacement, rate, second, third, 1 + lam, lam, lam, rate <= 0)
 
 
+class Fall(Motion):
+    """The motion -δ′ of a ball that rises relative to the table, until it falls."""
+
+    def __init__(self, flight: Flight):
+        self.flight = flight
+
+    def __call__(self, time: np.ndarray) -> State:
+        _, rate, second, third = self.flight.gap(time)
+        lam = self.flight.amplitude
+        # The fourth derivative of δ is minus that of the table.
+        return State(-rate, -second, -third, second + 1, lam, lam, lam)
+
+
 def emerge(flight: Flight) -> tuple[np.ndarray, np.ndarray]:
     """Balls released at the table's level or below it: whether they rise above it.
 
@@ -103,8 +116,10 @@ def emerge(flight: Flight) -> tuple[np.ndarray, np.ndarray]:
     unsure = np.flatnonzero(rising & (flight.room() <= 0))
     if unsure.size:
         part = flight.take(unsure)
+        # Highest where it first stops rising, which no step can pass over.
+        top = part.gap(first_zero(Fall(part), np.zeros(unsure.size)).time)[0]
         rise = first_zero(Rise(part), np.zeros(unsure.size))
-        rising[unsure] = ~(rise.ended | rise.undecided) & (rise.rate > 0)
+        rising[unsure] = (top > 0) & ~(rise.ended | rise.undecided) & (rise.rate > 0)
         # From the table's level on the flight is against the strongest relative gravity.
         time[unsure] = rise.time + 2 * rise.rate / (1 + part.amplitude)
     return time, rising

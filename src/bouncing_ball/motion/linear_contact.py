@@ -17,6 +17,7 @@ The contact therefore never ends if at some time ::
 
 import numpy as np
 
+from bouncing_ball.contacts.elementary import arctangent, exponential
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.angles import sine_and_versine
 from bouncing_ball.motion.first_zero import Motion, State, Zero, first_zero
@@ -111,7 +112,7 @@ class ContactMotion(Motion):
     def __call__(self, time: np.ndarray) -> State:
         sine, versine = sine_and_versine(self.damped * time)
         cosine = 1 - versine
-        decay = np.exp(-self.decay * time)
+        decay = exponential(-self.decay * time)
         a, b = self.a * decay, self.b * decay
         free = a * cosine + b * sine
         free_rate = self.damped * (b * cosine - a * sine) - self.decay * free
@@ -143,14 +144,17 @@ class ContactMotion(Motion):
         """
         if steps < _PATIENCE:
             return time
-        level = 1 / self.stiffness - self.envelope * np.exp(-self.decay * time)
+        level = 1 / self.stiffness - self.envelope * exponential(-self.decay * time)
         ratio = level / np.maximum(self.steady, 1e-300)
         inside = np.abs(ratio) < 1
-        rising = np.arcsin(np.where(inside, ratio, 0.0))
-        now = time + np.arctan2(self.cosine, self.sine)
-        below = inside & (np.sin(now) < ratio)
+        ratio = np.where(inside, ratio, 0.0)
+        rising = arctangent(ratio, np.sqrt((1 - ratio) * (1 + ratio)))
+        now = time + arctangent(self.cosine, self.sine)
+        below = inside & (sine_and_versine(now)[0] < ratio)
         # The time stays before the crossing by more than the rounding of the crossing.
         wait = np.mod(rising - now, 2 * np.pi) - 1e-9
+        # Rounding must not turn a crossing that is due now into one a turn later.
+        wait = np.where(wait > 2 * np.pi - 1e-6, 0.0, wait)
         return time + np.where(below, np.maximum(wait, 0.0), 0.0)
 
     def sure(self) -> np.ndarray:
@@ -164,15 +168,17 @@ class ContactMotion(Motion):
         """
         half = np.pi / self.damped
         # Near critical damping any number of this size makes the bound that uses it ineffective.
-        growth = np.exp(np.minimum(self.decay * half, 690.0))
+        growth = exponential(np.minimum(self.decay * half, 690.0))
         forcing = np.minimum(self.push + self.forcing * half, self.forcing) - 1
         level = np.maximum(forcing, 0.0) / self.stiffness
         a = self.start - level
         b = (self.start_rate + self.decay * a) / self.damped
         radius = np.sqrt(a * a + b * b)
-        depth = growth * level / np.maximum(radius, 1e-300)
-        # atan2 of the point rotated by half a turn, which avoids a jump for a < 0.
-        angle = np.arctan2(-b, -a) + (np.pi / 2 - np.arcsin(np.minimum(depth, 1.0)))
+        depth = np.minimum(growth * level / np.maximum(radius, 1e-300), 1.0)
+        # The angle of (-a, -b), rotated by half a turn as that avoids a jump for a < 0, and the
+        # one whose cosine is the depth: their sum is within half a turn.
+        rest = np.sqrt((1 - depth) * (1 + depth))
+        angle = arctangent(-b * depth - a * rest, b * rest - a * depth)
         angle = np.where((depth < 1) & (angle > 0), angle, 0.0)
         return angle / self.damped
 

@@ -8,6 +8,7 @@ up, where the table begins to recede with more than gravity, or at once where g 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.elementary import arctangent
 from bouncing_ball.motion.angles import reduce_angle, table
 from bouncing_ball.motion.dynamics import Departure
 from bouncing_ball.motion.landing import Flight
@@ -23,7 +24,11 @@ def lift_off_phase(amplitude: ArrayLike) -> np.ndarray:
     True
     """
     lam = np.asarray(amplitude, dtype=float)
-    return np.where(lam > 1, np.arcsin(1 / np.maximum(lam, 1.0)), np.nan)
+    return np.where(lam > 1, _lift(np.maximum(lam, 1.0)), np.nan)
+
+
+def _lift(top: np.ndarray) -> np.ndarray:
+    return arctangent(1.0, np.sqrt((top - 1) * (top + 1)))
 
 
 def pressed(x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -47,7 +52,7 @@ def stay(departure: Departure, rests: np.ndarray, amplitude: np.ndarray) -> Depa
     x, y = table(departure.phase, amplitude)
     held, forever = pressed(x, y), rests & (amplitude <= 1)
     top = np.maximum(amplitude, 1.0)
-    lift = np.arcsin(1 / top)
+    lift = _lift(top)
     wait = np.where(held, np.mod(reduce_angle(lift - departure.phase), 2 * np.pi), 0.0)
     # Rounding must not delay a lift-off that is due now by a turn.
     wait = np.where(wait > 2 * np.pi - 1e-9, 0.0, wait)

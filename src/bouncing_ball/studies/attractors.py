@@ -11,6 +11,7 @@ import xarray as xr
 from pydantic import Field
 from scipy.stats import binomtest
 
+from bouncing_ball.attractors.labelled import diagram
 from bouncing_ball.attractors.mapper import label
 from bouncing_ball.attractors.motions import Kind, Motions
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
@@ -83,6 +84,19 @@ class Locking(Parameters):
 # A motion repeats within 1e-6 of its state, so that its multipliers are known to about that times
 # the curvature of the map, which is some units.
 _KNOWN = 1e-5
+
+
+class Diagram(Parameters):
+    """Several balls at each of many amplitudes of one contact."""
+
+    restitution: LossyRestitution
+    frequency_ratio: FrequencyRatio
+    amplitude: Amplitudes
+    starts: Annotated[int, number("starts at each Λ beside those of the neighbours", ge=1, le=100)]
+    samples: Annotated[int, number("impacts of a motion that does not repeat", ge=10, le=10000)]
+    impacts: Impacts
+    bins: Annotated[int, number("equal ranges of the phase of impact", ge=10, le=2000)]
+
 
 SIMPLE = ("restitution", "corrected")
 MODELS = (*SIMPLE, "spring-damper")
@@ -203,5 +217,49 @@ def locking(parameters: Locking, release: Release) -> xr.Dataset:
             "simple": list(SIMPLE),
             "frequency_ratio": list(parameters.frequency_ratio),
             "motion_group": list(GROUPS),
+        },
+    )
+
+
+def orbit_diagrams(parameters: Diagram, release: Release) -> xr.Dataset:
+    """Where impacts fall on the attractors of each model over Λ.
+
+    ``phase_density`` (model, amplitude, phase_bin) is the share of the impacts within a range of
+    phases, whose middle is ``phase_bin``, averaged over the motions on which the balls of
+    :func:`bouncing_ball.attractors.labelled.diagram` end. ``lyapunov_exponent`` (model,
+    amplitude) is the largest of the exponents of these, -∞ where all are locked, and
+    ``lyapunov_error`` its standard error, 1e-5 at least.
+    """
+    lam, bins = parameters.amplitude.grid(), parameters.bins
+    edges = np.linspace(-np.pi, np.pi, bins + 1)
+    columns = []
+    for model in models(np.array(parameters.restitution), parameters.frequency_ratio, release):
+        found = diagram(model, lam, parameters.starts, parameters.samples, parameters.impacts)
+        phase = found.impact_phase.values
+        at = np.isfinite(phase)
+        weight = 1 / np.maximum(at.sum(axis=-1, keepdims=True), 1)
+        known = at.any(axis=-1).sum(axis=1)[:, np.newaxis]
+        place = np.broadcast_to(np.arange(lam.size)[:, np.newaxis, np.newaxis], phase.shape)[at]
+        density, *_ = np.histogram2d(
+            *(place, phase[at]),
+            bins=(np.arange(lam.size + 1) - 0.5, edges),
+            weights=np.broadcast_to(weight, phase.shape)[at],
+        )
+        exponent = np.where(np.isnan(found.lyapunov_exponent), -np.inf, found.lyapunov_exponent)
+        largest = exponent.argmax(axis=1)[:, np.newaxis]
+        error = np.take_along_axis(found.lyapunov_error.values, largest, 1)[:, 0]
+        exponent = np.take_along_axis(exponent, largest, 1)[:, 0]
+        columns.append((density / np.maximum(known, 1), exponent, np.fmax(error, _KNOWN)))
+    density, exponent, error = (np.stack(x) for x in zip(*columns, strict=True))
+    return described(
+        {
+            "phase_density": (("model", "amplitude", "phase_bin"), density),
+            "lyapunov_exponent": (("model", "amplitude"), exponent),
+            "lyapunov_error": (("model", "amplitude"), error),
+        },
+        coords={
+            "model": list(MODELS),
+            "amplitude": lam,
+            "phase_bin": (edges[1:] + edges[:-1]) / 2,
         },
     )

@@ -1,0 +1,149 @@
+"""Elementary functions with the same digits on every processor.
+
+NumPy's sine, exponential and others come from whichever library is fastest on the processor, and
+differ in the last digit from one to another. A chaotic ball makes of that a different motion.
+Addition, multiplication, division and the square root are exact to rounding everywhere
+(IEEE 754), and so is what is made of them here: rational approximations after a reduction of
+the argument (S. L. Moshier, Cephes; W. J. Cody and W. Waite). Errors are a few units in the last
+place of the result, or of 1 where it vanishes.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+# 2π = _TURN_HIGH + _TURN_LOW; the first has 33 significant bits, so that its product with any
+# integer below 2²⁰ is exact (Cody and Waite). The same for ln 2.
+_TURN_HIGH = float.fromhex("0x1.921fb544p+2")
+_TURN_LOW = float.fromhex("0x1.0b4611a626331p-32")
+_TURNS = 1 / (2 * np.pi)
+_LN2_HIGH, _LN2_LOW = 0.693145751953125, 1.42860682030941723212e-6
+_LOG2E = 1 / math.log(2)
+
+# Numerators and denominators, from the highest power; those of one power more begin with 1.
+_TAN = (
+    (-1.30936939181383734205e4, 1.15351664838587416140e6, -1.79565251976484877988e7),
+    (1.0, 1.36812963470692954678e4, -1.32089234440210967447e6, 2.50083801823357915839e7,
+     -5.38695755929454629881e7),
+)  # fmt: skip
+_EXP = (
+    (1.26177193074810590878e-4, 3.02994407707441961300e-2, 9.99999999999999999910e-1),
+    (3.00198505138664455042e-6, 2.52448340349684104192e-3, 2.27265548208155028766e-1, 2.0),
+)
+_ATAN = (
+    (-8.750608600031904122785e-1, -1.615753718733365076637e1, -7.500855792314704667340e1,
+     -1.228866684490136173410e2, -6.485021904942025371773e1),
+    (1.0, 2.485846490142306297962e1, 1.650270098316988542046e2, 4.328810604912902668951e2,
+     4.853903996359136964868e2, 1.945506571482613964425e2),
+)  # fmt: skip
+# Of ln((1 + f)/(1 - f))/2f in f², |f| ≤ 3 - 2√2.
+_LOG = tuple(1 / (2 * k + 1) for k in range(12, -1, -1))
+
+
+def _polynomial(coefficients: tuple[float, ...], x: np.ndarray) -> np.ndarray:
+    value = coefficients[0] * x + coefficients[1]
+    for coefficient in coefficients[2:]:
+        value *= x
+        value += coefficient
+    return value
+
+
+def reduce_angle(angle: np.ndarray) -> np.ndarray:
+    """The angle modulo 2π, in [-π, π], to the last digit up to 10⁶ turns.
+
+    Examples
+    --------
+    The second is what the double next to 2π lacks:
+
+    >>> float(reduce_angle(-1.0)), round(1e16 * float(reduce_angle(2 * np.pi)), 6)
+    (-1.0, -2.449294)
+    """
+    turns = np.rint(angle * _TURNS)
+    return (angle - turns * _TURN_HIGH) - turns * _TURN_LOW
+
+
+def sine_and_versine(angle: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+    """sin x and 1 - cos x, the latter without cancellation for small x.
+
+    By the tangent of x/4 and two doublings of the angle.
+
+    Examples
+    --------
+    >>> sine, versine = sine_and_versine(np.array([0.0, 1e-9]))
+    >>> sine.tolist(), versine.tolist()
+    ([0.0, 1e-09], [0.0, 5e-19])
+    """
+    quarter = 0.25 * reduce_angle(np.asarray(angle, dtype=float))
+    square = quarter * quarter
+    tangent = quarter + quarter * (
+        square * _polynomial(_TAN[0], square) / _polynomial(_TAN[1], square)
+    )
+    scale = 2 / (1 + tangent * tangent)
+    half = tangent * scale
+    double = 2 * half
+    return double * (1 - tangent * half), double * half
+
+
+def sine_and_cosine(angle: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+    """sin x and cos x."""
+    sine, versine = sine_and_versine(angle)
+    return sine, 1 - versine
+
+
+def exponential(x: ArrayLike) -> np.ndarray:
+    """e^x; 0 where that is below the smallest normal number.
+
+    Examples
+    --------
+    >>> exponential([0.0, -1e3]).tolist()
+    [1.0, 0.0]
+    """
+    clipped = np.clip(x, -746.0, 709.0)
+    power = np.rint(clipped * _LOG2E)
+    rest = (clipped - power * _LN2_HIGH) - power * _LN2_LOW
+    square = rest * rest
+    odd = rest * _polynomial(_EXP[0], square)
+    value = 1 + 2 * (odd / (_polynomial(_EXP[1], square) - odd))
+    # 2^power by its bits.
+    scale = ((np.maximum(power, -1023.0).astype(np.int64) + 1023) << 52).view(np.float64)
+    return value * scale
+
+
+def logarithm(x: ArrayLike) -> np.ndarray:
+    """ln x of positive numbers.
+
+    Examples
+    --------
+    >>> logarithm([1.0, 2.0]).tolist() == [0.0, math.log(2)]
+    True
+    """
+    fraction, power = np.frexp(np.asarray(x, dtype=float))
+    low = fraction < math.sqrt(0.5)
+    fraction, power = np.where(low, 2 * fraction, fraction), power - low
+    f = (fraction - 1) / (fraction + 1)
+    square = f * f
+    series = 2 * f + 2 * f * square * _polynomial(_LOG[:-1], square)
+    return power * _LN2_HIGH + (power * _LN2_LOW + series)
+
+
+def arctangent(y: ArrayLike, x: ArrayLike) -> np.ndarray:
+    """The angle of the point (x, y), in [-π, π].
+
+    Examples
+    --------
+    >>> arctangent([1.0, -1.0, 0.0], [1.0, 0.0, -1.0]).tolist() == [np.pi / 4, -np.pi / 2, np.pi]
+    True
+    """
+    up, along = np.abs(y), np.abs(x)
+    large, small = np.maximum(up, along), np.minimum(up, along)
+    steep = small > 0.66 * large
+    above = np.where(steep, small - large, small)
+    below = np.where(steep, small + large, large)
+    t = above / np.where(below > 0, below, 1.0)
+    square = t * t
+    angle = t + t * (square * _polynomial(_ATAN[0], square) / _polynomial(_ATAN[1], square))
+    angle = np.where(steep, np.pi / 4 + angle, angle)
+    angle = np.where(up > along, np.pi / 2 - angle, angle)
+    angle = np.where(np.asarray(x) < 0, np.pi - angle, angle)
+    return np.copysign(angle, y)

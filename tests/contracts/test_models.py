@@ -71,9 +71,14 @@ every_side = pytest.mark.parametrize("side", list(Side))
 
 
 @cache
+def bifurcations(name, n):
+    return MODELS[name].saddle_node(n), MODELS[name].period_doubling(n)
+
+
+@cache
 def some_orbit(name, n, above, side):
     model = MODELS[name]
-    node = float(model.saddle_node(n).amplitude)
+    node = float(bifurcations(name, n)[0].amplitude)
     return model.require_orbit(n, (0.0 if np.isnan(node) else node) + above, side)
 
 
@@ -185,7 +190,7 @@ def test_the_determinant_is_the_contraction(some):
 @pytest.mark.parametrize("name", DISSIPATIVE)
 def test_sides_and_bifurcations(name, n, above):
     model = MODELS[name]
-    node, doubling = model.saddle_node(n), model.period_doubling(n)
+    node, doubling = bifurcations(name, n)
     # The multiplier at a fold is as exact as the root of its distance to 1.
     assert np.min(np.abs(node.multipliers() - 1)) < 1e-6
     assert np.min(np.abs(doubling.multipliers() + 1)) < 1e-6
@@ -254,10 +259,10 @@ def test_nothing_happens_between_the_events(some):
 @every_model
 def test_arrays_are_their_elements(name):
     model = MODELS[name]
-    amplitude = np.array([[0.01], [1.0], [1.3]])
+    amplitude = np.array([[0.01], [1.0]])
     orbits = model.orbit(np.array([1, 2]), amplitude)
-    assert orbits.shape == (3, 2) and len(orbits) == 3
-    for k in np.ndindex(3, 2):
+    assert orbits.shape == (2, 2) and len(orbits) == 2
+    for k in np.ndindex(2, 2):
         single, one = model.orbit(k[1] + 1, amplitude[k[0], 0]), orbits[k]
         for quantity in OBSERVABLES:
             assert getattr(one, quantity) == pytest.approx(

@@ -31,7 +31,9 @@ from bouncing_ball.contacts.contact_law import ContactLaw, slopes_of
 from bouncing_ball.contacts.contact_scales import scales
 from bouncing_ball.contacts.release import Release
 
-_NODES = 12
+# Nodes of a panel, and of one whose derivatives are wanted: their coefficients are larger by about
+# the number of nodes, and so need more of them for the same error of the end.
+_NODES, _FINER = 12, 16
 # The largest number of sweeps; the last change of p′ over V at which they stop; and the one at
 # which a panel is good enough, because the next change would be a hundredth of it. The few
 # panels that converge slowly are tried again, because they would delay all others.
@@ -40,13 +42,12 @@ _MOST = 0.95
 # The remainder of the grip, or of the time, relative to its change over the panel, that is
 # corrected to first order; and the sweep from which on the end of the panel is computed.
 _REACHED, _LOOK = 1e-12, 2
-# Bounds of the last Legendre coefficients of the integrands over V or P/V: for the end, and for
-# its derivatives, whose coefficients are larger by about the number of nodes. The number of these
+# Bound of the last Legendre coefficients of the integrands over V or P/V, and the number of these
 # coefficients. An early sweep, and its change, which predicts the number of sweeps.
-_SPECTRUM, _FINER, _TAIL = 1e-6, 3e-8, 2
+_SPECTRUM, _TAIL = 1e-6, 2
 _EARLY, _CHANGE = 5, 1e-3
-# Length of the first panel in parts of P^{1/m}/V, at the coefficients of the end.
-_FIRST = 0.65
+# Length of the first panel in parts of P^{1/m}/V, for each node.
+_FIRST = 0.05
 # Time of a panel of a descending ball over P/V, which is allowed even after a shorter panel.
 _DOWN = 0.7
 # Bounds of the change from one length to the next, and of that of a refused panel.
@@ -114,12 +115,12 @@ class _Rule(NamedTuple):
     end: np.ndarray
 
 
-@lru_cache(maxsize=1)
-def _rule() -> _Rule:
-    legendre, degree = np.polynomial.legendre, np.arange(_NODES)
-    x, weight = legendre.leggauss(_NODES)
-    spectrum = (degree + 0.5)[:, np.newaxis] * legendre.legvander(x, _NODES - 1).T * weight
-    sums = legendre.legval(np.append(x, 1.0), legendre.legint(np.eye(_NODES), lbnd=-1)).T
+@lru_cache(maxsize=4)
+def _rule(count: int) -> _Rule:
+    legendre, degree = np.polynomial.legendre, np.arange(count)
+    x, weight = legendre.leggauss(count)
+    spectrum = (degree + 0.5)[:, np.newaxis] * legendre.legvander(x, count - 1).T * weight
+    sums = legendre.legval(np.append(x, 1.0), legendre.legint(np.eye(count), lbnd=-1)).T
     return _Rule(
         (1 + x[:, np.newaxis]) / 2, sums / 2 @ spectrum, spectrum[-_TAIL:], spectrum.sum(0)
     )
@@ -247,7 +248,7 @@ def _falls(law: ContactLaw, m: int, start: Start, now: _Motion, until, root, rat
 
 def _summed(begin, step, values, out):
     """The integral of a rate up to the nodes and the end, added to a value at the start."""
-    np.matmul(_rule().integral, values, out=out)
+    np.matmul(_rule(len(values)).integral, values, out=out)
     out *= step
     out += begin
     return out
@@ -259,15 +260,15 @@ def _panel(
     start: Start,
     now: _Motion,
     until: np.ndarray | None,
-    spectrum: float = _SPECTRUM,
+    count: int = _NODES,
 ) -> _Panel:
     """The next panel of each ball, up to the release, or to a time if that comes first."""
-    node, _, tail, end = _rule()
+    node, _, tail, end = _rule(count)
     force = law.force if m == 1 else law.root_force
     # These arrays are overwritten in each sweep, because allocating them again would take as long
     # as the computation.
-    q, t, old, new = (np.empty((_NODES + 1, now.step.size)) for _ in range(4))
-    push, inside = np.empty((_NODES, now.step.size)), q[:-1]
+    q, t, old, new = (np.empty((count + 1, now.step.size)) for _ in range(4))
+    push, inside = np.empty((count, now.step.size)), q[:-1]
     lever = np.ones_like(push)
     new[:-1] = now.rate + node * (now.step * now.push)
     last, more = np.zeros(now.step.size, dtype=bool), np.zeros(now.step.size)
@@ -328,9 +329,9 @@ def _panel(
     held = ((q[:-1] > 0) & (_grip(law, m, q[:-1], rate, full) > 0)).all(axis=0)
     turned = last & (first == len(left) - 1) if law.has_kink else np.zeros_like(last)
     surfaced = first == 1 if share is not None and until is None else np.zeros_like(last)
-    good = reached & held & (change <= _ENOUGH) & (error <= spectrum)
+    good = reached & held & (change <= _ENOUGH) & (error <= _SPECTRUM)
     slower = np.minimum(
-        (error / spectrum) ** (-1 / _NODES), (early / _CHANGE) ** (-1 / (2 * _EARLY))
+        (error / _SPECTRUM) ** (-1 / count), (early / _CHANGE) ** (-1 / (2 * _EARLY))
     )
     factor = np.where(np.isnan(slower), _SHORTER, np.clip(_SAFETY * slower, _SHORTER, _LONGER))
     # The length of a panel up to a kink is no measure for the next one.
@@ -386,7 +387,8 @@ def _derivatives(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray):
 
         δF = F_q δq + F_u δp′ + F_t (δφ + δt) + F_Λ δΛ + F_w δw
     """
-    node, integral, _, _ = _rule()
+    count = len(panel.push)
+    node, integral, _, _ = _rule(count)
     m, q, rate = law.root, panel.root[:-1].T, panel.rate[:-1].T
     angle = start.phase[:, np.newaxis] + panel.time[:-1].T
     lever, bend = _lever(m, q), m * (m - 1) * q ** max(m - 2, 0)
@@ -411,7 +413,7 @@ def _derivatives(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray):
     known[:, :, 0] += by_time[:, :, 0]
     known[:, :, 2] -= felt * np.sin(angle)
     known[:, :, 3] += felt
-    matrix = np.eye(_NODES) - by_root * twice - by_rate * once - by_time * (bent @ twice)
+    matrix = np.eye(count) - by_root * twice - by_rate * once - by_time * (bent @ twice)
     pushed = np.linalg.solve(matrix, known)
     root, rate = root + twice @ pushed, rate0 + once @ pushed
     ends = root0 + weight @ rate, rate0 + weight @ pushed, time0 + weight @ (column(bend) * root)
@@ -498,8 +500,8 @@ def march(
         state = np.full((len(_Motion._fields), size), np.nan)
         state[:, active] = _begin(law.take(active), start.take(active))
         plain = law.root > 1 and not differentiate
-        spectrum = _FINER if differentiate else _SPECTRUM
-        state[4] *= (spectrum / _SPECTRUM) ** (1 / _NODES)
+        count = _FINER if differentiate else _NODES
+        state[4] *= count
         for _ in range(panels if active.size else 0):
             for here in np.array_split(active, -(-active.size // _BLOCK)):
                 limit = None if until is None else until[here]
@@ -508,7 +510,7 @@ def march(
                 panel = (
                     _next(some, own, now, limit)
                     if plain
-                    else _panel(some, law.root, own, now, limit, spectrum)
+                    else _panel(some, law.root, own, now, limit, count)
                 )
                 state[4, here] = panel.following
                 if law.root > 1:

@@ -28,10 +28,10 @@ def test_period_one_two_and_chaos():
     # Complex multipliers of modulus r, of both orbits.
     assert motions.lyapunov_exponent.values[:2] == pytest.approx(np.log(0.85), abs=0.005)
     assert motions.lyapunov_error.values[0] < 1e-4
-    # Measured with 10⁵ impacts: 1.166 ± 0.003.
+    # By the mapper, from 300 balls elsewhere of 1500 impacts each: 0.6042 ± 0.0011.
     error = motions.lyapunov_error.values[2]
     assert 0.005 < error < 0.05
-    assert abs(motions.lyapunov_exponent.values[2] - 1.166) < 5 * error
+    assert abs(motions.lyapunov_exponent.values[2] - 0.6042) < 5 * error
 
 
 def test_balls_that_go_different_ways_share_no_period():

@@ -115,9 +115,9 @@ PICTURE = 1.0
 Parameters that differ by two units in the last place, which change every rounding as another
 processor does, move the pixels of a figure by 0.092 at most (Fig. 15). The budget is the power of
 ten next above ten times that."""
-PICTURES = {"ext_diagram": 30.0, "ext_locking": 30.0}
-"""Pictures of motions about which rounding decides: three times what a change of 1e-15 in the start
-moves, as for their datasets."""
+PICTURES = {"ext_diagram": 60.0, "ext_locking": 40.0}
+"""Pictures of motions about which rounding decides: three times the 19 and 12 grey levels by which
+a change of 1e-15 in the start moves them."""
 
 
 def budget_of(artifact: str, variable: str) -> Budget:

@@ -156,9 +156,8 @@ def orbit_diagrams(data: xr.Dataset) -> Figure:
     for axes, model in zip(panels, models, strict=False):
         one = data.sel(model=model)
         # The root shows an orbit and a chaotic motion in one picture.
-        density = one.phase_density.values.T
-        shade = np.sqrt(np.where(density > 0, density, np.nan))
-        axes.pcolormesh(lam, phase, shade, cmap="magma_r", vmin=-0.1, vmax=0.5, rasterized=True)
+        shade = np.sqrt(one.phase_density.values.T)
+        axes.pcolormesh(lam, phase, shade, cmap="gist_heat_r", vmin=0, vmax=0.5, rasterized=True)
         axes.set(ylabel=r"phase of impact $\varphi/\pi$", ylim=(-1, 1))
         axes.spines[["top", "right"]].set_visible(True)
         exponent = one.lyapunov_exponent.values.clip(_LOWEST, _HIGHEST)

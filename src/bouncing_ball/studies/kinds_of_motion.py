@@ -44,7 +44,7 @@ def kinds_of_motion(parameters: Motions) -> xr.Dataset:
     """The motion of balls that start beside an n-T orbit, one motion for each Λ.
 
     The dataset has ``amplitude``; ``motion_period``, in impacts, 0 unless all balls have the same
-    period; ``lyapunov_exponent`` per impact, of all balls together, each until it sticks to the
+    period; ``lyapunov_exponent`` per period, of all balls together, each until it sticks to the
     table; and its standard error ``lyapunov_error``; all of shape (case,).
     """
     n, r, ensemble = parameters.n, parameters.restitution, parameters.ensemble
@@ -61,7 +61,13 @@ def kinds_of_motion(parameters: Motions) -> xr.Dataset:
 
     periods = period(sequence, ensemble.longest_period, _SAME)
     shared = np.where(np.ptp(periods, axis=1) == 0, periods[:, 0], 0)
-    exponent, error = stretching(sequence, r, ensemble.transient).exponent()
+    parting = stretching(sequence, r, ensemble.transient)
+    flight = np.diff(sequence.time, axis=0)[ensemble.transient :]
+    counted = np.arange(len(flight))[:, np.newaxis, np.newaxis] < parting.impacts
+    # From the mean per impact to that per period of the table.
+    time = np.sum(flight, axis=(0, 2), where=counted)
+    pace = 2 * np.pi * parting.impacts.sum(axis=1) / time
+    exponent, error = (pace * x for x in parting.exponent())
     return described(
         {
             "amplitude": ("case", amplitude[:, 0]),

@@ -40,7 +40,7 @@ from bouncing_ball.contacts.quadrature import Scheme, scheme
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import ModelError, require
 
-_LEVELS = (48, 96, 192, 384)
+_LEVELS = (48, 96, 128, 192, 256, 384)
 _PERIOD = 2 * np.pi
 _ITERATIONS = 25
 # The last step of φ and Λ, their longest step, and the ratio of the last coefficients to the

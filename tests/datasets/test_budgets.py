@@ -23,8 +23,11 @@ ROOT = Path(__file__).resolve().parents[2]
 RUN = read_yaml(ROOT / "config" / "config.yaml")
 # Sizes that become 2N - 1, and parameters that are moved; the others are labels or sought.
 SIZES, MOVED = ("samples", "points"), ("restitution", "amplitude", "amplitude_max")
-# More random orbits are other orbits, and one motion is sampled at its events too.
-NOT_NESTED = ("ext_orders", "explorer", "formulas", "fig07", "fig12", "ext_instant")
+# More random orbits and more nodes are another sample, and one motion is sampled at its events too.
+NOT_NESTED = (
+    *("ext_orders", "explorer", "formulas", "fig07", "fig12", "ext_instant"),
+    *("ext_locking", "ext_diagram"),
+)
 
 
 def mapped(value, change, key=""):

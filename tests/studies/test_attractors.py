@@ -58,11 +58,11 @@ def test_diagrams_have_the_stable_orbit_with_its_phase_and_exponent():
     given = {"restitution": 0.6, "frequency_ratio": 100.0, "amplitude": grid, "bins": 20}
     sizes = {"starts": 1, "samples": 10, "impacts": 200}
     data = typed(orbit_diagrams)(given | sizes, Release.DISPLACEMENT)
-    assert np.allclose(data.phase_density.sum("phase_bin"), 1)
+    assert np.allclose(data.phase_density.sum("bin_phase"), 1)
     for k, model in enumerate(models(np.array(0.6), 100.0, Release.DISPLACEMENT)):
         one, orbit = data.isel(model=k), model.orbit(1, data["amplitude"].values)
         here = one.phase_density.sel(
-            phase_bin=xr.DataArray(orbit.phase, dims="x"), method="nearest"
+            bin_phase=xr.DataArray(orbit.phase, dims="x"), method="nearest"
         )
         assert np.all(np.diag(here) > 0)
         # Every other motion there is locked, and attracts more strongly.

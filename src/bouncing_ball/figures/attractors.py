@@ -152,7 +152,7 @@ def orbit_diagrams(data: xr.Dataset) -> Figure:
     models = data["model"].values
     ratios = [1.0] * len(models) + [0.6]
     figure, panels = canvas(WIDE, 8.0, rows=len(ratios), sharex=True, height_ratios=ratios)
-    lam, phase = data["amplitude"].values, data.phase_bin.values / np.pi
+    lam, phase = data["amplitude"].values, data.bin_phase.values / np.pi
     for axes, model in zip(panels, models, strict=False):
         one = data.sel(model=model)
         # The root shows an orbit and a chaotic motion in one picture.

@@ -224,8 +224,8 @@ def locking(parameters: Locking, release: Release) -> xr.Dataset:
 def orbit_diagrams(parameters: Diagram, release: Release) -> xr.Dataset:
     """Where impacts fall on the attractors of each model over Λ.
 
-    ``phase_density`` (model, amplitude, phase_bin) is the share of the impacts within a range of
-    phases, whose middle is ``phase_bin``, averaged over the motions on which the balls of
+    ``phase_density`` (model, amplitude, bin_phase) is the share of the impacts within a range of
+    phases, whose middle is ``bin_phase``, averaged over the motions on which the balls of
     :func:`bouncing_ball.attractors.labelled.diagram` end. ``lyapunov_exponent`` (model,
     amplitude) is the largest of the exponents of these, -∞ where all are locked, and
     ``lyapunov_error`` its standard error, 1e-5 at least.
@@ -253,13 +253,13 @@ def orbit_diagrams(parameters: Diagram, release: Release) -> xr.Dataset:
     density, exponent, error = (np.stack(x) for x in zip(*columns, strict=True))
     return described(
         {
-            "phase_density": (("model", "amplitude", "phase_bin"), density),
+            "phase_density": (("model", "amplitude", "bin_phase"), density),
             "lyapunov_exponent": (("model", "amplitude"), exponent),
             "lyapunov_error": (("model", "amplitude"), error),
         },
         coords={
             "model": list(MODELS),
             "amplitude": lam,
-            "phase_bin": (edges[1:] + edges[:-1]) / 2,
+            "bin_phase": (edges[1:] + edges[:-1]) / 2,
         },
     )

@@ -59,7 +59,7 @@ def sources(*modules: str) -> list[str]:
     Examples
     --------
     >>> [Path(file).name for file in sources("bouncing_ball.contacts.damping")]
-    ['__init__.py', '__init__.py', 'damping.py', 'release.py', 'errors.py']
+    ['__init__.py', '__init__.py', 'damping.py', 'elementary.py', 'release.py', 'errors.py']
     """
     for module in modules:
         if module_file(module) is None:

@@ -112,6 +112,9 @@ function verdictOf(found, {n}) {
   if (!exact.exists && !simple.exists)
     return [false, `There is no ${n}-T orbit here: the saddle-node is at Λ = `
       + `${shown(found.limits[0].saddle_node, 4)}.`];
+  if (exact.exists && !exact.is_stable)
+    return [false, `No ball stays on the ${n}-T orbit, because it is unstable: `
+      + "bouncing-ball design says what the ball does instead."];
   if (!wrong && error <= TOLERANCE)
     return [true, `The restitution model is good enough: ${subject} is ${percent(error)} off, `
       + `within ${percent(TOLERANCE)}.`];

@@ -26,8 +26,8 @@ from typing import NamedTuple
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = Path("src/bouncing_ball")
-LAYERS = ["contacts", "continuation", "motion", "orbits", "accuracy", "studies", "claims",
-          "calculator", "atlas", "compare"]  # fmt: skip
+LAYERS = ["contacts", "continuation", "motion", "orbits", "attractors", "accuracy", "studies",
+          "claims", "engines", "calculator", "atlas", "compare"]  # fmt: skip
 QUICK = "not long and not slow and not cluster and not engines"
 # The tests of all models and laws are in a folder of their own.
 CONTRACTS = {"contacts", "continuation", "motion", "orbits"}

@@ -133,10 +133,11 @@ def _means(case: Case, name: str, start: _Start) -> tuple[Mean | None, Mean | No
     means = np.array([height_and_power(found[k], before) for k in going])
     units = table.length, case.mass * table.gravity**2 / table.angular_frequency
     middle, error = means.mean(axis=0), means.std(axis=0, ddof=1) / np.sqrt(balls)
-    return tuple(
+    height, power = (
         Mean(float(m * unit), float(_STUDENT * e * unit))
         for m, e, unit in zip(middle, error, units, strict=True)
-    )  # type: ignore[return-value]
+    )
+    return height, power
 
 
 def height_and_power(sequence: ImpactSequence, before: int = 0) -> tuple[float, float]:

@@ -46,8 +46,7 @@ PARAMETERS: dict[str, dict[str, Any]] = {
     "table1": {"n": [1, 2, 3], **_TABLE},
     "thresholds": {**_ORBIT, "quantities": list(map(str, Quantity)), **_scan(1.0, 1e4, 101)},
     "ext_release": {"n": [1, 2, 3], "restitution": 0.85, **_scan(2.0, 1000.0, 61)},
-    "motions": {"n": 1, "restitution": 0.85, "amplitude": [1.0, 1.1, 2.0]},
-    **{name: {} for name in ("formulas", "forensics", "witness")},
+    **{name: {} for name in ("formulas", "forensics", "witness", "ext_locking")},
 }
 """The parameters of every dataset that decides claims; the release is always the displacement's."""
 

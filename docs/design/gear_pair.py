@@ -2,13 +2,15 @@
 
 import bouncing_ball
 
-# Inertia, base radius, 16 teeth, mesh stiffness and a damping ratio of 0.05 of the pair of A. Kahraman and R. Singh
-# (Journal of Sound and Vibration 146, 1991, 135–156), as quoted in Workflow_code.m of
-# github.com/Fraunhofer-SCAI/mrDMD-damage-detection. There both gears move, with half the mass: 0.23 kg.
+# Inertia, base radius, 16 teeth, mesh stiffness and a damping ratio of 0.05 of the pair of A.
+# Kahraman and R. Singh (Journal of Sound and Vibration 146, 1991, 135–156), as quoted in
+# Workflow_code.m of github.com/Fraunhofer-SCAI/mrDMD-damage-detection. There both gears move,
+# with half the mass: 0.23 kg.
 inertia, base, stiffness = 1.15e-3, 50e-3, 3.8e8
 damping = 2 * 0.05 * (0.23 * stiffness) ** 0.5
 
-# Along the line of action m = I/R², and the drag torque M (here 0.5 N m) takes the part of gravity, M R/I.
+# Along the line of action m = I/R², and the drag torque M (here 0.5 N m) takes the part of
+# gravity, M R/I.
 mass, drag = inertia / base**2, 0.5 * base / inertia
 pair = bouncing_ball.design(
     mass=mass,

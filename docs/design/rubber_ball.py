@@ -2,8 +2,9 @@
 
 import bouncing_ball
 
-# Measured, within 1 ms: journals.azbuki.bg, "Measuring the collision time of a ball with high coefficient of
-# restitution". A time that does not depend on the speed is that of a linear contact.
+# Measured, within 1 ms: journals.azbuki.bg, "Measuring the collision time of a ball with high
+# coefficient of restitution". A time that does not depend on the speed is that of a linear
+# contact.
 ball = bouncing_ball.design(
     mass="47 g",
     frequency="10 Hz",
@@ -14,6 +15,5 @@ ball = bouncing_ball.design(
 )
 print(ball.verdict)
 delay, load = ball.corrected.delay, ball.corrected.load
-print(
-    f"corrected: rebound {delay:.2g} s later, r = {ball.corrected.restitution:.2g} + {load:.1g} s · a/v"
-)
+r = ball.corrected.restitution
+print(f"corrected: rebound {delay:.2g} s later, r = {r:.2g} + {load:.1g} s · a/v")

@@ -10,12 +10,14 @@ poisson = young / (2 * shear) - 1
 radius = 0.79e-3
 mass = density * 4 / 3 * pi * radius**3
 
-# A small steel ball that is dropped from 50 cm on a steel plate falls silent after 30 s (problem 4.10 of Exercises
-# for the Feynman Lectures on Physics, as quoted in solutions of it). Its flights are a geometric series.
+# A small steel ball that is dropped from 50 cm on a steel plate falls silent after 30 s
+# (problem 4.10 of Exercises for the Feynman Lectures on Physics, as quoted in solutions of it).
+# Its flights are a geometric series.
 falls = 30 / sqrt(2 * 0.5 / 9.81)
 restitution = (falls - 1) / (falls + 1)
 
-# Steel beads have been shaken with 25 to 100 Hz (Dorbolo, Ludewig and Vandewalle, arXiv:0808.2936, abstract).
+# Steel beads have been shaken with 25 to 100 Hz (Dorbolo, Ludewig and Vandewalle,
+# arXiv:0808.2936, abstract).
 ball = bouncing_ball.design(
     mass=mass,
     frequency="60 Hz",
@@ -32,7 +34,8 @@ print(
 )
 print(ball.verdict)
 
-# On a thick steel plate such a ball was in contact for about 5 µs, measured (G. McLaskey, Cornell,
-# courses.cit.cornell.edu/mclaskey/impact.html); at 1 m/s Hertz's formula gives nearly that.
+# On a thick steel plate such a ball was in contact for about 5 µs, measured (G. McLaskey,
+# Cornell, courses.cit.cornell.edu/mclaskey/impact.html); at 1 m/s Hertz's formula gives nearly
+# that.
 modulus = young / (2 * (1 - poisson**2))
 print(f"at 1 m/s {2.868 * (mass**2 / (radius * modulus**2)) ** 0.2:.2g} s")

@@ -25,8 +25,9 @@ _SHOWN = (
 )
 # Balls that end at rest, on an orbit, on a doubled one, and locked. None comes near chaos, which
 # no two computers have in common.
-_BALLS = {"ball_restitution": 0.5, "ball_frequency_ratio": 80.0, "start_phase": 1.0}
-_BALLS |= {"velocity": -3.0, "ball_amplitude": ("motion", [0.6, 1.2, 1.6, 2.5])}
+_BALLS = xr.Dataset(
+    {"ball_restitution": 0.5, "ball_frequency_ratio": 80.0, "start_phase": 1.0, "velocity": -3.0}
+).assign(ball_amplitude=("motion", [0.6, 1.2, 1.6, 2.5]))
 _LAST = 100
 
 
@@ -58,8 +59,7 @@ def reference_orbits(parameters: References) -> xr.Dataset:
 
 
 def _followed() -> xr.Dataset:
-    given = xr.Dataset(_BALLS)
-    r, omega, phase, velocity, lam = (given[name].values for name in _BALLS)
+    r, omega, phase, velocity, lam = (_BALLS[name].values for name in _BALLS)
     ends = []
     for law in (r, SpringDamper.from_restitution(r, omega, Release.DISPLACEMENT)):
         found, run = label(law, lam, phase, velocity), simulate(law, lam, phase, velocity, _LAST)
@@ -68,7 +68,7 @@ def _followed() -> xr.Dataset:
         ends.append((found.periods, found.impacts, last[0], *(values[last] for values in at)))
     names = ("periods", "impacts", "end_impact", "end_phase", "end_speed", "end_time")
     values = zip(names, map(np.array, zip(*ends, strict=True)), strict=True)
-    return given.assign(
+    return _BALLS.assign(
         {name: (("model", "motion"), value) for name, value in values}
     ).assign_coords(model=["restitution", "spring-damper"])
 

@@ -14,6 +14,7 @@ BEYOND_THE_PAPER = {
     "ext_cascades": "studies.cascades.cascades",
     "ext_diagram": "studies.attractors.orbit_diagrams",
     "ext_locking": "studies.attractors.locking",
+    "ext_means": "studies.mean_motion.mean_motions",
     "ext_engines": "studies.engines.conformance",
     "explorer": "studies.reference_orbits.reference_orbits",
 }

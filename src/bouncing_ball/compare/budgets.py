@@ -103,6 +103,15 @@ ARTIFACTS: dict[str, dict[str, Budget]] = {
         "lyapunov_exponent": Budget(5, scale="lyapunov_error", share=0.05),
         "lyapunov_error": Budget(0.5, share=0.05),
     },
+    # As for ext_locking: the change moves an error by 2.2 of its margins at most, 7 % of the
+    # decisions, and a share by 0.12; three times that is allowed.
+    "ext_means": {
+        "mean_error": Budget(7, scale="mean_margin", share=0.05),
+        "mean_margin": Budget(0.5, share=0.05),
+        **_each("decision needed_ratio", Budget(ROUNDING, share=0.2)),
+        **_each("needed_share needed_low needed_high", Budget(0.37, scale="1")),
+        "needed_nodes": Budget(0.15),
+    },
     # Saddle-nodes are found as minima here, and some readings are ill-conditioned.
     "forensics": {"computed": Budget(1e-8)},
 }
@@ -115,7 +124,7 @@ PICTURE = 1.0
 Parameters that differ by two units in the last place, which change every rounding as another
 processor does, move the pixels of a figure by 0.092 at most (Fig. 15). The budget is the power of
 ten next above ten times that."""
-PICTURES = {"ext_diagram": 60.0, "ext_locking": 40.0}
+PICTURES = {"ext_diagram": 60.0, "ext_locking": 40.0, "ext_means": 60.0}
 """Pictures of motions about which rounding decides: three times the 19 and 12 grey levels by which
 a change of 1e-15 in the start moves them."""
 

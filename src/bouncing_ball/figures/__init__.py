@@ -35,6 +35,7 @@ DRAWINGS = {
     "ext_cascades": "cascades.cascades",
     "ext_diagram": "attractors.orbit_diagrams",
     "ext_locking": "attractors.locking",
+    "ext_means": "attractors.mean_motions",
     "ext_engines": "model_errors.engines",
 }
 """Where each figure is drawn: ``module.function`` of this package."""

@@ -1,5 +1,6 @@
 """What balls end on in the three models, side by side on the same axes."""
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -29,6 +30,7 @@ _DOTS: dict[str, Look] = {
     "chaotic": {"marker": ".", "markersize": 1.3, "color": "#AA3A00", "markeredgewidth": 0},
     "undecided": {"marker": "x", "markersize": 1.6, "color": "#000000", "markeredgewidth": 0.3},
 }
+_HATCHES = {"chaotic": "......", "undecided": "xxxx"}
 # Exponents beyond are drawn as these.
 _LOWEST, _HIGHEST = -1.5, 1.5
 # Lighter throughout, from blue below 0 to yellow above.
@@ -85,9 +87,7 @@ def _draw_kinds(axes: Axes, one: xr.Dataset) -> None:
         axes, one, place, cmap=colours, norm=BoundaryNorm(np.arange(colours.N + 1) - 0.5, colours.N)
     )
     for kind, look in _DOTS.items():
-        r, lam = np.nonzero((one.kind == kind).values)
-        x, y = one.amplitude.values[lam], one.restitution.values[r]
-        axes.plot(x, y, linestyle="none", rasterized=True, **look)
+        _dot(axes, one, one.kind == kind, look)
     _draw_bifurcations(axes, one)
 
 
@@ -96,6 +96,13 @@ def _draw_exponent(axes: Axes, one: xr.Dataset):
     image = _mesh(axes, one, one.lyapunov_exponent.values.clip(_LOWEST), **look)
     _draw_bifurcations(axes, one)
     return image
+
+
+def _dot(axes: Axes, one: xr.Dataset, chosen: xr.DataArray, look: Look) -> None:
+    r, lam = np.nonzero(chosen.values)
+    place = one.amplitude.values[lam], one.restitution.values[r]
+    drawn: Look = {"color": "#000000", "linestyle": "none", "rasterized": True, **look}
+    axes.plot(*place, **drawn)
 
 
 def _mesh(axes: Axes, one: xr.Dataset, values: np.ndarray, **look):
@@ -114,25 +121,26 @@ def _draw_bifurcations(axes: Axes, one: xr.Dataset) -> None:
 
 
 def _key(data: xr.Dataset) -> list:
-    edge: Look = {"edgecolor": "#000000", "linewidth": 0.4}
     ends = [*(low - 1 for low in _PERIODS[1:]), None]
     names = [
-        f"locked, {low} T"
-        if low == 1
-        else f"{low} T"
-        if low == end
-        else f"from {low} T"
-        if end is None
-        else f"{low} to {end} T"
+        f"from {low} T" if end is None else f"{low} T" if low == end else f"{low} to {end} T"
         for low, end in zip(_PERIODS, ends, strict=True)
     ]
     found = set(np.unique(data.kind))
-    patches = [Patch(facecolor=c, label=x, **edge) for c, x in zip(_LOCKED, names, strict=True)]
     others = [(kind, fill) for kind, fill in _OTHERS.items() if kind in found]
-    for kind, fill in others:
-        hatch = {"chaotic": "......", "undecided": "xxxx"}.get(kind)
-        patches.append(Patch(facecolor=fill, label=kind, hatch=hatch, **edge))
-    return patches
+    return _patches(
+        [(f"locked, {names[0]}", _LOCKED[0]), *zip(names[1:], _LOCKED[1:], strict=True), *others]
+    )
+
+
+def _patches(fills: Iterable[tuple[str, Any]]) -> list[Patch]:
+    """Entries of a legend for areas, hatched where the areas have dots."""
+    return [
+        Patch(
+            facecolor=fill, label=name, hatch=_HATCHES.get(name), edgecolor="#000000", linewidth=0.4
+        )
+        for name, fill in fills
+    ]
 
 
 def _draw_agreement(axes: Axes, one: xr.Dataset) -> None:
@@ -145,6 +153,32 @@ def _draw_agreement(axes: Axes, one: xr.Dataset) -> None:
         look: Look = {"color": colour, "marker": marker, "markersize": 4, "linewidth": 0.8}
         axes.errorbar(place, shown.agreement, [low, high], capsize=2, label=name, **look)
     logarithmic(axes, xlabel=r"frequency ratio $\varpi$", ylim=(0, 1.03))
+
+
+def mean_motions(data: xr.Dataset) -> Figure:
+    """The smallest ϖ from which on a mean of each simple model is right, over (Λ, r)."""
+    ratios, means = data.frequency_ratio.values, data["mean"].values
+    figure, rows = canvas(WIDE, 4.4, rows=2, columns=len(means), sharex=True, sharey=True)
+    colours = colormaps["viridis_r"](np.linspace(0, 0.9, len(ratios)))
+    others = {"not at any": "#000000", "undecided": "#ffffff", "no number": "#c8c8c8"}
+    fills = [*colours, *others.values()]
+    look: Look = {"cmap": ListedColormap(fills), "vmin": -0.5, "vmax": len(fills) - 0.5}
+    for simple, row in zip(data.simple.values, rows, strict=True):
+        for mean, axes in zip(means, row, strict=True):
+            one = data.sel(simple=simple, mean=mean)
+            place = np.searchsorted(ratios, one.needed_ratio.fillna(0).values)
+            for k, name in enumerate(others, len(ratios)):
+                place[(one.decision == name).values] = k
+            _mesh(axes, one, place, **look)
+            _dot(axes, one, one.decision == "undecided", {"marker": "x", "markersize": 3})
+        row[0].set_ylabel(f"{simple} model\nrestitution coefficient $r$")
+    for mean, axes in zip(means, rows[0], strict=True):
+        axes.set_title(mean)
+    for axes in rows[-1]:
+        axes.set_xlabel(r"amplitude $\Lambda$")
+    names = [rf"$\varpi\geq{number(float(ratio))}$" for ratio in ratios]
+    legend_below(figure, _patches(zip([*names, *others], fills, strict=True)), ncols=5)
+    return figure
 
 
 def orbit_diagrams(data: xr.Dataset) -> Figure:

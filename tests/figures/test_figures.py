@@ -1,5 +1,7 @@
 """The figures are drawn from their datasets, and from all that they should show."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -12,8 +14,10 @@ from bouncing_ball.provenance.origin import read_attributes
 
 pytestmark = pytest.mark.slow
 
+RECORD = Path(__file__).parents[2] / "figures"
 SCHEMATICS = ("fig01", "fig04")
-WITH_DATA = [name for name in DRAWINGS if name not in SCHEMATICS]
+# A new one is drawn here as soon as its dataset is accepted.
+WITH_DATA = [name for name in DRAWINGS if (RECORD / f"{name}.nc").exists()]
 
 
 def drawn(name, *data):

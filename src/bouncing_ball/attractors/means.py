@@ -11,7 +11,7 @@ an instantaneous impact W is the impulse times w′; while a ball rests on the t
 integral of (1 - w) w′.
 """
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,43 +25,37 @@ from bouncing_ball.motion.sequence import Status
 from bouncing_ball.motion.simulation import Law, first_impacts
 
 
-class Means(NamedTuple):
-    """Means per unit of time of balls, arrays of one shape; NaN for balls that stay on the table.
-
-    ``flights`` per table period 2π, infinite in the restitution model if the ball sticks;
-    ``height`` z; ``power`` that the table transfers; ``exponent``, the growth of a deviation's
-    logarithm per table period, of a new deviation after each impact that none survives.
-    """
-
-    flights: np.ndarray
-    height: np.ndarray
-    power: np.ndarray
-    exponent: np.ndarray
-
-
-def means(law: Law, amplitude: ArrayLike, found: Motions, samples: int) -> Means:
+def means(law: Law, amplitude: ArrayLike, found: Motions, samples: int) -> np.ndarray:
     """Means over the motions on which balls end: over a period, or over so many impacts.
+
+    Returns
+    -------
+    array
+        Of each ball the flights per table period 2π, infinite in the restitution model if it
+        sticks; the mean of its height z; the power that the table transfers; and the growth of a
+        deviation's logarithm per table period, of a new deviation after each impact that none
+        survives. Shape (4, ...); NaN for a ball that stays on the table.
 
     Examples
     --------
     The 1-T orbit dissipates ½(1 - r²)v² with (1 + r) v = 2π a period:
 
     >>> from bouncing_ball.attractors.mapper import label
-    >>> of = means(0.5, 1.2, label(0.5, 1.2, 1.0, -3.0), 100)
-    >>> float(of.flights.round(6)), bool(np.isclose(of.power, np.pi / 3))
+    >>> flights, _, power, _ = means(0.5, 1.2, label(0.5, 1.2, 1.0, -3.0), 100)
+    >>> float(flights.round(6)), bool(np.isclose(power, np.pi / 3))
     (1.0, True)
     """
     lam, phase, velocity = np.broadcast_arrays(amplitude, found.end_phase, found.end_velocity)
     falls = np.isfinite(phase)
-    at_rest = phase.copy(), velocity.copy()
-    at_rest[0][~falls], at_rest[1][~falls] = 0.0, lam[~falls]
-    dynamics, start, relative, shape = first_impacts(law, lam, *at_rest)
+    # A ball that stays on the table is not followed.
+    state = np.where(falls, [phase, velocity], [0 * lam, lam])
+    dynamics, start, relative, shape = first_impacts(law, lam, *state)
     left = np.where(found.impacts > 0, found.impacts, samples).ravel() * falls.ravel()
     total = np.full((5, left.size), np.nan)
     _add_up(dynamics, dynamics.start(start, relative), left, total)
     time, flights, height, work, growth = total.reshape(5, *shape)
     turns = time / (2 * np.pi)
-    return Means(flights / turns, height / time, work / time, growth / turns)
+    return np.stack([flights / turns, height / time, work / time, growth / turns])
 
 
 def _add_up(dynamics: Dynamics, impact: Impact, left: np.ndarray, total: np.ndarray) -> None:

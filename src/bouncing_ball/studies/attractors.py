@@ -75,11 +75,11 @@ class Grid(Parameters):
     impacts: Impacts
     confidence: Confidence
 
-    def models(self, release: Release, starts: int = 0) -> tuple[np.ndarray, tuple]:
+    def models(self, release: Release, starts: bool = False) -> tuple[np.ndarray, tuple]:
         """Λ, shape (amplitude,), and the three models, of shape (ϖ, restitution, 1) or without ϖ;
-        each with a further axis of length 1 for starts, if there are several.
+        each with a further axis of length 1 for starts, if requested.
         """
-        tail = (1,) * bool(starts)
+        tail = (1,) * starts
         axes = self.amplitude.grid(), self.restitution.grid(), np.array(self.frequency_ratio)
         lam, r, ratio = (x.reshape(-1, *(1,) * k, *tail) for k, x in enumerate(axes))
         return lam, models(r, ratio, release)

@@ -8,7 +8,6 @@ from scipy.stats import t as student
 
 from bouncing_ball.attractors.mapper import label
 from bouncing_ball.attractors.means import means
-from bouncing_ball.attractors.motions import Motions
 from bouncing_ball.contacts.spring_damper import Release
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.parameters import Seed, Tolerance, number
@@ -21,7 +20,8 @@ MEANS = ("power", "height", "flights", "exponent")
 NODES = ("all", "orbit", "locked", "chaotic")
 """Nodes by what all balls of the simple model end on, of the corrected model at the largest ϖ."""
 
-
+# Speeds of balls at the start are up to this times Λ.
+_FASTEST = 4.0
 # Half the width of an interval at least: a motion that repeats is found within 1e-6 of its state.
 _KNOWN = 1e-6
 
@@ -52,13 +52,27 @@ def needed(error: np.ndarray, margin: np.ndarray, tolerance: float) -> tuple[np.
     >>> [x.tolist() for x in needed(error, np.full((3, 1), 0.005), 0.01)]
     [[2], [0]]
     """
-    size = np.abs(error)
-    within, beyond = (x[::-1] for x in (size + margin <= tolerance, size - margin > tolerance))
-    first = np.argmin(np.concatenate([within, np.zeros_like(within[:1])]), axis=0)
-    at = np.minimum(first, len(error) - 1)[np.newaxis]
-    stopped = np.take_along_axis(beyond, at, axis=0)[0] | (first == len(error))
-    decision = np.where(stopped, np.where(first > 0, 0, 1), 2)
-    return len(error) - first, np.where(np.isnan(error).any(axis=0), 3, decision)
+    size, last = np.abs(error), len(error)
+    # From the largest ϖ down to the first at which the error is not known to be small.
+    within = (size + margin <= tolerance)[::-1]
+    right = np.argmin(np.concatenate([within, within[:1] & False]), axis=0)
+    at = np.minimum(right, last - 1)[np.newaxis]
+    beyond = np.take_along_axis((size - margin > tolerance)[::-1], at, axis=0)[0]
+    decision = np.where(beyond | (right == last), np.where(right > 0, 0, 1), 2)
+    return last - right, np.where(np.isnan(error).any(axis=0), 3, decision)
+
+
+def _errors(simple: np.ndarray, contact: np.ndarray, confidence: float) -> np.ndarray:
+    """Relative errors of a simple model and half the widths of their intervals, from paired balls
+    along the last axis.
+    """
+    balls = contact.shape[-1]
+    width = student.ppf((1 + confidence) / 2, balls - 1) / np.sqrt(balls)
+    with np.errstate(invalid="ignore"):
+        apart, scale = contact - simple, np.abs(simple.mean(axis=-1))
+        found = np.stack([apart.mean(axis=-1), width * apart.std(axis=-1, ddof=1)]) / scale
+    found[1] = np.maximum(found[1], _KNOWN)
+    return np.where(np.isfinite(found[0]), found, np.nan)
 
 
 def mean_motions(parameters: MeanMotions, release: Release) -> xr.Dataset:
@@ -71,76 +85,52 @@ def mean_motions(parameters: MeanMotions, release: Release) -> xr.Dataset:
     restitution, amplitude) are (contact - simple)/simple of the power, height, flights per period
     and exponent. ``needed_ratio`` (simple, mean, restitution, amplitude) is the smallest ϖ of those
     tried from which on all errors are within the tolerance, NaN where ``decision`` is not "from
-    this on", see :data:`DECISIONS`. ``needed_share`` (simple, mean, ϖ) is the share of the nodes
-    that are known to be right from this ϖ on, of those with a number, with its Wilson limits and
-    their number.
+    this on", see :data:`DECISIONS`. ``right`` (simple, mean, motion_group, ϖ) is the share of the
+    nodes that are known to be right from this ϖ on, of those with a number, for :data:`NODES`; with
+    its Wilson limits ``right_low`` and ``right_high`` and the number of nodes ``right_nodes``.
     """
-    balls = parameters.starts
-    lam, compared = parameters.models(release, balls)
-    random = np.random.default_rng(parameters.seed)
-    phase = random.uniform(-np.pi, np.pi, balls)
-    speed = random.uniform(0.0, 4.0, balls) * np.maximum(lam, 1)
-    velocity = lam * np.cos(phase) - speed
+    lam, compared = parameters.models(release, starts=True)
+    random, balls = np.random.default_rng(parameters.seed), parameters.starts
+    phase, speed = random.uniform(-np.pi, np.pi, balls), random.uniform(0.0, _FASTEST, balls)
+    velocity = lam * (np.cos(phase) - speed)
     values, motions = [], []
     for model in compared:
         found = label(model.impact_law, lam, phase, velocity, impacts=parameters.impacts)
-        of = means(model.impact_law, lam, found, parameters.samples)
-        exponent = np.where(found.periods > 0, found.exponent, of.exponent)
-        values.append(np.stack([of.power, of.height, of.flights, exponent]))
+        flights, height, power, exponent = means(model.impact_law, lam, found, parameters.samples)
+        exponent = np.where(found.periods > 0, found.exponent, exponent)
+        of = np.stack([power, height, flights, exponent])
+        # Over the mean, ϖ, r, Λ and the ball; the restitution model has one ϖ.
+        values.append(of.reshape(len(MEANS), -1, *found.shape[-3:]))
         motions.append(found)
-    *simple, contact = (np.broadcast_to(x, values[-1].shape) for x in _with_ratio(values))
-    level, ratios = parameters.confidence, parameters.frequency_ratio
-    width = student.ppf((1 + level) / 2, balls - 1) / np.sqrt(balls)
-    with np.errstate(invalid="ignore"):
-        scale = np.array([np.abs(x.mean(axis=-1)) for x in simple])
-        apart = np.array([contact - x for x in simple])
-        error = apart.mean(axis=-1) / scale
-        margin = width * apart.std(axis=-1, ddof=1) / scale
-    error, margin = np.where(np.isfinite(error), [error, np.maximum(margin, _KNOWN)], np.nan)
-    along = np.moveaxis(np.stack([error, margin]), 3, 1)
+    *simple, contact = values
+    errors = np.stack([_errors(x, contact, parameters.confidence) for x in simple])
+    along = np.moveaxis(errors, (1, 3), (0, 1))
     place, known = needed(along[0], along[1], parameters.tolerance)
-    least = np.where(known == 0, np.array(ratios)[np.minimum(place, len(ratios) - 1)], np.nan)
-    # The first ϖ, in order, from which on each node is known to be right.
-    first = np.where(known == 0, place, len(ratios))
-    shares = [
-        [share(first[s, q][here] <= k, level) for k in range(len(ratios))]
-        for s, found in enumerate(motions[:-1])
-        for q in range(len(MEANS))
-        for name in NODES
-        for here in [(known[s, q] < 3) & _all(found, name)]
-    ]
-    of_shares = ("simple", "mean", "motion_group", "frequency_ratio")
-    shape = len(SIMPLE), len(MEANS), len(NODES), len(ratios), 4
-    nodes, right, low, high = np.moveaxis(np.reshape(shares, shape), -1, 0)
-    dims, of_nodes = ("simple", "mean"), ("restitution", "amplitude")
+    ratios = np.array(parameters.frequency_ratio)
+    least = np.where(known == 0, ratios[np.minimum(place, ratios.size - 1)], np.nan)
+    right = np.stack([(known == 0) & (place <= k) for k in range(ratios.size)], axis=2)
+    shares = np.empty((len(SIMPLE), len(MEANS), len(NODES), ratios.size, 4))
+    for s, q, g, k in np.ndindex(shares.shape[:-1]):
+        inside = np.all(group(motions[s], NODES[g]), axis=-1).reshape(-1, *known.shape[-2:])[-1]
+        here = inside & (known[s, q] != DECISIONS.index("no number"))
+        shares[s, q, g, k] = share(right[s, q, k][here], parameters.confidence)
+    dims, nodes = ("simple", "mean"), ("restitution", "amplitude")
+    names = ("right_nodes", "right", "right_low", "right_high")
+    of_shares = (*dims, "motion_group", "frequency_ratio")
     return described(
         {
-            "mean_error": ((*dims, "frequency_ratio", *of_nodes), error),
-            "mean_margin": ((*dims, "frequency_ratio", *of_nodes), margin),
-            "needed_ratio": ((*dims, *of_nodes), least),
-            "decision": ((*dims, *of_nodes), np.array(DECISIONS)[known]),
-            "needed_share": (of_shares, right),
-            "needed_low": (of_shares, low),
-            "needed_high": (of_shares, high),
-            "needed_nodes": (of_shares[:-1], nodes[..., 0]),
+            "mean_error": ((*dims, "frequency_ratio", *nodes), errors[:, 0]),
+            "mean_margin": ((*dims, "frequency_ratio", *nodes), errors[:, 1]),
+            "needed_ratio": ((*dims, *nodes), least),
+            "decision": ((*dims, *nodes), np.array(DECISIONS)[known]),
+            **{x: (of_shares, shares[..., k]) for k, x in enumerate(names)},
         },
         coords={
             "simple": list(SIMPLE),
             "mean": list(MEANS),
             "motion_group": list(NODES),
-            "frequency_ratio": list(ratios),
+            "frequency_ratio": ratios,
             "restitution": parameters.restitution.grid(),
             "amplitude": parameters.amplitude.grid(),
         },
     )
-
-
-def _with_ratio(values: list[np.ndarray]) -> list[np.ndarray]:
-    """The means of all models with an axis for ϖ, which those of the restitution model lack."""
-    return [x if x.ndim == values[-1].ndim else x[:, np.newaxis] for x in values]
-
-
-def _all(found: Motions, name: str) -> np.ndarray:
-    """Whether all balls of a node belong to a group, at the largest ϖ; shape (r, Λ)."""
-    inside = np.all(group(found, name), axis=-1)
-    return inside.reshape(-1, *inside.shape[-2:])[-1]

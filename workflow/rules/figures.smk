@@ -1,8 +1,6 @@
 # Datasets in, figures out: each figure from the dataset of its name. The schematics, Figures 1
 # and 4, have none.
 
-from bouncing_ball.figures import DRAWINGS
-
 CAPTIONS = [path.stem for path in Path(ROOT, "workflow/report").glob("*.rst")]
 
 for name, drawing in DRAWINGS.items():

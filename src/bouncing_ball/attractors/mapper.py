@@ -69,7 +69,7 @@ class _Mark(NamedTuple):
 class _Ball(NamedTuple):
     """The state of each ball that is followed."""
 
-    index: np.ndarray
+    lane: np.ndarray
     amplitude: np.ndarray
     # Impacts, and the time, since the start.
     seen: np.ndarray
@@ -156,7 +156,7 @@ def _follow(dynamics: Dynamics, start: np.ndarray, relative: np.ndarray, impacts
             fresh = dynamics.take(more).start(start[more], relative[more])
             born = _Ball.new(more, pick(dynamics.amplitude, more), fresh), fresh
             ball, impact = _joined((ball, impact), born) if alive else born
-            now = dynamics.take(ball.index)
+            now = dynamics.take(ball.lane)
         departure = now.depart(impact)
         going = _resting(now, impact, departure, ball, found)
         now, impact, departure, ball = _kept(going, found, now, impact, departure, ball)
@@ -173,9 +173,9 @@ def _follow(dynamics: Dynamics, start: np.ndarray, relative: np.ndarray, impacts
 def _kept(going: np.ndarray, found: Motions, now: Dynamics, impact: Impact, *rows: Any) -> Any:
     """The balls that go on, of all rows; the last impacts of the others are written down."""
     ball = rows[-1]
-    if going.size < ball.index.size:
-        last = np.delete(np.arange(ball.index.size), going)
-        index, phase = ball.index[last], impact.phase[last]
+    if going.size < ball.lane.size:
+        last = np.delete(np.arange(ball.lane.size), going)
+        index, phase = ball.lane[last], impact.phase[last]
         rests = found.kind[index] == Kind.PERMANENT_CONTACT
         thrown = impact.velocity[last] + table(phase, ball.amplitude[last])[0]
         place = (np.where(rests, np.nan, x) for x in (phase, thrown))
@@ -193,7 +193,7 @@ def _joined(one: Any, other: Any) -> Any:
 
 
 def _write(found: Motions, ball: _Ball, which: np.ndarray, kind: ArrayLike, **values: Any) -> None:
-    found.fill(ball.index[which], kind=kind, followed=ball.seen[which], **values)
+    found.fill(ball.lane[which], kind=kind, followed=ball.seen[which], **values)
 
 
 def _resting(

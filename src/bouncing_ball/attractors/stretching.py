@@ -5,7 +5,7 @@ logarithms of its growth add up. The Lyapunov exponent is the ratio of two means
 of the time, over stretches of 32 impacts, so that it has a standard error.
 """
 
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
@@ -42,8 +42,8 @@ class Stretching(NamedTuple):
     @classmethod
     def of(cls, balls: int) -> Self:
         """The stretching of so many balls before their first flights."""
-        along, *zeros = np.eye(8, 1) + np.zeros(balls)
-        return cls(along, *zeros, np.zeros((balls, 6)))
+        columns: Any = np.eye(8, 1) + np.zeros(balls)
+        return cls(*columns, np.zeros((balls, 6)))
 
     def grow(self, change: Jacobian) -> np.ndarray:
         """Carry the deviation to the next impact; the logarithm of its growth."""

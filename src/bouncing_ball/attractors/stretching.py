@@ -43,7 +43,7 @@ class Stretching(NamedTuple):
     def of(cls, balls: int) -> Self:
         """The stretching of so many balls before their first flights."""
         columns: Any = np.eye(8, 1) + np.zeros(balls)
-        return cls(*columns, np.zeros((balls, 6)))
+        return cls._make([*columns, np.zeros((balls, 6))])
 
     def grow(self, change: Jacobian) -> np.ndarray:
         """Carry the deviation to the next impact; the logarithm of its growth."""

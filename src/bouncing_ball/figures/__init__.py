@@ -24,6 +24,7 @@ DRAWINGS = {
     "fig14": "thresholds.height_error",
     "fig15": "branches.both_domains",
     "fig16": "thresholds.permanent_contact_error",
+    "ext_atlas": "atlas.charts.over_range",
     "ext_release": "thresholds.release_rules",
     "ext_rattling": "long_contacts.stable_windows",
     "ext_basins": "long_contacts.basins",

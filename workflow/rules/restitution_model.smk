@@ -1,10 +1,9 @@
-# The restitution model: its orbits in closed form, and the motion of balls that start beside
-# them. Datasets: one orbit over time (sample), the branches over (n, point), the motions over case.
+# The restitution model: its orbits in closed form. Datasets: one orbit over time (sample), the
+# branches over (n, point).
 
 RESTITUTION_MODEL = {
     "fig02": "studies.restitution_families.restitution_history",
     "fig03": "studies.restitution_families.restitution_orbits",
-    "motions": "studies.kinds_of_motion.kinds_of_motion",
 }
 
 

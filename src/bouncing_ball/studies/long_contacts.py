@@ -5,10 +5,10 @@ from typing import Annotated
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.attractors.mapper import label
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.motion.regularity import period
 from bouncing_ball.orbits.basins import ELSEWHERE, Destinations, destinations
 from bouncing_ball.orbits.long_contact import joining_ratio, stable_window, stiff_limit
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
@@ -64,9 +64,8 @@ MOTIONS = (
 )
 """The motions on which a ball may end; a long contact lasts more than half a table period."""
 
-# Balls on none of these motions of which the period is determined, the longest period in
-# impacts, and the distance of states that counts as none.
-_ASKED, _LONGEST, _CLOSE = 100, 16, 1e-6
+# Balls on none of these motions of which the period is determined.
+_ASKED = 100
 
 
 def stable_windows(parameters: Windows, release: Release) -> xr.Dataset:
@@ -110,9 +109,9 @@ def _shared_period(model: SpringDamperModel, amplitude: float, ends: Destination
     asked = left[:: max(1, left.size // _ASKED)]
     if not asked.size:
         return 0
-    phase, velocity = ends.phase[asked], ends.velocity[asked]
-    thrown = velocity + amplitude * np.cos(phase)
-    periods = period(model.simulate(amplitude, phase, thrown, 20 * _LONGEST), _LONGEST, _CLOSE)
+    phase = ends.phase[asked]
+    velocity = ends.velocity[asked] + amplitude * np.cos(phase)
+    periods = label(model.impact_law, amplitude, phase, velocity).impacts
     # Some of these balls approach an n-T orbit slowly; their motion repeats after one impact.
     values, counts = np.unique(periods, return_counts=True)
     most = int(values[counts.argmax()])

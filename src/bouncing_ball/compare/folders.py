@@ -33,7 +33,9 @@ def artifacts_in(*folders: Path) -> dict[str, set[str]]:
             raise ModelError(f"{printable(folder / 'figures')}: a link; links are not followed")
         # Files whose name begins with a point are not written completely.
         paths = [*folder.glob("figures/[!.]*"), *(folder / text for text in _TEXTS)]
-        files = [path.relative_to(folder) for path in paths if path.suffix in _SUFFIXES and path.exists()]
+        files = [
+            path.relative_to(folder) for path in paths if path.suffix in _SUFFIXES and path.exists()
+        ]
         if not files:
             where = f"in {printable(folder)}: neither figures/ nor {_TEXTS[0]}"
             raise ModelError(f"nothing to compare {where}")

@@ -19,7 +19,9 @@ def _of_both_maps(data):
     error = abs(first.sel(impact_map="holmes") / first.sel(impact_map="exact") - 1)
     return {
         "for flights high against the excitation": of_formula(data, "Eq. 8, Holmes' map"),
-        "for the map of Eq. 5, r = 0.85, n = 1": at_most(error, data["formulas"].budget.sel(formula="Eq. 8")),
+        "for the map of Eq. 5, r = 0.85, n = 1": at_most(
+            error, data["formulas"].budget.sel(formula="Eq. 8")
+        ),
     }
 
 

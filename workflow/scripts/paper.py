@@ -5,7 +5,6 @@ from pathlib import Path
 from bouncing_ball.claims.tally import tally
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.datasets.netcdf import read_dataset
-from bouncing_ball.figures import DRAWINGS
 from bouncing_ball.figures.article.render import render_article
 from bouncing_ball.figures.atlas.tables import shares
 from bouncing_ball.figures.tables.formats import to_markdown
@@ -24,6 +23,6 @@ with logged(snakemake) as lines:
     for template, path in (("article", "paper"), ("supplement", "supplement")):
         file = Path(snakemake.input.templates[0]).with_name(f"{template}.md.j2")
         write_text(snakemake.output[path], render_article(file, data, tables))
-    last = tally(data["claims"], sum(name.startswith("fig") for name in DRAWINGS))
+    last = tally(data["claims"], snakemake.params.figures)
     write_text(snakemake.output.tally, last + "\n")
     lines.append(last)

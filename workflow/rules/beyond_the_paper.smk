@@ -4,7 +4,7 @@
 
 BEYOND_THE_PAPER = {
     "ext_release": "studies.release_rules.release_rules",
-    "ext_rattling": "studies.long_contacts.stable_windows",
+    "ext_rattling": "studies.long_contacts.cascade_of_flights",
     "ext_basins": "studies.long_contacts.basins",
     "ext_impact": "studies.free_impacts.free_impacts",
     "ext_instant": "studies.time_histories.meeting_flights",

@@ -25,7 +25,7 @@ DRAWINGS = {
     "fig15": "branches.both_domains",
     "fig16": "thresholds.permanent_contact_error",
     "ext_release": "thresholds.release_rules",
-    "ext_rattling": "long_contacts.stable_windows",
+    "ext_rattling": "long_contacts.cascade_of_flights",
     "ext_basins": "long_contacts.basins",
     "ext_impact": "free_impacts.free_impacts",
     "ext_instant": "histories.meeting_flights",

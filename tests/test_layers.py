@@ -46,7 +46,10 @@ ALLOWED = {
     # Studies are imported by name when they are run.
     "configuration": ({"atlas"}, {"yaml", "pydantic"}),
     "claims": (
-        {"datasets", "contacts", "continuation", "motion", "orbits", "accuracy", "studies"},
+        {
+            *("datasets", "contacts", "continuation", "motion", "orbits", "accuracy", "studies"),
+            "configuration",
+        },
         {"numpy", "scipy", "xarray"},
     ),
     # Pandoc and Typst only where the PDF is made.

@@ -1,4 +1,4 @@
-"""The names that users import from the package, as README shows them."""
+"""The names that users import from the package, as README and docs/python.md show them."""
 
 import doctest
 import pickle
@@ -12,13 +12,14 @@ import pytest
 
 import bouncing_ball
 
-README = Path(__file__).parents[1] / "README.md"
+ROOT = Path(__file__).parents[1]
 
 
-def test_the_examples_of_the_readme_print_what_it_says():
-    result = doctest.testfile(str(README), module_relative=False)
+@pytest.mark.parametrize(("page", "least"), [("README.md", 3), ("docs/python.md", 14)])
+def test_the_examples_print_what_the_pages_say(page, least):
+    result = doctest.testfile(str(ROOT / page), module_relative=False)
     assert result.failed == 0
-    assert result.attempted >= 8
+    assert result.attempted >= least
 
 
 def test_every_public_name_is_there_and_documented():

@@ -16,7 +16,8 @@ which does not contain ϖ. Before the first flight the ball follows ``p(s) = E -
 E = C + 1 - 2ζ², because the oscillation of the long contact has decayed. For large E the flights
 chatter: the first landing has a speed of order E^{3/2} under an acceleration of order E, flight k
 is r^k times as fast, and the last one is that whose duration is of order 1. Hence
-``E_{k+1}/E_k → 1/r²``.
+``E_{k+1}/E_k → 1/r²``, up to a relative error of order k r^k: the time of k contacts over that of
+the first flight.
 """
 
 from dataclasses import dataclass
@@ -32,6 +33,7 @@ from bouncing_ball.continuation.corrector import NewtonSettings, newton
 from bouncing_ball.errors import require
 from bouncing_ball.motion.angles import table
 from bouncing_ball.motion.landing import Flight
+from bouncing_ball.motion.simulation import simulate
 from bouncing_ball.motion.tangent import Deviation, Jacobian
 
 # Samples of an oscillation, among which its first maximum is bracketed.
@@ -40,6 +42,9 @@ _FINE = 400
 # resolved, and goes up in steps of this factor.
 _ABOVE, _STEP = 1e-3, 1.2
 _SETTINGS = NewtonSettings(max_iterations=10)
+# Difference in time at which a motion returns; a contact that opens elsewhere changes the times by
+# a part of an oscillation.
+_CLOSE = 1e-6
 
 
 class Openings(NamedTuple):
@@ -269,9 +274,24 @@ def openings(damping_ratio: ArrayLike, frequency_ratio: np.ndarray, most: int) -
         # Two openings of one Λ are the first of them.
         new = points[..., 1] - before > _ABOVE * (points[..., 1] - held)
         points = np.where(new[..., np.newaxis], points, np.nan)
+        points[~_returns(contact, k + 1, points)] = np.nan
         before = points[..., 1]
         found[:, k] = before, Rattling(contact, k + 1).multiplier(points)
     return Openings(*found[..., ::-1].swapaxes(1, 2))
+
+
+def _returns(contact: SpringDamper, flights: int, points: np.ndarray) -> np.ndarray:
+    """Whether the simulation from the first landing returns to it after a period.
+
+    At the touch rounding decides whether the contact opens, by which there is one impact more. An
+    orbit one of whose contacts opens where the equations continue it does not return.
+    """
+    safe = np.where(np.isfinite(points), points, 1.0)
+    phase, amplitude = safe[..., 0] + safe[..., 3], safe[..., 1]
+    velocity = np.minimum(safe[..., 1 - 2 * flights], 0.0) + table(phase, amplitude)[0]
+    time = simulate(contact, amplitude, phase, velocity, flights + 2).time
+    late = np.abs(time[flights:] - time[0] - 2 * np.pi).min(axis=0)
+    return np.isfinite(points[..., 0]) & (late < _CLOSE)
 
 
 def _followed(

@@ -25,19 +25,19 @@ def cascade_of_flights(data: xr.Dataset) -> Figure:
     excess = ratio**2 * (shown.opening_amplitude - shown.threshold_amplitude)
     for one, line, colour in zip(each(shown, "flights"), excess, COLOURS, strict=False):
         k = int(one.flights)
-        name = rf"$E_{k}$: from {k} to {k + 1}"
+        name = rf"from {k} to {k + 1}, $E_{k}$"
         left.plot(ratio, line, color=colour, linestyle=_DASHES[k % 4], label=name)
         left.plot(ratio[-1], one.stiff_opening, marker=5, color=colour, clip_on=False)
     ylabel = r"$E=\varpi^2\,(\Lambda-\Lambda_{SD})$"
     title = rf"flights in a period, $r={number(float(shown.restitution))}$"
     logarithmic(left, xlabel=_RATIO, yscale="log", ylabel=ylabel, title=title)
-    left.legend(loc="lower right")
+    left.legend(loc="upper left")
     for one, colour in coloured(data.sortby("restitution"), "restitution"):
         r, limits = float(one.restitution), one.stiff_opening.values
         right.plot(data.flights, limits, "o-", color=colour, markersize=3, label=number(r))
         right.plot(data.flights, limits[-1] * r ** (2 * (data.flights[-1] - data.flights)), **GUIDE)
     right.set(yscale="log", xlabel="opening $k$", ylabel=r"$E_k$ for $\varpi\to\infty$")
-    right.set(xticks=data.flights.values, title=r"its limits; dotted: $E_{k+1}/E_k=1/r^2$")
+    right.set(xticks=data.flights.values, title=r"limits; dotted: $E_{k+1}/E_k=1/r^2$")
     right.legend(loc="upper left", title="$r$, from above")
     return figure
 

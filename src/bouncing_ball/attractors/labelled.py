@@ -19,7 +19,7 @@ MOST_BALLS = 20_000_000
 
 # Balls start again from the ends of balls so many amplitudes away. The fractional parts of
 # multiples of the two numbers in _EVEN cover a square evenly.
-_FURTHER = (1, 1, 2, 4)
+_FURTHER = (1, 3)
 # Families of orbits beside which balls start, and the difference of their phase from the orbit's.
 _FAMILIES, _BESIDE = (1, 2, 3), 1e-3
 _EVEN = np.array([0.7548776662466927, 0.5698402909980532])

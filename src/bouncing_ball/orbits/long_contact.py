@@ -1,7 +1,7 @@
 """The 1-T orbits with a long contact, into which permanent contact continues.
 
 At Λ_SD permanent contact ends, and a 1-T orbit with a short flight T and a
-contact that lasts D = 2π - T begins (``docs/closed-form.md``, section 6). The orbits with more
+contact that lasts D = 2π - T begins (``docs/closed-form.md``, section 5). The orbits with more
 flights that follow are those of :mod:`bouncing_ball.attractors.rattling`. In a compliant contact
 these orbits are one family with those of a short contact.
 """

@@ -25,8 +25,6 @@ ALLOWED = {
         {"numpy", "xarray"},
     ),
     "calls": ({"datasets", "contacts", "motion", "orbits", "attractors"}, {"numpy"}),
-    "surveys": ({"datasets", "orbits", "calls"}, set()),
-    "long_run": ({"datasets", "orbits", "attractors", "calls"}, {"numpy"}),
     "accuracy": ({"contacts", "continuation", "motion", "orbits"}, {"numpy", "scipy"}),
     # No engine is imported.
     "engines": ({"contacts"}, {"numpy"}),
@@ -71,7 +69,6 @@ ALLOWED = {
             "motion",
             "orbits",
             "calls",
-            "long_run",
             "accuracy",
             "engines",
             "calculator",

@@ -41,10 +41,7 @@ rule draw_explorer:
         "Writing results/figures/explorer.html"
     input:
         data="results/figures/explorer.nc",
-        texts=expand(
-            f"{EXPLORER}/{{name}}",
-            name=["model.js", "engines.js", "page.js", "page.css", "page.html.j2"],
-        ),
+        texts=sorted(map(str, Path(EXPLORER).glob("*.[chj]*"))),
         source=modules("figures.explorer.document", "engines.reference"),
     output:
         html="results/figures/explorer.html",

@@ -55,6 +55,7 @@ def test_a_run_that_nothing_interrupts_gives_the_same_bytes(pristine, fresh):
     assert [name for name in after if after[name] != expected[name]] == []
 
 
+@pytest.mark.long
 def test_two_figures_by_name_interrupted_and_resumed_elsewhere(pristine, tmp_path):
     # In another folder, and few at once: the same bytes as those of a whole run.
     elsewhere = replace(pristine, path=tmp_path / "elsewhere", package=str(pristine.path / "src"))

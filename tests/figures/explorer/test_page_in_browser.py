@@ -118,7 +118,7 @@ def test_eighty_states_say_what_their_commands_print(seen, capsys):
     assert 0 < absent < STATES / 3
 
 
-def test_errors_and_verdicts_are_those_of_the_calculator(seen, capsys):
+def test_errors_and_verdicts_are_those_of_the_calculator(seen, capsys, short_runs):
     judged = set()
     for number, state in enumerate(seen["states"][:30]):
         given = dict(zip(*[iter(shlex.split(state["command"])[2:])] * 2, strict=True))
@@ -190,7 +190,7 @@ def test_address_slider_and_typed_values(seen):
     assert seen["tooLossy"]["verdict"] == seen["tooLossy"]["command"] == ""
 
 
-def test_what_an_engine_is_told_is_what_the_command_prints(seen, capsys):
+def test_what_an_engine_is_told_is_what_the_command_prints(seen, capsys, short_runs):
     assert len(seen["engines"]) == 11
     for state in seen["engines"]:
         said, rows = answered(capsys, state["command"]), state["rows"]
@@ -211,7 +211,7 @@ def test_what_an_engine_is_told_is_what_the_command_prints(seen, capsys):
         assert penetration == pytest.approx(engine["penetration"], rel=1e-5)
 
 
-def test_the_physical_tab_by_key(seen, capsys):
+def test_the_physical_tab_by_key(seen, capsys, short_runs):
     tab = seen["tab"]
     assert tab["selected"] == ["false", "true"] and tab["focused"] == "tab-design"
     assert tab["shown"] and tab["hidden"] == 0 and "tab=design" in tab["hash"]

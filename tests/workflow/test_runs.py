@@ -26,8 +26,9 @@ def test_a_run_makes_every_figure_and_table(pristine, stages):
     assert made == pictures | data | texts | pages
 
 
-def test_a_run_gives_the_accepted_datasets(pristine, recorded, stages):
-    made = {name: read_dataset(pristine.path / f"results/figures/{name}.nc") for name in stages}
+def test_a_run_gives_the_accepted_datasets(pristine, recorded, stages, coarse):
+    whole = stages.keys() - coarse
+    made = {name: read_dataset(pristine.path / f"results/figures/{name}.nc") for name in whole}
     rows = {name: compare_datasets(name, recorded[name], data) for name, data in made.items()}
     assert [(name, row) for name in rows for row in rows[name] if not row.outcome.agrees] == []
 

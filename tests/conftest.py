@@ -4,7 +4,6 @@ The references use nothing of the package: they are a matrix exponential, the pa
 solution of the contact, Brent's method, and free flight.
 """
 
-import ast
 import math
 import os
 import shutil
@@ -130,15 +129,16 @@ def recorded():
 
 
 @pytest.fixture(scope="session")
-def stages():
-    """The study of each artifact, as the rules name it: ``NAME = {artifact: study}``."""
-    found = {}
-    for path in sorted((ROOT / "workflow" / "rules").glob("*.smk")):
-        head, rule, _ = path.read_text(encoding="utf-8").partition("\nuse rule study as ")
-        for node in ast.parse(head).body if rule else ():
-            if isinstance(node, ast.Assign) and isinstance(node.value, ast.Dict):
-                found |= ast.literal_eval(node.value)
-    return found
+def table():
+    """Every artifact with what it is made by."""
+    stages = read_yaml(ROOT / "workflow" / "artifacts.yaml")
+    return {name: entry for stage in stages.values() for name, entry in stage.items()}
+
+
+@pytest.fixture(scope="session")
+def stages(table):
+    """The study of each artifact."""
+    return {name: entry["study"] for name, entry in table.items() if "study" in entry}
 
 
 @pytest.fixture(scope="session")

@@ -3,8 +3,8 @@
 A sample of single faults is put into copies of the tree, one at a time. The
 doctests of the module and the tests of its folder run first, then those of ``make quick``. A fault
 is noticed if one of them fails, or hangs. What survives is listed: it changes nothing, or a
-test is missing. With ``--near`` only the tests next to the fault run, in a fraction of the time; what
-survives it may still be noticed elsewhere.
+test is missing. With ``--near`` only the tests next to the fault run, in a fraction of the time;
+what survives it may still be noticed elsewhere.
 
 usage: python tests/mutants.py [--count 200] [--seed 2011] [--near] [--workers 2] [--only PART ...]
 """

@@ -18,7 +18,8 @@ CONFIG = yaml.safe_load((ROOT / "config" / "config.yaml").read_text(encoding="ut
 
 
 @pytest.fixture(scope="module")
-def data(recorded):
+def data(recorded, table):
+    assert table["claims"]["reads"] == list(READS)
     return {name: recorded[name] for name in READS}
 
 

@@ -11,14 +11,14 @@ import pytest
 
 from bouncing_ball.compare.data import compare_datasets
 from bouncing_ball.datasets.netcdf import read_dataset
-from bouncing_ball.figures import DRAWINGS
 
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def test_a_run_makes_every_figure_and_table(pristine, stages):
+def test_a_run_makes_every_figure_and_table(pristine, table, stages):
     made = set(pristine.contents("results"))
-    pictures = {f"figures/{name}.{kind}" for name in DRAWINGS for kind in ("png", "svg")}
+    drawn = [name for name, entry in table.items() if "drawing" in entry]
+    pictures = {f"figures/{name}.{kind}" for name in drawn for kind in ("png", "svg")}
     data = {f"figures/{name}.nc" for name in stages}
     recorded = {path.stem for path in (ROOT / "figures").glob("*.csv")}
     texts = {f"figures/{name}.{kind}" for name in recorded for kind in ("csv", "md")}
@@ -75,10 +75,10 @@ def test_two_figures_by_name_interrupted_and_resumed_elsewhere(pristine, tmp_pat
     assert [name for made in found for name in made if made[name] != expected[name]] == []
 
 
-def test_report_shows_every_figure_offline(complete):
+def test_report_shows_every_figure_offline(complete, table):
     complete.run("--report", "results/report.html")
     page = (complete.path / "results" / "report.html").read_text(encoding="utf-8")
-    for name in DRAWINGS:
+    for name in [name for name, entry in table.items() if "drawing" in entry]:
         assert f"results/figures/{name}.png" in page
         assert not name.startswith("fig") or f"Figure {int(name[3:])}." in page
     loaded = re.findall(r"<(?:script|link|img)[^>]+(?:src|href)=[\"'](\w+:[^\"']*)", page)

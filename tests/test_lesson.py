@@ -13,7 +13,7 @@ DOCS = Path(__file__).parents[1] / "docs"
 PAGE = DOCS / "lesson.md"
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_lesson_prints_and_draws_what_it_says(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     result = doctest.testfile(str(PAGE), module_relative=False, optionflags=doctest.ELLIPSIS)

@@ -1,9 +1,13 @@
 """Openings and basins as datasets."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
+from bouncing_ball.attractors.mapper import label
 from bouncing_ball.configuration.study import typed
+from bouncing_ball.studies import long_contacts
 from bouncing_ball.studies.long_contacts import MOTIONS, basins, cascade_of_flights
 
 FLIGHTS = {
@@ -71,7 +75,8 @@ def test_basins_of_one_contact(described):
                 assert near.item() == kind
 
 
-def test_balls_that_rise_when_they_are_given_up_have_no_period():
+def test_balls_that_rise_when_they_are_given_up_have_no_period(monkeypatch):
+    monkeypatch.setattr(long_contacts, "label", partial(label, impacts=60))
     parameters = {"n": [1, 10], "restitution": 0.5707358288321754, "starts": 119, "impacts": 10}
     parameters |= {"frequency_ratio": 24.11573489959817, "amplitude": [8.614520580887136]}
     found = typed(basins)({**parameters, "velocity_max": 0.12824839560054857}, "force")

@@ -37,6 +37,7 @@ def uris(reader):
                 yield str(action["/URI"])
 
 
+@pytest.mark.long
 def test_the_article_is_set_with_its_headings_captions_and_figures(accepted):
     text = accepted["article"].replace("figures/ext_atlas.png", "figures/fig01.png")
     reader = PdfReader(io.BytesIO(article_pdf(text, TEMPLATE, ROOT)))

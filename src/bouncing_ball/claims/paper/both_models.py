@@ -54,9 +54,11 @@ def representative(data):
 
     Answer: both ranges look alike in the figure, and the limit of 1 % is not set for them
     """
-    limits = {"as a slight move of Table 1": evidence.printed_slight_move(data)}
-    limits["as the limit of 1 %"] = TOLERANCE
-    return {name: at_most(evidence.range_error(data), one) for name, one in limits.items()}
+    error = evidence.range_error(data)
+    return {
+        "as a slight move of Table 1": at_most(error, evidence.printed_slight_move(data)),
+        "as the limit of 1 %": at_most(error, TOLERANCE),
+    }
 
 
 @claim("Eq. 38, Fig. 16", printed="6", explanation=why.threshold_by_equation_34)

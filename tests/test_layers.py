@@ -22,7 +22,7 @@ ALLOWED = {
     "orbits": ({"datasets", "contacts", "continuation", "motion"}, {"numpy", "scipy", "xarray"}),
     "attractors": (
         {"datasets", "contacts", "continuation", "motion", "orbits"},
-        {"numpy", "xarray"},
+        {"numpy", "scipy", "xarray"},
     ),
     "calls": ({"datasets", "contacts", "motion", "orbits", "attractors"}, {"numpy"}),
     "accuracy": ({"contacts", "continuation", "motion", "orbits"}, {"numpy", "scipy"}),

@@ -102,7 +102,7 @@ def test_diff_for_nobody_who_reads(tmp_path):
         if name != "diff"
     ],
 )
-def test_the_examples_of_the_help_run(example, said, monkeypatch):
+def test_the_examples_of_the_help_run(example, said, monkeypatch, short_runs):
     monkeypatch.chdir(ROOT)
     command, *given = shlex.split(example)
     assert said(command, *given)

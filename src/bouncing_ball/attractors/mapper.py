@@ -99,12 +99,7 @@ class _Ball(NamedTuple):
 
 
 def label(
-    law: Law,
-    amplitude: ArrayLike,
-    phase: ArrayLike,
-    velocity: ArrayLike,
-    *,
-    impacts: int = IMPACTS,
+    law: Law, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, *, impacts: int = IMPACTS
 ) -> Motions:
     """The motions on which balls end that start with an impact.
 

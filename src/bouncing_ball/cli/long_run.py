@@ -34,11 +34,7 @@ def motion(amplitude, **given: Any) -> Answer:
 
 @takes(long_run.orbit_diagram)
 def diagram(
-    *,
-    amplitudes: Interval,
-    points: Points = 300,
-    plot: Path | None = None,
-    **given: Any,
+    *, amplitudes: Interval, points: Points = 300, plot: Path | None = None, **given: Any
 ) -> Answer:
     """The motions at each amplitude with their shares of the starts, and the figure.
 

@@ -201,9 +201,7 @@ def _each_case(
 
 
 def _by_place(
-    grid: Grid,
-    found: Callable[..., xr.Dataset],
-    missing: Callable[[NoOrbitError], xr.Dataset],
+    grid: Grid, found: Callable[..., xr.Dataset], missing: Callable[[NoOrbitError], xr.Dataset]
 ) -> xr.Dataset:
     """The results at each place of a grid, one after another."""
     rows = []

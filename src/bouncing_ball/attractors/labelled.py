@@ -55,7 +55,7 @@ def _described(data: Labelled, **attributes: Any) -> Any:
     return describe(data).assign_attrs(attributes)
 
 
-def motions(model: Any, grid: Grid, impacts: int) -> Labelled:
+def motions(grid: Grid, model: Any, impacts: int) -> Labelled:
     """The motions on which the balls of a grid (Λ, φ, z′_i) end.
 
     The variables are the fields of :class:`~bouncing_ball.attractors.motions.Motions`, except
@@ -66,12 +66,11 @@ def motions(model: Any, grid: Grid, impacts: int) -> Labelled:
     ModelError
         If there are too many balls, or a state is outside its range.
     """
-    start = (grid.flat[name] for name in ("amplitude", "phase", "velocity"))
-    start = np.broadcast_arrays(*np.atleast_1d(*start), *grid.rows)[:3]
-    require_memory(start[0].size, "a grid of starts")
+    require_memory(grid.size, "a grid of starts")
+    start = map(grid.row, ("amplitude", "phase", "velocity"))
     found = label(model.impact_law, *start, impacts=impacts)
     rows = describe(xr.Dataset(_columns(found, (CASE,))))
-    return grid.unfold((rows if grid.shape else rows.isel({CASE: 0})).assign_attrs(kind="motions"))
+    return grid.unfold(rows.assign_attrs(kind="motions"))
 
 
 def fastest(model: Any, amplitude: Any) -> np.ndarray:

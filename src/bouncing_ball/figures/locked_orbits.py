@@ -60,7 +60,7 @@ def locked_orbits(data: xr.Dataset) -> Figure:
         name = "restitution" if np.isinf(ratio) else rf"$\varpi={number(float(ratio))}$"
         lives.plot([], [], color="#8c8c8c", linestyle=dashes, label=name)
     lives.set(
-        xlabel="table periods", ylabel="share of balls not locked", yscale="log", ylim=(0.01, 1.1)
+        xlabel="table periods", ylabel="share of balls not locked", yscale="log", ylim=(0.01, 6)
     )
     lives.set_title("transients")
     lives.legend(fontsize=6, ncols=2)

@@ -6,7 +6,7 @@
 const BOUND = Number(document.body.dataset.bound);
 
 // ---- The page.
-const SELECTS = ["engine", "model", "pace"];
+const SELECTS = ["engine", "model", "pace", "view"];
 let current = DEFAULTS;
 // A state without an answer: why, and nothing of the answer before it.
 function refuse(text) {

@@ -28,7 +28,7 @@ class Plot {
     this.svg = $(id);
     this.svg.replaceChildren(element("title", {}, label));
     const [, , width, height] = this.svg.getAttribute("viewBox").split(" ").map(Number);
-    this.box = {left: 52, right: width - 10, top: 10, bottom: height - 38};
+    this.box = {left: 60, right: width - 10, top: 10, bottom: height - 38};
     const {left, right, top, bottom} = this.box;
     this.x = v => left + (v - x0) / (x1 - x0) * (right - left);
     this.y = v => bottom - (v - y0) / (y1 - y0) * (bottom - top);

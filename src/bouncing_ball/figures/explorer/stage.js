@@ -84,8 +84,10 @@ function drawStage({performers, state}, heights) {
   const scene = new Plot("scene", [0.5, count + 0.5], heights,
     state.model === "both" ? "restitution on the left, spring-damper on the right" : "", "height Ω²z/g",
     `${many(count, "ball")} on the table`, false);
-  const trace = new Plot("trace", [-SHOWN, 0], heights, "time before now, in periods of the table",
-    "height Ω²z/g", "Heights of the balls and of the table over the last periods");
+  const gaps = state.view === "gap", level = gaps ? () => 0 : time => a * Math.sin(time);
+  const trace = new Plot("trace", [-SHOWN, 0], gaps ? gapsOf(state) : heights,
+    "time before now, in periods of the table", gaps ? "gap Ω²δ/g" : "height Ω²z/g",
+    `${gaps ? "Gaps between balls and" : "Heights of the balls and of the"} table over the last periods`);
   const table = scene.add("rect", {class: "dot table", x: scene.box.left, height: 4,
     width: scene.box.right - scene.box.left});
   const radius = Math.min(10, 60 / count + 2);
@@ -99,13 +101,27 @@ function drawStage({performers, state}, heights) {
   return now => {
     const times = Array.from({length: POINTS + 1}, (_, k) => now - SHOWN * TURN * (1 - k / POINTS));
     table.setAttribute("y", scene.y(a * Math.sin(now)));
-    ground.setAttribute("d", path(times, times.map(t => a * Math.sin(t)), now));
+    ground.setAttribute("d", path(times, times.map(level), now));
     performers.forEach((ball, k) => {
       const values = ball.path(times);
       dots[k].setAttribute("cy", scene.y(values.at(-1)) - radius);
-      curves[k].setAttribute("d", path(times, values, now));
+      curves[k].setAttribute("d", path(times, values.map((z, i) =>
+        z - (gaps ? a * Math.sin(times[i]) : 0)), now));
     });
   };
+}
+
+// The range of the gaps over the periods that are shown first, or would be.
+function gapsOf(state) {
+  const begin = TURN * (Math.max(state.from, SHOWN) - SHOWN) + state.phi;
+  const times = Array.from({length: 20 * POINTS}, (_, k) => begin + SHOWN * TURN * k / (20 * POINTS));
+  const gaps = Object.entries(modelsOf(state)).flatMap(([name, model]) => {
+    const ball = new Performer(name, model, state, 0);
+    ball.until(times.at(-1));
+    return ball.path(times).map((z, k) => z - state.a * Math.sin(times[k]));
+  }).filter(gap => !Number.isNaN(gap));
+  const [low, high] = [Math.min(...gaps), Math.max(...gaps)], room = 0.06 * (high - low) || 1;
+  return [low - room, high + room];
 }
 
 // All that is seen and heard, at a time; later ones come after earlier ones.

@@ -8,7 +8,7 @@ const $ = id => document.getElementById(id);
 const DEFAULTS = {
   tab: "orbit", r: 0.85, w: 10, a: 0.8, n: 1, release: "displacement", side: "stable",
   m: 20, f: 50, acc: 0.8, k: 1e7, engine: "none", e: 0.001,
-  model: "both", phi: 0, v: -3, balls: 1, dv: 0, dphi: 0, from: 0, pace: "1",
+  model: "both", phi: 0, v: -3, balls: 1, dv: 0, dphi: 0, from: 0, pace: "1", view: "height",
 };
 const RANGES = {
   r: [0.001, 1], w: [0.1, 1e6], a: [0.001, 100], n: [1, 20],
@@ -24,7 +24,7 @@ const {engines: {engines: ENGINES}, scenes: SCENES} = REFERENCES;
 const CHOICES = {
   tab: ["orbit", "design", "stage"], release: ["displacement", "force"], side: ["stable", "unstable"],
   engine: ["none", ...Object.keys(ENGINES)],
-  model: ["both", "restitution", "spring-damper"], pace: ["1", "4", "16"],
+  model: ["both", "restitution", "spring-damper"], pace: ["1", "4", "16"], view: ["height", "gap"],
 };
 const GRAVITY = 9.80665;
 
@@ -80,7 +80,7 @@ const TABS = {
   design: ({engine}) => ["tab", "m", "f", "acc", "k", "r", "n", "release",
     ...(engine === "none" ? [] : ["engine", "e"])],
   stage: ({model}) => ["tab", "model", "r", ...(model === "restitution" ? [] : ["w"]), "a", "phi",
-    "v", "balls", "dv", "dphi", "from", "pace"],
+    "v", "balls", "dv", "dphi", "from", "pace", "view"],
 };
 const hashOf = state => "#" + TABS[state.tab](state).map(
   name => `${name}=${encodeURIComponent(state[name])}`).join("&");

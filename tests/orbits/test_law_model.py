@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.contacts.law_choice import law_named, law_of_impact
+from bouncing_ball.contacts.laws import LAWS
 from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji
@@ -19,7 +20,7 @@ from bouncing_ball.orbits.restitution_orbit import rigid_speed
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Side
 
-KINDS = [SpringDamper, HuntCrossley, Tsuji, KuwabaraKono]
+KINDS = [SpringDamper, *LAWS.values()]
 every_kind = pytest.mark.parametrize("kind", KINDS, ids=[kind.name for kind in KINDS])
 
 

@@ -11,16 +11,15 @@ from typing import Any
 import numpy as np
 
 import bouncing_ball
-from bouncing_ball.errors import printable
+from bouncing_ball.errors import ModelError, printable
 from bouncing_ball.provenance.origin import (
     CARRIERS,
     PREFIX,
-    ProvenanceError,
     read_attributes,
     read_provenance,
     versions,
 )
-from bouncing_ball.provenance.revision import UNKNOWN, checkout, revision
+from bouncing_ball.provenance.revision import RECORD, UNKNOWN, checkout, revision
 
 # Git ignores this file, so that it does not mark the next run as dirty.
 _CHANGED = "results/configuration.json"
@@ -29,16 +28,16 @@ _CHANGED = "results/configuration.json"
 def _carrier(path: Path) -> Path:
     """The file that carries the provenance of an artifact: the artifact itself, or its dataset.
 
-    For the article it is the dataset of the claims, which is the last one made.
+    For the texts it is the dataset of the claims, which is the last one made.
     """
     if not path.is_file():
-        raise ProvenanceError(f"{path} cannot be read: no such file")
+        raise ModelError(f"{path} cannot be read: no such file")
     if path.suffix in CARRIERS:
         return path
-    dataset = Path("figures/claims.nc" if path.name == "paper.md" else f"{path.stem}.nc")
+    dataset = Path("figures/claims.nc" if path.name in RECORD else f"{path.stem}.nc")
     if not (path.parent / dataset).is_file():
         why = f"there is no {dataset} next to it"
-        raise ProvenanceError(f"{path} is not an artifact of this workflow: {why}")
+        raise ModelError(f"{path} is not an artifact of this workflow: {why}")
     return path.parent / dataset
 
 
@@ -80,7 +79,7 @@ def explain(file: Path, /) -> dict[str, Any]:
 
     Raises
     ------
-    ProvenanceError
+    ModelError
         If the file is not one of this workflow, or carries no provenance.
     """
     made = read_provenance(_carrier(file))
@@ -90,7 +89,7 @@ def explain(file: Path, /) -> dict[str, Any]:
     checked_out = None if unknown else made["commit"] == now.commit
     target = made["target"]
     if file.suffix not in CARRIERS:
-        target = f"results/{'' if file.name == 'paper.md' else 'figures/'}{file.name}"
+        target = f"results/{'' if file.name in RECORD else 'figures/'}{file.name}"
     running = versions().items()
     return {
         "file": str(file),

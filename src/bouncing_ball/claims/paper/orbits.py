@@ -4,7 +4,7 @@ from itertools import product
 from typing import Any
 
 from bouncing_ball.claims import evidence
-from bouncing_ball.claims.claim import Claim, claim, formula, slip
+from bouncing_ball.claims.claim import Claim, claim, formula
 from bouncing_ball.claims.paper import explanations as why
 from bouncing_ball.claims.paper import restitution_model
 from bouncing_ball.claims.parameters import STIFF
@@ -174,25 +174,3 @@ def amplitude_does_not_matter(data):
     """
     meeting = evidence.amplitude_matters_below(data)
     return {f"on an axis from {left} on": at_most(meeting, left) for left in (2, 1)}
-
-
-SLIPS = [
-    slip(
-        "equations cited",
-        "before Eq. 21",
-        "the equations of the n-T orbits are obtained from Eqs. 12, 13, 16 and 17",
-        "those of the flight are Eqs. 14 and 15; 16 and 17 define damping and apparent restitution",
-    ),
-    slip(
-        "figures cited",
-        "before Fig. 8",
-        "Figs. 8-10 show the existence domains",
-        "Figs. 8 and 9 do; Fig. 10 shows a velocity against the frequency ratio",
-    ),
-    slip(
-        "caption of Fig. 15",
-        "Fig. 15",
-        "the caption gives an amplitude of 1",
-        "the figure is drawn over the amplitude",
-    ),
-]

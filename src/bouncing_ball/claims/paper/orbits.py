@@ -63,7 +63,7 @@ def superimposed_when_stiff(data):
 def apart_when_soft(data):
     """the curves of both phases diverge as the frequency ratio decreases
 
-    Condition: every contact of the softest branch is longer than a hundredth of a radian
+    Condition: every contact of the most compliant branch is longer than a hundredth of a radian
     """
     return at_least(evidence.contact_durations(data, 0), 0.01)
 
@@ -72,7 +72,7 @@ def apart_when_soft(data):
 def saddle_node_falls(data):
     """with decreasing frequency ratio the saddle-node moves to lower amplitudes
 
-    Condition: it falls from every row of Table 1 to the next softer one, for every n
+    Condition: it falls from every row of Table 1 to the next more compliant one, for every n
 
     Remark: the introduction says that the existence conditions of the orbits change
     """
@@ -106,7 +106,7 @@ def period_doubling_rises_when_compliant(data):
 def range_widens(data):
     """with decreasing frequency ratio the stability range is extended
 
-    Condition: the width grows from every row of Table 1 to the next softer one, for every n
+    Condition: the width grows from every row of Table 1 to the next more compliant one, for every n
     """
     return above(evidence.softening(data).diff("bound"), 0)
 
@@ -153,7 +153,7 @@ def departure_from_nπ(data):
 
     Condition: it is at least 0.2 % from nπ at every contact up to there, for every amplitude
 
-    Remark: the paper does not say when a departure starts; 0.2 % is taken for seen
+    Remark: the paper does not say when a departure starts; we take 0.2 % for visible
     """
     sweep = data["fig10"].sel(frequency_ratio=slice(None, STIFF))
     error = abs(sweep.bounce_velocity / sweep.restitution_bounce_velocity - 1)

@@ -3,7 +3,14 @@
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.continuation.branch import Branch, resample
+from bouncing_ball.continuation.branch import (
+    Branch,
+    ContinuationError,
+    continue_both_ways,
+    resample,
+)
+from bouncing_ball.continuation.events import parameter_bound
+from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.orbits.grazing import grazing_points
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.stability import Bifurcation
@@ -39,6 +46,28 @@ def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
         "stable": orbit.is_stable(),
         "admissible": orbit.is_admissible(),
     }
+
+
+def followed(
+    system: OrbitSystem, start: np.ndarray, low: float, high: float, largest_step: float
+) -> Branch:
+    """The branch through a point to both sides, as long as Λ is between ``low`` and ``high``.
+
+    Raises
+    ------
+    ContinuationError
+        If it is not followed to its ends.
+    """
+    bounds = [
+        parameter_bound(x, upper, f"left the window at amplitude {x:g}")
+        for x, upper in ((low, False), (high, True))
+    ]
+    control = StepControl(largest=largest_step)
+    found = continue_both_ways(system, start, events=(*system.events(), *bounds), control=control)
+    for end in (found.start, found.end):
+        if not end.finished:
+            raise ContinuationError(f"the branch is not followed to its end: {end}")
+    return found
 
 
 def branch_columns(system: OrbitSystem, branch: Branch, count: int) -> xr.Dataset:

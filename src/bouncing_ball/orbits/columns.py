@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.continuation.branch import (
     Branch,
     ContinuationError,
@@ -13,6 +14,7 @@ from bouncing_ball.continuation.events import parameter_bound
 from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.orbits.grazing import grazing_points
 from bouncing_ball.orbits.orbit import Orbit
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.orbits.system import OrbitSystem
 
@@ -117,3 +119,15 @@ def orbits_in_columns(
             "end": ["unstable side", "stable side"],
         },
     )
+
+
+def no_branch(count: int, error: Exception) -> xr.Dataset:
+    """The dataset of :func:`branch_columns` where there is no branch: NaN, and the reason."""
+    none = SpringDamperModel(SpringDamper(1.0, 0.0)).system(1).orbit(np.full((count, 4), np.nan))
+    return orbits_in_columns(none, none[:0], [], [str(error)] * 2)
+
+
+def joined(branches: list[xr.Dataset], dim: str) -> xr.Dataset:
+    """Branches along a new dimension, with as many special orbits as the one that has most."""
+    whole = xr.concat(branches, dim, join="outer")
+    return whole.assign(special_kind=whole.special_kind.fillna("").astype(str))

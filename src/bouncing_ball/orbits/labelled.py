@@ -6,6 +6,7 @@ first in every result.
 
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ from bouncing_ball.motion.angles import table
 from bouncing_ball.motion.history import history as of_one_ball
 from bouncing_ball.motion.landing import Flight, land
 from bouncing_ball.motion.sequence import Status
-from bouncing_ball.orbits.columns import branch_columns, columns, followed, orbits_in_columns
+from bouncing_ball.orbits.columns import branch_columns, columns, followed, joined, no_branch
 from bouncing_ball.orbits.orbit import OBSERVABLES, Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.stability import Side
@@ -141,16 +142,10 @@ def branches(
     def found(n: int, **impact: Any) -> xr.Dataset:
         return branch(models(n, **impact), n, amplitude_max, points)
 
-    def missing(error: NoOrbitError) -> xr.Dataset:
-        none = RestitutionModel(1.0).orbit(1, np.full(points, np.nan))
-        return orbits_in_columns(none, none[:0], [], [str(error)] * 2)
-
-    whole = _by_place(grid, found, missing)
+    whole = _by_place(grid, found, partial(no_branch, points), joined)
     if amplitude_max is not None:
         grid.attrs["amplitude_max"] = float(amplitude_max)
-    return _unfolded(
-        grid, whole.assign(special_kind=whole.special_kind.fillna("").astype(str)), "branch"
-    )
+    return _unfolded(grid, whole, "branch")
 
 
 def orbits(grid: Grid, models: Callable[..., Any], side: Side) -> Labelled:
@@ -202,6 +197,7 @@ def _by_place(
     grid: Grid,
     found: Callable[..., xr.Dataset],
     missing: Callable[[NoOrbitError], xr.Dataset],
+    joined: Callable[..., xr.Dataset] = xr.concat,
 ) -> xr.Dataset:
     """The results at each place of a grid, one after another."""
     rows = []
@@ -212,7 +208,7 @@ def _by_place(
             if not grid.shape:
                 raise
             rows.append(missing(error))
-    return xr.concat(rows, CASE, join="outer")
+    return joined(rows, CASE)
 
 
 def branch(model: Any, n: int, amplitude_max: float | None, points: int) -> xr.Dataset:

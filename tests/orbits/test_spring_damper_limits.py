@@ -10,7 +10,6 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import (
     orbit_at,
-    period_doubling,
     saddle_node,
 )
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
@@ -44,25 +43,6 @@ def stable(orbit):
     return is_stable(*stability(orbit))
 
 
-def check_orbits(orbit, n, lam):
-    """The orbits are at Λ, and solve the paper's equations."""
-    np.testing.assert_allclose(orbit.amplitude, lam, rtol=1e-13, atol=1e-13)
-    assert np.all((0 < orbit.contact_duration) & (orbit.contact_duration < 2 * np.pi * n))
-    # Heights of the landing equation are of order (2πn)².
-    scale = np.stack([n**0, n**0, 2 * np.pi * n], axis=-1) * (2 * np.pi * n)[:, np.newaxis]
-    assert np.all(np.abs(orbit.residual()) < 1e-12 * scale)
-    assert np.all(orbit.relative_impact_velocity < 0)
-    assert np.all(orbit.apparent_restitution > 0)
-
-
-def amplitudes(contact, n):
-    """Λ at the saddle-node and the period doubling."""
-    return tuple(
-        branch_point(find(contact, n), contact, n).amplitude
-        for find in (saddle_node, period_doubling)
-    )
-
-
 def test_the_saddle_node_is_the_lowest_amplitude(drawn):
     contact, n, r, _ = drawn
     excess = saddle_node(contact, n)
@@ -80,39 +60,6 @@ def test_the_saddle_node_is_the_lowest_amplitude(drawn):
     # undefined; else a multiplier is one.
     trace, det = stability(SpringDamperOrbit.from_branch(point, contact, n)[r < 0.999])
     assert np.all(np.abs(Bifurcation.SADDLE_NODE.test(trace, det)) <= 1e-10)
-
-
-def test_orbits_on_both_sides_of_the_saddle_node(drawn):
-    contact, n, r, share = drawn
-    lossy = r < 0.999
-    contact, n, share = contact[lossy], n[lossy], share[lossy]
-    node, doubling = amplitudes(contact, n)
-    fold = branch_point(saddle_node(contact, n), contact, n).contact_duration
-    lam = node + share * (doubling - node)
-    orbit = orbit_at(contact, n, lam)
-    check_orbits(orbit, n, lam)
-    assert np.all(orbit.contact_duration < fold) and np.all(stable(orbit))
-    # From ϖ = 10 the unstable side reaches up to the period doubling; a soft one
-    # may turn before.
-    stiff = contact.frequency_ratio >= 10
-    orbit = orbit_at(contact[stiff], n[stiff], lam[stiff], Side.UNSTABLE)
-    check_orbits(orbit, n[stiff], lam[stiff])
-    assert np.all(orbit.contact_duration > fold[stiff]) and not np.any(stable(orbit))
-    beyond = orbit_at(contact, n, doubling * (1 + share / 2))
-    assert np.all(beyond.contact_duration > 0) and not np.any(stable(beyond))
-    assert not np.any(orbit_at(contact, n, node * (1 - share / 2)).exists)
-
-
-def test_table_of_the_model_notes():
-    # Worked out without the package, to four decimals, for r = 0.85.
-    zeta = float(damping_ratio(0.85))
-    expected = {
-        10.0: [(0.2400, 1.0375), (0.4954, 1.1242), (0.7507, 1.2577)],
-        2.0: [(0.1877, 1.0871), (0.4609, 1.1646), (0.7319, 1.2956)],
-    }
-    for omega, rows in expected.items():
-        for n, row in enumerate(rows, start=1):
-            assert amplitudes(SpringDamper(omega, zeta), n) == pytest.approx(row, abs=5.1e-5)
 
 
 def test_a_required_orbit_that_is_missing(refusal):

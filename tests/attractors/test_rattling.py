@@ -73,7 +73,7 @@ def test_the_derivatives_and_the_multipliers_are_those_of_the_motion():
 
 
 def test_a_new_flight_changes_the_motion_by_the_power_of_three_halves():
-    """A contact that rises to a height η above the table, where it opens, and one held in contact."""
+    """The motion that opens at a height η above the table, against the one held in contact."""
     law, lam, phase, later = SpringDamper(20.0, 0.12), 1.1, 2.3, 3.0
 
     def held(velocity, time):

@@ -185,3 +185,29 @@ def check_damping(value: ArrayLike, name: str) -> None:
     """
     x = np.asarray(value, dtype=float)
     require(np.isfinite(x) & (x >= 0), x, name, "a finite number ≥ 0")
+
+
+@dataclass(frozen=True, repr=False)
+class Oscillator(ContactLaw):
+    """Base class of the laws of a spring and a damper, of frequency ratio ϖ and damping ratio ζ.
+
+    Raises
+    ------
+    ModelError
+        If ϖ or ζ is outside its range.
+    """
+
+    frequency_ratio: float | np.ndarray
+    damping_ratio: float | np.ndarray
+
+    root: ClassVar[int] = 1
+
+    def __post_init__(self) -> None:
+        check_positive(self.frequency_ratio, "frequency ratio ϖ")
+        check_damping(self.damping_ratio, "damping ratio ζ")
+
+    @classmethod
+    def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
+        """The law with ϖ = v/P and ζ = group."""
+        omega = np.asarray(speed, dtype=float) / np.asarray(length, dtype=float)
+        return cls(omega, np.asarray(group, dtype=float) + 0 * omega)

@@ -12,17 +12,16 @@ issue 2247.
 """
 
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.contact_law import ContactLaw, check_damping, check_positive
+from bouncing_ball.contacts.contact_law import Oscillator
 from bouncing_ball.contacts.release import Release
 
 
 @dataclass(frozen=True, repr=False)
-class ElastoBacklash(ContactLaw):
+class ElastoBacklash(Oscillator):
     """A spring-damper whose damping force is at most that of the spring.
 
     Parameters
@@ -42,18 +41,10 @@ class ElastoBacklash(ContactLaw):
     [6.0, 8.0]
     """
 
-    frequency_ratio: float | np.ndarray
-    damping_ratio: float | np.ndarray
-
     name: ClassVar[str] = "elasto-backlash"
     formula: ClassVar[str] = "ϖ² p + min(2ζϖ p′, ϖ² p)"
-    root: ClassVar[int] = 1
     release = Release.FORCE
     has_kink: ClassVar[bool] = True
-
-    def __post_init__(self):
-        check_positive(self.frequency_ratio, "frequency ratio ϖ")
-        check_damping(self.damping_ratio, "damping ratio ζ")
 
     @property
     def lag(self) -> np.ndarray:
@@ -69,9 +60,3 @@ class ElastoBacklash(ContactLaw):
     def kink(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """p - κ p′, whose zero is the kink; without damping it has no zero."""
         return np.where(self.lag == 0, 1.0, penetration - self.lag * rate)
-
-    @classmethod
-    def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
-        """The law with ϖ = v/P and ζ = group."""
-        ratio = np.asarray(speed, dtype=float) / np.asarray(length, dtype=float)
-        return cls(ratio, group + 0 * ratio)

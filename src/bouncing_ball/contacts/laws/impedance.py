@@ -22,12 +22,11 @@ Source: MuJoCo's documentation, *Solver parameters*, read with the engine itself
 """
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.contact_law import ContactLaw
+from bouncing_ball.contacts.contact_law import Oscillator
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.instant import Instant
 from bouncing_ball.contacts.release import Release
@@ -36,7 +35,7 @@ from bouncing_ball.errors import require
 
 
 @dataclass(frozen=True, repr=False)
-class Impedance(ContactLaw):
+class Impedance(Oscillator):
     """A spring-damper on which only the share 1 - d of the load acts.
 
     Parameters
@@ -58,17 +57,14 @@ class Impedance(ContactLaw):
     (0.0, 0.75)
     """
 
-    frequency_ratio: float | np.ndarray
-    damping_ratio: float | np.ndarray
     share: float | np.ndarray = 0.95
 
     name: ClassVar[str] = "impedance"
     formula: ClassVar[str] = "ϖ² p + 2ζϖ p′ and d of the load"
-    root: ClassVar[int] = 1
     release = Release.FORCE
     lag: ClassVar[None] = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         # The spring-damper checks the ranges of ϖ and ζ.
         _ = self._spring.signature
         d = np.asarray(self.share, dtype=float)
@@ -115,12 +111,6 @@ class Impedance(ContactLaw):
         stiffness, loss = omega * omega, 2 * zeta * omega
         held = np.maximum(stiffness, np.hypot(stiffness - self.share, loss))
         return np.hypot(stiffness - 1, loss) / held
-
-    @classmethod
-    def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
-        """The law with ϖ = v/P and ζ = group, and the default d."""
-        ratio = np.asarray(speed, dtype=float) / np.asarray(length, dtype=float)
-        return cls(ratio, group + 0 * ratio)
 
     @classmethod
     def group_of(cls, restitution: float) -> float:

@@ -85,17 +85,21 @@ class ContactLaw(Batch, ABC):
         """
         return 0.0 if self.release is Release.DISPLACEMENT else None
 
+    feels_load: ClassVar[bool] = False
+    """Whether the force in contact depends on the load, as :meth:`loaded_force` says.
+
+    The ball is then released where the grip under the load vanishes, or where p = 0, whichever
+    comes first.
+    """
+
+    def loaded_force(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
+        """The force under a load a, in which it is linear; by default f(p, p′)."""
+        return self.force(penetration, rate)
+
     @property
-    def impedance(self) -> Any:
-        """The share d of the load that does not act on the ball in contact; None if there is none.
-
-        Then p″ = (1 - d) a - f, and the force on the ball is f + d a. The ball is released where
-        the grip under the load vanishes, or where p = 0, whichever comes first.
-        """
-        return None
-
-    has_kink: ClassVar[bool] = False
-    """Whether the force is smooth only where :meth:`kink` does not change its sign."""
+    def has_kink(self) -> bool:
+        """Whether the force is smooth only where :meth:`kink` does not change its sign."""
+        return False
 
     def kink(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """A function that changes its sign where the force, which is continuous, has a kink."""
@@ -107,9 +111,7 @@ class ContactLaw(Batch, ABC):
         return self.force(penetration, rate) if lag is None else penetration + lag * rate
 
     def loaded_grip(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
-        """The grip under a load a, which differs from :meth:`grip` only if the law has an
-        impedance.
-        """
+        """The grip under a load a, by default that without."""
         return self.grip(penetration, rate)
 
     @property

@@ -21,6 +21,7 @@ import numpy as np
 
 from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.signature import free_impact
 from bouncing_ball.engines.engine import Engine, Physical
 from bouncing_ball.engines.scheme import Scheme
 from bouncing_ball.errors import ModelError
@@ -121,7 +122,7 @@ class MuJoCo(Engine):
         if found and contact is not None and contact.damping_ratio < 1:
             # At 1 rad/s of a table the frequency ratio is the contact's own frequency.
             own = contact.angular_frequency, contact.damping_ratio
-            loads = (Impedance(*own, d).signature.load for d in (most, 0.0))
+            loads = (free_impact(Impedance(*own, d), 1.0).load for d in (most, 0.0))
             new, old = (float(load) for load in loads)
             found.append(
                 f"under a load a this r is r + σ a/v with σ = {new:.4g} s, and {old:.4g} s for "

@@ -12,7 +12,7 @@ issue 2247.
 """
 
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -49,7 +49,7 @@ class ElastoBacklash(ContactLaw):
     formula: ClassVar[str] = "ϖ² p + min(2ζϖ p′, ϖ² p)"
     root: ClassVar[int] = 1
     release = Release.FORCE
-    has_kink: ClassVar[bool] = True
+    has_kink: ClassVar[Any] = True
 
     def __post_init__(self):
         check_positive(self.frequency_ratio, "frequency ratio ϖ")

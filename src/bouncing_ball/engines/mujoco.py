@@ -134,13 +134,3 @@ class MuJoCo(Engine):
                 f"{(least / most) ** 2:.2g} and the damper {least / most:.2g} of it"
             )
         return tuple(found)
-
-    def snippet(self, contact: Physical, release: Release, time_step: float) -> str:
-        found = self.parameters(contact)
-        solref, solimp = (" ".join(map(repr, found[name])) for name in ("solref", "solimp"))
-        return f"""\
-<option timestep="{time_step!r}"/>  <!-- s -->
-<default>
-  <!-- Of ball ({contact.mass!r} kg) and table alike: -k/m in 1/s^2, -c/m in 1/s; shares, m -->
-  <geom condim="1" solref="{solref}" solimp="{solimp}"/>
-</default>"""

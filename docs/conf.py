@@ -53,6 +53,7 @@ PARTS = {
     "Use": [
         "docs/lesson",
         "docs/gallery",
+        "docs/python",
         "docs/design",
         "docs/engines",
         "docs/contact-laws",

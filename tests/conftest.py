@@ -4,7 +4,6 @@ The references use nothing of the package: they are a matrix exponential, the pa
 solution of the contact, Brent's method, and free flight.
 """
 
-import ast
 import math
 import os
 import shutil
@@ -130,15 +129,16 @@ def recorded():
 
 
 @pytest.fixture(scope="session")
-def stages():
-    """The study of each artifact, as the rules name it: ``NAME = {artifact: study}``."""
-    found = {}
-    for path in sorted((ROOT / "workflow" / "rules").glob("*.smk")):
-        head, rule, _ = path.read_text(encoding="utf-8").partition("\nuse rule study as ")
-        for node in ast.parse(head).body if rule else ():
-            if isinstance(node, ast.Assign) and isinstance(node.value, ast.Dict):
-                found |= ast.literal_eval(node.value)
-    return found
+def table():
+    """Every artifact with what it is made by."""
+    stages = read_yaml(ROOT / "workflow" / "artifacts.yaml")
+    return {name: entry for stage in stages.values() for name, entry in stage.items()}
+
+
+@pytest.fixture(scope="session")
+def stages(table):
+    """The study of each artifact."""
+    return {name: entry["study"] for name, entry in table.items() if "study" in entry}
 
 
 @pytest.fixture(scope="session")
@@ -189,6 +189,14 @@ def described():
 def continuation_settings():
     """The ``continuation`` section of the configuration."""
     return Continuation(**read_yaml(ROOT / "config" / "config.yaml")["continuation"])
+
+
+@pytest.fixture
+def short_runs(monkeypatch):
+    """The calculator follows few impacts: long runs are those of calculator/test_motion.py."""
+    monkeypatch.setattr("bouncing_ball.calculator.motion._IMPACTS", 20)
+    for samples in ("_SAMPLES", "_SAMPLES_OF_LAW"):
+        monkeypatch.setattr(f"bouncing_ball.calculator.motion.{samples}", (4, 12, 4))
 
 
 CHROMIUM = next(

@@ -13,6 +13,8 @@ import bouncing_ball
 
 GALLERY = Path(__file__).parents[1] / "docs" / "gallery"
 SCRIPTS = sorted(GALLERY.glob("*.py"))
+# One with orbits and one with simulations; all others are tried weekly.
+OFTEN = {"branch_for_three_stiffnesses", "basin"}
 
 
 def test_there_are_twelve_and_the_page_shows_all():
@@ -26,7 +28,13 @@ def test_there_are_twelve_and_the_page_shows_all():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
+@pytest.mark.parametrize(
+    "script",
+    [
+        pytest.param(path, id=path.stem, marks=() if path.stem in OFTEN else pytest.mark.long)
+        for path in SCRIPTS
+    ],
+)
 def test_a_script_ends_in_a_picture(script, tmp_path, monkeypatch):
     text = script.read_text(encoding="utf-8")
     assert len(text.splitlines()) <= 25

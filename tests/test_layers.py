@@ -22,11 +22,9 @@ ALLOWED = {
     "orbits": ({"datasets", "contacts", "continuation", "motion"}, {"numpy", "scipy", "xarray"}),
     "attractors": (
         {"datasets", "contacts", "continuation", "motion", "orbits"},
-        {"numpy", "xarray"},
+        {"numpy", "scipy", "xarray"},
     ),
     "calls": ({"datasets", "contacts", "motion", "orbits", "attractors"}, {"numpy"}),
-    "surveys": ({"datasets", "orbits", "calls"}, set()),
-    "long_run": ({"datasets", "orbits", "attractors", "calls"}, {"numpy"}),
     "accuracy": ({"contacts", "continuation", "motion", "orbits"}, {"numpy", "scipy"}),
     # No engine is imported.
     "engines": ({"contacts"}, {"numpy"}),
@@ -46,7 +44,10 @@ ALLOWED = {
     # Studies are imported by name when they are run.
     "configuration": ({"atlas"}, {"yaml", "pydantic"}),
     "claims": (
-        {"datasets", "contacts", "continuation", "motion", "orbits", "accuracy", "studies"},
+        {
+            *("datasets", "contacts", "continuation", "motion", "orbits", "accuracy", "studies"),
+            "configuration",
+        },
         {"numpy", "scipy", "xarray"},
     ),
     # Pandoc and Typst only where the PDF is made.
@@ -68,7 +69,6 @@ ALLOWED = {
             "motion",
             "orbits",
             "calls",
-            "long_run",
             "accuracy",
             "engines",
             "calculator",

@@ -1,8 +1,10 @@
 """The lesson prints and draws what its page shows, and its notebook is made from the page."""
 
 import doctest
+import json
 import re
 import runpy
+from importlib.resources import files
 from pathlib import Path
 
 import pytest
@@ -11,7 +13,7 @@ DOCS = Path(__file__).parents[1] / "docs"
 PAGE = DOCS / "lesson.md"
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_lesson_prints_and_draws_what_it_says(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     result = doctest.testfile(str(PAGE), module_relative=False, optionflags=doctest.ELLIPSIS)
@@ -19,6 +21,12 @@ def test_the_lesson_prints_and_draws_what_it_says(tmp_path, monkeypatch):
     shown = re.findall(r"!\[.+\]\(lesson/(.+)\)", PAGE.read_text(encoding="utf-8"))
     drawn = sorted(path.name for path in tmp_path.iterdir())
     assert drawn == sorted(shown) == sorted(path.name for path in (DOCS / "lesson").iterdir())
+
+
+def test_the_lesson_shows_every_scene_of_the_stage():
+    scenes = json.loads(files("bouncing_ball.figures.explorer").joinpath("scenes.json").read_text())
+    shown = re.findall(r"\(\.\./figures/explorer\.html#scene=(\w+)\)", PAGE.read_text("utf-8"))
+    assert sorted(shown) == sorted(scenes)
 
 
 def test_the_notebook_is_made_from_the_page():

@@ -36,9 +36,7 @@ The layers, each importing only what lies above it in this list (and ``errors`` 
 ``motion``        event-driven simulation, from any initial state
 ``orbits``        n-T orbits, their stability and bifurcations
 ``attractors``    the motions on which balls end: repeating, locked, chaotic
-``calls``         the calls that most people need: a model, an orbit, its limits, a simulation
-``surveys``       calls with labelled datasets: a ball over time, a drop, a branch over Λ
-``long_run``      calls about the motion on which a ball ends, over Λ and of many starts
+``calls``         the calls that most people need: orbits, balls over time, their long run
 ``accuracy``      errors of one model against another, their thresholds, the error law
 ``engines``       the contact of physics engines: their parameters, their time stepping
 ``studies``       the stages of the pipeline: parameters in, datasets out
@@ -60,25 +58,18 @@ __version__ = "0.1.0"
 
 # The names that users import from here, and their modules. A module is imported on first use:
 # the command line's --help needs no numpy.
-_PUBLIC = {
-    "orbit": "calls",
-    "limits": "calls",
-    "simulate": "calls",
-    "model": "calls",
-    "history": "surveys",
-    "drop": "surveys",
-    "branch": "surveys",
-    "motion_of": "long_run",
-    "lyapunov_exponent": "long_run",
-    "orbit_diagram": "long_run",
-    "basins": "long_run",
-    "design": "calculator.design",
-    "SpringDamper": "contacts.spring_damper",
-    "SpringDamperModel": "orbits.spring_damper_model",
-    "RestitutionModel": "orbits.restitution_model",
-    "ModelError": "errors",
-    "NoOrbitError": "errors",
+_MODULES = {
+    "calls.model": ("model",),
+    "calls.orbits": ("orbit", "limits", "branch"),
+    "calls.motion": ("simulate", "history", "drop"),
+    "calls.long_run": ("motion_of", "lyapunov_exponent", "orbit_diagram", "basins"),
+    "calculator.design": ("design",),
+    "contacts.spring_damper": ("SpringDamper",),
+    "orbits.spring_damper_model": ("SpringDamperModel",),
+    "orbits.restitution_model": ("RestitutionModel",),
+    "errors": ("ModelError", "NoOrbitError"),
 }
+_PUBLIC = {name: module for module, names in _MODULES.items() for name in names}
 __all__ = [*_PUBLIC]
 
 

@@ -4,7 +4,8 @@ Both derive from :class:`ValueError`, so that callers who do not care for the
 distinction can catch that.
 """
 
-from collections.abc import Iterator
+import re
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -19,17 +20,27 @@ class ModelError(ValueError):
 class ParameterError(ModelError):
     """Parameters of a call that do not go together, or one that is missing.
 
-    ``{name}`` in the text stands for a parameter, which the command line shows as its option.
+    ``{name}`` in the text stands for a parameter, which the command line shows as its option, and
+    each ``{}`` for one of the values that follow the text. A value may contain braces itself.
 
     Examples
     --------
-    >>> str(ParameterError("{duration} needs {law}"))
-    'duration needs law'
+    >>> str(ParameterError("{duration} needs {law}, not {}", "{a}"))
+    'duration needs law, not {a}'
     """
 
-    def __init__(self, text: str) -> None:
-        super().__init__(text.replace("{", "").replace("}", ""))
-        self.text = text
+    def __str__(self) -> str:
+        return self.shown(str)
+
+    def shown(self, named: Callable[[str], str]) -> str:
+        """The message with ``named(name)`` for each parameter."""
+        text, *values = self.args
+        rest = iter(values)
+
+        def entry(found: re.Match) -> str:
+            return named(found[1]) if found[1] else str(next(rest, found[0]))
+
+        return re.sub(r"{(\w*)}", entry, text)
 
 
 class NoOrbitError(ValueError):

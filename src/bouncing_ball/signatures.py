@@ -6,7 +6,7 @@ the call's docstring, so that each stands once.
 
 import inspect
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from typing import Annotated, Any, Literal, NamedTuple, TypeVar, get_args, get_origin
 
 from bouncing_ball.errors import ParameterError
@@ -21,31 +21,36 @@ class Range(NamedTuple):
     --------
     >>> print(Range(0, 1, "(]"), 0 in Range(0, 1, "(]"), 1 in Range(0, 1, "(]"))
     a number in (0, 1] False True
-    >>> print(Range(0))
-    a finite number > 0
+    >>> print(Range(0), "|", count(3), 2.5 in count(3))
+    a finite number > 0 | a whole number from 1 to 3 False
     """
 
     low: float = -math.inf
     high: float = math.inf
     ends: str = "()"
-
-    @property
-    def whole(self) -> str:
-        """The range as that of a whole number, in words."""
-        return f"a whole number from {self.low:g} to {self.high:.0f}"
+    whole: bool = False
 
     def __contains__(self, value: Any) -> bool:
+        if not isinstance(value, int | float) or not math.isfinite(value):
+            return False
         above = value > self.low if self.ends[0] == "(" else value >= self.low
         below = value < self.high if self.ends[1] == ")" else value <= self.high
-        return above and below and math.isfinite(value)
+        return above and below and (not self.whole or value == int(value))
 
     def __str__(self) -> str:
+        if self.whole:
+            return f"a whole number from {self.low:g} to {self.high:.0f}"
         if math.isinf(self.high):
             return "a finite number" + ("" if math.isinf(self.low) else f" > {self.low:g}")
         return f"a number in {self.ends[0]}{self.low:g}, {self.high:g}{self.ends[1]}"
 
 
-def takes(other: Callable, *names: str) -> Callable[[_Call], _Call]:
+def count(high: int, low: int = 1) -> Range:
+    """The whole numbers from ``low`` to ``high``."""
+    return Range(low, high, "[]", whole=True)
+
+
+def takes(other: Callable, *names: str, without: Container[str] = ()) -> Callable[[_Call], _Call]:
     """A call whose ``**keywords`` are parameters of another: its signature shows them.
 
     Parameters
@@ -55,6 +60,8 @@ def takes(other: Callable, *names: str) -> Callable[[_Call], _Call]:
     names : str
         Those of its parameters that are meant; all of them if none is named. A parameter of
         the decorated call without an annotation has that of the other, and its default.
+    without : container of str
+        Those that are not meant.
 
     Examples
     --------
@@ -67,19 +74,17 @@ def takes(other: Callable, *names: str) -> Callable[[_Call], _Call]:
     others = inspect.signature(other).parameters
 
     def with_parameters(call: _Call) -> _Call:
-        found = []
+        found = {}
         for name, own in inspect.signature(call).parameters.items():
             if name in others and own.annotation is own.empty:
                 default = others[name].default if own.default is own.empty else own.default
                 own = others[name].replace(kind=own.kind, default=default)
-            found += [own] if own.kind is not own.VAR_KEYWORD else []
-        known = {own.name for own in found}
-        more = [
-            parameter.replace(kind=parameter.KEYWORD_ONLY)
-            for name, parameter in others.items()
-            if name not in known and (not names or name in names)
-        ]
-        call.__dict__["__signature__"] = inspect.Signature([*found, *more])
+            if own.kind is not own.VAR_KEYWORD:
+                found[name] = own
+        for name, each in others.items():
+            if (not names or name in names) and name not in without:
+                found.setdefault(name, each.replace(kind=each.KEYWORD_ONLY))
+        call.__dict__["__signature__"] = inspect.Signature(list(found.values()))
         call.__dict__["handed_on"] = other
         return call
 
@@ -112,33 +117,22 @@ def check(call: Callable, given: Mapping[str, Any]) -> None:
     bouncing_ball.errors.ParameterError: length = -2.0 is not a finite number > 0
     """
     for name, parameter in inspect.signature(call).parameters.items():
-        if given.get(name) is None:
+        value, hint = given.get(name), parameter.annotation
+        if value is None:
             if name in given and parameter.default is parameter.empty:
                 raise ParameterError(f"{{{name}}} is missing")
             continue
-        for hint in (parameter.annotation, *get_args(parameter.annotation)):
-            kind, *_, allowed = get_args(hint) or (None, None)
-            if get_origin(hint) is Literal:
-                _allow(
-                    given[name] in get_args(hint),
-                    name,
-                    given[name],
-                    "one of " + ", ".join(get_args(hint)),
-                )
-            elif get_origin(hint) is Annotated and isinstance(allowed, Range):
-                entries = _entries(given[name])
-                if not entries:
-                    raise ParameterError(f"{{{name}}} has no entries")
-                for value in entries:
-                    whole = kind is int
-                    good = (
-                        isinstance(value, int | float)
-                        and value in allowed
-                        and (not whole or value == int(value))
-                    )
-                    _allow(good, name, value, allowed.whole if whole else str(allowed))
-
-
-def _allow(good: bool, name: str, value: Any, allowed: str) -> None:
-    if not good:
-        raise ParameterError(f"{{{name}}} = {value!r} is not {allowed}")
+        for each in (hint, *get_args(hint)):
+            if get_origin(each) is Literal:
+                entries, allowed = [value], get_args(each)
+                words = f"one of {', '.join(allowed)}"
+            elif get_origin(each) is Annotated and isinstance(get_args(each)[-1], Range):
+                entries, allowed = _entries(value), get_args(each)[-1]
+                words = str(allowed)
+            else:
+                continue
+            if not entries:
+                raise ParameterError(f"{{{name}}} has no entries")
+            for entry in entries:
+                if entry not in allowed:
+                    raise ParameterError(f"{{{name}}} = {{}} is not {words}", repr(entry))

@@ -26,15 +26,9 @@ PAPER = {"mass": 0.02, "frequency": 50.0, "acceleration": "1 g", "restitution": 
 # SI units in which mass, Ω and g are 1: ϖ² is the stiffness and Λ the acceleration.
 UNIT = {"mass": 1.0, "angular_frequency": 1.0, "gravity": 1.0, "restitution": 0.85, "n": 1}
 SHAKEN = {"mass": "4 g", "frequency": "50 Hz", "acceleration": "0.8 g"}
+# Of the laws, the others are designed for weekly.
+OFTEN = ("hunt-crossley", "impedance")
 HERTZ = SHAKEN | {"reduced_modulus": "115 GPa", "radius": "5 mm"}
-
-
-@pytest.fixture
-def short_runs(monkeypatch):
-    """Few impacts of each motion: what a ball does in the long run is in test_motion.py."""
-    monkeypatch.setattr("bouncing_ball.calculator.motion._IMPACTS", 20)
-    for samples in ("_SAMPLES", "_SAMPLES_OF_LAW"):
-        monkeypatch.setattr(f"bouncing_ball.calculator.motion.{samples}", (4, 12, 4))
 
 
 @pytest.fixture(scope="module")
@@ -360,7 +354,9 @@ def test_a_tolerance_that_every_contact_meets_needs_no_frequency_ratio():
     assert found.reason == "the error is within the tolerance at every frequency ratio scanned"
 
 
-@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(x, marks=() if x in OFTEN else pytest.mark.long) for x in LAWS]
+)
 def test_every_law_is_designed_for_by_its_impact(name, short_runs):
     given = {"mass": 0.02, "frequency": 50.0, "acceleration": "1 g", "contact_time": "0.3 ms"}
     found = design(**given, restitution=0.65, law=name, n=1)

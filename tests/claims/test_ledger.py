@@ -18,7 +18,8 @@ CONFIG = yaml.safe_load((ROOT / "config" / "config.yaml").read_text(encoding="ut
 
 
 @pytest.fixture(scope="module")
-def data(recorded):
+def data(recorded, table):
+    assert table["claims"]["reads"] == list(READS)
     return {name: recorded[name] for name in READS}
 
 
@@ -47,14 +48,12 @@ def test_the_tally(verdicts):
     )
 
 
-def test_no_period_is_not_chaos_while_neighbours_stay_together():
+def test_a_motion_without_a_kind_is_not_chaos():
     kinds = next(claim for claim in CLAIMS if claim.id == "kinds of motion")
-    motions = xr.Dataset({"motion_period": ("case", [1, 2, 0])})
-    # Five standard errors are 0.5.
-    for exponent, verdict in ((0.49, "contradicted"), (0.51, "reproduced")):
-        motions["lyapunov_exponent"] = "case", [-1.0, -1.0, exponent]
-        found = kinds.decide({"motions": motions.assign(lyapunov_error=0.1)})
-        assert found.verdict == verdict
+    for last, verdict in (("undecided", "contradicted"), ("chaotic", "reproduced")):
+        found = xr.Dataset({"kind": (("model", "case"), [["orbit", "subharmonic", last]])})
+        found = found.assign_coords(model=["restitution"])
+        assert kinds.decide({"ext_locking": found}).verdict == verdict
 
 
 def test_an_explanation_fails_with_its_checks(data):

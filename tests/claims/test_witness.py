@@ -27,7 +27,8 @@ from bouncing_ball.studies.orbit_branches import Domains, orbit_branches
 
 
 @pytest.fixture(scope="module")
-def result(recorded, described):
+def result(recorded, described, table):
+    assert table["witness"]["reads"] == list(SHOWN)
     return described(witness({name: recorded[name] for name in SHOWN}))
 
 

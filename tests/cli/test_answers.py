@@ -220,6 +220,7 @@ def test_a_missing_orbit_exits_1_with_the_reason(refused, capsys):
         ("law tsuji --set stiffness=inf", "is not NAME=NUMBER"),
         ("law tsuji --set stiffness=1", "tsuji needs --set damping=NUMBER as well"),
         ("law tsuji --set color=1", "unknown parameter 'color' of tsuji: its parameters are"),
+        ("law tsuji --set {n}=1", "unknown parameter '{n}' of tsuji"),
         ("law tsuji --set color=1 --restitution 0.5", "--restitution does not go with --set"),
         ("law tsuji --frequency-ratio 5", "--frequency-ratio does not go with --law"),
         ("law tsuji --model spring-damper", "--model spring-damper has no --law"),

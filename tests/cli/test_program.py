@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 import bouncing_ball
-from bouncing_ball import calls
+from bouncing_ball.calls.orbits import orbit
 from bouncing_ball.cli.explained import EXPLAINED
 from bouncing_ball.cli.options import meanings
 
@@ -27,8 +27,8 @@ def program(*arguments, **options):
 
 def test_the_help_says_what_the_docstrings_of_the_calls_say(said):
     shown = "".join(said("orbit", "--help").split()).replace("-", "")
-    texts = meanings(calls.orbit)
-    for name in inspect.signature(calls.orbit).parameters:
+    texts = meanings(orbit)
+    for name in inspect.signature(orbit).parameters:
         assert "".join(texts[name].split()).replace("-", "") in shown
     assert "(default: -3.142)" in said("simulate", "--help")
     assert said("--version") == f"bouncing-ball {bouncing_ball.__version__}\n"
@@ -102,7 +102,7 @@ def test_diff_for_nobody_who_reads(tmp_path):
         if name != "diff"
     ],
 )
-def test_the_examples_of_the_help_run(example, said, monkeypatch):
+def test_the_examples_of_the_help_run(example, said, monkeypatch, short_runs):
     monkeypatch.chdir(ROOT)
     command, *given = shlex.split(example)
     assert said(command, *given)

@@ -61,11 +61,27 @@ MODELS = {
     **{name: LawModel(law) for name, law in HERTZ.items()},
     "one's own": OWN["MODEL"],
 }
+# Other laws of the same model: two of them are tried often, and the others weekly.
+SELDOM = ("kuwabara-kono", "elasto-backlash")
 DISSIPATIVE = [name for name in MODELS if name not in ("elastic", "undamped contact")]
 # n, and Λ over the saddle-node's and below the table's grazing, Λ > 1 included.
 CASES = [(1, 0.3), (2, 0.3), (1, 0.6)]
 
-every_model = pytest.mark.parametrize("name", MODELS)
+
+def often(names):
+    """Names of models as parameters, some of them of long tests only."""
+    return [pytest.param(x, marks=pytest.mark.long if x in SELDOM else ()) for x in names]
+
+
+def cases(names):
+    """All cases of models by their names, each on both sides."""
+    return [
+        pytest.param(x, id="-".join(map(str, x)), marks=pytest.mark.long if x[0] in SELDOM else ())
+        for x in product(names, CASES, Side)
+    ]
+
+
+every_model = pytest.mark.parametrize("name", often(MODELS))
 every_case = pytest.mark.parametrize(("n", "above"), CASES)
 every_side = pytest.mark.parametrize("side", list(Side))
 
@@ -82,7 +98,7 @@ def some_orbit(name, n, above, side):
     return model.require_orbit(n, (0.0 if np.isnan(node) else node) + above, side)
 
 
-@pytest.fixture(params=[*product(MODELS, CASES, Side)], ids=lambda case: "-".join(map(str, case)))
+@pytest.fixture(params=cases(MODELS))
 def some(request):
     """Name, model, n, and an orbit: of every model in every case on every side."""
     name, (n, above), side = request.param
@@ -151,9 +167,7 @@ def test_the_monodromy_is_the_jacobian_of_the_simulated_map(some):
 
 # The corrected model's impact is an instant, and no contact.
 @pytest.mark.parametrize(
-    "some",
-    [case for case in product(MODELS, CASES, Side) if not case[0].startswith("corrected")],
-    indirect=True,
+    "some", cases(x for x in MODELS if not x.startswith("corrected")), indirect=True
 )
 def test_the_jacobian_of_the_contact(some):
     # Where the force vanishes the map does not feel the time of release, so that
@@ -187,7 +201,7 @@ def test_the_determinant_is_the_contraction(some):
 
 
 @every_case
-@pytest.mark.parametrize("name", DISSIPATIVE)
+@pytest.mark.parametrize("name", often(DISSIPATIVE))
 def test_sides_and_bifurcations(name, n, above):
     model = MODELS[name]
     node, doubling = bifurcations(name, n)
@@ -276,7 +290,7 @@ def test_arrays_are_their_elements(name):
     np.testing.assert_allclose(known.bounce_velocity, there.bounce_velocity)
 
 
-@pytest.mark.parametrize("name", DISSIPATIVE)
+@pytest.mark.parametrize("name", often(DISSIPATIVE))
 def test_all_orbits_at_an_amplitude(name):
     model = MODELS[name]
     found = model.orbits(1, 0.9)

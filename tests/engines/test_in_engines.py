@@ -22,7 +22,7 @@ import pytest
 import xarray as xr
 from pandas import DataFrame
 
-from bouncing_ball.calls import limits, simulate
+from bouncing_ball import limits, simulate
 from bouncing_ball.contacts.collocation import contacts
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.laws.impedance import Impedance

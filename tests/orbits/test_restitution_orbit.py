@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.motion.regularity import exact_map_jacobian
+from bouncing_ball.motion.tangent import Deviation, Jacobian
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import (
     ImpactMap,
@@ -73,7 +73,10 @@ def floquet(kind, n, r, lam, phi):
 def test_trace_and_determinant_are_those_of_the_jacobian(n, r, excess, stable):
     lam = float(saddle_node(n, r)) + excess
     phi, v, s = float(phase(n, r, lam, stable)), n * np.pi, 2 * np.pi * n
-    jacobian = exact_map_jacobian(s, phi, v, lam, r)
+    table = lam * np.cos(phi), lam * np.sin(phi)
+    after = Deviation(1.0, 0.0, 0.0), Deviation(0.0, 0.0, -r)
+    flown = (x.flown(table, table, s, -v - table[0], 0.0) for x in after)
+    jacobian = np.reshape(Jacobian.of_columns(*flown), (2, 2))
     trace, det = floquet(ImpactMap.EXACT, n, r, lam, phi)
     # Entries of the matrix, at most of order s²Λ, cancel in the determinant.
     size = np.abs(jacobian).max() ** 2 + 1

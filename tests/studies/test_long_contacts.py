@@ -1,12 +1,20 @@
-"""Windows and basins as datasets."""
+"""Openings and basins as datasets."""
+
+from functools import partial
 
 import numpy as np
 import pytest
 
+from bouncing_ball.attractors.mapper import label
 from bouncing_ball.configuration.study import typed
-from bouncing_ball.studies.long_contacts import MOTIONS, basins, stable_windows
+from bouncing_ball.studies import long_contacts
+from bouncing_ball.studies.long_contacts import MOTIONS, basins, cascade_of_flights
 
-WINDOWS = {"restitution": [0.85, 0.65], "frequency_ratio": {"min": 1.2, "max": 10.0, "samples": 11}}
+FLIGHTS = {
+    "restitution": [0.85, 0.65],
+    "frequency_ratio": {"min": 1.2, "max": 100.0, "samples": 25},
+    "flights": 2,
+}
 BASINS = {
     "n": [1, 2],
     "restitution": 0.85,
@@ -18,21 +26,27 @@ BASINS = {
 }
 
 
-def test_windows_over_both_parameters(described):
-    found = described(typed(stable_windows)(WINDOWS, "displacement"))
-    assert found.window_amplitude.dims == ("restitution", "frequency_ratio")
-    assert (found.window_amplitude > found.threshold_amplitude).all()
-    # Each row is that of its own r: the ends by another program, at ϖ = 1.2 and 10.
-    row = found.sel(restitution=0.85)
-    assert row.window_amplitude.values[[0, -1]] == pytest.approx([0.3342, 1.042], abs=2e-3)
-    assert row.window_end.values[[0, -1]].tolist() == ["saddle-node", "grazing in contact"]
-    assert row.threshold_amplitude.values[[0, -1]] == pytest.approx([0.3175, 0.9901], abs=1e-4)
+def test_openings_over_both_parameters(described):
+    found = described(typed(cascade_of_flights)(FLIGHTS, "displacement"))
+    assert found.opening_amplitude.dims == ("restitution", "flights", "frequency_ratio")
+    # Each row is that of its r: Λ_SD at ϖ = 1.2 by another program, and the limits of E.
+    assert float(found.threshold_amplitude[0, 0]) == pytest.approx(0.3175, abs=1e-4)
+    excess = 100.0**2 * (found.opening_amplitude - found.threshold_amplitude).isel(
+        frequency_ratio=-1
+    )
+    np.testing.assert_allclose(
+        excess.transpose(*found.stiff_opening.dims), found.stiff_opening, rtol=0.02
+    )
+    # A compliant contact loses its stability first.
+    assert np.isnan(found.opening_amplitude[..., 0]).all() and (found.opening_multiplier.max() < 1)
     assert found.joining_ratio.values == pytest.approx([2.003, 2.107], abs=1e-3)
 
 
 def test_limits_are_those_of_the_papers_release():
-    found = typed(stable_windows)(WINDOWS | {"restitution": [0.85]}, "force")
-    assert np.isnan(found.stiff_window).all() and np.isnan(found.joining_ratio).all()
+    found = typed(cascade_of_flights)(FLIGHTS | {"restitution": [0.85]}, "force")
+    for name in ("opening_amplitude", "stiff_opening", "joining_ratio"):
+        assert np.isnan(found[name]).all()
+    assert np.isfinite(found.threshold_amplitude).all()
 
 
 def test_basins_of_one_contact(described):
@@ -61,7 +75,8 @@ def test_basins_of_one_contact(described):
                 assert near.item() == kind
 
 
-def test_balls_that_rise_when_they_are_given_up_have_no_period():
+def test_balls_that_rise_when_they_are_given_up_have_no_period(monkeypatch):
+    monkeypatch.setattr(long_contacts, "label", partial(label, impacts=60))
     parameters = {"n": [1, 10], "restitution": 0.5707358288321754, "starts": 119, "impacts": 10}
     parameters |= {"frequency_ratio": 24.11573489959817, "amplitude": [8.614520580887136]}
     found = typed(basins)({**parameters, "velocity_max": 0.12824839560054857}, "force")

@@ -2,9 +2,8 @@
 
 from bouncing_ball.provenance.origin import read_provenance
 
-BEYOND = "workflow/rules/beyond_the_paper.smk"
+ARTIFACTS = "workflow/artifacts.yaml"
 CONFIG = "config/config.yaml"
-DRAWINGS = "src/bouncing_ball/figures/__init__.py"
 FIGURE = "src/bouncing_ball/figures/heights.py"
 STAGE = "src/bouncing_ball/studies/lowest.py"
 
@@ -14,8 +13,9 @@ def changed(tree):
     return {line.split()[-1] for line in tree.git("status", "--porcelain").splitlines()}
 
 
-ENTRY = """BEYOND_THE_PAPER = {
-    "ext_heights": "studies.frequency_sweeps.frequency_sweep","""
+ENTRY = """beyond_the_paper:
+  ext_heights: { study: studies.frequency_sweeps.frequency_sweep, drawing: heights.heights }
+"""
 PARAMETERS = """  ext_heights:
     n: 1
     restitution: 0.85
@@ -63,21 +63,18 @@ def lowest(data: Mapping[str, xr.Dataset], parameters: Lowest) -> xr.Dataset:
 
 
 def test_a_figure_with_its_own_parameters_and_a_stage_on_the_dataset_of_another(fresh):
-    fresh.rewrite(BEYOND, "BEYOND_THE_PAPER = {", ENTRY)
+    fresh.rewrite(ARTIFACTS, "beyond_the_paper:\n", ENTRY)
     assert fresh.refusal().startswith(
         "configuration: ext_heights has no parameters: a key ext_heights"
     )
     fresh.rewrite(CONFIG, "studies:\n  formulas:", PARAMETERS)
-    fresh.rewrite(DRAWINGS, "DRAWINGS = {", 'DRAWINGS = {\n    "ext_heights": "heights.heights",')
     (fresh.path / FIGURE).write_text(DRAWING, encoding="utf-8")
-    assert changed(fresh) == {BEYOND, CONFIG, FIGURE, DRAWINGS}
+    assert changed(fresh) == {ARTIFACTS, CONFIG, FIGURE}
     (fresh.path / STAGE).write_text(STUDY, encoding="utf-8")
-    entry = """READS["lowest"] = ["fig11"]
-BEYOND_THE_PAPER = {
-    "lowest": "studies.lowest.lowest","""
-    fresh.rewrite(BEYOND, "BEYOND_THE_PAPER = {", entry)
+    entry = "beyond_the_paper:\n  lowest: { study: studies.lowest.lowest, reads: [fig11] }\n"
+    fresh.rewrite(ARTIFACTS, "beyond_the_paper:\n", entry)
     fresh.rewrite(CONFIG, "studies:\n  formulas:", "studies:\n  lowest: { n: 110 }\n  formulas:")
-    assert changed(fresh) == {BEYOND, CONFIG, FIGURE, DRAWINGS, STAGE}
+    assert changed(fresh) == {ARTIFACTS, CONFIG, FIGURE, STAGE}
     assert fresh.refusal().startswith("configuration: studies.lowest.n = 110 must be at most 20")
     fresh.rewrite(CONFIG, "lowest: { n: 110 }", "lowest: { n: 11 }")
     fresh.run("--cores", "1", "ext_heights", "lowest")

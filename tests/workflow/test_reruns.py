@@ -17,7 +17,7 @@ def test_a_commit_runs_nothing_again_and_a_change_what_it_decides(complete):
     complete.edit("claims/forensics.py")
     printed = "src/bouncing_ball/studies/printed_table1.py"
     complete.rewrite(printed, '"1.032"', '"1.033"')
-    (complete.path / "results/figures/motions.nc").unlink()
+    (complete.path / "results/figures/formulas.nc").unlink()
     assert complete.planned() == {
         *("fig12", "Drawing fig12"),
         *("Drawing ext_rattling", "Drawing ext_basins"),
@@ -25,7 +25,7 @@ def test_a_commit_runs_nothing_again_and_a_change_what_it_decides(complete):
         # The branches of the figures are of one study with the table.
         *("table1", "Setting table1"),
         *(f"{doing}{name}" for name in ("fig08", "fig09", "fig15") for doing in ("", "Drawing ")),
-        "motions",
+        *("formulas", "Setting formulas"),
         # Every orbit shown is followed by the comparison of the three routes.
         *("witness", "Setting witness"),
         *("claims", "Setting claims", "Writing results/paper.md"),

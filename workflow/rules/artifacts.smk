@@ -8,9 +8,7 @@ def files(name):
     return [f"results/figures/{name}.{kind}" for kind in kinds]
 
 
-ARTIFACTS = sorted({*STUDIES, *DRAWINGS})
-
-for name in ARTIFACTS:
+for name in TABLE:
 
     rule:
         name:

@@ -1,9 +1,9 @@
 # The configuration is checked before anything runs, against the studies of all stages.
 
-from bouncing_ball.configuration.check import check_configuration
-
 # Jobs need not check it again.
 if workflow.is_main_process:
+    from bouncing_ball.configuration.check import check_configuration
+
     try:
         check_configuration(map(os.path.relpath, workflow.configfiles), config, STUDIES)
     except ConfigurationError as error:

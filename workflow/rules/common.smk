@@ -34,17 +34,15 @@ from bouncing_ball.pipeline.sources import sources
 # Snakemake writes these two lines before every job, and they do not name it.
 logger.addFilter(lambda record: not str(record.msg).startswith(("Select jobs", "Execute ")))
 
-# The study of each artifact, and the artifacts whose datasets it reads.
-STUDIES, READS = {}, {}
+# Every artifact with what it is made by, from the table of the stages.
+STAGES = read_yaml(Path(ROOT, "workflow/artifacts.yaml"))
+TABLE = {name: entry for stage in STAGES.values() for name, entry in stage.items()}
+STUDIES, DRAWINGS, TABLES = (
+    {name: entry[key] for name, entry in TABLE.items() if key in entry}
+    for key in ("study", "drawing", "table")
+)
 # Datasets that no job makes: accepted by hand.
 ACCEPTED = {"engines": "config/engines.nc"}
-TITLES = read_yaml(Path(ROOT, "workflow/report/titles.yaml"))
-
-
-# Enter the artifacts of a stage, `{artifact: study}`; a pattern of their names.
-def stage(studies):
-    STUDIES.update(studies)
-    return "|".join(studies)
 
 
 # Source files that a job uses: those modules and all that they import. Relative paths, so

@@ -1,8 +1,6 @@
 # Datasets in, figures out: each figure from the dataset of its name. The schematics, Figures 1
 # and 4, have none.
 
-from bouncing_ball.figures import DRAWINGS
-
 CAPTIONS = [path.stem for path in Path(ROOT, "workflow/report").glob("*.rst")]
 
 for name, drawing in DRAWINGS.items():
@@ -43,10 +41,7 @@ rule draw_explorer:
         "Writing results/figures/explorer.html"
     input:
         data="results/figures/explorer.nc",
-        texts=expand(
-            f"{EXPLORER}/{{name}}",
-            name=["model.js", "engines.js", "page.js", "page.css", "page.html.j2"],
-        ),
+        texts=sorted(map(str, Path(EXPLORER).glob("*.[chj]*"))),
         source=modules("figures.explorer.document", "engines.reference"),
     output:
         html="results/figures/explorer.html",

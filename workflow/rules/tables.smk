@@ -1,8 +1,5 @@
 # Datasets in, tables out: CSV and Markdown, each table from the dataset of its name.
 
-TABLES = ["table1", "thresholds", "formulas", "forensics", "witness", "claims"]
-TABLES += ["ext_orders", "ext_laws", "ext_hertz", "ext_engines"]
-
 
 rule set_table:
     message:

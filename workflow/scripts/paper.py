@@ -5,7 +5,6 @@ from pathlib import Path
 from bouncing_ball.claims.tally import tally
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.datasets.netcdf import read_dataset
-from bouncing_ball.figures import DRAWINGS
 from bouncing_ball.figures.article.render import render_article
 from bouncing_ball.figures.atlas.tables import shares
 from bouncing_ball.figures.tables.formats import to_markdown
@@ -25,6 +24,6 @@ with logged(snakemake) as lines:
     tables["atlas"] = to_markdown(*shares(data["atlas"]))
     folder = Path(snakemake.input.templates[0]).parent
     write_text(snakemake.output.paper, render_article(folder, data, tables))
-    last = tally(data["claims"], sum(name.startswith("fig") for name in DRAWINGS))
+    last = tally(data["claims"], snakemake.params.figures)
     write_text(snakemake.output.tally, last + "\n")
     lines.append(last)

@@ -33,7 +33,7 @@ _SETTINGS = NewtonSettings(max_iterations=25, longest=0.3)
 # The doubled orbit is computed at this part of the estimated distance in Λ to its next doubling,
 # which is at first the second number and then follows from the ratio above. The map starts beside
 # the old orbit, by this part of the square root of the distance, and is iterated so often.
-_SHARE, _FIRST, _ASIDE, _TURNS = 0.7, 0.12, 0.1, 30
+_SHARE, _FIRST, _ASIDE, _TURNS = 0.7, 0.12, 0.1, 20
 MOST = 8
 """Largest number of doublings that double precision resolves."""
 

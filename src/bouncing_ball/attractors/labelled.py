@@ -19,7 +19,7 @@ MOST_BALLS = 20_000_000
 
 # Balls start again from the ends of balls so many amplitudes away. The fractional parts of
 # multiples of the two numbers in _EVEN cover a square evenly.
-_FURTHER = (1, 1, 2, 4)
+_FURTHER = (1, 3)
 # Families of orbits beside which balls start, and the difference of their phase from the orbit's.
 _FAMILIES, _BESIDE = (1, 2, 3), 1e-3
 _EVEN = np.array([0.7548776662466927, 0.5698402909980532])
@@ -55,7 +55,7 @@ def _described(data: Labelled, **attributes: Any) -> Any:
     return describe(data).assign_attrs(attributes)
 
 
-def motions(model: Any, grid: Grid, impacts: int) -> Labelled:
+def motions(grid: Grid, model: Any, impacts: int) -> Labelled:
     """The motions on which the balls of a grid (Λ, φ, z′_i) end.
 
     The variables are the fields of :class:`~bouncing_ball.attractors.motions.Motions`, except
@@ -66,12 +66,11 @@ def motions(model: Any, grid: Grid, impacts: int) -> Labelled:
     ModelError
         If there are too many balls, or a state is outside its range.
     """
-    start = (grid.flat[name] for name in ("amplitude", "phase", "velocity"))
-    start = np.broadcast_arrays(*np.atleast_1d(*start), *grid.rows)[:3]
-    require_memory(start[0].size, "a grid of starts")
+    require_memory(grid.size, "a grid of starts")
+    start = map(grid.row, ("amplitude", "phase", "velocity"))
     found = label(model.impact_law, *start, impacts=impacts)
     rows = describe(xr.Dataset(_columns(found, (CASE,))))
-    return grid.unfold((rows if grid.shape else rows.isel({CASE: 0})).assign_attrs(kind="motions"))
+    return grid.unfold(rows.assign_attrs(kind="motions"))
 
 
 def fastest(model: Any, amplitude: Any) -> np.ndarray:

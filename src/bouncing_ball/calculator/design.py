@@ -22,7 +22,7 @@ from bouncing_ball.calculator.results import (
 )
 from bouncing_ball.calculator.units import Unit, number, percent
 from bouncing_ball.calculator.verdict import Verdict, assessed, chosen, judged_by_motion, notes
-from bouncing_ball.calls import Index, Rule
+from bouncing_ball.calls.model import Index, Rule
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.law_choice import law_named
 from bouncing_ball.contacts.release import Release

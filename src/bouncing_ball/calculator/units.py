@@ -81,28 +81,35 @@ def number(name: str, value: Any, kind: Unit) -> float:
 write it as '50 Hz'
     """
     short = textwrap.shorten(str(value), 60, placeholder="…")
-    given, unit = f"{{{name}}} = {short}", ""
+    unit, example = "", f"write it as {kind.example!r}"
+
+    def wrong(why: str, said: str = short) -> ParameterError:
+        return ParameterError(f"{{{name}}} = {{}} {why}", said)
+
     if isinstance(value, str):
         found = _TEXT.fullmatch(value.strip())
         if found is None:
-            raise ParameterError(
-                f"{{{name}}} = {short!r} does not begin with a number: write it as {kind.example!r}"
-            )
+            raise wrong(f"does not begin with a number: {example}", repr(short))
         value, unit = found.groups()
     elif hasattr(value, "magnitude") and hasattr(value, "units"):
         value, unit = value.magnitude, str(value.units).replace("dimensionless", "")
     try:
         plain = float(value)
     except (TypeError, ValueError):
-        raise ParameterError(f"{{{name}}} = {value!r} is neither a number nor a text") from None
-    found_value = _converted(given, plain, unit, kind) if unit else plain
+        raise wrong("is neither a number nor a text", repr(value)) from None
+    found_value, why = _converted(plain, unit, kind) if unit else (plain, "")
+    if why:
+        raise wrong(f"{why}: {example}")
     if not math.isfinite(found_value):
-        raise ParameterError(f"{given} is not a finite number")
+        raise wrong("is not a finite number")
     return found_value
 
 
-def _converted(given: str, value: float, unit: str, kind: Unit) -> float:
-    """A value in SI units; for an acceleration the unit g is standard gravity, and not the gram."""
+def _converted(value: float, unit: str, kind: Unit) -> tuple[float, str]:
+    """A value in SI units, or the reason why it has none.
+
+    For an acceleration the unit g is standard gravity, and not the gram.
+    """
     registry, why = _registry(), "has an unknown unit"
     if (kind.name, unit) == ("m/s^2", "g"):
         unit = "standard_gravity"
@@ -113,8 +120,8 @@ def _converted(given: str, value: float, unit: str, kind: Unit) -> float:
             one = registry.Quantity(value, registry.parse_units(unit))
             why = f"is of the dimension {one.dimensionality}"
             # Fifteen digits, so that the digits that a user wrote are kept.
-            return float(f"{one.m_as(kind.name):.15g}")
-    raise ParameterError(f"{given} {why}: write it as {kind.example!r}")
+            return float(f"{one.m_as(kind.name):.15g}"), ""
+    return math.nan, why
 
 
 _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n"}

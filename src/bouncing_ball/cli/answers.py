@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball import calls
 from bouncing_ball.accuracy import error_law as error_laws
+from bouncing_ball.calls import model as models
+from bouncing_ball.calls import motion, orbits
 from bouncing_ball.cli.readable import lines
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.signature import Signature, free_impact
@@ -57,16 +58,16 @@ def _orbit(found: Orbit) -> Answer:
     }
 
 
-@takes(calls.orbit)
+@takes(orbits.orbit)
 def orbit(n=1, **given: Any) -> Answer:
     """The n-T orbit at Λ on a side of the saddle-node, or all of them, or one of all."""
-    found = calls.orbit(n, **given)
+    found = orbits.orbit(n, **given)
     several = [_orbit(found[k]) for k in range(found.size)] if found.shape else []
     answer = {"orbits": several} if several else _orbit(found)
     return answer | _described(found.law, -float(np.ravel(found.relative_impact_velocity)[0]))
 
 
-@takes(calls.limits)
+@takes(orbits.limits)
 def limits(n=1, **impact: Any) -> Answer:
     """Saddle-node and period doubling, and whether the orbits there are admissible.
 
@@ -75,9 +76,9 @@ def limits(n=1, **impact: Any) -> Answer:
     NoOrbitError
         If the branch lacks one of them.
     """
-    of = calls.model_of_limits(n, **impact)
+    of = models.model_of_limits(n, **impact)
     found: Answer = {}
-    for name in calls.Limits._fields:
+    for name in orbits.Limits._fields:
         orbit = getattr(of, name)(n)
         if not orbit.exists:
             what, branch = name.replace("_", " "), f"the branch of {n}-T orbits for {of.label}"
@@ -88,7 +89,7 @@ def limits(n=1, **impact: Any) -> Answer:
     return found | _described(orbit.law, float(restitution_speed(n, of)[0]))
 
 
-@takes(calls.orbit, "n", "amplitude", "release", *calls.LOSS)
+@takes(orbits.orbit, "n", "amplitude", "release", *models.LOSS)
 def error_law(n=1, **given: Any) -> Answer:
     """K of each quantity: the modulus of its relative error is K/ϖ + O(1/ϖ²).
 
@@ -102,7 +103,7 @@ def error_law(n=1, **given: Any) -> Answer:
     """
     amplitude = given.pop("amplitude")
     # K is the error at ϖ = 1, continued by its law.
-    of: Any = calls.model(model="spring-damper", frequency_ratio=1.0, **given)
+    of: Any = models.model(model="spring-damper", frequency_ratio=1.0, **given)
     contact = of.contact
     zeta, release = contact.damping_ratio, contact.release
     law = error_laws.coefficients(n, zeta, amplitude, release)
@@ -116,18 +117,18 @@ def error_law(n=1, **given: Any) -> Answer:
     }
 
 
-@takes(calls.model, "release", *calls.LOSS)
-def permanent_contact(*, frequency_ratio: calls.FrequencyRatio, **given: Any) -> Answer:
+@takes(models.model, "release", *models.LOSS)
+def permanent_contact(*, frequency_ratio: models.FrequencyRatio, **given: Any) -> Answer:
     """The Λ up to which the ball stays on the table."""
-    of: Any = calls.model(model="spring-damper", frequency_ratio=frequency_ratio, **given)
+    of: Any = models.model(model="spring-damper", frequency_ratio=frequency_ratio, **given)
     threshold = float(of.permanent_contact_threshold())
     return {"threshold_amplitude": threshold} | _described(of.contact)
 
 
-@takes(calls.simulate)
+@takes(motion.simulate)
 def simulate(amplitude, phase, velocity, impacts, **impact: Any) -> Answer:
     """The sequence of impacts of one ball, as lists; null for an event that does not happen."""
-    of = calls.model_of_impact(amplitude, phase, velocity, **impact)
+    of = models.model_of_impact(amplitude, phase, velocity, **impact)
     found = of.simulate(amplitude, phase, velocity, impacts)
     names = ("time", "phase", "impact_velocity", "contact_duration", "bounce_velocity")
     columns = np.array([getattr(found, name) for name in names])

@@ -6,16 +6,16 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from bouncing_ball import long_run
-from bouncing_ball.calls import AnyAmplitude
+from bouncing_ball.calls import long_run
+from bouncing_ball.calls.model import AnyAmplitude
 from bouncing_ball.cli.readable import lines as readable
 from bouncing_ball.datasets.labelled import Labelled
 from bouncing_ball.errors import ParameterError
-from bouncing_ball.signatures import Range, takes
+from bouncing_ball.signatures import count, takes
 
 Answer = dict[str, Any]
 Interval = tuple[AnyAmplitude, AnyAmplitude]
-Points = Annotated[int, Range(2, 100_000, "[]")]
+Points = Annotated[int, count(100_000, low=2)]
 
 
 def _motion(found: Labelled) -> Answer:

@@ -9,7 +9,7 @@ from typing import Any
 
 from bouncing_ball import __version__
 from bouncing_ball.cli.explained import explained
-from bouncing_ball.cli.options import Parser, add_options, in_options, positional
+from bouncing_ball.cli.options import Parser, add_options, option, positional
 from bouncing_ball.cli.output import fail, say
 from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, extra
 
@@ -90,7 +90,7 @@ def main(arguments: list[str] | None = None) -> None:
             else:
                 text = "\n".join(module.lines(answer))
     except ValueError as error:
-        text = in_options(error.text) if isinstance(error, ParameterError) else str(error)
+        text = error.shown(option) if isinstance(error, ParameterError) else str(error)
         if as_json:
             say(json.dumps({"error": text}))
         fail(text, status=1 if isinstance(error, NoOrbitError) else 2)

@@ -52,17 +52,6 @@ def option(name: str) -> str:
     return "--" + _OTHER_NAMES.get(name, name).replace("_", "-")
 
 
-def in_options(text: str) -> str:
-    """A text in which ``{parameter}`` is replaced by its option.
-
-    Examples
-    --------
-    >>> in_options("{duration} needs {law}")
-    '--duration needs --law'
-    """
-    return re.sub(r"{(\w+)}", lambda found: option(found[1]), text)
-
-
 def meanings(call: Callable) -> dict[str, str]:
     """The description of each parameter in the docstring, with those of parameters handed on.
 
@@ -97,14 +86,13 @@ def _assignment(text: str) -> tuple[str, float]:
     return name, number
 
 
-def _within(allowed: Range, kind: Any) -> Callable[[str], Any]:
+def _within(allowed: Range) -> Callable[[str], Any]:
     """A parser of numbers in a range, for ``type=``."""
 
     def parse(text: str) -> Any:
-        value = _number(text, kind)
+        value = _number(text, int if allowed.whole else float)
         if value not in allowed:
-            what = allowed.whole if kind is int else allowed
-            raise argparse.ArgumentTypeError(f"{text!r} is not {what}")
+            raise argparse.ArgumentTypeError(f"{text!r} is not {allowed}")
         return value
 
     return parse
@@ -118,7 +106,7 @@ def _reading(annotation: Any) -> dict[str, Any]:
         return _reading(kinds[0])
     match typing.get_origin(annotation) or annotation:
         case typing.Annotated if isinstance(kinds[1], Range):
-            return {"type": _within(kinds[1], kinds[0]), "metavar": "N" if kinds[0] is int else "X"}
+            return {"type": _within(kinds[1]), "metavar": "N" if kinds[1].whole else "X"}
         case typing.Literal:
             return {"choices": kinds}
         case builtins.tuple if kinds[-1] is not ...:

@@ -7,6 +7,7 @@ applies to all elements and remains a scalar.
 import functools
 import inspect
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from typing import Any, Self
 
@@ -45,7 +46,7 @@ def in_words(value: Any) -> str:
 
 
 def plain(value: Any) -> Any:
-    """Results for a user: a single number as a Python number, a single batch as a :class:`Single`.
+    """Results for a user: a single number as a Python number, a single object as a :class:`Single`.
 
     Arrays are unchanged. A method is wrapped, so that its result is converted in the same way.
 
@@ -54,15 +55,18 @@ def plain(value: Any) -> Any:
     >>> plain(np.array(0.5)), plain(np.bool_(True)), plain(np.array([0.5]))
     (0.5, True, array([0.5]))
     """
-    if isinstance(value, np.ndarray | np.generic) and not value.ndim:
-        return value.item()
-    if isinstance(value, Batch) and not value.shape:
+    if isinstance(value, np.ndarray | np.generic):
+        return value if value.ndim else value.item()
+    if getattr(value, "shape", None) == () and type(value) is not Single:
         return Single(value)
-    if type(value) is tuple:
-        return tuple(map(plain, value))
-    if inspect.ismethod(value):
-        return functools.wraps(value)(lambda *given, **more: plain(value(*given, **more)))
-    return value
+    if isinstance(value, tuple):
+        return getattr(value, "_make", tuple)(map(plain, value))
+    return plainly(value) if inspect.ismethod(value) else value
+
+
+def plainly(call: Callable) -> Callable:
+    """The function whose results are :func:`plain`."""
+    return functools.wraps(call)(lambda *given, **more: plain(call(*given, **more)))
 
 
 class Single:
@@ -93,6 +97,9 @@ class Single:
 
     def __getattr__(self, name: str) -> Any:
         return plain(getattr(self._of, name))
+
+    def __call__(self, *given: Any, **more: Any) -> Any:
+        return plain(self._of(*given, **more))
 
     def __dir__(self) -> list[str]:
         return dir(self._of)

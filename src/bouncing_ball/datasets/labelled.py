@@ -93,12 +93,9 @@ class Grid:
         """Number of places."""
         return math.prod(self.shape)
 
-    @property
-    def rows(self) -> list[np.ndarray]:
-        """A list of one array with an entry for each place, to broadcast with; empty without an
-        axis.
-        """
-        return [np.zeros(self.size)] if self.shape else []
+    def row(self, name: str) -> np.ndarray:
+        """An argument with an entry for each place."""
+        return np.broadcast_to(np.asarray(self.flat[name], dtype=float), self.size)
 
     def cells(self) -> list[dict[str, Any]]:
         """The arguments at each place of the grid, one after another."""

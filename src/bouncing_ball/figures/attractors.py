@@ -1,12 +1,13 @@
 """What balls end on in the three models, side by side on the same axes."""
 
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib import colormaps
 from matplotlib.axes import Axes
-from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.colors import BoundaryNorm, ListedColormap, to_hex
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
@@ -29,6 +30,10 @@ _DOTS: dict[str, Look] = {
     "chaotic": {"marker": ".", "markersize": 1.3, "color": "#AA3A00", "markeredgewidth": 0},
     "undecided": {"marker": "x", "markersize": 1.6, "color": "#000000", "markeredgewidth": 0.3},
 }
+_UNKNOWN = {"not at any": "#000000", "undecided": "#ffffff", "no number": "#c8c8c8"}
+_MEANS = {name: (name, colour, marker) for name, colour, marker in zip(
+    ("power", "height", "flights", "exponent"), COLOURS, "osv^", strict=False)}  # fmt: skip
+_HATCHES = {"chaotic": "......", "undecided": "xxxx"}
 # Exponents beyond are drawn as these.
 _LOWEST, _HIGHEST = -1.5, 1.5
 # Lighter throughout, from blue below 0 to yellow above.
@@ -68,7 +73,7 @@ def locking(data: xr.Dataset) -> Figure:
     exponents.colorbar(image, ax=list(rates), label=label, **bar)
     maps.legend(handles=_key(data), loc="outside lower center", ncols=7, fontsize=7)
     for simple, axes in zip(data.simple.values, below.subplots(1, 2, sharey=True), strict=True):
-        _draw_agreement(axes, data.sel(simple=simple))
+        _draw_shares(axes, data.sel(simple=simple), "agreement", "motion_group", _LOOKS)
         axes.set_title(f"contact against the {simple} model")
     handles = axes.get_legend_handles_labels()[0]
     below.axes[0].set_ylabel("share of nodes with the\nsame kind and period")
@@ -85,9 +90,7 @@ def _draw_kinds(axes: Axes, one: xr.Dataset) -> None:
         axes, one, place, cmap=colours, norm=BoundaryNorm(np.arange(colours.N + 1) - 0.5, colours.N)
     )
     for kind, look in _DOTS.items():
-        r, lam = np.nonzero((one.kind == kind).values)
-        x, y = one.amplitude.values[lam], one.restitution.values[r]
-        axes.plot(x, y, linestyle="none", rasterized=True, **look)
+        _dot(axes, one, one.kind == kind, look)
     _draw_bifurcations(axes, one)
 
 
@@ -96,6 +99,13 @@ def _draw_exponent(axes: Axes, one: xr.Dataset):
     image = _mesh(axes, one, one.lyapunov_exponent.values.clip(_LOWEST), **look)
     _draw_bifurcations(axes, one)
     return image
+
+
+def _dot(axes: Axes, one: xr.Dataset, chosen: xr.DataArray, look: Look) -> None:
+    r, lam = np.nonzero(chosen.values)
+    place = one.amplitude.values[lam], one.restitution.values[r]
+    drawn: Look = {"color": "#000000", "linestyle": "none", "rasterized": True, **look}
+    axes.plot(*place, **drawn)
 
 
 def _mesh(axes: Axes, one: xr.Dataset, values: np.ndarray, **look):
@@ -114,37 +124,75 @@ def _draw_bifurcations(axes: Axes, one: xr.Dataset) -> None:
 
 
 def _key(data: xr.Dataset) -> list:
-    edge: Look = {"edgecolor": "#000000", "linewidth": 0.4}
     ends = [*(low - 1 for low in _PERIODS[1:]), None]
     names = [
-        f"locked, {low} T"
-        if low == 1
-        else f"{low} T"
-        if low == end
-        else f"from {low} T"
-        if end is None
-        else f"{low} to {end} T"
+        f"from {low} T" if end is None else f"{low} T" if low == end else f"{low} to {end} T"
         for low, end in zip(_PERIODS, ends, strict=True)
     ]
     found = set(np.unique(data.kind))
-    patches = [Patch(facecolor=c, label=x, **edge) for c, x in zip(_LOCKED, names, strict=True)]
     others = [(kind, fill) for kind, fill in _OTHERS.items() if kind in found]
-    for kind, fill in others:
-        hatch = {"chaotic": "......", "undecided": "xxxx"}.get(kind)
-        patches.append(Patch(facecolor=fill, label=kind, hatch=hatch, **edge))
-    return patches
+    return _patches(
+        [(f"locked, {names[0]}", _LOCKED[0]), *zip(names[1:], _LOCKED[1:], strict=True), *others]
+    )
 
 
-def _draw_agreement(axes: Axes, one: xr.Dataset) -> None:
-    ratio = one.frequency_ratio.values
-    for k, (group, (name, colour, marker)) in enumerate(_LOOKS.items()):
-        shown = one.sel(motion_group=group)
-        low, high = shown.agreement - shown.agreement_low, shown.agreement_high - shown.agreement
-        # Side by side.
-        place = ratio * 1.06 ** (k - 2)
+def _patches(fills: Iterable[tuple[str, Any]]) -> list[Patch]:
+    """Entries of a legend for areas, hatched where the areas have dots."""
+    return [
+        Patch(
+            facecolor=fill, label=name, hatch=_HATCHES.get(name), edgecolor="#000000", linewidth=0.4
+        )
+        for name, fill in fills
+    ]
+
+
+def _draw_shares(axes: Axes, one: xr.Dataset, name: str, dim: str, looks: Mapping) -> None:
+    """Shares over ϖ with their intervals, side by side, at places along a dimension."""
+    for k, (place, (text, colour, marker)) in enumerate(looks.items()):
+        share, low, high = (one[f"{name}{x}"].sel({dim: place}) for x in ("", "_low", "_high"))
+        ratio = one.frequency_ratio.values * 1.06 ** (k - 2)
         look: Look = {"color": colour, "marker": marker, "markersize": 4, "linewidth": 0.8}
-        axes.errorbar(place, shown.agreement, [low, high], capsize=2, label=name, **look)
+        axes.errorbar(ratio, share, [share - low, high - share], capsize=2, label=text, **look)
     logarithmic(axes, xlabel=r"frequency ratio $\varpi$", ylim=(0, 1.03))
+
+
+def mean_motions(data: xr.Dataset) -> Figure:
+    """The smallest ϖ from which on a mean of each simple model is right, over (Λ, r); below, the
+    share of nodes known to be right from ϖ on.
+    """
+    ratios, means = data.frequency_ratio.values, data["mean"].values
+    figure = Figure(figsize=(WIDE, 6.6), layout="constrained")
+    parts: Any = figure.subfigures(2, 1, height_ratios=(4.4, 2.2))
+    maps, below = parts
+    rows = maps.subplots(2, len(means), sharex=True, sharey=True)
+    fills = [
+        *map(to_hex, colormaps["viridis_r"](np.linspace(0, 0.9, len(ratios)))),
+        *_UNKNOWN.values(),
+    ]
+    look: Look = {"cmap": ListedColormap(fills), "vmin": -0.5, "vmax": len(fills) - 0.5}
+    shares = below.subplots(1, 2, sharey=True)
+    for simple, row, panel in zip(data.simple.values, rows, shares, strict=True):
+        for mean, axes in zip(means, row, strict=True):
+            one = data.sel(simple=simple, mean=mean)
+            place = np.searchsorted(ratios, one.needed_ratio.fillna(0).values)
+            for k, name in enumerate(_UNKNOWN, len(ratios)):
+                place[(one.decision == name).values] = k
+            _mesh(axes, one, place, **look)
+            _dot(axes, one, one.decision == "undecided", {"marker": "x", "markersize": 3})
+        row[0].set_ylabel(f"{simple} model\n$r$")
+        _draw_shares(panel, data.sel(simple=simple, motion_group="all"), "right", "mean", _MEANS)
+        panel.set_title(f"{simple} model")
+    for mean, top, bottom in zip(means, *rows, strict=True):
+        top.set_title(mean)
+        bottom.set_xlabel(r"amplitude $\Lambda$")
+    names = [rf"$\varpi\geq{number(float(ratio))}$" for ratio in ratios]
+    handles = _patches(zip([*names, *_UNKNOWN], fills, strict=True))
+    maps.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=7)
+    shares[0].set_ylabel("share of nodes known to be\nright from here on")
+    below.legend(
+        *shares[0].get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=7
+    )
+    return figure
 
 
 def orbit_diagrams(data: xr.Dataset) -> Figure:

@@ -1,8 +1,7 @@
-"""Permanent contact and the orbits with a long contact: stable windows and basins."""
+"""Permanent contact and the orbits with a long contact: cascade of flights and basins."""
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
@@ -10,44 +9,36 @@ from matplotlib.patches import Patch
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.figures.canvas import WIDE, canvas, coloured, legend_below, logarithmic
 from bouncing_ball.figures.labels import number
-from bouncing_ball.figures.style import (
-    COLOURS,
-    CONTACT,
-    GUIDE,
-    MARKS,
-    PERIOD_DOUBLING,
-    SADDLE_NODE,
-    Look,
-)
+from bouncing_ball.figures.style import COLOURS, GUIDE, Look
 
-_MARKS: dict[str, Look] = {
-    SADDLE_NODE: {**MARKS[SADDLE_NODE], "color": COLOURS[1]},
-    PERIOD_DOUBLING: {**MARKS[PERIOD_DOUBLING], "color": COLOURS[3]},
-    "grazing in contact": {**MARKS["grazing"], "color": COLOURS[0]},
-    "grazing in flight": {**MARKS["grazing"], "marker": "v", "color": COLOURS[2]},
-}
-# Every so many of the windows with the same kind of end have a mark.
-_EVERY = 8
 # Colours in the order of the motions; they are five steps of grey.
 _FILLS = ("#ffffff", "#b9d7ea", "#b34a10", "#e0a030", "#000000")
+_DASHES = ("-", (0, (6, 1.5)), (0, (4, 1.5, 1, 1.5)), (0, (2, 1)))
 _RATIO = r"frequency ratio $\varpi$"
 _ORBITS = {1: "o", 2: "^"}
 
 
-def stable_windows(data: xr.Dataset) -> Figure:
-    """ext_rattling: the window of the first r with its ends; ϖ² times the widths for all r."""
+def cascade_of_flights(data: xr.Dataset) -> Figure:
+    """ext_rattling: E of the openings over ϖ for the first r, and their limits for all r."""
     figure, (left, right) = canvas(WIDE, 3.2, columns=2)
-    _draw_window(left, data.isel(restitution=0))
-    ratio = data.frequency_ratio.values
+    shown, ratio = data.isel(restitution=0), data.frequency_ratio.values
+    excess = ratio**2 * (shown.opening_amplitude - shown.threshold_amplitude)
+    for one, line, colour in zip(each(shown, "flights"), excess, COLOURS, strict=False):
+        k = int(one.flights)
+        name = rf"from {k} to {k + 1}, $E_{k}$"
+        left.plot(ratio, line, color=colour, linestyle=_DASHES[k % 4], label=name)
+        left.plot(ratio[-1], one.stiff_opening, marker=5, color=colour, clip_on=False)
+    ylabel = r"$E=\varpi^2\,(\Lambda-\Lambda_{SD})$"
+    title = rf"flights in a period, $r={number(float(shown.restitution))}$"
+    logarithmic(left, xlabel=_RATIO, yscale="log", ylabel=ylabel, title=title)
+    left.legend(loc="upper left")
     for one, colour in coloured(data.sortby("restitution"), "restitution"):
-        width = ratio**2 * (one.window_amplitude - one.threshold_amplitude).values
-        name = number(float(one.restitution))
-        right.plot(ratio, width, ".", color=colour, markersize=2.5, label=name)
-        right.plot(ratio[-1], one.stiff_window, marker=5, color=colour, clip_on=False)
-    ylabel = r"$\varpi^2\,(\Lambda_{\mathrm{end}}-\Lambda_{SD})$"
-    title = r"its width for each $r$, and the limit for $\varpi\to\infty$"
-    logarithmic(right, xlabel=_RATIO, yscale="log", ylabel=ylabel, title=title)
-    right.legend(loc="lower right", title="$r$, from above", markerscale=3)
+        r, limits = float(one.restitution), one.stiff_opening.values
+        right.plot(data.flights, limits, "o-", color=colour, markersize=3, label=number(r))
+        right.plot(data.flights, limits[-1] * r ** (2 * (data.flights[-1] - data.flights)), **GUIDE)
+    right.set(yscale="log", xlabel="opening $k$", ylabel=r"$E_k$ for $\varpi\to\infty$")
+    right.set(xticks=data.flights.values, title=r"limits; dotted: $E_{k+1}/E_k=1/r^2$")
+    right.legend(loc="upper left", title="$r$, from above")
     return figure
 
 
@@ -75,20 +66,3 @@ def basins(data: xr.Dataset) -> Figure:
     ]
     legend_below(figure, handles, ncols=len(handles), fontsize=7)
     return figure
-
-
-def _draw_window(axes: Axes, window: xr.Dataset) -> None:
-    """The window of one r, with marks at its upper end by the kind of the end."""
-    ratio, kinds = window.frequency_ratio.values, window.window_end.values
-    low, high = window.threshold_amplitude.values, window.window_amplitude.values
-    axes.fill_between(ratio, low, high, color="#dcdcdc", linewidth=0)
-    for kind, look in _MARKS.items():
-        there = np.flatnonzero(kinds == kind)[::_EVERY]
-        if there.size:
-            axes.plot(ratio[there], high[there], label=kind, **(look | {"markersize": 3.5}))
-    axes.plot(ratio, low, color=CONTACT, linewidth=1.3, label=r"$\Lambda_{SD}$")
-    axes.axhline(1.0, **GUIDE)
-    title = rf"stable window, $r={number(float(window.restitution))}$"
-    logarithmic(axes, xlabel=_RATIO, ylabel=r"amplitude $\Lambda$", title=title)
-    axes.set_ylim(bottom=0.0)
-    axes.legend(loc="lower right", title="upper end")

@@ -108,6 +108,11 @@ class ImpactSequence:
         return replace(self, contact=law, **of_all, **found)
 
     @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of the balls, without that of the impacts."""
+        return self.status.shape
+
+    @property
     def impact_velocity(self) -> np.ndarray:
         """Absolute velocity z′_i of the ball at each impact, before it."""
         return self.relative_velocity + self.amplitude * np.cos(self.phase)

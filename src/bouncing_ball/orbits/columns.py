@@ -32,7 +32,7 @@ def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
     --------
     >>> from bouncing_ball.orbits.restitution_model import RestitutionModel
     >>> found = columns(RestitutionModel(1.0).orbit(1, 0.5), "phase")
-    >>> {name: x.item() for name, x in found.items()}
+    >>> found
     {'phase': 1.5707963267948966, 'stable': False, 'admissible': True}
     """
     return {

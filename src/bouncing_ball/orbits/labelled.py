@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.continuation.branch import Branch, ContinuationError, continue_both_ways
 from bouncing_ball.continuation.events import parameter_bound
 from bouncing_ball.continuation.step_control import StepControl
@@ -19,13 +18,12 @@ from bouncing_ball.datasets.labelled import CASE, Grid, Labelled
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import ModelError, NoOrbitError, require
 from bouncing_ball.motion.angles import table
-from bouncing_ball.motion.history import History, history
+from bouncing_ball.motion.history import history as of_one_ball
 from bouncing_ball.motion.landing import Flight, land
 from bouncing_ball.motion.sequence import Status
 from bouncing_ball.orbits.columns import branch_columns, columns, orbits_in_columns
-from bouncing_ball.orbits.orbit import OBSERVABLES
+from bouncing_ball.orbits.orbit import OBSERVABLES, Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Side
 
 # Number of impacts of a ball that are simulated at first, and the largest number.
@@ -37,6 +35,7 @@ _STATES = 10_000_000
 # starting points of a branch.
 _BEYOND, _LOWEST, _STARTS = 1.4, 1e-4, 16
 _STEPS = StepControl(largest=0.1)
+_SHOWN = {"ball": "height", "ball_velocity": "velocity", "table": "table", "contact": "touching"}
 
 
 def instants(periods: float, samples: int, balls: int) -> np.ndarray:
@@ -58,87 +57,73 @@ def instants(periods: float, samples: int, balls: int) -> np.ndarray:
     return np.linspace(0.0, 2 * np.pi * periods, count)
 
 
-def _followed(model: Any, start: Sequence[np.ndarray], time: np.ndarray) -> list[History]:
-    """The histories of balls from their first impacts (Λ, φ, z′_i), at times (ball, sample) since
-    then.
-    """
-    impacts = _FIRST
-    while True:
-        found = model.simulate(*start, impacts)
-        if not np.any((found.status == Status.BOUNCING) & (found.time[-1] <= time[:, -1])):
-            return [history(found[k], each) for k, each in enumerate(time)]
-        if impacts == _MOST:
-            raise ModelError(f"a ball has more than {_MOST} impacts in this time: ask for less")
-        impacts *= 4
-
-
-def from_impact(model: Any, grid: Grid, time: np.ndarray) -> Labelled:
+def history(grid: Grid, models: Callable[..., Any], periods: float, samples: int) -> Labelled:
     """Balls and table over time from a first impact, with the (Λ, φ, z′_i) of a grid.
 
-    ``ball``, ``ball_velocity``, ``table`` and ``contact`` are over (…, time).
+    ``ball``, ``ball_velocity``, ``table`` and ``contact`` are over (…, time). ``models`` gives the
+    model of these and the other arguments.
 
     Raises
     ------
     ModelError
         If a ball has too many impacts in this time, or a parameter is outside its range.
     """
-    start = np.atleast_1d(*(grid.flat[name] for name in ("amplitude", "phase", "velocity")))
-    start = np.broadcast_arrays(*start, *grid.rows)[:3]
-    return _over_time(grid, time, _followed(model, start, np.tile(time, (start[0].size, 1))))
+    time = instants(periods, samples, grid.size)
+    start = [grid.row(name) for name in ("amplitude", "phase", "velocity")]
+    since = np.broadcast_to(time, (grid.size, time.size))
+    return _over_time(grid, time, _followed(models(**grid.flat), start, since))
 
 
-def fall(grid: Grid) -> tuple[np.ndarray, ...]:
-    """Λ, φ and z′_i at the first impacts of balls released at rest, and the times of fall.
-
-    Raises
-    ------
-    ModelError
-        If a ball is released below the table.
-    """
-    values = (np.atleast_1d(grid.flat[name]) for name in ("amplitude", "phase", "height"))
-    lam, phi, z = (x * 1.0 for x in np.broadcast_arrays(*values, *grid.rows)[:3])
-    rate, level = table(phi, lam)
-    require(z >= level, z, "height", "at or above the table, Λ sin φ")
-    flight = Flight(z - level, -rate, rate, level, lam)
-    time = land(flight, flight.sure()).time
-    return lam, phi + time, -time, time
-
-
-def from_rest(model: Any, grid: Grid, time: np.ndarray) -> Labelled:
+def drop(grid: Grid, models: Callable[..., Any], periods: float, samples: int) -> Labelled:
     """Balls and table over time since the balls were released at rest, with the (h, Λ, φ) of a
     grid.
 
-    The variables are those of :func:`from_impact`.
+    The variables are those of :func:`history`, and ``models`` gives the model of the first impact.
 
     Raises
     ------
     ModelError
         If a ball is released below the table, or has too many impacts in this time.
     """
-    *start, falling = fall(grid)
-    balls = _followed(model, start, time - falling[:, np.newaxis])
-    height = np.broadcast_to(grid.flat["height"], falling.shape)
-    for k, ball in enumerate(balls):
-        above = time < falling[k]
-        balls[k] = ball._replace(
-            height=np.where(above, height[k] - time * time / 2, ball.height),
-            velocity=np.where(above, -time, ball.velocity),
-            table=table(start[1][k] + (time - falling[k]), start[0][k])[1],
-        )
-    found = _over_time(grid, time, balls)
-    found.time.attrs["long_name"] = "time since the ball was let go"
-    return found
+    time = instants(periods, samples, grid.size)
+    height, lam, phi = (grid.row(name) for name in ("height", "amplitude", "phase"))
+    rate, level = table(phi, lam)
+    require(height >= level, height, "height", "at or above the table, Λ sin φ")
+    flight = Flight(height - level, -rate, rate, level, lam)
+    falling = land(flight, flight.sure()).time
+    start = lam, phi + falling, -falling
+    impact = {k: x for k, x in grid.flat.items() if k not in ("height", "amplitude", "phase")}
+    h, fall, lam, phi = (x[:, np.newaxis] for x in (height, falling, lam, start[1]))
+    found = _followed(models(*start, **impact), start, time - fall)
+    above = time < fall
+    found["ball"] = np.where(above, h - time * time / 2, found["ball"])
+    found["ball_velocity"] = np.where(above, -time, found["ball_velocity"])
+    found["table"] = table(phi + (time - fall), lam)[1]
+    labelled = _over_time(grid, time, found)
+    labelled.time.attrs["long_name"] = "time since the ball was let go"
+    return labelled
 
 
-def _over_time(grid: Grid, time: np.ndarray, balls: list[History]) -> Labelled:
-    columns = {"ball": "height", "ball_velocity": "velocity", "table": "table"}
-    columns |= {"contact": "touching"}
-    of_balls = {
-        name: ((CASE, "time"), np.array([getattr(ball, each) for ball in balls]))
-        for name, each in columns.items()
-    }
-    found = describe(xr.Dataset(of_balls, {"time": time}))
-    return grid.unfold(found.assign_attrs(kind="history"))
+def _followed(model: Any, start: Sequence[np.ndarray], time: np.ndarray) -> dict[str, np.ndarray]:
+    """Balls from their first impacts (Λ, φ, z′_i), at times (ball, sample) since then."""
+    impacts = _FIRST
+    while True:
+        found = model.simulate(*start, impacts)
+        if not np.any((found.status == Status.BOUNCING) & (found.time[-1] <= time[:, -1])):
+            balls = [of_one_ball(found[k], each) for k, each in enumerate(time)]
+            return {name: np.array([getattr(x, y) for x in balls]) for name, y in _SHOWN.items()}
+        if impacts == _MOST:
+            raise ModelError(f"a ball has more than {_MOST} impacts in this time: ask for less")
+        impacts *= 4
+
+
+def _over_time(grid: Grid, time: np.ndarray, found: dict[str, np.ndarray]) -> Labelled:
+    rows = {name: ((CASE, "time"), values) for name, values in found.items()}
+    return _unfolded(grid, xr.Dataset(rows, {"time": time}), "history")
+
+
+def _unfolded(grid: Grid, rows: xr.Dataset, kind: str) -> Labelled:
+    return grid.unfold(describe(rows).assign_attrs(kind=kind))
 
 
 def branches(
@@ -154,36 +139,35 @@ def branches(
     NoOrbitError
         If a grid of one place has no branch.
     """
-    rows = []
-    for cell in grid.cells():
-        n = cell.pop("n")
-        try:
-            found = branch(models(n, **cell), n, amplitude_max, points)
-        except NoOrbitError as error:
-            if not grid.shape:
-                raise
-            missing = SpringDamperModel(SpringDamper(1.0, 0.0)).system(n)
-            none = missing.orbit(np.full((points, 4), np.nan))
-            found = orbits_in_columns(none, none[:0], [], [str(error)] * 2)
-        rows.append(found)
-    whole = xr.concat(rows, CASE, join="outer")
-    whole = describe(whole.assign(special_kind=whole.special_kind.fillna("").astype(str)))
+
+    def found(n: int, **impact: Any) -> xr.Dataset:
+        return branch(models(n, **impact), n, amplitude_max, points)
+
+    def missing(error: NoOrbitError) -> xr.Dataset:
+        none = RestitutionModel(1.0).orbit(1, np.full(points, np.nan))
+        return orbits_in_columns(none, none[:0], [], [str(error)] * 2)
+
+    whole = _by_place(grid, found, missing)
     if amplitude_max is not None:
         grid.attrs["amplitude_max"] = float(amplitude_max)
-    return grid.unfold(whole.assign_attrs(kind="branch"))
+    return _unfolded(
+        grid, whole.assign(special_kind=whole.special_kind.fillna("").astype(str)), "branch"
+    )
 
 
-def orbits(grid: Grid, models: Callable[..., Any], side: str) -> Labelled:
+def orbits(grid: Grid, models: Callable[..., Any], side: Side) -> Labelled:
     """The orbit on a side of the saddle-node at each place of a grid; NaN where there is none.
 
     The variables are the observables, ``stable`` and ``admissible``, over the axes of the grid.
     """
 
-    def found(n: Any, amplitude: Any, **impact: Any) -> dict[str, np.ndarray]:
-        orbit = models(n, amplitude, Side(side), **impact).orbit(n, amplitude, Side(side))
+    def named(orbit: Orbit) -> dict[str, np.ndarray]:
         return columns(orbit, *(name for name in OBSERVABLES if name != "amplitude"))
 
-    return _each_case(grid, found, "orbit")
+    def found(n: Any, amplitude: Any, **impact: Any) -> dict[str, np.ndarray]:
+        return named(models(n, amplitude, side, **impact).orbit(n, amplitude, side))
+
+    return _each_case(grid, found, "orbit", named(RestitutionModel(1.0).orbit(1, np.nan)))
 
 
 def limits(grid: Grid, models: Callable[..., Any]) -> Labelled:
@@ -198,29 +182,39 @@ def limits(grid: Grid, models: Callable[..., Any]) -> Labelled:
         parts = ("amplitude", "phase")
         return {f"{end}_{x}": getattr(orbit, x) for end, orbit in ends.items() for x in parts}
 
-    return _each_case(grid, found, "limits")
+    return _each_case(grid, found, "limits", {})
 
 
-def _each_case(grid: Grid, found: Callable[..., dict[str, np.ndarray]], kind: str) -> Labelled:
+def _each_case(
+    grid: Grid, found: Callable[..., dict[str, Any]], kind: str, missing: dict[str, Any]
+) -> Labelled:
     """The results at each place of a grid, in one computation unless a law is given by its name.
 
     The parameters of a law follow from a search, for one r at a time.
     """
     if "law" in grid.flat:
-        cells = [_one_case(found, cell) for cell in grid.cells()]
-        whole = xr.concat(cells, CASE)
+        rows = _by_place(grid, lambda **at: xr.Dataset(found(**at)), lambda _: xr.Dataset(missing))
     else:
         values = {name: np.broadcast_to(x, grid.size) for name, x in found(**grid.flat).items()}
-        whole = xr.Dataset({name: (CASE, x) for name, x in values.items()})
-    return grid.unfold(describe(whole).assign_attrs(kind=kind))
+        rows = xr.Dataset({name: (CASE, x) for name, x in values.items()})
+    return _unfolded(grid, rows, kind)
 
 
-def _one_case(found: Callable[..., dict[str, np.ndarray]], cell: dict[str, Any]) -> xr.Dataset:
-    try:
-        return xr.Dataset(found(**cell))
-    except NoOrbitError:
-        none = RestitutionModel(1.0).orbit(1, -1.0)
-        return xr.Dataset(columns(none, *(name for name in OBSERVABLES if name != "amplitude")))
+def _by_place(
+    grid: Grid,
+    found: Callable[..., xr.Dataset],
+    missing: Callable[[NoOrbitError], xr.Dataset],
+) -> xr.Dataset:
+    """The results at each place of a grid, one after another."""
+    rows = []
+    for place in grid.cells():
+        try:
+            rows.append(found(**place))
+        except NoOrbitError as error:
+            if not grid.shape:
+                raise
+            rows.append(missing(error))
+    return xr.concat(rows, CASE, join="outer")
 
 
 def branch(model: Any, n: int, amplitude_max: float | None, points: int) -> xr.Dataset:

@@ -24,7 +24,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.batch import Batch
+from bouncing_ball.contacts.batch import Batch, plainly
 from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.contacts.signature import Instant
 from bouncing_ball.errors import ModelError, NoOrbitError
@@ -36,10 +36,11 @@ from bouncing_ball.orbits.stability import Bifurcation, Side
 from bouncing_ball.orbits.system import ContactSystem, OrbitSystem
 
 
-def _labelled() -> Any:
+def labelled() -> Any:
     """The labelled results of models, which need xarray and are made of models themselves.
 
-    The module is imported on first use, because no stage of the pipeline depends on it.
+    The module is imported on first use: a single orbit needs no labels, and xarray takes longer
+    than the orbit.
     """
     return import_module("bouncing_ball.orbits.labelled")
 
@@ -69,6 +70,11 @@ class Absence(StrEnum):
     NOT_FOUND = "none was found, and there may be one"
 
 
+# The methods whose results for single numbers are Python numbers.
+_ANSWERS = ("orbit", "absence", "saddle_node", "period_doubling", "nearest", "simulate", "cycle",
+            "permanent_contact_threshold")  # fmt: skip
+
+
 class ImpactModel(Batch, ABC):
     """A law of the impact together with its n-T orbits.
 
@@ -82,6 +88,13 @@ class ImpactModel(Batch, ABC):
     name: ClassVar[str]
     routes: ClassVar[frozenset[Route]] = frozenset({Route.CONTINUATION, Route.SIMULATION})
     orbit_type: ClassVar[type[Orbit]]
+
+    def __init_subclass__(cls) -> None:
+        """Single numbers in, single numbers out, whichever class defines a method."""
+        for name in _ANSWERS:
+            method = getattr(cls, name)
+            if not hasattr(method, "__wrapped__"):
+                setattr(cls, name, plainly(method))
 
     @property
     def label(self) -> str:
@@ -121,7 +134,8 @@ class ImpactModel(Batch, ABC):
         Returns
         -------
         Orbit
-            Of the shape to which n, Λ and the model broadcast; NaN where there is no orbit.
+            Of the shape to which n, Λ and the model broadcast; NaN where there is no orbit. The
+            numbers of a single orbit are Python's floats.
 
         Raises
         ------
@@ -208,9 +222,8 @@ class ImpactModel(Batch, ABC):
         samples: int = 200,
     ) -> Any:
         """A ball over time from a first impact: :func:`bouncing_ball.history`."""
-        labelled = _labelled()
         grid = self._grid(amplitude=amplitude, phase=phase, velocity=velocity)
-        return labelled.from_impact(self, grid, labelled.instants(periods, samples, grid.size))
+        return labelled().history(grid, self._same, periods, samples)
 
     def drop(
         self,
@@ -222,14 +235,16 @@ class ImpactModel(Batch, ABC):
         samples: int = 200,
     ) -> Any:
         """A ball that is released at rest: :func:`bouncing_ball.drop`."""
-        labelled = _labelled()
         grid = self._grid(height=height, amplitude=amplitude, phase=phase)
-        return labelled.from_rest(self, grid, labelled.instants(periods, samples, grid.size))
+        return labelled().drop(grid, self._same, periods, samples)
 
     def branch(self, n: ArrayLike, *, amplitude_max: float | None = None, points: int = 300) -> Any:
         """The branch of n-T orbits over Λ: :func:`bouncing_ball.branch`."""
-        labelled = _labelled()
-        return labelled.branches(self._grid(n=n), lambda n: self, amplitude_max, points)
+        return labelled().branches(self._grid(n=n), self._same, amplitude_max, points)
+
+    def _same(self, *_: Any, **__: Any) -> Any:
+        """This model, whatever the place of a grid."""
+        return self
 
     def _grid(self, **given: Any) -> Any:
         """The arguments of a labelled result of a single model.
@@ -239,7 +254,7 @@ class ImpactModel(Batch, ABC):
         if self.shape:
             call = "bouncing_ball.history(…, frequency_ratio=[5, 10])"
             raise ModelError(f"several models have no labels: give their parameters to {call}")
-        found = _labelled().Grid(**given)
+        found = labelled().Grid(**given)
         found.attrs["model"] = self.label
         return found
 

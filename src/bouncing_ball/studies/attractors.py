@@ -30,7 +30,7 @@ from bouncing_ball.parameters import (
     number,
 )
 
-Nodes = Annotated[int, number("equally spaced values, both ends included", ge=2, le=2001)]
+Confidence = Annotated[float, number("level of the confidence intervals", gt=0.5, lt=1)]
 Impacts = Annotated[
     int,
     number(
@@ -42,43 +42,57 @@ Impacts = Annotated[
 ]
 
 
-class Amplitudes(Interval):
+class Even(Interval):
+    """Equally spaced values."""
+
+    samples: Annotated[int, number("values, both ends included", ge=2, le=2001)]
+
+    def grid(self) -> np.ndarray:
+        """The values, shape (samples,)."""
+        return np.linspace(self.min, self.max, self.samples)
+
+
+class Amplitudes(Even):
     """Equally spaced amplitudes."""
 
     min: Annotated[Amplitude, Field(description="smallest Λ")]
     max: Annotated[AmplitudeMax, Field(description="largest Λ, above min")]
-    samples: Nodes
-
-    def grid(self) -> np.ndarray:
-        """The amplitudes, shape (samples,)."""
-        return np.linspace(self.min, self.max, self.samples)
 
 
-class Restitutions(Interval):
+class Restitutions(Even):
     """Equally spaced restitution coefficients."""
 
     min: Annotated[LossyRestitution, Field(description="smallest r")]
     max: Annotated[LossyRestitution, Field(description="largest r, above min")]
-    samples: Nodes
-
-    def grid(self) -> np.ndarray:
-        """The restitution coefficients, shape (samples,)."""
-        return np.linspace(self.min, self.max, self.samples)
 
 
-class Locking(Parameters):
-    """A grid over (Λ, r) with one ball for each node, all of which start alike."""
+class Grid(Parameters):
+    """A grid over (Λ, r), and contacts at several ϖ."""
 
     amplitude: Amplitudes
     restitution: Restitutions
-    frequency_ratio: Annotated[
-        Many[FrequencyRatio],
-        Field(description="ϖ of the contact; maps are of the first, shares of agreement of all"),
-    ]
+    frequency_ratio: Many[FrequencyRatio]
+    impacts: Impacts
+    confidence: Confidence
+
+    def models(self, release: Release, starts: bool = False) -> tuple[np.ndarray, tuple]:
+        """Λ, shape (amplitude,), and the three models, of shape (ϖ, restitution, 1) or without ϖ;
+        each with a further axis of length 1 for starts, if requested.
+        """
+        tail = (1,) * starts
+        axes = self.amplitude.grid(), self.restitution.grid(), np.array(self.frequency_ratio)
+        lam, r, ratio = (x.reshape(-1, *(1,) * k, *tail) for k, x in enumerate(axes))
+        return lam, models(r, ratio, release)
+
+
+class Locking(Grid):
+    """A grid over (Λ, r) with one ball for each node, all of which start alike.
+
+    Maps are of the first ϖ, and the shares of agreement of all.
+    """
+
     phase: Annotated[float, number("phase φ of the first impact", "rad", ge=-10, le=10)]
     impact_speed: Annotated[float, number("relative speed -δ′ of the first impact", gt=0, le=1000)]
-    impacts: Impacts
-    confidence: Annotated[float, number("level of the confidence intervals", gt=0.5, lt=1)]
 
 
 # A motion repeats within 1e-6 of its state, so that its multipliers are known to about that times
@@ -105,7 +119,7 @@ GROUPS = ("all", "orbit", "subharmonic", "locked", "locked, 1 to 4 T", "locked, 
 """Nodes by what the ball of the simple model ends on; ``all`` has permanent contact as well."""
 
 
-def models(restitution: np.ndarray, ratio: float, release: Release) -> tuple:
+def models(restitution: np.ndarray, ratio: float | np.ndarray, release: Release) -> tuple:
     """Restitution, corrected and spring-damper model, with the r that the contact really has."""
     contact = SpringDamper.from_restitution(restitution, ratio, release)
     return (
@@ -115,48 +129,39 @@ def models(restitution: np.ndarray, ratio: float, release: Release) -> tuple:
     )
 
 
-def _group(found: Motions, name: str) -> np.ndarray:
+def group(found: Motions, name: str) -> np.ndarray:
     """Whether the motions belong to a group of :data:`GROUPS`."""
-    locked = found.kind == Kind.LOCKED
-    match name:
-        case "all":
-            return np.full(found.kind.shape, True)
-        case "locked, 1 to 4 T":
-            return locked & (found.periods <= 4)
-        case "locked, above 10 T":
-            return locked & (found.periods > 10)
-        case kind:
-            return found.kind == kind
+    kind, _, which = name.partition(", ")
+    inside = found.kind == kind if kind != "all" else np.full(found.kind.shape, True)
+    bound = {"1 to 4 T": found.periods <= 4, "above 10 T": found.periods > 10}
+    return inside & bound.get(which, True)
+
+
+def share(chosen: np.ndarray, confidence: float) -> tuple[float, float, float, float]:
+    """The number of truth values, the share of those that hold, and Wilson's limits of it.
+
+    The limits are those of independent values. NaN if there are none.
+    """
+    if not chosen.size:
+        return 0, np.nan, np.nan, np.nan
+    tested = binomtest(int(chosen.sum()), chosen.size)
+    return chosen.size, tested.statistic, *tested.proportion_ci(confidence, "wilson")
 
 
 def agreement(simple: Motions, contact: Motions, confidence: float) -> np.ndarray:
     """Shares of the nodes at which two models have motions of one kind and period.
 
-    Parameters
-    ----------
-    simple, contact : Motions
-        Of the same nodes. Those at which one of them is undecided are left out.
-    confidence : float
-        Level of the interval, Wilson's for independent nodes. Nodes of a regular grid are
-        spread more evenly than independent ones.
+    Nodes at which one of the motions is undecided are left out. Nodes of a regular grid are spread
+    more evenly than independent ones, for which the limits hold.
 
     Returns
     -------
     array
-        For each of :data:`GROUPS` the number of nodes, the share, and its lower and upper
-        limit, shape (4, groups); NaN where there is no node.
+        :func:`share` for each of :data:`GROUPS`, shape (4, groups).
     """
     known = (simple.kind != Kind.UNDECIDED) & (contact.kind != Kind.UNDECIDED)
     same = (simple.kind == contact.kind) & (simple.periods == contact.periods)
-    rows = []
-    for name in GROUPS:
-        chosen = same[known & _group(simple, name)]
-        row = (np.nan, np.nan, np.nan)
-        if chosen.size:
-            tested = binomtest(int(chosen.sum()), chosen.size)
-            row = tested.statistic, *tested.proportion_ci(confidence, "wilson")
-        rows.append((chosen.size, *row))
-    return np.array(rows).T
+    return np.array([share(same[known & group(simple, x)], confidence) for x in GROUPS]).T
 
 
 def locking(parameters: Locking, release: Release) -> xr.Dataset:
@@ -171,28 +176,22 @@ def locking(parameters: Locking, release: Release) -> xr.Dataset:
     which both are known: see :func:`agreement`. ``saddle_node_amplitude`` and
     ``period_doubling_amplitude`` (model, restitution) are of the 1-T orbit.
     """
-    lam, r = parameters.amplitude.grid(), parameters.restitution.grid()
-    phase, speed = parameters.phase, parameters.impact_speed
-    velocity = lam * np.cos(phase) - speed
-    compared, shares = [], []
-    first: list[Motions] = []
-    for ratio in parameters.frequency_ratio:
-        models_here = models(r[:, np.newaxis], ratio, release)
-        compared.append(models_here)
-        # The restitution model is the same at every ϖ.
-        found = first[:1] + [
-            label(each.impact_law, lam, phase, velocity, impacts=parameters.impacts)
-            for each in models_here[len(first[:1]) :]
-        ]
-        first = first or found
-        shares.append([agreement(one, found[-1], parameters.confidence) for one in found[:-1]])
-    found = first
+    lam, compared = parameters.models(release)
+    velocity = lam * np.cos(parameters.phase) - parameters.impact_speed
+    start = lam, parameters.phase, velocity
+    simple, *others = (label(x.impact_law, *start, impacts=parameters.impacts) for x in compared)
+    # The restitution model is the same at every ϖ.
+    by_ratio = [(simple, *each) for each in zip(*others, strict=True)]
+    found, level = by_ratio[0], parameters.confidence
+    shares = [[agreement(x, each[-1], level) for x in each[:-1]] for each in by_ratio]
     dims = ("model", "restitution", "amplitude")
     of_shares = ("simple", "frequency_ratio", "motion_group")
-    nodes, share, low, high = np.transpose(shares, (2, 1, 0, 3))
+    nodes, known, low, high = np.transpose(shares, (2, 1, 0, 3))
+    r = parameters.restitution.grid()
+    first = models(r, parameters.frequency_ratio[0], release)
     ends = {
-        "saddle_node_amplitude": [each.saddle_node(1) for each in compared[0]],
-        "period_doubling_amplitude": [each.period_doubling(1) for each in compared[0]],
+        "saddle_node_amplitude": [each.saddle_node(1) for each in first],
+        "period_doubling_amplitude": [each.period_doubling(1) for each in first],
     }
     return described(
         {
@@ -201,11 +200,8 @@ def locking(parameters: Locking, release: Release) -> xr.Dataset:
             "impacts": (dims, np.stack([each.impacts for each in found])),
             "lyapunov_exponent": (dims, np.stack([each.exponent for each in found])),
             "lyapunov_error": (dims, np.maximum(_KNOWN, [each.exponent_error for each in found])),
-            **{
-                name: (dims[:2], np.stack([orbit.amplitude[:, 0] for orbit in orbits]))
-                for name, orbits in ends.items()
-            },
-            "agreement": (of_shares, share),
+            **{x: (dims[:2], np.stack([o.amplitude for o in y])) for x, y in ends.items()},
+            "agreement": (of_shares, known),
             "agreement_low": (of_shares, low),
             "agreement_high": (of_shares, high),
             "agreement_nodes": (of_shares, nodes),

@@ -1,16 +1,17 @@
-"""The 1-T orbits into which permanent contact continues: their stable windows and their basins."""
+"""The orbits into which permanent contact continues: their cascade of flights and their basins."""
 
 from typing import Annotated
 
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.attractors.mapper import label
+from bouncing_ball.attractors.rattling import openings, stiff_openings
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.motion.regularity import period
 from bouncing_ball.orbits.basins import ELSEWHERE, Destinations, destinations
-from bouncing_ball.orbits.long_contact import joining_ratio, stable_window, stiff_limit
+from bouncing_ball.orbits.long_contact import joining_ratio
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.parameters import (
     Family,
@@ -24,11 +25,12 @@ from bouncing_ball.parameters import (
 from bouncing_ball.studies.parameters import OrbitAmplitude
 
 
-class Windows(Parameters):
-    """Contacts of several r and along ϖ whose stable windows are computed."""
+class Flights(Parameters):
+    """Contacts of several r along ϖ, and the number of openings of their orbits."""
 
     restitution: Many[LossyRestitution]
     frequency_ratio: Span
+    flights: Annotated[int, number("openings that are followed", ge=2, le=6)]
 
 
 class Basins(Parameters):
@@ -64,41 +66,48 @@ MOTIONS = (
 )
 """The motions on which a ball may end; a long contact lasts more than half a table period."""
 
-# Balls on none of these motions of which the period is determined, the longest period in
-# impacts, and the distance of states that counts as none.
-_ASKED, _LONGEST, _CLOSE = 100, 16, 1e-6
+# Balls on none of these motions of which the period is determined.
+_ASKED = 100
 
 
-def stable_windows(parameters: Windows, release: Release) -> xr.Dataset:
-    """The ranges of Λ in which the 1-T orbits with a long contact are stable and admissible.
+def cascade_of_flights(parameters: Flights, release: Release) -> xr.Dataset:
+    """The amplitudes at which the T-periodic orbit above Λ_SD has one flight more per period.
 
-    The dataset has ``threshold_amplitude``, at which a window begins, and its end
-    ``window_amplitude``, ``window_flight`` and ``window_end``, a text; shape (restitution, ϖ), NaN
-    where there is no window. ``stiff_window`` is the limit of ϖ²(Λ_end - Λ_SD) for stiff contacts
-    and ``joining_ratio`` the ϖ below which the orbits with a short and a long contact are one
-    family; shape (restitution,), NaN unless the release is the displacement's.
+    The dataset has ``threshold_amplitude`` Λ_SD (restitution, ϖ); ``opening_amplitude`` and
+    ``opening_multiplier`` (restitution, flights, ϖ), the Λ up to which the orbit has so many
+    flights and the larger modulus of its multipliers there, NaN where no stable one was found;
+    ``stiff_opening`` (restitution, flights), the limit of E = ϖ²(Λ - Λ_SD) for stiff contacts; and
+    ``joining_ratio`` (restitution,), the ϖ below which the orbits with a short and a long contact
+    are one family. All but the first are NaN unless the release is the displacement's.
     """
     restitution, ratio = np.array(parameters.restitution), parameters.frequency_ratio.grid()
-    zeta = damping_ratio(restitution)
-    # All contacts in one array, because many small computations cost more than a large one.
-    law = SpringDamper(np.tile(ratio, zeta.size), np.repeat(zeta, ratio.size), release)
-    window = stable_window(law)
-    stiff, joining = np.full((2, *zeta.shape), np.nan)
+    zeta, most = damping_ratio(restitution), parameters.flights
+    law = SpringDamper(ratio, zeta[:, np.newaxis], release)
+    found, stiff = (
+        np.full((2, zeta.size, most, ratio.size), np.nan),
+        np.full((zeta.size, most), np.nan),
+    )
+    joining = np.full(zeta.shape, np.nan)
     if release is Release.DISPLACEMENT:
-        stiff = np.array([stiff_limit(z) for z in zeta])
+        found = np.array(openings(zeta, ratio, most))
+        found = np.where(found[1] < 1, found, np.nan)
+        stiff = np.stack([stiff_openings(z, most) for z in zeta])
         joining = joining_ratio(zeta, release, *_PARTING)
-    threshold = SpringDamperModel(law).permanent_contact_threshold()
-    dims, shape = ("restitution", "frequency_ratio"), (zeta.size, ratio.size)
+    dims = ("restitution", "flights", "frequency_ratio")
+    held = SpringDamperModel(law).permanent_contact_threshold()
     return described(
         {
-            "threshold_amplitude": (dims, threshold.reshape(shape)),
-            "window_amplitude": (dims, window.amplitude.reshape(shape)),
-            "window_flight": (dims, window.flight_time.reshape(shape)),
-            "window_end": (dims, window.end.reshape(shape)),
-            "stiff_window": ("restitution", stiff),
+            "threshold_amplitude": (("restitution", "frequency_ratio"), held),
+            "opening_amplitude": (dims, found[0]),
+            "opening_multiplier": (dims, found[1]),
+            "stiff_opening": (dims[:2], stiff),
             "joining_ratio": ("restitution", joining),
         },
-        coords={"restitution": restitution, "frequency_ratio": ratio},
+        coords={
+            "restitution": restitution,
+            "flights": np.arange(1, most + 1),
+            "frequency_ratio": ratio,
+        },
     )
 
 
@@ -110,9 +119,9 @@ def _shared_period(model: SpringDamperModel, amplitude: float, ends: Destination
     asked = left[:: max(1, left.size // _ASKED)]
     if not asked.size:
         return 0
-    phase, velocity = ends.phase[asked], ends.velocity[asked]
-    thrown = velocity + amplitude * np.cos(phase)
-    periods = period(model.simulate(amplitude, phase, thrown, 20 * _LONGEST), _LONGEST, _CLOSE)
+    phase = ends.phase[asked]
+    velocity = ends.velocity[asked] + amplitude * np.cos(phase)
+    periods = label(model.impact_law, amplitude, phase, velocity).impacts
     # Some of these balls approach an n-T orbit slowly; their motion repeats after one impact.
     values, counts = np.unique(periods, return_counts=True)
     most = int(values[counts.argmax()])

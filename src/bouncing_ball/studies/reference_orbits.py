@@ -1,4 +1,4 @@
-"""Random orbits with all their quantities, against which others can check a computation.
+"""Random orbits with all their quantities, and balls, against which others can check themselves.
 
 The page of the explorer computes them again in the reader's browser.
 """
@@ -7,10 +7,12 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.accuracy.errors import models
+from bouncing_ball.attractors.mapper import label
 from bouncing_ball.contacts.damping import restitution_coefficient
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import describe
+from bouncing_ball.motion.simulation import simulate
 from bouncing_ball.parameters import Parameters, Seed, Span
 from bouncing_ball.studies.random_orbits import random_orbits
 
@@ -21,6 +23,12 @@ _SHOWN = (
     *("phase", "contact_duration", "impact_velocity", "bounce_velocity"),
     *("apparent_restitution", "max_height"),
 )
+# Balls that end at rest, on an orbit, on a doubled one, and locked. None comes near chaos, which
+# no two computers have in common.
+_BALLS = xr.Dataset(
+    {"ball_restitution": 0.5, "ball_frequency_ratio": 80.0, "start_phase": 1.0, "velocity": -3.0}
+).assign(ball_amplitude=("motion", [0.6, 1.2, 1.6, 2.5]))
+_LAST = 100
 
 
 class References(Parameters):
@@ -38,12 +46,31 @@ def reference_orbits(parameters: References) -> xr.Dataset:
     in rad, ``trace`` and ``determinant`` of the monodromy, its bifurcations, ``ball`` and
     ``contact_force`` in the middle of the contact, and values of both simple models
     (``restitution_…``, ``corrected_…``). NaN where there is no orbit or no bifurcation.
+
+    The balls have the shape (model, motion): how they start (``ball_…``, ``start_phase``,
+    ``velocity``), the ``periods`` and ``impacts`` until they repeat, and number, phase, speed and
+    time of their impact number 100, or of the last one before they rest (``end_…``); the sum of
+    infinitely many impacts is included in the time.
     """
     omega = parameters.frequency_ratio.grid()
     parts = [_under(rule, omega, parameters.seed + k) for k, rule in enumerate(Release)]
-    return describe(
-        xr.concat(parts, dim="release").assign_coords(release=[str(rule) for rule in Release])
-    )
+    orbits = xr.concat(parts, dim="release").assign_coords(release=[str(rule) for rule in Release])
+    return describe(orbits.merge(_followed()))
+
+
+def _followed() -> xr.Dataset:
+    r, omega, phase, velocity, lam = (_BALLS[name].values for name in _BALLS)
+    ends = []
+    for law in (r, SpringDamper.from_restitution(r, omega, Release.DISPLACEMENT)):
+        found, run = label(law, lam, phase, velocity), simulate(law, lam, phase, velocity, _LAST)
+        last = run.impacts - 1, np.arange(lam.size)
+        at = run.phase, -run.relative_velocity, run.time + run.settling
+        ends.append((found.periods, found.impacts, last[0], *(values[last] for values in at)))
+    names = ("periods", "impacts", "end_impact", "end_phase", "end_speed", "end_time")
+    values = zip(names, map(np.array, zip(*ends, strict=True)), strict=True)
+    return _BALLS.assign(
+        {name: (("model", "motion"), value) for name, value in values}
+    ).assign_coords(model=["restitution", "spring-damper"])
 
 
 def _under(rule: Release, omega: np.ndarray, seed: int) -> xr.Dataset:

@@ -37,6 +37,7 @@ def uris(reader):
                 yield str(action["/URI"])
 
 
+@pytest.mark.long
 def test_the_article_is_set_with_its_headings_captions_figures_and_links(accepted):
     text = accepted["article"]
     reader = PdfReader(io.BytesIO(article_pdf(text, TEMPLATE, ROOT)))

@@ -14,11 +14,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bouncing_ball.attractors.motions import Kind
 from bouncing_ball.cli.main import main
 from bouncing_ball.configuration.study import typed
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.engines import ENGINES
 from bouncing_ball.engines.reference import as_json
 from bouncing_ball.figures.explorer.document import BOUND, to_html
+from bouncing_ball.motion.history import history
+from bouncing_ball.motion.simulation import simulate
 from bouncing_ball.studies.reference_orbits import reference_orbits
 
 pytestmark = pytest.mark.slow
@@ -64,10 +68,12 @@ def seen(browse, tmp_path_factory):
     right = to_html(data, as_json())
     # Reference orbits that are not the model's.
     wrong = to_html(data.assign(max_height=data.max_height * 1.00000001), as_json())
+    lost = to_html(data.assign(end_phase=data.end_phase + 1e-10), as_json())
     # A text of an engine that is not the package's.
     pasted = to_html(data, as_json().replace("hooke 100000.0", "hooke 100000.1", 1))
     (folder / "right.html").write_text(right, encoding="utf-8")
     (folder / "wrong.html").write_text(wrong, encoding="utf-8")
+    (folder / "lost.html").write_text(lost, encoding="utf-8")
     (folder / "pasted.html").write_text(pasted, encoding="utf-8")
     # A script that was changed in the file, without its checksum.
     tampered = right.replace("const GRAVITY = 9.80665", "const GRAVITY = 9.81")
@@ -118,7 +124,7 @@ def test_eighty_states_say_what_their_commands_print(seen, capsys):
     assert 0 < absent < STATES / 3
 
 
-def test_errors_and_verdicts_are_those_of_the_calculator(seen, capsys):
+def test_errors_and_verdicts_are_those_of_the_calculator(seen, capsys, short_runs):
     judged = set()
     for number, state in enumerate(seen["states"][:30]):
         given = dict(zip(*[iter(shlex.split(state["command"])[2:])] * 2, strict=True))
@@ -154,11 +160,13 @@ def test_errors_and_verdicts_are_those_of_the_calculator(seen, capsys):
 def test_the_badge(seen):
     right, wrong, tampered = (seen["badges"][name] for name in ("right", "wrong", "tampered"))
     assert right["kind"] == "good" and float(right["worst"]) < BOUND / 20
-    assert "500 orbits of the Python package, commit c0ffeec0ff" in right["text"]
+    assert "500 orbits and 8 balls of the Python package, commit c0ffeec0ff" in right["text"]
     assert "and 40 settings of engines, computed again here" in right["text"]
     pasted = seen["badges"]["pasted"]
     assert pasted["kind"] == "bad" and "Infinity (settings of lammps)" in pasted["text"]
     assert wrong["kind"] == "bad" and float(wrong["worst"]) > BOUND
+    lost = seen["badges"]["lost"]
+    assert lost["kind"] == "bad" and "end_phase of a" in lost["text"]
     assert wrong["text"].startswith("WRONG") and wrong["colour"] == "rgb(176, 0, 32)"
     # The policy does not let a changed script run, and what was not checked says so.
     assert tampered["kind"] == "" and tampered["text"].startswith("Not checked")
@@ -190,7 +198,50 @@ def test_address_slider_and_typed_values(seen):
     assert seen["tooLossy"]["verdict"] == seen["tooLossy"]["command"] == ""
 
 
-def test_what_an_engine_is_told_is_what_the_command_prints(seen, capsys):
+KINDS = {
+    "stays": {"permanent contact"}, "repeats": {"orbit", "subharmonic"}, "sticks": {"locked"},
+    "goes on": {"chaotic"},
+}  # fmt: skip
+
+
+def test_scenes_end_as_their_commands_say(seen, capsys):
+    assert set().union(
+        *(KINDS[end["kind"]] for one in seen["scenes"] for end in one["ends"])
+    ) == set(Kind) - {Kind.UNDECIDED}
+    for scene in seen["scenes"]:
+        commands = scene["command"].splitlines()
+        assert len(commands) == len(scene["ends"]) and scene["look"] != "Balls on one table."
+        for command, end in zip(commands, scene["ends"], strict=True):
+            said = answered(capsys, command)
+            assert said["kind"] in KINDS[end["kind"]], command
+            assert (said["periods"], said["impacts"]) == (end["periods"], end["impacts"]), command
+
+
+def test_balls_on_the_stage_are_where_the_package_has_them(seen):
+    for scene in seen["scenes"]:
+        given, count = scene["state"], len(scene["balls"]) // len(scene["ends"])
+        for k, ball in enumerate(scene["balls"]):
+            r, place = given["r"], k % count
+            phase = given["phi"] + place * given.get("dphi", 0)
+            velocity = given["v"] + place * given.get("dv", 0)
+            contact = SpringDamper.from_restitution(r, given.get("w", 1.0), Release.DISPLACEMENT)
+            law = r if ball["model"] == "restitution" else contact
+            run = simulate(law, given["a"], phase, velocity, impacts=400)
+            expected = history(run, ball["since"]).height
+            # Over 100 periods the time itself is known to 1e-13, and a ball is not much faster.
+            assert ball["heights"] == pytest.approx(expected, abs=1e-10), (scene["name"], k)
+
+
+def test_a_ball_that_rises_leaves_no_picture(seen):
+    rising = seen["rising"]
+    assert rising["refused"] == (
+        "The velocity of ball 1 at its first impact, 2, is above that of the table, "
+        "Λ cos φ = 1: it rises, and there is no impact."
+    )
+    assert rising["verdict"] == rising["command"] == "" and rising["picture"] == 0
+
+
+def test_what_an_engine_is_told_is_what_the_command_prints(seen, capsys, short_runs):
     assert len(seen["engines"]) == 11
     for state in seen["engines"]:
         said, rows = answered(capsys, state["command"]), state["rows"]
@@ -211,9 +262,9 @@ def test_what_an_engine_is_told_is_what_the_command_prints(seen, capsys):
         assert penetration == pytest.approx(engine["penetration"], rel=1e-5)
 
 
-def test_the_physical_tab_by_key(seen, capsys):
+def test_the_physical_tab_by_key(seen, capsys, short_runs):
     tab = seen["tab"]
-    assert tab["selected"] == ["false", "true"] and tab["focused"] == "tab-design"
+    assert tab["selected"] == ["false", "true", "false"] and tab["focused"] == "tab-design"
     assert tab["shown"] and tab["hidden"] == 0 and "tab=design" in tab["hash"]
     said, rows = answered(capsys, tab["command"]), tab["rows"]
     orbit, corrected = said["orbits"][0], said["corrected"]

@@ -29,16 +29,16 @@ def soft_divergence(data):
 def kinds_of_motion(data):
     """periodic, subharmonic and chaotic motions can be observed
 
-    Condition: among three motions of the restitution model all three kinds are found
+    Condition: among the motions of the restitution model on a grid over Λ and r all three kinds are
+    found
 
-    Remark: chaotic means no period, and until the ball sticks to the table a Lyapunov exponent
-    that is positive beyond its sampling error: by five standard errors, once in three million by
-    chance
+    Remark: chaotic means that the motion does not repeat, and has a Lyapunov exponent that is
+    positive by five standard errors, once in three million by chance
     """
-    motions = data["motions"]
-    length = motions.motion_period
-    chaotic = (length == 0) & (motions.lyapunov_exponent > 5 * motions.lyapunov_error)
-    return at_least(sum(bool(kind.any()) for kind in (length == 1, length > 1, chaotic)), 3)
+    found = data["ext_locking"].kind.sel(model="restitution")
+    return at_least(
+        sum(bool((found == kind).any()) for kind in ("orbit", "subharmonic", "chaotic")), 3
+    )
 
 
 @claim("Abstract and Introduction")

@@ -18,24 +18,33 @@ from bouncing_ball.datasets.selection import each
 
 BOUND = 1e-11
 """Difference from Python above which the badge is red: a hundred times the largest seen."""
-STATE = ("release", "restitution", "frequency_ratio", "n", "amplitude")
-"""Parameters of a reference orbit, in the order of its ``state``."""
+_NAMES = "model engines simulation plot state orbit sound stage page"
+SCRIPTS = [f"{name}.js" for name in _NAMES.split()]
+STATES = {
+    ("release", "sample"): ("release", "restitution", "frequency_ratio", "n", "amplitude"),
+    ("model", "motion"): ("model", "ball_restitution", "ball_frequency_ratio", "ball_amplitude",
+                          "start_phase", "velocity"),
+}  # fmt: skip
+"""Parameters of a reference orbit and of a ball, in the order of its ``state``, by dimensions."""
 
 
 def references(data: xr.Dataset) -> str:
-    """The reference orbits as JSON, one per line; a quantity that does not exist is null."""
-    names = [str(name) for name in data.data_vars if name not in STATE]
-    rows = []
-    for one in each(data, "release", "sample"):
-        values = [float(one[name]) for name in names]
-        row = {
-            "state": [one[name].item() for name in STATE],
-            "values": [value if np.isfinite(value) else None for value in values],
-        }
-        rows.append(json.dumps(row, allow_nan=False))
+    """The reference orbits and balls as JSON, one per line; what does not exist is null."""
+    tables = []
+    for dims, state in STATES.items():
+        names = [str(x) for x in data.data_vars if data[x].dims == dims and x not in state]
+        rows = []
+        for one in each(data, *dims):
+            values = [float(one[name]) for name in names]
+            row = {
+                "state": [one[name].item() for name in state],
+                "values": [value if np.isfinite(value) else None for value in values],
+            }
+            rows.append(row)
+        tables.append({"names": names, "rows": rows})
     commit = str(data.attrs.get("provenance_commit", "unknown"))
-    head = f'{{"commit": {json.dumps(commit)}, "names": {json.dumps(names)}, "orbits": ['
-    return "\n".join([head, ",\n".join(rows), "]}"])
+    found = {"commit": commit, "orbits": tables[0], "balls": tables[1]}
+    return json.dumps(found, allow_nan=False).replace("}, {", "},\n{")
 
 
 def _allowed(text: str) -> str:
@@ -55,9 +64,9 @@ def to_html(data: xr.Dataset, engines: str) -> str:
         The physics engines with reference settings, as JSON
         (:mod:`bouncing_ball.engines.reference`).
     """
-    *scripts, look = (
+    *scripts, look, scenes = (
         files(__package__).joinpath(name).read_text(encoding="utf-8")
-        for name in ("model.js", "engines.js", "page.js", "page.css")
+        for name in (*SCRIPTS, "page.css", "scenes.json")
     )
     script, style = "\n" + "\n".join(scripts), f"\n{look}"
     environment = Environment(
@@ -73,6 +82,8 @@ def to_html(data: xr.Dataset, engines: str) -> str:
         style=style,
         references=references(data),
         engines=engines,
+        scenes=scenes,
+        titles={name: scene["title"] for name, scene in json.loads(scenes).items()},
         names=list(json.loads(engines)["engines"]),
         bound=repr(BOUND),
     )

@@ -1,5 +1,5 @@
 // The closed forms of bouncing_ball.orbits, in plain JavaScript: the same formulas in the
-// same order, so that both round alike. Everything is dimensionless; see closed_form.py for
+// same order, so that both round alike. Everything is dimensionless; see docs/closed-form.md for
 // the derivation. "NaN" stands for what does not exist, as there.
 "use strict";
 
@@ -91,7 +91,7 @@ function ownRestitution(contact) {
   return Math.exp(-freeAngle(contact) * z / Math.sqrt((1 - z) * (1 + z)));
 }
 
-// The n-T orbit whose contact lasts (θ₀ + ε)/ϖ_d: branch_point of closed_form.py.
+// The n-T orbit whose contact lasts (θ₀ + ε)/ϖ_d: branch_point of spring_damper_branch.py.
 function branchPoint(eps, contact, n) {
   const {omega, zeta, sine} = contact;
   const root = Math.sqrt((1 - zeta) * (1 + zeta)), perAngle = 1 / (omega * root);
@@ -430,9 +430,9 @@ function answer({r, omega, amplitude, n, release, side = "stable", measured = fa
 
 // ---- The reference orbits of the package, computed again: the largest difference over the size
 // of each quantity, and where.
-function compareReferences(references) {
+function compareOrbits({names, rows}) {
   let worst = 0, where = "", count = 0;
-  for (const one of references.orbits) {
+  for (const one of rows) {
     const [release, r, omega, n, amplitude] = one.state;
     const {orbits, limits} = answer({r, omega, amplitude, n, release});
     const [exact, simple, corrected] = orbits, middle = exact.state(exact.contact_duration / 2);
@@ -446,7 +446,7 @@ function compareReferences(references) {
       corrected_trace: corrected.trace, corrected_saddle_node: limits[2].saddle_node,
       corrected_period_doubling: limits[2].period_doubling,
     };
-    references.names.forEach((name, k) => {
+    names.forEach((name, k) => {
       const expected = one.values[k], difference = expected === null
         ? (Number.isNaN(found[name]) ? 0 : Infinity)
         : Math.abs(found[name] - expected) / Math.max(1, Math.abs(expected));

@@ -1,49 +1,35 @@
-"""Calls about the long run: the motion on which a ball ends, over Λ, and of many starts.
-
-Each returns a labelled dataset, as the calls of :mod:`bouncing_ball.surveys` do, and takes the
-parameters of a model.
-"""
+"""Calls about the long run: the motion on which a ball ends, over Λ, and of many starts."""
 
 import math
+from collections.abc import Mapping
 from typing import Annotated, Any
 
 import numpy as np
 
 from bouncing_ball.attractors import labelled
-from bouncing_ball.calls import AnyAmplitude, Finite, Positive, model, model_of_impact
+from bouncing_ball.calls.model import Positive, impact_model, model_of_impact
+from bouncing_ball.calls.motion import AnyAmplitude, simulate
 from bouncing_ball.datasets.labelled import Grid, Labelled
 from bouncing_ball.errors import ParameterError
-from bouncing_ball.signatures import Range, check, takes
+from bouncing_ball.orbits.model import ImpactModel
+from bouncing_ball.signatures import check, count, takes
 
 # Impacts of one ball; and numbers along one axis.
-Followed = Annotated[int, Range(10, 10_000_000, "[]")]
-Starts = Annotated[int, Range(1, 100_000, "[]")]
-Samples = Annotated[int, Range(1, 100_000, "[]")]
+Followed = Annotated[int, count(10_000_000, low=10)]
+Many = Annotated[int, count(100_000)]
 
 
-@takes(model)
+@takes(simulate)
 def motion_of(
-    amplitude: AnyAmplitude,
-    *,
-    phase: Finite = 0.0,
-    velocity: Finite = -math.pi,
-    impacts: Followed = 4000,
-    **impact: Any,
+    amplitude, *, phase=0.0, velocity=-math.pi, impacts: Followed = 4000, **impact: Any
 ) -> Labelled:
-    """The motion on which a ball ends that starts with an impact.
+    """The motion on which a ball ends that starts with an impact as in
+    :func:`bouncing_ball.simulate`.
 
     Parameters
     ----------
-    amplitude : array_like
-        Excitation amplitude Λ.
-    phase : array_like
-        Phase of the table at the first impact.
-    velocity : array_like
-        Absolute velocity of the ball before the first impact.
     impacts : int
         Number of impacts after which the search for a repetition ends.
-    impact
-        The parameters of :func:`bouncing_ball.model`.
 
     Returns
     -------
@@ -68,7 +54,7 @@ def motion_of(
     """
     check(motion_of, locals())
     grid = Grid(amplitude=amplitude, phase=phase, velocity=velocity, **impact)
-    return labelled.motions(model_of_impact(**grid.flat), grid, impacts)
+    return labelled.motions(grid, model_of_impact(**grid.flat), impacts)
 
 
 @takes(motion_of)
@@ -101,16 +87,18 @@ def lyapunov_exponent(amplitude: AnyAmplitude, **given: Any) -> Labelled:
     return found[["lyapunov_exponent", "lyapunov_error", "kind"]].assign_attrs(kind="exponent")
 
 
-@takes(model)
+@takes(motion_of, without=("amplitude", "phase", "velocity"))
 def orbit_diagram(
     amplitudes: AnyAmplitude,
     *,
-    starts: Starts = 6,
-    samples: Samples = 64,
-    impacts: Followed = 1000,
+    starts: Many = 6,
+    samples: Many = 64,
+    impacts=1000,
     **impact: Any,
 ) -> Labelled:
     """The attractors over Λ: from several starts, and followed to both sides.
+
+    ``impacts`` and the model are given as in :func:`motion_of`.
 
     Parameters
     ----------
@@ -121,10 +109,6 @@ def orbit_diagram(
         that start beside the n-T orbits up to n = 3.
     samples : int
         Impacts shown of a motion that does not repeat, and at most of one that does.
-    impacts : int
-        Number of impacts after which the search for a repetition ends.
-    impact
-        The parameters of :func:`bouncing_ball.model`.
 
     Returns
     -------
@@ -150,33 +134,29 @@ def orbit_diagram(
     values = np.atleast_1d(np.asarray(amplitudes, dtype=float))
     if not values.size or values.ndim > 1 or np.any(np.diff(values) <= 0):
         raise ParameterError("{amplitudes} must be at least one Λ, in rising order")
-    of = _single(values[0], impact)
-    return _of(impact, labelled.diagram(of, values, starts, samples, impacts))
+    of, grid = _single(impact)
+    return grid.unfold(labelled.diagram(of, values, starts, samples, impacts))
 
 
-@takes(model)
+@takes(motion_of, without=("phase", "velocity"))
 def basins(
-    amplitude: AnyAmplitude,
+    amplitude,
     *,
-    starts: Starts = 200,
+    starts: Many = 200,
     velocity_max: Positive | None = None,
-    impacts: Followed = 2000,
+    impacts=2000,
     **impact: Any,
 ) -> Labelled:
     """The motions on which a grid of impacts ends, and their shares.
 
+    ``amplitude``, ``impacts`` and the model are given as in :func:`motion_of`.
+
     Parameters
     ----------
-    amplitude : float
-        Excitation amplitude Λ.
     starts : int
         Starts along each of the axes, phase of the table and relative speed.
     velocity_max : float, optional
         Greatest relative speed of the first impact; by default one that balls seldom exceed.
-    impacts : int
-        Number of impacts after which the search for a repetition ends.
-    impact
-        The parameters of :func:`bouncing_ball.model`.
 
     Returns
     -------
@@ -199,22 +179,13 @@ def basins(
     check(basins, locals())
     if np.ndim(amplitude):
         raise ParameterError("{amplitude} must be a single Λ")
-    of = _single(amplitude, impact)
-    found = labelled.basins(of, float(amplitude), starts, velocity_max, impacts)
-    return _of(impact, found)
+    of, grid = _single(impact)
+    return grid.unfold(labelled.basins(of, float(amplitude), starts, velocity_max, impacts))
 
 
-def _of(impact: dict[str, Any], found: Labelled) -> Labelled:
-    """The dataset with the parameters of the model as attributes."""
-    return found.assign_attrs({k: v for k, v in impact.items() if isinstance(v, str | int | float)})
-
-
-def _single(amplitude: float, impact: dict[str, Any]) -> Any:
-    """The model of parameters that are single numbers."""
-    for name, value in impact.items():
-        if np.ndim(value):
-            raise ParameterError(f"{{{name}}} must be a single number here")
-    impact = {name: value for name, value in impact.items() if value is not None}
-    if "duration" in impact and "speed" not in impact:
-        raise ParameterError("{duration} needs {speed}, as the starts have many")
-    return model_of_impact(amplitude, 0.0, -math.pi, **impact)
+def _single(impact: Mapping[str, Any]) -> tuple[ImpactModel, Grid]:
+    """The model of parameters that are single numbers, which become attributes of the results."""
+    grid = Grid(**impact)
+    for name in grid.coords:
+        raise ParameterError(f"{{{name}}} must be a single number here")
+    return impact_model(impact, None), grid

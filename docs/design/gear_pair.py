@@ -1,0 +1,33 @@
+"""An idle gear that the driving flank throws off and the drag brings back: a bouncing ball."""
+
+import bouncing_ball
+
+# Inertia, base radius, 16 teeth, mesh stiffness and a damping ratio of 0.05 of the pair of A.
+# Kahraman and R. Singh (Journal of Sound and Vibration 146, 1991, 135–156), as quoted in
+# Workflow_code.m of github.com/Fraunhofer-SCAI/mrDMD-damage-detection. There both gears move,
+# with half the mass: 0.23 kg.
+inertia, base, stiffness = 1.15e-3, 50e-3, 3.8e8
+damping = 2 * 0.05 * (0.23 * stiffness) ** 0.5
+
+# Along the line of action m = I/R², and the drag torque M (here 0.5 N m) takes the part of
+# gravity, M R/I.
+mass, drag = inertia / base**2, 0.5 * base / inertia
+pair = bouncing_ball.design(
+    mass=mass,
+    gravity=drag,
+    frequency=16 * 750 / 60,
+    table_amplitude="10 um",
+    stiffness=stiffness,
+    damping=damping,
+    n=1,
+)
+print(pair.verdict)
+orbit = pair.orbits[0]
+worst = max(orbit.errors, key=orbit.errors.get)
+print(f"largest error: {worst}, {100 * orbit.errors[worst]:.1f} %")
+
+# Which mesh would do, for Λ = 1 and r = 0.65?
+chosen = bouncing_ball.design(
+    mass=mass, gravity=drag, frequency="200 Hz", acceleration=drag, restitution=0.65
+)
+print(f"enough: ϖ = {chosen.frequency_ratio:.2f}, {chosen.stiffness:.2g} N/m")

@@ -1,0 +1,41 @@
+"""A steel ball of 1.58 mm on a shaker: a Hertz contact with a measured restitution."""
+
+from math import pi, sqrt
+
+import bouncing_ball
+
+# Steel of the rotor library ROSS (github.com/petrobras/ross, ross/materials.py).
+density, young, shear = 7810.0, 211e9, 81.2e9
+poisson = young / (2 * shear) - 1
+radius = 0.79e-3
+mass = density * 4 / 3 * pi * radius**3
+
+# A small steel ball that is dropped from 50 cm on a steel plate falls silent after 30 s
+# (problem 4.10 of Exercises for the Feynman Lectures on Physics, as quoted in solutions of it).
+# Its flights are a geometric series.
+falls = 30 / sqrt(2 * 0.5 / 9.81)
+restitution = (falls - 1) / (falls + 1)
+
+# Steel beads have been shaken with 25 to 100 Hz (Dorbolo, Ludewig and Vandewalle,
+# arXiv:0808.2936, abstract).
+ball = bouncing_ball.design(
+    mass=mass,
+    frequency="60 Hz",
+    acceleration="0.5 g",
+    radius=radius,
+    youngs_modulus=young,
+    poissons_ratio=poisson,
+    table_youngs_modulus=young,
+    table_poissons_ratio=poisson,
+    measured_restitution=restitution,
+)
+print(
+    f"r = {restitution:.2f}, contact time {ball.contact_time:.1g} s, ϖ = {ball.frequency_ratio:.0f}"
+)
+print(ball.verdict)
+
+# On a thick steel plate such a ball was in contact for about 5 µs, measured (G. McLaskey,
+# Cornell, courses.cit.cornell.edu/mclaskey/impact.html); at 1 m/s Hertz's formula gives nearly
+# that.
+modulus = young / (2 * (1 - poisson**2))
+print(f"at 1 m/s {2.868 * (mass**2 / (radius * modulus**2)) ** 0.2:.2g} s")

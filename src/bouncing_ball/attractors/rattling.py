@@ -1,0 +1,325 @@
+r"""The cascade of flights between permanent contact and chattering, for a linear contact.
+
+At Λ_SD permanent contact ends, and a T-periodic orbit begins that flies once per period
+(``docs/closed-form.md``, section 5). As Λ grows the contact after its landing oscillates higher,
+until it touches the table's level. There it opens, and beyond the orbit has one flight more. The
+flight grows from nothing, by which the return map changes as the power 3/2 of Λ, so that the orbit
+keeps its multipliers: it is followed, and not born. Opening k, where flight k + 1 begins, is at
+``E_k = ϖ² (Λ_k - Λ_SD)``.
+
+For a stiff contact E_k has a limit. The ball leaves near the top of the table. In the time s = ϖτ
+of the contact, measured from the top, with δ = x/ϖ⁴ and Λ = 1 + C/ϖ² the motion is ::
+
+    x″ + 2ζx′ + x = C - s²/2   in contact,      x″ = C - s²/2   in flight
+
+which does not contain ϖ. Before the first flight the ball follows ``p(s) = E - (s - 2ζ)²/2``,
+E = C + 1 - 2ζ², because the oscillation of the long contact has decayed. For large E the flights
+chatter: the first landing has a speed of order E^{3/2} under an acceleration of order E, flight k
+is r^k times as fast, and the last one is that whose duration is of order 1. Hence
+``E_{k+1}/E_k → 1/r²``, up to a relative error of order k r^k: the time of k contacts over that of
+the first flight.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq
+
+from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
+from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.continuation.corrector import NewtonSettings, newton
+from bouncing_ball.errors import require
+from bouncing_ball.motion.angles import table
+from bouncing_ball.motion.landing import Flight
+from bouncing_ball.motion.simulation import simulate
+from bouncing_ball.motion.tangent import Deviation, Jacobian
+
+# Samples of an oscillation, among which its first maximum is bracketed.
+_FINE = 400
+# The search for the next opening starts above the last one by this part, where the new flight is
+# resolved, and goes up in steps of this factor.
+_ABOVE, _STEP = 1e-3, 1.2
+_SETTINGS = NewtonSettings(max_iterations=10)
+# Difference in time at which a motion returns; a contact that opens elsewhere changes the times by
+# a part of an oscillation.
+_CLOSE = 1e-6
+
+
+class Openings(NamedTuple):
+    """Λ_k and the larger modulus of the multipliers there; NaN where an opening was not found."""
+
+    amplitude: np.ndarray
+    multiplier: np.ndarray
+
+
+@dataclass(frozen=True)
+class Rattling:
+    """T-periodic orbits with k flights whose long contact touches the table's level.
+
+    It is a :class:`~bouncing_ball.continuation.problem.Problem` without a parameter. The k flights
+    and k contacts are 2k legs, and y = (φ, Λ, t, T_0, …, T_{2k-2}, v_0, …, v_{2k-1}): the phase φ
+    at the first release, the time t in the last contact at which it touches, the durations of all
+    legs but this one, and δ′ at their starts. Each leg ends at δ = 0 with the next δ′, and the
+    contact has δ = δ′ = 0 at t. The contact is continued in closed form, whether it opens or not.
+    """
+
+    law: SpringDamper
+    flights: int
+
+    def legs(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(δ, δ′) at the end of each leg and at the touch, shape (2k + 1, ..., 2), and their
+        derivatives by the time in the leg, by δ′ at its start, by its phase and by Λ.
+        """
+        k, (phase, amplitude, touch, *rest) = self.flights, np.moveaxis(y, -1, 0)
+        times, speeds = rest[: 2 * k - 1], rest[2 * k - 1 :]
+        times = [*times, 2 * np.pi - sum(times), touch]
+        found = []
+        for leg, time in enumerate(times):
+            start = phase + sum(times[: min(leg, 2 * k - 1)])
+            speed = speeds[min(leg, 2 * k - 1)]
+            if leg % 2 or leg == 2 * k:
+                flow = self.law.flow(time, 0.0, speed, start, amplitude)
+                found.append((np.stack(flow[:2], axis=-1), flow.jacobian[..., [0, 2, 3, 4]]))
+                continue
+            (x, z), (x1, z1) = table(start, amplitude), table(start + time, amplitude)
+            height, rate, pull, _ = Flight(0.0, speed, x, z, amplitude).gap(time)
+            one = np.ones_like(time)
+            # The table's part of δ and δ′ is proportional to Λ.
+            lifted = (height - time * (speed - time / 2)) / amplitude
+            moved = (rate - speed + time) / amplitude
+            rows = [rate, time, x - x1 - z * time, lifted], [pull, one, z1 - z, moved]
+            change = np.moveaxis(np.array(rows), (0, 1), (-2, -1))
+            found.append((np.stack([height, rate], axis=-1), change))
+        states, changes = (np.stack(x) for x in zip(*found, strict=True))
+        return states, changes
+
+    def _equations(self, y: np.ndarray) -> np.ndarray:
+        k, (states, _) = self.flights, self.legs(y)
+        wanted = np.zeros_like(states)
+        wanted[: 2 * k, ..., 1] = np.roll(np.moveaxis(y[..., -2 * k :], -1, 0), -1, axis=0)
+        return np.moveaxis(states - wanted, 0, -2).reshape(*y.shape[:-1], -1)
+
+    def residual(self, y: np.ndarray) -> np.ndarray:
+        """All equations but δ′ = 0 at the touch, shape (..., 4k + 1)."""
+        return self._equations(y)[..., :-1]
+
+    def _matrix(self, y: np.ndarray) -> np.ndarray:
+        k, (_, changes) = self.flights, self.legs(y)
+        matrix = np.zeros((*y.shape[:-1], 2 * k + 1, 2, y.shape[-1]))
+        for leg, change in enumerate(changes):
+            here, last = matrix[..., leg, :, :], min(leg, 2 * k - 1)
+            here[..., 0], here[..., 1] = change[..., 2], change[..., 3]
+            here[..., 3 : 3 + last] = change[..., 2:3]
+            if leg == last < 2 * k - 1:
+                here[..., 3 + leg] = change[..., 0]
+            elif leg == last:
+                here[..., 3 : 2 + 2 * k] -= change[..., :1]
+            else:
+                here[..., 2] = change[..., 0]
+            here[..., 2 + 2 * k + last] = change[..., 1]
+            if leg == last:
+                here[..., 1, 2 + 2 * k + (leg + 1) % (2 * k)] -= 1
+        return matrix.reshape(*y.shape[:-1], -1, y.shape[-1])
+
+    def jacobian(self, y: np.ndarray) -> np.ndarray:
+        """Jacobian of the residual, shape (..., 4k + 1, 4k + 2)."""
+        return self._matrix(y)[..., :-1, :]
+
+    def touch(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """δ′ at the touch, and its gradient."""
+        return self._equations(y)[..., -1], self._matrix(y)[..., -1, :]
+
+    def multiplier(self, y: np.ndarray) -> np.ndarray:
+        """Larger modulus of the multipliers, of the leading shape of y."""
+        states, changes = self.legs(y)
+        one = np.ones(y.shape[:-1])
+        whole = Jacobian(one, 0 * one, 0 * one, one)
+        for state, change in zip(states[:-1], changes[:-1], strict=True):
+            by_time, by_rate, by_phase, _ = np.moveaxis(change, -1, 0)
+            ends = (
+                Deviation(start, by[..., 0], by[..., 1]).to_event(state[..., 1], by_time[..., 1], 0)
+                for start, by in ((one, by_phase), (0 * one, by_rate))
+            )
+            whole = Jacobian.of_columns(*ends).after(whole)
+        return whole.spectral_radius()
+
+
+class _Landing(NamedTuple):
+    """A flight and the contact that follows it in the limit of stiff contacts.
+
+    ``times`` and ``speeds`` are those of the legs before the contact and at its start; ``top_time``
+    is the time of the contact at which x is highest, ``top``.
+    """
+
+    times: tuple[float, ...]
+    speeds: tuple[float, ...]
+    top_time: float
+    top: float
+
+
+def _landings(excess: float, zeta: float, most: int) -> list[_Landing]:
+    """The landings at E until a contact stays closed; at most so many."""
+    omega = np.sqrt((1 - zeta) * (1 + zeta))
+    speed = np.sqrt(2 * excess)
+    place, found = 2 * zeta - speed, []
+    times, speeds = (), (speed,)
+    for _ in range(most):
+        pull = excess + 2 * zeta * zeta - 1 - place * place / 2
+        # The flight rises by t (speed + pull t/2 - place t²/6 - t³/24).
+        roots = np.roots([-1 / 24, -place / 6, pull / 2, speed])
+        flight = min(x.real for x in roots if abs(x.imag) < 1e-9 and x.real > 0)
+        speed = speed + flight * (pull - flight * (place / 2 + flight / 6))
+        place = place + flight
+        aside = place - 2 * zeta
+        a = aside * aside / 2 - excess
+        b = (speed + aside + zeta * a) / omega
+
+        def path(t, along=a, across=b, aside=aside):
+            free = along * np.cos(omega * t) + across * np.sin(omega * t)
+            return excess - (aside + t) ** 2 / 2 + np.exp(-zeta * t) * free
+
+        def rate(t, along=omega * b - zeta * a, across=-omega * a - zeta * b, aside=aside):
+            free = along * np.cos(omega * t) + across * np.sin(omega * t)
+            return np.exp(-zeta * t) * free - aside - t
+
+        times, speeds = (*times, flight), (*speeds, speed)
+        time = np.linspace(0, 3 * np.pi / omega, _FINE)
+        slope = rate(time)
+        turns = np.flatnonzero((slope[:-1] > 0) & (slope[1:] <= 0))
+        if not turns.size:
+            break
+        top_time = brentq(rate, time[turns[0]], time[turns[0] + 1], xtol=1e-14)
+        found.append(_Landing(times, speeds, top_time, float(path(top_time))))
+        if found[-1].top <= 0:
+            break
+        bottom = brentq(rate, 0.0, time[np.argmax(slope > 0)])
+        contact = brentq(path, bottom, top_time, xtol=1e-14)
+        speed, place = rate(contact), place + contact
+        times, speeds = (*times, contact), (*speeds, speed)
+    return found
+
+
+def _stiff_openings(zeta: float, most: int) -> list[np.ndarray]:
+    """The unknowns of :class:`Rattling` at each opening, in the units of the limit, with E for
+    Λ.
+    """
+    found: list[np.ndarray] = []
+
+    def top(excess: float) -> float:
+        landings = _landings(excess, zeta, len(found) + 1)
+        return landings[-1].top if len(landings) > len(found) else -1.0
+
+    high = 1e-3
+    while len(found) < most:
+        low = high
+        while top(high) < 0:
+            low, high = high, _STEP * high
+        excess = brentq(top, low, high, xtol=1e-13)
+        last = _landings(excess, zeta, len(found) + 1)[-1]
+        release = 2 * zeta - np.sqrt(2 * excess)
+        found.append(np.array([release, excess, last.top_time, *last.times, *last.speeds]))
+        high = excess * (1 + _ABOVE)
+    return found
+
+
+def stiff_openings(damping_ratio: float, most: int) -> np.ndarray:
+    """The limits of E_1, E_2, … for ϖ → ∞, shape (most,).
+
+    Raises
+    ------
+    ModelError
+        If ζ is not in (0, 0.9], where the oscillation after a landing can be resolved.
+
+    Examples
+    --------
+    >>> from bouncing_ball.contacts.damping import damping_ratio
+    >>> stiff_openings(float(damping_ratio(0.85)), 3).round(2).tolist()
+    [8.61, 22.51, 44.8]
+    """
+    zeta = float(damping_ratio)
+    require(0 < zeta <= 0.9, zeta, "damping ratio ζ", "in (0, 0.9]")
+    return np.array([y[1] for y in _stiff_openings(zeta, most)])
+
+
+def openings(damping_ratio: ArrayLike, frequency_ratio: np.ndarray, most: int) -> Openings:
+    """The openings of contacts with the displacement release, shape (ζ, most, ϖ).
+
+    They are followed from the limit of stiff contacts down to the ϖ at which Newton's method finds
+    none.
+
+    Parameters
+    ----------
+    damping_ratio : array_like, shape (m,)
+    frequency_ratio : ndarray, shape (N,)
+        Increasing.
+    most : int
+        Number of openings.
+
+    Examples
+    --------
+    >>> found = openings([0.05], np.array([20.0, 50.0]), 2)
+    >>> bool(np.all(np.diff(found.amplitude, axis=1) > 0)), bool(np.all(found.multiplier < 1))
+    (True, True)
+    """
+    zetas, omega = np.asarray(damping_ratio, dtype=float), np.flip(frequency_ratio)
+    contact = SpringDamper(omega, zetas[:, np.newaxis])
+    held = permanent_contact_threshold(omega, contact.damping_ratio)
+    stiff = [_stiff_openings(z, most) for z in zetas]
+    found, before = np.full((2, most, *held.shape), np.nan), held
+    for k in range(most):
+        start = np.stack([one[k] for one in stiff])
+        points = _followed(Rattling(contact, k + 1), omega, start, held)
+        # Two openings of one Λ are the first of them.
+        new = points[..., 1] - before > _ABOVE * (points[..., 1] - held)
+        points = np.where(new[..., np.newaxis], points, np.nan)
+        points[~_returns(contact, k + 1, points)] = np.nan
+        before = points[..., 1]
+        found[:, k] = before, Rattling(contact, k + 1).multiplier(points)
+    return Openings(*found[..., ::-1].swapaxes(1, 2))
+
+
+def _returns(contact: SpringDamper, flights: int, points: np.ndarray) -> np.ndarray:
+    """Whether the simulation from the first landing returns to it after a period.
+
+    At the touch rounding decides whether the contact opens, by which there is one impact more. An
+    orbit one of whose contacts opens where the equations continue it does not return.
+    """
+    safe = np.where(np.isfinite(points), points, 1.0)
+    phase, amplitude = safe[..., 0] + safe[..., 3], safe[..., 1]
+    velocity = np.minimum(safe[..., 1 - 2 * flights], 0.0) + table(phase, amplitude)[0]
+    time = simulate(contact, amplitude, phase, velocity, flights + 2).time
+    late = np.abs(time[flights:] - time[0] - 2 * np.pi).min(axis=0)
+    return np.isfinite(points[..., 0]) & (late < _CLOSE)
+
+
+def _followed(
+    problem: Rattling, omega: np.ndarray, start: np.ndarray, held: np.ndarray
+) -> np.ndarray:
+    """The orbits at the openings, from the limit on, shape (ζ, ϖ, unknowns)."""
+    size = start.shape[-1]
+    power = np.repeat([1.0, 2.0, 1.0, 3.0], [1, 1, size // 2, size - 2 - size // 2])
+    unit = omega[:, np.newaxis] ** -power
+    zero = np.zeros((*held.shape, size))
+    zero[..., 0], zero[..., 1] = np.pi / 2, held
+    place = np.concatenate([[0.0], omega**-2.0])
+    points = np.repeat(start[:, np.newaxis], place.size, axis=1)
+    known = np.broadcast_to(place == 0, points.shape[:2])
+    rows, count = np.arange(len(start)), 0
+    while known.sum() > count:
+        # A straight line in 1/ϖ² through the last two.
+        count, last = known.sum(), known.sum(axis=1) - 1
+        before = np.maximum(last - 1, 0)
+        near, far = points[rows, last], points[rows, before]
+        run = np.maximum(place[last] - place[before], np.finfo(float).tiny)
+        away = (place - place[last, np.newaxis]) / run[:, np.newaxis]
+        line = near[:, np.newaxis] + away[..., np.newaxis] * (near - far)[:, np.newaxis]
+        guess = np.where(known[..., np.newaxis], points, line)[:, 1:]
+        with np.errstate(all="ignore"):
+            solved = newton(problem, zero + unit * guess, problem.touch, _SETTINGS)
+        forward = (solved.point[..., 2 : 2 + size // 2] > 0).all(axis=-1)
+        known = np.insert(solved.converged & forward, 0, True, axis=1)
+        known = np.logical_and.accumulate(known, axis=1)
+        points[:, 1:] = np.where(known[:, 1:, np.newaxis], (solved.point - zero) / unit, np.nan)
+    return zero + unit * points[:, 1:]

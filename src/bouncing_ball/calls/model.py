@@ -1,0 +1,198 @@
+"""The model of the impact that the parameters of a call mean."""
+
+import inspect
+from collections.abc import Callable, Mapping
+from typing import Annotated, Any, Literal
+
+import numpy as np
+
+from bouncing_ball.contacts.contact_law import ContactLaw
+from bouncing_ball.contacts.law_choice import law_named, law_of_impact
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.signature import Signature
+from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.errors import ParameterError
+from bouncing_ball.orbits.corrected_model import CorrectedModel
+from bouncing_ball.orbits.law_model import LawModel
+from bouncing_ball.orbits.model import ImpactModel
+from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.restitution_orbit import rigid_speed
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.signatures import Range, check, count
+
+# Of frequency ratio and amplitude: beyond, their squares leave no digits.
+FrequencyRatio = Annotated[Any, Range(1e-8, 1e8, "[]")]
+AnyAmplitude = Annotated[Any, Range(0, 1e8, "[]")]
+Restitution = Annotated[Any, Range(0, 1, "(]")]
+DampingRatio = Annotated[Any, Range(0, 1, "[)")]
+Positive = Annotated[Any, Range(0)]
+Index = Annotated[int, count(1000)]
+Rule = Literal["displacement", "force"]
+
+LOSS = ("restitution", "damping_ratio", "measured_restitution")
+"""The parameters that say how much an impact loses; one of them is needed."""
+
+LawAt = Callable[[type[ContactLaw], float, float], ContactLaw]
+"""The law of a kind whose free impact has r and D at the speed that a call is about."""
+
+
+def model(
+    restitution: Restitution | None = None,
+    frequency_ratio: FrequencyRatio | None = None,
+    release: Rule | None = None,
+    *,
+    damping_ratio: DampingRatio | None = None,
+    measured_restitution: Restitution | None = None,
+    model: Literal["restitution", "spring-damper", "corrected"] | None = None,
+    law: str | None = None,
+    parameters: Mapping[str, float] | None = None,
+    duration: Positive | None = None,
+    speed: Positive | None = None,
+) -> ImpactModel:
+    """The model with these parameters.
+
+    Parameters
+    ----------
+    restitution : array_like, optional
+        Restitution coefficient r in (0, 1]; a contact has then the damping ratio ζ with
+        r = exp(-πζ/√(1 - ζ²)), Eq. 16 of the paper.
+    frequency_ratio : array_like, optional
+        Frequency ratio ϖ of a spring-damper contact; without it an impact is an instant.
+    release : str, optional
+        What ends a contact: "displacement", as in the paper and by default, or "force".
+    damping_ratio : array_like, optional
+        Damping ratio ζ in [0, 1) of the contact, in place of the restitution.
+    measured_restitution : array_like, optional
+        Restitution coefficient that a free impact really has, in place of the restitution,
+        which is that of the displacement release: the force release has a higher one.
+    model : str, optional
+        "restitution", "spring-damper" or "corrected"; by default a spring-damper if ϖ is
+        given, and else a restitution coefficient.
+    law : str, optional
+        Name of a contact law, in place of the spring-damper.
+    parameters : mapping, optional
+        The law's parameters by name, such as stiffness=1000.
+    duration : float, optional
+        In place of the law's parameters, with the restitution: duration D of a free impact.
+    speed : float, optional
+        Impact speed of that free impact. By default it is that of the orbit; for limits that
+        of the restitution model, 2πn/(1 + r); for a simulation that of the first impact.
+
+    Raises
+    ------
+    ModelError
+        If a parameter is missing, out of range or contradicts another.
+
+    Examples
+    --------
+    >>> model(0.85)
+    RestitutionModel(restitution=0.85)
+    """
+    return impact_model(locals(), None)
+
+
+def model_of_limits(n: int, **impact: Any) -> ImpactModel:
+    """The model; a law given by r and D has them at the impact speed of the restitution model's
+    orbits.
+
+    Examples
+    --------
+    >>> model_of_limits(1, restitution=0.85)
+    RestitutionModel(restitution=0.85)
+    """
+    return impact_model(impact, lambda kind, r, d: law_of_impact(kind, r, d, rigid_speed(n, r)))
+
+
+def model_of_impact(amplitude: Any, phase: Any, velocity: Any, **impact: Any) -> ImpactModel:
+    """The model; a law given by r and D has them at the speed of this impact."""
+    speed = np.asarray(amplitude) * np.cos(phase) - velocity
+    return impact_model(impact, lambda kind, r, d: law_of_impact(kind, r, d, speed))
+
+
+def impact_model(given: Mapping[str, Any], law_at: LawAt | None) -> ImpactModel:
+    """The model of the parameters that are not None."""
+    given = {name: value for name, value in given.items() if value is not None}
+    known = inspect.signature(model).parameters
+    for name in given:
+        _demand(name in known, f"unknown parameter {{}}: a model has {', '.join(known)}", name)
+    check(model, given)
+    losses = [name for name in LOSS if name in given]
+    if len(losses) > 1:
+        raise ParameterError(f"argument {{{losses[1]}}}: not allowed with argument {{{losses[0]}}}")
+    kind = given.get("model") or ("spring-damper" if "frequency_ratio" in given else "restitution")
+    if "law" in given:
+        law = _law(given, law_at)
+        return CorrectedModel(Signature(law)) if kind == "corrected" else LawModel(law)
+    _refuse(given, ("parameters", "duration", "speed"), "needs {law}")
+    names = " ".join(f"{{{name}}}" for name in LOSS)
+    _demand(bool(losses), f"one of the arguments {names} is required")
+    if kind == "restitution":
+        instead = "needs {frequency_ratio}; {model} restitution takes {restitution}"
+        _refuse(given, ("damping_ratio",), instead)
+        meaning = "has no meaning for {model} restitution, which has no contact"
+        _refuse(given, ("frequency_ratio", "release"), meaning)
+        return RestitutionModel(given[losses[0]])
+    _demand("frequency_ratio" in given, f"{{model}} {kind} needs {{frequency_ratio}}")
+    ratio, rule = given["frequency_ratio"], Release.of(given.get("release", Release.DISPLACEMENT))
+    if "damping_ratio" in given:
+        contact = SpringDamper(ratio, given["damping_ratio"], rule)
+    else:
+        measured = "measured_restitution" in given
+        contact = SpringDamper.from_restitution(given[losses[0]], ratio, rule, measured=measured)
+    return CorrectedModel.of_contact(contact) if kind == "corrected" else SpringDamperModel(contact)
+
+
+def _law(given: Mapping[str, Any], law_at: LawAt | None) -> ContactLaw:
+    """The contact law, by its parameters or by its free impact."""
+    kind, r, duration = law_named(given["law"]), given.get("restitution"), given.get("duration")
+    if given.get("model") in ("restitution", "spring-damper"):
+        why = f"{given['model']} has no {{law}}: corrected, or none, for the law itself"
+        _refuse(given, ("model",), why)
+    instead = "{parameters}, or {restitution} and {duration}"
+    linear = ("frequency_ratio", "damping_ratio", "measured_restitution")
+    _refuse(given, linear, f"does not go with {{law}} {kind.name}: {instead}")
+    needs = ", ".join(
+        f"{{parameters}} {name.replace('_', '-')}=NUMBER" for name in kind.parameter_names()
+    )
+    if "parameters" in given:
+        why = f"does not go with {{parameters}}: {needs} are all of {kind.name}"
+        _refuse(given, ("restitution", "duration", "speed"), why)
+        return _law_of_parameters(kind, given)
+    if r is None or duration is None:
+        raise ParameterError(
+            f"{{law}} {kind.name} needs {needs}, or {{restitution}} and {{duration}}"
+        )
+    _refuse(given, ("release",), "goes with {law} linear and {parameters} only")
+    several = f"{{restitution}} of {{law}} {kind.name} is one number: its law is found for it"
+    _demand(not np.ndim(r), several)
+    if "speed" in given:
+        return law_of_impact(kind, r, duration, given["speed"])
+    if law_at is None:
+        raise ParameterError("{duration} needs {speed}")
+    return law_at(kind, r, duration)
+
+
+def _law_of_parameters(kind: type[ContactLaw], given: Mapping[str, Any]) -> ContactLaw:
+    named = {name.replace("-", "_"): value for name, value in dict(given["parameters"]).items()}
+    known = kind.parameter_names()
+    for name in named:
+        all_of = f"its parameters are {', '.join(known)}"
+        _demand(name in known, f"unknown parameter {{}} of {kind.name}: {all_of}", name)
+    for name in known:
+        _demand(name in named, f"{kind.name} needs {{parameters}} {name}=NUMBER as well")
+    if "release" in given:
+        why = f"the release is part of {kind.name}: {{release}} is for the linear law"
+        _demand("release" in kind.__dataclass_fields__, why)
+        named["release"] = Release.of(given["release"])
+    return kind(**named)
+
+
+def _refuse(given: Mapping[str, Any], names: tuple[str, ...], why: str) -> None:
+    """Raise :class:`ParameterError` with the first of these parameters that is given."""
+    for name in names:
+        _demand(name not in given, f"{{{name}}} {why}")
+
+
+def _demand(fulfilled: bool, text: str, *names: str) -> None:
+    if not fulfilled:
+        raise ParameterError(text, *map(repr, names))

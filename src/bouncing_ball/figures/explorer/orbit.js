@@ -1,0 +1,218 @@
+// One orbit in the three models: the verdict on it, its drawings and its tables.
+"use strict";
+
+const NAMES = ["spring-damper", "restitution", "corrected"];
+// Of their dots: each is seen where they lie upon each other.
+const SIZES = [8, 5.5, 3.5];
+// Points of a branch between two of the scan for its bifurcations.
+const FINE = 24;
+const TOLERANCE = 0.01;
+
+function verdictOf(found, {n}) {
+  const [exact, simple, corrected] = found.orbits, error = found.errors.max_height;
+  const wrong = exact.exists !== simple.exists
+    ? (exact.exists ? `it misses the ${n}-T orbit, which the contact has`
+      : `it has the ${n}-T orbit, which the contact has not`)
+    : exact.is_stable !== simple.is_stable
+      ? `its ${n}-T orbit ` + (simple.is_stable ? "is stable, and the contact's is not"
+        : "is not stable, and the contact's is") : "";
+  const same = exact.exists === corrected.exists && exact.is_stable === corrected.is_stable;
+  const subject = `the greatest height of the ${n}-T orbit`;
+  if (!exact.exists && !simple.exists)
+    return [false, `There is no ${n}-T orbit here: the saddle-node is at Λ = `
+      + `${shown(found.limits[0].saddle_node, 4)}.`];
+  if (exact.exists && !exact.is_stable)
+    return [false, `No ball stays on the ${n}-T orbit, because it is unstable: `
+      + "bouncing-ball design says what the ball does instead."];
+  if (!wrong && error <= TOLERANCE)
+    return [true, `The restitution model is good enough: ${subject} is ${percent(error)} off, `
+      + `within ${percent(TOLERANCE)}.`];
+  return [false, `The restitution model is not good enough: `
+    + `${wrong || `${subject} is ${percent(error)} off, beyond ${percent(TOLERANCE)}`}`
+    + (same && found.corrected.max_height <= TOLERANCE
+      ? `; the corrected restitution model is, with ${percent(found.corrected.max_height)}.`
+      : "; nor is the corrected one: simulate the contact.")];
+}
+
+function drawBranch(found, {n, amplitude}) {
+  const [contact, simple, corrected] = found.models;
+  const top = 1.15 * Math.max(amplitude, 1.2,
+    ...found.limits.map(l => Number.isFinite(l.period_doubling) ? l.period_doubling : 0));
+  const plot = new Plot("branch", [0, top], [-0.5, 0.5], "excitation amplitude Λ", "phase φ/π",
+    `Branches of ${n}-T orbits: phase against amplitude. The contact's saddle-node is at `
+    + `${shown(found.limits[0].saddle_node)}, its period doubling at `
+    + `${shown(found.limits[0].period_doubling)}.`);
+  for (const [model, kind] of [[simple, "restitution"], [corrected, "corrected"]])
+    for (const side of ["unstable", "stable"]) {
+      const start = model.saddleNode(n), turned = {true: [], false: []};
+      for (let k = 0; k <= 160; k++) {
+        const lam = start + (top - start) * (k / 160) ** 2, at = model.orbit(n, lam, side);
+        for (const stable of [true, false])
+          turned[stable].push(at.is_stable === stable ? [lam, at.phase / Math.PI] : [NaN, NaN]);
+      }
+      plot.line(turned[true], `curve ${kind}`);
+      plot.line(turned[false], `curve unstable ${kind}`);
+    }
+  const grid = scan(found.contact, n), stable = [], unstable = [];
+  const fine = grid.slice(1).flatMap((right, k) =>
+    Array.from({length: FINE}, (_, j) => grid[k] + (right - grid[k]) * j / FINE));
+  for (const eps of fine) {
+    const at = branchPoint(eps, found.contact, n);
+    // Beyond, the ball would cross the table in contact: solutions, but of no ball.
+    if (eps > 0 && !(at.u < 0)) break;
+    const point = at.u < 0 ? [at.amplitude, at.phase / Math.PI] : [NaN, NaN];
+    const holds = isStable(at.trace, at.determinant);
+    stable.push(holds ? point : [NaN, NaN]);
+    unstable.push(holds ? [NaN, NaN] : point);
+  }
+  plot.line(stable, "curve spring-damper");
+  plot.line(unstable, "curve unstable spring-damper");
+  for (const [name, shape] of [["fold", "circle"], ["flip", "square"]]) {
+    const eps = contact[name](n), at = branchPoint(eps, found.contact, n);
+    plot.mark(shape, at.amplitude, at.phase / Math.PI, "bifurcation");
+  }
+  found.orbits.forEach((orbit, k) => plot.mark("dot", amplitude, orbit.phase / Math.PI, `dot ${NAMES[k]}`, SIZES[k]));
+}
+
+let motion = null;
+function drawMotion(found, {n, amplitude}) {
+  const end = 2 * Math.PI * (n + 0.25), times = Array.from({length: 601}, (_, k) => k * end / 600);
+  const curves = found.orbits.map(orbit => orbit.exists
+    ? times.map(t => heightAt(orbit, t - orbit.phase)) : null);
+  const heights = [amplitude, -amplitude, ...curves.flatMap(c => c ?? [])];
+  const low = Math.min(...heights), high = Math.max(...heights), room = 0.05 * (high - low || 1);
+  const plot = new Plot("motion", [0, end], [low - room, high + room], "time τ = Ωt", "height Ω²z/g",
+    `Height of the ball over one cycle in the models, and of the table. Greatest heights: `
+    + NAMES.map((name, k) => `${name} ${shown(found.orbits[k].max_height, 4)}`).join(", ") + ".");
+  plot.line(times.map(t => [t, amplitude * Math.sin(t)]), "curve table");
+  curves.forEach((curve, k) => curve && plot.line(times.map((t, i) => [t, curve[i]]), `curve ${NAMES[k]}`));
+  const movers = found.orbits.map((orbit, k) => orbit.exists
+    ? plot.add("circle", {class: `dot ${NAMES[k]}`, r: SIZES[k], cx: -20, cy: -20}) : null);
+  const table = plot.add("rect", {class: "dot table", width: 18, height: 3, x: -40, y: -40});
+  motion = {place(t) {
+    table.setAttribute("x", plot.x(t) - 9);
+    table.setAttribute("y", plot.y(amplitude * Math.sin(t)));
+    found.orbits.forEach((orbit, k) => {
+      if (!orbit.exists) return;
+      movers[k].setAttribute("cx", plot.x(t));
+      movers[k].setAttribute("cy", plot.y(heightAt(orbit, t - orbit.phase)));
+    });
+  }, end};
+  motion.place(0);
+}
+
+function drawMultipliers(found) {
+  const plot = new Plot("multipliers", [-1.5, 1.5], [-1.5, 1.5], "real part", "imaginary part",
+    "Floquet multipliers in the plane: " + NAMES.map((name, k) =>
+      `${name} ${found.orbits[k].multipliers.map(m => `${shown(m[0], 3)} + ${shown(m[1], 3)} i`).join(" and ")}`)
+      .join("; ") + ".");
+  const circle = Array.from({length: 181}, (_, k) => [Math.cos(k * Math.PI / 90), Math.sin(k * Math.PI / 90)]);
+  plot.line(circle, "curve table");
+  found.orbits.forEach((orbit, k) => orbit.multipliers.forEach(
+    ([re, im]) => plot.mark("dot", re, im, `dot ${NAMES[k]}`, SIZES[k])));
+}
+
+// ---- Tables.
+function row(name, cells) {
+  const made = document.createElement("tr"), head = document.createElement("th");
+  head.scope = "row";
+  head.textContent = name;
+  made.append(head, ...cells.map(([text, value, key]) => {
+    const cell = document.createElement("td");
+    cell.textContent = text;
+    if (key) [cell.dataset.key, cell.dataset.value] = [key, String(value)];
+    return cell;
+  }));
+  return made;
+}
+
+const ORBIT_ROWS = {
+  phase: "phase of impact φ", contact_duration: "duration of contact τ_b",
+  impact_velocity: "velocity before, z′_i", bounce_velocity: "bouncing-off velocity z′_b",
+  apparent_restitution: "apparent restitution r_a", max_height: "greatest height max z",
+};
+
+function fillTables(found, question) {
+  const cells = read => NAMES.map((name, k) => {
+    const [text, value, key] = read(found.orbits[k], found.limits[k], k);
+    return [text, value, key && `${name} ${key}`];
+  });
+  const yes = (orbit, value) => !orbit.exists ? "no orbit" : value ? "yes" : "no";
+  const {contact} = found;
+  $("orbit-rows").replaceChildren(
+    row("exists", cells(o => [o.exists ? "yes" : "no", o.exists, "exists"])),
+    row("stable", cells(o => [yes(o, o.is_stable), o.is_stable, "is_stable"])),
+    row("the ball's own (sampled only)", cells(o => [yes(o, sampledAdmissible(o, contact))])),
+    row("saddle-node Λ", cells((o, l) => [shown(l.saddle_node), l.saddle_node, "saddle_node"])),
+    row("period doubling Λ", cells((o, l) => [shown(l.period_doubling), l.period_doubling, "period_doubling"])),
+    ...Object.entries(ORBIT_ROWS).map(([key, name]) => row(name, cells(o => [shown(o[key]), o[key], key]))),
+    row("multipliers", cells(o => [o.exists ? o.multipliers.map(
+      ([re, im]) => im ? `${shown(re, 4)} ${im < 0 ? "−" : "+"} ${shown(Math.abs(im), 4)}i` : shown(re, 4))
+      .join(", ") : "none", o.multipliers.flat().join(" "), "multipliers"])),
+  );
+  $("error-rows").replaceChildren(...Object.entries(QUANTITIES).map(([key, name]) => row(name,
+    [found.errors[key], found.corrected[key]].map((value, k) =>
+      [`${percent(value)}${value <= TOLERANCE ? ", within" : Number.isFinite(value) ? ", beyond" : ""}`,
+        value, `${k ? "corrected_errors" : "errors"} ${key}`]))));
+}
+
+// Lengths, times and forces of the physical tab, by name.
+function physical(found, state) {
+  const mass = state.m / 1000, table = 2 * Math.PI * state.f, orbit = found.orbits[0];
+  const time = 1 / table, length = GRAVITY / table ** 2, zeta = found.contact.zeta;
+  const start = freeAngle(found.contact) / dampedFrequency(found.contact) * time;
+  let depth = NaN, force = NaN;
+  if (orbit.exists) {
+    [depth, force] = [0, 0];
+    for (let k = 0; k <= 2000; k++) {
+      const at = orbit.state(k * orbit.contact_duration / 2000);
+      [depth, force] = [Math.max(depth, -at.gap), Math.max(force, at.force)];
+    }
+  }
+  return [
+    ["frequency ratio ϖ", found.contact.omega, ""], ["damping ratio ζ", zeta, ""],
+    ["damping c", 2 * zeta * Math.sqrt(state.k * mass), "N s/m"],
+    ["amplitude of the table", state.acc * length, "m"],
+    ["contact time, free", start, "s"], ["largest time step, a fiftieth of it", start / 50, "s"],
+    ["static deflection", mass * GRAVITY / state.k, "m"],
+    ["greatest height", orbit.max_height * length, "m"],
+    ["duration of contact", orbit.contact_duration * time, "s"],
+    ["impact speed", -orbit.relative_impact_velocity * GRAVITY / table, "m/s"],
+    ["greatest compression (sampled)", depth * length, "m"],
+    ["peak force (sampled)", force * mass * GRAVITY, "N"],
+    ["peak force over weight (sampled)", force, ""],
+    ["corrected model: delay t_c", found.signature.delay * time, "s"],
+    ["corrected model: restitution r", found.signature.r, ""],
+    ["corrected model: load σ", found.signature.load * time, "s"],
+  ];
+}
+
+// What an engine is to be told, and the rows of it.
+function showEngine(state) {
+  const {engine, release, r, e} = state;
+  $("paste").hidden = $("e").parentElement.hidden = engine === "none";
+  if (engine === "none") return [];
+  const found = settingsOf(ENGINES, engine, release, state.m / 1000, state.k, r, e);
+  $("paste-says").textContent = `For ${engine}, whose contacts end by ${release} `
+    + `(r = ${shown(found.restitution, 4)}, within ${e} in ${found.steps} steps of ${found.scheme} `
+    + "in a contact):";
+  $("snippet").textContent = found.snippet;
+  return [["restitution of a free impact", found.restitution, ""],
+    [`time step for an error of ${e} in r`, found.time_step, "s"]];
+}
+
+// ---- The animation: it waits until it is asked, and for those who want no motion stays so.
+let started = null, clock = 0;
+function frame(now) {
+  if (started === null) return;
+  clock = (now - started) / 1000 * 2 % motion.end;
+  motion.place(clock);
+  requestAnimationFrame(frame);
+}
+$("play").addEventListener("click", () => {
+  const on = started === null;
+  started = on ? performance.now() - clock * 500 : null;
+  $("play").textContent = on ? "Stop the motion" : "Play the motion";
+  $("play").setAttribute("aria-pressed", on);
+  if (on) requestAnimationFrame(frame);
+});

@@ -1,0 +1,216 @@
+// One ball from impact to impact, with a restitution coefficient or a spring-damper contact that
+// ends at δ = 0: bouncing_ball.motion in plain JavaScript. δ is the height above the table.
+"use strict";
+
+const TURN = 2 * Math.PI;
+const reduced = angle => angle - TURN * Math.round(angle / TURN);
+// Λ cos and Λ sin of a phase.
+const tableAt = (phase, amplitude) => [amplitude * Math.cos(phase), amplitude * Math.sin(phase)];
+
+// ---- The first upward zero of y after a time at which y ≤ 0, by steps that cannot pass over a
+// zero: first_zero.py. `at` gives y, y′, y″, y‴, bounds of y″, |y‴|, |y⁗| from then on, and whether
+// to stop without a zero. NaN if it stops.
+const MOST_STEPS = 100000;
+const zeroOfParabola = (bound, v, square, twice) => {
+  const root = Math.sqrt(Math.max(square + bound * twice, 0));
+  return v > 0 ? twice / (v + root) : (root - v) / bound;
+};
+
+function firstZero(at, start, skip = time => time) {
+  let time = start;
+  for (let k = 0; k < MOST_STEPS; k++) {
+    const {y, v, a, j, most, ended} = at(time), [second, third, fourth] = most;
+    if (y >= 0 && (v > 0 || (v === 0 && a >= 0))) break;
+    const twice = -2 * Math.min(y, 0), square = v * v;
+    const first = zeroOfParabola(second, v, square, twice);
+    let step = first;
+    for (let reach = 4 * step; ; reach *= 4) {
+      const growth = Math.max(j, 0) + fourth * reach / 4;
+      const bound = Math.min(a + reach * growth / 3, second);
+      const longer = Math.min(zeroOfParabola(Math.max(bound, 1e-300), v, square, twice), reach);
+      step = Math.max(step, longer);
+      if (longer < reach || !(reach < Infinity)) break;
+    }
+    if (!(v > 0)) step = Math.max(step, -3 * a / (third + 1e-300));
+    const bend = (Math.abs(j) + fourth * first) * first * first;
+    const near = v > 0 && second * twice <= square / 4 && bend <= 3e-4 * v;
+    if (ended && !near) return NaN;
+    const later = skip(time + step);
+    if (near || later === time) {
+      time = later;
+      break;
+    }
+    time = later;
+    if (k === MOST_STEPS - 1) return NaN;
+  }
+  // One more step of the parabola, if the zero is certainly simple.
+  const {y, v, a, most} = at(time), twice = -2 * y, square = v * v;
+  return v > 0 && most[0] * Math.abs(twice) <= square
+    ? Math.max(start, time + twice / (v + Math.sqrt(Math.max(square + a * twice, 0)))) : time;
+}
+
+// ---- Free flight from the table: δ and its derivatives after a time (landing.py).
+function flightAt({v, x, y}, s) {
+  const sine = Math.sin(s), half = Math.sin(s / 2), versine = 2 * half * half;
+  return {
+    gap: s * (v - s / 2) + y * versine + x * (s - sine), speed: v - s + y * sine + x * versine,
+    pull: y + x * sine - y * versine - 1, push: x - y * sine - x * versine,
+  };
+}
+
+// Time and speed of the landing.
+function land(left, amplitude) {
+  const {v, x, y} = left, gravity = 1 + amplitude;
+  // The ball cannot land while it is above the highest point of the table.
+  const thrown = v + x, root = Math.sqrt(Math.max(thrown * thrown + 2 * (y - amplitude), 0));
+  const skip = s => s >= thrown - root && s < thrown + root ? thrown + root : s;
+  // It is in the air at least as long as against the strongest gravity, or, from rest on a table
+  // that recedes, as the first terms of its series are positive.
+  let sure = 2 * v / gravity;
+  if (v === 0 && y >= 1) {
+    const lift = y - 1, top = Math.max(amplitude, 1);
+    const steep = Math.min(lift / Math.max(Math.abs(x), 1e-300), Math.sqrt(3 * lift / top));
+    sure = Math.max(steep, 4 * x / top);
+  }
+  const at = s => {
+    const {gap, speed, pull, push} = flightAt(left, s);
+    return {y: -gap, v: -speed, a: -pull, j: -push, most: [gravity, amplitude, amplitude]};
+  };
+  const hang = firstZero(at, skip(sure), skip);
+  return {hang, u: Math.min(flightAt(left, hang).speed, 0)};
+}
+
+// ---- An impact with a restitution coefficient (restitution.py). Infinitely many ever smaller
+// bounces are summed up in closed form where the next term of the sum is below rounding; the ball
+// then rests until Λ sin τ = 1 on the way up, where it leaves; for Λ ≤ 1 it stays.
+const pressed = (x, y) => y < 1 || (y === 1 && x <= 0);
+
+function departByRestitution(r, amplitude, phase, u) {
+  const v = -r * u, [x, y] = tableAt(phase, amplitude), gravity = 1 - y, down = pressed(x, y);
+  const loss = gravity * (1 - r), usable = down && loss > 0, total = usable ? 2 * v / loss : 0;
+  const limit = Math.max(1e-5 * gravity / Math.max(amplitude, 1), Number.EPSILON);
+  if (!(usable && total <= limit) && !(down && v === 0))
+    return {phase, v, x, y, duration: 0, settling: 0, sticks: false, stays: false};
+  const settling = usable ? total * (1 + x * total / (3 * gravity)) : 0, rest = phase + settling;
+  if (amplitude <= 1) return {phase: rest, settling, duration: Infinity, sticks: true, stays: true};
+  const [restX, restY] = tableAt(rest, amplitude);
+  if (!pressed(restX, restY))
+    return {phase: rest, v: 0, x: restX, y: restY, duration: settling, settling, sticks: true};
+  const slope = Math.sqrt((amplitude - 1) * (amplitude + 1)), lift = Math.atan2(1, slope);
+  const turned = reduced(lift - rest), wait = turned < 0 ? turned + TURN : turned;
+  return {phase: lift, v: 0, x: slope, y: 1, settling, sticks: true, stays: false,
+    duration: settling + (wait > TURN - 1e-9 ? 0 : wait)};
+}
+
+// ---- A contact: δ < 0 until it first rises through 0 (linear_contact.py). Where transient and
+// response together stay below 1/ϖ², it does so no more.
+function departByContact(contact, amplitude, phase, u) {
+  const {omega, zeta} = contact, stiffness = omega * omega, loss = 2 * zeta * omega;
+  const [x, y] = tableAt(phase, amplitude), point = {u, x, y};
+  const damped = dampedFrequency(contact), detuning = (omega - 1) * (omega + 1);
+  const gamma = detuning * detuning + loss * loss, level = 1 / stiffness;
+  const sine = (detuning * x + loss * y) / gamma, cosine = (detuning * y - loss * x) / gamma;
+  const a = level - cosine, b = (u - sine + loss / 2 * a) / damped;
+  const envelope = Math.hypot(a, b), steady = amplitude / Math.sqrt(gamma);
+  const at = s => {
+    const {gap, speed} = contactState(contact, point, s);
+    const [tx, ty] = tableAt(phase + s, amplitude);
+    const pull = ty - 1 - loss * speed - stiffness * gap, push = tx - loss * pull - stiffness * speed;
+    const free = envelope * Math.exp(-loss / 2 * s), bound = stiffness * free;
+    return {y: gap, v: speed, a: pull, j: push, ended: free + (steady - level) <= 2e-15 * level,
+      most: [bound + steady, omega * bound + steady, stiffness * bound + steady]};
+  };
+  const duration = firstZero(at, 0), stays = Number.isNaN(duration), end = phase + duration;
+  if (stays) return {point, duration: Infinity, settling: 0, sticks: true, stays};
+  const [leftX, leftY] = tableAt(end, amplitude);
+  return {point, phase: end, v: Math.max(contactState(contact, point, duration).speed, 0),
+    x: leftX, y: leftY, duration, settling: 0, sticks: duration * damped > TURN, stays};
+}
+
+// All impacts of a ball, from the first one on, until it stays on the table: when and at which
+// phase, δ′ before it, how the ball leaves and how long it then flies. `model` is {r} or {contact}.
+// Speeds are wrong by the part `grain` of themselves, to see what rounding errors would do.
+function* impactsOf(model, amplitude, phase, velocity, grain = 0) {
+  let time = 0, u = Math.min(velocity - amplitude * Math.cos(phase), 0);
+  for (let k = 0; ; k++) {
+    const left = model.contact ? departByContact(model.contact, amplitude, phase, u)
+      : departByRestitution(model.r, amplitude, phase, u);
+    if (left.stays) {
+      yield {time, at: phase, u, left, hang: Infinity};
+      return;
+    }
+    const landed = land(left, amplitude);
+    yield {time, at: phase, u, left, hang: landed.hang};
+    time += left.duration + landed.hang;
+    phase = reduced(left.phase + landed.hang);
+    u = landed.u * (1 + (k % 2 ? grain : -grain));
+  }
+}
+
+// Height of a ball a time after one of its impacts, before the next.
+function heightSince({at, left, hang}, model, amplitude, since) {
+  const s = since - left.duration;
+  if (s > 0) return flightAt(left, Math.min(s, hang)).gap + amplitude * Math.sin(left.phase + s);
+  return (model.contact ? contactState(model.contact, left.point, since).gap : 0)
+    + amplitude * Math.sin(at + since);
+}
+
+// ---- On what a ball ends: `kind`, the periods of the table and the impacts until it repeats,
+// the phases of its impacts, and the greatest height at which it is thrown.
+// With instantaneous impacts a ball forgets its past when it sticks, and repeats when it sticks
+// again; else its state must return twice in the same number of impacts. What larger rounding errors
+// would change does not count: the ball then goes on.
+const SAME = 1e-7, GRAIN = 1e-14, MOST_IMPACTS = 4000;
+function endOf(...start) {
+  const found = followed(...start, 0);
+  if (found.kind === "goes on" || found.kind === "stays") return found;
+  const other = followed(...start, GRAIN);
+  return ["kind", "periods", "impacts"].every(name => found[name] === other[name]) ? found
+    : {...found, kind: "goes on", periods: 0, impacts: 0};
+}
+
+function followed(model, amplitude, phase, velocity, grain) {
+  let k = 0, mark = null, turn = 0, lift = null, stuck = false, top = -Infinity;
+  const seen = [], end = (kind, periods, impacts, more) => ({kind, periods, impacts, top, seen, ...more});
+  for (const {time, at, u, left} of impactsOf(model, amplitude, phase, velocity, grain)) {
+    if (left.stays) return end("stays", 1, 0, {since: time + left.settling});
+    seen.push(reduced(at));
+    const thrown = Math.max(left.v + left.x, 0);
+    top = Math.max(top, left.y + thrown * thrown / 2);
+    if (!model.contact && left.sticks) {
+      const now = time + left.duration;
+      if (lift) return end("sticks", Math.round((now - lift.now) / TURN), k - lift.k);
+      lift = {now, k};
+    }
+    if (mark && Math.abs(reduced(at - mark.at)) < SAME
+      && Math.abs(u - mark.u) < SAME * (1 + amplitude)) {
+      const count = k - mark.k, periods = Math.round((time - mark.time) / TURN);
+      if (count === turn) return end(stuck ? "sticks" : "repeats", periods, count);
+      [turn, mark, stuck] = [count, {k, at, u, time}, false];
+    } else if (!mark || k >= (turn ? mark.k + turn + 1 : 1.5 * mark.k + 8))
+      [turn, mark, stuck] = [0, {k, at, u, time}, false];
+    stuck ||= left.sticks;
+    if (++k === MOST_IMPACTS) return end("goes on", 0, 0);
+  }
+}
+
+// ---- The balls of the package, followed again: the largest difference, and where.
+function compareBalls({names, rows}) {
+  let worst = 0, where = "";
+  for (const {state, values} of rows) {
+    const [kind, r, omega, amplitude, phase, velocity] = state;
+    const model = kind === "restitution" ? {r} : {contact: contactOf(r, omega, "displacement")};
+    const {periods, impacts} = endOf(model, amplitude, phase, velocity);
+    const expected = Object.fromEntries(names.map((name, k) => [name, values[k]]));
+    let last, count = -1;
+    for (last of impactsOf(model, amplitude, phase, velocity))
+      if (++count === expected.end_impact) break;
+    const found = {periods, impacts, end_impact: count, end_phase: reduced(last.at),
+      end_speed: -last.u, end_time: last.time + last.left.settling};
+    for (const name of names) {
+      const difference = Math.abs(found[name] - expected[name]) / Math.max(1, Math.abs(expected[name]));
+      if (!(difference <= worst)) [worst, where] = [difference, `${name} of a ${kind} ball, Λ = ${amplitude}`];
+    }
+  }
+  return {worst, where, count: rows.length};
+}

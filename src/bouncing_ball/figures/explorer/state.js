@@ -1,0 +1,111 @@
+// The state of the page, which is its address: what each value may be, and the command that
+// computes the same.
+"use strict";
+
+const $ = id => document.getElementById(id);
+// The stage's: phase and velocity of the first impact, number of balls, by how much each of them
+// differs from the one before, the periods that have passed, and how many times slower it plays.
+const DEFAULTS = {
+  tab: "orbit", r: 0.85, w: 10, a: 0.8, n: 1, release: "displacement", side: "stable",
+  m: 20, f: 50, acc: 0.8, k: 1e7, engine: "none", e: 0.001,
+  model: "both", phi: 0, v: -3, balls: 1, dv: 0, dphi: 0, from: 0, pace: "1", view: "height",
+};
+const RANGES = {
+  r: [0.001, 1], w: [0.1, 1e6], a: [0.001, 100], n: [1, 20],
+  m: [1e-9, 1e9], f: [1e-6, 1e9], acc: [0.001, 100], k: [1e-9, 1e18], e: [1e-6, 0.5],
+  phi: [-10, 10], v: [-1000, 1000], balls: [1, 9], dv: [-10, 10], dphi: [-10, 10], from: [0, 1000],
+};
+const WHOLE = ["n", "balls", "from"];
+// On the stage the table may be at rest.
+const rangeOf = (name, tab) => name === "a" && tab === "stage" ? [0, 100] : RANGES[name];
+const REFERENCES = Object.fromEntries(["references", "engines", "scenes"].map(
+  name => [name, JSON.parse($(name).textContent)]));
+const {engines: {engines: ENGINES}, scenes: SCENES} = REFERENCES;
+const CHOICES = {
+  tab: ["orbit", "design", "stage"], release: ["displacement", "force"], side: ["stable", "unstable"],
+  engine: ["none", ...Object.keys(ENGINES)],
+  model: ["both", "restitution", "spring-damper"], pace: ["1", "4", "16"], view: ["height", "gap"],
+};
+const GRAVITY = 9.80665;
+
+// The models whose balls are on the stage.
+const modelsOf = ({model, r, w}) => Object.fromEntries(
+  [["restitution", {r}], ["spring-damper", {contact: contactOf(r, w, "displacement")}]]
+    .filter(([name]) => model === "both" || model === name));
+
+// The state of a hash, and what in it was no value: that keeps its default. A scene is a state of
+// the stage by its name.
+function parse(hash) {
+  const given = new URLSearchParams(hash.replace(/^#/, "")), scene = SCENES[given.get("scene")];
+  const state = {...DEFAULTS, ...(scene && {tab: "stage", ...scene.state})}, refused = [];
+  const tab = given.get("tab") ?? state.tab;
+  if (scene) given.delete("scene");
+  for (const [name, text] of given) {
+    const value = Number(text), range = rangeOf(name, tab);
+    if (name in CHOICES ? CHOICES[name].includes(text)
+      : range && text.trim() !== "" && value >= range[0] && value <= range[1]
+        && (!WHOLE.includes(name) || Number.isInteger(value)))
+      state[name] = name in CHOICES ? text : value;
+    else refused.push(`${name} = ${text}`
+      + (name in DEFAULTS ? ` (in its place ${DEFAULTS[name]})` : ""));
+  }
+  if (state.tab === "design" && state.engine !== "none") {
+    // The engine's own rule, where it has not the one that is chosen.
+    const rules = Object.keys(ENGINES[state.engine].snippets);
+    if (!rules.includes(state.release)) [state.release] = rules;
+  }
+  return {state, refused};
+}
+
+// Why a state has no answer: an r that no contact of the engine has, or a ball that rises.
+function impossible(state) {
+  const least = Math.exp(-2), {a, r, w, phi, v, dv, dphi} = state;
+  if (state.tab === "design" && state.engine !== "none" && state.release === "force" && r <= least)
+    return `r = ${r} is not above e⁻² = ${shown(least, 4)}, the least of an `
+      + `underdamped contact of ${state.engine}, which ends by its force.`;
+  if (state.tab !== "stage") return "";
+  if (r === 1 && w === 1 && state.model !== "restitution")
+    return "r = 1 with ϖ = 1 is the resonance of an undamped contact, which is not followed here.";
+  for (let k = 0; k < state.balls; k++) {
+    const table = a * Math.cos(phi + k * dphi);
+    if (v + k * dv > table + 1e-9)
+      return `The velocity of ball ${k + 1} at its first impact, ${shown(v + k * dv)}, is above `
+        + `that of the table, Λ cos φ = ${shown(table)}: it rises, and there is no impact.`;
+  }
+  return "";
+}
+
+const TABS = {
+  orbit: () => ["r", "w", "a", "n", "release", "side"],
+  design: ({engine}) => ["tab", "m", "f", "acc", "k", "r", "n", "release",
+    ...(engine === "none" ? [] : ["engine", "e"])],
+  stage: ({model}) => ["tab", "model", "r", ...(model === "restitution" ? [] : ["w"]), "a", "phi",
+    "v", "balls", "dv", "dphi", "from", "pace", "view"],
+};
+const hashOf = state => "#" + TABS[state.tab](state).map(
+  name => `${name}=${encodeURIComponent(state[name])}`).join("&");
+
+// What the model is asked: of the physical tab, its dimensionless groups.
+function asked(state) {
+  const {r, n, release, side} = state;
+  if (state.tab === "orbit") return {r, n, release, side, omega: state.w, amplitude: state.a};
+  const omega = Math.sqrt(state.k / (state.m / 1000)) / (2 * Math.PI * state.f);
+  // The calculator asks for the orbit that is stable next to the saddle-node.
+  return {r, n, release, side: "stable", omega, amplitude: state.acc,
+    measured: state.engine !== "none"};
+}
+
+function commandOf(state) {
+  if (state.tab === "stage")
+    return Object.keys(modelsOf(state)).map(model => `bouncing-ball motion --amplitude ${state.a} `
+      + `--restitution ${state.r}${model === "restitution" ? "" : ` --frequency-ratio ${state.w}`} `
+      + `--phase ${state.phi} --velocity ${state.v}`).join("\n");
+  const family = `--n ${state.n} --release ${state.release}`;
+  if (state.tab === "design")
+    return `bouncing-ball design --mass "${state.m} g" --frequency "${state.f} Hz" `
+      + `--acceleration "${state.acc} g" --stiffness "${state.k} N/m" --restitution ${state.r} `
+      + family + (state.engine === "none" ? ""
+        : ` --engine ${state.engine} --restitution-error ${state.e}`);
+  return `bouncing-ball orbit --restitution ${state.r} --frequency-ratio ${state.w} `
+    + `--amplitude ${state.a} ${family} --side ${state.side}`;
+}

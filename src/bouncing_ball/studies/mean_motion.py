@@ -1,0 +1,136 @@
+"""From which ϖ on the means over a motion are right, over (Λ, r) (beyond the paper)."""
+
+from typing import Annotated
+
+import numpy as np
+import xarray as xr
+from scipy.stats import t as student
+
+from bouncing_ball.attractors.mapper import label
+from bouncing_ball.attractors.means import means
+from bouncing_ball.contacts.spring_damper import Release
+from bouncing_ball.datasets.variables import described
+from bouncing_ball.parameters import Seed, Tolerance, number
+from bouncing_ball.studies.attractors import SIMPLE, Grid, group, share
+
+DECISIONS = ("from this on", "not at any", "undecided", "no number")
+"""What is known of the smallest ϖ: it is known, the largest one is not enough, the interval of
+some error contains the tolerance, or the simple model's value is infinite."""
+MEANS = ("power", "height", "flights", "exponent")
+NODES = ("all", "orbit", "locked", "chaotic")
+"""Nodes by what all balls of the simple model end on, of the corrected model at the largest ϖ."""
+
+# Speeds of balls at the start are up to this times Λ.
+_FASTEST = 4.0
+# Half the width of an interval at least: a motion that repeats is found within 1e-6 of its state.
+_KNOWN = 1e-6
+
+
+class MeanMotions(Grid):
+    """A grid over (Λ, r) with several balls for each node, which start alike in all models."""
+
+    starts: Annotated[int, number("balls for each node, which make the interval", ge=3, le=10000)]
+    samples: Annotated[
+        int, number("impacts of a mean over a motion that does not repeat", ge=10, le=10**7)
+    ]
+    tolerance: Tolerance
+    seed: Seed
+
+
+def needed(error: np.ndarray, margin: np.ndarray, tolerance: float) -> tuple[np.ndarray, ...]:
+    """The place of the smallest ϖ from which on an error is within the tolerance, and what is
+    known of it, an index into :data:`DECISIONS`.
+
+    Parameters
+    ----------
+    error, margin : array
+        Errors and half the widths of their intervals, with ϖ along the first axis.
+
+    Examples
+    --------
+    >>> error = np.array([[0.3], [0.02], [0.001]])
+    >>> [x.tolist() for x in needed(error, np.full((3, 1), 0.005), 0.01)]
+    [[2], [0]]
+    """
+    size, last = np.abs(error), len(error)
+    # From the largest ϖ down to the first at which the error is not known to be small.
+    within = (size + margin <= tolerance)[::-1]
+    right = np.argmin(np.concatenate([within, within[:1] & False]), axis=0)
+    at = np.minimum(right, last - 1)[np.newaxis]
+    beyond = np.take_along_axis((size - margin > tolerance)[::-1], at, axis=0)[0]
+    decision = np.where(beyond | (right == last), np.where(right > 0, 0, 1), 2)
+    return last - right, np.where(np.isnan(error).any(axis=0), 3, decision)
+
+
+def _errors(simple: np.ndarray, contact: np.ndarray, confidence: float) -> np.ndarray:
+    """Relative errors of a simple model and half the widths of their intervals, from paired balls
+    along the last axis.
+    """
+    balls = contact.shape[-1]
+    width = student.ppf((1 + confidence) / 2, balls - 1) / np.sqrt(balls)
+    with np.errstate(invalid="ignore"):
+        apart, scale = contact - simple, np.abs(simple.mean(axis=-1))
+        found = np.stack([apart.mean(axis=-1), width * apart.std(axis=-1, ddof=1)]) / scale
+    found[1] = np.maximum(found[1], _KNOWN)
+    return np.where(np.isfinite(found[0]), found, np.nan)
+
+
+def mean_motions(parameters: MeanMotions, release: Release) -> xr.Dataset:
+    """The smallest ϖ from which on the means of a simple model are right, over (Λ, r).
+
+    The balls of a node start with the same impacts in all models, random in phase and speed. Each
+    of them gives a mean over the motion on which it ends, and the paired differences of these give
+    the error of the simple model with its interval by Student's distribution, whatever the balls
+    end on. ``mean_error`` and ``mean_margin``, half the interval's width, (simple, mean, ϖ,
+    restitution, amplitude) are (contact - simple)/simple of the power, height, flights per period
+    and exponent. ``needed_ratio`` (simple, mean, restitution, amplitude) is the smallest ϖ of those
+    tried from which on all errors are within the tolerance, NaN where ``decision`` is not "from
+    this on", see :data:`DECISIONS`. ``right`` (simple, mean, motion_group, ϖ) is the share of the
+    nodes that are known to be right from this ϖ on, of those with a number, for :data:`NODES`; with
+    its Wilson limits ``right_low`` and ``right_high`` and the number of nodes ``right_nodes``.
+    """
+    lam, compared = parameters.models(release, starts=True)
+    random, balls = np.random.default_rng(parameters.seed), parameters.starts
+    phase, speed = random.uniform(-np.pi, np.pi, balls), random.uniform(0.0, _FASTEST, balls)
+    velocity = lam * (np.cos(phase) - speed)
+    values, motions = [], []
+    for model in compared:
+        found = label(model.impact_law, lam, phase, velocity, impacts=parameters.impacts)
+        flights, height, power, exponent = means(model.impact_law, lam, found, parameters.samples)
+        exponent = np.where(found.periods > 0, found.exponent, exponent)
+        of = np.stack([power, height, flights, exponent])
+        # Over the mean, ϖ, r, Λ and the ball; the restitution model has one ϖ.
+        values.append(of.reshape(len(MEANS), -1, *found.shape[-3:]))
+        motions.append(found)
+    *simple, contact = values
+    errors = np.stack([_errors(x, contact, parameters.confidence) for x in simple])
+    along = np.moveaxis(errors, (1, 3), (0, 1))
+    place, known = needed(along[0], along[1], parameters.tolerance)
+    ratios = np.array(parameters.frequency_ratio)
+    least = np.where(known == 0, ratios[np.minimum(place, ratios.size - 1)], np.nan)
+    right = np.stack([(known == 0) & (place <= k) for k in range(ratios.size)], axis=2)
+    shares = np.empty((len(SIMPLE), len(MEANS), len(NODES), ratios.size, 4))
+    for s, q, g, k in np.ndindex(shares.shape[:-1]):
+        inside = np.all(group(motions[s], NODES[g]), axis=-1).reshape(-1, *known.shape[-2:])[-1]
+        here = inside & (known[s, q] != DECISIONS.index("no number"))
+        shares[s, q, g, k] = share(right[s, q, k][here], parameters.confidence)
+    dims, nodes = ("simple", "mean"), ("restitution", "amplitude")
+    names = ("right_nodes", "right", "right_low", "right_high")
+    of_shares = (*dims, "motion_group", "frequency_ratio")
+    return described(
+        {
+            "mean_error": ((*dims, "frequency_ratio", *nodes), errors[:, 0]),
+            "mean_margin": ((*dims, "frequency_ratio", *nodes), errors[:, 1]),
+            "needed_ratio": ((*dims, *nodes), least),
+            "decision": ((*dims, *nodes), np.array(DECISIONS)[known]),
+            **{x: (of_shares, shares[..., k]) for k, x in enumerate(names)},
+        },
+        coords={
+            "simple": list(SIMPLE),
+            "mean": list(MEANS),
+            "motion_group": list(NODES),
+            "frequency_ratio": ratios,
+            "restitution": parameters.restitution.grid(),
+            "amplitude": parameters.amplitude.grid(),
+        },
+    )

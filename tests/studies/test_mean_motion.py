@@ -1,0 +1,44 @@
+"""The smallest ϖ for means, against the orbit's own errors."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.configuration.study import typed
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.studies.mean_motion import DECISIONS, mean_motions, needed
+
+RATIOS = [10.0, 30.0, 100.0, 1000.0]
+
+
+def grid(low, high):
+    return {"min": low, "max": high, "samples": 2}
+
+
+@pytest.mark.parametrize(
+    ("error", "margin", "place", "decision"),
+    [
+        ([0.2, 0.02, 0.001], 0.0, 2, "from this on"),
+        ([0.001, 0.02, 0.001], 0.0, 2, "from this on"),
+        ([0.001, -0.001, 0.001], 0.0, 0, "from this on"),
+        ([0.001, 0.001, -0.02], 0.0, 3, "not at any"),
+        ([0.2, 0.011, 0.001], 0.005, 2, "undecided"),
+        ([0.2, np.nan, 0.001], 0.0, 2, "no number"),
+    ],
+)
+def test_every_larger_ratio_must_be_right(error, margin, place, decision):
+    found = needed(np.array(error), np.full(3, margin), 0.01)
+    assert (int(found[0]), DECISIONS[int(found[1])]) == (place, decision)
+
+
+def test_errors_on_a_locked_orbit_decide_by_themselves():
+    """All balls lock with the period 3 T here, and the power errs by K/ϖ."""
+    given = {"amplitude": grid(3.4, 3.5), "restitution": grid(0.2, 0.22), "impacts": 200}
+    sizes = {"starts": 3, "samples": 50, "tolerance": 0.01, "confidence": 0.95, "seed": 7}
+    data = typed(mean_motions)(given | sizes | {"frequency_ratio": RATIOS}, Release.DISPLACEMENT)
+    one = data.sel(mean="power", simple="restitution")
+    node = {"restitution": 0, "amplitude": 0}
+    assert np.all(one.mean_margin.isel(node) == data.mean_margin.min())
+    error = np.abs(one.mean_error.isel(node).values)
+    assert one.needed_ratio.isel(node) == RATIOS[np.flatnonzero(error > 0.01).max() + 1]
+    # The next order contributes a share of 1/ϖ, times a coefficient of some units.
+    assert error[2] / error[3] == pytest.approx(10, rel=0.1)

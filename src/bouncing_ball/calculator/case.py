@@ -3,14 +3,10 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
-
-import numpy as np
-from scipy.optimize import brentq
 
 from bouncing_ball.accuracy.errors import models
 from bouncing_ball.contacts.contact_law import ContactLaw
-from bouncing_ball.contacts.contact_scales import depth
+from bouncing_ball.contacts.contact_scales import rest
 from bouncing_ball.contacts.laws.tsuji import Tsuji
 from bouncing_ball.contacts.signature import Instant, Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
@@ -126,13 +122,7 @@ class Case:
         omega = float(self.contact.frequency_ratio) * self.table.angular_frequency
         deflection = self.table.gravity / omega**2
         if self.law is not None:
-            law: Any = self.law
-            weight = np.ones(1)
-            # The load adds to the force, so that this depth is the largest that there can be.
-            deepest = float(depth(law, 0 * weight, 0.0, weight)[0])
-            if law.feels_load:
-                deepest = brentq(lambda p: law.loaded_force(p, 0.0, 1.0) - 1, 0.0, deepest)
-            deflection = deepest * self.table.length
+            deflection = rest(self.law) * self.table.length
         return {
             "stiffness": self.mass * omega**2,
             "damping": 2 * float(self.contact.damping_ratio) * self.mass * omega,

@@ -323,16 +323,19 @@ def _panel(
     new[-1] += final * more
     by_rate, by_time = (np.abs(tail @ x).max(axis=0) for x in (push, lever))
     error = np.maximum(by_rate / now.speed, by_time * now.speed / now.length) * step
-    full = _load(start, t[:-1]) if law.feels_load else None
-    held = (q[:-1] > 0) & (_grip(law, m, q[:-1], rate, full) > 0)
+    held = np.ones_like(last)
+    # Up to a time the ball is in contact.
+    if until is None:
+        full = _load(start, t[:-1]) if law.feels_load else None
+        held = ((q[:-1] > 0) & (_grip(law, m, q[:-1], rate, full) > 0)).all(axis=0)
     if law.has_kink:
         # Both turns of a sign that changes twice in a panel would be missed at its end. A panel up
         # to a time may be so short that rounding gives the sign.
-        smooth = now.side * law.kink(q[:-1] ** m, rate) > 0
+        smooth = (now.side * law.kink(q[:-1] ** m, rate) > 0).all(axis=0)
         held &= smooth if until is None else smooth | last
     turned = last & (first == len(left) - 1) if law.has_kink else np.zeros_like(last)
     surfaced = first == 1 if law.feels_load and until is None else np.zeros_like(last)
-    good = reached & held.all(axis=0) & (change <= _ENOUGH) & (error <= _SPECTRUM)
+    good = reached & held & (change <= _ENOUGH) & (error <= _SPECTRUM)
     slower = np.minimum(
         (error / _SPECTRUM) ** (-1 / count), (early / _CHANGE) ** (-1 / (2 * _EARLY))
     )
@@ -543,7 +546,8 @@ def march(
             if not active.size:
                 break
     root, rate, time = (np.where(done, x, np.nan) for x in state[:3])
-    depth = np.maximum(root, 0.0) ** law.root
+    # Between two times of a motion that is sought a ball may be above the table.
+    depth = root if law.root == 1 and until is not None else np.maximum(root, 0.0) ** law.root
     if until is None and law.release is Release.DISPLACEMENT:
         depth *= 0
     return Contacts(time, depth, rate, jacobian, contraction)

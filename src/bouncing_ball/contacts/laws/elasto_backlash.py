@@ -5,6 +5,11 @@ force of the spring, so that the force grows from zero. During restitution it at
 and the ball is released where p + κ p′ = 0, κ = c/k. The force has a kink where p = κ p′, at the
 time κ of a short impact. The law is homogeneous, so that r is the same at every speed.
 
+In a steady contact without a flight p is a sinusoid about the depth at rest as long as the force is
+linear. Then p + κ p′, which ends the contact, and p - κ p′, whose zero is the kink, have the same
+least value. Up to the threshold of permanent contact the force is therefore linear, and the
+threshold is that of the spring-damper with its force release.
+
 Physical parameters: ``k = m Ω² ϖ²``, ``c = 2 m Ω ζϖ``.
 
 Source: Modelica Standard Library, ``Mechanics.Rotational.Components.ElastoBacklash2``, and its
@@ -18,6 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.contact_law import ContactLaw, check_damping, check_positive
+from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.release import Release
 
 
@@ -69,6 +75,12 @@ class ElastoBacklash(ContactLaw):
     def kink(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """p - κ p′, whose zero is the kink; without damping it has no zero."""
         return np.where(self.lag == 0, 1.0, penetration - self.lag * rate)
+
+    @property
+    def permanent_contact(self) -> np.ndarray:
+        """Λ_F(ϖ) of the spring-damper with the force release."""
+        ratio, zeta = self.frequency_ratio, self.damping_ratio
+        return permanent_contact_threshold(ratio, zeta, Release.FORCE)
 
     @classmethod
     def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:

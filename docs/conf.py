@@ -60,7 +60,14 @@ PARTS = {
         "docs/atlas",
     ],
     "Theory": ["docs/impact-as-an-instant", "docs/error-law", "docs/closed-form"],
-    "Replication": ["paper", "figures/*", "docs/atlas/*", "config/README", "docs/record"],
+    "Replication": [
+        "paper",
+        "supplement",
+        "figures/*",
+        "docs/atlas/*",
+        "config/README",
+        "docs/record",
+    ],
     "Code": ["results/api/modules", "CONTRIBUTING", "CHANGELOG"],
 }
 

@@ -3,9 +3,12 @@
 A study takes a subclass of :class:`Parameters` that stands beside it. The check of the
 configuration, its one-line errors, its documentation and its JSON schema are made from these
 classes, so that a name, a range or a description stands once. The description gives the reason
-for each limit.
+for each limit. Numbers that many studies take are rows of ``parameters.csv``.
 """
 
+import csv
+import json
+from pathlib import Path
 from typing import Annotated, Any, Self, TypeVar
 
 import numpy as np
@@ -40,6 +43,17 @@ def number(description: str, unit: str = "1", **limits: Any) -> Any:
     return Field(description=description, json_schema_extra={"unit": unit}, **limits)
 
 
+_TABLE = Path(__file__).with_suffix(".csv").read_text(encoding="utf-8").splitlines()
+_ROWS = {row.pop("name"): row for row in csv.DictReader(_TABLE)}
+
+
+def listed(name: str) -> Any:
+    """The field of a number that many studies take, from its row of ``parameters.csv``."""
+    row = _ROWS[name]
+    limits = {key: json.loads(row[key]) for key in ("ge", "gt", "le", "lt") if row[key]}
+    return number(row["description"], **limits)
+
+
 def _distinct(values: tuple) -> tuple:
     if len(set(values)) < len(values):
         raise ValueError("must not repeat an item")
@@ -49,58 +63,16 @@ def _distinct(values: tuple) -> tuple:
 Many = Annotated[tuple[_T, ...], Strict(False), Field(min_length=1), AfterValidator(_distinct)]
 """One or more different values, a list in the configuration."""
 
-# The reasons for the limits of r and Λ.
-_HELD = "an r below 0.05 is that of a contact which the ball hardly leaves"
-_UNSTABLE = "of the families n ≤ 20 have long been unstable"
-
-Family = Annotated[
-    int,
-    number(
-        "index n of the family, of period 2πn; beyond 20 the routes to an orbit part by rounding",
-        ge=1,
-        le=20,
-    ),
-]
-Restitution = Annotated[
-    float,
-    number(f"restitution coefficient r, which gives the damping (Eq. 16); {_HELD}", ge=0.05, le=1),
-]
-LossyRestitution = Annotated[
-    float,
-    number(f"restitution coefficient r; at r = 1 no orbit attracts; {_HELD}", ge=0.05, le=0.999),
-]
-LawRestitution = Annotated[
-    float, number("restitution coefficient r, one of contacts of any law", ge=0.3, le=0.99)
-]
-Amplitude = Annotated[
-    float,
-    number(
-        f"amplitude Λ of the table's acceleration over gravity; at 1000 all orbits {_UNSTABLE}",
-        gt=0,
-        le=1000,
-    ),
-]
-AmplitudeMax = Annotated[
-    float,
-    number(f"upper end of the Λ axis; at 100 all restitution orbits {_UNSTABLE}", gt=0, le=100),
-]
-FrequencyRatio = Annotated[
-    float,
-    number(
-        "frequency ratio ϖ of contact and table; below 0.1 the ball sinks in by 100 g/Ω² at rest, "
-        "beyond 10⁶ a contact is lost in the rounding of the cycle",
-        ge=0.1,
-        le=1e6,
-    ),
-]
-Samples = Annotated[
-    int,
-    number(
-        "number of samples; two make a line, and more than 20001 no figure shows", ge=2, le=20001
-    ),
-]
-Tolerance = Annotated[float, number("relative error tolerated", gt=0, lt=1)]
-Seed = Annotated[int, number("seed of the random numbers", ge=0)]
+Family = Annotated[int, listed("Family")]
+Restitution = Annotated[float, listed("Restitution")]
+LossyRestitution = Annotated[float, listed("LossyRestitution")]
+LawRestitution = Annotated[float, listed("LawRestitution")]
+Amplitude = Annotated[float, listed("Amplitude")]
+AmplitudeMax = Annotated[float, listed("AmplitudeMax")]
+FrequencyRatio = Annotated[float, listed("FrequencyRatio")]
+Samples = Annotated[int, listed("Samples")]
+Tolerance = Annotated[float, listed("Tolerance")]
+Seed = Annotated[int, listed("Seed")]
 
 
 class Interval(Parameters):

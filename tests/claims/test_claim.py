@@ -1,5 +1,7 @@
 """Claims as functions, on small datasets: parameters, readings, explanations, the dataset."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -95,6 +97,7 @@ def test_a_printed_number(data):
         "statement": "the threshold",
         "printed_text": "82",
         "remark": "read off a curve",
+        "answer": "",
         "condition": "",
         "decided_by": "fig",
         "required": "82",
@@ -125,12 +128,13 @@ def test_a_statement_and_its_explanation(data):
 def test_readings_that_differ_leave_a_claim_open(data):
     found = row(two_readings, data)
     assert (found["verdict"], found["restates"]) == ("undecidable", "height threshold")
-    assert found["reason"] == (
-        "depends on the reading: first: reproduced (82.18); second: contradicted (82.18)"
-    )
+    assert found["reason"] == ("first: reproduced (82.18); second: contradicted (82.18)")
     assert np.isnan(found["found"]) and found["explained"]
+    meant = row(replace(two_readings, meant=True), data)
+    assert (meant["verdict"], meant["found"]) == ("qualified", 82.18)
     data["fig"]["threshold"] += 100
     assert row(two_readings, data)["verdict"] == "contradicted"
+    assert row(replace(two_readings, meant=True), data)["verdict"] == "contradicted"
 
 
 def test_formulas_and_groups(data):

@@ -24,7 +24,7 @@ def record(recorded):
 
 
 def all_texts(data):
-    """All tables in all formats, and the article."""
+    """All tables in all formats, the article and its supplement."""
     data = {**data, "claims": ledger(data)}
     made = {}
     for name in TABLES:
@@ -34,7 +34,8 @@ def all_texts(data):
     texts = {name: made[name, "to_markdown"] for name in TABLES}
     data["atlas"] = read_dataset(ROOT / "config" / "atlas.nc")
     texts["atlas"] = to_markdown(*shares(data["atlas"]))
-    made["article"] = render_article(TEMPLATES, data, texts)
+    for name in ("article", "supplement"):
+        made[name] = render_article(TEMPLATES / f"{name}.md.j2", data, texts)
     return made
 
 

@@ -12,11 +12,18 @@ from bouncing_ball.datasets.netcdf import read_dataset
 
 
 @pytest.fixture(scope="module")
-def text(pristine):
-    return (pristine.path / "results" / "paper.md").read_text(encoding="utf-8")
+def texts(pristine):
+    names = ("paper.md", "supplement.md")
+    return [(pristine.path / "results" / name).read_text(encoding="utf-8") for name in names]
 
 
-def test_every_figure_and_table_is_shown(text, pristine):
+def test_the_sections_are_numbered(texts):
+    sections = re.findall(r"^## (\d+)\. ", texts[0], re.MULTILINE)
+    assert list(map(int, sections)) == list(range(1, len(sections) + 1))
+
+
+def test_every_figure_and_table_is_shown(texts, pristine):
+    text = "".join(texts)
     shown = re.findall(r"!\[[^]]*\]\((figures/[^)]*)\)", text)
     figures = sorted(
         f"figures/{path.name}" for path in (pristine.path / "results/figures").glob("*.png")
@@ -28,11 +35,10 @@ def test_every_figure_and_table_is_shown(text, pristine):
         assert rows and "".join(rows) in text
 
 
-def test_every_claim_stands_with_its_verdict(text, pristine):
+def test_every_claim_stands_with_its_verdict(texts, pristine):
     claims = read_dataset(pristine.path / "results/figures/claims.nc")
-    text = text[text.index("## Supplement") :]
     for name, verdict in zip(claims.claim.values, claims.verdict.values, strict=True):
-        rows = [line for line in text.splitlines() if line.startswith(f"| {name} |")]
+        rows = [line for line in texts[1].splitlines() if line.startswith(f"| {name} |")]
         assert len(rows) == 1 and rows[0].endswith(f"| {verdict} |")
 
 

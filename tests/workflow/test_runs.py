@@ -22,7 +22,7 @@ def test_a_run_makes_every_figure_and_table(pristine, table, stages):
     data = {f"figures/{name}.nc" for name in stages}
     recorded = {path.stem for path in (ROOT / "figures").glob("*.csv")}
     texts = {f"figures/{name}.{kind}" for name in recorded for kind in ("csv", "md")}
-    pages = {"figures/explorer.html", "paper.md", "tally.txt"}
+    pages = {"figures/explorer.html", "paper.md", "supplement.md", "tally.txt"}
     assert made == pictures | data | texts | pages
 
 

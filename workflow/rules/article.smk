@@ -1,11 +1,12 @@
-# The replication article, every number from a dataset, and the tally of the claims.
+# The replication article with its supplement, every number from a dataset, and the tally of the
+# claims.
 
 ARTICLE = os.path.relpath(Path(ROOT, "workflow/report/paper"))
 
 
 rule paper:
     message:
-        "Writing results/paper.md"
+        "Writing results/paper.md and results/supplement.md"
     input:
         templates=sorted(map(str, Path(ARTICLE).glob("*.md.j2"))),
         atlas="config/atlas.nc",
@@ -20,6 +21,7 @@ rule paper:
         figures=sum(name.startswith("fig") for name in DRAWINGS),
     output:
         paper="results/paper.md",
+        supplement="results/supplement.md",
         tally="results/tally.txt",
     log:
         "results/logs/paper.log",
@@ -34,14 +36,15 @@ rule paper_pdf:
     name:
         "paper.pdf"
     message:
-        "Setting results/paper.pdf"
+        "Setting results/paper.pdf and results/supplement.pdf"
     input:
-        paper=rules.paper.output.paper,
+        texts=[rules.paper.output.paper, rules.paper.output.supplement],
         template=f"{ARTICLE}/article.typ",
         figures=expand("results/figures/{figure}.svg", figure=DRAWINGS),
         source=modules("figures.article.pdf", "datasets.files"),
     output:
-        pdf="results/paper.pdf",
+        "results/paper.pdf",
+        "results/supplement.pdf",
     log:
         "results/logs/paper_pdf.log",
     script:

@@ -42,7 +42,7 @@ STUDIES, DRAWINGS, TABLES = (
     for key in ("study", "drawing", "table")
 )
 # Datasets that no job makes: accepted by hand.
-ACCEPTED = {"engines": "config/engines.nc"}
+ACCEPTED = {"engines": "config/engines.nc", "ext_atlas": "config/atlas.nc"}
 
 
 # Source files that a job uses: those modules and all that they import. Relative paths, so

@@ -11,7 +11,11 @@ for name, drawing in DRAWINGS.items():
         message:
             f"Drawing {name}"
         input:
-            data=[f"results/figures/{name}.nc"] if name in STUDIES else [],
+            data=(
+                [ACCEPTED.get(name, f"results/figures/{name}.nc")]
+                if name in {*STUDIES, *ACCEPTED}
+                else []
+            ),
             source=modules(f"figures.{drawing}".rpartition(".")[0], "figures.files"),
             settings=os.path.relpath(Path(ROOT, "src/bouncing_ball/figures/matplotlibrc")),
         params:

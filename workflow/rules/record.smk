@@ -1,4 +1,5 @@
-# The accepted record, figures/ and paper.md, which git holds; its log is `git log figures/`.
+# The accepted record, figures/, paper.md and supplement.md, which git holds; its log is
+# `git log figures/`.
 # Both rules have no outputs, so that Snakemake runs them at each call.
 
 from bouncing_ball.pipeline.conclusion import concluded
@@ -9,7 +10,7 @@ from bouncing_ball.pipeline.progress import begin
 rule accept:
     localrule: True
     message:
-        "Copying the results over the record in figures/ and paper.md"
+        "Copying the results over the record"
     params:
         record=ROOT,
         files=lambda wildcards: sorted({str(file) for file in rules.all.input}),

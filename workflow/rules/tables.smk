@@ -6,7 +6,7 @@ rule set_table:
         "Setting {wildcards.table}"
     input:
         data="results/figures/{table}.nc",
-        source=modules("figures.tables.rows", "figures.tables.claims_page"),
+        source=modules("figures.tables.rows"),
     output:
         csv="results/figures/{table}.csv",
         md="results/figures/{table}.md",

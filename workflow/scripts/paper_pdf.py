@@ -1,4 +1,4 @@
-"""The replication article as a PDF."""
+"""The replication article and its supplement as PDFs."""
 
 from pathlib import Path
 
@@ -7,8 +7,9 @@ from bouncing_ball.figures.article.pdf import article_pdf
 from bouncing_ball.pipeline.job import logged
 
 with logged(snakemake) as lines:
-    paper = Path(snakemake.input.paper)
-    pdf = article_pdf(paper.read_text(encoding="utf-8"), snakemake.input.template, paper.parent)
-    with replacing(snakemake.output.pdf) as temporary:
-        temporary.write_bytes(pdf)
-    lines.append(f"{snakemake.output.pdf}: {len(pdf) / 1e6:.1f} MB")
+    for name, output in zip(snakemake.input.texts, snakemake.output, strict=True):
+        text = Path(name).read_text(encoding="utf-8")
+        pdf = article_pdf(text, snakemake.input.template, Path(name).parent)
+        with replacing(output) as temporary:
+            temporary.write_bytes(pdf)
+        lines.append(f"{output}: {len(pdf) / 1e6:.1f} MB")

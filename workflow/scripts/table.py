@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from bouncing_ball.datasets.files import write_text
-from bouncing_ball.figures.tables import claims_page, rows
+from bouncing_ball.figures.tables import rows
 from bouncing_ball.figures.tables.formats import texts
 from bouncing_ball.pipeline.job import logged, read_input
 
@@ -11,8 +11,6 @@ with logged(snakemake) as lines:
     name = Path(snakemake.output[0]).stem
     data = read_input(snakemake.input.data)
     table = texts(*getattr(rows, name)(data))
-    if name == "claims":
-        table[".md"] = claims_page.page(data)
     for path in snakemake.output:
         write_text(path, table[Path(path).suffix])
     lines += snakemake.output

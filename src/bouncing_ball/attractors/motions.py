@@ -2,8 +2,10 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Self
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.batch import Batch
 
@@ -72,3 +74,17 @@ class Motions(Batch):
     followed: np.ndarray
     end_phase: np.ndarray
     end_velocity: np.ndarray
+
+    @classmethod
+    def unknown(cls, balls: int) -> Self:
+        """Arrays for so many balls, to be filled in."""
+        text = (np.full(balls, "", dtype=np.array(list(names)).dtype) for names in (Kind, Reason))
+        kind, reason = text
+        periods, impacts, followed = np.zeros((3, balls), dtype=int)
+        exponent, error, phase, velocity = np.full((4, balls), np.nan)
+        return cls(kind, periods, impacts, exponent, error, reason, followed, phase, velocity)
+
+    def fill(self, index: np.ndarray, **values: ArrayLike) -> None:
+        """Store results of the balls with these indices."""
+        for name, value in values.items():
+            getattr(self, name)[index] = value

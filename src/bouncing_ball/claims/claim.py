@@ -12,12 +12,13 @@ returns the finding that decides it::
         return below(data["fig13"].contact_duration.diff("frequency_ratio"), 0)
 
 Its id is the function's name, unless another is given. Where a claim can be read in
-several ways, the function returns a finding for each reading, by the reading's name.
+several ways, the function returns a finding for each reading, by the reading's name. If it is
+clear which of them the paper means, that one comes first, and the claim is ``meant``.
 '''
 
 import inspect
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import ModuleType
 from typing import Any
 
@@ -95,7 +96,8 @@ class Claim:
     id : str
         Its name.
     kind : str
-        The group in which it is counted: ``number``, ``statement`` or ``restored formula``. The
+        The group in which it is counted: ``number``, ``statement``, ``restored formula`` or
+        ``slip``. The
         signs of a restored formula are illegible in the text at hand, so that the check shows that
         this form is right, and not that the paper printed it.
     item, statement : str
@@ -107,6 +109,10 @@ class Claim:
         The number as printed, with its digits; empty if there is none.
     condition, remark : str
         The decidable condition into which a statement is turned; how it was read.
+    answer : str
+        What its author might answer to a verdict other than reproduced.
+    meant : bool
+        Whether the first reading is the one that the paper means.
     explanation : callable, optional
         Why it is not reproduced: conditions on the datasets, by what is checked.
     restates : Claim, optional
@@ -121,6 +127,8 @@ class Claim:
     printed: str = ""
     condition: str = ""
     remark: str = ""
+    answer: str = ""
+    meant: bool = False
     explanation: Explanation | None = None
     restates: "Claim | None" = None
 
@@ -143,7 +151,9 @@ class Claim:
         if all(other.verdict is first.verdict for other in others):
             return first, ""
         words = "; ".join(f"{name}: {one.verdict} ({one})" for name, one in readings.items())
-        return Finding(np.nan, Verdict.UNDECIDABLE), f"depends on the reading: {words}"
+        if self.meant and first.verdict is Verdict.REPRODUCED:
+            return replace(first, verdict=Verdict.QUALIFIED), words
+        return Finding(np.nan, Verdict.UNDECIDABLE), words
 
 
 def claim(item: str, id: str = "", **given: Any) -> Callable[[Callable[[Data], Any]], Claim]:
@@ -178,6 +188,11 @@ def formula(name: str, item: str, text: str, row: str = "", **given: Any) -> Cla
         return of_formula(data, row or item)
 
     return Claim(name, "restored formula", item, text, decide, **given)
+
+
+def slip(name: str, item: str, text: str, remark: str) -> Claim:
+    """A wrong number or caption in the paper's text, on which no result depends."""
+    return Claim(name, "slip", item, text, lambda _: Finding(np.nan, Verdict.SLIP), remark=remark)
 
 
 def of_formula(data: Data, row: str) -> Finding:

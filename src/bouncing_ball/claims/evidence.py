@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.claims import as_printed as printed
-from bouncing_ball.claims.parameters import PERMANENT_CONTACT, STIFF
+from bouncing_ball.claims.parameters import PERMANENT_CONTACT, STIFF, TOLERANCE
 from bouncing_ball.claims.verdict import largest
 from bouncing_ball.orbits.stability import Bifurcation
 
@@ -111,12 +111,15 @@ def stiff_orbit_error(data: Data) -> xr.DataArray:
     return worst_when_stiff(abs(every)).transpose("orbit", "measure")
 
 
-def spread(data: Data, left: float) -> xr.DataArray:
-    """Fig. 10: largest distance between its curves for ϖ ≥ ``left``, as a share of nπ."""
-    sweep = data["fig10"]
-    velocity = sweep.bounce_velocity.where(sweep.frequency_ratio >= left * (1 - GRID))
-    apart = velocity.max("case") - velocity.min("case")
-    return (apart / sweep.restitution_bounce_velocity).max()
+def amplitude_matters_below(data: Data) -> float:
+    """Fig. 10: the ϖ below which its curves are apart by more than 1 % of nπ; interpolated."""
+    sweep, ratio = data["fig10"], data["fig10"].frequency_ratio.values
+    apart = sweep.bounce_velocity.max("case") - sweep.bounce_velocity.min("case")
+    share = np.ravel(apart / sweep.restitution_bounce_velocity)
+    last = int(np.flatnonzero(share > TOLERANCE).max(initial=0))
+    # The share falls there with ϖ.
+    pair = slice(last + 1, last - 1 if last else None, -1)
+    return float(np.exp(np.interp(TOLERANCE, share[pair], np.log(ratio[pair]))))
 
 
 def inadmissible_orbits(data: Data) -> int:

@@ -36,7 +36,7 @@ def _row(claim: Claim, data: Mapping[str, xr.Dataset], holding: set[str]) -> dic
     asked = PaperData(data)
     finding, reason = claim.verdict(asked)
     why = name_of(claim.explanation) if claim.explanation else ""
-    said = ("item", "statement", "remark", "condition")
+    said = ("item", "statement", "remark", "condition", "answer")
     return {
         **{key: getattr(claim, key) for key in said},
         "group": "restatement" if claim.restates else claim.kind,

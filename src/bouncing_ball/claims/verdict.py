@@ -24,11 +24,15 @@ class Verdict(StrEnum):
 
     REPRODUCED = "reproduced"
     """Within half a unit of the last printed digit; a condition that holds."""
+    QUALIFIED = "qualified"
+    """Reproduced for what the paper means it for, but not in other readings."""
     CLOSE = "close"
     """A number farther away, by no more than :data:`CLOSE_UNITS`."""
     CONTRADICTED = "contradicted"
     UNDECIDABLE = "undecidable"
     """The verdict depends on how the claim is read."""
+    SLIP = "slip"
+    """A wrong number or caption in the text, which no result depends on."""
     NOT_ASKED = "not asked"
     """The datasets were not computed with the paper's parameters."""
 

@@ -1,4 +1,4 @@
-"""Copying results over the accepted record, ``figures/`` and ``paper.md``, which git holds.
+"""Copying results over the accepted record, ``figures/`` and the texts, which git holds.
 
 The log of the record is that of git, ``git log figures/``.
 """
@@ -109,5 +109,5 @@ def accept(
         return ["Nothing to accept: the record says what the results say."]
     return [
         *said,
-        "Now commit the record, and say why: git add figures config paper.md && git commit",
+        "Now commit the record, and say why: git add figures config *.md && git commit",
     ]

@@ -8,11 +8,10 @@ varies tolerances, grids and rounding: each is the power of ten next above ten t
 change.
 """
 
-import csv
 import math
-from pathlib import Path
 from typing import NamedTuple
 
+from bouncing_ball.datasets.files import rows_beside
 from bouncing_ball.datasets.variables import BUDGETS
 
 
@@ -50,8 +49,7 @@ a change of 1e-15 in the start moves them."""
 
 ARTIFACTS: dict[str, dict[str, Budget]] = {}
 """Budgets of single artifacts, by variable; ``*`` stands for all variables that are not named."""
-_TABLE = Path(__file__).with_suffix(".csv").read_text(encoding="utf-8").splitlines()
-for _row in csv.DictReader(_TABLE):
+for _row in rows_beside(__file__):
     _budget = Budget(float(_row["size"]), _row["scale"], _row["over"], float(_row["share"] or 0))
     for _name in _row["artifact"].split():
         ARTIFACTS.setdefault(_name, {}).update(dict.fromkeys(_row["variable"].split(), _budget))

@@ -1,7 +1,7 @@
 """The comparison of two folders of artifacts, with the result for each artifact.
 
-A folder holds ``figures/`` with datasets, pictures and tables, and
-``paper.md``; other files in it are ignored, except ``config/engines.nc``, what physics engines
+A folder holds ``figures/`` with datasets, pictures and tables, and the texts ``paper.md`` and
+``supplement.md``; other files in it are ignored, except ``config/engines.nc``, what physics engines
 gave. Files of one name and different suffixes are one artifact.
 """
 
@@ -12,7 +12,7 @@ from bouncing_ball.compare.outcome import Outcome, Whole, worst
 from bouncing_ball.compare.parts import judge
 from bouncing_ball.errors import ModelError, printable
 
-_PAPER = "paper.md"
+_TEXTS = ("paper.md", "supplement.md")
 # Compared where both folders have it, because not every machine has the engines.
 _MEASURED = Path("config/engines.nc")
 # In the order of comparison: the data first, because the judgement of the others depends on them.
@@ -32,10 +32,12 @@ def artifacts_in(*folders: Path) -> dict[str, set[str]]:
         if (folder / "figures").is_symlink():
             raise ModelError(f"{printable(folder / 'figures')}: a link; links are not followed")
         # Files whose name begins with a point are not written completely.
-        paths = [*folder.glob("figures/[!.]*"), *folder.glob(_PAPER)]
-        files = [path.relative_to(folder) for path in paths if path.suffix in _SUFFIXES]
+        paths = [*folder.glob("figures/[!.]*"), *(folder / text for text in _TEXTS)]
+        files = [
+            path.relative_to(folder) for path in paths if path.suffix in _SUFFIXES and path.exists()
+        ]
         if not files:
-            where = f"in {printable(folder)}: neither figures/ nor {_PAPER}"
+            where = f"in {printable(folder)}: neither figures/ nor {_TEXTS[0]}"
             raise ModelError(f"nothing to compare {where}")
         for file in files:
             found.setdefault(file.stem, set()).add(file.as_posix())
@@ -53,8 +55,8 @@ def compare_folders(record: Path, new: Path, only: Collection[str] = ()) -> Whol
         If one of the folders holds no artifact, or neither has one of those named.
     """
     files = artifacts_in(record, new)
-    # The article comes last, because it is made from all datasets.
-    names = sorted(files, key=lambda name: (f"{name}.md" == _PAPER, name))
+    # The texts come last, because they are made from all datasets.
+    names = sorted(files, key=lambda name: (f"{name}.md" in _TEXTS, name))
     if unknown := [name for name in only if name not in names]:
         known = printable(", ".join(names))
         raise ModelError(f"unknown artifact {printable(unknown[0])}; known: {known}")
@@ -63,7 +65,7 @@ def compare_folders(record: Path, new: Path, only: Collection[str] = ()) -> Whol
     for name in names:
         parts = []
         for file in sorted(files[name], key=lambda file: _SUFFIXES.index(Path(file).suffix)):
-            of = worst(data.values()) if file == _PAPER else data.get(name)
+            of = worst(data.values()) if file in _TEXTS else data.get(name)
             parts.append(judge(file, (record, new), of))
             if file.endswith(".nc"):
                 data[name] = parts[-1].outcome

@@ -1,9 +1,23 @@
-"""Files that are written completely or not at all."""
+"""Tables beside modules, and files that are written completely or not at all."""
 
+import csv
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+
+
+def rows_beside(module: str) -> list[dict[str, str]]:
+    """The rows of the CSV table beside a module, of which ``__file__`` is given.
+
+    Examples
+    --------
+    >>> from bouncing_ball.datasets import variables
+    >>> rows_beside(variables.__file__)[0]["symbol"]
+    'n'
+    """
+    text = Path(module).with_suffix(".csv").read_text(encoding="utf-8")
+    return list(csv.DictReader(text.splitlines()))
 
 
 @contextmanager

@@ -5,16 +5,15 @@ times are Ωt, lengths Ω²y/g, velocities Ωẏ/g, and phases and angles are in
 radians of the table's motion. Units follow the CF conventions ("1", "rad").
 """
 
-import csv
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-_TABLE = Path(__file__).with_suffix(".csv")
-_ROWS = list(csv.DictReader(_TABLE.read_text(encoding="utf-8").splitlines()))
+from bouncing_ball.datasets.files import rows_beside
+
+_ROWS = rows_beside(__file__)
 VARIABLES: dict[str, dict[str, str]] = {
     row["name"]: {key: row[key] for key in ("long_name", "symbol", "units", "equation")}
     for row in _ROWS

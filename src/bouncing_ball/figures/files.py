@@ -5,9 +5,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from matplotlib import rcParams
+from matplotlib.backend_bases import get_registered_canvas_class
 from matplotlib.figure import Figure
 
 from bouncing_ball.datasets.files import replacing
+from bouncing_ball.figures.style import style
 
 
 def save(figure: Figure, path: str | Path, metadata: Mapping[str, str]) -> None:
@@ -25,5 +28,9 @@ def save(figure: Figure, path: str | Path, metadata: Mapping[str, str]) -> None:
     texts: dict[str, Any] = {"Software": None, **metadata}
     if Path(path).suffix == ".svg":
         texts = {"Date": None, "Creator": None, "Description": json.dumps(dict(metadata))}
-    with replacing(path) as temporary:
-        figure.savefig(temporary, metadata=texts)
+    kind = Path(path).suffix.removeprefix(".")
+    with replacing(path) as temporary, style():
+        figure.set_dpi(rcParams["savefig.dpi"])
+        # Not savefig, which would draw each figure once more to find its extent.
+        canvas = get_registered_canvas_class(kind)(figure)
+        getattr(canvas, f"print_{kind}")(temporary, metadata=texts)

@@ -5,18 +5,13 @@ from typing import Any
 import xarray as xr
 from matplotlib.axes import Axes
 
+from bouncing_ball.datasets.files import rows_beside
 from bouncing_ball.datasets.labelled import CASE
 
-QUANTITIES = {
-    "max_height": r"greatest height $\max\,z$",
-    "bounce_velocity": r"bouncing-off velocity $z'_b$",
-    "phase": r"phase of impact $\varphi$",
-    "apparent_restitution": r"apparent restitution $r_a$",
-    "saddle_node": r"saddle-node $\Lambda_{SN}$",
-    "period_doubling": r"period doubling $\Lambda_{PD}$",
-    "permanent_contact": r"permanent contact",
-}
+_ROWS = rows_beside(__file__)
+QUANTITIES = {row["name"]: row["title"] for row in _ROWS if row["title"]}
 """The titles of the quantities compared between the models."""
+_SYMBOLS = {row["name"]: row["symbol"] for row in _ROWS if row["symbol"]}
 
 
 def number(value: float) -> str:
@@ -32,20 +27,6 @@ def number(value: float) -> str:
         factor = "" if float(mantissa) == 1 else rf"{float(mantissa):g}\times "
         return f"{factor}10^{{{int(exponent)}}}"
     return f"{value:g}"
-
-
-_SYMBOLS = {
-    "n": "n",
-    "restitution": "r",
-    "measured_restitution": "r",
-    "amplitude": r"\Lambda",
-    "frequency_ratio": r"\varpi",
-    "damping_ratio": r"\zeta",
-    "duration": "D",
-    "height": "h",
-    "phase": r"\varphi",
-    "velocity": "z′_i",
-}
 
 
 def parameters(data: xr.Dataset, *names: str, of: str = "") -> str:

@@ -52,9 +52,9 @@ def orders(data: xr.Dataset) -> Figure:
 
 
 def contact_laws(data: xr.Dataset) -> Figure:
-    """ext_laws: errors of both models on five laws, over the share of the cycle in contact."""
-    figure, axes_of = _by_quantity(data, 5.0, r"share of the cycle in contact, $D/(2\pi n)$")
-    share = 1 / (2 * data.attrs["n"] * data.duration_ratio.values)
+    """ext_laws: errors of both models on five laws, over the share of the cycle that D + κ is."""
+    figure, axes_of = _by_quantity(data, 5.0, r"share of the cycle, $(D+\kappa)/(2\pi n)$")
+    share = 1 / (2 * data.attrs["n"] * data.centroid_ratio.values)
     for quantity, axes in axes_of.items():
         for law in data["law"].values:
             errors = data.relative_error.sel(law=law, quantity=quantity)
@@ -75,9 +75,9 @@ def contact_laws(data: xr.Dataset) -> Figure:
 
 
 def figures_of_laws(data: xr.Dataset) -> Figure:
-    """ext_hertz: phase against Λ; height and permanent contact against π/D."""
+    """ext_hertz: phase against Λ; height and permanent contact against π/(D + κ)."""
     figure, (branches, heights, held) = canvas(WIDE, 2.9, columns=3)
-    ratio, marked = data.duration_ratio.values, []
+    ratio, marked = data.centroid_ratio.values, []
     for law, shape in zip(data["law"].values, cycle(_SHAPES), strict=False):
         look, part = LAWS[law] | {"linewidth": 1.0}, data.sel(law=law)
         (line, *_) = branches.plot(part.amplitude.T, part.phase.T / np.pi, **look)
@@ -91,10 +91,12 @@ def figures_of_laws(data: xr.Dataset) -> Figure:
     held.axhline(1.0, color=RESTITUTION, linewidth=0.6)
     listed = ", ".join(f"{x:g}" for x in data.shown_ratio.values)
     branches.set(xlabel=r"$\Lambda$", ylabel=r"phase $\varphi/\pi$")
-    branches.set_title(rf"{parameters(data, 'restitution')}, $\pi/D$ = {listed}", fontsize=8)
+    branches.set_title(
+        rf"{parameters(data, 'restitution')}, $\pi/(D+\kappa)$ = {listed}", fontsize=8
+    )
     title = parameters(data, "restitution", of="heights__")
     for axes, quantity in ((heights, "max_height"), (held, "permanent_contact")):
-        logarithmic(axes, xlabel=r"$\pi/D$", ylabel=QUANTITIES[quantity])
+        logarithmic(axes, xlabel=r"$\pi/(D+\kappa)$", ylabel=QUANTITIES[quantity])
         axes.set_title(title, fontsize=8)
     legend_below(figure, marked, labels=data["law"].values, ncols=len(marked))
     return figure

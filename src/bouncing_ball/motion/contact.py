@@ -76,21 +76,16 @@ class ContactDynamics(Dynamics):
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
     ) -> Jacobian:
         """Derivative of the map over contact and flight; NaN from or to a resumption."""
-        flight, one = departure.flight, np.ones_like(passed)
+        one = np.ones_like(passed)
         start = Start(0 * one, -impact.velocity, impact.phase, self.amplitude * one, one)
         by = march(self.law, start, MOST_PANELS, differentiate=True).jacobian
-        state = np.where((impact.displacement < 0) | (after.displacement < 0), np.nan, one)
-        columns = (
-            Deviation(k + sign * by[:, 0, c], -sign * by[:, 1, c], -sign * by[:, 2, c]).flown(
-                (flight.x, flight.y),
-                table(after.phase, self.amplitude),
-                passed - departure.duration,
-                after.velocity * state,
-                0.0,
-            )
+        known = (impact.displacement >= 0) & (after.displacement >= 0)
+        after = after._replace(velocity=np.where(known, after.velocity, np.nan))
+        released = (
+            Deviation(k + sign * by[:, 0, c], -sign * by[:, 1, c], -sign * by[:, 2, c])
             for c, k, sign in ((0, 1, 1), (1, 0, -1))
         )
-        return Jacobian.of_columns(*columns)
+        return self.landed(released, departure, after, passed)
 
     def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
         """Whether the contact lasts for more than twice that of a free impact of this speed.
@@ -128,20 +123,16 @@ class LinearContactDynamics(ContactDynamics):
                 np.where(forever, np.nan, z) for z in (displacement, velocity)
             )
             end.time[forever] = np.inf
-        return Departure(
-            phase, end.time, Flight(displacement, velocity, x, y, self.amplitude), status
-        )
+        flight = Flight(displacement, velocity, x, y, self.amplitude)
+        return Departure(phase, end.time, flight, status)
 
     def jacobian(
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
     ) -> Jacobian:
         """Derivative of the map over contact and flight, in closed form."""
         contact, flight, duration = self.law, departure.flight, departure.duration
-        stiffness, loss = (
-            contact.frequency_ratio**2,
-            2 * contact.damping_ratio * (contact.frequency_ratio),
-        )
-        damped, lag = contact.damped_frequency, contact.lag
+        omega, damped, lag = contact.frequency_ratio, contact.damped_frequency, contact.lag
+        stiffness, loss = omega**2, 2 * contact.damping_ratio * omega
         sine, versine = sine_and_versine(damped * duration)
         decay = exponential(-loss / 2 * duration)
         impulse = decay * sine / damped
@@ -164,16 +155,8 @@ class LinearContactDynamics(ContactDynamics):
             impulse - before * level,
             impulse_rate + before * stiffness * impulse,
         )
-        of_flight = (
-            (flight.x, flight.y),
-            table(after.phase, self.amplitude),
-            passed - duration,
-            after.velocity,
-            held,
-        )
-        return Jacobian.of_columns(
-            *(x.to_event(speed, last, lag).flown(*of_flight) for x in (by_phase, by_rate))
-        )
+        released = (x.to_event(speed, last, lag) for x in (by_phase, by_rate))
+        return self.landed(released, departure, after, passed, held)
 
     def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
         """Whether the contact lasts longer than a damped oscillation.

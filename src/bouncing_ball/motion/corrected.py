@@ -111,17 +111,13 @@ class CorrectedDynamics(Dynamics):
         free = np.where(self.sticks(impact, departure), 0.0, 1.0)
         here, depth = hit.instant.tangent(hit.speed, 1 - y)[0], then.instant.tangent(then.speed, 0)
         between = passed + then.instant.delay - hit.instant.delay
-        of_flight = (
-            (x, y),
-            table(then.phase, self.amplitude),
-            between,
-            -then.speed,
-            -depth[0].delay,
+        end, lag = table(then.phase, self.amplitude), -depth[0].delay
+        released = (
+            Deviation(free, none, -here.load * x * free),
+            Deviation(none, here.delay * free, -here.restitution * free),
         )
-        return Jacobian.of_columns(
-            Deviation(free, none, -here.load * x * free).flown(*of_flight),
-            Deviation(none, here.delay * free, -here.restitution * free).flown(*of_flight),
-        )
+        columns = (each.flown((x, y), end, between, -then.speed, lag) for each in released)
+        return Jacobian.of_columns(*columns)
 
     def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
         """Whether the ball leaves by lift-off."""

@@ -3,16 +3,17 @@ row.
 """
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from bouncing_ball.contacts.batch import Batch
-from bouncing_ball.motion.angles import reduce_angle
+from bouncing_ball.motion.angles import reduce_angle, table
 from bouncing_ball.motion.ensembles import BLOCK
 from bouncing_ball.motion.landing import Flight, land
-from bouncing_ball.motion.tangent import Jacobian
+from bouncing_ball.motion.tangent import Deviation, Jacobian
 
 
 class Impact(NamedTuple):
@@ -102,3 +103,20 @@ class Dynamics(Batch, ABC):
     def section(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
         """The state (phase, relative velocity) of an impact by which motions are compared."""
         return impact.phase, impact.velocity
+
+    def landed(
+        self,
+        released: Iterable[Deviation],
+        departure: Departure,
+        after: Impact,
+        passed: np.ndarray,
+        lag: np.ndarray | float = 0.0,
+    ) -> Jacobian:
+        """The derivative whose columns are two deviations at the release, carried over the flight.
+
+        The flight ends where δ + κ δ′ = 0 with the ``lag`` κ.
+        """
+        flight, end = departure.flight, table(after.phase, self.amplitude)
+        time = passed - departure.duration
+        columns = (x.flown((flight.x, flight.y), end, time, after.velocity, lag) for x in released)
+        return Jacobian.of_columns(*columns)

@@ -64,32 +64,15 @@ class ContactMotion(Motion):
     """
 
     def __init__(self, contact: SpringDamper, amplitude, displacement, velocity, x, y):
-        # Arrays of one element, so that one ball is computed in the same way as many.
-        omega, zeta, lam, lag, detuning, loss = (
-            np.atleast_1d(np.asarray(value, dtype=float))
-            for value in (
-                contact.frequency_ratio,
-                contact.damping_ratio,
-                amplitude,
-                contact.lag,
-                *_resistance(contact),
-            )
-        )
+        omega, zeta, lag = contact.frequency_ratio, contact.damping_ratio, contact.lag
+        self.omega, self.stiffness, self.decay, self.lag = omega, omega * omega, zeta * omega, lag
+        self.damped = contact.damped_frequency
+        detuning, loss = _resistance(contact)
         gamma = detuning * detuning + loss * loss
         # The steady response to Λ sin τ + κ Λ cos τ, over Λ sin τ and Λ cos τ.
         in_phase, quadrature = (detuning + lag * loss) / gamma, (lag * detuning - loss) / gamma
-        self.omega, self.stiffness, self.decay, self.damped, self.lag, self.steady, self.forcing = (
-            value[0] if value.size == 1 else value
-            for value in (
-                omega,
-                omega * omega,
-                zeta * omega,
-                omega * np.sqrt((1 - zeta) * (1 + zeta)),
-                lag,
-                lam * np.sqrt(in_phase * in_phase + quadrature * quadrature),
-                lam * np.sqrt(1 + lag * lag),
-            )
-        )
+        self.steady = amplitude * np.sqrt(in_phase * in_phase + quadrature * quadrature)
+        self.forcing = amplitude * np.sqrt(1 + lag * lag)
         self.sine, self.cosine = in_phase * x - quadrature * y, in_phase * y + quadrature * x
         # The forcing now.
         self.push = y + lag * x

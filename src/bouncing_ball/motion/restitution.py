@@ -67,19 +67,9 @@ class RestitutionDynamics(Dynamics):
         It is zero where the ball sticks, because its later motion does not depend on either.
         """
         slope = rebound(self.law, np.maximum(-impact.velocity, np.finfo(float).tiny))[1]
-        flight, none = departure.flight, np.zeros_like(passed)
-        free = np.where(self.sticks(impact, departure), 0.0, 1.0)
-        of_flight = (
-            (flight.x, flight.y),
-            table(after.phase, self.amplitude),
-            passed - departure.duration,
-            after.velocity,
-            0.0,
-        )
-        return Jacobian.of_columns(
-            Deviation(free, none, none).flown(*of_flight),
-            Deviation(none, none, -slope * free).flown(*of_flight),
-        )
+        none, free = np.zeros_like(passed), np.where(self.sticks(impact, departure), 0.0, 1.0)
+        released = Deviation(free, none, none), Deviation(none, none, -slope * free)
+        return self.landed(released, departure, after, passed)
 
     def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
         """Whether the ball leaves by lift-off."""

@@ -20,7 +20,7 @@ from bouncing_ball.provenance.origin import (
     read_provenance,
     versions,
 )
-from bouncing_ball.provenance.revision import UNKNOWN, checkout, revision
+from bouncing_ball.provenance.revision import RECORD, UNKNOWN, checkout, revision
 
 # Git ignores this file, so that it does not mark the next run as dirty.
 _CHANGED = "results/configuration.json"
@@ -29,13 +29,13 @@ _CHANGED = "results/configuration.json"
 def _carrier(path: Path) -> Path:
     """The file that carries the provenance of an artifact: the artifact itself, or its dataset.
 
-    For the article it is the dataset of the claims, which is the last one made.
+    For the texts it is the dataset of the claims, which is the last one made.
     """
     if not path.is_file():
         raise ProvenanceError(f"{path} cannot be read: no such file")
     if path.suffix in CARRIERS:
         return path
-    dataset = Path("figures/claims.nc" if path.name == "paper.md" else f"{path.stem}.nc")
+    dataset = Path("figures/claims.nc" if path.name in RECORD else f"{path.stem}.nc")
     if not (path.parent / dataset).is_file():
         why = f"there is no {dataset} next to it"
         raise ProvenanceError(f"{path} is not an artifact of this workflow: {why}")
@@ -90,7 +90,7 @@ def explain(file: Path, /) -> dict[str, Any]:
     checked_out = None if unknown else made["commit"] == now.commit
     target = made["target"]
     if file.suffix not in CARRIERS:
-        target = f"results/{'' if file.name == 'paper.md' else 'figures/'}{file.name}"
+        target = f"results/{'' if file.name in RECORD else 'figures/'}{file.name}"
     running = versions().items()
     return {
         "file": str(file),

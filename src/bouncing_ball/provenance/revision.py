@@ -5,7 +5,7 @@ import subprocess
 from pathlib import Path
 from typing import NamedTuple
 
-RECORD = ("figures", "paper.md")
+RECORD = ("figures", "paper.md", "supplement.md")
 """The accepted results in git, which affect no new result."""
 
 

@@ -1,22 +1,24 @@
 """The paper's comparison on the contacts that engineers use (beyond the paper).
 
-All laws have the same restitution coefficient r and the same duration D of the
-free impact, at the impact speed of the orbit in question. A Hertz contact has no ϖ; π/D takes
-its place, which is ϖ of the elastic linear contact with the same
-duration. Errors are relative to the value of the exact orbit on the contact.
+All laws have the same restitution coefficient r and the same centroid t_c of the force of the free
+impact, at the impact speed of the orbit in question. With D its duration and κ = -δ_b/δ′_b at its
+end, t_c = r (D + κ)/(1 + r) for every law, and to first order the errors depend on D through this
+number. A Hertz contact has no ϖ; π/(D + κ) takes its place, which is ϖ of the elastic linear
+contact with the same centroid. Errors are relative to the simple model as in Eqs. 37-38.
 """
 
 from collections.abc import Callable
 from contextlib import suppress
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
+from scipy.optimize import root_scalar
 
 from bouncing_ball.accuracy.errors import SIMPLE, relative
 from bouncing_ball.accuracy.quantities import Quantity, values
-from bouncing_ball.accuracy.thresholds import thresholds
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.laws import LAWS
@@ -49,7 +51,7 @@ class OneOrbit(OrbitsAlongRatio):
 
 
 class LawErrors(OneOrbit):
-    """One orbit along π/D, and the relative error tolerated of its greatest height."""
+    """One orbit along π/(D + κ), and the relative error tolerated of its greatest height."""
 
     tolerance: Tolerance
 
@@ -60,6 +62,21 @@ class FiguresOfLaws(FamilyBranches):
     restitution: LawRestitution
     frequency_ratio: Many[FrequencyRatio]
     heights: OneOrbit
+
+
+@lru_cache
+def share_in_contact(name: str, restitution: float) -> float:
+    """D/(D + κ) of the free impact, which depends on the law and on r alone.
+
+    Examples
+    --------
+    A contact that ends at δ = 0 has κ = 0:
+
+    >>> share_in_contact("linear", 0.5)
+    1.0
+    """
+    impact = exact_model(name, restitution, 1.0, 1.0).signature(1.0)
+    return float(impact.restitution / ((1 + impact.restitution) * impact.delay))
 
 
 def exact_model(
@@ -96,23 +113,24 @@ def exact_model(
 
 
 def own_models(name: str, orbit: OneOrbit, ratios: np.ndarray) -> Any:
-    """The exact models of contacts with r and π/D at the impact speeds of their orbits.
+    """The exact models of contacts with r and π/(D + κ) at the impact speeds of their orbits.
 
-    ``ratios`` are the values of π/D, shape (m,).
+    ``ratios`` are the values of π/(D + κ), shape (m,).
 
     Raises
     ------
     NoOrbitError, ModelError
         If a contact has no such orbit, for example because D exceeds the cycle.
     """
-    r, duration = orbit.restitution, np.pi / ratios
+    r = orbit.restitution
+    duration = np.pi / ratios * share_in_contact(name, r)
     if name in LINEAR:
         return exact_model(name, r, duration, 1.0)
     return LawModel(law_at_orbit(LAWS[name], r, duration, orbit.n, orbit.amplitude))
 
 
 def along(name: str, orbit: OneOrbit, value: Callable[[Any], np.ndarray]) -> np.ndarray:
-    """A quantity of the exact models along π/D, shape (..., ϖ).
+    """A quantity of the exact models along π/(D + κ), shape (..., ϖ).
 
     It is NaN below the most compliant contact from which on all contacts have their orbit.
 
@@ -140,8 +158,8 @@ def corrected_values(exact: Any, *asked: Any) -> np.ndarray:
 def _errors(name: str, parameters: LawErrors) -> tuple[np.ndarray, float]:
     """Relative errors of both simple models, and a threshold.
 
-    The errors are moduli, shape (model, quantity, ratio); the threshold is the π/D from which on
-    the error of the restitution model's greatest height is tolerable.
+    The errors are moduli, shape (model, quantity, ratio); the threshold is the π/(D + κ) from which
+    on the error of the restitution model's greatest height is tolerable.
     """
     n, lam = parameters.n, parameters.amplitude
     rigid, asked = RestitutionModel(parameters.restitution), (n, lam, QUANTITIES)
@@ -149,49 +167,64 @@ def _errors(name: str, parameters: LawErrors) -> tuple[np.ndarray, float]:
     def both(exact: Any) -> np.ndarray:
         wanted, constant = values(exact, *asked), values(rigid, *asked)[:, np.newaxis]
         repaired = corrected_values(exact, *asked)
-        return np.abs([relative(x, wanted) for x in (constant, repaired)])
+        return np.abs([relative(wanted, x) for x in (constant, repaired)])
 
-    def height(ratio: np.ndarray, _: np.ndarray) -> np.ndarray:
-        exact = own_models(name, parameters, ratio).orbit(n, lam)
-        return relative(rigid.orbit(n, lam).max_height, exact.max_height)
+    def excess(log: float) -> float:
+        exact = own_models(name, parameters, np.exp([log])).orbit(n, lam)
+        error = relative(exact.max_height, rigid.orbit(n, lam).max_height)
+        return float(np.log(np.abs(error) / parameters.tolerance).item())
 
     errors, ratios = along(name, parameters, both), parameters.frequency_ratio.grid()
-    found = thresholds(height, ratios, errors[0, :1], [parameters.tolerance])
-    return errors, float(found.ratio[0, 0])
+    outside = np.flatnonzero(errors[0, 0] > parameters.tolerance)
+    if not outside.size or outside[-1] == ratios.size - 1:
+        return errors, np.nan
+    # ln(error/tolerance) is nearly a straight line in ln ϖ.
+    bracket = np.log(ratios[outside[-1] + np.arange(2)])
+    return errors, float(np.exp(root_scalar(excess, x0=bracket[0], x1=bracket[1]).root))
 
 
 def law_errors(parameters: LawErrors) -> xr.Dataset:
-    """Errors of the restitution model and of the corrected one on all laws, along π/D.
+    """Errors of the restitution model and of the corrected one on all laws, along π/(D + κ).
 
-    The dataset has ``relative_error`` (law, model, quantity, duration_ratio), the modulus, and
-    ``error_threshold`` (law,), the π/D from which the greatest height of the restitution model is
-    within the tolerance; NaN where there is none.
+    The dataset has ``relative_error`` (law, model, quantity, centroid_ratio), the modulus, and
+    ``error_threshold`` (law,), the π/(D + κ) from which the greatest height of the restitution
+    model is within the tolerance; NaN where there is none on the grid.
 
     Raises
     ------
     NoOrbitError
-        If a law has the orbit at no π/D.
+        If a law has the orbit at no π/(D + κ).
     """
     errors, threshold = zip(*(_errors(name, parameters) for name in NAMES), strict=True)
     return described(
         {
-            "relative_error": (("law", "model", "quantity", "duration_ratio"), np.array(errors)),
+            "relative_error": (("law", "model", "quantity", "centroid_ratio"), np.array(errors)),
             "error_threshold": ("law", list(threshold)),
         },
         coords={
             "law": list(NAMES),
             "model": list(SIMPLE),
             "quantity": list(QUANTITIES),
-            "duration_ratio": parameters.frequency_ratio.grid(),
+            "centroid_ratio": parameters.frequency_ratio.grid(),
         },
     )
 
 
+def _rows(name: str, parameters: FiguresOfLaws, n: ArrayLike) -> ImpactModel:
+    """The contacts of the branches of n-T orbits, shape (ratio, n).
+
+    Each has r and π/(D + κ) at the impact speed 2nπ/(1 + r), which the orbit of the restitution
+    model has at every Λ, so that both ends of a branch are those of one contact.
+    """
+    r, ratios = parameters.restitution, np.array(parameters.frequency_ratio)[:, np.newaxis]
+    duration = np.pi / ratios * share_in_contact(name, r)
+    return exact_model(name, r, duration, rigid_speed(np.asarray(n), r))
+
+
 def _bounds(name: str, parameters: FiguresOfLaws) -> np.ndarray:
     """Λ of both bifurcations, shape (bound, ratio, n)."""
-    r, ratios = parameters.restitution, np.array(parameters.frequency_ratio)[:, np.newaxis]
-    n = np.broadcast_to(parameters.n, (len(ratios), len(parameters.n)))
-    model = exact_model(name, r, np.pi / ratios, rigid_speed(n, r))
+    n = np.broadcast_to(parameters.n, (len(parameters.frequency_ratio), len(parameters.n)))
+    model = _rows(name, parameters, n)
     return np.array([getattr(model, bound)(n).amplitude for bound in BOUNDS])
 
 
@@ -200,9 +233,8 @@ def _domains(name: str, parameters: FiguresOfLaws) -> np.ndarray:
 
     Shape (2, ratio, point).
     """
-    n, r, top = parameters.n[0], parameters.restitution, parameters.amplitude_max
-    duration, speed = np.pi / np.array(parameters.frequency_ratio)[:, np.newaxis], rigid_speed(n, r)
-    model = exact_model(name, r, duration, speed)
+    n, top = parameters.n[0], parameters.amplitude_max
+    model = _rows(name, parameters, n)
     fold = model.saddle_node(n)
     steps = np.linspace(0.0, 1.0, parameters.points)[1:] ** 2
     lam = fold.amplitude + steps * (top - fold.amplitude)
@@ -211,46 +243,54 @@ def _domains(name: str, parameters: FiguresOfLaws) -> np.ndarray:
     return np.array([amplitudes, np.hstack([left[:, ::-1], fold.phase, right])])
 
 
+def _height_and_hold(one: OneOrbit, exact: Any) -> np.ndarray:
+    """Greatest height and threshold of permanent contact of each contact, shape (2, ratio)."""
+    height = exact.orbit(one.n, one.amplitude).max_height
+    if isinstance(exact, SpringDamperModel):
+        return np.array([height, exact.permanent_contact_threshold()])
+    held = np.full(height.shape, np.nan)
+    for place in range(held.size):
+        # No steady motion that just touches was found where it stays NaN.
+        with suppress(ModelError):
+            held[place] = LawModel(exact.law.take(place)).permanent_contact_threshold()
+    return np.array([height, held])
+
+
 def figures_of_laws(parameters: FiguresOfLaws) -> xr.Dataset:
-    """Table 1 and Figs. 8, 14 and 16 on contacts of the same r and duration.
+    """Table 1 and Figs. 8, 14 and 16 on contacts of the same r and centroid.
 
     The dataset has ``bifurcation_amplitude`` (law, bound, shown_ratio, n), values of Λ;
     ``amplitude`` and ``phase`` in rad along branches (law, shown_ratio, point); ``max_height`` and
-    ``threshold_amplitude`` of permanent contact (law, duration_ratio), NaN where a contact has no
-    such orbit or threshold; and the number ``restitution_max_height``. Both ratios are π/D.
+    ``threshold_amplitude`` of permanent contact (law, centroid_ratio), both of the contact with r
+    at the speed of this orbit, NaN where there is no such orbit or threshold; and the number
+    ``restitution_max_height``. Both ratios are π/(D + κ).
 
     Raises
     ------
     NoOrbitError
-        If a law has the orbit at no π/D.
+        If a law has the orbit at no π/(D + κ).
     ModelError
         If a law has no contact with r and D.
     """
     one, names = parameters.heights, ("linear", *HERTZ)
-    r, n, lam, ratios = one.restitution, one.n, one.amplitude, one.frequency_ratio.grid()
     bounds = [_bounds(name, parameters) for name in names]
     branches = np.array([_domains(name, parameters) for name in names])
-    height = [along(name, one, lambda exact: exact.orbit(n, lam).max_height) for name in names]
-    # NaN where the law has no such contact, or no steady motion that just touches was found.
-    held = np.full((len(names), ratios.size), np.nan)
-    for place in np.ndindex(held.shape):
-        with suppress(ModelError):
-            model = exact_model(names[place[0]], r, np.pi / ratios[place[1]], rigid_speed(1, r))
-            held[place] = model.permanent_contact_threshold()
+    rigid = RestitutionModel(one.restitution).orbit(one.n, one.amplitude)
+    shown = np.array([along(name, one, partial(_height_and_hold, one)) for name in names])
     return described(
         {
             "bifurcation_amplitude": (("law", "bound", "shown_ratio", "n"), np.array(bounds)),
             "amplitude": (("law", "shown_ratio", "point"), branches[:, 0]),
             "phase": (("law", "shown_ratio", "point"), branches[:, 1]),
-            "max_height": (("law", "duration_ratio"), np.array(height)),
-            "restitution_max_height": ((), float(RestitutionModel(r).orbit(n, lam).max_height)),
-            "threshold_amplitude": (("law", "duration_ratio"), held),
+            "max_height": (("law", "centroid_ratio"), shown[:, 0]),
+            "restitution_max_height": ((), float(rigid.max_height)),
+            "threshold_amplitude": (("law", "centroid_ratio"), shown[:, 1]),
         },
         coords={
             "law": list(names),
             "bound": list(BOUNDS),
             "shown_ratio": np.array(parameters.frequency_ratio),
             "n": np.array(parameters.n),
-            "duration_ratio": ratios,
+            "centroid_ratio": one.frequency_ratio.grid(),
         },
     )

@@ -9,7 +9,7 @@ import xarray as xr
 import yaml
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.figures.article.claim_texts import Claims, places
+from bouncing_ball.figures.article.claim_texts import Claims
 from bouncing_ball.figures.article.numbers import value_at
 from bouncing_ball.figures.article.pandoc import with_citations
 from bouncing_ball.figures.article.render import render_article
@@ -19,7 +19,7 @@ TEMPLATES = ROOT / "workflow" / "report" / "paper"
 
 
 def claims(**changes):
-    """Two claims, one reproduced and one contradicted and explained."""
+    """Two claims, one reproduced and one contradicted."""
     columns = {
         "group": ["number", "number"],
         "item": ["Fig. 14", "Eq. 38, Fig. 16"],
@@ -27,26 +27,18 @@ def claims(**changes):
         "printed_text": ["82", "6"],
         "verdict": ["reproduced", "contradicted"],
         "reason": ["", ""],
-        "explained_by": ["", "by Eq. 34"],
         "found": [82.177, 9.8118],
         "limit": [np.nan, np.nan],
     } | changes
-    return xr.Dataset(
-        {
-            **{key: ("claim", values) for key, values in columns.items()},
-            "explanation_text": ("explanation", ["Eq. 34 gives the same."]),
-            "explanation_holds": ("explanation", [True]),
-            "explanation_checks": ("explanation", ["x = 1 ≤ 2"]),
-        },
-        {"claim": ["heights", "contact"], "explanation": ["by Eq. 34"]},
-    )
+    data = {key: ("claim", values) for key, values in columns.items()}
+    return xr.Dataset(data, {"claim": ["heights", "contact"]})
 
 
 @pytest.fixture
 def render(tmp_path):
     def run(template, **data):
         (tmp_path / "article.md.j2").write_text(template, encoding="utf-8")
-        return render_article(tmp_path, {"claims": claims()} | data, {})
+        return render_article(tmp_path / "article.md.j2", {"claims": claims()} | data, {})
 
     return run
 
@@ -78,27 +70,13 @@ def test_what_is_not_there_is_an_error(render, template, message):
         render(template, t=data)
 
 
-def test_explanations_are_those_of_claims_not_reproduced():
-    found = Claims(claims()).explanations()
-    assert [part["name"] for part in found] == ["by Eq. 34"]
-    assert [claim.id for claim in found[0]["claims"]] == ["contact"]
-    assert Claims(claims(verdict=["reproduced", "reproduced"])).explanations() == []
-
-
-def test_restatements_are_counted_apart():
+def test_restatements_and_slips_are_counted_apart():
+    slips = Claims(claims(group=["slip", "restatement"]))
+    assert (slips.count(), slips.count(group="all"), slips.count(group="slip")) == (0, 1, 1)
     shown = Claims(claims(group=["number", "restatement"]))
     assert (shown.count(), shown.count(group="all")) == (1, 2)
     assert (shown.count("contradicted"), shown.count("contradicted", group="all")) == (0, 1)
     assert (shown.count(group="restatement"), shown.count(group="statement")) == (1, 0)
-
-
-def test_claims_by_place():
-    shown = Claims(claims())
-    assert [claim.id for claim in shown.about("Fig. 16")] == ["contact"]
-    # Each is shown once.
-    assert shown.about("Eq. 38") == [] == shown.about("Fig. 1")
-    assert Claims(claims(printed_table=["", "Table 1"])).about("Fig. 16") == []
-    assert shown.about("Fig. 14", "Eq. 38")[0].found == "82.18"
 
 
 def test_other_parameters_are_reported_once():
@@ -108,14 +86,6 @@ def test_other_parameters_are_reported_once():
     assert not shown.asked("heights")
     # The verdict says it, not the words.
     assert Claims(claims(reason=[reason, reason])).not_asked() == []
-    # What is not asked needs no explanation.
-    assert shown.explanations() == []
-
-
-def test_places_with_spans_and_lists():
-    found = places("Figs. 11-13 and 15, Eqs. 30-31, Table 1")
-    assert found == {*(f"Fig. {k}" for k in (11, 12, 13, 15)), "Eq. 30", "Eq. 31", "Table 1"}
-    assert places("text") == set()
 
 
 def test_numbers_match_to_rounding_only():
@@ -130,9 +100,9 @@ def test_pandoc_numbers_citations_and_lists_the_works(tmp_path):
     text += '<div id="refs"></div>\n\nEnd.\n'
     head, holmes, paper, end = filter(None, with_citations(text, tmp_path).splitlines())
     assert head == "A *b* [1, 2], $x_1$ [1]." and end == "End."
-    # What is not known of a work is said.
+    # How much of a work was read is said.
     assert holmes.startswith('1. P. J. Holmes, "The dynamics of repeated impacts')
-    assert "Vibration 84 (1982) 173–189. No DOI found. Not read: " in holmes
+    assert holmes.endswith("Vibration 84 (1982) 173–189. (Not read.)")
     assert paper.endswith("doi:10.1115/DETC2011-47870 (DOI not checked).")
     with pytest.raises(ModelError, match="nobody not found"):
         with_citations("[@nobody]\n", tmp_path)
@@ -148,3 +118,12 @@ def test_every_reference_is_cited():
 def test_nan_is_not_printed():
     shown = Claims(claims(found=[np.nan, 9.8118], verdict=["undecidable", "contradicted"]))
     assert shown("heights").found == "–"
+
+
+def test_names_have_numbers_in_the_order_of_their_captions(render):
+    text = "**Table «b».** **Figure «a», a ball.** See Figure «a» and Table «b».\n## End\n«End»"
+    assert render(text) == (
+        "**Table 2.** **Figure 17, a ball.** See Figure 17 and Table 2.\n## 1. End\n1"
+    )
+    with pytest.raises(KeyError, match="nowhere"):
+        render("Figure «nowhere»")

@@ -6,7 +6,7 @@ from bouncing_ball.claims.paper import explanations as why
 from bouncing_ball.claims.verdict import at_least, at_most
 
 
-@claim("Fig. 5")
+@claim("Fig. 5", meant=True)
 def closer_with_stiffness(data):
     r"""the stiffer the contact, the closer the apparent restitution is to r
 
@@ -16,6 +16,8 @@ def closer_with_stiffness(data):
     Remark: it grows again where the apparent restitution sinks below r. For a stiff contact
     $r_a - r = -\zeta(1+r)^2(1-\Lambda\sin\varphi)/(n\pi\varpi)$ to first order, so that it comes
     from below r exactly where $\Lambda\sin\varphi < 1$, which is below the amplitude of Eq. 8
+
+    Answer: the sentence describes the figure, on whose scale the curves do approach r
     """
     seen = {"a hundredth is seen": 0.01, "a thousandth is seen": 0.001}
     return {reading: at_most(evidence.rebound(data), limit) for reading, limit in seen.items()}
@@ -36,6 +38,8 @@ def dip_at_12(data):
     """at an amplitude of 1.2 the apparent restitution first decreases slightly, then rises
 
     Condition: the curve of that amplitude sinks below r by what is seen
+
+    Answer: the curve described may be that of 0.7, with the labels swapped
     """
     seen = {"a thousandth is seen": 0.001, "a hundredth is seen": 0.01}
     return {reading: at_least(evidence.dip(data, 1.2), limit) for reading, limit in seen.items()}

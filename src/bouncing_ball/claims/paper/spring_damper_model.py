@@ -16,6 +16,8 @@ def frequency_ratio(data):
     Remark: Ω/ω is legible, but not which letter is the table's frequency and which the contact's.
     Only the contact's frequency over the table's turns Eq. 10 into Eq. 11, and only so is a stiff
     contact one of large ϖ; with the usual letters, Ω for the table, the printed ratio is inverted
+
+    Answer: the letters are those of the paper's list of symbols, which is unreadable in our text
     """
     return {
         "Ω is the table's frequency": of_formula(data, "ϖ = Ω/ω, Ω of the table"),
@@ -52,7 +54,7 @@ def critical_damping(data):
     return of_formula(data, "Eq. 16, r → 0")
 
 
-@claim("after Eq. 16")
+@claim("after Eq. 16", meant=True)
 def static_table(data):
     """Eq. 16 is perfectly valid for a table at rest
 
@@ -62,6 +64,8 @@ def static_table(data):
     Remark: Eq. 16 neglects the weight of the ball during contact. Its effect fades as the contact
     gets stiffer, or the impact faster: a table at rest has no frequency, and what matters is the
     weight against the force of impact, g/(ωv), here 1/(πϖ)
+
+    Answer: the relation is that of its source, which is for impacts faster than these
     """
     heavy = data["formulas"].static_error
     return {

@@ -1,4 +1,4 @@
-"""The article as Markdown, from templates, datasets, tables and references."""
+"""The article and its supplement as Markdown, from templates, datasets, tables, references."""
 
 import json
 from collections.abc import Mapping
@@ -10,13 +10,14 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from bouncing_ball.figures.article import numbers
 from bouncing_ball.figures.article.claim_texts import Claims
+from bouncing_ball.figures.article.numbering import numbered
 from bouncing_ball.figures.article.pandoc import with_citations
 
 
 def render_article(
-    folder: str | Path, data: Mapping[str, xr.Dataset], tables: Mapping[str, str]
+    template: str | Path, data: Mapping[str, xr.Dataset], tables: Mapping[str, str]
 ) -> str:
-    """The text of ``article.md.j2`` in a folder, with its citations.
+    """The text of a template, numbered and with its citations; it may include others beside it.
 
     Templates can use ``data`` and ``tables`` by name, ``claims``, and the number formats of
     :mod:`bouncing_ball.figures.article.numbers`; they cite as pandoc does, ``[@key]``.
@@ -28,6 +29,7 @@ def render_article(
     jinja2.UndefinedError
         If a template names anything else that does not exist.
     """
+    folder = Path(template).parent
     environment = Environment(
         loader=FileSystemLoader(folder),
         undefined=StrictUndefined,
@@ -53,4 +55,5 @@ def render_article(
         at=at,
         versions=versions,
     )
-    return with_citations(environment.get_template("article.md.j2").render(), folder)
+    text = environment.get_template(Path(template).name).render()
+    return with_citations(numbered(text), folder)

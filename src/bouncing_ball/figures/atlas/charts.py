@@ -69,7 +69,7 @@ def page(data: xr.Dataset, release: str = "displacement") -> Figure:
     return figure
 
 
-def over_range(data: xr.Dataset, quantity: str, n: int = 1) -> Figure:
+def over_range(data: xr.Dataset, quantity: str = "max_height", n: int = 1) -> Figure:
     """The ϖ needed over r and the position of Λ in the stable range, by rule and model.
 
     The error law's |K|/ε is drawn as lines over the map of the restitution model.

@@ -172,23 +172,23 @@ def ext_hertz(data: xr.Dataset) -> Table:
         return "–".join(f"{end:.4f}" for end in part.bifurcation_amplitude.values)
 
     families = {f"n = {n}": at(ends, n=n) for n in data.n.values}
-    columns = {"law": text("law"), "π/D": value("shown_ratio", "g"), **families}
+    columns = {"law": text("law"), "π/(D + κ)": value("shown_ratio", "g"), **families}
     return table(each(data, "law", "shown_ratio"), columns)
 
 
 def ext_laws(data: xr.Dataset) -> Table:
-    """Errors on contacts of five laws with the same restitution coefficient and duration.
+    """Errors on contacts of five laws with the same restitution coefficient and centroid.
 
-    Both models at three π/D, the smallest, the middle and the largest of the grid, and the
+    Both models at three π/(D + κ), the smallest, the middle and the largest of the grid, and the
     threshold of the height.
     """
-    grid = data.duration_ratio.values
+    grid = data.centroid_ratio.values
     columns: Columns = {"quantity": quantity, "law": text("law")}
     for model in data.model.values:
         for ratio in grid[[0, round((len(grid) - 1) / 2), -1]]:
-            error = at(value("relative_error", ".2g"), model=model, duration_ratio=ratio)
-            columns[f"{model}, π/D = {ratio:.3g}"] = error
-    columns[f"π/D for {100 * data.attrs['tolerance']:g} %"] = lambda part: (
+            error = at(value("relative_error", ".2g"), model=model, centroid_ratio=ratio)
+            columns[f"{model}, π/(D + κ) = {ratio:.3g}"] = error
+    columns[f"π/(D + κ) for {100 * data.attrs['tolerance']:g} %"] = lambda part: (
         number(part.error_threshold, ".4g") if part["quantity"] == "max_height" else "–"
     )
     return table(each(data, "quantity", "law"), columns)

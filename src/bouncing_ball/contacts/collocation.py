@@ -324,8 +324,8 @@ def _panel(
     by_rate, by_time = (np.abs(tail @ x).max(axis=0) for x in (push, lever))
     error = np.maximum(by_rate / now.speed, by_time * now.speed / now.length) * step
     held = np.ones_like(last)
-    # Up to a time the ball is in contact.
-    if until is None:
+    # Up to a time a smooth force may be continued, for a steady contact that is sought.
+    if until is None or law.root > 1:
         full = _load(start, t[:-1]) if law.feels_load else None
         held = ((q[:-1] > 0) & (_grip(law, m, q[:-1], rate, full) > 0)).all(axis=0)
     if law.has_kink:

@@ -327,7 +327,7 @@ def _design(
     """Everything that is known of a contact, given or chosen; `one` is the verdict's family."""
     contact, table = case.contact, case.table
     # A threshold of permanent contact is none of an orbit.
-    motion = of_family(case, one)
+    motion = of_family(case, one, need.tolerance)
     if motion.restitution_kind is not None and need.quantity in OF_ORBITS:
         judged = judged_by_motion(motion, need.tolerance, one.n)
         before = "" if is_given else f"{verdict.verdict} "

@@ -115,7 +115,7 @@ class Motion:
     does not; ``laid`` is the kind for a ball laid on the table, None if it is the same. If the
     orbit is not stable, the same numbers follow for the restitution model, and for each model
     either the ``greatest`` height, of motions that repeat in the same way, or means over time of
-    the height and of the power that the table transfers.
+    the height and of the power that the table transfers, with the moduli of their relative errors.
     """
 
     kind: str
@@ -128,6 +128,7 @@ class Motion:
     greatest: dict[str, float] | None = None
     mean_height: dict[str, Mean | None] | None = None
     mean_power: dict[str, Mean | None] | None = None
+    mean_error: dict[str, Mean] | None = None
 
 
 @dataclass(frozen=True)

@@ -74,14 +74,10 @@ def judged_by_motion(motion: Motion, tolerance: float, n: int) -> Verdict:
         error = abs(simple / exact - 1)
         found = f"the greatest height of this motion is {shown(error, '%')} off"
         return _within(error, 0.0, tolerance, found, about)
-    errors = []
-    for name, means in (("height", motion.mean_height), ("power", motion.mean_power)):
-        exact, simple = (means or {"": None, "no": None}).values()
-        if exact is None or simple is None:
-            sentence = "Whether the restitution model is good enough for this motion is not known."
-            return Verdict(False, sentence, f"{about}, and some balls come to rest")
-        off = abs(simple.value / exact.value - 1)
-        errors.append((off, (exact.half_width + simple.half_width) / abs(exact.value), name))
+    if motion.mean_error is None:
+        sentence = "Whether the restitution model is good enough for this motion is not known."
+        return Verdict(False, sentence, f"{about}, and some balls come to rest")
+    errors = [(one.value, one.half_width, name) for name, one in motion.mean_error.items()]
     found = " and ".join(
         f"the mean {x} is {shown(e, '%')} ± {shown(h, '%')} off" for e, h, x in errors
     )
@@ -102,7 +98,8 @@ def _within(error: float, margin: float, tolerance: float, found: str, why: str)
     if error - margin > tolerance:
         sentence = f"The restitution model is not good enough: {found}, beyond {asked}."
         return Verdict(False, sentence, why)
-    sentence = f"Whether the restitution model is good enough is open: {found}, of {asked} allowed."
+    at_most = shown(error + margin, "%")
+    sentence = f"The restitution model is not decided at {asked}: {found}, so at most {at_most}."
     return Verdict(False, sentence, f"{why}; the sample is too small to decide")
 
 

@@ -5,7 +5,7 @@ import subprocess
 import pytest
 
 from bouncing_ball.compare import accept as module
-from bouncing_ball.compare.accept import RefusedError, accept
+from bouncing_ball.compare.accept import accept
 from bouncing_ball.datasets.netcdf import write_dataset
 from bouncing_ball.errors import ModelError
 from bouncing_ball.provenance.revision import UNKNOWN, Revision
@@ -83,7 +83,7 @@ def test_a_refusal_changes_nothing(pair, run, monkeypatch, refusal, state, left,
     monkeypatch.setattr(module, "jobs_left", lambda *_: left)
     (pair.new / "figures" / "fig17.png").touch()
     before = contents(pair)
-    with refusal(RefusedError, said):
+    with refusal(ModelError, said):
         run(config={"release": config})
     assert contents(pair) == before
 
@@ -97,5 +97,5 @@ def test_the_jobs_left_are_those_of_a_dry_run(monkeypatch, tmp_path, refusal):
     monkeypatch.setattr(module.subprocess, "run", done)
     assert module.jobs_left(tmp_path, []) == 4
     assert module.jobs_left(tmp_path, []) == 0
-    with refusal(RefusedError, "a dry run fails: words"):
+    with refusal(ModelError, "a dry run fails: words"):
         module.jobs_left(tmp_path, [])

@@ -12,7 +12,6 @@ from bouncing_ball.continuation.branch import (
     resample,
     solve_at,
 )
-from bouncing_ball.continuation.corrector import NewtonSettings
 from bouncing_ball.continuation.events import Event, fold, parameter_bound
 from bouncing_ball.continuation.step_control import StepControl
 
@@ -282,13 +281,9 @@ def test_resampled_points_do_not_depend_on_the_step_control():
         assert angle == pytest.approx(expected, abs=1e-10)
 
 
-def test_resampling_with_too_long_steps(refusal):
-    # Between two far points of a fast wave Newton runs out of iterations.
-    wave = Scalar(
-        lambda x, p: x - np.sin(40 * p), lambda x, p: 1.0, lambda x, p: -40 * np.cos(40 * p)
-    )
-    ends = np.array([[0.0, 0.0], [np.sin(40.0), 1.0]])
-    tangents = np.array([[1.0, 0.0], [1.0, 0.0]])
-    branch = Branch(ends, tangents, (), STARTED, STARTED)
+def test_resampling_where_there_is_no_solution(refusal):
+    # The planes across this chord miss the circle.
+    ends, along = np.array([[1.0, 0.0], [3.0, 0.0]]), np.array([[1.0, 0.0], [1.0, 0.0]])
+    branch = Branch(ends, along, (), STARTED, STARTED)
     with refusal(ContinuationError, "resampling to 5 points failed with residual"):
-        resample(wave, branch, 5, NewtonSettings(max_iterations=3))
+        resample(CIRCLE, branch, 5)

@@ -31,7 +31,7 @@ class Bounded:
 def test_converges_to_the_intersection_with_a_plane():
     # The line x = 2p meets the circle at p = 1/√5.
     normal = np.array([1.0, -2.0])
-    found = newton(Circle(), np.array([1.0, 0.6]), plane(normal, np.zeros(2)), NewtonSettings())
+    found = newton(Circle(), np.array([1.0, 0.6]), plane(normal, np.zeros(2)))
     assert found.converged
     assert found.point == pytest.approx(np.array([2.0, 1.0]) / np.sqrt(5), abs=4 * EPS)
     assert found.iterations <= 6
@@ -54,7 +54,7 @@ def test_many_guesses_at_once():
     angles = np.linspace(0.1, 6.0, 11)
     guess = 1.1 * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
     normals = np.stack([-np.sin(angles), np.cos(angles)], axis=-1)
-    found = newton(Circle(), guess, plane(normals, guess), NewtonSettings())
+    found = newton(Circle(), guess, plane(normals, guess))
     assert found.converged.all()
     assert found.point == pytest.approx(guess / 1.1, abs=4 * EPS)
 
@@ -64,7 +64,7 @@ def test_a_bad_guess_spoils_no_other():
     guess = np.array([[1.0, 0.6], [0.0, 0.0], [1.0, 2.0]])
     normals = np.array([[1.0, -2.0], [1.0, -2.0], [0.0, 1.0]])
     through = np.array([[0.0, 0.0], [0.0, 0.0], [1.0, 2.0]])
-    found = newton(Circle(), guess, plane(normals, through), NewtonSettings())
+    found = newton(Circle(), guess, plane(normals, through))
     assert found.converged.tolist() == [True, False, False]
     assert found.point[0] == pytest.approx(np.array([2.0, 1.0]) / np.sqrt(5), abs=4 * EPS)
     assert found.point[1].tolist() == [0.0, 0.0]
@@ -81,21 +81,15 @@ def test_no_step_is_longer_than_the_longest():
 
 def test_singular_matrix():
     # ∇F = 0 at the centre.
-    found = newton(
-        Circle(), np.zeros(2), plane(np.array([1.0, 0.0]), np.zeros(2)), NewtonSettings()
-    )
+    found = newton(Circle(), np.zeros(2), plane(np.array([1.0, 0.0]), np.zeros(2)))
     assert not found.converged
     assert (found.iterations, found.residual, found.step) == (1, 1.0, np.inf)
     assert found.point.tolist() == [0.0, 0.0]
 
 
 def test_leaving_the_domain():
-    found = newton(
-        Bounded(),
-        np.array([0.5, 2.0]),
-        plane(np.array([0.0, 1.0]), np.array([0.5, 2.0])),
-        NewtonSettings(),
-    )
+    guess = np.array([0.5, 2.0])
+    found = newton(Bounded(), guess, plane(np.array([0.0, 1.0]), guess))
     assert not found.converged
     assert np.isnan(found.residual)
     assert found.iterations == 1

@@ -3,10 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.continuation.corrector import NewtonSettings
 from bouncing_ball.continuation.events import Event, fold, locate, parameter_bound
-
-SETTINGS = NewtonSettings()
 
 
 class Circle:
@@ -38,7 +35,7 @@ def test_fold_of_the_circle():
     event = fold(Circle())
     assert event.name == "fold" and not event.terminal
     assert float(event.function(np.array([0.25, 0.0]))) == 0.5
-    found = locate(Circle(), event, on_circle(1.4), on_circle(1.7), SETTINGS)
+    found = locate(Circle(), event, on_circle(1.4), on_circle(1.7))
     # Newton stops at a last step of 1e-12; the point is then exact.
     assert found.point == pytest.approx(np.array([0.0, 1.0]), abs=1e-14)
     assert found.residual < 1e-14
@@ -48,7 +45,7 @@ def test_fold_of_the_circle():
 def test_location_is_not_limited_by_the_gradients_differences():
     # sin(20 x) = 0.5 at x = π/120; third derivatives of 8000 spoil ∇g.
     event = Event("level", lambda y: np.sin(20 * y[..., 0]) - 0.5)
-    found = locate(Line(), event, np.array([0.0, 0.0]), np.array([0.05, 0.05]), SETTINGS)
+    found = locate(Line(), event, np.array([0.0, 0.0]), np.array([0.05, 0.05]))
     assert found.point == pytest.approx(np.full(2, np.pi / 120), abs=1e-15)
 
 
@@ -62,7 +59,7 @@ def test_parameter_bound_is_positive_inside(upper, inside):
 
 def test_event_exactly_on_the_left_point():
     event = Event("zero", lambda y: y[..., 1])
-    found = locate(Circle(), event, np.array([1.0, 0.0]), on_circle(-0.1), SETTINGS)
+    found = locate(Circle(), event, np.array([1.0, 0.0]), on_circle(-0.1))
     assert found.point.tolist() == [1.0, 0.0]
     assert found.residual == 0.0
 
@@ -70,7 +67,7 @@ def test_event_exactly_on_the_left_point():
 def test_the_zero_inside_the_bracket_is_found():
     # Seven more zeros lie outside, and the secant is flat.
     event = Event("wave", lambda y: np.sin(np.pi * y[..., 1]) * (y[..., 1] + 0.05))
-    found = locate(Line(), event, np.full(2, 0.6), np.full(2, 1.9), SETTINGS)
+    found = locate(Line(), event, np.full(2, 0.6), np.full(2, 1.9))
     assert found.point == pytest.approx(np.ones(2), abs=1e-14)
 
 
@@ -80,7 +77,7 @@ def test_a_zero_beyond_the_bracket_is_not_the_one_that_was_announced(end, sign):
     # Of p³ - p the zero inside is 0; from the secant's estimate, above 0.9, Newton goes to 1.
     event = Event("cubic", lambda y: y[..., 1] ** 3 - y[..., 1])
     for ends in ((-0.6, end), (end, -0.6)):
-        assert locate(Line(), event, *(np.full(2, sign * p) for p in ends), SETTINGS) is None
+        assert locate(Line(), event, *(np.full(2, sign * p) for p in ends)) is None
 
 
 @pytest.mark.parametrize(
@@ -93,4 +90,4 @@ def test_a_zero_beyond_the_bracket_is_not_the_one_that_was_announced(end, sign):
 )
 def test_what_changes_sign_without_a_zero(function):
     event = Event("no zero", function)
-    assert locate(Line(), event, np.array([0.0, 0.0]), np.array([1.0, 1.0]), SETTINGS) is None
+    assert locate(Line(), event, np.array([0.0, 0.0]), np.array([1.0, 1.0])) is None

@@ -5,12 +5,12 @@ import pytest
 import xarray as xr
 
 from bouncing_ball.datasets.netcdf import (
-    DatasetError,
     parameter_attributes,
     read_dataset,
     write_dataset,
 )
 from bouncing_ball.datasets.variables import describe
+from bouncing_ball.errors import ModelError
 
 
 @pytest.fixture
@@ -92,9 +92,9 @@ def test_parameters_as_attributes(tmp_path):
 
 def test_a_damaged_file_is_one_line(tmp_path, refusal):
     path = tmp_path / "fig08.nc"
-    with refusal(DatasetError, "no dataset", "fig08.nc"):
+    with refusal(ModelError, "no dataset", "fig08.nc"):
         read_dataset(path)
     write_dataset(xr.Dataset({"phase": ("point", [0.0] * 1000)}), path)
     path.write_bytes(path.read_bytes()[:2000])
-    with refusal(DatasetError, "fig08.nc is damaged"):
+    with refusal(ModelError, "fig08.nc is damaged"):
         read_dataset(path)

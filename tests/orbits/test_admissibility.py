@@ -5,7 +5,6 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.continuation.corrector import NewtonSettings
 from bouncing_ball.orbits.grazing import grazing_points
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import RestitutionOrbit
@@ -67,7 +66,7 @@ def test_grazing_is_located(omega, r_zeta, release):
     lam = np.linspace(1.9, 2.4, 6)
     orbit = orbit_at(SpringDamper(omega, r_zeta, release), 1, lam, Side.UNSTABLE)
     y = np.stack([orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration, lam], axis=-1)
-    found = grazing_points(system, lambda y: system.orbit(y).is_admissible(), y, NewtonSettings())
+    found = grazing_points(system, lambda y: system.orbit(y).is_admissible(), y)
     assert len(found) == 1
     at = system.orbit(found[0])
     start = float(at.contact_duration)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from bouncing_ball.continuation.branch import continue_branch
-from bouncing_ball.continuation.corrector import NewtonSettings
 from bouncing_ball.orbits.grazing import grazing_points
 
 
@@ -25,7 +24,7 @@ def test_changes_are_found_to_the_last_digit():
     def admissible(y):
         return (y[..., 0] > 0.3) | (y[..., 1] < -0.9)
 
-    found = np.array(grazing_points(Circle(), admissible, branch.points, NewtonSettings()))
+    found = np.array(grazing_points(Circle(), admissible, branch.points))
     low = np.sqrt(1 - 0.81)
     expected = [[0.3, np.sqrt(0.91)], [-low, -0.9]]
     assert found[:2] == pytest.approx(np.array(expected), abs=4e-16)

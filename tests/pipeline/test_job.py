@@ -5,7 +5,8 @@ from types import SimpleNamespace
 import pytest
 import xarray as xr
 
-from bouncing_ball.datasets.netcdf import DatasetError, write_dataset
+from bouncing_ball.datasets.netcdf import write_dataset
+from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.job import logged, read_input
 
 
@@ -35,7 +36,7 @@ def test_an_input_is_whole_or_its_command_is_named(tmp_path, refusal):
     path = tmp_path / "fig08.nc"
 
     def refused(said):
-        with refusal(DatasetError, f"{said}: make it again, snakemake --cores 2 --force {path}"):
+        with refusal(ModelError, f"{said}: make it again, snakemake --cores 2 --force {path}"):
             read_input(str(path))
 
     refused(f"no dataset {path}")

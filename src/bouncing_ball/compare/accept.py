@@ -21,23 +21,19 @@ from bouncing_ball.provenance.origin import CONFIGURATION, changes
 from bouncing_ball.provenance.revision import revision
 
 
-class RefusedError(ModelError):
-    """Results that must not become the record; the message gives the reason."""
-
-
 def jobs_left(repository: Path, files: Collection[str]) -> int:
     """Number of jobs that Snakemake would still run for these files, by its rerun triggers.
 
     Raises
     ------
-    RefusedError
+    ModelError
         If the dry run fails.
     """
     command = [sys.executable, "-m", "snakemake", "--snakefile", str(repository / "Snakefile")]
     options = ["--dry-run", "--nolock", "--cores", "1"]
     done = subprocess.run([*command, *options, *files], capture_output=True, text=True)
     if done.returncode:
-        raise RefusedError(f"a dry run fails: {done.stderr.strip().splitlines()[-1]}")
+        raise ModelError(f"a dry run fails: {done.stderr.strip().splitlines()[-1]}")
     total = re.search(r"^total +(\d+)$", done.stdout + done.stderr, re.MULTILINE)
     return int(total[1]) if total else 0
 
@@ -87,20 +83,19 @@ def accept(
 
     Raises
     ------
-    RefusedError
-        If the tree is not committed, the configuration is not the committed one, Snakemake would
-        still run something, or one of the results is made by no rule. Nothing is changed then.
     ModelError
-        If there is no artifact of one of these names.
+        If the tree is not committed, the configuration is not the committed one, Snakemake would
+        still run something, one of the results is made by no rule, or there is no artifact of one
+        of these names. Nothing is changed then.
     """
     if revision(record).dirty != "no":
-        raise RefusedError("the tree is not committed: commit first, then accept what it makes")
+        raise ModelError("the tree is not committed: commit first, then accept what it makes")
     if changed := changes(config, read_yaml(record / CONFIGURATION)):
-        raise RefusedError(f"this run has other values than {CONFIGURATION}: {changed}")
+        raise ModelError(f"this run has other values than {CONFIGURATION}: {changed}")
     if left := jobs_left(record, files):
-        raise RefusedError(f"Snakemake would still run {left} jobs: run it, and look at the diff")
+        raise ModelError(f"Snakemake would still run {left} jobs: run it, and look at the diff")
     if foreign := sorted({*map(str, results.glob("figures/[!.]*"))} - {*files}):
-        raise RefusedError(f"{foreign[0]} is not made by this workflow: remove it")
+        raise ModelError(f"{foreign[0]} is not made by this workflow: remove it")
     comparison = compare_folders(record, results, only)
     print(to_terminal(comparison), end="", flush=True)
     taken = [each for each in comparison.parts if only or not each.outcome.agrees]

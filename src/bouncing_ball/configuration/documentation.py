@@ -2,29 +2,15 @@
 
 import json
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel
 
 from bouncing_ball.configuration.check import resolved
 
-_HEAD = """# The configuration
-
-The keys of `config.yaml`, with what is allowed and why. This page and `schema.json`, which
-editors read, are made from the types that stand beside the studies, by `make config-docs`;
-change those, not the page.
-
-Everything is dimensionless but for angles, in radians. Numbers in powers of ten need a point and
-a sign, `1.0e+4`: YAML takes `1e4` for a text. To try a change without editing `config.yaml`,
-write only the keys that change into another file and name it last,
-`snakemake --cores 2 fig12 --configfile mine.yaml`.
-"""
-_TABLE = """
-## {title}
-
-| key | allowed | meaning | default |
-| --- | --- | --- | --- |
-"""
+_HEAD = Path(__file__).with_suffix(".md").read_text(encoding="utf-8")
+_TABLE = "\n## {title}\n\n| key | allowed | meaning | default |\n| --- | --- | --- | --- |\n"
 
 
 def configuration_schema(model: type[BaseModel]) -> str:

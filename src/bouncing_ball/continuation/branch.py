@@ -65,9 +65,7 @@ class Branch:
         return [special.point for special in self.special if special.name == name]
 
 
-def solve_at(
-    problem: Problem, guess: np.ndarray, settings: NewtonSettings = NewtonSettings()
-) -> np.ndarray:
+def solve_at(problem: Problem, guess: np.ndarray) -> np.ndarray:
     """The solution at the parameter of the guess, shape (N + 1,).
 
     Raises
@@ -90,7 +88,7 @@ def solve_at(
     """
     axis = np.zeros_like(guess)
     axis[-1] = 1.0
-    found = newton(problem, guess, plane(axis, guess), settings)
+    found = newton(problem, guess, plane(axis, guess))
     if not found.converged:
         raise ContinuationError(
             f"no solution near the starting guess {np.array2string(guess, precision=4)}: "
@@ -103,7 +101,7 @@ class _Rejected(Exception):
     """A step that must be shorter, with the :class:`End` of the branch if it cannot be shorter."""
 
 
-def _located(problem, events, values, left, right, settings):
+def _located(problem, events, values, left, right):
     """Events and points where test functions change sign within a step, up to a terminal one.
 
     ``values`` holds the values of each test function at both ends of the step.
@@ -111,7 +109,7 @@ def _located(problem, events, values, left, right, settings):
     located, failure = [], None
     for event, (before, after) in zip(events, values, strict=True):
         if (before >= 0) != (after >= 0):
-            special = locate(problem, event, left, right, settings)
+            special = locate(problem, event, left, right)
             if special:
                 located.append((event, special))
             else:
@@ -132,7 +130,6 @@ def continue_branch(
     increasing: bool,
     events: Sequence[Event] = (),
     control: StepControl = StepControl(),
-    settings: NewtonSettings = NewtonSettings(),
     max_points: int = 2000,
 ) -> Branch:
     """Follow the branch through ``start`` in one direction.
@@ -146,7 +143,7 @@ def continue_branch(
         Whether the parameter increases at the start.
     events : sequence of Event
         Events to be located; a terminal one ends the branch exactly on its zero.
-    control, settings : StepControl, NewtonSettings
+    control : StepControl
     max_points : int
         Number of points after which the branch is left unfinished.
 
@@ -176,7 +173,7 @@ def continue_branch(
     >>> [np.abs(special.point.round(12)).tolist() for special in found.special]
     [[0.0, 1.0]]
     """
-    y = solve_at(problem, np.asarray(start, dtype=float), settings)
+    y = solve_at(problem, np.asarray(start, dtype=float))
     direction = tangent(problem.jacobian(y), np.eye(y.size)[-1] * (1.0 if increasing else -1.0))
     values = [float(event.function(y)) for event in events]
     for event, value in zip(events, values, strict=True):
@@ -192,7 +189,7 @@ def continue_branch(
     def step() -> tuple[np.ndarray, np.ndarray, list[float], list, float]:
         """Predict, correct, and locate the events on the way."""
         predicted = y + length * direction
-        found = newton(problem, predicted, plane(direction, predicted), settings)
+        found = newton(problem, predicted, plane(direction, predicted))
         if not found.converged:
             raise _Rejected(f"the corrector fails with residual {found.residual:.1e}")
         ahead = tangent(problem.jacobian(found.point), direction)
@@ -201,7 +198,7 @@ def continue_branch(
             raise _Rejected(f"the tangent turns by more than {control.max_angle} rad")
         after = [float(event.function(found.point)) for event in events]
         both = list(zip(values, after, strict=True))
-        passed = _located(problem, events, both, y, found.point, settings)
+        passed = _located(problem, events, both, y, found.point)
         return found.point, ahead, after, passed, control.after(length, found.iterations, angle)
 
     while end is None and len(points) < max_points:
@@ -241,9 +238,7 @@ def continue_both_ways(problem: Problem, start: np.ndarray, **options) -> Branch
 _EQUALISING_ROUNDS = 8
 
 
-def resample(
-    problem: Problem, branch: Branch, count: int, settings: NewtonSettings = NewtonSettings()
-) -> np.ndarray:
+def resample(problem: Problem, branch: Branch, count: int) -> np.ndarray:
     """Solutions at equal distances along a branch, shape (count, N + 1).
 
     Cubic Hermite interpolation between the points of the branch is the predictor, Newton's method
@@ -267,14 +262,14 @@ def resample(
     wanted = np.linspace(0.0, arc[-1], count)
     for _ in range(_EQUALISING_ROUNDS):
         guess = spline(wanted)
-        found = newton(problem, guess, plane(spline(wanted, 1), guess), settings)
+        found = newton(problem, guess, plane(spline(wanted, 1), guess))
         if not np.all(found.converged):
             residual = found.residual.max()
             raise ContinuationError(
                 f"resampling to {count} points failed with residual {residual:.1e}"
             )
         chords = np.linalg.norm(np.diff(found.point, axis=0), axis=1)
-        if np.ptp(chords) <= settings.tolerance * chords.mean():
+        if np.ptp(chords) <= NewtonSettings().tolerance * chords.mean():
             break
         reached = np.concatenate([[0.0], np.cumsum(chords)])
         wanted = np.interp(np.linspace(0.0, reached[-1], count), reached, wanted)

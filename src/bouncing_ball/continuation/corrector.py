@@ -44,7 +44,10 @@ Condition = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
 def newton(
-    problem: Problem, guess: np.ndarray, condition: Condition, settings: NewtonSettings
+    problem: Problem,
+    guess: np.ndarray,
+    condition: Condition,
+    settings: NewtonSettings = NewtonSettings(),
 ) -> Correction:
     """Solve F(y) = 0 together with one scalar condition.
 

@@ -18,7 +18,7 @@ from bouncing_ball.continuation.problem import Problem
 # fast the iteration converges, but not to which point, which depends on g alone.
 _DIFFERENCE = 6e-6
 # With an approximate gradient a few more iterations are needed than in the plain corrector.
-_EXTRA_ITERATIONS = 12
+_PATIENT = NewtonSettings(max_iterations=20)
 # Rounding may put a zero at an end of the bracket outside by this part of its length.
 _SLACK = 1e-6
 
@@ -94,7 +94,7 @@ def vanishing(function: Callable[[np.ndarray], np.ndarray]) -> Condition:
 
 
 def locate(
-    problem: Problem, event: Event, left: np.ndarray, right: np.ndarray, settings: NewtonSettings
+    problem: Problem, event: Event, left: np.ndarray, right: np.ndarray
 ) -> SpecialPoint | None:
     """The zero of an event between two points of the branch, shape (N + 1,) each.
 
@@ -104,8 +104,7 @@ def locate(
     """
     values, chord = [float(event.function(y)) for y in (left, right)], right - left
     guess = left + values[0] / (values[0] - values[1]) * chord
-    patient = settings._replace(max_iterations=settings.max_iterations + _EXTRA_ITERATIONS)
-    found = newton(problem, guess, vanishing(event.function), patient)
+    found = newton(problem, guess, vanishing(event.function), _PATIENT)
     progress = (found.point - left) @ chord / (chord @ chord)
     if not (found.converged and -_SLACK <= progress <= 1 + _SLACK):
         return None

@@ -8,13 +8,10 @@ from typing import Any
 import xarray as xr
 
 from bouncing_ball.datasets.files import replacing
+from bouncing_ball.errors import ModelError
 
 CONVENTIONS = "CF-1.11"
 """The conventions that the files follow."""
-
-
-class DatasetError(ValueError):
-    """A file that does not exist, or is not a complete dataset; the message is one line."""
 
 
 def attribute_name(parameter: str) -> str:
@@ -76,14 +73,14 @@ def read_dataset(path: str | Path) -> xr.Dataset:
 
     Raises
     ------
-    DatasetError
+    ModelError
         If there is no such file, or it is damaged.
     """
     try:
         with xr.open_dataset(path, engine="netcdf4") as dataset:
             return dataset.load()
     except FileNotFoundError:
-        raise DatasetError(f"no dataset {path}") from None
+        raise ModelError(f"no dataset {path}") from None
     # The error that the libraries raise depends on the place of the damage.
     except (OSError, ValueError, RuntimeError, AttributeError) as error:
-        raise DatasetError(f"{path} is damaged") from error
+        raise ModelError(f"{path} is damaged") from error

@@ -4,7 +4,6 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.continuation.branch import Branch, resample
-from bouncing_ball.continuation.corrector import NewtonSettings
 from bouncing_ball.orbits.grazing import grazing_points
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.stability import Bifurcation
@@ -53,10 +52,9 @@ def branch_columns(system: OrbitSystem, branch: Branch, count: int) -> xr.Datase
     ContinuationError
         If the branch was followed with too long steps.
     """
-    newton = NewtonSettings()
     y = resample(system, branch, count)
     chosen = [s for s in branch.special if s.name in list(Bifurcation)]
-    grazing = grazing_points(system, lambda z: system.orbit(z).is_admissible(), y, newton)
+    grazing = grazing_points(system, lambda z: system.orbit(z).is_admissible(), y)
     points = np.array([*(s.point for s in chosen), *grazing]).reshape(-1, y.shape[-1])
     kinds = [*(str(s.name) for s in chosen), *[GRAZING] * len(grazing)]
     ends = [str(branch.start), str(branch.end)]

@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane
+from bouncing_ball.continuation.corrector import newton, plane
 from bouncing_ball.continuation.problem import Problem
 
 _BISECTIONS = 60
@@ -20,7 +20,6 @@ def grazing_points(
     problem: Problem,
     admissible_at: Callable[[np.ndarray], np.ndarray],
     points: np.ndarray,
-    settings: NewtonSettings,
 ) -> np.ndarray:
     """The last admissible points of a branch, one for each change of admissibility along it.
 
@@ -32,7 +31,6 @@ def grazing_points(
         Whether solutions of shape (..., N + 1) are admissible.
     points : ndarray, shape (m, N + 1)
         Solutions in order along the branch.
-    settings : NewtonSettings
 
     Returns
     -------
@@ -45,7 +43,7 @@ def grazing_points(
     for _ in range(_BISECTIONS if at.size else 0):
         middle, normal = (inside + outside) / 2, outside - inside
         length = np.linalg.norm(normal, axis=-1, keepdims=True)
-        found = newton(problem, middle, plane(normal / np.maximum(length, _TINY), middle), settings)
+        found = newton(problem, middle, plane(normal / np.maximum(length, _TINY), middle))
         good = admissible_at(found.point)
         closer = found.converged & (length[:, 0] > _ROUNDING * np.linalg.norm(inside, axis=-1))
         inside[closer & good] = found.point[closer & good]

@@ -19,11 +19,11 @@ from bouncing_ball.configuration.study import load, typed
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.datasets.netcdf import (
     CONVENTIONS,
-    DatasetError,
     parameter_attributes,
     read_dataset,
     write_dataset,
 )
+from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.progress import advance
 from bouncing_ball.provenance.origin import gather
 
@@ -76,14 +76,14 @@ def read_input(path: str) -> xr.Dataset:
 
     Raises
     ------
-    DatasetError
+    ModelError
         If it is damaged; the message has the command that makes it again.
     """
     try:
         return read_dataset(path)
-    except DatasetError as error:
+    except ModelError as error:
         again = f"make it again, snakemake --cores 2 --force {path}"
-        raise DatasetError(f"{error}: {again}") from error
+        raise ModelError(f"{error}: {again}") from error
 
 
 def provenance(snakemake: Any) -> dict[str, str]:

@@ -71,5 +71,5 @@ def sources(*modules: str) -> list[str]:
             if path is not None and path not in seen:
                 seen.add(path)
                 pending.extend(imports(path))
-    beside = (path.with_suffix(suffix) for path in seen for suffix in (".csv", ".md", ".yaml"))
+    beside = (path.with_suffix(x) for path in seen for x in (".csv", ".md", ".toml", ".yaml"))
     return sorted(str(path) for path in [*seen, *filter(Path.is_file, beside)])

@@ -11,11 +11,10 @@ from typing import Any
 import numpy as np
 
 import bouncing_ball
-from bouncing_ball.errors import printable
+from bouncing_ball.errors import ModelError, printable
 from bouncing_ball.provenance.origin import (
     CARRIERS,
     PREFIX,
-    ProvenanceError,
     read_attributes,
     read_provenance,
     versions,
@@ -32,13 +31,13 @@ def _carrier(path: Path) -> Path:
     For the texts it is the dataset of the claims, which is the last one made.
     """
     if not path.is_file():
-        raise ProvenanceError(f"{path} cannot be read: no such file")
+        raise ModelError(f"{path} cannot be read: no such file")
     if path.suffix in CARRIERS:
         return path
     dataset = Path("figures/claims.nc" if path.name in RECORD else f"{path.stem}.nc")
     if not (path.parent / dataset).is_file():
         why = f"there is no {dataset} next to it"
-        raise ProvenanceError(f"{path} is not an artifact of this workflow: {why}")
+        raise ModelError(f"{path} is not an artifact of this workflow: {why}")
     return path.parent / dataset
 
 
@@ -80,7 +79,7 @@ def explain(file: Path, /) -> dict[str, Any]:
 
     Raises
     ------
-    ProvenanceError
+    ModelError
         If the file is not one of this workflow, or carries no provenance.
     """
     made = read_provenance(_carrier(file))

@@ -28,10 +28,6 @@ CARRIERS = (".nc", ".png", ".svg")
 _DESCRIPTION = "{http://purl.org/dc/elements/1.1/}description"
 
 
-class ProvenanceError(ModelError):
-    """A file without provenance, or one whose provenance cannot be read."""
-
-
 def changes(config: Mapping[str, Any], written: Mapping[str, Any]) -> dict[str, Any]:
     """The values of a configuration that differ from the written one, nested in the same way.
 
@@ -101,7 +97,7 @@ def read_attributes(path: Path) -> dict[str, Any]:
 
     Raises
     ------
-    ProvenanceError
+    ModelError
         If the file is of another kind, cannot be read, or is damaged.
     """
     # Imported where they are needed, because each import takes time.
@@ -124,7 +120,7 @@ def read_attributes(path: Path) -> dict[str, Any]:
                 return {} if found is None else dict(json.loads(found.text or "{}"))
     # The libraries raise errors of many types on a damaged file.
     except Exception:
-        raise ProvenanceError(f"{path} cannot be read: damaged, or not ours") from None
+        raise ModelError(f"{path} cannot be read: damaged, or not ours") from None
 
 
 def read_provenance(path: Path) -> dict[str, Any]:
@@ -132,13 +128,13 @@ def read_provenance(path: Path) -> dict[str, Any]:
 
     Raises
     ------
-    ProvenanceError
+    ModelError
         If the file cannot be read, see :func:`read_attributes`, or carries no provenance.
     """
     attributes = read_attributes(path).items()
     found = {name.removeprefix(PREFIX): x for name, x in attributes if name.startswith(PREFIX)}
     if not found:
-        raise ProvenanceError(f"{path} carries no provenance")
+        raise ModelError(f"{path} carries no provenance")
     return found | {
         name: json.loads(found[name]) for name in ("configuration", "inputs", "versions")
     }

@@ -24,7 +24,7 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_system import SpringDamperSystem
-from bouncing_ball.parameters import FrequencyRatio, Parameters, number
+from bouncing_ball.parameters import FrequencyRatio, Parameters, listed
 
 _REACHED = End("target reached")
 
@@ -32,16 +32,8 @@ _REACHED = End("target reached")
 class Continuation(Parameters):
     """Where the continuation starts, and how long its steps are."""
 
-    largest_step: Annotated[
-        float,
-        number(
-            "largest step in arclength; a longer one may pass two bifurcations", ge=0.02, le=0.5
-        ),
-    ]
-    stiff_frequency_ratio: Annotated[
-        FrequencyRatio,
-        number("ϖ at which the restitution orbit starts the continuation", ge=100, le=1e6),
-    ]
+    largest_step: Annotated[float, listed("largest_step")]
+    stiff_frequency_ratio: Annotated[FrequencyRatio, listed("stiff_frequency_ratio")]
 
 
 def _on_the_way(

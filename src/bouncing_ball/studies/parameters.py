@@ -8,7 +8,7 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pydantic import AfterValidator, Field, ValidationInfo
+from pydantic import AfterValidator, ValidationInfo
 
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.orbits.restitution_orbit import saddle_node
@@ -22,6 +22,7 @@ from bouncing_ball.parameters import (
     Restitution,
     Span,
     Tolerance,
+    listed,
 )
 
 
@@ -91,12 +92,7 @@ class OrbitErrors(OrbitsAlongRatio):
 
 BranchEnd = Annotated[AmplitudeMax, _has_orbits(max)]
 """Λ up to which branches are followed, above where the highest family begins."""
-Points = Annotated[
-    int,
-    Field(
-        ge=11, le=20001, description="points along each branch; fewer than 11 do not show its shape"
-    ),
-]
+Points = Annotated[int, listed("Points")]
 
 
 class FamilyBranches(Parameters):

@@ -5,7 +5,6 @@ from typing import Annotated
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.continuation.corrector import NewtonSettings
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.orbits import restitution_orbit as orbits
 from bouncing_ball.orbits.grazing import grazing_points
@@ -26,7 +25,7 @@ def _grazing(orbits: RestitutionOrbit) -> np.ndarray:
     """φ and Λ at which the unstable orbits of one family graze the table; NaN if they do not."""
     system = RestitutionModel(orbits.law).system(int(orbits.n[0]))
     at = system.point(orbits)
-    found = grazing_points(system, lambda y: system.orbit(y).is_admissible(), at, NewtonSettings())
+    found = grazing_points(system, lambda y: system.orbit(y).is_admissible(), at)
     return found[0, [0, -1]] if len(found) else np.full(2, np.nan)
 
 

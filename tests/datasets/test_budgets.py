@@ -26,7 +26,7 @@ SIZES, MOVED = ("samples", "points"), ("restitution", "amplitude", "amplitude_ma
 # More random orbits and more nodes are another sample, and one motion is sampled at its events too.
 NOT_NESTED = (
     *("ext_orders", "explorer", "formulas", "fig07", "fig12", "ext_instant"),
-    *("ext_locking", "ext_diagram", "ext_means"),
+    *("ext_locking", "ext_diagram", "ext_means", "ext_locked"),
 )
 
 

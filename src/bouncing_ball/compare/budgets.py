@@ -43,7 +43,7 @@ Parameters that differ by two units in the last place, which change every roundi
 processor does, move the pixels of a figure by 0.092 at most (Fig. 15). The budget is the power of
 ten next above ten times that."""
 
-PICTURES = {"ext_diagram": 60.0, "ext_locking": 40.0, "ext_means": 60.0}
+PICTURES = {"ext_diagram": 60.0, "ext_locking": 40.0, "ext_means": 60.0, "ext_locked": 40.0}
 """Pictures of motions about which rounding decides: three times the 19 and 12 grey levels by which
 a change of 1e-15 in the start moves them."""
 

@@ -147,13 +147,18 @@ def _patches(fills: Iterable[tuple[str, Any]]) -> list[Patch]:
 
 
 def _draw_shares(axes: Axes, one: xr.Dataset, name: str, dim: str, looks: Mapping) -> None:
-    """Shares over ϖ with their intervals, side by side, at places along a dimension."""
+    """Shares along ϖ with their intervals, side by side, at places along a dimension."""
     for k, (place, (text, colour, marker)) in enumerate(looks.items()):
-        share, low, high = (one[f"{name}{x}"].sel({dim: place}) for x in ("", "_low", "_high"))
         ratio = one.frequency_ratio.values * 1.06 ** (k - 2)
-        look: Look = {"color": colour, "marker": marker, "markersize": 4, "linewidth": 0.8}
-        axes.errorbar(ratio, share, [share - low, high - share], capsize=2, label=text, **look)
+        bars(axes, ratio, one.sel({dim: place}), name, color=colour, marker=marker, label=text)
     logarithmic(axes, xlabel=r"frequency ratio $\varpi$", ylim=(0, 1.03))
+
+
+def bars(axes: Axes, place: np.ndarray, data: xr.Dataset, name: str, **look) -> None:
+    """A variable over its place, with its limits ``_low`` and ``_high`` as error bars."""
+    middle, low, high = (data[f"{name}{end}"].values for end in ("", "_low", "_high"))
+    look = {"markersize": 4, "linewidth": 0.8, "capsize": 2} | look
+    axes.errorbar(place, middle, [middle - low, high - middle], **look)
 
 
 def mean_motions(data: xr.Dataset) -> Figure:

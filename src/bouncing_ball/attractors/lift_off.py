@@ -1,0 +1,96 @@
+r"""From the lift-off to the next sticking: the locked orbits of the restitution model.
+
+A ball of the restitution model that sticks leaves in the state of the lift-off, so that its return
+to the table follows from (Λ, r) alone, and it locks if it sticks again. A contact changes this
+return by its delay at each impact. To first order its deviation e from the restitution model obeys,
+from impact j to impact j + 1, ::
+
+    e ← M_j e + K_j/ϖ
+
+with the Jacobian M_j of the flight and the difference K_j/ϖ of both maps, which is that of the
+corrected model's. The lift-off itself is the same up to 1/ϖ². The phase at which the chattering
+ends before the next sticking is then late by
+
+    S/ϖ,    S = |Σ_j (product of the expansions after j) K_j|
+
+and the ball misses the sticking if this exceeds the wait w until the table would release it: the
+locked orbit should be the same for ϖ > S/w.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
+from bouncing_ball.motion.angles import reduce_angle, table
+from bouncing_ball.motion.ensembles import pick
+from bouncing_ball.motion.simulation import in_a_row
+from bouncing_ball.orbits.corrected_model import CorrectedModel
+
+# The ϖ of the corrected model from whose map the first order is taken; the second one contributes
+# a share of 1/ϖ, and rounding one of ε ϖ.
+_STIFF = 1e6
+# The delays of bounces are left out where all that follow last for less than this part of gravity.
+_CHATTER = 1e-2
+
+
+class Return(NamedTuple):
+    """Returns from the lift-off, arrays of one shape; 0 or NaN for a ball that does not stick.
+
+    ``periods`` of the table and ``impacts`` until the ball sticks; ``sensitivity`` S of the phase
+    at which its chattering ends; ``wait`` w from there to the next lift-off.
+    """
+
+    periods: np.ndarray
+    impacts: np.ndarray
+    sensitivity: np.ndarray
+    wait: np.ndarray
+
+
+def returns(restitution: ArrayLike, amplitude: ArrayLike, impacts: int) -> Return:
+    """The returns of balls that lift off from a table with Λ > 1, within so many impacts.
+
+    Examples
+    --------
+    >>> returns([0.5, 0.6], [2.5, 3.0], 100).periods.tolist()
+    [6, 13]
+    """
+    r, lam = np.broadcast_arrays(*map(np.asarray, (restitution, amplitude)))
+    corrected = CorrectedModel.of_contact(
+        SpringDamper.from_restitution(r.ravel() * 1.0, _STIFF, Release.DISPLACEMENT)
+    )
+    # A ball that lies on the table, where it is pressed on it.
+    rest = np.full(r.shape, -np.pi / 2), np.zeros(r.shape)
+    dynamics, state, shape = in_a_row(r, lam, *rest)
+    other = in_a_row(corrected.impact_law, lam.ravel(), *(x.ravel() for x in rest))[0]
+    impact, beside = dynamics.start(*state), other.start(*state)
+    found = np.zeros((2, r.size), dtype=int), np.full((2, r.size), np.nan)
+    ball, time, late = np.arange(r.size), np.zeros(r.size), np.zeros((2, r.size))
+    for count in range(impacts):
+        departure = dynamics.depart(impact)
+        sticks = dynamics.sticks(impact, departure) if count else np.zeros(ball.size, dtype=bool)
+        if sticks.any():
+            held = (departure.duration - departure.settling)[sticks]
+            turns = np.rint((time + departure.duration)[sticks] / (2 * np.pi))
+            found[0][:, ball[sticks]] = turns, np.full(held.size, count)
+            found[1][:, ball[sticks]] = np.abs(late[0, sticks]), held
+            left = np.flatnonzero(~sticks)
+            dynamics, other = dynamics.take(left), other.take(left)
+            impact, departure, beside = (pick(x, left) for x in (impact, departure, beside))
+            ball, time, late = ball[left], time[left], late[:, left]
+        if not ball.size:
+            break
+        after, passed = dynamics.fly(departure)
+        moved = other.section(other.fly(other.depart(beside))[0])
+        shift = np.array([reduce_angle(moved[0] - after.phase), moved[1] - after.velocity])
+        if count:
+            gravity = 1 - table(impact.phase, dynamics.amplitude)[1]
+            bounces = 2 * departure.flight.velocity / (1 - dynamics.law)
+            shift[:, (0 < gravity) & (bounces < _CHATTER * gravity**2)] = 0
+            late = np.array(dynamics.jacobian(impact, departure, after, passed).apply(*late))
+        late += _STIFF * shift
+        time += passed if count else passed - departure.duration
+        impact, beside = after, other.at_section(after.phase, after.velocity)
+    (periods, number), (sensitivity, wait) = found
+    return Return(*(x.reshape(shape) for x in (periods, number, sensitivity, wait)))

@@ -1,0 +1,67 @@
+"""What predicts the stiffness at which a contact has the locked orbit of the restitution model."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from bouncing_ball.figures.attractors import bars
+from bouncing_ball.figures.canvas import WIDE, canvas, coloured, logarithmic
+from bouncing_ball.figures.labels import number
+from bouncing_ball.figures.style import COLOURS, GUIDE, Look
+
+_DASHES = ("-", (0, (4, 1.5)), (0, (1, 1.2)), (0, (6, 1.5, 1, 1.5)))
+_BEYOND = 1e15
+
+
+def locked_orbits(data: xr.Dataset) -> Figure:
+    """The share with the same period by ϖ w/S and by ϖ, the share next to a discontinuity, and the
+    survival of transients.
+    """
+    figure, ((by_place, by_ratio), (jumps, lives)) = canvas(WIDE, 5.4, rows=2, columns=2)
+    look: Look = {"color": COLOURS[1], "marker": "o"}
+    bars(by_place, data.predicted.values, data, "same_by_prediction", **look)
+    by_place.axvline(1.0, **GUIDE)
+    logarithmic(by_place, xlabel=r"$\varpi\,w/S$", ylim=(0, 1.03))
+    by_place.set_ylabel("share with the same\nlocked period")
+    by_place.set_title(r"all $\varpi$ together, by the prediction")
+    wanted = np.sort((data.sensitivity / data.wait).dropna("node").values)
+    share = np.arange(1, wanted.size + 1) / wanted.size
+    by_ratio.plot(
+        wanted, share, color=COLOURS[3], linewidth=1.2, label=r"predicted: $\varpi\geq S/w$"
+    )
+    bars(
+        by_ratio,
+        data.frequency_ratio.values,
+        data,
+        "same",
+        label="contact",
+        **look,
+        linestyle="none",
+    )
+    logarithmic(by_ratio, xlabel=r"frequency ratio $\varpi$", ylim=(0, 1.03), xlim=(1, _BEYOND))
+    by_ratio.xaxis.set_major_formatter(lambda value, _: f"$10^{{{np.log10(value):.0f}}}$")
+    by_ratio.set_title("by frequency ratio")
+    by_ratio.legend(loc="lower right")
+    bars(jumps, data["shift"].values, data, "jump_share", **look)
+    logarithmic(
+        jumps,
+        xlabel=r"change of $\Lambda$",
+        yscale="log",
+        ylabel="share with another\nlocked period",
+    )
+    jumps.xaxis.set_major_formatter(lambda value, _: f"$10^{{{np.log10(value):.0f}}}$")
+    jumps.set_title("next to a discontinuity")
+    for one, colour in coloured(data, "case"):
+        r, lam = (number(float(one[f"case_{x}"])) for x in ("restitution", "amplitude"))
+        lives.plot([], [], color=colour, label=rf"$r={r}$, $\Lambda={lam}$")
+        for curve, dashes in zip(one.survival.values, _DASHES, strict=False):
+            lives.step(data.life, curve, color=colour, linestyle=dashes, where="post", linewidth=1)
+    for ratio, dashes in zip(data.life_ratio.values, _DASHES, strict=False):
+        name = "restitution" if np.isinf(ratio) else rf"$\varpi={number(float(ratio))}$"
+        lives.plot([], [], color="#8c8c8c", linestyle=dashes, label=name)
+    lives.set(
+        xlabel="table periods", ylabel="share of balls not locked", yscale="log", ylim=(0.01, 6)
+    )
+    lives.set_title("transients")
+    lives.legend(fontsize=6, ncols=2)
+    return figure

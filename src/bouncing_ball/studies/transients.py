@@ -1,0 +1,118 @@
+"""How long balls wander before they lock, in the restitution model and in contacts."""
+
+import warnings
+from typing import Annotated
+
+import numpy as np
+import xarray as xr
+from scipy.stats import CensoredData, chi2, ecdf
+
+from bouncing_ball.attractors.mapper import label
+from bouncing_ball.attractors.motions import Kind
+from bouncing_ball.contacts.spring_damper import Release
+from bouncing_ball.datasets.variables import described
+from bouncing_ball.motion.angles import reduce_angle
+from bouncing_ball.parameters import (
+    Amplitude,
+    FrequencyRatio,
+    LossyRestitution,
+    Many,
+    Parameters,
+    Seed,
+    number,
+)
+from bouncing_ball.studies.attractors import Confidence, group, models
+
+# Distance from an impact of the final motion at which a ball has arrived there.
+_NEAR = 1e-3
+# Times at which survival is given.
+_TIMES = 60
+
+
+class Place(Parameters):
+    """One r and one Λ."""
+
+    restitution: LossyRestitution
+    amplitude: Amplitude
+
+
+class Transients(Parameters):
+    """Balls with random starts, at several places."""
+
+    cases: Many[Place]
+    frequency_ratio: Many[FrequencyRatio]
+    balls: Annotated[int, number("random starts for each case and ϖ", ge=10, le=10000)]
+    impacts: Annotated[int, number("impacts after which a ball is given up", ge=50, le=100000)]
+    confidence: Confidence
+    seed: Seed
+
+
+def mean_life(time: np.ndarray, ends: np.ndarray, confidence: float) -> tuple[float, ...]:
+    """Mean life with a constant rate of ends, and its limits, from times of ends or of giving up.
+
+    It is the sum of all times over the number of ends, whose interval is that of a Poisson count.
+
+    Examples
+    --------
+    >>> float(mean_life(np.array([1.0, 3.0]), np.array([True, False]), 0.95)[0])
+    4.0
+    """
+    total, count = time.sum(), ends.sum()
+    low = 2 * total / chi2.ppf((1 + confidence) / 2, 2 * count + 2)
+    if not count:
+        return np.inf, low, np.inf
+    return total / count, low, 2 * total / chi2.ppf((1 - confidence) / 2, 2 * count)
+
+
+def transients(parameters: Transients, release: Release) -> xr.Dataset:
+    """The shares of balls that have not arrived at the motion on which they lock.
+
+    ``survival`` (case, life_ratio, life) is Kaplan and Meier's estimate after so many periods
+    of the table, with ``survival_low`` and ``survival_high``; ``mean_life`` (case,
+    life_ratio) with its limits is in periods as well, see :func:`mean_life`. A ball that
+    is not seen to lock counts as given up at its last impact, and one that ends on an orbit
+    without sticking does not count. The restitution model has ϖ = ∞.
+    ``case_restitution`` and ``case_amplitude`` are over the case.
+    """
+    random, balls = np.random.default_rng(parameters.seed), parameters.balls
+    phase, speed = random.uniform(-np.pi, np.pi, balls), random.uniform(1.0, 9.0, balls)
+    r, lam = (np.array([getattr(x, y) for x in parameters.cases]) for y in Place.model_fields)
+    ratios = np.array(parameters.frequency_ratio)
+    table = lam[:, np.newaxis, np.newaxis]
+    start = table, phase, table * np.cos(phase) - speed
+    times, ends, elsewhere = [], [], []
+    simple, _, contact = models(r[:, np.newaxis, np.newaxis], ratios[:, np.newaxis], release)
+    for model in (contact, simple):
+        found = label(model.impact_law, *start, impacts=parameters.impacts)
+        path = model.simulate(*start, parameters.impacts)
+        apart = np.abs(reduce_angle(path.phase - found.end_phase))
+        apart = np.maximum(apart, np.abs(path.impact_velocity - found.end_velocity))
+        there = (apart < _NEAR) & (found.kind == Kind.LOCKED)
+        ends.append(there.any(axis=0))
+        elsewhere.append(group(found, "orbit") | group(found, "subharmonic"))
+        first = np.where(ends[-1], there.argmax(axis=0), len(there) - 1)[np.newaxis]
+        times.append(np.take_along_axis(path.time, first, axis=0)[0] / (2 * np.pi))
+    time, end, other = (np.concatenate(x, axis=1) for x in (times, ends, elsewhere))
+    grid, level = np.linspace(0, parameters.impacts, _TIMES), parameters.confidence
+    shape = time.shape[:-1]
+    survival, life = np.empty((3, *shape, _TIMES)), np.empty((3, *shape))
+    for k in np.ndindex(shape):
+        own, locks = time[k][~other[k]], end[k][~other[k]]
+        curve = ecdf(CensoredData.right_censored(own, ~locks)).sf
+        with warnings.catch_warnings(action="ignore"):
+            # The limits of a share of 0 or 1 are undefined, and NaN.
+            limits = curve.confidence_interval(level, method="log-log")
+        survival[:, *k] = [x.evaluate(grid) for x in (curve, limits.low, limits.high)]
+        life[:, *k] = mean_life(own, locks, level)
+    dims, limited = ("case", "life_ratio"), ("", "_low", "_high")
+    return described(
+        {
+            **{
+                f"survival{x}": ((*dims, "life"), y) for x, y in zip(limited, survival, strict=True)
+            },
+            **{f"mean_life{x}": (dims, y) for x, y in zip(limited, life, strict=True)},
+            "case_restitution": ("case", r),
+            "case_amplitude": ("case", lam),
+        },
+        coords={"life_ratio": [*ratios, np.inf], "life": grid},
+    )

@@ -1,0 +1,51 @@
+"""Shares, correlations, mean lives and exponents against closed forms."""
+
+import numpy as np
+import pytest
+from scipy.stats import norm
+
+from bouncing_ball.configuration.study import typed
+from bouncing_ball.studies.locked_orbits import correlation, locked_orbits
+from bouncing_ball.studies.transients import mean_life
+from bouncing_ball.studies.uncertainty import exponent
+
+
+def test_limits_of_estimates():
+    random = np.random.default_rng(3)
+    one, other = random.normal(size=(2, 2000))
+    _, low, high = correlation(one, other, 0.95)
+    # Without a correlation its standard error is 1/√(n - 3).
+    assert high - low == pytest.approx(2 * norm.ppf(0.975) / np.sqrt(1997), rel=0.01)
+    assert low < 0 < high
+    life = random.exponential(30.0, 4000)
+    mean, low, high = mean_life(np.minimum(life, 40.0), life < 40.0, 0.95)
+    assert low < 30 < high and low < mean < high
+    assert mean_life(np.ones(5), np.zeros(5, dtype=bool), 0.95)[::2] == (np.inf, np.inf)
+    size = 10.0 ** -np.arange(1, 5)
+    changes = random.uniform(size=(4000, 1)) < size**0.3
+    slope, low, high = exponent(changes, size, 0.95)
+    assert low < 0.3 < high and high - low < 0.05 and low < slope < high
+
+
+def test_a_contact_agrees_where_the_prediction_says():
+    place = {"restitution": 0.5, "amplitude": 2.5}
+    transients = {"cases": [place], "frequency_ratio": [1000.0], "balls": 20, "impacts": 250}
+    common = {"confidence": 0.95, "seed": 5}
+    given = {
+        "amplitude": {"min": 2.0, "max": 4.0, "samples": 2},
+        "restitution": {"min": 0.2, "max": 0.5, "samples": 2},
+        "frequency_ratio": [30.0, 1000.0],
+        "impacts": 200,
+        "nodes": 40,
+        "shifts": [1e-2, 1e-4],
+        "transients": transients | common,
+    }
+    data = typed(locked_orbits)(given | common, "displacement")
+    stiff = 1000 * data.wait / data.sensitivity
+    right = data.needed_ratio <= 1000
+    # By chance a few of the others have the same period.
+    assert right[stiff > 30].all() and right[stiff < 1 / 30].mean() < 0.25
+    assert (
+        data.same[1] == right[data.periods > 0].mean() and data.jump_share[0] >= data.jump_share[1]
+    )
+    assert np.all(data.survival.isel(life=0) == 1) and np.all(data.mean_life_low < data.mean_life)

@@ -310,7 +310,7 @@ hertz = pytest.mark.parametrize("law", HERTZ, ids=[law.name for law in HERTZ])
 
 @hertz
 def test_a_ball_on_a_table_at_rest_comes_to_rest(law):
-    sequence = simulate(law, 0.0, 0.0, -2.0, 50)
+    sequence = simulate(law, 0.0, 0.0, -2.0, 200)
     assert sequence.status == Status.UNDECIDED
     speed = -sequence.relative_velocity[np.isfinite(sequence.time)]
     assert np.all(np.diff(speed) < 0)

@@ -83,7 +83,7 @@ def prepare(app, name, text):
         target = Path(os.path.normpath(folder / path))
         if str(target) == EXPLORER:
             up = os.path.relpath("explorer.html", folder)
-            return f'<a href="{up}#{place}">{found[1]}</a>'
+            return f'<a href="{up}{"#" * bool(place)}{place}">{found[1]}</a>'
         return found[1] if (ROOT / target).is_dir() else found[0]
 
     text[0] = re.sub(r"(?<!!)\[([^]]*)\]\(([^):\s]+)\)", link, text[0])

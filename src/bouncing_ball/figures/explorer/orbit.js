@@ -8,6 +8,14 @@ const SIZES = [8, 5.5, 3.5];
 const FINE = 24;
 const TOLERANCE = 0.01;
 
+// What a ball does that starts beside an unstable orbit, as far as the page follows contacts.
+const BESIDE = 1e-3;
+function insteadOf({amplitude, phase, impact_velocity}, {contact}) {
+  if (contact.release === "force") return "bouncing-ball design says what the ball does instead";
+  const end = endOf({contact}, amplitude, phase, impact_velocity * (1 + BESIDE));
+  return `one that starts beside it ${SAID[end.kind](end)}`;
+}
+
 function verdictOf(found, {n}) {
   const [exact, simple, corrected] = found.orbits, error = found.errors.max_height;
   const wrong = exact.exists !== simple.exists
@@ -22,8 +30,7 @@ function verdictOf(found, {n}) {
     return [false, `There is no ${n}-T orbit here: the saddle-node is at Λ = `
       + `${shown(found.limits[0].saddle_node, 4)}.`];
   if (exact.exists && !exact.is_stable)
-    return [false, `No ball stays on the ${n}-T orbit, because it is unstable: `
-      + "bouncing-ball design says what the ball does instead."];
+    return [false, `No ball stays on the ${n}-T orbit, because it is unstable: ${insteadOf(exact, found)}.`];
   if (!wrong && error <= TOLERANCE)
     return [true, `The restitution model is good enough: ${subject} is ${percent(error)} off, `
       + `within ${percent(TOLERANCE)}.`];

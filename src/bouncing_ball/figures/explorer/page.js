@@ -46,9 +46,8 @@ function show(hash) {
   play(false);
   stage = null;
   const question = asked(state), found = answer(question);
-  const [good, sentence] = verdictOf(found, question), [exact] = found.orbits;
-  $("verdict").textContent = sentence + (exact.exists && !exact.is_stable
-    ? ` The ${state.n}-T orbit is unstable, and no ball will keep to it.` : "");
+  const [good, sentence] = verdictOf(found, question);
+  $("verdict").textContent = sentence;
   $("verdict").dataset.good = good;
   fillTables(found, question);
   if (state.tab === "design")

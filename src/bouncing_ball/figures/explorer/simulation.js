@@ -194,6 +194,19 @@ function followed(model, amplitude, phase, velocity, grain) {
   }
 }
 
+// The same in words.
+const SAID = {
+  stays: ({since}) => `comes to rest on the table after ${shown(since / TURN, 4)} periods, and stays`,
+  repeats: ({periods, impacts}) => `repeats itself after ${counted(periods, impacts)}`,
+  sticks: ({periods, impacts}) =>
+    `sticks to the table, is thrown off again, and repeats itself after ${counted(periods, impacts)}`,
+  "goes on": () => `has not repeated itself within ${MOST_IMPACTS} impacts, or rounding errors would `
+    + "decide when it does",
+};
+const many = (count, what) => `${count} ${what}${count === 1 ? "" : "s"}`;
+const counted = (periods, impacts) =>
+  `${many(periods, "period")} of the table with ${many(impacts, "impact")}`;
+
 // ---- The balls of the package, followed again: the largest difference, and where.
 function compareBalls({names, rows}) {
   let worst = 0, where = "";

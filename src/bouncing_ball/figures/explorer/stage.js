@@ -45,17 +45,6 @@ class Performer {
   }
 }
 
-const SAID = {
-  stays: ({since}) => `comes to rest on the table after ${shown(since / TURN, 4)} periods, and stays`,
-  repeats: ({periods, impacts}) => `repeats itself after ${counted(periods, impacts)}`,
-  sticks: ({periods, impacts}) =>
-    `sticks to the table, is thrown off again, and repeats itself after ${counted(periods, impacts)}`,
-  "goes on": () => `has not repeated itself within ${MOST_IMPACTS} impacts, or rounding errors would `
-    + "decide when it does",
-};
-const many = (count, what) => `${count} ${what}${count === 1 ? "" : "s"}`;
-const counted = (periods, impacts) =>
-  `${many(periods, "period")} of the table with ${many(impacts, "impact")}`;
 const WITH = {restitution: "With a restitution coefficient", "spring-damper": "With a spring-damper contact"};
 
 let stage = null;

@@ -58,6 +58,9 @@ def test_the_headline_says_what_the_ball_does(amplitude, kind, says):
     assert found.headline != found.verdict
     if kind == "orbit":
         assert found.motion.laid == "permanent contact"
+        # A ball laid on this table is thrown onto the orbit.
+        thrown = design(**UNIT | {"restitution": 0.2}, acceleration=2.43, stiffness=4900.0)
+        assert thrown.motion.laid is None
         return
     assert found.motion.restitution_kind == kind
     # An orbit that no ball has is not judged.

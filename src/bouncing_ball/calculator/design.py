@@ -7,7 +7,15 @@ from typing import Annotated, Any, get_args
 from bouncing_ball.accuracy.quantities import OF_ORBITS, Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.calculator.case import Case, Table
-from bouncing_ball.calculator.contact_data import STANDARD_GRAVITY, case_of, loss, meant, table_of
+from bouncing_ball.calculator.contact_data import (
+    STANDARD_GRAVITY,
+    STIFF,
+    case_of,
+    loss,
+    meant,
+    table_of,
+)
+from bouncing_ball.calculator.engine_data import Source, read_engine
 from bouncing_ball.calculator.families import families, finite
 from bouncing_ball.calculator.motion import headline, of_family
 from bouncing_ball.calculator.needed import RATIOS, needed
@@ -76,6 +84,10 @@ def design(
     tolerance: Annotated[Any, Unit("", "1 %", Range(0, 1))] = 0.01,
     engine: str | None = None,
     restitution_error: Annotated[Any, Unit("", "0.001", Range(0, 1))] = ERROR,
+    from_engine: str | None = None,
+    solref: str | Sequence[float] | None = None,
+    solimp: str | Sequence[float] | None = None,
+    parameters: Mapping[str, float] | None = None,
 ) -> Design:
     """Assess a contact, or choose one.
 
@@ -136,6 +148,14 @@ def design(
         mercurydpm. Its release is that of the contact, and a restitution is met under it.
     restitution_error
         Error of a free impact's restitution that the engine's time step may cause.
+    from_engine
+        The engine whose parameters are given, in place of stiffness and loss.
+    solref
+        Of MuJoCo: "-K -B" per unit of mass, or "TIMECONST DAMPRATIO".
+    solimp
+        Of MuJoCo: "DMIN DMAX WIDTH MIDPOINT POWER", or the first of them.
+    parameters
+        Of another engine: its parameter, such as kn=1e5.
 
     Raises
     ------
@@ -151,7 +171,8 @@ def design(
     >>> round(found.frequency_ratio, 3), found.orbits[0].is_stable, found.is_good_enough
     (71.176, True, False)
     """
-    given = _read(locals())
+    source, said = read_engine(locals())
+    given, release = _read(said), said["release"]
     question = given | {"n": n, "release": release, "quantity": quantity, "engine": engine}
     question["law"], kind = law, _of_law(law, engine, release, given)
     rule, epsilon = _under(engine, release, given), given.pop("tolerance")
@@ -163,7 +184,7 @@ def design(
     lam, asked = table.amplitude, _FAMILIES if n is None else [n]
     require(lam < _LARGEST, lam, "Λ", f"below {_LARGEST:g}")
     try:
-        return _answer(given, table, rule, asked, quantity, epsilon, question, kind)
+        return _answer(given, table, rule, asked, quantity, epsilon, question, kind, source)
     except NoOrbitError as error:
         bare = str(acceleration).strip()
         if not bare.replace(".", "", 1).isdigit():
@@ -180,16 +201,20 @@ def _answer(
     epsilon: float,
     question: dict[str, Any],
     kind: type[ContactLaw] | None,
+    source: Source | None,
 ) -> Design:
     """The verdict on a contact that is given, or the contact that is needed."""
     lam, case = table.amplitude, case_of(given, table, rule, asked, kind)
     if case is not None:
+        # For another engine it is the spring and damper that is written.
+        if source and not question["engine"]:
+            case = replace(case, law=source.law(table))
         ratio = float(case.contact.frequency_ratio)
         require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
         found = families(case, asked)
         one = _judged(found)
         need = needed(quantity, epsilon, case.contact, one.n, lam)
-        return _design(case, found, one, need, assessed(one, need, ratio), question, True)
+        return _design(case, found, one, need, assessed(one, need, ratio), question, source)
     contact = SpringDamper(1.0, loss(given, rule), rule)
     r = float(contact.restitution)
     index = meant(asked, r, lam)
@@ -205,7 +230,7 @@ def _answer(
     case = Case(given["mass"], table, stiff)
     found = families(case, asked)
     one = next((one for one in found if one.n == index), _judged(found))
-    return _design(case, found, one, need, chosen(case.in_si(), need, index), question, False)
+    return _design(case, found, one, need, chosen(case.in_si(), need, index), question)
 
 
 def contact(
@@ -213,7 +238,7 @@ def contact(
     engine: str | None = None,
     release: Rule | None = None,
     law: str | None = None,
-    **parameters: Any,
+    **given: Any,
 ) -> Contact:
     """A contact without a table, for an engine, from the parameters of :func:`design`.
 
@@ -228,7 +253,8 @@ def contact(
     >>> round(found.engine.restitution, 6), found.engine.release
     (0.75, 'force')
     """
-    given = _read(parameters)
+    source, given = read_engine({**given, "engine": engine, "release": release})
+    release, given = given["release"], _read(given)
     _of_law(law, engine, release, given)
     rule, error = _under(engine, release, given), given.get("restitution_error", ERROR)
     # With a table of 1 rad/s the frequency ratio is the frequency of the contact.
@@ -249,6 +275,7 @@ def contact(
         str(rule),
         physical.restitution(rule),
         engine_named(engine).settings(physical, rule, error) if engine else None,
+        source.remarks() if source else (),
     )
 
 
@@ -322,7 +349,7 @@ def _design(
     need: Needed,
     verdict: Verdict,
     question: dict[str, Any],
-    is_given: bool,
+    source: Source | None = None,
 ) -> Design:
     """Everything that is known of a contact, given or chosen; `one` is the verdict's family."""
     contact, table = case.contact, case.table
@@ -330,11 +357,12 @@ def _design(
     motion = of_family(case, one, need.tolerance)
     if motion.restitution_kind is not None and need.quantity in OF_ORBITS:
         judged = judged_by_motion(motion, need.tolerance, one.n)
-        before = "" if is_given else f"{verdict.verdict} "
+        # A contact that is chosen is said first.
+        before = "" if {*STIFF} & {*question} else f"{verdict.verdict} "
         verdict = judged._replace(verdict=before + judged.verdict)
     si: dict[str, Any] = case.in_si()
     delay, r, load = map(float, case.instant(one.n)[:3])
-    return Design(
+    answer = Design(
         frequency_ratio=float(contact.frequency_ratio),
         damping_ratio=float(contact.damping_ratio),
         amplitude=table.amplitude,
@@ -345,14 +373,21 @@ def _design(
         },
         measured_restitution=float(contact.restitution),
         permanent_contact=finite(case.permanent_contact),
+        law=case.law_in_si,
         corrected=Corrected(delay * table.time, r, load * table.time),
         orbits=found,
         needed=need,
         motion=motion,
         headline=headline(motion, one),
         **verdict._asdict(),
-        notes=notes(case, one),
+        notes=(source.remarks() if source else ()) + notes(case, one),
         case=case,
         n=one.n,
         question=question,
     )
+    if question["engine"]:
+        # There is one time step, the engine's.
+        settings = answer.engine_settings()
+        why = f"r of a free impact in {settings.name} is within {settings.error:g}"
+        answer = replace(answer, time_step=TimeStep(settings.time_step, why))
+    return answer

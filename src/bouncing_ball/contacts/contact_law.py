@@ -28,6 +28,15 @@ from bouncing_ball.errors import ModelError, require
 _IMAGINARY = 1e-20
 
 
+class Unit(NamedTuple):
+    """The SI unit of a parameter, and its powers of mass, length and time."""
+
+    name: str
+    mass: float = 0.0
+    length: float = 0.0
+    time: float = 0.0
+
+
 class Slopes(NamedTuple):
     """Derivatives of a function of (p, p′), of the shape of the arguments."""
 
@@ -63,6 +72,8 @@ class ContactLaw(Batch, ABC):
     name: ClassVar[str]
     formula: ClassVar[str]
     """The force, as the help of the command line shows it."""
+    units: ClassVar[dict[str, Unit]] = {}
+    """The units of those parameters that are not numbers."""
     root: ClassVar[int] = 2
     release = Release.DISPLACEMENT
 
@@ -155,6 +166,14 @@ class ContactLaw(Batch, ABC):
     def parameters(self) -> dict[str, Any]:
         """Names and values of the law's numbers."""
         return {name: getattr(self, name) for name in self.parameter_names()}
+
+    def in_si(self, mass: float, length: float, time: float) -> dict[str, float]:
+        """The numbers of a single law in SI units, from the units of mass, length and time."""
+        found = {}
+        for name, value in self.parameters().items():
+            unit = self.units.get(name, Unit(""))
+            found[name] = float(value) * mass**unit.mass * length**unit.length * time**unit.time
+        return found
 
     @property
     def label(self) -> str:

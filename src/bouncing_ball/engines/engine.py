@@ -10,6 +10,7 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
+from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.engines.scheme import Scheme, free_impact, steps_for
 from bouncing_ball.errors import ModelError, require
@@ -149,6 +150,15 @@ class Engine(ABC):
         ModelError
             If a parameter or the mass is missing, unknown, or outside its range.
         """
+
+    def law(
+        self, parameters: Mapping[str, Any], time: float = 1.0, length: float = 1.0
+    ) -> ContactLaw | None:
+        """The law of a contact with these parameters, in units of time and length in SI units.
+
+        None if it is the spring and damper of :meth:`read`.
+        """
+        return None
 
     def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
         """Sentences on how the engine with these parameters differs from a spring and a damper."""

@@ -22,9 +22,10 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.contact_law import ContactLaw, check_damping, check_positive
+from bouncing_ball.contacts.contact_law import ContactLaw, Unit, check_damping, check_positive
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.spring_damper import SpringDamper
 
 
 @dataclass(frozen=True, repr=False)
@@ -54,6 +55,7 @@ class ElastoBacklash(ContactLaw):
     name: ClassVar[str] = "elasto-backlash"
     formula: ClassVar[str] = "ϖ² p + min(2ζϖ p′, ϖ² p)"
     root: ClassVar[int] = 1
+    units: ClassVar[dict[str, Unit]] = SpringDamper.units
     release = Release.FORCE
     has_kink: ClassVar[Any] = True
 

@@ -38,7 +38,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.contact_law import ContactLaw, check_positive
+from bouncing_ball.contacts.contact_law import ContactLaw, Unit, check_positive
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.instant import Instant
 from bouncing_ball.contacts.release import Release
@@ -86,6 +86,7 @@ class Impedance(ContactLaw):
     name: ClassVar[str] = "impedance"
     formula: ClassVar[str] = "ϖ² p + 2ζϖ p′ and d of the load"
     root: ClassVar[int] = 1
+    units: ClassVar[dict[str, Unit]] = SpringDamper.units | {"width": Unit("m", 0, 1, 0)}
     release = Release.FORCE
     lag: ClassVar[None] = None
     feels_load: ClassVar[bool] = True

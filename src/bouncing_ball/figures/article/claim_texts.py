@@ -38,10 +38,10 @@ class Claims:
     def count(self, verdict: str = "", *, table: str = "", group: str = "independent") -> int:
         """Number of claims with a verdict, or of all without one; of one table if it is named.
 
-        ``group`` is ``independent`` for all claims but restatements and slips, ``all`` for
-        restatements as well, or the name of one group.
+        ``group`` is ``independent`` for all claims but restatements, ``all``, or the name of one
+        group.
         """
-        groups = {claim.group for claim in self.all} - {"restatement", "slip"}
+        groups = {claim.group for claim in self.all} - {"restatement"}
         counted = {"independent": groups, "all": groups | {"restatement"}}.get(group, {group})
         return sum(
             claim.group in counted

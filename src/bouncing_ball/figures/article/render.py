@@ -56,4 +56,5 @@ def render_article(
         versions=versions,
     )
     text = environment.get_template(Path(template).name).render()
-    return with_citations(numbered(text), folder)
+    typeset = numbered(text).replace("Λ_SD", r"$\Lambda_{SD}$")
+    return with_citations(typeset, folder)

@@ -87,21 +87,6 @@ def test_free_release_angles(zeta):
         assert np.all(before > 0)
 
 
-@pytest.mark.parametrize("n", [1, 2])
-def test_contact_filling_the_cycle_is_permanent_contact(n):
-    # As the flight vanishes the orbit merges with the steady oscillation, at
-    # its threshold. A flight of length T changes Λ by the order T², and the
-    # impact velocity is of order T.
-    for omega, zeta in ((2.0, 0.05), (1.0, 0.3), (5.0, 0.1)):
-        contact = SpringDamper(omega, zeta)
-        omega_d = omega * np.sqrt(1 - zeta**2)
-        flight = 1e-4
-        point = branch_point((2 * np.pi * n - flight) * omega_d - np.pi, contact, n)
-        expected = float(permanent_contact_threshold(omega, zeta))
-        assert float(point.amplitude) == pytest.approx(expected, abs=flight**2 * omega**2)
-        assert 0 < -float(point.u) < flight
-
-
 @pytest.mark.parametrize("restitution", [0.3, 0.65, 0.85, 0.95])
 @pytest.mark.parametrize("omega", [1.05, 1.2, 2.0, 5.0, 10.0, 100.0])
 def test_permanent_contact_continues_into_a_stable_orbit(restitution, omega):

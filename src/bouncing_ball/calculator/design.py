@@ -9,13 +9,12 @@ from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.calculator.case import Case, Table
 from bouncing_ball.calculator.contact_data import (
     STANDARD_GRAVITY,
-    STIFF,
     case_of,
     loss,
     meant,
     table_of,
 )
-from bouncing_ball.calculator.engine_data import Source, read_engine
+from bouncing_ball.calculator.engine_data import read_engine
 from bouncing_ball.calculator.families import families, finite
 from bouncing_ball.calculator.motion import headline, of_family
 from bouncing_ball.calculator.needed import RATIOS, needed
@@ -24,12 +23,11 @@ from bouncing_ball.calculator.results import (
     Contact,
     Corrected,
     Design,
-    Family,
     Needed,
     TimeStep,
 )
 from bouncing_ball.calculator.units import Unit, number, percent
-from bouncing_ball.calculator.verdict import Verdict, assessed, chosen, judged_by_motion, notes
+from bouncing_ball.calculator.verdict import assessed, chosen, judged_by_motion, notes
 from bouncing_ball.calls.model import Index, Rule
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.law_choice import law_named
@@ -175,7 +173,7 @@ def design(
     given, release = _read(said), said["release"]
     question = given | {"n": n, "release": release, "quantity": quantity, "engine": engine}
     question["law"], kind = law, _of_law(law, engine, release, given)
-    rule, epsilon = _under(engine, release, given), given.pop("tolerance")
+    rule = _under(engine, release, given)
     if quantity not in QUANTITIES:
         raise ModelError(f"unknown quantity {quantity!r}: one of {', '.join(QUANTITIES)}")
     if n is not None and (n != int(n) or n < 1):
@@ -184,7 +182,13 @@ def design(
     lam, asked = table.amplitude, _FAMILIES if n is None else [n]
     require(lam < _LARGEST, lam, "Λ", f"below {_LARGEST:g}")
     try:
-        return _answer(given, table, rule, asked, quantity, epsilon, question, kind, source)
+        case, need = case_of(given, table, rule, asked, kind), None
+        if case is None:
+            case, need = _chosen(given, table, rule, asked, question)
+        elif source and not engine:
+            # For another engine it is the spring and damper that is written.
+            case = replace(case, law=source.law(table))
+        return _design(case, need, asked, question, source.remarks() if source else ())
     except NoOrbitError as error:
         bare = str(acceleration).strip()
         if not bare.replace(".", "", 1).isdigit():
@@ -192,45 +196,27 @@ def design(
         raise NoOrbitError(f"{error}; did you mean {bare} g?") from None
 
 
-def _answer(
+def _chosen(
     given: dict[str, float],
     table: Table,
     rule: Release,
     asked: Sequence[int],
-    quantity: str,
-    epsilon: float,
-    question: dict[str, Any],
-    kind: type[ContactLaw] | None,
-    source: Source | None,
-) -> Design:
-    """The verdict on a contact that is given, or the contact that is needed."""
-    lam, case = table.amplitude, case_of(given, table, rule, asked, kind)
-    if case is not None:
-        # For another engine it is the spring and damper that is written.
-        if source and not question["engine"]:
-            case = replace(case, law=source.law(table))
-        ratio = float(case.contact.frequency_ratio)
-        require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
-        found = families(case, asked)
-        one = _judged(found)
-        need = needed(quantity, epsilon, case.contact, one.n, lam)
-        return _design(case, found, one, need, assessed(one, need, ratio), question, source)
-    contact = SpringDamper(1.0, loss(given, rule), rule)
+    question: Mapping[str, Any],
+) -> tuple[Case, Needed]:
+    """The most compliant contact within the tolerance."""
+    contact, quantity = SpringDamper(1.0, loss(given, rule), rule), question["quantity"]
     r = float(contact.restitution)
-    index = meant(asked, r, lam)
+    index = meant(asked, r, table.amplitude)
     if quantity in OF_ORBITS:
-        RestitutionModel(r).require_orbit(index, lam)
-    need = needed(quantity, epsilon, contact, index, lam)
+        RestitutionModel(r).require_orbit(index, table.amplitude)
+    need = needed(quantity, question["tolerance"], contact, index, table.amplitude)
     if need.status == ThresholdStatus.NEVER_WITHIN:
         raise NoOrbitError(
             f"no contact up to ϖ = {RATIOS[-1]:g} has its {QUANTITIES[Quantity(quantity)]} within "
-            f"{percent(epsilon)} of the restitution model with r = {r:.4g}"
+            f"{percent(need.tolerance)} of the restitution model with r = {r:.4g}"
         )
     stiff = replace(contact, frequency_ratio=need.frequency_ratio or float(RATIOS[0]))
-    case = Case(given["mass"], table, stiff)
-    found = families(case, asked)
-    one = next((one for one in found if one.n == index), _judged(found))
-    return _design(case, found, one, need, chosen(case.in_si(), need, index), question)
+    return Case(given["mass"], table, stiff), need
 
 
 def contact(
@@ -337,33 +323,37 @@ def _read(parameters: Mapping[str, Any]) -> dict[str, float]:
     return given
 
 
-def _judged(found: Sequence[Family]) -> Family:
-    """The family that a verdict is about: the first stable one, or the first that exists."""
-    return max(found, key=lambda one: (one.exists, one.is_stable and one.is_admissible))
-
-
 def _design(
     case: Case,
-    found: tuple[Family, ...],
-    one: Family,
-    need: Needed,
-    verdict: Verdict,
+    need: Needed | None,
+    asked: Sequence[int],
     question: dict[str, Any],
-    source: Source | None = None,
+    remarks: tuple[str, ...],
 ) -> Design:
-    """Everything that is known of a contact, given or chosen; `one` is the verdict's family."""
+    """Everything that is known of a contact, given, or chosen for what is needed."""
     contact, table = case.contact, case.table
-    # A threshold of permanent contact is none of an orbit.
+    ratio, found = float(contact.frequency_ratio), families(case, asked)
+    require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
+    # The verdict is about the first stable family, or the first that exists.
+    one = max(found, key=lambda one: (one.exists, one.is_stable and one.is_admissible))
+    if need is None:
+        quantity, tolerance, before = question["quantity"], question["tolerance"], ""
+        need = needed(quantity, tolerance, contact, one.n, table.amplitude)
+        verdict = assessed(one, need, ratio)
+    else:
+        index = meant(asked, float(contact.restitution), table.amplitude)
+        one = next((each for each in found if each.n == index), one)
+        verdict = chosen(case.in_si(), need, index)
+        before = f"{verdict.verdict} "
     motion = of_family(case, one, need.tolerance)
+    # A threshold of permanent contact is none of an orbit.
     if motion.restitution_kind is not None and need.quantity in OF_ORBITS:
         judged = judged_by_motion(motion, need.tolerance, one.n)
-        # A contact that is chosen is said first.
-        before = "" if {*STIFF} & {*question} else f"{verdict.verdict} "
         verdict = judged._replace(verdict=before + judged.verdict)
     si: dict[str, Any] = case.in_si()
     delay, r, load = map(float, case.instant(one.n)[:3])
     answer = Design(
-        frequency_ratio=float(contact.frequency_ratio),
+        frequency_ratio=ratio,
         damping_ratio=float(contact.damping_ratio),
         amplitude=table.amplitude,
         **si,
@@ -380,7 +370,7 @@ def _design(
         motion=motion,
         headline=headline(motion, one),
         **verdict._asdict(),
-        notes=(source.remarks() if source else ()) + notes(case, one),
+        notes=remarks + notes(case, one),
         case=case,
         n=one.n,
         question=question,

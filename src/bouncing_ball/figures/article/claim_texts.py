@@ -41,13 +41,11 @@ class Claims:
         ``group`` is ``independent`` for all claims but restatements, ``all``, or the name of one
         group.
         """
-        groups = {claim.group for claim in self.all} - {"restatement"}
-        counted = {"independent": groups, "all": groups | {"restatement"}}.get(group, {group})
         return sum(
-            claim.group in counted
-            and verdict in ("", claim.verdict)
-            and table in ("", claim.printed_table)
+            (claim.group == group or group == "all")
+            or (group == "independent" and claim.group != "restatement")
             for claim in self.all
+            if verdict in ("", claim.verdict) and table in ("", claim.printed_table)
         )
 
     def asked(self, name: str) -> bool:

@@ -25,8 +25,7 @@ seconds.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -51,8 +50,7 @@ _STUDENT = 2.04
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 
-@dataclass(frozen=True)
-class _Start:
+class _Start(NamedTuple):
     """A first impact: phase of the table and absolute velocity of the ball."""
 
     phase: float
@@ -78,30 +76,17 @@ def of_family(case: Case, family: Family, tolerance: float) -> Motion:
         name: label(_law(case, name), lam, start.phase, start.velocity, impacts=_IMPACTS)
         for name in (exact, simple)
     }
-    one, other = found[exact], found[simple]
+    kinds = [(str(x.kind), int(x.periods), int(x.impacts)) for x in found.values()]
     ideal = family.standing[simple]
     if ideal.exists and ideal.is_stable and ideal.is_admissible:
         # If the stability is weak, the mapper may not recognise that the motion repeats.
-        stays: dict[str, Any] = {"kind": Kind.ORBIT, "periods": family.n, "impacts": 1}
-        other = replace(other, **stays)
-    same = all(getattr(one, x) == getattr(other, x) for x in ("kind", "periods", "impacts"))
+        kinds[1] = str(Kind.ORBIT), family.n, 1
     values: dict[str, Any] = {}
-    if same and int(one.periods) and one.kind != Kind.PERMANENT_CONTACT:
-        values["greatest"] = {
-            name: _greatest(case, name, start, found[name]) for name in (exact, simple)
-        }
-    elif Kind.PERMANENT_CONTACT not in (one.kind, other.kind):
+    if kinds[0] == kinds[1] and kinds[0][1] and kinds[0][0] != Kind.PERMANENT_CONTACT:
+        values["greatest"] = {name: _greatest(case, name, start, x) for name, x in found.items()}
+    elif Kind.PERMANENT_CONTACT not in (kinds[0][0], kinds[1][0]):
         values = _compared(case, (exact, simple), start, tolerance)
-    return Motion(
-        str(one.kind),
-        int(one.periods),
-        int(one.impacts),
-        None,
-        str(other.kind),
-        int(other.periods),
-        int(other.impacts),
-        **values,
-    )
+    return Motion(*kinds[0], None, *kinds[1], **values)
 
 
 def _law(case: Case, name: str) -> Any:

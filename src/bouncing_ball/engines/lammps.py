@@ -16,6 +16,7 @@ class Lammps(Proportional):
 
     Examples
     --------
+    >>> from bouncing_ball.engines.engine import Physical
     >>> found = Lammps().settings(Physical(mass=2.0, stiffness=200.0, damping=4.0))
     >>> found.parameters, found.release
     ({'kn': 200.0, 'gamma_n': 2.0}, 'displacement')
@@ -37,6 +38,7 @@ class Liggghts(Lammps):
 
     Examples
     --------
+    >>> from bouncing_ball.engines.engine import Physical
     >>> Liggghts().parameters(Physical(mass=2.0, stiffness=200.0, damping=4.0))
     {'kn': 200.0, 'gamman': 2.0}
     """

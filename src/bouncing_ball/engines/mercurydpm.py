@@ -10,6 +10,7 @@ class MercuryDPM(Proportional):
 
     Examples
     --------
+    >>> from bouncing_ball.engines.engine import Physical
     >>> MercuryDPM().parameters(Physical(mass=2.0, stiffness=200.0, damping=4.0))
     {'stiffness': 200.0, 'dissipation': 4.0}
     """

@@ -12,6 +12,7 @@ class PyBullet(Proportional):
 
     Examples
     --------
+    >>> from bouncing_ball.engines.engine import Physical
     >>> found = PyBullet().parameters(Physical(mass=2.0, stiffness=200.0, damping=4.0))
     >>> found
     {'contactStiffness': 400.0, 'contactDamping': 2.0}

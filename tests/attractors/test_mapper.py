@@ -113,6 +113,18 @@ def test_next_to_a_bifurcation_nothing_is_decided():
     assert (found.kind, found.reason) == (Kind.UNDECIDED, Reason.MARGINAL)
 
 
+def test_laps_that_rounding_alone_makes_alike_are_no_sample():
+    # This ball sticks every 84 impacts in the same state, with e²⁰ between two neighbours.
+    lap, more = (label(0.6, 3.5, 0.3, -9.0, impacts=impacts) for impacts in (1000, 4000))
+    assert lap.kind == more.kind == Kind.CHAOTIC
+    # Of independent means four times as many would halve the error.
+    assert 0.8 < lap.exponent_error / more.exponent_error < 1.25
+    # And these every 16 impacts, so that all means are the same one.
+    found = label(0.36661137991872117, 1e6, [0.3, -1.0], -1.2e6, impacts=400)
+    assert set(found.kind) == {Kind.UNDECIDED} and set(found.reason) == {Reason.ROUNDING}
+    assert np.isnan(found.exponent_error).all()
+
+
 @pytest.mark.parametrize("law", [0.85, contact(0.85, 80.0), Signature(contact(0.85, 80.0))])
 def test_chaos_has_the_exponent_of_the_paths_side_by_side(law):
     """Two balls, the distance set back after every impact, by the Poincaré map alone."""

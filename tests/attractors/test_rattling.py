@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 from bouncing_ball.attractors.mapper import label
 from bouncing_ball.attractors.rattling import Rattling, openings, stiff_openings
@@ -10,6 +11,7 @@ from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError
+from bouncing_ball.motion.simulation import simulate
 
 
 def motions(r, ratio, excess):
@@ -68,6 +70,29 @@ def test_the_derivatives_and_the_multipliers_are_those_of_the_motion():
     excess = 400 * (found.amplitude - permanent_contact_threshold(20.0, zeta))
     seen = motions(0.85, 20.0, (1 - 1e-9) * excess.ravel())
     np.testing.assert_allclose(np.exp(seen.exponent), found.multiplier.ravel(), rtol=1e-3)
+
+
+def test_a_new_flight_changes_the_motion_by_the_power_of_three_halves():
+    """The motion that opens at a height η above the table, against the one held in contact."""
+    law, lam, phase, later = SpringDamper(20.0, 0.12), 1.1, 2.3, 3.0
+
+    def held(velocity, time):
+        return law.flow(time, 0.0, velocity, phase, lam)[:2]
+
+    def top(velocity):
+        time = np.linspace(0.05, 0.3, 20_001)
+        return held(velocity, time)[0].max()
+
+    touch, heights, apart = brentq(top, -0.2, -0.02), [], []
+    for part in (1e-2, 2.5e-3, 6.25e-4):
+        velocity = touch * (1 + part)
+        motion = simulate(law, lam, phase, lam * np.cos(phase) + velocity, 2)
+        start = motion.time[1] - motion.time[0]
+        flow = law.flow(later - start, 0.0, motion.relative_velocity[1], motion.phase[1], lam)
+        heights.append(top(velocity))
+        apart.append(np.subtract(flow[:2], held(velocity, later)))
+    power = np.diff(np.log(np.abs(apart)), axis=0) / np.diff(np.log(heights))[:, np.newaxis]
+    np.testing.assert_allclose(power, 1.5, atol=0.03)
 
 
 @pytest.mark.parametrize("r", [0.3, 0.65, 0.85, 0.95])

@@ -44,7 +44,7 @@ def test_the_tally(verdicts):
         "16 figures, Table 1, 68 claims; 20 restored formulas: 19 reproduced, 1 qualified; "
         "17 numbers: 5 reproduced, 5 close, 7 contradicted; "
         "31 statements: 22 reproduced, 4 qualified, 2 contradicted, 3 undecidable; "
-        "6 restatements: 3 reproduced, 3 contradicted; 3 slips: 3 slip"
+        "6 restatements: 3 reproduced, 3 contradicted"
     )
 
 

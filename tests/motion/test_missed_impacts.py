@@ -7,7 +7,7 @@ import pytest
 from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion import first_zero
-from bouncing_ball.motion.simulation import next_impact, simulate
+from bouncing_ball.motion.simulation import next_impact
 from bouncing_ball.orbits.long_contact import orbit_with_flight
 
 MODELS = ("restitution", "spring-damper", "corrected")
@@ -81,29 +81,6 @@ def test_the_first_landing_in_thirty_digits():
             assert float(time) == pytest.approx(float(found.time[k]), abs=1e-9, rel=1e-12)
             checked += 1
     assert checked > 20
-
-
-@pytest.mark.parametrize("ratio", [1e-7, 3e-6])
-def test_chattering_is_summed_up_as_its_bounces_add_up(ratio):
-    """The last bounces, up to the largest that are summed up, one by one in fifty digits."""
-    r, lam, phase = 0.6, 1.7, -0.4
-    velocity = -ratio * (1 - lam * np.sin(phase))
-    found = simulate(r, lam, phase, lam * np.cos(phase) + velocity, 1)
-    with mpmath.workdps(50):
-        angle, time, bounces = mpmath.mpf(phase), mpmath.mpf(0), 0
-        up = -mpmath.mpf(r) * mpmath.mpf(float(found.relative_velocity[0]))
-        while up > mpmath.mpf(10) ** -25:
-            x, y = lam * mpmath.cos(angle), lam * mpmath.sin(angle)
-
-            def gap(s, x=x, y=y, up=up):
-                return up - s / 2 + (y * (1 - mpmath.cos(s)) + x * (s - mpmath.sin(s))) / s
-
-            flight = mpmath.findroot(gap, 2 * up / (1 - y))
-            up = -r * (up - flight + y * mpmath.sin(flight) + x * (1 - mpmath.cos(flight)))
-            time, angle, bounces = time + flight, angle + flight, bounces + 1
-    assert bounces > 20
-    # What restitution.py says of the next term.
-    assert abs(float(found.settling[0] - time)) < 1e-15
 
 
 def test_a_release_that_is_due_now_is_not_put_off_by_a_turn():

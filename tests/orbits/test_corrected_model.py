@@ -20,18 +20,6 @@ def models(omega, zeta, release):
     return CorrectedModel.of_contact(contact), SpringDamperModel(contact)
 
 
-@pytest.mark.parametrize("n", [1, 3])
-@pytest.mark.parametrize("zeta", [0.05, 0.4])
-@pytest.mark.parametrize("release", RELEASES)
-def test_bifurcations_are_of_second_order(release, zeta, n):
-    errors = []
-    for omega in (400.0, 800.0):
-        one, other = models(omega, zeta, release)
-        found = [[m.saddle_node(n).amplitude, m.period_doubling(n).amplitude] for m in (one, other)]
-        errors.append(np.abs(np.subtract(*found)))
-    assert np.log2(errors[0] / errors[1]) == pytest.approx(2, abs=0.1)
-
-
 @pytest.mark.parametrize("side", list(Side))
 @pytest.mark.parametrize("release", RELEASES)
 def test_every_observable_of_an_orbit_is_of_second_order(release, side):

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.contacts.law_choice import law_named, law_of_impact
+from bouncing_ball.contacts.laws import LAWS
 from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji
@@ -19,7 +20,7 @@ from bouncing_ball.orbits.restitution_orbit import rigid_speed
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Side
 
-KINDS = [SpringDamper, HuntCrossley, Tsuji, KuwabaraKono]
+KINDS = [SpringDamper, *LAWS.values()]
 every_kind = pytest.mark.parametrize("kind", KINDS, ids=[kind.name for kind in KINDS])
 
 
@@ -77,7 +78,7 @@ def test_the_corrected_model_is_of_second_order(kind):
     assert second[0] / second[1] == pytest.approx(4, abs=0.2)
     # The restitution model's error is nearly the same for all laws at equal r and D.
     assert 0.025 < first[0] < 0.031
-    assert abs(second[0]) < 1e-4
+    assert abs(second[0]) < first[0] ** 2
 
 
 @every_kind
@@ -122,7 +123,9 @@ def test_far_above_the_fold_orbits_are_walked_to_or_said_not_to_be_found(monkeyp
         model.require_orbit(20, 1000.0, Side.UNSTABLE)
 
 
-@pytest.mark.parametrize(("r", "duration"), [(0.85, 0.3), (0.5, 0.6)])
+@pytest.mark.parametrize(
+    ("r", "duration"), [(0.85, 0.3), pytest.param(0.5, 0.6, marks=pytest.mark.long)]
+)
 def test_just_above_the_fold_two_orbits_part_as_the_root_of_the_distance(r, duration):
     model = LawModel(law_of_impact(HuntCrossley, r, duration, rigid_speed(1, r)))
     fold = model.saddle_node(1)

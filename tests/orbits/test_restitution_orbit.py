@@ -6,7 +6,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.motion.tangent import Deviation, Jacobian
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import (
     ImpactMap,
@@ -69,22 +68,6 @@ def floquet(kind, n, r, lam, phi):
     return np.trace(jacobian), np.linalg.det(jacobian)
 
 
-@given(families, coefficients, excesses, sides)
-def test_trace_and_determinant_are_those_of_the_jacobian(n, r, excess, stable):
-    lam = float(saddle_node(n, r)) + excess
-    phi, v, s = float(phase(n, r, lam, stable)), n * np.pi, 2 * np.pi * n
-    table = lam * np.cos(phi), lam * np.sin(phi)
-    after = Deviation(1.0, 0.0, 0.0), Deviation(0.0, 0.0, -r)
-    flown = (x.flown(table, table, s, -v - table[0], 0.0) for x in after)
-    jacobian = np.reshape(Jacobian.of_columns(*flown), (2, 2))
-    trace, det = floquet(ImpactMap.EXACT, n, r, lam, phi)
-    # Entries of the matrix, at most of order s²Λ, cancel in the determinant.
-    size = np.abs(jacobian).max() ** 2 + 1
-    assert float(trace) == pytest.approx(float(np.trace(jacobian)), abs=20 * EPS * size * s)
-    assert float(det) == pytest.approx(float(np.linalg.det(jacobian)), abs=20 * EPS * size * s)
-    assert float(det) == r * r
-
-
 @given(families, coefficients)
 def test_bifurcations_are_where_they_are_said_to_be(n, r):
     node = float(saddle_node(n, r))
@@ -101,19 +84,6 @@ def test_bifurcations_are_where_they_are_said_to_be(n, r):
         assert doubling * np.sin(phi) == pytest.approx(
             float(period_doubling_lift(r, kind)), abs=allowed
         )
-
-
-@given(families, st.floats(0.05, 0.99), st.floats(0.01, 0.99))
-def test_stable_between_and_only_between(n, r, share):
-    node, doubling = float(saddle_node(n, r)), float(period_doubling(n, r))
-    between, beyond = node + share * (doubling - node), doubling * (1 + share)
-
-    def stable(lam, side):
-        return bool(RestitutionOrbit.of(n, r, lam, phase(n, r, lam, side)).is_stable())
-
-    assert stable(between, True)
-    assert not stable(between, False)
-    assert not stable(beyond, True)
 
 
 def test_values():

@@ -10,8 +10,6 @@ from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError
 from bouncing_ball.orbits.spring_damper_branch import branch_point, nearest_excess
-from bouncing_ball.orbits.spring_damper_limits import saddle_node
-from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.spring_damper_system import SpringDamperSystem
 
@@ -89,21 +87,6 @@ def test_free_release_angles(zeta):
         assert np.all(before > 0)
 
 
-@pytest.mark.parametrize("n", [1, 2])
-def test_contact_filling_the_cycle_is_permanent_contact(n):
-    # As the flight vanishes the orbit merges with the steady oscillation, at
-    # its threshold. A flight of length T changes Λ by the order T², and the
-    # impact velocity is of order T.
-    for omega, zeta in ((2.0, 0.05), (1.0, 0.3), (5.0, 0.1)):
-        contact = SpringDamper(omega, zeta)
-        omega_d = omega * np.sqrt(1 - zeta**2)
-        flight = 1e-4
-        point = branch_point((2 * np.pi * n - flight) * omega_d - np.pi, contact, n)
-        expected = float(permanent_contact_threshold(omega, zeta))
-        assert float(point.amplitude) == pytest.approx(expected, abs=flight**2 * omega**2)
-        assert 0 < -float(point.u) < flight
-
-
 @pytest.mark.parametrize("restitution", [0.3, 0.65, 0.85, 0.95])
 @pytest.mark.parametrize("omega", [1.05, 1.2, 2.0, 5.0, 10.0, 100.0])
 def test_permanent_contact_continues_into_a_stable_orbit(restitution, omega):
@@ -150,24 +133,6 @@ def test_a_contact_of_several_periods_opens_in_every_one(omega, zeta):
         assert np.all(flow.displacement.max(axis=1) > 0)
 
 
-@given(log_ratios, dampings, families, releases, st.floats(-0.9, 1.0))
-def test_trace_and_determinant_are_those_of_the_linearised_flow(log_omega, zeta, n, release, share):
-    # Worked out from the formula here, from the flow's Jacobian there.
-    contact = SpringDamper(float(np.exp(log_omega)), zeta, release)
-    excess = share * float(contact.free_angle) if share < 0 else share / 2
-    point = branch_point(excess, contact, n)
-    if not (0 < point.contact_duration < 2 * np.pi * n - 0.1 and point.u < -0.1):
-        return
-    matrix = SpringDamperOrbit.from_branch(point, contact, n).monodromy()
-    # Both lose digits where the ball leaves slowly, and entries are large.
-    scale = 1 + np.abs(matrix).max() ** 2
-    trace, det = np.trace(matrix, axis1=-2, axis2=-1), np.linalg.det(matrix)
-    assert abs(float(point.trace) - float(trace)) <= 1e-13 * scale
-    assert abs(float(point.determinant) - float(det)) <= 1e-13 * scale
-    expected = np.exp(-2 * zeta * float(contact.frequency_ratio * point.contact_duration))
-    assert float(point.determinant) == pytest.approx(expected, rel=1e-13)
-
-
 def test_long_arrays_are_the_same_as_single_points():
     # More than two blocks, with the short and resonant contacts among them.
     excess = np.linspace(-3.1, 3.0, 20_000)
@@ -186,16 +151,6 @@ def test_overdamped_contacts_are_refused(zeta, refusal):
 
 
 # The nearest point of the branch.
-
-
-@pytest.mark.parametrize("release", list(Release))
-@pytest.mark.parametrize("omega", [2.0, 10.0, 1e4])
-def test_points_of_the_branch_are_their_own_nearest(omega, release):
-    contact = SpringDamper(omega, 0.05, release)
-    excess = float(saddle_node(contact, 2)) + np.linspace(-1, 1, 11) / omega
-    orbit = SpringDamperOrbit.on_branch(excess, contact, 2)
-    # Also at the fold.
-    assert SpringDamperModel(contact).nearest(orbit).distance(orbit).max() < 1e-12
 
 
 def test_a_point_beside_the_branch():

@@ -5,14 +5,11 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from bouncing_ball.contacts.damping import damping_ratio
-from bouncing_ball.contacts.oscillator import responses
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.orbits import restitution_orbit as restitution_orbits
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import (
     orbit_at,
-    period_doubling,
     saddle_node,
 )
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
@@ -46,25 +43,6 @@ def stable(orbit):
     return is_stable(*stability(orbit))
 
 
-def check_orbits(orbit, n, lam):
-    """The orbits are at Λ, and solve the paper's equations."""
-    np.testing.assert_allclose(orbit.amplitude, lam, rtol=1e-13, atol=1e-13)
-    assert np.all((0 < orbit.contact_duration) & (orbit.contact_duration < 2 * np.pi * n))
-    # Heights of the landing equation are of order (2πn)².
-    scale = np.stack([n**0, n**0, 2 * np.pi * n], axis=-1) * (2 * np.pi * n)[:, np.newaxis]
-    assert np.all(np.abs(orbit.residual()) < 1e-12 * scale)
-    assert np.all(orbit.relative_impact_velocity < 0)
-    assert np.all(orbit.apparent_restitution > 0)
-
-
-def amplitudes(contact, n):
-    """Λ at the saddle-node and the period doubling."""
-    return tuple(
-        branch_point(find(contact, n), contact, n).amplitude
-        for find in (saddle_node, period_doubling)
-    )
-
-
 def test_the_saddle_node_is_the_lowest_amplitude(drawn):
     contact, n, r, _ = drawn
     excess = saddle_node(contact, n)
@@ -82,90 +60,6 @@ def test_the_saddle_node_is_the_lowest_amplitude(drawn):
     # undefined; else a multiplier is one.
     trace, det = stability(SpringDamperOrbit.from_branch(point, contact, n)[r < 0.999])
     assert np.all(np.abs(Bifurcation.SADDLE_NODE.test(trace, det)) <= 1e-10)
-
-
-def test_a_multiplier_is_minus_one_at_the_period_doubling(drawn):
-    contact, n, _, _ = drawn
-    excess = period_doubling(contact, n)
-    assert np.all(excess < saddle_node(contact, n))
-    orbit = SpringDamperOrbit.from_branch(branch_point(excess, contact, n), contact, n)
-    trace, det = stability(orbit)
-    # A root to the last digit; the trace has lost two or three.
-    assert np.all(np.abs(Bifurcation.PERIOD_DOUBLING.test(trace, det)) <= 1e-11 * (1 + n))
-    assert np.all((-1 < det) & (det <= 1 + 1e-12))
-
-
-def test_orbits_on_both_sides_of_the_saddle_node(drawn):
-    contact, n, r, share = drawn
-    lossy = r < 0.999
-    contact, n, share = contact[lossy], n[lossy], share[lossy]
-    node, doubling = amplitudes(contact, n)
-    fold = branch_point(saddle_node(contact, n), contact, n).contact_duration
-    lam = node + share * (doubling - node)
-    orbit = orbit_at(contact, n, lam)
-    check_orbits(orbit, n, lam)
-    assert np.all(orbit.contact_duration < fold) and np.all(stable(orbit))
-    # From ϖ = 10 the unstable side reaches up to the period doubling; a soft one
-    # may turn before.
-    stiff = contact.frequency_ratio >= 10
-    orbit = orbit_at(contact[stiff], n[stiff], lam[stiff], Side.UNSTABLE)
-    check_orbits(orbit, n[stiff], lam[stiff])
-    assert np.all(orbit.contact_duration > fold[stiff]) and not np.any(stable(orbit))
-    beyond = orbit_at(contact, n, doubling * (1 + share / 2))
-    assert np.all(beyond.contact_duration > 0) and not np.any(stable(beyond))
-    assert not np.any(orbit_at(contact, n, node * (1 - share / 2)).exists)
-
-
-def limit_errors(n, r, omega, release):
-    """Differences from the restitution model, one per quantity."""
-    zeta = float(damping_ratio(r))
-    contact = SpringDamper(omega, zeta, release)
-    if release is Release.FORCE:
-        # A contact released at zero force returns more: the free velocity there.
-        angle = float(SpringDamper(1.0, zeta, release).free_angle)
-        free = responses(angle / np.sqrt(1 - zeta**2), 1.0, zeta).impulse
-        r = -float(free.rate)
-    lam = float(restitution_orbits.saddle_node(n, r)) + 0.3
-    orbit = orbit_at(contact, n, lam)
-    node, doubling = amplitudes(contact, n)
-    phi = float(restitution_orbits.phase(n, r, lam))
-    return np.array(
-        [
-            node - restitution_orbits.saddle_node(n, r),
-            doubling - restitution_orbits.period_doubling(n, r),
-            orbit.phase - phi,
-            orbit.impact_velocity + n * np.pi,
-            orbit.bounce_velocity - n * np.pi,
-            orbit.apparent_restitution - r,
-            orbit.max_height - (lam * np.sin(phi) + (n * np.pi) ** 2 / 2),
-            orbit.contact_duration,
-        ],
-        dtype=float,
-    )
-
-
-@every_release
-@pytest.mark.parametrize(("n", "r"), [(1, 0.85), (1, 0.65), (2, 0.5), (3, 0.3)])
-def test_stiff_contacts_converge_to_the_restitution_model(n, r, release):
-    errors = [limit_errors(n, r, omega, release) for omega in (1e3, 1e4, 1e5)]
-    # First order in 1/ϖ. Where the first coefficient is small the second is
-    # seen at 1e3; towards 1e5 the ratio is 0.1 to 1/1000 and the roundings.
-    assert np.all(np.abs(errors[0]) < 50 / 1e3)
-    first, second = errors[1] / errors[0], errors[2] / errors[1]
-    assert second == pytest.approx(np.full(8, 0.1), abs=1.5e-3)
-    assert np.all(np.abs(second - 0.1) <= 0.2 * np.abs(first - 0.1) + 1e-5)
-
-
-def test_table_of_the_model_notes():
-    # Worked out without the package, to four decimals, for r = 0.85.
-    zeta = float(damping_ratio(0.85))
-    expected = {
-        10.0: [(0.2400, 1.0375), (0.4954, 1.1242), (0.7507, 1.2577)],
-        2.0: [(0.1877, 1.0871), (0.4609, 1.1646), (0.7319, 1.2956)],
-    }
-    for omega, rows in expected.items():
-        for n, row in enumerate(rows, start=1):
-            assert amplitudes(SpringDamper(omega, zeta), n) == pytest.approx(row, abs=5.1e-5)
 
 
 def test_a_required_orbit_that_is_missing(refusal):

@@ -9,15 +9,13 @@ from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.continuation.branch import (
-    continue_both_ways,
     continue_branch,
-    resample,
     solve_at,
 )
 from bouncing_ball.continuation.events import fold, parameter_bound
 from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.orbits.spring_damper_branch import branch_point
-from bouncing_ball.orbits.spring_damper_limits import orbit_at, period_doubling, saddle_node
+from bouncing_ball.orbits.spring_damper_limits import orbit_at
 from bouncing_ball.orbits.spring_damper_system import SpringDamperSystem
 
 releases = st.sampled_from(list(Release))
@@ -85,46 +83,6 @@ def test_jacobian_against_differences(values):
     # unknowns, times the size of the row; roundings 1e-13/h.
     size = np.abs(computed).max(axis=1, keepdims=True) + 20
     assert np.all(np.abs(computed - np.array(columns).T) <= 1e-9 * size)
-
-
-@pytest.mark.parametrize("release", list(Release))
-@pytest.mark.parametrize(("n", "omega"), [(1, 2.0), (2, 10.0), (3, 1e4), (1, 1e4), (3, 2.0)])
-def test_continuation_finds_the_bifurcations_of_the_closed_form(n, omega, release):
-    zeta = float(damping_ratio(0.85))
-    contact = SpringDamper(omega, zeta, release)
-    node = branch_point(saddle_node(contact, n), contact, n)
-    doubling = branch_point(period_doubling(contact, n), contact, n)
-    lam = float(node.amplitude + doubling.amplitude) / 2
-    orbit = orbit_at(contact, n, lam)
-    start = np.array([orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration, lam])
-    system = SpringDamperSystem(n, contact)
-    # Far enough to pass both; the window ends the stable side, and the
-    # amplitude of the start the unstable one.
-    top = 1.05 * float(doubling.amplitude)
-    events = (*system.events(), fold(system), parameter_bound(top, True, "window"))
-    branch = continue_both_ways(system, start, events=events)
-    assert str(branch.end) == "window"
-    names = [special.name for special in branch.special]
-    last = len(names) - 1 - names[::-1].index("saddle-node")
-    for point, index in ((node, last), (doubling, names.index("period doubling", last))):
-        found = branch.special[index].point
-        # Newton's stop at 1e-12, relative to 1 + |y| ≤ 20, is converged
-        # quadratically; what is left are roundings of residuals of that size.
-        expected = [point.phase, point.u + point.x, omega * point.contact_duration, point.amplitude]
-        assert found == pytest.approx(np.array(expected, dtype=float), abs=1e-11)
-        assert found[3] == pytest.approx(float(point.amplitude), abs=1e-12)
-    # The turning point of the branch is the saddle-node of the map.
-    folds = np.array(branch.named("fold"))[:, 3]
-    assert np.abs(folds - float(node.amplitude)).min() < 1e-12
-    # All of the branch is on the explicit curve, at its own durations.
-    y = resample(system, branch, 41)
-    assert np.abs(system.residual(y)).max() < 1e-11
-    excess = y[:, 2] * np.sqrt(1 - zeta**2)
-    excess = excess - (np.pi - 2 * np.arcsin(zeta) * (release is Release.FORCE))
-    curve = branch_point(excess, contact, n)
-    # ε carries the rounding of ϖD, 1e-15, and Λ changes by ϖ² over ε: only
-    # where that is below the tolerance is the comparison sharp.
-    assert curve.amplitude == pytest.approx(y[:, 3], abs=1e-12 * (1 + omega**2))
 
 
 @pytest.mark.parametrize("release", list(Release))

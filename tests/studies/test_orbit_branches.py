@@ -232,14 +232,6 @@ def test_another_way_round_a_blocked_one(continuation_settings, n, r, top):
     assert branch.points[:, -1].min() >= 0 and branch.points[:, -1].max() <= top * (1 + 1e-12)
 
 
-@pytest.mark.parametrize("release", ["displacement", "force"])
-def test_strong_damping(continuation_settings, release):
-    _, branch = branch_along_amplitude(3, 0.3, 1e4, 6.0, release, continuation_settings)
-    assert first_limits(branch)[:, -1] == pytest.approx(
-        bifurcations(3, 0.3, 1e4, release), abs=1e-11
-    )
-
-
 def test_a_window_without_a_period_doubling(continuation_settings):
     parameters = {"n": [1], "restitution": 0.85, "frequency_ratio": [10.0], "amplitude_max": 0.9}
     data = stability_ranges(parameters, "displacement", continuation_settings)
@@ -252,16 +244,3 @@ def test_a_branch_without_a_saddle_node(continuation_settings, refusal):
     _, branch = branch_along_amplitude(1, 0.85, 1.0, 1.5, "displacement", continuation_settings)
     with refusal(NoOrbitError, "no saddle-node"):
         first_limits(branch)
-
-
-def test_a_window_below_the_start(continuation_settings):
-    # The branch is followed from Λ = 0.646: a smaller window holds part of the
-    # branch all the same, or is refused; nothing outside it is returned.
-    try:
-        _, branch = branch_along_amplitude(
-            1, 0.85, 10.0, 0.5, "displacement", continuation_settings
-        )
-    except (NoOrbitError, ContinuationError) as error:
-        assert "0.5" in str(error)
-    else:
-        assert branch.points[:, -1].max() <= 0.5 * (1 + 1e-9)

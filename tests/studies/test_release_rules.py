@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.configuration.study import typed
-from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
-from bouncing_ball.contacts.oscillator import responses
+from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import saddle_node
@@ -52,20 +51,3 @@ def test_values_are_those_of_the_orbits():
     assert status.startswith("outside")
     height = float(data.error_threshold.sel(reading=paper, quantity="max_height"))
     assert height == pytest.approx(82.17735912, abs=1e-6)
-
-
-@pytest.mark.parametrize("zeta", [0.0, 0.05, 0.3, 0.7, 0.99])
-def test_restitution_of_the_force_release_is_that_of_the_free_contact(zeta):
-    # The free contact from δ = 0 with unit velocity: bisection of its force.
-    root = np.sqrt(1 - zeta**2)
-    low, high = 1e-9, np.pi / root
-    for _ in range(100):
-        middle = (low + high) / 2
-        g = responses(middle, 1.0, zeta).impulse
-        # Released once 2ζδ′ + δ < 0, with δ counted downwards as positive here.
-        if 2 * zeta * g.rate + g.value > 0:
-            low = middle
-        else:
-            high = middle
-    speed = -float(responses(low, 1.0, zeta).impulse.rate)
-    assert float(restitution_coefficient(zeta, Release.FORCE)) == pytest.approx(speed, rel=1e-13)

@@ -6,7 +6,6 @@ All quantities are dimensionless, and phases are in radians.
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from bouncing_ball.attractors.mapper import label
 from bouncing_ball.attractors.motions import Kind, Motions
@@ -23,6 +22,7 @@ _FURTHER = (1, 3)
 # Families of orbits beside which balls start, and the difference of their phase from the orbit's.
 _FAMILIES, _BESIDE = (1, 2, 3), 1e-3
 _EVEN = np.array([0.7548776662466927, 0.5698402909980532])
+_SEEN = ("impact_phase", "impact_speed")
 
 
 def require_memory(balls: int, what: str) -> None:
@@ -51,8 +51,8 @@ def _columns(found: Motions, dims: tuple[str, ...]) -> dict[str, Any]:
     }
 
 
-def _described(data: Labelled, **attributes: Any) -> Any:
-    return describe(data).assign_attrs(attributes)
+def _described(data: dict[str, Any], coords: dict[str, Any], **attributes: Any) -> Any:
+    return describe(Labelled(data, coords)).assign_attrs(attributes)
 
 
 def motions(grid: Grid, model: Any, impacts: int) -> Labelled:
@@ -69,8 +69,7 @@ def motions(grid: Grid, model: Any, impacts: int) -> Labelled:
     require_memory(grid.size, "a grid of starts")
     start = map(grid.row, ("amplitude", "phase", "velocity"))
     found = label(model.impact_law, *start, impacts=impacts)
-    rows = describe(xr.Dataset(_columns(found, (CASE,))))
-    return grid.unfold(rows.assign_attrs(kind="motions"))
+    return grid.unfold(_described(_columns(found, (CASE,)), {}, kind="motions"))
 
 
 def fastest(model: Any, amplitude: Any) -> np.ndarray:
@@ -118,23 +117,12 @@ def diagram(model: Any, amplitude: np.ndarray, starts: int, samples: int, impact
         phase, velocity = swept.end_phase[place], swept.end_velocity[place]
         speed = amplitude[place[0]] * np.cos(phase) - velocity
         swept = _ends(model, lam, phase, speed, impacts)
-    columns = (np.concatenate(x, 1) for x in zip(_values(found), _values(swept), strict=True))
-    found = Motions(*columns)
+    both = zip(vars(found).values(), vars(swept).values(), strict=True)
+    found = Motions(*(np.concatenate(x, 1) for x in both))
     seen = _impacts(model, lam, found, samples)
     dims = ("amplitude", "start")
-    data = Labelled(
-        {
-            **_columns(found, dims),
-            "impact_phase": ((*dims, "impact"), seen[0]),
-            "impact_speed": ((*dims, "impact"), seen[1]),
-        },
-        coords={"amplitude": amplitude},
-    )
-    return _described(data, kind="diagram")
-
-
-def _values(found: Motions) -> list[np.ndarray]:
-    return list(vars(found).values())
+    data = {name: ((*dims, "impact"), x) for name, x in zip(_SEEN, seen, strict=True)}
+    return _described(_columns(found, dims) | data, {"amplitude": amplitude}, kind="diagram")
 
 
 def _ends(
@@ -183,26 +171,22 @@ def basins(model: Any, amplitude: float, starts: int, fast: float | None, impact
     phi, towards = np.meshgrid(phase, speed)
     law = model.impact_law
     found = label(law, amplitude, phi, amplitude * np.cos(phi) - towards, impacts=impacts)
-    key = np.stack([_order(found.kind), found.periods, found.impacts], axis=-1).reshape(-1, 3)
+    names = np.array(list(Kind))
+    number = np.argmax(found.kind[..., np.newaxis] == names, axis=-1)
+    key = np.stack([number, found.periods, found.impacts], axis=-1).reshape(-1, 3)
     known, which, count = np.unique(key, axis=0, return_inverse=True, return_counts=True)
-    share = count / which.size
-    dims = ("start_speed", "start_phase")
-    data = Labelled(
-        {
-            "destination": (dims, which.reshape(found.shape)),
-            "lyapunov_exponent": (dims, found.exponent),
-            "motion_kind": ("motion", np.array([str(kind) for kind in Kind])[known[:, 0]]),
-            "motion_periods": ("motion", known[:, 1]),
-            "motion_impacts": ("motion", known[:, 2]),
-            "share": ("motion", share),
-            "share_error": ("motion", np.sqrt(share * (1 - share) / which.size)),
-        },
-        coords={"start_phase": phase, "start_speed": speed},
-    )
-    return _described(data, kind="basins", amplitude=amplitude)
-
-
-def _order(kinds: np.ndarray) -> np.ndarray:
-    """The place of each kind among all."""
-    names = np.array([str(kind) for kind in Kind])
-    return np.argmax(kinds[..., np.newaxis] == names, axis=-1)
+    share, dims = count / which.size, ("start_speed", "start_phase")
+    of_motions = {
+        "motion_kind": names[known[:, 0]],
+        "motion_periods": known[:, 1],
+        "motion_impacts": known[:, 2],
+        "share": share,
+        "share_error": np.sqrt(share * (1 - share) / which.size),
+    }
+    data = {
+        "destination": (dims, which.reshape(found.shape)),
+        "lyapunov_exponent": (dims, found.exponent),
+        **{name: ("motion", values) for name, values in of_motions.items()},
+    }
+    coords = {"start_phase": phase, "start_speed": speed}
+    return _described(data, coords, kind="basins", amplitude=amplitude)

@@ -76,21 +76,23 @@ class _Ball(NamedTuple):
     time: np.ndarray
     # The reason for which it may stay undecided, as a place in the list of reasons.
     doubt: np.ndarray
-    # The last lift-off of a ball that forgets: its impact, -1 for none, and its time.
+    # The last lift-off of a ball that forgets: its impact, -1 for none, and its time; and the
+    # impacts between two of them that are farther apart than rounding allows, 0 for none.
     lift: np.ndarray
     lift_time: np.ndarray
+    lap: np.ndarray
     mark: _Mark
     stretch: Stretching
 
     @classmethod
     def new(cls, index: np.ndarray, amplitude: np.ndarray, impact: Impact) -> Self:
         """Balls at their first impacts, which are their first marks."""
-        seen, doubt, lift, marked, stuck, until, turn = np.zeros((7, index.size), dtype=int)
+        seen, doubt, lift, lap, marked, stuck, until, turn = np.zeros((8, index.size), dtype=int)
         time, lift_time, mark_time = np.zeros((3, index.size))
         one = Jacobian.identity(index.size)
         place = impact.phase.copy(), impact.velocity.copy()
         mark = _Mark(marked, mark_time, *place, one, stuck, until + _LEAST, turn)
-        of = seen, time, doubt + 1, lift - 1, lift_time, mark, Stretching.of(index.size)
+        of = seen, time, doubt + 1, lift - 1, lift_time, lap, mark, Stretching.of(index.size)
         return cls(index, amplitude + time, *of)
 
     def doubted(self, which: np.ndarray, reason: Reason) -> None:
@@ -99,12 +101,7 @@ class _Ball(NamedTuple):
 
 
 def label(
-    law: Law,
-    amplitude: ArrayLike,
-    phase: ArrayLike,
-    velocity: ArrayLike,
-    *,
-    impacts: int = IMPACTS,
+    law: Law, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, *, impacts: int = IMPACTS
 ) -> Motions:
     """The motions on which balls end that start with an impact.
 
@@ -211,7 +208,9 @@ def _resting(
         sticks = ~done & dynamics.sticks(impact, departure)
         if sticks.any():
             time = ball.time + departure.duration
-            again = sticks & (ball.lift >= 0) & ~ball.stretch.lost()
+            again, lost = sticks & (ball.lift >= 0), ball.stretch.lost()
+            ball.lap[again & lost] = (ball.seen - ball.lift)[again & lost]
+            again &= ~lost
             _write(
                 *(found, ball, again, Kind.LOCKED),
                 periods=_periods(time - ball.lift_time)[again],
@@ -302,7 +301,7 @@ def _mark(ball: _Ball, here: np.ndarray, phase: np.ndarray, velocity: np.ndarray
 
 def _give_up(ball: _Ball, which: np.ndarray, found: Motions) -> None:
     """Store which of the balls that have not repeated are chaotic."""
-    rate, error = ball.stretch.exponent(which)
+    rate, error = ball.stretch.exponent(which, ball.lap[which])
     # Next to a bifurcation neighbours part, and not exponentially.
     chaotic = (rate > _ERRORS * error) & (ball.stretch.sums[which, 1] > -np.log(NEAR))
     chaotic &= ball.doubt[which] != _REASONS.index(Reason.MARGINAL)

@@ -55,7 +55,7 @@ class Motions(Batch):
         Largest Lyapunov exponent per period of the table. For a motion that repeats it follows from
         the larger multiplier, and is -∞ if that is zero; NaN where nothing is known.
     exponent_error : array
-        Its standard error; 0 for a motion that repeats.
+        Its standard error; 0 for a motion that repeats, and NaN where the impacts do not tell it.
     reason : array of Reason
         The reason for which a motion is undecided.
     followed : array of int

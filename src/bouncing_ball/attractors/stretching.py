@@ -18,6 +18,8 @@ DIGITS = -float(np.log(np.finfo(float).eps))
 FORGOTTEN = DIGITS + float(np.log(NEAR))
 # Impacts of a mean of the stretching, and means left out.
 _BATCH, _TRANSIENT = 32, 2
+# Error of a rate that is rounding: sums of n squares have the relative error √(n ε).
+_EQUAL = 1e-6
 # Stretching by less is as good as forgetting.
 _TINY = 1e-300
 
@@ -82,10 +84,18 @@ class Stretching(NamedTuple):
         """Begin a new mark of some balls."""
         self.worst[which], self.lowest[which] = 0, self.growth[which]
 
-    def exponent(self, which: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The Lyapunov exponent per unit of time, and its standard error; NaN without means."""
+    def exponent(self, which: np.ndarray, lap: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The growth per unit of time and its standard error, NaN where it is not known.
+
+        The computed motion of a ball that has stuck to the table again after so many impacts, a
+        ``lap``, 0 for none, is the same in each lap, so that only the means of one lap count. Means
+        that are equal up to rounding are copies of one mean, which has no error.
+        """
         number, growth, time, square, product, times = self.sums[which].T
         rate = growth / time
         # The error of a ratio of means, each over a stretch of the motion.
         rest = square - 2 * rate * product + rate * rate * times
-        return rate, np.sqrt(np.maximum(rest, 0.0) * number / (number - 1)) / time
+        error = np.sqrt(np.maximum(rest, 0.0) * number / (number - 1)) / time
+        laps = np.where(lap > 0, number * _BATCH / lap, 1.0)
+        error *= np.sqrt(np.maximum(laps, 1.0))
+        return rate, np.where(error > _EQUAL * np.abs(rate), error, np.nan)

@@ -89,12 +89,7 @@ def lyapunov_exponent(amplitude: AnyAmplitude, **given: Any) -> Labelled:
 
 @takes(motion_of, without=("amplitude", "phase", "velocity"))
 def orbit_diagram(
-    amplitudes: AnyAmplitude,
-    *,
-    starts: Many = 6,
-    samples: Many = 64,
-    impacts=1000,
-    **impact: Any,
+    amplitudes: AnyAmplitude, *, starts: Many = 6, samples: Many = 64, impacts=1000, **impact: Any
 ) -> Labelled:
     """The attractors over Λ: from several starts, and followed to both sides.
 

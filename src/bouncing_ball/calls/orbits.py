@@ -155,11 +155,7 @@ def limits(n: Index, **impact: Any) -> Any:
 
 @takes(model)
 def branch(
-    n: Index,
-    *,
-    amplitude_max: Positive | None = None,
-    points: Points = 300,
-    **impact: Any,
+    n: Index, *, amplitude_max: Positive | None = None, points: Points = 300, **impact: Any
 ) -> Any:
     """The branch of n-T orbits over the amplitude Λ, on both sides of its saddle-node.
 

@@ -96,8 +96,7 @@ class Claim:
     id : str
         Its name.
     kind : str
-        The group in which it is counted: ``number``, ``statement``, ``restored formula`` or
-        ``slip``. The
+        The group in which it is counted: ``number``, ``statement`` or ``restored formula``. The
         signs of a restored formula are illegible in the text at hand, so that the check shows that
         this form is right, and not that the paper printed it.
     item, statement : str
@@ -188,11 +187,6 @@ def formula(name: str, item: str, text: str, row: str = "", **given: Any) -> Cla
         return of_formula(data, row or item)
 
     return Claim(name, "restored formula", item, text, decide, **given)
-
-
-def slip(name: str, item: str, text: str, remark: str) -> Claim:
-    """A wrong number or caption in the paper's text, on which no result depends."""
-    return Claim(name, "slip", item, text, lambda _: Finding(np.nan, Verdict.SLIP), remark=remark)
 
 
 def of_formula(data: Data, row: str) -> Finding:

@@ -60,34 +60,13 @@ def dip(data: Data, amplitude: float) -> xr.DataArray:
     return -curve.min("frequency_ratio")
 
 
-@np.errstate(divide="ignore", invalid="ignore")  # at r = 1, where the law divides by ζ = 0
-def lift(data: Data) -> tuple[xr.DataArray, xr.DataArray]:
-    """1 - Λ sin φ of Fig. 6 by Eq. 6, and as measured at the stiff end of its curves, by ``case``.
-
-    To first order in 1/ϖ, ``r_a - r = -ζ(1 + r)²(1 - Λ sin φ)/(nπϖ)``, so that r_a approaches r
-    from below exactly where Λ sin φ < 1. The limit of nπϖ(r_a - r) is extrapolated from the two
-    ends of the stiffest decade.
+def short_of_lift(data: Data) -> xr.DataArray:
+    """The smallest 1 - Λ sin φ of Fig. 6, with φ of Eq. 6: r_a approaches r from below where it is
+    positive, because ``r_a - r = -ζ(1 + r)²(1 - Λ sin φ)/(nπϖ)`` to first order in 1/ϖ.
     """
     sweep = data["fig06"]
-    n, r, ratio = sweep.attrs["n"], sweep.restitution, sweep.frequency_ratio
-    phase, _ = printed.fixed_point(n, r, sweep.amplitude)
-    scaled = n * np.pi * ratio**2 * (sweep.apparent_restitution - r)
-    stiffest = ratio.values[-1]
-    high, low = (scaled.sel(frequency_ratio=x, method="nearest") for x in (stiffest, stiffest / 10))
-    limit = (high - low) / (high.frequency_ratio - low.frequency_ratio)
-    measured = -limit / (printed.damping_ratio(r) * (1 + r) ** 2)
-    return 1 - sweep.amplitude * np.sin(phase), measured
-
-
-def short_of_lift(data: Data) -> xr.DataArray:
-    """The smallest 1 - Λ sin φ of Fig. 6."""
-    return lift(data)[0].min()
-
-
-def apparent_restitution_law_error(data: Data) -> xr.DataArray:
-    """The largest error of the first-order law of r_a, as an error of Λ sin φ."""
-    by_law, measured = lift(data)
-    return np.abs(measured - by_law).max()
+    phase, _ = printed.fixed_point(sweep.attrs["n"], sweep.restitution, sweep.amplitude)
+    return (1 - sweep.amplitude * np.sin(phase)).min()
 
 
 @np.errstate(divide="ignore", invalid="ignore")  # the phase is 0 at the saddle-node

@@ -96,7 +96,6 @@ def ledger(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
     """
     printed = (
         evidence.stiff_orbit_error,
-        evidence.apparent_restitution_law_error,
         evidence.short_of_lift,
         evidence.inadmissible_orbits,
         evidence.range_error,

@@ -5,15 +5,15 @@ import xarray as xr
 
 from bouncing_ball.claims.verdict import Verdict
 
-# Restatements and slips, which are counted apart, come last.
-_GROUPS = ("restored formula", "number", "statement", "restatement", "slip")
+# Restatements, which are counted apart, come last.
+_GROUPS = ("restored formula", "number", "statement", "restatement")
 
 
 def tally(claims: xr.Dataset, figures: int) -> str:
     """Number of figures, of claims and of verdicts in one line, group by group.
 
-    Restatements are counted apart from the claims that they repeat, formulas that had to be
-    restored apart from numbers, and slips apart from all claims.
+    Restatements are counted apart from the claims that they repeat, and formulas that had to be
+    restored apart from numbers.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ def tally(claims: xr.Dataset, figures: int) -> str:
     '16 figures, Table 1, 2 claims; 2 numbers: 1 reproduced, 1 close; 1 restatement: 1 close'
     """
     verdicts, groups = claims.verdict.values, claims.group.values
-    parts = [f"{figures} figures, Table 1, {np.sum(~np.isin(groups, _GROUPS[-2:]))} claims"]
+    parts = [f"{figures} figures, Table 1, {np.sum(groups != _GROUPS[-1])} claims"]
     for group in _GROUPS:
         own = verdicts[groups == group]
         if own.size:

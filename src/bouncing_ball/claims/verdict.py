@@ -31,8 +31,6 @@ class Verdict(StrEnum):
     CONTRADICTED = "contradicted"
     UNDECIDABLE = "undecidable"
     """The verdict depends on how the claim is read."""
-    SLIP = "slip"
-    """A wrong number or caption in the text, which no result depends on."""
     NOT_ASKED = "not asked"
     """The datasets were not computed with the paper's parameters."""
 

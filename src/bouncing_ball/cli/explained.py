@@ -26,10 +26,7 @@ EXPLAINED = {
     "limits": (
         "An n-T orbit exists from the saddle-node on and is stable up to the period doubling, "
         "beyond which the motion repeats itself after twice the time.",
-        (
-            "limits --restitution 0.85",
-            "limits --n 2 --damping-ratio 0.05 --frequency-ratio 10",
-        ),
+        ("limits --restitution 0.85", "limits --n 2 --damping-ratio 0.05 --frequency-ratio 10"),
     ),
     "error-law": (
         "The relative error of the restitution model against the contact is K/ϖ to first order. "

@@ -1,6 +1,7 @@
 """``bouncing-ball motion`` and ``diagram``: the motions on which balls end."""
 
 import math
+from collections import Counter
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -14,31 +15,24 @@ from bouncing_ball.errors import ParameterError
 from bouncing_ball.signatures import count, takes
 
 Answer = dict[str, Any]
+_MOTION = ("kind", "periods", "impacts")
 Interval = tuple[AnyAmplitude, AnyAmplitude]
 Points = Annotated[int, count(100_000, low=2)]
 
 
-def _motion(found: Labelled) -> Answer:
-    """The answer about one motion; null for an exponent that is infinite or not known."""
+@takes(long_run.motion_of)
+def motion(amplitude, **given: Any) -> Answer:
+    """The motion on which the ball ends; null for an exponent that is infinite or not known."""
+    found = long_run.motion_of(amplitude, **given)
     exponents = {name: float(found[name]) for name in ("lyapunov_exponent", "lyapunov_error")}
-    answer: Answer = {name: found[name].item() for name in ("kind", "periods", "impacts")}
+    answer: Answer = {name: found[name].item() for name in _MOTION}
     answer |= {name: x if math.isfinite(x) else None for name, x in exponents.items()}
     return answer | ({"reason": found.reason.item()} if found.reason.item() else {})
 
 
-@takes(long_run.motion_of)
-def motion(amplitude, **given: Any) -> Answer:
-    """The motion on which the ball ends."""
-    return _motion(long_run.motion_of(amplitude, **given))
-
-
 @takes(long_run.orbit_diagram)
 def diagram(
-    *,
-    amplitudes: Interval,
-    points: Points = 300,
-    plot: Path | None = None,
-    **given: Any,
+    *, amplitudes: Interval, points: Points = 300, plot: Path | None = None, **given: Any
 ) -> Answer:
     """The motions at each amplitude with their shares of the starts, and the figure.
 
@@ -62,23 +56,16 @@ def diagram(
     found = long_run.orbit_diagram(np.linspace(low, high, points), **given)
     if plot is not None:
         found.plot(plot)
-    return {
-        "diagram": [
-            {"amplitude": float(at.amplitude), "motions": _shares(at)}
-            for at in (found.isel(amplitude=k) for k in range(points))
-        ]
-    }
+    at = (found.isel(amplitude=k) for k in range(points))
+    return {"diagram": [{"amplitude": float(x.amplitude), "motions": _shares(x)} for x in at]}
 
 
 def _shares(at: Labelled) -> list[Answer]:
     """The motions at one amplitude, the most frequent first."""
-    names = ("kind", "periods", "impacts")
-    each = list(zip(*(at[name].values.tolist() for name in names), strict=True))
-    number = {motion: each.count(motion) for motion in each}
-    ordered = sorted(number, key=lambda motion: -number[motion])
+    each = Counter(zip(*(at[name].values.tolist() for name in _MOTION), strict=True))
     return [
-        dict(zip(names, motion, strict=True)) | {"share": number[motion] / len(each)}
-        for motion in ordered
+        dict(zip(_MOTION, motion, strict=True)) | {"share": number / each.total()}
+        for motion, number in each.most_common()
     ]
 
 
@@ -91,7 +78,5 @@ def lines(answer: Answer) -> list[str]:
     """The motion, or a line for each amplitude: kind, periods/impacts and share of the starts."""
     if "diagram" not in answer:
         return readable(answer)
-    return [
-        f"{at['amplitude']:<12.8g}" + ", ".join(map(_words, at["motions"]))
-        for at in answer["diagram"]
-    ]
+    shown = ((at["amplitude"], ", ".join(map(_words, at["motions"]))) for at in answer["diagram"])
+    return [f"{amplitude:<12.8g}{motions}" for amplitude, motions in shown]

@@ -22,7 +22,7 @@ system for each panel.
 """
 
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -68,6 +68,7 @@ _FAR = 0.7
 _AT_REST = 1e-9
 # A time is that of the end if less than this part of the contact remains.
 _END = 1e-12
+_Until = np.ndarray | None
 
 
 class Start(NamedTuple):
@@ -81,10 +82,6 @@ class Start(NamedTuple):
     phase: np.ndarray
     amplitude: np.ndarray
     weight: np.ndarray
-
-    def take(self, which) -> "Start":
-        """The starts with these indices."""
-        return Start(*(x[which] for x in self))
 
 
 class Contacts(NamedTuple):
@@ -141,9 +138,6 @@ class _Motion(NamedTuple):
     speed: np.ndarray
     side: np.ndarray
 
-    def take(self, which) -> "_Motion":
-        return _Motion(*(x[which] for x in self))
-
 
 class _Panel(NamedTuple):
     """A panel of each ball: q, p′ and t at its nodes and its end, and F at the nodes.
@@ -165,8 +159,13 @@ class _Panel(NamedTuple):
     surfaced: np.ndarray
     turned: np.ndarray
 
-    def take(self, which) -> "_Panel":
-        return _Panel(*(x[..., which] for x in self))
+
+def _some(which, *rows: Any) -> Any:
+    """Some of the contacts, from laws and from tuples of arrays, whose last axis they are along."""
+    return tuple(
+        x.take(which) if isinstance(x, ContactLaw) else x._make(y[..., which] for y in x)
+        for x in rows
+    )
 
 
 def _lever(m: int, root, out=None):
@@ -255,15 +254,13 @@ def _summed(begin, step, values, out):
 
 
 def _panel(
-    law: ContactLaw,
-    m: int,
-    start: Start,
-    now: _Motion,
-    until: np.ndarray | None,
-    count: int = _NODES,
+    law: ContactLaw, start: Start, now: _Motion, until: _Until, count: int = _NODES, m: int = 0
 ) -> _Panel:
-    """The next panel of each ball, up to the release, or to a time if that comes first."""
-    node, _, tail, end = _rule(count)
+    """The next panel of each ball, up to the release, or to a time if that comes first.
+
+    With m = 1 it is in plain time; by default m is that of the law.
+    """
+    (node, _, tail, end), m = _rule(count), m or law.root
     force = law.force if m == 1 else law.root_force
     # These arrays are overwritten in each sweep, because allocating them again would take as long
     # as the computation.
@@ -330,9 +327,8 @@ def _panel(
     turned = last & (first == len(left) - 1) if law.has_kink else np.zeros_like(last)
     surfaced = first == 1 if share is not None and until is None else np.zeros_like(last)
     good = reached & held & (change <= _ENOUGH) & (error <= _SPECTRUM)
-    slower = np.minimum(
-        (error / _SPECTRUM) ** (-1 / count), (early / _CHANGE) ** (-1 / (2 * _EARLY))
-    )
+    slow = (early / _CHANGE) ** (-1 / (2 * _EARLY))
+    slower = np.minimum((error / _SPECTRUM) ** (-1 / count), slow)
     factor = np.where(np.isnan(slower), _SHORTER, np.clip(_SAFETY * slower, _SHORTER, _LONGER))
     # The length of a panel up to a kink is no measure for the next one.
     taken = np.where(turned, now.step, step)
@@ -341,32 +337,28 @@ def _panel(
     return _Panel(q, new, t, push, final, step, following, good, *ends)
 
 
-def _in_time(law: ContactLaw, start: Start, now: _Motion, until: np.ndarray | None) -> _Panel:
+def _in_time(law: ContactLaw, start: Start, now: _Motion, until: _Until) -> _Panel:
     """The next panels in plain time, which costs half as much and suffices where q hardly
     changes.
     """
     m, lever = law.root, _lever(law.root, now.root)
     now = now._replace(root=now.root**m, push=now.push / lever, step=now.step * lever)
-    panel = _panel(law, 1, start, now, until)
+    panel = _panel(law, start, now, until, m=1)
     root = np.maximum(panel.root, 0.0) ** (1 / m)
     then = _lever(m, root[-1])
     following = panel.following / np.where(panel.good, then, lever)
     return panel._replace(root=root, final=panel.final * then, following=following)
 
 
-def _next(law: ContactLaw, start: Start, now: _Motion, until: np.ndarray | None) -> _Panel:
+def _next(law: ContactLaw, start: Start, now: _Motion, until: _Until) -> _Panel:
     """The next panels, each in the cheaper of the two variables."""
     far = law.root * np.abs(now.rate) * now.step < _FAR * now.root
     sides, panels = [np.flatnonzero(far), np.flatnonzero(~far)], []
-    for which in sides:
+    for which, follow in zip(sides, (_in_time, _panel), strict=True):
         if which.size:
-            some = law.take(which), start.take(which), now.take(which)
             limit = None if until is None else until[which]
-            panels.append(
-                _in_time(*some, limit)
-                if far[which[0]]
-                else _panel(some[0], law.root, *some[1:], limit)
-            )
+            laws, own, then = _some(which, law, start, now)
+            panels.append(follow(laws, own, then, limit))
     order = np.argsort(np.concatenate(sides))
     return _Panel(*(np.concatenate(x, axis=-1)[..., order] for x in zip(*panels, strict=True)))
 
@@ -498,43 +490,32 @@ def march(
     with np.errstate(all="ignore"):
         active = np.flatnonzero(np.isfinite(start).all(axis=0))
         state = np.full((len(_Motion._fields), size), np.nan)
-        state[:, active] = _begin(law.take(active), start.take(active))
+        state[:, active] = _begin(*_some(active, law, start))
         plain = law.root > 1 and not differentiate
         count = _FINER if differentiate else _NODES
         state[4] *= count
         for _ in range(panels if active.size else 0):
             for here in np.array_split(active, -(-active.size // _BLOCK)):
                 limit = None if until is None else until[here]
-                some, own = law.take(here), start.take(here)
-                now = _Motion(*state[:, here])
-                panel = (
-                    _next(some, own, now, limit)
-                    if plain
-                    else _panel(some, law.root, own, now, limit, count)
-                )
+                (laws, own), now = _some(here, law, start), _Motion(*state[:, here])
+                row = laws, own, now, limit
+                panel = _next(*row) if plain else _panel(*row, count)
                 state[4, here] = panel.following
                 if law.root > 1:
                     longest = np.where(panel.good, _longest(law.root, now, panel), np.inf)
                     state[4, here] = np.minimum(panel.following, longest)
                 good = np.flatnonzero(panel.good)
-                some, own, here, panel = (
-                    some.take(good),
-                    own.take(good),
-                    here[good],
-                    panel.take(good),
-                )
-                ends = panel.root[-1], panel.rate[-1], panel.time[-1], panel.final
-                state[:4, here] = ends
+                here, (laws, own, panel) = here[good], _some(good, laws, own, panel)
+                state[:4, here] = panel.root[-1], panel.rate[-1], panel.time[-1], panel.final
                 state[-1, here[panel.turned]] *= -1
                 done[here] = panel.last
                 if differentiate and here.size:
-                    by[here], more = _derivatives(some, own, panel, by[here])
+                    by[here], more = _derivatives(laws, own, panel, by[here])
                     strain[here] += more
                     end = np.flatnonzero(panel.last)
-                    ended = here[end]
-                    jacobian[ended], contraction[ended] = _at_release(
-                        some.take(end), own.take(end), panel.take(end), by[ended], strain[ended]
-                    )
+                    at, (laws, own, panel) = here[end], _some(end, laws, own, panel)
+                    ends = _at_release(laws, own, panel, by[at], strain[at])
+                    jacobian[at], contraction[at] = ends
             active = active[~done[active]]
             if not active.size:
                 break
@@ -551,7 +532,8 @@ def states(law: ContactLaw, start: Start, end, time: np.ndarray) -> tuple[np.nda
     The arrays have one entry per contact.
     """
     inside = np.flatnonzero((time > 0) & (time < (1 - _END) * end[0]))
-    found = march(law.take(inside), start.take(inside), MOST_PANELS, time[inside])
+    laws, own = _some(inside, law, start)
+    found = march(laws, own, MOST_PANELS, time[inside])
     depth = np.where(time > 0, end[1], start.depth)
     rate = np.where(time > 0, end[2], start.rate)
     depth[inside], rate[inside] = found.penetration, found.rate

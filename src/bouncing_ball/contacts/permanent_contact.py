@@ -188,7 +188,7 @@ def _solved(s: Scheme, law: ContactLaw, z: np.ndarray) -> np.ndarray | None:
         z = z - min(1.0, _LONGEST / max(size, _TINY)) * step
         if size <= _SETTLED:
             held = np.all(depths > 0) and np.all(law.grip(depths, u) > 0)
-            return z if held and z[-1] > 0 else None
+            return z if held else None
     return None
 
 
@@ -217,7 +217,8 @@ def permanent_contact(law: ContactLaw) -> float:
             if z is not None:
                 legendre = np.abs(s.spectrum @ z[:count])
                 if np.max(legendre[-_TAIL:]) <= _SPECTRUM * np.max(legendre):
-                    return float(z[-1])
+                    # The same motion, half a period later, has -Λ.
+                    return abs(float(z[-1]))
     raise ModelError(
         f"no steady contact that just touches its release was found for {law.label}: "
         "weakly damped, it rings"

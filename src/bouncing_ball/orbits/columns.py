@@ -3,9 +3,18 @@
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.continuation.branch import Branch, resample
+from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.continuation.branch import (
+    Branch,
+    ContinuationError,
+    continue_both_ways,
+    resample,
+)
+from bouncing_ball.continuation.events import parameter_bound
+from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.orbits.grazing import grazing_points
 from bouncing_ball.orbits.orbit import Orbit
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.orbits.system import OrbitSystem
 
@@ -39,6 +48,28 @@ def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
         "stable": orbit.is_stable(),
         "admissible": orbit.is_admissible(),
     }
+
+
+def followed(
+    system: OrbitSystem, start: np.ndarray, low: float, high: float, largest_step: float
+) -> Branch:
+    """The branch through a point to both sides, as long as Λ is between ``low`` and ``high``.
+
+    Raises
+    ------
+    ContinuationError
+        If it is not followed to its ends.
+    """
+    bounds = [
+        parameter_bound(x, upper, f"left the window at amplitude {x:g}")
+        for x, upper in ((low, False), (high, True))
+    ]
+    control = StepControl(largest=largest_step)
+    found = continue_both_ways(system, start, events=(*system.events(), *bounds), control=control)
+    for end in (found.start, found.end):
+        if not end.finished:
+            raise ContinuationError(f"the branch is not followed to its end: {end}")
+    return found
 
 
 def branch_columns(system: OrbitSystem, branch: Branch, count: int) -> xr.Dataset:
@@ -88,3 +119,15 @@ def orbits_in_columns(
             "end": ["unstable side", "stable side"],
         },
     )
+
+
+def no_branch(count: int, error: Exception) -> xr.Dataset:
+    """The dataset of :func:`branch_columns` where there is no branch: NaN, and the reason."""
+    none = SpringDamperModel(SpringDamper(1.0, 0.0)).system(1).orbit(np.full((count, 4), np.nan))
+    return orbits_in_columns(none, none[:0], [], [str(error)] * 2)
+
+
+def joined(branches: list[xr.Dataset], dim: str) -> xr.Dataset:
+    """Branches along a new dimension, with as many special orbits as the one that has most."""
+    whole = xr.concat(branches, dim, join="outer")
+    return whole.assign(special_kind=whole.special_kind.fillna("").astype(str))

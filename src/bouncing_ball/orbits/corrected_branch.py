@@ -75,10 +75,7 @@ def saddle_node_phase(instant: Instant) -> np.ndarray:
 
 
 def instant_phase(
-    n: ArrayLike,
-    instant: Instant,
-    amplitude: ArrayLike,
-    stable_side: bool = True,
+    n: ArrayLike, instant: Instant, amplitude: ArrayLike, stable_side: bool = True
 ) -> np.ndarray:
     """Phase ψ of the instants on a side of the saddle-node; NaN below it.
 

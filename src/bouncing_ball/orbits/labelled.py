@@ -6,14 +6,13 @@ first in every result.
 
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.continuation.branch import Branch, ContinuationError, continue_both_ways
-from bouncing_ball.continuation.events import parameter_bound
-from bouncing_ball.continuation.step_control import StepControl
+from bouncing_ball.continuation.branch import Branch, ContinuationError
 from bouncing_ball.datasets.labelled import CASE, Grid, Labelled
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import ModelError, NoOrbitError, require
@@ -21,7 +20,7 @@ from bouncing_ball.motion.angles import table
 from bouncing_ball.motion.history import history as of_one_ball
 from bouncing_ball.motion.landing import Flight, land
 from bouncing_ball.motion.sequence import Status
-from bouncing_ball.orbits.columns import branch_columns, columns, orbits_in_columns
+from bouncing_ball.orbits.columns import branch_columns, columns, followed, joined, no_branch
 from bouncing_ball.orbits.orbit import OBSERVABLES, Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.stability import Side
@@ -34,7 +33,7 @@ _STATES = 10_000_000
 # second number belongs to an elastic contact. The third is the number of orbits that are tried as
 # starting points of a branch.
 _BEYOND, _LOWEST, _STARTS = 1.4, 1e-4, 16
-_STEPS = StepControl(largest=0.1)
+_LARGEST_STEP = 0.1
 _SHOWN = {"ball": "height", "ball_velocity": "velocity", "table": "table", "contact": "touching"}
 
 
@@ -143,16 +142,10 @@ def branches(
     def found(n: int, **impact: Any) -> xr.Dataset:
         return branch(models(n, **impact), n, amplitude_max, points)
 
-    def missing(error: NoOrbitError) -> xr.Dataset:
-        none = RestitutionModel(1.0).orbit(1, np.full(points, np.nan))
-        return orbits_in_columns(none, none[:0], [], [str(error)] * 2)
-
-    whole = _by_place(grid, found, missing)
+    whole = _by_place(grid, found, partial(no_branch, points), joined)
     if amplitude_max is not None:
         grid.attrs["amplitude_max"] = float(amplitude_max)
-    return _unfolded(
-        grid, whole.assign(special_kind=whole.special_kind.fillna("").astype(str)), "branch"
-    )
+    return _unfolded(grid, whole, "branch")
 
 
 def orbits(grid: Grid, models: Callable[..., Any], side: Side) -> Labelled:
@@ -204,6 +197,7 @@ def _by_place(
     grid: Grid,
     found: Callable[..., xr.Dataset],
     missing: Callable[[NoOrbitError], xr.Dataset],
+    joined: Callable[..., xr.Dataset] = xr.concat,
 ) -> xr.Dataset:
     """The results at each place of a grid, one after another."""
     rows = []
@@ -214,7 +208,7 @@ def _by_place(
             if not grid.shape:
                 raise
             rows.append(missing(error))
-    return xr.concat(rows, CASE, join="outer")
+    return joined(rows, CASE)
 
 
 def branch(model: Any, n: int, amplitude_max: float | None, points: int) -> xr.Dataset:
@@ -251,17 +245,5 @@ def _along(model: Any, n: int, low: float, stable: float, top: float) -> Branch:
     orbits = model.orbit(n, tried)
     if not np.any(orbits.exists):
         raise ContinuationError("no orbit to start from was found")
-    found = continue_both_ways(
-        system,
-        system.point(orbits[int(np.argmax(orbits.exists))]),
-        events=(
-            *system.events(),
-            parameter_bound(_LOWEST, False, f"left the window at Λ = {_LOWEST:g}"),
-            parameter_bound(top, True, f"left the window at Λ = {top:g}"),
-        ),
-        control=_STEPS,
-    )
-    for end in (found.start, found.end):
-        if not end.finished:
-            raise ContinuationError(f"not followed to its end: {end}")
-    return found
+    start = system.point(orbits[int(np.argmax(orbits.exists))])
+    return followed(system, start, _LOWEST, top, _LARGEST_STEP)

@@ -14,13 +14,13 @@ from bouncing_ball.continuation.branch import (
     Branch,
     ContinuationError,
     End,
-    continue_both_ways,
     continue_branch,
     solve_at,
 )
 from bouncing_ball.continuation.events import Event, fold, parameter_bound
 from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.orbits.columns import followed
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_system import SpringDamperSystem
@@ -143,20 +143,5 @@ def branch_along_amplitude(
     """
     contact = SpringDamper.from_restitution(restitution, frequency_ratio, release)
     system = SpringDamperModel(contact).system(n)
-    windows = (
-        parameter_bound(0.0, False, "left the window at amplitude 0"),
-        parameter_bound(amplitude_max, True, f"left the window at amplitude {amplitude_max:g}"),
-    )
-    branch = continue_both_ways(
-        system,
-        _start(n, contact, restitution, amplitude_max, continuation),
-        events=(*system.events(), *windows),
-        control=StepControl(largest=continuation.largest_step),
-    )
-    for end in (branch.start, branch.end):
-        if not end.finished:
-            raise ContinuationError(
-                f"the branch of {n}-T orbits at ϖ = {frequency_ratio:g} is not "
-                f"followed to its end: {end}"
-            )
-    return system, branch
+    start = _start(n, contact, restitution, amplitude_max, continuation)
+    return system, followed(system, start, 0.0, amplitude_max, continuation.largest_step)

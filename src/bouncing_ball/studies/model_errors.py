@@ -64,8 +64,6 @@ def _of_random_orbits(sample: Orders, release: Release) -> dict[str, tuple]:
     return {
         "order": (("model", "quantity", "sample"), np.log2(once / twice)),
         "law_remainder": (("quantity", "law_sample"), left.factor),
-        "small_parameter": ("law_sample", left.small),
-        "stated_below": ((), error_law.STATED),
     }
 
 
@@ -80,8 +78,8 @@ def orders(parameters: Orders, release: Release) -> xr.Dataset:
     the same numbers for the permanent contact, which has no impact to correct.
 
     For random orbits it has the measured ``order`` (model, quantity, sample);
-    ``law_remainder`` (quantity, law_sample), which is |error - K/ϖ|/(S δ) and at most M by the law
-    where ``small_parameter`` δ (law_sample,) is below the number ``stated_below``.
+    ``law_remainder`` (quantity, law_sample), which is |error - K/ϖ|/(S δ) and at most M by the law.
+    M was fitted to other orbits (:data:`~bouncing_ball.accuracy.error_law.REMAINDER`).
     """
     n, lam, tolerance = parameters.n, parameters.amplitude, parameters.tolerance
     # ζ by Eq. 16; the restitution model has the r that a contact with this ζ really has.

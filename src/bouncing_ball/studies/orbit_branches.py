@@ -3,14 +3,13 @@
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.contacts.spring_damper import Release, SpringDamper
+from bouncing_ball.contacts.spring_damper import Release
 from bouncing_ball.continuation.branch import Branch, ContinuationError
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
-from bouncing_ball.orbits.columns import PLACE, branch_columns, columns, orbits_in_columns
+from bouncing_ball.orbits.columns import PLACE, branch_columns, columns, joined, no_branch
 from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.parameters import Family, FrequencyRatio, LossyRestitution, Many, Parameters
 from bouncing_ball.studies.continuation import Continuation, branch_along_amplitude
@@ -54,17 +53,12 @@ def _branch(
     ratio: float, parameters: Branches, release: Release, continuation: Continuation
 ) -> xr.Dataset:
     """The branch of one contact; NaN, with the reason, where it cannot be followed."""
-    n, count = parameters.n, parameters.points
+    r, top = parameters.restitution, parameters.amplitude_max
     try:
-        followed = branch_along_amplitude(
-            n, parameters.restitution, ratio, parameters.amplitude_max, release, continuation
-        )
-        found = branch_columns(*followed, count)
+        followed = branch_along_amplitude(parameters.n, r, ratio, top, release, continuation)
+        found = branch_columns(*followed, parameters.points)
     except (NoOrbitError, ContinuationError) as error:
-        missing = (
-            SpringDamperModel(SpringDamper(1.0, 0.0)).system(n).orbit(np.full((count, 4), np.nan))
-        )
-        found = orbits_in_columns(missing, missing[:0], [], [str(error)] * 2)
+        found = no_branch(parameters.points, error)
     return found.assign_coords(frequency_ratio=ratio)
 
 
@@ -80,8 +74,7 @@ def orbit_branches(parameters: Domains, release: Release, continuation: Continua
     """
     ratios = parameters.frequency_ratio
     rows = [_branch(ratio, parameters, release, continuation) for ratio in ratios]
-    dataset = xr.concat(rows, "frequency_ratio", join="outer")
-    return describe(dataset.assign(special_kind=dataset.special_kind.fillna("").astype(str)))
+    return describe(joined(rows, "frequency_ratio"))
 
 
 def both_domains(

@@ -25,10 +25,9 @@ _SHOWN = (
 )
 # Balls that end at rest, on an orbit, on a doubled one, and locked. None comes near chaos, which
 # no two computers have in common.
-_BALLS = xr.Dataset(
-    {"ball_restitution": 0.5, "ball_frequency_ratio": 80.0, "start_phase": 1.0, "velocity": -3.0}
-).assign(ball_amplitude=("motion", [0.6, 1.2, 1.6, 2.5]))
-_LAST = 100
+_GIVEN = ("ball_restitution", "ball_frequency_ratio", "ball_amplitude", "start_phase", "velocity")
+_BALLS = np.broadcast_arrays(0.5, 80.0, [0.6, 1.2, 1.6, 2.5], 1.0, -3.0)
+_ENDS = ("periods", "impacts", "end_impact", "end_phase", "end_speed", "end_time")
 
 
 class References(Parameters):
@@ -59,18 +58,17 @@ def reference_orbits(parameters: References) -> xr.Dataset:
 
 
 def _followed() -> xr.Dataset:
-    r, omega, phase, velocity, lam = (_BALLS[name].values for name in _BALLS)
+    r, omega, lam, phase, velocity = _BALLS
     ends = []
     for law in (r, SpringDamper.from_restitution(r, omega, Release.DISPLACEMENT)):
-        found, run = label(law, lam, phase, velocity), simulate(law, lam, phase, velocity, _LAST)
-        last = run.impacts - 1, np.arange(lam.size)
+        found, run = label(law, lam, phase, velocity), simulate(law, lam, phase, velocity, 100)
+        last = run.impacts - 1, np.arange(r.size)
         at = run.phase, -run.relative_velocity, run.time + run.settling
-        ends.append((found.periods, found.impacts, last[0], *(values[last] for values in at)))
-    names = ("periods", "impacts", "end_impact", "end_phase", "end_speed", "end_time")
-    values = zip(names, map(np.array, zip(*ends, strict=True)), strict=True)
-    return _BALLS.assign(
-        {name: (("model", "motion"), value) for name, value in values}
-    ).assign_coords(model=["restitution", "spring-damper"])
+        ends.append([found.periods, found.impacts, last[0], *(values[last] for values in at)])
+    given = {name: ("motion", values) for name, values in zip(_GIVEN, _BALLS, strict=True)}
+    results = zip(_ENDS, np.swapaxes(ends, 0, 1), strict=True)
+    of_models = {name: (("model", "motion"), values) for name, values in results}
+    return xr.Dataset(given | of_models, {"model": ["restitution", "spring-damper"]})
 
 
 def _under(rule: Release, omega: np.ndarray, seed: int) -> xr.Dataset:

@@ -88,7 +88,7 @@ def both_histories(parameters: Histories, release: Release) -> xr.Dataset:
     n, lam = parameters.n, parameters.amplitude
     rigid = RestitutionModel(parameters.restitution).require_orbit(n, lam)
     time = np.linspace(0.0, 2 * np.pi * n, parameters.samples)
-    height, _ = rigid.path(np.minimum(time, time[-1] * (1 - 1e-15)))
+    height, _ = rigid.path(time)
     return describe(
         dataset[["table_phase", "ball", "contact", *_STATE]].assign(
             restitution_ball=("sample", height),

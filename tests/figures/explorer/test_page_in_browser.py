@@ -166,7 +166,7 @@ def test_the_badge(seen):
     assert pasted["kind"] == "bad" and "Infinity (settings of lammps)" in pasted["text"]
     assert wrong["kind"] == "bad" and float(wrong["worst"]) > BOUND
     lost = seen["badges"]["lost"]
-    assert lost["kind"] == "bad" and "end_phase of a" in lost["text"]
+    assert lost["kind"] == "bad" and "(end_phase, row " in lost["text"]
     assert wrong["text"].startswith("WRONG") and wrong["colour"] == "rgb(176, 0, 32)"
     # The policy does not let a changed script run, and what was not checked says so.
     assert tampered["kind"] == "" and tampered["text"].startswith("Not checked")

@@ -11,7 +11,7 @@ def closer_with_stiffness(data):
     r"""the stiffer the contact, the closer the apparent restitution is to r
 
     Condition: on no curve of Figs. 5 and 6 does the difference from r grow again by more than is
-    seen
+    visible
 
     Remark: it grows again where the apparent restitution sinks below r. For a stiff contact
     $r_a - r = -\zeta(1+r)^2(1-\Lambda\sin\varphi)/(n\pi\varpi)$ to first order, so that it comes
@@ -19,7 +19,7 @@ def closer_with_stiffness(data):
 
     Answer: the sentence describes the figure, on whose scale the curves do approach r
     """
-    seen = {"a hundredth is seen": 0.01, "a thousandth is seen": 0.001}
+    seen = {"a hundredth is visible": 0.01, "a thousandth is visible": 0.001}
     return {reading: at_most(evidence.rebound(data), limit) for reading, limit in seen.items()}
 
 
@@ -37,11 +37,11 @@ def depends_on_amplitude(data):
 def dip_at_12(data):
     """at an amplitude of 1.2 the apparent restitution first decreases slightly, then rises
 
-    Condition: the curve of that amplitude sinks below r by what is seen
+    Condition: the curve of that amplitude sinks below r by a visible amount
 
     Answer: the curve described may be that of 0.7, with the labels swapped
     """
-    seen = {"a thousandth is seen": 0.001, "a hundredth is seen": 0.01}
+    seen = {"a thousandth is visible": 0.001, "a hundredth is visible": 0.01}
     return {reading: at_least(evidence.dip(data, 1.2), limit) for reading, limit in seen.items()}
 
 
@@ -49,7 +49,7 @@ def dip_at_12(data):
 def soft_end_of_12(data):
     """at an amplitude of 1.2 the apparent restitution tends to this value at a frequency ratio of 1
 
-    Remark: so it does, in these digits, at the other two amplitudes
+    Remark: the value has the same digits at the other two amplitudes
     """
     return data["fig06"].apparent_restitution.sel(case=2, frequency_ratio=1.0)
 
@@ -60,6 +60,6 @@ def negligible_above_100(data):
 
     Condition: the difference is below a hundredth on every curve from there on
 
-    Remark: the difference itself, as the paper says; its share of r is below, at the conclusion
+    Remark: the paper speaks of the difference; its share of r is part of the claim *safe above 100*
     """
     return at_most(evidence.worst_when_stiff(abs(evidence.apparent(data))), 0.01)

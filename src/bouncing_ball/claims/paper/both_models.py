@@ -78,10 +78,10 @@ def safe_above_100(data):
     there on
 
     Remark: the paper sets its limit for the greatest height (Eq. 37) and for permanent contact
-    only, and there every orbit keeps it. The bouncing-off velocity and the apparent restitution
-    miss it for the smallest restitution coefficient, by little. As a share of a cycle the phase
-    keeps it; relative to its own size, which depends on the origin, it does not: the phase is zero
-    at the saddle-node, so that next to it no contact is stiff enough
+    only, and every orbit stays within it there. The bouncing-off velocity and the apparent
+    restitution exceed it slightly for the smallest restitution coefficient. The phase stays within
+    it as a share of a cycle. Relative to its own size, which depends on the origin, it does not,
+    because it is zero at the saddle-node
 
     Answer: the limit is set for heights and permanent contact, and there it holds
     """

@@ -24,11 +24,11 @@ def ends_of_the_approximate_map(data):
 
 
 def swapped_labels(data):
-    """All three amplitudes lie below that of Eq. 8, and the dip is the shallower the nearer they
-    are to it: what the paper describes is seen at the smallest one and cannot be seen at the
-    largest. There the value at the soft end has the same digits. In the text at hand the labels
-    stand in rising order from the top, the curves, where they are farthest apart, in falling
-    order. Swapped labels are the likely cause.
+    """All three amplitudes lie below that of Eq. 8, and the dip is shallower the nearer they are to
+    it. The dip that the paper describes is visible at the smallest amplitude and not at the
+    largest, and both have the printed value at the compliant end. In the text at hand the labels
+    stand in rising order from the top, but the curves in falling order. Swapped labels are the
+    likely cause.
     """
     soft_end = data["fig06"].apparent_restitution.sel(case=0, frequency_ratio=1.0)
     return {
@@ -48,8 +48,8 @@ def period_doubling_turns(data):
 
 
 def threshold_by_equation_34(data):
-    """The paper's own Eq. 34, which is right, gives the computed frequency ratio. At the printed
-    one the error is still well above its limit.
+    """Eq. 34 of the paper, which is right, gives the computed frequency ratio. At the printed one
+    the error is well above its limit.
     """
     return {
         "error of Eq. 34": of_formula(data, "Eq. 34"),
@@ -58,12 +58,12 @@ def threshold_by_equation_34(data):
 
 
 def no_reading_fits(data):
-    """No reading of the equations that was tried gives all printed digits of the softer contacts,
-    and some of the printed saddle-nodes lie below every orbit that the equations have.
+    """No reading of the equations that we tried gives all printed digits of the more compliant
+    contacts, and some of the printed saddle-nodes lie below every orbit of the equations.
     """
     soft = data["forensics"].sel(rows="softer rows")
     below_all = soft.unreachable.sel(reading="equations as they stand")
     return {
-        "largest number of softer entries reproduced": below(soft.reproduced, soft.entries),
+        "largest number of entries reproduced in these rows": below(soft.reproduced, soft.entries),
         "saddle-nodes printed below every orbit": at_least(below_all, 1),
     }

@@ -18,7 +18,7 @@ def stiff_limit(data):
 def soft_divergence(data):
     """the models diverge when the stiffness decreases
 
-    Condition: no relative error is below 1 % at the softest contact scanned
+    Condition: no relative error is below 1 % at the most compliant contact scanned
 
     Remark: at a frequency ratio of 1; the spring-damper model has no saddle-node there
     """

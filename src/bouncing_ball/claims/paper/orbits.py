@@ -4,7 +4,7 @@ from itertools import product
 from typing import Any
 
 from bouncing_ball.claims import evidence
-from bouncing_ball.claims.claim import Claim, claim, formula, slip
+from bouncing_ball.claims.claim import Claim, claim, formula
 from bouncing_ball.claims.paper import explanations as why
 from bouncing_ball.claims.paper import restitution_model
 from bouncing_ball.claims.parameters import STIFF
@@ -63,7 +63,7 @@ def superimposed_when_stiff(data):
 def apart_when_soft(data):
     """the curves of both phases diverge as the frequency ratio decreases
 
-    Condition: every contact of the softest branch is longer than a hundredth of a radian
+    Condition: every contact of the most compliant branch is longer than a hundredth of a radian
     """
     return at_least(evidence.contact_durations(data, 0), 0.01)
 
@@ -72,7 +72,7 @@ def apart_when_soft(data):
 def saddle_node_falls(data):
     """with decreasing frequency ratio the saddle-node moves to lower amplitudes
 
-    Condition: it falls from every row of Table 1 to the next softer one, for every n
+    Condition: it falls from every row of Table 1 to the next more compliant one, for every n
 
     Remark: the introduction says that the existence conditions of the orbits change
     """
@@ -106,7 +106,7 @@ def period_doubling_rises_when_compliant(data):
 def range_widens(data):
     """with decreasing frequency ratio the stability range is extended
 
-    Condition: the width grows from every row of Table 1 to the next softer one, for every n
+    Condition: the width grows from every row of Table 1 to the next more compliant one, for every n
     """
     return above(evidence.softening(data).diff("bound"), 0)
 
@@ -153,7 +153,7 @@ def departure_from_nπ(data):
 
     Condition: it is at least 0.2 % from nπ at every contact up to there, for every amplitude
 
-    Remark: the paper does not say when a departure starts; 0.2 % is taken for seen
+    Remark: the paper does not say when a departure starts; we take 0.2 % for visible
     """
     sweep = data["fig10"].sel(frequency_ratio=slice(None, STIFF))
     error = abs(sweep.bounce_velocity / sweep.restitution_bounce_velocity - 1)
@@ -174,25 +174,3 @@ def amplitude_does_not_matter(data):
     """
     meeting = evidence.amplitude_matters_below(data)
     return {f"on an axis from {left} on": at_most(meeting, left) for left in (2, 1)}
-
-
-SLIPS = [
-    slip(
-        "equations cited",
-        "before Eq. 21",
-        "the equations of the n-T orbits are obtained from Eqs. 12, 13, 16 and 17",
-        "those of the flight are Eqs. 14 and 15; 16 and 17 define damping and apparent restitution",
-    ),
-    slip(
-        "figures cited",
-        "before Fig. 8",
-        "Figs. 8-10 show the existence domains",
-        "Figs. 8 and 9 do; Fig. 10 shows a velocity against the frequency ratio",
-    ),
-    slip(
-        "caption of Fig. 15",
-        "Fig. 15",
-        "the caption gives an amplitude of 1",
-        "the figure is drawn over the amplitude",
-    ),
-]

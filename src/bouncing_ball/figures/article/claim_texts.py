@@ -38,16 +38,14 @@ class Claims:
     def count(self, verdict: str = "", *, table: str = "", group: str = "independent") -> int:
         """Number of claims with a verdict, or of all without one; of one table if it is named.
 
-        ``group`` is ``independent`` for all claims but restatements and slips, ``all`` for
-        restatements as well, or the name of one group.
+        ``group`` is ``independent`` for all claims but restatements, ``all``, or the name of one
+        group.
         """
-        groups = {claim.group for claim in self.all} - {"restatement", "slip"}
-        counted = {"independent": groups, "all": groups | {"restatement"}}.get(group, {group})
         return sum(
-            claim.group in counted
-            and verdict in ("", claim.verdict)
-            and table in ("", claim.printed_table)
+            (claim.group == group or group == "all")
+            or (group == "independent" and claim.group != "restatement")
             for claim in self.all
+            if verdict in ("", claim.verdict) and table in ("", claim.printed_table)
         )
 
     def asked(self, name: str) -> bool:

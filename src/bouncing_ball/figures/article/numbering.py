@@ -9,12 +9,12 @@ _CAPTION = re.compile(r"\*\*(Figure|Table) «(\w+)»")
 _REFERENCE = re.compile(r"«([^»\n]+)»")
 
 
-def numbered(text: str, figures: int = 16, tables: int = 1) -> str:
+def numbered(text: str) -> str:
     """The text with numbers in its headings and in place of ``«name»``.
 
     A section is referred to by its heading. Figures and tables are numbered in the order of their
-    captions, ``**Figure «name»`` and ``**Table «name»``, after those that have the numbers of the
-    paper, ``figures`` and ``tables`` of them.
+    captions, ``**Figure «name»`` and ``**Table «name»``: after the 16 figures and the table that
+    have the numbers of the paper, and in a supplement from S1.
 
     Raises
     ------
@@ -35,12 +35,13 @@ def numbered(text: str, figures: int = 16, tables: int = 1) -> str:
     def heading(found: re.Match[str]) -> str:
         nonlocal section, part
         section, part = (section + 1, 0) if found[1] == "##" else (section, part + 1)
-        numbers[found[2]] = f"{section}.{part}" if part else f"{section}"
+        numbers[found[2]] = f"{prefix}{section}.{part}" if part else f"{prefix}{section}"
         return f"{found[1]} {numbers[found[2]]}{'' if part else '.'} {found[2]}"
 
+    prefix = "S" if text.startswith("# Supplement") else ""
     text = _HEADING.sub(heading, text)
-    count = Counter(Figure=figures, Table=tables)
+    count = Counter() if prefix else Counter(Figure=16, Table=1)
     for kind, name in _CAPTION.findall(text):
         count[kind] += 1
-        numbers[name] = str(count[kind])
+        numbers[name] = f"{prefix}{count[kind]}"
     return _REFERENCE.sub(lambda found: numbers[found[1]], text)

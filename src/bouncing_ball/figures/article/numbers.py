@@ -1,13 +1,7 @@
 """Numbers of datasets as texts."""
 
 import math
-from collections.abc import Iterable, Mapping
-from typing import Any
-
-import xarray as xr
-
-from bouncing_ball.datasets.selection import index_of
-from bouncing_ball.errors import ModelError
+from collections.abc import Iterable
 
 FORMATS = ("decimal", "listed", "pairs", "percent", "short")
 """The functions of this module that templates can call."""
@@ -79,27 +73,3 @@ def pairs(left: Iterable[float], right: Iterable[float]) -> list[str]:
     ['(0.85, 1)', '(0.65, 1.2)']
     """
     return [f"({short(a)}, {short(b)})" for a, b in zip(left, right, strict=True)]
-
-
-def value_at(data: Mapping[str, xr.Dataset], dataset: str, variable: str, **where: Any) -> float:
-    """One number of a dataset, at the given coordinates.
-
-    Raises
-    ------
-    ModelError
-        If there is no such place, or more than one number is left.
-
-    Examples
-    --------
-    >>> value_at({"t": xr.Dataset({"x": ("n", [1.0, 3.0])}, {"n": [1, 2]})}, "t", "x", n=2)
-    3.0
-    """
-    chosen = data[dataset][variable]
-    for name, wanted in where.items():
-        try:
-            chosen = chosen.isel({name: index_of(chosen, name, wanted)})
-        except ModelError as error:
-            raise ModelError(f"{dataset}: {variable}: {error}") from None
-    if chosen.size != 1:
-        raise ModelError(f"{dataset}: {variable} at {where} is {chosen.size} numbers, not one")
-    return chosen.item()

@@ -14,6 +14,9 @@ from bouncing_ball.figures.article.pandoc import pandoc
 
 # A figure of the article: the picture, and its caption on the lines after it.
 _FIGURE = re.compile(r"^!\[[^\]\n]*\]\((\S+)\.png\)\n((?:.+\n)+)", re.MULTILINE)
+# The caption of a table, in the paragraph before it.
+_TABLE = re.compile(r"^(\*\*Table (?:.+\n)+)(?=\n\|)", re.MULTILINE)
+_STICKY = "```{=typst}\n#block(sticky: true)[\n```\n\n\\1\n```{=typst}\n]\n```\n"
 # A link to a file of the repository that is not among the results.
 _OUTSIDE = re.compile(r"\]\((?!https?:|figures/|#)")
 # GitHub's Markdown with formulas; straight quotes are not changed.
@@ -21,7 +24,7 @@ _READER = "commonmark_x+implicit_figures-smart"
 
 
 def for_pdf(markdown: str) -> str:
-    r"""The text with vector figures, and with each caption as a part of its figure.
+    r"""The text with vector figures, each with its caption, and tables on the page of theirs.
 
     Links to files of the repository start from ``results``, where the PDF is.
 
@@ -34,11 +37,15 @@ def for_pdf(markdown: str) -> str:
     captioned = _FIGURE.sub(
         lambda found: f"![{' '.join(found[2].split())}]({found[1]}.svg)\n", markdown
     )
-    return _OUTSIDE.sub("](../", captioned)
+    return _OUTSIDE.sub("](../", _TABLE.sub(_STICKY, captioned))
 
 
-def article_pdf(markdown: str, template: str | Path, folder: str | Path) -> bytes:
+def article_pdf(
+    markdown: str, template: str | Path, folder: str | Path, long_tables: bool = False
+) -> bytes:
     """The PDF of an article, set with a Typst template of pandoc; its pictures are in a folder.
+
+    A table stays on one page, unless there are ``long_tables``.
 
     Raises
     ------
@@ -50,7 +57,8 @@ def article_pdf(markdown: str, template: str | Path, folder: str | Path) -> byte
     except ImportError:
         raise ModelError("Typst is missing: pip install 'bouncing-ball[pdf]'") from None
     # The heading of the first level is the title.
-    options = ("--standalone", f"--template={template}", "--shift-heading-level-by=-1")
+    options = ["--standalone", f"--template={template}", "--shift-heading-level-by=-1"]
+    options.append(f"--variable=breakable:{str(long_tables).lower()}")
     source = pandoc(for_pdf(markdown), _READER, "typst", *options).encode()
     # Its types know a text and a folder of one kind only.
     compiler: Any = typst.compile

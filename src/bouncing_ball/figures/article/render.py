@@ -1,9 +1,7 @@
 """The article and its supplement as Markdown, from templates, datasets, tables, references."""
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import xarray as xr
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
@@ -25,8 +23,8 @@ def render_article(
     Raises
     ------
     ModelError
-        If a place of a dataset, a claim, an explanation or a reference does not exist.
-    jinja2.UndefinedError
+        If a claim or a reference does not exist.
+    KeyError, jinja2.UndefinedError
         If a template names anything else that does not exist.
     """
     folder = Path(template).parent
@@ -38,22 +36,12 @@ def render_article(
         keep_trailing_newline=True,
     )
 
-    def at(dataset: str, variable: str, digits: int | None = None, **where: Any) -> str:
-        """One number of a dataset as text, with so many decimals."""
-        value = numbers.value_at(data, dataset, variable, **where)
-        return numbers.short(value) if digits is None else numbers.decimal(value, digits)
-
-    def versions(dataset: xr.Dataset) -> dict[str, str]:
-        """The versions of the libraries with which a dataset was made; empty if it does not say."""
-        return json.loads(dataset.attrs.get("provenance_versions", "{}"))
-
     environment.globals.update(
         {name: getattr(numbers, name) for name in numbers.FORMATS},
         data=data,
         tables=tables,
         claims=Claims(data["claims"]),
-        at=at,
-        versions=versions,
     )
     text = environment.get_template(Path(template).name).render()
-    return with_citations(numbered(text), folder)
+    typeset = numbered(text).replace("Λ_SD", r"$\Lambda_{SD}$")
+    return with_citations(typeset, folder)

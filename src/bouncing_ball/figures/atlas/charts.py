@@ -82,7 +82,7 @@ def over_range(data: xr.Dataset, quantity: str = "max_height", n: int = 1) -> Fi
             part = data.sel(n=n, quantity=quantity, release=release, model=model)
             edges = part.restitution_edge, part.position_edge
             needed = part.needed.transpose("position", "restitution").clip(LEVELS[0], 1e6)
-            mesh = axes.pcolormesh(*edges, needed, cmap="Blues", norm=norm)
+            mesh = axes.pcolormesh(*edges, needed, cmap="Blues", norm=norm, rasterized=True)
             axes.set(xlabel="restitution coefficient $r$", ylabel="position in the range")
             axes.label_outer()
             axes.set_title(f"{model} model, {release}", fontsize=8)

@@ -1,3 +1,3 @@
-"""The explorer: one page that computes orbits in the browser, and checks itself against the
-package.
+"""The explorer: one page that computes orbits and follows balls in the browser, and checks itself
+against the package.
 """

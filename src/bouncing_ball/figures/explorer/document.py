@@ -9,42 +9,24 @@ import base64
 import hashlib
 import json
 from importlib.resources import files
+from typing import Any
 
-import numpy as np
 import xarray as xr
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from bouncing_ball.datasets.selection import each
-
 BOUND = 1e-11
 """Difference from Python above which the badge is red: a hundred times the largest seen."""
-_NAMES = "model engines simulation plot state orbit sound stage page"
-SCRIPTS = [f"{name}.js" for name in _NAMES.split()]
-STATES = {
-    ("release", "sample"): ("release", "restitution", "frequency_ratio", "n", "amplitude"),
-    ("model", "motion"): ("model", "ball_restitution", "ball_frequency_ratio", "ball_amplitude",
-                          "start_phase", "velocity"),
-}  # fmt: skip
-"""Parameters of a reference orbit and of a ball, in the order of its ``state``, by dimensions."""
+SCRIPTS = "model engines simulation plot state orbit sound stage page".split()
 
 
 def references(data: xr.Dataset) -> str:
     """The reference orbits and balls as JSON, one per line; what does not exist is null."""
-    tables = []
-    for dims, state in STATES.items():
-        names = [str(x) for x in data.data_vars if data[x].dims == dims and x not in state]
-        rows = []
-        for one in each(data, *dims):
-            values = [float(one[name]) for name in names]
-            row = {
-                "state": [one[name].item() for name in state],
-                "values": [value if np.isfinite(value) else None for value in values],
-            }
-            rows.append(row)
-        tables.append({"names": names, "rows": rows})
-    commit = str(data.attrs.get("provenance_commit", "unknown"))
-    found = {"commit": commit, "orbits": tables[0], "balls": tables[1]}
-    return json.dumps(found, allow_nan=False).replace("}, {", "},\n{")
+    found: dict[str, Any] = {"commit": str(data.attrs.get("provenance_commit", "unknown"))}
+    for kind, dims in {"orbits": {"release", "sample"}, "balls": {"model", "motion"}}.items():
+        table = data.drop_dims(set(data.dims) - dims).to_dataframe().reset_index()
+        rows = table.astype(object).where(table.notna(), None)
+        found[kind] = {"names": list(table), "rows": rows.values.tolist()}
+    return json.dumps(found, allow_nan=False).replace("], [", "],\n[")
 
 
 def _allowed(text: str) -> str:
@@ -66,7 +48,7 @@ def to_html(data: xr.Dataset, engines: str) -> str:
     """
     *scripts, look, scenes = (
         files(__package__).joinpath(name).read_text(encoding="utf-8")
-        for name in (*SCRIPTS, "page.css", "scenes.json")
+        for name in (*(f"{name}.js" for name in SCRIPTS), "page.css", "scenes.json")
     )
     script, style = "\n" + "\n".join(scripts), f"\n{look}"
     environment = Environment(

@@ -149,7 +149,7 @@ function fillTables(found, question) {
   $("orbit-rows").replaceChildren(
     row("exists", cells(o => [o.exists ? "yes" : "no", o.exists, "exists"])),
     row("stable", cells(o => [yes(o, o.is_stable), o.is_stable, "is_stable"])),
-    row("the ball's own (sampled only)", cells(o => [yes(o, sampledAdmissible(o, contact))])),
+    row("admissible (sampled only)", cells(o => [yes(o, sampledAdmissible(o, contact))])),
     row("saddle-node Λ", cells((o, l) => [shown(l.saddle_node), l.saddle_node, "saddle_node"])),
     row("period doubling Λ", cells((o, l) => [shown(l.period_doubling), l.period_doubling, "period_doubling"])),
     ...Object.entries(ORBIT_ROWS).map(([key, name]) => row(name, cells(o => [shown(o[key]), o[key], key]))),

@@ -116,7 +116,7 @@ addEventListener("hashchange", () => show(location.hash));
 // ---- The badge: the page against Python.
 function check() {
   const {references: {commit, orbits, balls}, engines} = REFERENCES;
-  const parts = [compareOrbits(orbits), compareBalls(balls), compareEngines(engines)];
+  const parts = [compareRows(orbits, orbitAgain), compareRows(balls, ballAgain), compareEngines(engines)];
   const {worst, where} = parts.reduce((one, other) => other.worst <= one.worst ? one : other);
   const good = worst <= BOUND;
   $("badge").className = good ? "good" : "bad";

@@ -50,7 +50,7 @@ function parse(hash) {
       + (name in DEFAULTS ? ` (in its place ${DEFAULTS[name]})` : ""));
   }
   if (state.tab === "design" && state.engine !== "none") {
-    // The engine's own rule, where it has not the one that is chosen.
+    // An engine that lacks the chosen release rule is used with the rule that it has.
     const rules = Object.keys(ENGINES[state.engine].snippets);
     if (!rules.includes(state.release)) [state.release] = rules;
   }

@@ -10,15 +10,14 @@ from bouncing_ball.attractors.motions import Kind, Motions
 from bouncing_ball.contacts.spring_damper import Release
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.parameters import (
-    Amplitude,
     FrequencyRatio,
-    LossyRestitution,
     Many,
     Parameters,
     Seed,
     number,
 )
-from bouncing_ball.studies.attractors import MODELS, Confidence, Impacts, models, share
+from bouncing_ball.studies.attractors import LIMITS, MODELS, Confidence, Impacts, models, share
+from bouncing_ball.studies.transients import Place
 from bouncing_ball.studies.uncertainty import exponent
 
 MOTIONS = ("permanent contact", "1-T orbit", "other orbits", "locked", "no repetition")
@@ -26,12 +25,10 @@ MOTIONS = ("permanent contact", "1-T orbit", "other orbits", "locked", "no repet
 locked."""
 
 
-class Case(Parameters):
+class Case(Place):
     """One contact and one Λ."""
 
-    restitution: LossyRestitution
     frequency_ratio: FrequencyRatio
-    amplitude: Amplitude
 
 
 class Basins(Parameters):
@@ -68,7 +65,7 @@ def basins(parameters: Basins, release: Release) -> xr.Dataset:
     (case, model). Each has limits, ``_low`` and ``_high``. ``case_restitution``, ``case_ratio`` and
     ``case_amplitude`` are over the case.
     """
-    r, ratio, lam = (np.array([getattr(x, y) for x in parameters.cases]) for y in Case.model_fields)
+    r, lam, ratio = (np.array([getattr(x, y) for x in parameters.cases]) for y in Case.model_fields)
     count, level = parameters.starts, parameters.confidence
     random = np.random.default_rng(parameters.seed)
     middle, shifts = (np.arange(count) + 0.5) / count, np.array(parameters.shifts)
@@ -79,7 +76,7 @@ def basins(parameters: Basins, release: Release) -> xr.Dataset:
     start = np.concatenate([np.meshgrid(phase, speed)[0].ravel(), beside.ravel()])
     towards = np.concatenate([np.repeat(speed, count), np.tile(fast, shifts.size + 1)])
     amplitude = lam[:, np.newaxis]
-    shape, limits = (lam.size, len(MODELS)), ("", "_low", "_high")
+    shape = lam.size, len(MODELS)
     ends = np.empty((*shape, start.size), dtype=np.int8)
     for k, model in enumerate(models(r[:, np.newaxis], ratio[:, np.newaxis], release)):
         velocity = amplitude * np.cos(start) - towards
@@ -107,7 +104,7 @@ def basins(parameters: Basins, release: Release) -> xr.Dataset:
             **{
                 f"{name}{end}": (over, np.reshape(x, (*shape, *np.shape(x)[1:]))[..., k])
                 for name, (over, x) in values.items()
-                for k, end in enumerate(limits)
+                for k, end in enumerate(LIMITS)
             },
             "case_restitution": ("case", r),
             "case_ratio": ("case", ratio),

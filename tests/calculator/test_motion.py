@@ -117,8 +117,7 @@ def motion(kind, other, **more):
             (
                 motion(
                     *("chaotic", "locked"),
-                    mean_height={"a": Mean(2.0, width), "b": Mean(2.0 * (1 + off), width)},
-                    mean_power={"a": Mean(1.0, 0.0), "b": Mean(1.01, 0.0)},
+                    mean_error={"height": Mean(off, width / 2), "power": Mean(0.01, 0.0)},
                 ),
                 good,
                 says,
@@ -128,10 +127,15 @@ def motion(kind, other, **more):
                     0.02,
                     0.01,
                     True,
-                    "the mean height is 2 % ± 1 % off and the mean power is 1 % ± 0 %",
+                    "the mean height is 2 % ± 0.5 % off and the mean power is 1 % ± 0 %",
                 ),
-                (0.02, 0.04, False, "is open: the mean height is 2 % ± 4 % off"),
-                (0.12, 0.01, False, "not good enough: the mean height is 12 % ± 1 % off"),
+                (
+                    0.04,
+                    0.04,
+                    False,
+                    "not decided at 5 %: the mean height is 4 %",
+                ),
+                (0.12, 0.01, False, "not good enough: the mean height is 12 % ± 0.5 % off"),
             )
         ),
     ],

@@ -64,7 +64,8 @@ quick: $(SETUP)
 test-cluster: $(SETUP)
 	$(BIN)/python -m pytest -m cluster tests/workflow
 
-# Whole runs on a processor without its fast paths, large samples; on schedule in CI.
+# What takes long, or repeats for more models and laws what other tests assert: on schedule
+# in CI, and before a release.
 test-long: $(SETUP)
 	$(PYTEST) -m long --durations 20
 

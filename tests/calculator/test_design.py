@@ -20,6 +20,8 @@ from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
+pytestmark = pytest.mark.usefixtures("short_runs")
+
 STEEL = {"mass": "20 g", "frequency": "50 Hz", "acceleration": "0.8 g", "stiffness": "1e7 N/m"}
 # The orbit of Figs. 12-14 and of the thresholds, at 50 Hz.
 PAPER = {"mass": 0.02, "frequency": 50.0, "acceleration": "1 g", "restitution": 0.65, "n": 1}
@@ -74,7 +76,7 @@ def test_every_family_has_its_errors_margins_and_orbit(steel):
             assert standing.period_doubling == pytest.approx(0.8 * rise, rel=1e-14)
 
 
-def test_loads_of_a_damped_contact_by_a_fine_sample(short_runs):
+def test_loads_of_a_damped_contact_by_a_fine_sample():
     found = design(**STEEL, restitution=0.3, n=1, release="force", tolerance=0.5, gravity="0.3 g")
     contact = found.case.contact
     orbit = SpringDamperModel(contact).orbit(1, found.amplitude)
@@ -127,7 +129,7 @@ def test_permanent_contact_needs_what_the_paper_computes():
     assert chosen.needed.by_law == pytest.approx(math.sqrt(second / 0.01), rel=1e-12)
 
 
-def test_a_contact_that_cannot_pull_has_another_restitution(short_runs):
+def test_a_contact_that_cannot_pull_has_another_restitution():
     steel = STEEL | {"acceleration": "3 g", "release": "force"}
     found = design(**steel, restitution=0.30)
     assert found.restitution["displacement"] == pytest.approx(0.30, rel=1e-14)
@@ -148,7 +150,7 @@ def test_ways_to_say_the_same():
         assert errors[0] == pytest.approx(errors[1], rel=1e-9)
 
 
-def test_a_hertz_contact_without_loss_keeps_its_energy(short_runs):
+def test_a_hertz_contact_without_loss_keeps_its_energy():
     # The interpolated signature of this one is 1 + 3·10⁻¹⁵.
     found = design(**HERTZ | {"mass": "20 g"}, restitution=1.0, n=1)
     assert found.corrected.restitution == pytest.approx(1, abs=1e-12) and found.orbits[0].exists
@@ -198,7 +200,7 @@ def test_a_verdict_on_an_orbit_that_only_one_model_has():
     assert found.needed.frequency_ratio is None and "no such orbit" in found.reason
 
 
-def test_an_orbit_that_is_stable_in_the_simple_model_alone(short_runs):
+def test_an_orbit_that_is_stable_in_the_simple_model_alone():
     # Between the period doublings, 1.03746 of the contact (see Table 1) and 1.0382.
     found = design(**UNIT, acceleration=1.0379, stiffness=100.0, tolerance=0.9)
     assert found.orbits[0].errors["max_height"] < 0.9 and not found.is_good_enough
@@ -239,7 +241,7 @@ def test_the_verdict_is_about_the_first_stable_family():
     assert design(**STEEL | {"acceleration": "1.1 g"}, restitution=0.85).n == 2
 
 
-def test_a_stable_orbit_on_which_another_impact_comes_first_is_not_preferred(short_runs):
+def test_a_stable_orbit_on_which_another_impact_comes_first_is_not_preferred():
     # In the contact of this 2-T orbit the ball would rise above the table: it is released before.
     parameters = UNIT | {"n": None, "restitution": 0.15}
     found = design(**parameters, acceleration=3.5, stiffness=1.0, quantity="permanent_contact")
@@ -257,7 +259,7 @@ def test_a_stable_orbit_on_which_another_impact_comes_first_is_not_preferred(sho
     # At the release the force is -2ζϖδ′, or none.
     [({}, True), ({"release": "force"}, False), ({"restitution": 1.0}, False)],
 )
-def test_a_damped_contact_released_at_the_table_pulls(change, pulls, short_runs):
+def test_a_damped_contact_released_at_the_table_pulls(change, pulls):
     found = design(**STEEL | {"restitution": 0.85, "n": 1} | change)
     assert any("pulls before it is released" in note for note in found.notes) is pulls
 
@@ -329,7 +331,7 @@ def test_mistakes(change, says, refusal):
         design(**{**STEEL, "restitution": 0.85, **change})
 
 
-def test_the_orbit_of_a_choice_is_that_of_the_restitution_model(short_runs):
+def test_the_orbit_of_a_choice_is_that_of_the_restitution_model():
     # The most compliant contact with its saddle-node within 20 % has it only at a larger Λ.
     found = design(
         **UNIT | {"n": None, "restitution": 0.614},
@@ -356,7 +358,7 @@ def test_a_tolerance_that_every_contact_meets_needs_no_frequency_ratio():
 @pytest.mark.parametrize(
     "name", [pytest.param(x, marks=() if x in OFTEN else pytest.mark.long) for x in LAWS]
 )
-def test_every_law_is_designed_for_by_its_impact(name, short_runs):
+def test_every_law_is_designed_for_by_its_impact(name):
     given = {"mass": 0.02, "frequency": 50.0, "acceleration": "1 g", "contact_time": "0.3 ms"}
     found = design(**given, restitution=0.65, law=name, n=1)
     assert found.measured_restitution == pytest.approx(0.65, rel=1e-12)

@@ -75,7 +75,7 @@ def test_the_headline_says_what_the_ball_does(amplitude, kind, says):
         assert simple.value == pytest.approx(power.mean(), abs=margin)
 
 
-def test_without_loss_a_ball_stays_beside_the_orbit():
+def test_without_loss_a_ball_stays_beside_the_orbit(short_runs):
     lossless = UNIT | {"restitution": 1.0, "stiffness": 1e4, "tolerance": "5 %"}
     found = design(**lossless, acceleration=0.5)
     assert "nothing is lost" in found.headline and found.is_good_enough

@@ -88,12 +88,9 @@ SPAN = (*FIG05, "frequency_ratio")
         (("figures", "fig12", "amplitude"), 0.6663, "= 0.6663 must be at least 0.666398, the sadd"),
         (("figures", "fig10", "amplitude", 2), 0.5, "must be at least 0.509447, the saddle-node"),
         ((*FIG08, "amplitude_max"), 0.25, "= 0.25 must be at least 0.254724, the saddle-node"),
-        # Of several families the highest decides how far branches must reach, ...
+        # Of several families the highest decides how far branches must reach.
         (("figures", "fig03", "amplitude_max"), 1.27, "= 1.27 must be at least 1.27362, the sadd"),
         (("tables", "table1", "amplitude_max"), 0.76, "at least 0.764171, the saddle-node"),
-        # ... and the lowest what can be shown at one Λ.
-        (("extensions", "ext_basins", "amplitude", 0), 0.3, ""),
-        (("extensions", "ext_basins", "amplitude", 0), 0.25, "at least 0.254724, the saddle-node"),
     ],
 )
 def test_a_mistake_is_named_in_one_line(model, stages, keys, value, message):

@@ -152,7 +152,7 @@ def test_cycle_of_a_permanent_contact():
 @pytest.mark.parametrize("release", RELEASES)
 def test_ensembles_equal_single_runs_exactly(release):
     rng = np.random.default_rng(3)
-    size = 40
+    size = 15
     lam, omega = rng.uniform(0.5, 4.0, size), rng.uniform(1.5, 50.0, size)
     zeta, phase = rng.uniform(0.0, 0.4, size), rng.uniform(-3.0, 3.0, size)
     velocity = lam * np.cos(phase) - rng.uniform(0.0, 5.0, size)

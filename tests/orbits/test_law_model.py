@@ -123,7 +123,9 @@ def test_far_above_the_fold_orbits_are_walked_to_or_said_not_to_be_found(monkeyp
         model.require_orbit(20, 1000.0, Side.UNSTABLE)
 
 
-@pytest.mark.parametrize(("r", "duration"), [(0.85, 0.3), (0.5, 0.6)])
+@pytest.mark.parametrize(
+    ("r", "duration"), [(0.85, 0.3), pytest.param(0.5, 0.6, marks=pytest.mark.long)]
+)
 def test_just_above_the_fold_two_orbits_part_as_the_root_of_the_distance(r, duration):
     model = LawModel(law_of_impact(HuntCrossley, r, duration, rigid_speed(1, r)))
     fold = model.saddle_node(1)

@@ -174,8 +174,8 @@ def test_what_once_was_a_pole_or_a_grazing_orbit(restitution, omega, n, kind):
 @pytest.mark.parametrize("kind", ["saddle_node", "period_doubling"])
 def test_bifurcations_in_sixty_digits(kind):
     with mpmath.workdps(60):
-        found = [check_bifurcation(c, n, kind) for c, n, _ in contacts(2, 40, -1, 5)]
-    assert sum(found) > 30
+        found = [check_bifurcation(c, n, kind) for c, n, _ in contacts(2, 20, -1, 5)]
+    assert sum(found) > 15
 
 
 @pytest.mark.long

@@ -126,14 +126,14 @@ def unit(value):
     return 10.0 ** (np.floor(np.log10(value)) - 1)
 
 
-@slow
+@pytest.mark.long
 def test_the_corrected_model_is_of_second_order_in_all_quantities(errors):
     corrected = errors.relative_error.sel(model="corrected")
     order = np.log(corrected[..., 0] / corrected[..., 1]) / np.log(105 / 31)
     np.testing.assert_allclose(order, 2, atol=0.1)
 
 
-@slow
+@pytest.mark.long
 def test_the_thresholds_are_those_of_another_program(errors):
     """A referee's ϖ for 1 % of the contact's height, so for 1/101 of the restitution model's."""
     names = [*LINEAR, "kuwabara-kono", "hunt-crossley", "tsuji"]
@@ -143,7 +143,7 @@ def test_the_thresholds_are_those_of_another_program(errors):
     assert found.max() / found.min() < 1.01
 
 
-@slow
+@pytest.mark.long
 def test_contacts_of_one_centroid_take_different_times(errors):
     for name in NAMES:
         models = own_models(name, LawErrors(**ONE, **TOLERATED), np.array([100.0]))
@@ -155,7 +155,7 @@ def test_contacts_of_one_centroid_take_different_times(errors):
         assert (impact.duration < 0.99 * np.pi / 100) == ends_early
 
 
-@slow
+@pytest.mark.long
 def test_a_constant_restitution_misses_the_period_doubling_of_a_law_that_falls(errors):
     rigid = errors.relative_error.sel(model="restitution", quantity="period_doubling")
     falling, constant = rigid.sel(law="hunt-crossley"), rigid.sel(law="tsuji")

@@ -32,7 +32,8 @@ import json, os, socket, sys
 server = socket.socket(socket.AF_UNIX)
 server.connect({address!r})
 socket.send_fds(server, [b"3"], [0, 1, 2])
-server.sendall(json.dumps([sys.argv[1:], os.getcwd(), dict(os.environ)]).encode())
+said = [sys.argv[1:], os.getcwd(), dict(os.environ), os.getpgrp()]
+server.sendall(json.dumps(said).encode())
 server.shutdown(socket.SHUT_WR)
 sys.exit(int(server.recv(4) or 1))
 """
@@ -60,11 +61,15 @@ def main(folder: Path) -> None:
             while os.waitpid(-1, os.WNOHANG)[0]:
                 pass
     _, streams, *_ = socket.recv_fds(asking, 1, 3)
-    arguments, where, environment = json.load(asking.makefile())
+    arguments, where, environment, group = json.load(asking.makefile())
     if child := os.fork():
         _, status = os.waitpid(child, 0)
-        asking.sendall(str(os.waitstatus_to_exitcode(status) & 0xFF).encode())
+        # Who asked may have been killed as well.
+        with suppress(BrokenPipeError):
+            asking.sendall(str(os.waitstatus_to_exitcode(status) & 0xFF).encode())
         os._exit(0)
+    # What stops the group of who asked stops this as well.
+    os.setpgid(0, group)
     for number, stream in enumerate(streams):
         os.dup2(stream, number)
     os.closerange(3, max(streams) + 1)

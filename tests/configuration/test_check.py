@@ -4,6 +4,7 @@ import copy
 from pathlib import Path
 
 import pytest
+from snakemake.utils import update_config
 
 from bouncing_ball.configuration.check import check, configuration_model
 from bouncing_ball.configuration.documentation import configuration_page, configuration_schema
@@ -33,6 +34,14 @@ def changed(keys, value):
 
 def test_the_shipped_configuration_is_accepted(model):
     check(model, CONFIG)
+
+
+def test_finer_grids_of_the_whole_motion_are_accepted_and_are_finer(model):
+    config, larger = copy.deepcopy(CONFIG), read_yaml(FOLDER / "motions-large.yaml")
+    update_config(config, larger)
+    check(model, config)
+    assert config["extensions"]["ext_locking"]["amplitude"]["min"] == 0.8
+    assert len(larger["extensions"]) == 5
 
 
 FIG05, FIG08 = ("figures", "fig05"), ("figures", "fig08")

@@ -36,7 +36,7 @@ COARSE = {
     ("ext_basins", "starts"): 20,
     ("ext_diagram", "samples"): 12,
     ("ext_locked", "nodes"): 60,
-    ("ext_means", "samples"): 4,
+    ("ext_means", "starts"): 3,
     ("ext_locking", "samples"): 8,
 }
 

@@ -15,7 +15,7 @@ from bouncing_ball.compare.budgets import PICTURE
 from bouncing_ball.compare.folders import compare_folders
 from bouncing_ball.compare.outcome import Outcome
 from bouncing_ball.compare.page import to_html
-from bouncing_ball.compare.pictures import compare_pictures
+from bouncing_ball.compare.parts import compare_pictures
 from bouncing_ball.compare.terminal import note, to_terminal
 from bouncing_ball.compare.texts import compare_texts
 from bouncing_ball.datasets.netcdf import read_dataset, write_dataset

@@ -5,8 +5,8 @@ from pathlib import Path
 
 from bouncing_ball.compare.accept import accept
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.conclusion import conclude
 from bouncing_ball.pipeline.job import logged
+from bouncing_ball.pipeline.progress import conclude
 
 with logged(snakemake) as lines:
     given = snakemake.params

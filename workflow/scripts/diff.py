@@ -6,8 +6,8 @@ from bouncing_ball.compare.folders import compare_folders
 from bouncing_ball.compare.page import to_html
 from bouncing_ball.compare.terminal import to_terminal
 from bouncing_ball.datasets.files import write_text
-from bouncing_ball.pipeline.conclusion import conclude
 from bouncing_ball.pipeline.job import logged
+from bouncing_ball.pipeline.progress import conclude
 
 table_file, page = Path("results/diff/diff.txt"), Path("results/diff/index.html")
 with logged(snakemake) as lines:

@@ -14,19 +14,8 @@ CONVENTIONS = "CF-1.11"
 """The conventions that the files follow."""
 
 
-def attribute_name(parameter: str) -> str:
-    """The attribute that holds a parameter; in CF a name has letters, digits and underscores only.
-
-    Examples
-    --------
-    >>> attribute_name("frequency_ratio.min")
-    'frequency_ratio__min'
-    """
-    return parameter.replace(".", "__")
-
-
 def parameter_attributes(parameters: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
-    """Nested parameters as flat netCDF attributes, see :func:`attribute_name`.
+    """Nested parameters as flat netCDF attributes, by CF names without points.
 
     Lists of numbers remain lists; anything deeper becomes JSON.
 
@@ -37,15 +26,13 @@ def parameter_attributes(parameters: Mapping[str, Any], prefix: str = "") -> dic
     """
     flat: dict[str, Any] = {}
     for key, value in parameters.items():
-        name = attribute_name(prefix + key)
+        name = (prefix + key).replace(".", "__")
         if isinstance(value, Mapping):
             flat |= parameter_attributes(value, f"{name}.")
         elif isinstance(value, list) and not all(type(x) in (int, float) for x in value):
             flat[name] = json.dumps(value, ensure_ascii=False)
-        elif isinstance(value, bool):
-            flat[name] = int(value)
         else:
-            flat[name] = value
+            flat[name] = int(value) if isinstance(value, bool) else value
     return flat
 
 

@@ -1,13 +1,19 @@
-"""The progress of a run, and an estimate of the time that remains.
+"""The progress of a run, an estimate of the time that remains, and its last sentence.
 
 A run notes when it began and the number of its jobs, and each job that ends adds a line. Snakemake
 counts its steps too, in three lines for each, but does not estimate the time.
+
+A run may end with exit status 1 although no job fails: a difference from the record, or results
+that are not accepted, are results. For a job that fails Snakemake prints ten lines, with a command
+that the user did not type; such a run ends with one sentence instead.
 """
 
 import time
 from pathlib import Path
 
-_NOTES = Path(".snakemake/progress")
+from bouncing_ball.datasets.files import write_text
+
+_NOTES, _CONCLUSION = Path(".snakemake/progress"), Path("results/logs/conclusion")
 
 
 def begin(jobs: int) -> None:
@@ -38,12 +44,18 @@ def share(done: int, jobs: int, seconds: float) -> str:
     >>> share(15, 60, 20.0), share(15, 60, 200.0), share(60, 60, 200.0)
     ('15 of 60, 25 %, about 60 s left', '15 of 60, 25 %, about 10 min left', '60 of 60, 100 %')
     """
-    text = f"{done} of {jobs}, {100 * done // jobs} %"
-    left = seconds * (jobs - done) / done
-    if done >= jobs:
-        return text
-    return (
-        f"{text}, about {left:.0f} s left"
-        if left < 120
-        else f"{text}, about {left / 60:.0f} min left"
-    )
+    text, left = f"{done} of {jobs}, {100 * done // jobs} %", seconds * (jobs - done) / done
+    amount = f"{left:.0f} s" if left < 120 else f"{left / 60:.0f} min"
+    return f"{text}, about {amount} left" if done < jobs else text
+
+
+def conclude(sentence: str) -> None:
+    """End the run with this sentence, which replaces an earlier one."""
+    write_text(_CONCLUSION, sentence)
+
+
+def concluded() -> str:
+    """The sentence with which this run ends, or an empty text; it is removed by this call."""
+    sentence = _CONCLUSION.read_text(encoding="utf-8") if _CONCLUSION.is_file() else ""
+    _CONCLUSION.unlink(missing_ok=True)
+    return sentence

@@ -64,8 +64,7 @@ def to_html(data: xr.Dataset, engines: str) -> str:
         style=style,
         references=references(data),
         engines=engines,
-        scenes=scenes,
-        titles={name: scene["title"] for name, scene in json.loads(scenes).items()},
+        scenes=json.loads(scenes),
         names=list(json.loads(engines)["engines"]),
         bound=repr(BOUND),
     )

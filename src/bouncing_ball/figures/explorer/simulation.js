@@ -158,9 +158,10 @@ function heightSince({at, left, hang}, model, amplitude, since) {
 // ---- On what a ball ends: `kind`, the periods of the table and the impacts until it repeats,
 // the phases of its impacts, and the greatest height at which it is thrown.
 // With instantaneous impacts a ball forgets its past when it sticks, and repeats when it sticks
-// again; else its state must return twice in the same number of impacts. What larger rounding errors
-// would change does not count: the ball then goes on.
-const SAME = 1e-7, GRAIN = 1e-14, MOST_IMPACTS = 4000;
+// again; else its state must return twice in the same number of impacts, and not almost return in
+// a part of them, as it does while it slowly comes to an orbit from both sides. What larger rounding
+// errors would change does not count: the ball then goes on.
+const SAME = 1e-7, NEAR = 1e-4, GRAIN = 1e-14, MOST_IMPACTS = 4000;
 function endOf(...start) {
   const found = followed(...start, 0);
   if (found.kind === "goes on" || found.kind === "stays") return found;
@@ -170,7 +171,7 @@ function endOf(...start) {
 }
 
 function followed(model, amplitude, phase, velocity, grain) {
-  let k = 0, mark = null, turn = 0, lift = null, stuck = false, top = -Infinity;
+  let k = 0, mark = null, turn = 0, almost = 0, lift = null, stuck = false, top = -Infinity;
   const seen = [], end = (kind, periods, impacts, more) => ({kind, periods, impacts, top, seen, ...more});
   for (const {time, at, u, left} of impactsOf(model, amplitude, phase, velocity, grain)) {
     if (left.stays) return end("stays", 1, 0, {since: time + left.settling});
@@ -182,13 +183,14 @@ function followed(model, amplitude, phase, velocity, grain) {
       if (lift) return end("sticks", Math.round((now - lift.now) / TURN), k - lift.k);
       lift = {now, k};
     }
-    if (mark && Math.abs(reduced(at - mark.at)) < SAME
-      && Math.abs(u - mark.u) < SAME * (1 + amplitude)) {
-      const count = k - mark.k, periods = Math.round((time - mark.time) / TURN);
+    const away = mark && Math.max(Math.abs(reduced(at - mark.at)), Math.abs(u - mark.u) / (1 + amplitude));
+    const count = mark && k - mark.k, periods = mark && Math.round((time - mark.time) / TURN);
+    if (mark && away < SAME && periods && (!almost || count % almost)) {
       if (count === turn) return end(stuck ? "sticks" : "repeats", periods, count);
-      [turn, mark, stuck] = [count, {k, at, u, time}, false];
+      [turn, mark, stuck, almost] = [count, {k, at, u, time}, false, 0];
     } else if (!mark || k >= (turn ? mark.k + turn + 1 : 1.5 * mark.k + 8))
-      [turn, mark, stuck] = [0, {k, at, u, time}, false];
+      [turn, mark, stuck, almost] = [0, {k, at, u, time}, false, 0];
+    else if (away < NEAR && periods) almost ||= count;
     stuck ||= left.sticks;
     if (++k === MOST_IMPACTS) return end("goes on", 0, 0);
   }

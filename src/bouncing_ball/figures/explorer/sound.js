@@ -1,4 +1,4 @@
-// A knock at each impact, once it is switched on: its loudness is the speed over the greatest one.
+// A knock at each impact, once it is switched on; its loudness grows with the speed of the impact.
 "use strict";
 
 let audio = null;

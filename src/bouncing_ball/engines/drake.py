@@ -36,16 +36,3 @@ class Drake(Engine):
     def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
         m, double, half_time = self._two(parameters, mass)
         return Physical(m, double / 2, double * half_time)
-
-    def snippet(self, contact: Physical, release: Release, time_step: float) -> str:
-        stiffness, time = self.parameters(contact).values()
-        return f"""\
-plant = MultibodyPlant(time_step={time_step!r})  # s
-plant.set_contact_model(ContactModel.kPoint)
-plant.set_discrete_contact_approximation(DiscreteContactApproximation.kSap)
-# Of ball ({contact.mass!r} kg) and table alike, in N/m and s.
-properties = ProximityProperties()
-AddContactMaterial(
-    point_stiffness={stiffness!r}, friction=CoulombFriction(0, 0), properties=properties
-)
-properties.AddProperty("material", "relaxation_time", {time!r})"""

@@ -1,11 +1,16 @@
 """The interface of an engine: parameters from k, c and m, a release, a scheme, a text to paste."""
 
 import math
+import re
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
+from importlib.resources import files
 from typing import Any, ClassVar, NamedTuple
 
+import numpy as np
+
+from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.engines.scheme import Scheme, free_impact, steps_for
 from bouncing_ball.errors import ModelError, require
@@ -91,7 +96,8 @@ class Engine(ABC):
     """A physics engine and its linear contact between a ball and a wall at rest or moved.
 
     A subclass defines its ``name``, the ``names`` of its parameters, its ``releases`` with the
-    default first, and the ``scheme`` by which it moves a ball in contact.
+    default first, and the ``scheme`` by which it moves a ball in contact. Its text to paste is
+    ``snippets/NAME.txt``.
     """
 
     name: ClassVar[str]
@@ -103,9 +109,37 @@ class Engine(ABC):
     def parameters(self, contact: Physical) -> Parameters:
         """The parameters of a contact, in the units and under the names of the engine."""
 
-    @abstractmethod
+    def numbers(self, contact: Physical) -> dict[str, float]:
+        """The parameters of a contact, those in lists with their place after a dot."""
+        found: dict[str, float] = {}
+        for name, value in self.parameters(contact).items():
+            many = {f"{name}.{k}": x for k, x in enumerate(np.ravel(value).tolist())}
+            found |= many if isinstance(value, list) else {name: value}
+        return found
+
+    def template(self, release: Release) -> str:
+        """The text to paste, with the names of its numbers in their places, as ``@name@``.
+
+        In the file ``snippets/NAME.txt`` the lines for one release only begin with its name.
+        """
+        text = files(__package__).joinpath(f"snippets/{self.name}.txt").read_text("utf-8")
+        lines = (line.rpartition("|") for line in text.splitlines())
+        return "\n".join(line for rule, _, line in lines if rule in ("", release))
+
     def snippet(self, contact: Physical, release: Release, time_step: float) -> str:
-        """The text to paste for a contact, with a time step in s; its comments give the units."""
+        """The text to paste for a contact, with a time step in s; its comments give the units.
+
+        A line about a restitution that does not exist is left out.
+        """
+        values = {"mass": contact.mass, "time_step": time_step, **self.numbers(contact)}
+        texts = {name: repr(value) for name, value in values.items()}
+        texts |= {rule: f"{r:.4f}" for rule, r in self.restitutions(contact, release).items()}
+        names = re.compile(r"@([\w.]+)@")
+        return "\n".join(
+            names.sub(lambda name: texts[name[1]], line)
+            for line in self.template(release).splitlines()
+            if texts.keys() >= {*names.findall(line)}
+        )
 
     @abstractmethod
     def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
@@ -116,6 +150,15 @@ class Engine(ABC):
         ModelError
             If a parameter or the mass is missing, unknown, or outside its range.
         """
+
+    def law(
+        self, parameters: Mapping[str, Any], time: float = 1.0, length: float = 1.0
+    ) -> ContactLaw | None:
+        """The law of a contact with these parameters, in units of time and length in SI units.
+
+        None if it is the spring and damper of :meth:`read`.
+        """
+        return None
 
     def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
         """Sentences on how the engine with these parameters differs from a spring and a damper."""

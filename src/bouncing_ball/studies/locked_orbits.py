@@ -12,7 +12,7 @@ from bouncing_ball.attractors.motions import Kind
 from bouncing_ball.contacts.spring_damper import Release
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.parameters import Many, Seed, number
-from bouncing_ball.studies.attractors import Grid, models, share
+from bouncing_ball.studies.attractors import LIMITS, Grid, models, share
 from bouncing_ball.studies.transients import Transients, transients
 from bouncing_ball.studies.uncertainty import exponent
 
@@ -95,7 +95,7 @@ def locked_orbits(parameters: LockedOrbits, release: Release) -> xr.Dataset:
             **{
                 f"{name}{end}": (dims, np.array(values)[..., k])
                 for name, (dims, values) in limits.items()
-                for k, end in enumerate(("", "_low", "_high"))
+                for k, end in enumerate(LIMITS)
             },
         },
         coords={

@@ -2,12 +2,12 @@
 
 from abc import abstractmethod
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.contact_law import ContactLaw, check_damping, check_positive
+from bouncing_ball.contacts.contact_law import ContactLaw, Unit, check_damping, check_positive
 
 
 @dataclass(frozen=True, repr=False)
@@ -27,6 +27,8 @@ class Hertz(ContactLaw):
 
     stiffness: float | np.ndarray
     damping: float | np.ndarray
+
+    units: ClassVar[dict[str, Unit]] = {"stiffness": Unit("N/m^1.5", 1, -0.5, -2)}
 
     def __post_init__(self):
         check_positive(self.stiffness, "stiffness K")

@@ -19,6 +19,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from bouncing_ball.contacts.contact_law import Unit
 from bouncing_ball.contacts.laws.hertz import Hertz
 
 
@@ -39,6 +40,8 @@ class HuntCrossley(Hertz):
 
     name: ClassVar[str] = "hunt-crossley"
     formula: ClassVar[str] = "K p^1.5 (1 + C p′)"
+
+    units: ClassVar[dict[str, Unit]] = Hertz.units | {"damping": Unit("s/m", 0, -1, 1)}
 
     def root_force(self, root: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """K q³ (1 + C p′)."""

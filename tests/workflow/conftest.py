@@ -36,7 +36,6 @@ COARSE = {
     ("ext_basins", "starts"): 20,
     ("ext_cascades", "samples"): 5,
     ("ext_diagram", "samples"): 12,
-    ("ext_diagram", "impacts"): 200,
     ("ext_locked", "nodes"): 60,
     ("ext_means", "starts"): 3,
     ("ext_locking", "samples"): 8,

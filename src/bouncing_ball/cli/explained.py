@@ -1,25 +1,28 @@
-"""Additions to the ``--help`` of a subcommand: an explanation, and examples to run."""
+"""The subcommands and what their ``--help`` adds: an explanation, and examples to run."""
 
 import textwrap
 import tomllib
-from importlib.resources import files
+from pathlib import Path
+from typing import Any
 
 _WIDTH = 80
-_TEXTS = tomllib.loads(files(__package__).joinpath("explained.toml").read_text("utf-8"))
+COMMANDS: dict[str, dict[str, Any]] = tomllib.loads(
+    Path(__file__).with_suffix(".toml").read_text(encoding="utf-8")
+)
+"""By subcommand: purpose, module of its call, explanation, and examples without the program's name.
 
-EXPLAINED: dict[str, tuple[str, list[str]]] = {
-    name: (" ".join(entry["text"].split()), entry["examples"])
-    for name, entry in _TEXTS["commands"].items()
-}
-"""By subcommand: the explanation, and examples without the name of the program."""
+A module is imported when its subcommand is used, because the list of subcommands needs no numpy.
+"""
+_SYMBOLS = COMMANDS.pop("symbols")
 
 
 def explained(command: str) -> str:
     """The end of the help of a subcommand: explanation, symbols and examples."""
-    text, examples = EXPLAINED[command]
-    lines = [*textwrap.wrap(text, _WIDTH), ""]
+    about = COMMANDS[command]
+    lines = [*textwrap.wrap(about["text"], _WIDTH), ""]
     if command not in ("design", "explain", "diff"):
-        for symbol, meaning in _TEXTS["symbols"].items():
+        for symbol, meaning in _SYMBOLS.items():
             lines += textwrap.wrap(f"{symbol}  {meaning}", _WIDTH, subsequent_indent="   ")
         lines += [""]
-    return "\n".join([*lines, "examples:", *(f"  bouncing-ball {each}" for each in examples)])
+    examples = (f"  bouncing-ball {each}" for each in about["examples"])
+    return "\n".join([*lines, "examples:", *examples])

@@ -44,7 +44,7 @@ the instant ::
 One collocation at each speed gives all of these. Between speeds the four functions are
 interpolated by Chebyshev polynomials in ln v, in which they are smooth. A panel covers a factor
 of eight in speed, and is computed when it is first needed. Where the deepest point of an impact
-reaches a kink of the force, they have only a few derivatives. The panels of laws with kinks are
+reaches a kink at a given depth, they have only a few derivatives. The panels of such laws are
 therefore shorter, and the errors there are some 10⁻⁶ of t_c, σ and D, and 10⁻⁸ of r.
 
 All quantities are dimensionless; all functions broadcast.
@@ -67,7 +67,7 @@ from bouncing_ball.errors import ModelError
 # that of 1/(1 + C v), the interpolation error is of the order of 6⁻²⁴.
 _WIDTH = np.log(8.0)
 _NODES = 24
-# The number of panels in one of those, for a law with kinks.
+# The number of panels in one of those, for a law with kinks at given depths.
 _PARTS = 16
 # Speeds beyond these are replaced by them, because no impact is so slow or so fast.
 _SLOWEST, _FASTEST = 1e-30, 1e30
@@ -114,7 +114,7 @@ def free_impact(law: ContactLaw, speed: ArrayLike) -> Instant:
 
 
 def _width(law: ContactLaw) -> float:
-    return _WIDTH / _PARTS if law.has_kink else _WIDTH
+    return _WIDTH / _PARTS if law.has_kink and law.lag is None else _WIDTH
 
 
 @lru_cache(maxsize=4096)

@@ -196,7 +196,7 @@ def short_runs(monkeypatch):
     """The calculator follows few impacts: long runs are those of calculator/test_motion.py."""
     monkeypatch.setattr("bouncing_ball.calculator.motion._IMPACTS", 20)
     for samples in ("_SAMPLES", "_SAMPLES_OF_LAW"):
-        monkeypatch.setattr(f"bouncing_ball.calculator.motion.{samples}", (4, 12, 4))
+        monkeypatch.setattr(f"bouncing_ball.calculator.motion.{samples}", (4, 1, 12, 4))
 
 
 CHROMIUM = next(

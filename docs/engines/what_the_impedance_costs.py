@@ -1,4 +1,6 @@
-"""MuJoCo's default impedance, d = 0.95, against the spring and damper of the same numbers."""
+"""MuJoCo's impedances, d = 0.95 and the default, against a spring and damper alike."""
+
+import numpy as np
 
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.laws.impedance import Impedance
@@ -11,13 +13,17 @@ from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 R, AMPLITUDE = 0.75, 0.8
 zeta = float(damping_ratio(R, Release.FORCE))
+width = 0.001 * (2 * np.pi * 20) ** 2 / 9.80665  # 1 mm on a table of 20 Hz
 
-print("varpi  sigma/D, spring  sigma/D, d = 0.95  height, d = 0.95  spring's error  corrected")
+print("varpi  impedance    sigma/D  height  spring's error  corrected")
 for ratio in (10.0, 20.0, 50.0):
-    spring, law = SpringDamper(ratio, zeta, Release.FORCE), Impedance(ratio, zeta)
-    shares = [float(x.signature.load / x.signature.duration) for x in (spring, law)]
-    models = LawModel(law), SpringDamperModel(spring), CorrectedModel(Signature(law))
-    exact, other, corrected = (float(m.require_orbit(1, AMPLITUDE).max_height) for m in models)
-    errors = [other / exact - 1, corrected / exact - 1]
-    print(f"{ratio:<5g}  {shares[0]:<15.4f}  {shares[1]:<17.4f}  {exact:<16.4f}", end="  ")
-    print(f"{errors[0]:<14.3%}  {errors[1]:.4%}")
+    spring = SpringDamper(ratio, zeta, Release.FORCE)
+    other = SpringDamperModel(spring).require_orbit(1, AMPLITUDE).max_height
+    for name, least in (("0.95", 0.95), ("0.9 to 0.95", 0.9)):
+        law = Impedance(ratio, zeta, 0.95, least, width)
+        models = LawModel(law), CorrectedModel(Signature(law))
+        orbit, corrected = (model.require_orbit(1, AMPLITUDE) for model in models)
+        shares = Signature(law)(-orbit.relative_impact_velocity)
+        numbers = float(shares.load / shares.duration), orbit.max_height
+        errors = (f"{x / orbit.max_height - 1:>14.3%}" for x in (other, corrected.max_height))
+        print(f"{ratio:<5g}  {name:<11}  {numbers[0]:.4f}   {numbers[1]:.4f}  ", *errors)

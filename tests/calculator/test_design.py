@@ -181,14 +181,13 @@ def test_a_hertz_contact_is_judged_by_its_own_orbits():
     linear = design(**SHAKEN, restitution=0.65, contact_time=found.contact_time, n=1)
     assert linear.frequency_ratio == pytest.approx(found.frequency_ratio, rel=1e-12)
     assert linear.orbits[0].errors["max_height"] != errors["max_height"]
-    # What is not known of it is neither claimed nor judged.
-    assert found.permanent_contact is errors["permanent_contact"] is None
-    assert not found.is_good_enough and "no value to compare" in found.reason
+    # Its threshold is computed, and within 1 % of that of a rigid table.
+    assert errors["permanent_contact"] == pytest.approx(1 - found.permanent_contact, rel=1e-12)
+    assert found.is_good_enough and "permanent contact is 0.082 % off" in found.verdict
     assert not any("pulls before it is released" in note for note in found.notes)
-    assert found.verdict == (
-        "Whether the restitution model is good enough in the threshold of permanent contact "
-        "is not known."
-    )
+    # k x^{3/2} and α √(m k) x^{1/4} of Tsuji's law.
+    assert found.law["stiffness"] == pytest.approx(4 / 3 * 115e9 * math.sqrt(5e-3), rel=1e-12)
+    assert found.law["damping"] == float(found.case.law.damping)
 
 
 def test_a_verdict_on_an_orbit_that_only_one_model_has():

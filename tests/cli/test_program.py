@@ -13,7 +13,7 @@ import pytest
 
 import bouncing_ball
 from bouncing_ball.calls.orbits import orbit
-from bouncing_ball.cli.explained import EXPLAINED
+from bouncing_ball.cli.explained import COMMANDS
 from bouncing_ball.cli.options import meanings
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -96,8 +96,8 @@ def test_diff_for_nobody_who_reads(tmp_path):
     "example",
     [
         pytest.param(each, id=each.split(" --mass")[0])
-        for name, (_, examples) in EXPLAINED.items()
-        for each in examples
+        for name, about in COMMANDS.items()
+        for each in about["examples"]
         # The comparison needs a run; its calls are tested with it.
         if name != "diff"
     ],
@@ -110,7 +110,7 @@ def test_the_examples_of_the_help_run(example, said, monkeypatch, short_runs):
 
 
 def test_every_command_is_explained_and_its_symbols_are(said):
-    for command in EXPLAINED:
+    for command in COMMANDS:
         shown = said(command, "--help")
         assert "examples:" in shown
         assert "Eq. 16" not in shown or "exp(-πζ/√(1 - ζ²))" in " ".join(shown.split())

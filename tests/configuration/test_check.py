@@ -4,6 +4,7 @@ import copy
 from pathlib import Path
 
 import pytest
+from snakemake.utils import update_config
 
 from bouncing_ball.configuration.check import check, configuration_model
 from bouncing_ball.configuration.documentation import configuration_page, configuration_schema
@@ -33,6 +34,14 @@ def changed(keys, value):
 
 def test_the_shipped_configuration_is_accepted(model):
     check(model, CONFIG)
+
+
+def test_finer_grids_of_the_whole_motion_are_accepted_and_are_finer(model):
+    config, larger = copy.deepcopy(CONFIG), read_yaml(FOLDER / "motions-large.yaml")
+    update_config(config, larger)
+    check(model, config)
+    assert config["extensions"]["ext_locking"]["amplitude"]["min"] == 0.8
+    assert len(larger["extensions"]) == 5
 
 
 FIG05, FIG08 = ("figures", "fig05"), ("figures", "fig08")
@@ -88,12 +97,9 @@ SPAN = (*FIG05, "frequency_ratio")
         (("figures", "fig12", "amplitude"), 0.6663, "= 0.6663 must be at least 0.666398, the sadd"),
         (("figures", "fig10", "amplitude", 2), 0.5, "must be at least 0.509447, the saddle-node"),
         ((*FIG08, "amplitude_max"), 0.25, "= 0.25 must be at least 0.254724, the saddle-node"),
-        # Of several families the highest decides how far branches must reach, ...
+        # Of several families the highest decides how far branches must reach.
         (("figures", "fig03", "amplitude_max"), 1.27, "= 1.27 must be at least 1.27362, the sadd"),
         (("tables", "table1", "amplitude_max"), 0.76, "at least 0.764171, the saddle-node"),
-        # ... and the lowest what can be shown at one Λ.
-        (("extensions", "ext_basins", "amplitude", 0), 0.3, ""),
-        (("extensions", "ext_basins", "amplitude", 0), 0.25, "at least 0.254724, the saddle-node"),
     ],
 )
 def test_a_mistake_is_named_in_one_line(model, stages, keys, value, message):

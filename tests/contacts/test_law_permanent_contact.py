@@ -5,10 +5,12 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from bouncing_ball.contacts.law_choice import law_of_impact
+from bouncing_ball.contacts.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
+from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji
-from bouncing_ball.contacts.permanent_contact import permanent_contact
+from bouncing_ball.contacts.permanent_contact import _by_panels, permanent_contact
 from bouncing_ball.errors import ModelError
 
 
@@ -58,3 +60,34 @@ def test_more_nodes_change_nothing(law, monkeypatch):
     monkeypatch.setattr("bouncing_ball.contacts.permanent_contact._LEVELS", (192,))
     # The square of what is left of the path, 1e-5, would be 1e-10.
     assert found == pytest.approx(permanent_contact(law), rel=5e-12)
+
+
+@pytest.mark.parametrize(
+    "law", [ElastoBacklash(10.0, 0.136), ElastoBacklash(3.0, 0.5), Impedance(5.0, 0.2, 0.3)]
+)
+def test_contacts_by_panels_have_the_thresholds_of_the_closed_forms(law):
+    found = [_by_panels(law, at_surface) for at_surface in (False, law.feels_load)]
+    assert np.nanmin(found) == pytest.approx(permanent_contact(law), rel=1e-10)
+
+
+def test_an_impedance_by_depth_touches_the_surface_at_its_threshold():
+    # Far above the width it is d_min, with a spring of the share s = 1/2.
+    flat = permanent_contact(Impedance(10.0, 0.2, 0.9, 0.45, width=1e5))
+    assert flat == pytest.approx(permanent_contact(Impedance(5.0, 0.2, 0.45)), rel=1e-8)
+    # The lowest point of a settled motion is the surface, where the impedance varies.
+    law = Impedance(10.0, 0.2, 0.9, 0.45, width=0.02)
+    lam = permanent_contact(law) * np.array([0.99, 1.0])
+
+    def rates(t, state):
+        p, u = state.reshape(2, -1)
+        load = 1 - lam * np.sin(t)
+        return np.concatenate([u, load - law.loaded_force(p, u, load)])
+
+    end = 8 * 2 * np.pi
+    time = np.linspace(end - 2 * np.pi, end, 2001)
+    run = solve_ivp(rates, (0, end), [0.01] * 2 + [0.0] * 2, "DOP853", time, rtol=1e-9, atol=1e-12)
+    depth, rate = run.y.reshape(2, 2, -1)
+    grip = np.minimum(depth, law.loaded_grip(depth, rate, 1 - lam[:, np.newaxis] * np.sin(time)))
+    low = grip.min(axis=1) / 0.01
+    # At the threshold the parabola's lowest point is within half a sample.
+    assert low[0] > 1e-3 and abs(low[1]) < 1e-5

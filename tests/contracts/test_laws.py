@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 from bouncing_ball.contacts.collocation import contacts, path
 from bouncing_ball.contacts.contact_law import ContactLaw, slopes_of
 from bouncing_ball.contacts.laws.elasto_backlash import ElastoBacklash
-from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
+from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley, LinearHuntCrossley
 from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji
@@ -63,6 +63,8 @@ LAWS = {
     "elasto-backlash, elastic": ElastoBacklash(3.0, 0.0),
     "impedance": Impedance(10.0, 0.136),
     "impedance, weak": Impedance(3.0, 0.05, 0.5),
+    "impedance, by depth": Impedance(10.0, 0.136, 0.95, 0.5, width=0.2),
+    "impedance, by depth and deep": Impedance(10.0, 0.05, 0.6, 0.2, 0.05, 0.3, 3.0),
 }
 every_law = pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
 every_release = pytest.mark.parametrize("release", list(Release))
@@ -73,11 +75,6 @@ START = SPEED, PHASE, AMPLITUDE
 def load_at(phase, amplitude, time):
     """The acceleration of the ball towards the table without a contact."""
     return 1 - amplitude * np.sin(phase + time)
-
-
-def pushed(law, penetration, rate, load):
-    """The whole force on the ball."""
-    return law.force(penetration, rate) + (law.impedance or 0.0) * load
 
 
 def integrated(law, speed, phase, amplitude):
@@ -92,7 +89,7 @@ def integrated(law, speed, phase, amplitude):
         q, u, t = state
         lever, p = m * q ** (m - 1), np.float64(max(q, 0.0) ** m)
         load = load_at(phase, amplitude, t)
-        force = float(pushed(law, p, np.float64(u), load)) if p > 0 or m == 1 else 0.0
+        force = float(law.loaded_force(p, np.float64(u), load)) if p > 0 or m == 1 else 0.0
         return [u, lever * (load - force), lever]
 
     def released(_, state):
@@ -111,7 +108,8 @@ def integrated(law, speed, phase, amplitude):
 
     events = [released, surfaced, *([turned] * law.has_kink)]
     for event in events:
-        event.terminal, event.direction = True, 1 if event is turned else -1
+        event.terminal, event.direction = True, -1
+    turned.direction = -np.sign(law.kink(np.float64(0.0), np.float64(speed)))
     state, options = [0.0, speed, 0.0], {"method": "DOP853", "rtol": 3e-14, "atol": 1e-16}
     while True:
         found = solve_ivp(rates, (0, 1e3), state, events=events, **options)
@@ -120,7 +118,7 @@ def integrated(law, speed, phase, amplitude):
         if events[which] is not turned:
             q, u, t = state
             return np.array([t, max(q, 0.0) ** m, u])
-        events.remove(turned)
+        turned.direction *= -1
 
 
 @every_law
@@ -163,8 +161,10 @@ def test_the_force_does_the_work_and_the_release_is_the_first(law):
     np.testing.assert_allclose(depth, [0.0, end.penetration], rtol=0, atol=1e-14)
     np.testing.assert_allclose(rate, [SPEED, end.rate], rtol=0, atol=1e-12)
     ends = [0.0, duration]
-    if law.has_kink and np.any(law.lag > 0):
-        ends.insert(1, brentq(lambda t: law.kink(*path(law, end, t, *START)), 0.0, duration))
+    grid = np.linspace(0.0, duration, 101)
+    turns = np.flatnonzero(np.diff(np.sign(law.kink(*path(law, end, grid, *START)))))
+    pairs = ((grid[k], grid[k + 1]) for k in turns)
+    ends[1:1] = [brentq(lambda t: law.kink(*path(law, end, t, *START)), *two) for two in pairs]
     # t = D x²(3 - 2x) undoes the roots at the ends, for the most part.
     x, weight = np.polynomial.legendre.leggauss(200)
     x, work = (x + 1) / 2, 0.0
@@ -174,7 +174,7 @@ def test_the_force_does_the_work_and_the_release_is_the_first(law):
         load = load_at(PHASE, AMPLITUDE, time)
         assert np.all(depth > 0) and np.all(law.loaded_grip(depth, rate, load) > 0)
         table = AMPLITUDE * np.cos(PHASE + time)
-        work += part @ (pushed(law, depth, rate, load) * (table - rate))
+        work += part @ (law.loaded_force(depth, rate, load) * (table - rate))
 
     def energy(p, u, t):
         angle = PHASE + t
@@ -219,12 +219,14 @@ def test_the_delay_and_the_load_are_those_of_the_continued_flights(law):
 def test_the_tabulated_signature_is_the_impact_itself(law):
     speed = np.array([1e-4, 0.3, 2.0, 7.9, 8.1, 30.0])
     tabulated, itself = Signature(law)(speed), free_impact(law, speed)
+    # A law with kinks whose r depends on the speed is not smooth there.
+    error = 1e-12 if law.signature or not law.has_kink or law.lag is not None else 1e-6
     for name in ("delay", "restitution", "duration"):
-        np.testing.assert_allclose(getattr(tabulated, name), getattr(itself, name), rtol=1e-12)
+        np.testing.assert_allclose(getattr(tabulated, name), getattr(itself, name), rtol=error)
     loads = np.array([tabulated.load, itself.load]) / itself.duration
-    np.testing.assert_allclose(loads[0], loads[1], atol=1e-12)
+    np.testing.assert_allclose(loads[0], loads[1], atol=error)
     changes = np.array([tabulated.d_restitution, itself.d_restitution]) * speed
-    np.testing.assert_allclose(changes[0], changes[1], atol=1e-11)
+    np.testing.assert_allclose(changes[0], changes[1], atol=10 * error)
 
 
 @every_release
@@ -282,13 +284,20 @@ def test_an_impact_of_a_simulation_is_the_contact(law):
     np.testing.assert_allclose(np.array(found)[:, known], np.array(end[:3])[:, known], atol=1e-11)
 
 
+@pytest.mark.parametrize("law", [HuntCrossley(4e3, 0.08), LinearHuntCrossley(100.0, 0.3)])
+def test_hunt_and_crossleys_restitution_is_that_of_any_spring(law):
+    # u du/(1 + C u) = -K p^ν dp on both ways: the spring's energy is the same.
+    r, loss = free_impact(law, SPEED).restitution, law.damping * SPEED
+    assert loss - np.log1p(loss) == pytest.approx(-loss * r - np.log1p(-loss * r), rel=1e-12)
+
+
 HERTZ = [HuntCrossley(4e3, 0.08), Tsuji(4e3, 0.3), KuwabaraKono(4e3, 0.005)]
 hertz = pytest.mark.parametrize("law", HERTZ, ids=[law.name for law in HERTZ])
 
 
 @hertz
 def test_a_ball_on_a_table_at_rest_comes_to_rest(law):
-    sequence = simulate(law, 0.0, 0.0, -2.0, 50)
+    sequence = simulate(law, 0.0, 0.0, -2.0, 200)
     assert sequence.status == Status.UNDECIDED
     speed = -sequence.relative_velocity[np.isfinite(sequence.time)]
     assert np.all(np.diff(speed) < 0)
@@ -331,3 +340,28 @@ def test_many_balls_are_each_its_own():
         np.testing.assert_allclose(
             both.time[:, k], simulate(law[k], 1.0, 0.4, -3.0, 3).time, rtol=1e-12
         )
+
+
+@pytest.mark.parametrize(
+    ("surface", "amplitude", "phase", "speed"),
+    [(0.95, 5.0, 0.8, 0.2), (0.9, 4.947126015, 0.807671628, 0.19328047), (0.9, 3.0, 1.5, 0.01)],
+)
+def test_a_ball_that_a_pulling_load_keeps_from_the_force(surface, amplitude, phase, speed):
+    """It sinks or comes back freely until the force pushes, and may be released while it sinks."""
+    law = Impedance(20.0, 0.05, 0.95, surface, width=0.1)
+    found = simulate(law, amplitude, phase, amplitude * np.cos(phase) - speed, 3)
+    assert found.status == Status.BOUNCING and found.contact_duration[0] == 0.0
+
+    def force(t, p, u):
+        p, load = np.float64(p), load_at(phase, amplitude, t)
+        return float(law.loaded_force(p, np.float64(u), load)) if p > 0 else 0.0
+
+    def rates(t, state):
+        return [state[1], load_at(phase, amplitude, t) - max(force(t, *state), 0.0)]
+
+    end = float(found.time[1] + found.contact_duration[1])
+    options = {"rtol": 1e-9, "atol": 1e-12, "max_step": 5e-3}
+    run = solve_ivp(rates, (0.0, end), [0.0, speed], **options)
+    # The steps are adapted to the kinks of the force, with errors of some parts of their tolerance.
+    assert run.y[0, -1] == pytest.approx(-found.release_displacement[1], abs=1e-7)
+    assert run.y[1, -1] == pytest.approx(-found.relative_bounce_velocity[1], abs=1e-6)

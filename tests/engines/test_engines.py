@@ -9,7 +9,6 @@ from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.engines import ENGINES, engine_named
 from bouncing_ball.engines.engine import ERROR, Physical
-from bouncing_ball.engines.reference import numbers, template
 from bouncing_ball.engines.scheme import error_in_steps
 from bouncing_ball.errors import ModelError
 
@@ -56,10 +55,10 @@ def test_the_snippet_has_the_numbers(name, release):
 @pytest.mark.parametrize(("name", "release"), BOTH)
 def test_a_text_with_places_for_numbers_is_the_snippet(name, release):
     engine, step = ENGINES[name], 1.25e-6
-    values = numbers(engine, CONTACT) | {"mass": CONTACT.mass, "time_step": step}
+    values = engine.numbers(CONTACT) | {"mass": CONTACT.mass, "time_step": step}
     texts = {key: repr(value) for key, value in values.items()}
     texts |= {str(rule): f"{CONTACT.restitution(rule):.4f}" for rule in Release}
-    text = re.sub(r"@([\w.]+)@", lambda found: texts[found[1]], template(engine, release))
+    text = re.sub(r"@([\w.]+)@", lambda found: texts[found[1]], engine.template(release))
     assert text == engine.snippet(CONTACT, release, step)
 
 

@@ -22,9 +22,9 @@ import pytest
 import xarray as xr
 from pandas import DataFrame
 
-from bouncing_ball import limits, simulate
+from bouncing_ball import design, limits, simulate
 from bouncing_ball.contacts.collocation import contacts
-from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
 from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
@@ -33,6 +33,7 @@ from bouncing_ball.datasets.variables import describe
 from bouncing_ball.engines import ENGINES
 from bouncing_ball.engines.engine import EngineSettings, Physical
 from bouncing_ball.engines.scheme import Scheme, error_in_steps, steps_for
+from bouncing_ball.orbits.restitution_orbit import rigid_speed
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 ROOT = Path(__file__).parents[2]
@@ -320,21 +321,42 @@ def test_a_free_impact_has_the_promised_restitution(name, release, restitution, 
 
 @pytest.mark.engines
 @pytest.mark.filterwarnings("default")
+@pytest.mark.parametrize("restitution", LOSSES)
+def test_drakes_hunt_and_crossley_has_the_restitution_at_the_orbits_speed(restitution):
+    only_if_installed("drake")
+    table = {"mass": 0.5, "frequency": 20.0, "acceleration": "0.8 g", "n": 1}
+    contact = {"contact_time": 2e-3, "restitution": restitution, "law": "hunt-crossley"}
+    made = design(**table, **contact, engine="drake", restitution_error=0.01)
+    found = made.engine_settings()
+    speed = float(rigid_speed(1, restitution)) * made.case.table.length / made.case.table.time
+    for fraction in (0.02, 0.5, 0.98):
+        start = fraction * found.time_step * speed
+        away, _ = drake(Trial(found, 0.5, start, -speed, 2 * found.steps))
+        r = (away[-1] - away[-2]) / found.time_step / speed
+        # The step is that of the linear contact with this r.
+        assert abs(r - restitution) <= 1.05 * 0.01
+
+
+@pytest.mark.engines
+@pytest.mark.filterwarnings("default")
 @pytest.mark.parametrize("zeta", [0.1, 0.25])
-@pytest.mark.parametrize("share", [1e-4, 0.95, 0.9999])
-def test_the_impedance_takes_its_part_of_the_load(share, zeta):
+@pytest.mark.parametrize(
+    ("surface", "share"), [(1e-4, 1e-4), (0.95, 0.95), (0.9999, 0.9999), (0.9, 0.95), (0.2, 0.9)]
+)
+def test_the_impedance_takes_its_part_of_the_load(surface, share, zeta):
     """A drop with gravity, against the contact law: units of g, and Ω = ω/10."""
     only_if_installed("mujoco")
     ratio, speed, steps = 10.0, 10.0, 20_000
-    law = Impedance(ratio, zeta, share)
+    law = Impedance(ratio, zeta, share, surface, width=0.3)
     end = contacts(law, speed)
     # Back at the table's level after the flight that follows.
     back = np.sqrt(end.rate**2 - 2 * end.penetration)
-    found = settings("mujoco", Release.FORCE, float(law.signature.restitution), 1.0, ratio**2, 0.01)
+    r = float(restitution_coefficient(zeta, Release.FORCE))
+    found = settings("mujoco", Release.FORCE, r, 1.0, ratio**2, 0.01)
     step = 2 * float(end.duration) / steps
-    least = " ".join(map(repr, found.parameters["solimp"][:2]))
-    snippet = found.snippet.replace(least, f"{share!r} {share!r}")
-    assert snippet != found.snippet or share == 1e-4
+    least = " ".join(map(repr, found.parameters["solimp"]))
+    snippet = found.snippet.replace(least, f"{surface!r} {share!r} 0.3")
+    assert snippet != found.snippet
     found = replace(
         found, time_step=step, snippet=re.sub('timestep="[^"]*"', f'timestep="{step!r}"', snippet)
     )

@@ -24,7 +24,10 @@ def test_a_command_prints_what_the_page_says(command, printed, monkeypatch, caps
         main(arguments)
     else:
         runpy.run_path(*arguments, run_name="__main__")
-    assert capsys.readouterr().out.rstrip() == printed.rstrip()
+    out = capsys.readouterr().out
+    # Of the other engines the page shows the part to paste.
+    part = printed.startswith("…")
+    assert printed.strip("…\n") in out if part else printed.rstrip() == out.rstrip()
 
 
 def test_every_script_and_every_engine_is_on_the_page():

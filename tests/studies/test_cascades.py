@@ -11,7 +11,9 @@ from bouncing_ball.studies.cascades import cascades
 
 R = [0.5, 0.85]
 STIFF = {"min": 500.0, "max": 1000.0, "samples": 2}
-CONFIG = {"n": 1, "restitution": R, "frequency_ratio": STIFF, "doublings": 3}
+# Ω² = 1 g/m.
+MEASURED = {"frequency": 9.80665**0.5 / (2 * np.pi), "amplitudes": [0.5]}
+CONFIG = {"n": 1, "restitution": R, "frequency_ratio": STIFF, "doublings": 3, "measured": MEASURED}
 
 
 @pytest.fixture(scope="module", params=list(Release))
@@ -22,6 +24,7 @@ def study(request):
 def test_k_of_the_first_doubling_is_that_of_the_error_law(study):
     """Measured on orbits here, and there a closed form."""
     release, data = study
+    assert np.allclose(data.measured_cascade, [0.5, np.nan, np.nan], equal_nan=True)
     law = coefficients(1, damping_ratio(np.array(R)), data.restitution_cascade[:, 0], release)
     # Of the error's expansion the third order is left, over the two ϖ.
     assert np.allclose(data.cascade_coefficient[:, 0], law["period_doubling"], rtol=1e-4)

@@ -33,8 +33,11 @@ IGNORED = shutil.ignore_patterns(
 # Maps of balls that take as long as everything else, with fewer samples or starts; at their
 # whole size they are compared with the record by `make diff`, and weekly.
 COARSE = {
-    ("ext_basins", "starts"): 40,
+    ("ext_basins", "starts"): 20,
+    ("ext_cascades", "samples"): 5,
     ("ext_diagram", "samples"): 12,
+    ("ext_locked", "nodes"): 60,
+    ("ext_means", "starts"): 3,
     ("ext_locking", "samples"): 8,
 }
 

@@ -21,6 +21,7 @@ the first flight.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -63,140 +64,127 @@ class Rattling:
     at the first release, the time t in the last contact at which it touches, the durations of all
     legs but this one, and δ′ at their starts. Each leg ends at δ = 0 with the next δ′, and the
     contact has δ = δ′ = 0 at t. The contact is continued in closed form, whether it opens or not.
+    ``law`` has a last axis of length 1, along which its legs are computed.
     """
 
     law: SpringDamper
     flights: int
 
+    @cached_property
+    def _linear(self) -> tuple[np.ndarray, np.ndarray]:
+        """The matrices by which y gives the time, δ′ at the start, phase and Λ of each leg and of
+        the touch, shape (2k + 1, 4, unknowns), but for 2π in the last contact; and δ and δ′ at
+        their ends, shape (2k + 1, 2, unknowns).
+        """
+        legs = 2 * self.flights
+        phase, lam, touch, *rest = np.eye(2 * legs + 2)
+        times, speeds = np.array(rest[: legs - 1]), rest[legs - 1 :]
+        lasts = [*times, -times.sum(axis=0), touch]
+        starts = [phase + times[:leg].sum(axis=0) for leg in range(legs)]
+        given = zip(lasts, [*speeds, speeds[-1]], [*starts, starts[-1]], strict=True)
+        ends = np.array([*speeds[1:], speeds[0], 0 * phase])
+        return np.array([(*x, lam) for x in given]), np.stack([0 * ends, ends], axis=1)
+
     def legs(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(δ, δ′) at the end of each leg and at the touch, shape (2k + 1, ..., 2), and their
+        """(δ, δ′) at the end of each leg and at the touch, shape (..., 2k + 1, 2), and their
         derivatives by the time in the leg, by δ′ at its start, by its phase and by Λ.
         """
-        k, (phase, amplitude, touch, *rest) = self.flights, np.moveaxis(y, -1, 0)
-        times, speeds = rest[: 2 * k - 1], rest[2 * k - 1 :]
-        times = [*times, 2 * np.pi - sum(times), touch]
-        found = []
-        for leg, time in enumerate(times):
-            start = phase + sum(times[: min(leg, 2 * k - 1)])
-            speed = speeds[min(leg, 2 * k - 1)]
-            if leg % 2 or leg == 2 * k:
-                flow = self.law.flow(time, 0.0, speed, start, amplitude)
-                found.append((np.stack(flow[:2], axis=-1), flow.jacobian[..., [0, 2, 3, 4]]))
-                continue
-            (x, z), (x1, z1) = table(start, amplitude), table(start + time, amplitude)
-            height, rate, pull, _ = Flight(0.0, speed, x, z, amplitude).gap(time)
-            one = np.ones_like(time)
-            # The table's part of δ and δ′ is proportional to Λ.
-            lifted = (height - time * (speed - time / 2)) / amplitude
-            moved = (rate - speed + time) / amplitude
-            rows = [rate, time, x - x1 - z * time, lifted], [pull, one, z1 - z, moved]
-            change = np.moveaxis(np.array(rows), (0, 1), (-2, -1))
-            found.append((np.stack([height, rate], axis=-1), change))
-        states, changes = (np.stack(x) for x in zip(*found, strict=True))
+        time, speed, phase, lam = np.moveaxis(np.inner(y, self._linear[0]), -1, 0)
+        time[..., -2] += 2 * np.pi
+        flow = self.law.flow(time, 0.0, speed, phase, lam)
+        states, changes = np.stack(flow[:2], axis=-1), flow.jacobian[..., [0, 2, 3, 4]]
+        flights = (..., slice(0, -1, 2))
+        time, speed, phase, lam = time[flights], speed[flights], phase[flights], lam[flights]
+        (x, z), (x1, z1) = table(phase, lam), table(phase + time, lam)
+        height, rate, pull, _ = Flight(0.0, speed, x, z, lam).gap(time)
+        # The table's part of δ and δ′ is proportional to Λ.
+        lifted, moved = (height - time * (speed - time / 2)) / lam, (rate - speed + time) / lam
+        rows = [rate, time, x - x1 - z * time, lifted], [pull, 1 + 0 * time, z1 - z, moved]
+        states[(*flights, slice(None))] = np.stack([height, rate], axis=-1)
+        changes[(*flights, slice(None), slice(None))] = np.moveaxis(
+            np.array(rows), (0, 1), (-2, -1)
+        )
         return states, changes
 
-    def _equations(self, y: np.ndarray) -> np.ndarray:
-        k, (states, _) = self.flights, self.legs(y)
-        wanted = np.zeros_like(states)
-        wanted[: 2 * k, ..., 1] = np.roll(np.moveaxis(y[..., -2 * k :], -1, 0), -1, axis=0)
-        return np.moveaxis(states - wanted, 0, -2).reshape(*y.shape[:-1], -1)
+    def system(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """All equations, shape (..., 4k + 2), and their Jacobian."""
+        (states, changes), (by_leg, ends) = self.legs(y), self._linear
+        missed, matrix = states - np.inner(y, ends), changes @ by_leg - ends
+        return missed.reshape(y.shape), matrix.reshape(*y.shape, -1)
 
     def residual(self, y: np.ndarray) -> np.ndarray:
         """All equations but δ′ = 0 at the touch, shape (..., 4k + 1)."""
-        return self._equations(y)[..., :-1]
-
-    def _matrix(self, y: np.ndarray) -> np.ndarray:
-        k, (_, changes) = self.flights, self.legs(y)
-        matrix = np.zeros((*y.shape[:-1], 2 * k + 1, 2, y.shape[-1]))
-        for leg, change in enumerate(changes):
-            here, last = matrix[..., leg, :, :], min(leg, 2 * k - 1)
-            here[..., 0], here[..., 1] = change[..., 2], change[..., 3]
-            here[..., 3 : 3 + last] = change[..., 2:3]
-            if leg == last < 2 * k - 1:
-                here[..., 3 + leg] = change[..., 0]
-            elif leg == last:
-                here[..., 3 : 2 + 2 * k] -= change[..., :1]
-            else:
-                here[..., 2] = change[..., 0]
-            here[..., 2 + 2 * k + last] = change[..., 1]
-            if leg == last:
-                here[..., 1, 2 + 2 * k + (leg + 1) % (2 * k)] -= 1
-        return matrix.reshape(*y.shape[:-1], -1, y.shape[-1])
+        return self.system(y)[0][..., :-1]
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """Jacobian of the residual, shape (..., 4k + 1, 4k + 2)."""
-        return self._matrix(y)[..., :-1, :]
+        return self.system(y)[1][..., :-1, :]
 
     def touch(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """δ′ at the touch, and its gradient."""
-        return self._equations(y)[..., -1], self._matrix(y)[..., -1, :]
+        missed, matrix = self.system(y)
+        return missed[..., -1], matrix[..., -1, :]
 
     def multiplier(self, y: np.ndarray) -> np.ndarray:
         """Larger modulus of the multipliers, of the leading shape of y."""
         states, changes = self.legs(y)
         one = np.ones(y.shape[:-1])
         whole = Jacobian(one, 0 * one, 0 * one, one)
-        for state, change in zip(states[:-1], changes[:-1], strict=True):
-            by_time, by_rate, by_phase, _ = np.moveaxis(change, -1, 0)
+        for leg in range(2 * self.flights):
+            by_time, by_rate, by_phase, _ = np.moveaxis(changes[..., leg, :, :], -1, 0)
+            event = states[..., leg, 1], by_time[..., 1], 0
             ends = (
-                Deviation(start, by[..., 0], by[..., 1]).to_event(state[..., 1], by_time[..., 1], 0)
+                Deviation(start, by[..., 0], by[..., 1]).to_event(*event)
                 for start, by in ((one, by_phase), (0 * one, by_rate))
             )
             whole = Jacobian.of_columns(*ends).after(whole)
         return whole.spectral_radius()
 
 
-class _Landing(NamedTuple):
-    """A flight and the contact that follows it in the limit of stiff contacts.
+def _held(t, excess: float, aside: float, root: complex, swing: complex):
+    """x in the contact of the limit: p, and the free oscillation Re(swing e^{root t})."""
+    return excess - (aside + t) ** 2 / 2 + np.real(swing * np.exp(root * t))
 
-    ``times`` and ``speeds`` are those of the legs before the contact and at its start; ``top_time``
-    is the time of the contact at which x is highest, ``top``.
+
+def _held_rate(t, excess: float, aside: float, root: complex, swing: complex):
+    return -aside - t + np.real(root * swing * np.exp(root * t))
+
+
+def _landings(excess: float, zeta: float, most: int) -> list[tuple[float, tuple[float, ...]]]:
+    """The landings of the limit at E until a contact stays closed; at most so many.
+
+    Each has the highest x in the contact that follows and the unknowns of :class:`Rattling`: the
+    release, E, the time of the highest x, the durations of the legs before, and the speeds.
     """
-
-    times: tuple[float, ...]
-    speeds: tuple[float, ...]
-    top_time: float
-    top: float
-
-
-def _landings(excess: float, zeta: float, most: int) -> list[_Landing]:
-    """The landings at E until a contact stays closed; at most so many."""
-    omega = np.sqrt((1 - zeta) * (1 + zeta))
+    root = complex(-zeta, np.sqrt((1 - zeta) * (1 + zeta)))
     speed = np.sqrt(2 * excess)
-    place, found = 2 * zeta - speed, []
+    place = release = 2 * zeta - speed
+    found: list[tuple[float, tuple[float, ...]]] = []
     times, speeds = (), (speed,)
     for _ in range(most):
         pull = excess + 2 * zeta * zeta - 1 - place * place / 2
         # The flight rises by t (speed + pull t/2 - place t²/6 - t³/24).
-        roots = np.roots([-1 / 24, -place / 6, pull / 2, speed])
-        flight = min(x.real for x in roots if abs(x.imag) < 1e-9 and x.real > 0)
+        zeros = np.roots([-1 / 24, -place / 6, pull / 2, speed])
+        flight = min(x.real for x in zeros if abs(x.imag) < 1e-9 and x.real > 0)
         speed = speed + flight * (pull - flight * (place / 2 + flight / 6))
         place = place + flight
+        times, speeds = (*times, flight), (*speeds, speed)
         aside = place - 2 * zeta
         a = aside * aside / 2 - excess
-        b = (speed + aside + zeta * a) / omega
-
-        def path(t, along=a, across=b, aside=aside):
-            free = along * np.cos(omega * t) + across * np.sin(omega * t)
-            return excess - (aside + t) ** 2 / 2 + np.exp(-zeta * t) * free
-
-        def rate(t, along=omega * b - zeta * a, across=-omega * a - zeta * b, aside=aside):
-            free = along * np.cos(omega * t) + across * np.sin(omega * t)
-            return np.exp(-zeta * t) * free - aside - t
-
-        times, speeds = (*times, flight), (*speeds, speed)
-        time = np.linspace(0, 3 * np.pi / omega, _FINE)
-        slope = rate(time)
+        free = excess, aside, root, complex(a, -(speed + aside + zeta * a) / root.imag)
+        time = np.linspace(0, 3 * np.pi / root.imag, _FINE)
+        slope = _held_rate(time, *free)
         turns = np.flatnonzero((slope[:-1] > 0) & (slope[1:] <= 0))
         if not turns.size:
             break
-        top_time = brentq(rate, time[turns[0]], time[turns[0] + 1], xtol=1e-14)
-        found.append(_Landing(times, speeds, top_time, float(path(top_time))))
-        if found[-1].top <= 0:
+        top = brentq(_held_rate, *time[turns[0] + np.arange(2)], args=free, xtol=1e-14)
+        highest = float(_held(top, *free))
+        found.append((highest, (release, excess, top, *times, *speeds)))
+        if highest <= 0:
             break
-        bottom = brentq(rate, 0.0, time[np.argmax(slope > 0)])
-        contact = brentq(path, bottom, top_time, xtol=1e-14)
-        speed, place = rate(contact), place + contact
+        bottom = brentq(_held_rate, 0.0, time[np.argmax(slope > 0)], args=free)
+        contact = brentq(_held, bottom, top, args=free, xtol=1e-14)
+        speed, place = _held_rate(contact, *free), place + contact
         times, speeds = (*times, contact), (*speeds, speed)
     return found
 
@@ -209,7 +197,7 @@ def _stiff_openings(zeta: float, most: int) -> list[np.ndarray]:
 
     def top(excess: float) -> float:
         landings = _landings(excess, zeta, len(found) + 1)
-        return landings[-1].top if len(landings) > len(found) else -1.0
+        return landings[-1][0] if len(landings) > len(found) else -1.0
 
     high = 1e-3
     while len(found) < most:
@@ -217,9 +205,7 @@ def _stiff_openings(zeta: float, most: int) -> list[np.ndarray]:
         while top(high) < 0:
             low, high = high, _STEP * high
         excess = brentq(top, low, high, xtol=1e-13)
-        last = _landings(excess, zeta, len(found) + 1)[-1]
-        release = 2 * zeta - np.sqrt(2 * excess)
-        found.append(np.array([release, excess, last.top_time, *last.times, *last.speeds]))
+        found.append(np.array(_landings(excess, zeta, len(found) + 1)[-1][1]))
         high = excess * (1 + _ABOVE)
     return found
 
@@ -270,13 +256,16 @@ def openings(damping_ratio: ArrayLike, frequency_ratio: np.ndarray, most: int) -
     found, before = np.full((2, most, *held.shape), np.nan), held
     for k in range(most):
         start = np.stack([one[k] for one in stiff])
-        points = _followed(Rattling(contact, k + 1), omega, start, held)
+        problem = Rattling(
+            SpringDamper(omega[:, np.newaxis], zetas[:, np.newaxis, np.newaxis]), k + 1
+        )
+        points = _followed(problem, omega, start, held)
         # Two openings of one Λ are the first of them.
         new = points[..., 1] - before > _ABOVE * (points[..., 1] - held)
         points = np.where(new[..., np.newaxis], points, np.nan)
         points[~_returns(contact, k + 1, points)] = np.nan
         before = points[..., 1]
-        found[:, k] = before, Rattling(contact, k + 1).multiplier(points)
+        found[:, k] = before, problem.multiplier(points)
     return Openings(*found[..., ::-1].swapaxes(1, 2))
 
 

@@ -1,17 +1,19 @@
 """A ball, a vibrating table and a contact between them, in SI units."""
 
 import math
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
-
-import numpy as np
+from typing import Any
 
 from bouncing_ball.accuracy.errors import models
 from bouncing_ball.contacts.contact_law import ContactLaw
-from bouncing_ball.contacts.contact_scales import depth
+from bouncing_ball.contacts.contact_scales import rest
 from bouncing_ball.contacts.laws.tsuji import Tsuji
+from bouncing_ball.contacts.permanent_contact import permanent_contact
 from bouncing_ball.contacts.signature import Instant, Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.errors import ModelError
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.law_model import LawModel
 from bouncing_ball.orbits.model import ImpactModel
@@ -124,8 +126,7 @@ class Case:
         omega = float(self.contact.frequency_ratio) * self.table.angular_frequency
         deflection = self.table.gravity / omega**2
         if self.law is not None:
-            felt = np.array([1 - (self.law.impedance or 0.0)])
-            deflection = float(depth(self.law, 0 * felt, 0.0, felt)[0]) * self.table.length
+            deflection = rest(self.law) * self.table.length
         return {
             "stiffness": self.mass * omega**2,
             "damping": 2 * float(self.contact.damping_ratio) * self.mass * omega,
@@ -133,12 +134,17 @@ class Case:
             "static_deflection": deflection,
         }
 
+    @property
+    def law_in_si(self) -> dict[str, Any] | None:
+        """The name of a contact law and its parameters in SI units; None for a linear contact."""
+        if self.law is None:
+            return None
+        numbers = self.law.in_si(self.mass, self.table.length, self.table.time)
+        return {"name": self.law.name, **numbers}
+
     @cached_property
     def permanent_contact(self) -> float:
-        """Λ up to which the ball stays down; NaN for a Hertz contact.
-
-        Such a contact at rest has the stiffness of its static deflection, and not k.
-        """
-        if self.law is not None:
-            return math.nan
-        return float(self.models["spring-damper"].permanent_contact_threshold())
+        """Λ up to which the ball stays down; NaN if no such threshold was found."""
+        with suppress(ModelError):
+            return permanent_contact(self.contact if self.law is None else self.law)
+        return math.nan

@@ -7,7 +7,14 @@ from typing import Annotated, Any, get_args
 from bouncing_ball.accuracy.quantities import OF_ORBITS, Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.calculator.case import Case, Table
-from bouncing_ball.calculator.contact_data import STANDARD_GRAVITY, case_of, loss, meant, table_of
+from bouncing_ball.calculator.contact_data import (
+    STANDARD_GRAVITY,
+    case_of,
+    loss,
+    meant,
+    table_of,
+)
+from bouncing_ball.calculator.engine_data import read_engine
 from bouncing_ball.calculator.families import families, finite
 from bouncing_ball.calculator.motion import headline, of_family
 from bouncing_ball.calculator.needed import RATIOS, needed
@@ -16,12 +23,11 @@ from bouncing_ball.calculator.results import (
     Contact,
     Corrected,
     Design,
-    Family,
     Needed,
     TimeStep,
 )
 from bouncing_ball.calculator.units import Unit, number, percent
-from bouncing_ball.calculator.verdict import Verdict, assessed, chosen, judged_by_motion, notes
+from bouncing_ball.calculator.verdict import assessed, chosen, judged_by_motion, notes
 from bouncing_ball.calls.model import Index, Rule
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.law_choice import law_named
@@ -76,6 +82,10 @@ def design(
     tolerance: Annotated[Any, Unit("", "1 %", Range(0, 1))] = 0.01,
     engine: str | None = None,
     restitution_error: Annotated[Any, Unit("", "0.001", Range(0, 1))] = ERROR,
+    from_engine: str | None = None,
+    solref: str | Sequence[float] | None = None,
+    solimp: str | Sequence[float] | None = None,
+    parameters: Mapping[str, float] | None = None,
 ) -> Design:
     """Assess a contact, or choose one.
 
@@ -136,6 +146,14 @@ def design(
         mercurydpm. Its release is that of the contact, and a restitution is met under it.
     restitution_error
         Error of a free impact's restitution that the engine's time step may cause.
+    from_engine
+        The engine whose parameters are given, in place of stiffness and loss.
+    solref
+        Of MuJoCo: "-K -B" per unit of mass, or "TIMECONST DAMPRATIO".
+    solimp
+        Of MuJoCo: "DMIN DMAX WIDTH MIDPOINT POWER", or the first of them.
+    parameters
+        Of another engine: its parameter, such as kn=1e5.
 
     Raises
     ------
@@ -151,10 +169,11 @@ def design(
     >>> round(found.frequency_ratio, 3), found.orbits[0].is_stable, found.is_good_enough
     (71.176, True, False)
     """
-    given = _read(locals())
+    source, said = read_engine(locals())
+    given, release = _read(said), said["release"]
     question = given | {"n": n, "release": release, "quantity": quantity, "engine": engine}
     question["law"], kind = law, _of_law(law, engine, release, given)
-    rule, epsilon = _under(engine, release, given), given.pop("tolerance")
+    rule = _under(engine, release, given)
     if quantity not in QUANTITIES:
         raise ModelError(f"unknown quantity {quantity!r}: one of {', '.join(QUANTITIES)}")
     if n is not None and (n != int(n) or n < 1):
@@ -163,7 +182,13 @@ def design(
     lam, asked = table.amplitude, _FAMILIES if n is None else [n]
     require(lam < _LARGEST, lam, "Λ", f"below {_LARGEST:g}")
     try:
-        return _answer(given, table, rule, asked, quantity, epsilon, question, kind)
+        case, need = case_of(given, table, rule, asked, kind), None
+        if case is None:
+            case, need = _chosen(given, table, rule, asked, question)
+        elif source and not engine:
+            # For another engine it is the spring and damper that is written.
+            case = replace(case, law=source.law(table))
+        return _design(case, need, asked, question, source.remarks() if source else ())
     except NoOrbitError as error:
         bare = str(acceleration).strip()
         if not bare.replace(".", "", 1).isdigit():
@@ -171,41 +196,27 @@ def design(
         raise NoOrbitError(f"{error}; did you mean {bare} g?") from None
 
 
-def _answer(
+def _chosen(
     given: dict[str, float],
     table: Table,
     rule: Release,
     asked: Sequence[int],
-    quantity: str,
-    epsilon: float,
-    question: dict[str, Any],
-    kind: type[ContactLaw] | None,
-) -> Design:
-    """The verdict on a contact that is given, or the contact that is needed."""
-    lam, case = table.amplitude, case_of(given, table, rule, asked, kind)
-    if case is not None:
-        ratio = float(case.contact.frequency_ratio)
-        require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
-        found = families(case, asked)
-        one = _judged(found)
-        need = needed(quantity, epsilon, case.contact, one.n, lam)
-        return _design(case, found, one, need, assessed(one, need, ratio), question, True)
-    contact = SpringDamper(1.0, loss(given, rule), rule)
+    question: Mapping[str, Any],
+) -> tuple[Case, Needed]:
+    """The most compliant contact within the tolerance."""
+    contact, quantity = SpringDamper(1.0, loss(given, rule), rule), question["quantity"]
     r = float(contact.restitution)
-    index = meant(asked, r, lam)
+    index = meant(asked, r, table.amplitude)
     if quantity in OF_ORBITS:
-        RestitutionModel(r).require_orbit(index, lam)
-    need = needed(quantity, epsilon, contact, index, lam)
+        RestitutionModel(r).require_orbit(index, table.amplitude)
+    need = needed(quantity, question["tolerance"], contact, index, table.amplitude)
     if need.status == ThresholdStatus.NEVER_WITHIN:
         raise NoOrbitError(
             f"no contact up to ϖ = {RATIOS[-1]:g} has its {QUANTITIES[Quantity(quantity)]} within "
-            f"{percent(epsilon)} of the restitution model with r = {r:.4g}"
+            f"{percent(need.tolerance)} of the restitution model with r = {r:.4g}"
         )
     stiff = replace(contact, frequency_ratio=need.frequency_ratio or float(RATIOS[0]))
-    case = Case(given["mass"], table, stiff)
-    found = families(case, asked)
-    one = next((one for one in found if one.n == index), _judged(found))
-    return _design(case, found, one, need, chosen(case.in_si(), need, index), question, False)
+    return Case(given["mass"], table, stiff), need
 
 
 def contact(
@@ -213,7 +224,7 @@ def contact(
     engine: str | None = None,
     release: Rule | None = None,
     law: str | None = None,
-    **parameters: Any,
+    **given: Any,
 ) -> Contact:
     """A contact without a table, for an engine, from the parameters of :func:`design`.
 
@@ -228,7 +239,8 @@ def contact(
     >>> round(found.engine.restitution, 6), found.engine.release
     (0.75, 'force')
     """
-    given = _read(parameters)
+    source, given = read_engine({**given, "engine": engine, "release": release})
+    release, given = given["release"], _read(given)
     _of_law(law, engine, release, given)
     rule, error = _under(engine, release, given), given.get("restitution_error", ERROR)
     # With a table of 1 rad/s the frequency ratio is the frequency of the contact.
@@ -249,6 +261,7 @@ def contact(
         str(rule),
         physical.restitution(rule),
         engine_named(engine).settings(physical, rule, error) if engine else None,
+        source.remarks() if source else (),
     )
 
 
@@ -256,11 +269,14 @@ def _of_law(
     name: str | None, engine: str | None, release: str | None, given: dict[str, float]
 ) -> type[ContactLaw] | None:
     """The kind of a contact law, which a free impact gives its parameters; None if it is linear."""
+    if name is not None and engine is not None and name != SpringDamper.name:
+        laws = engine_named(engine).laws
+        if name not in {*laws, *laws.values()}:
+            raise ParameterError(f"{{law}} {name} is not written for {engine}: leave {{law}} out")
+        name = laws.get(name, name)
     kind = None if name is None else law_named(name)
     if kind is None or kind is SpringDamper:
         return None
-    if engine is not None:
-        raise ParameterError(f"{{law}} {name} is not written for {engine}: leave {{law}} out")
     if release is not None:
         raise ParameterError(f"{{release}} does not go with {{law}} {name}, which has its own")
     for other in ("stiffness", "damping", "damping_ratio", "reduced_modulus", "youngs_modulus"):
@@ -310,32 +326,37 @@ def _read(parameters: Mapping[str, Any]) -> dict[str, float]:
     return given
 
 
-def _judged(found: Sequence[Family]) -> Family:
-    """The family that a verdict is about: the first stable one, or the first that exists."""
-    return max(found, key=lambda one: (one.exists, one.is_stable and one.is_admissible))
-
-
 def _design(
     case: Case,
-    found: tuple[Family, ...],
-    one: Family,
-    need: Needed,
-    verdict: Verdict,
+    need: Needed | None,
+    asked: Sequence[int],
     question: dict[str, Any],
-    is_given: bool,
+    remarks: tuple[str, ...],
 ) -> Design:
-    """Everything that is known of a contact, given or chosen; `one` is the verdict's family."""
+    """Everything that is known of a contact, given, or chosen for what is needed."""
     contact, table = case.contact, case.table
+    ratio, found = float(contact.frequency_ratio), families(case, asked)
+    require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
+    # The verdict is about the first stable family, or the first that exists.
+    one = max(found, key=lambda one: (one.exists, one.is_stable and one.is_admissible))
+    if need is None:
+        quantity, tolerance, before = question["quantity"], question["tolerance"], ""
+        need = needed(quantity, tolerance, contact, one.n, table.amplitude)
+        verdict = assessed(one, need, ratio)
+    else:
+        index = meant(asked, float(contact.restitution), table.amplitude)
+        one = next((each for each in found if each.n == index), one)
+        verdict = chosen(case.in_si(), need, index)
+        before = f"{verdict.verdict} "
+    motion = of_family(case, one, need.tolerance)
     # A threshold of permanent contact is none of an orbit.
-    motion = of_family(case, one)
     if motion.restitution_kind is not None and need.quantity in OF_ORBITS:
         judged = judged_by_motion(motion, need.tolerance, one.n)
-        before = "" if is_given else f"{verdict.verdict} "
         verdict = judged._replace(verdict=before + judged.verdict)
     si: dict[str, Any] = case.in_si()
     delay, r, load = map(float, case.instant(one.n)[:3])
-    return Design(
-        frequency_ratio=float(contact.frequency_ratio),
+    answer = Design(
+        frequency_ratio=ratio,
         damping_ratio=float(contact.damping_ratio),
         amplitude=table.amplitude,
         **si,
@@ -345,14 +366,21 @@ def _design(
         },
         measured_restitution=float(contact.restitution),
         permanent_contact=finite(case.permanent_contact),
+        law=case.law_in_si,
         corrected=Corrected(delay * table.time, r, load * table.time),
         orbits=found,
         needed=need,
         motion=motion,
         headline=headline(motion, one),
         **verdict._asdict(),
-        notes=notes(case, one),
+        notes=remarks + notes(case, one),
         case=case,
         n=one.n,
         question=question,
     )
+    if question["engine"]:
+        # There is one time step, the engine's.
+        settings = answer.engine_settings()
+        why = f"r of a free impact in {settings.name} is within {settings.error:g}"
+        answer = replace(answer, time_step=TimeStep(settings.time_step, why))
+    return answer

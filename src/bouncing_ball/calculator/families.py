@@ -37,9 +37,8 @@ def _loads(orbit: Any) -> tuple[float, float]:
 
     def loads(time: np.ndarray) -> np.ndarray:
         displacement, velocity = orbit.contact_motion(time)
-        force = orbit.law.force(np.maximum(-displacement, 0.0), -velocity)
-        if orbit.law.impedance is not None:
-            force += orbit.law.impedance * (1 - orbit.amplitude * np.sin(orbit.phase + time))
+        load = 1 - orbit.amplitude * np.sin(orbit.phase + time)
+        force = orbit.law.loaded_force(np.maximum(-displacement, 0.0), -velocity, load)
         return np.array([-displacement, force])
 
     duration = float(orbit.contact_duration)

@@ -9,11 +9,23 @@ contact is, per unit of mass, ::
     ∫ (z″ + 1) w′ dt = [z′ w′ + w] + ∫ z′ w dt
 
 because w″ = -w. At an instantaneous impact it is the first term alone, the impulse times w′.
+In a linear contact ϖ² δ = w - 1 - δ″ - l δ′ with l = 2ζϖ. Integrated by parts this gives ::
+
+    ϖ² ∫ δ dt = -[w′ + δ′ + l δ] - D
+    (ϖ² - 1) I + l J = [w²/2 - w - δ′ w′ - δ w - l δ w′],                 I = ∫ δ w′ dt
+    (ϖ² - 1) J - l I = Λ² D/2 + [w′ - w w′/2 - δ′ w + δ w′ - l δ w],      J = ∫ δ w dt
+
+For other laws the integrals are computed by Gauss's rule.
+
+In a chaotic motion the balls of both models start alike, and each gives a pair of means. The error
+of the ratio of both means is that of the differences within the pairs, which counts what the pairs
+have in common; for independent ones it is by √2 less than the sum of both errors. Balls are added
+until the difference is decided against the tolerance, up to a number of them that takes some three
+seconds.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,31 +33,35 @@ from bouncing_ball.attractors.mapper import label
 from bouncing_ball.attractors.motions import Kind
 from bouncing_ball.calculator.case import Case
 from bouncing_ball.calculator.results import Family, Mean, Motion
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.history import history
+from bouncing_ball.motion.linear_contact import has_closed_form
 from bouncing_ball.motion.sequence import ImpactSequence, Status
 
 # Relative change of the velocity of an orbit, for a start beside it.
 _BESIDE = 1e-3
 # Number of impacts after which the search for a repetition ends.
 _IMPACTS = 600
-# Balls and impacts of a mean, and impacts left out before, for a linear contact and for a law,
-# which takes a hundred times as long.
-_SAMPLES, _SAMPLES_OF_LAW = (128, 500, 100), (32, 120, 40)
+# Balls of a round, the largest number of rounds, and impacts of a mean with those left out before;
+# for a linear contact and for a law, which takes a hundred times as long.
+_SAMPLES, _SAMPLES_OF_LAW = (256, 6, 500, 100), (32, 1, 120, 40)
 # Quantile of Student's distribution for an interval of 95 %, with 32 balls or more.
 _STUDENT = 2.04
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 
-@dataclass(frozen=True)
-class _Start:
+class _Start(NamedTuple):
     """A first impact: phase of the table and absolute velocity of the ball."""
 
     phase: float
     velocity: float
 
 
-def of_family(case: Case, family: Family) -> Motion:
-    """The motion of a ball that starts on the orbit, or beside it if it is not stable."""
+def of_family(case: Case, family: Family, tolerance: float) -> Motion:
+    """The motion of a ball that starts on the orbit, or beside it if it is not stable.
+
+    Means over time are compared up to a decision against the tolerance.
+    """
     lam = case.table.amplitude
     exact, simple = list(case.models)[:2]
     if family.exists and family.is_stable and family.is_admissible:
@@ -60,32 +76,17 @@ def of_family(case: Case, family: Family) -> Motion:
         name: label(_law(case, name), lam, start.phase, start.velocity, impacts=_IMPACTS)
         for name in (exact, simple)
     }
-    one, other = found[exact], found[simple]
+    kinds = [(str(x.kind), int(x.periods), int(x.impacts)) for x in found.values()]
     ideal = family.standing[simple]
     if ideal.exists and ideal.is_stable and ideal.is_admissible:
         # If the stability is weak, the mapper may not recognise that the motion repeats.
-        stays: dict[str, Any] = {"kind": Kind.ORBIT, "periods": family.n, "impacts": 1}
-        other = replace(other, **stays)
-    same = all(getattr(one, x) == getattr(other, x) for x in ("kind", "periods", "impacts"))
+        kinds[1] = str(Kind.ORBIT), family.n, 1
     values: dict[str, Any] = {}
-    if same and int(one.periods) and one.kind != Kind.PERMANENT_CONTACT:
-        values["greatest"] = {
-            name: _greatest(case, name, start, found[name]) for name in (exact, simple)
-        }
-    elif Kind.PERMANENT_CONTACT not in (one.kind, other.kind):
-        means = {name: _means(case, name, start) for name in (exact, simple)}
-        values["mean_height"] = {name: pair[0] for name, pair in means.items()}
-        values["mean_power"] = {name: pair[1] for name, pair in means.items()}
-    return Motion(
-        str(one.kind),
-        int(one.periods),
-        int(one.impacts),
-        None,
-        str(other.kind),
-        int(other.periods),
-        int(other.impacts),
-        **values,
-    )
+    if kinds[0] == kinds[1] and kinds[0][1] and kinds[0][0] != Kind.PERMANENT_CONTACT:
+        values["greatest"] = {name: _greatest(case, name, start, x) for name, x in found.items()}
+    elif Kind.PERMANENT_CONTACT not in (kinds[0][0], kinds[1][0]):
+        values = _compared(case, (exact, simple), start, tolerance)
+    return Motion(*kinds[0], None, *kinds[1], **values)
 
 
 def _law(case: Case, name: str) -> Any:
@@ -121,29 +122,47 @@ def _greatest(case: Case, name: str, start: _Start, motion: Any) -> float:
     return float(np.nanmax(last)) * case.table.length
 
 
-def _means(case: Case, name: str, start: _Start) -> tuple[Mean | None, Mean | None]:
-    """Means over many balls that start beside each other, in m and W."""
-    balls, impacts, before = _SAMPLES if case.law is None else _SAMPLES_OF_LAW
-    table = case.table
-    velocity = start.velocity * (1 + _BESIDE * np.arange(1, balls + 1) / balls)
-    found = case.models[name].simulate(table.amplitude, start.phase, velocity, impacts)
-    going = np.flatnonzero(found.status == Status.BOUNCING)
-    if going.size < balls:
-        return None, None
-    means = np.array([height_and_power(found[k], before) for k in going])
+def _compared(
+    case: Case, names: tuple[str, str], start: _Start, tolerance: float
+) -> dict[str, Any]:
+    """Means of both models over balls that start alike, in m and W, and their relative errors."""
+    balls, rounds, impacts, before = _SAMPLES if case.law is None else _SAMPLES_OF_LAW
+    table, means = case.table, np.zeros((2, 2, 0))
+    velocity = start.velocity * (1 + _BESIDE * np.arange(1, rounds * balls + 1) / balls)
+    for one in np.split(velocity, rounds):
+        found = []
+        for name in names:
+            run = case.models[name].simulate(table.amplitude, start.phase, one, impacts)
+            if np.any(run.status != Status.BOUNCING):
+                # Some balls come to rest, and have no mean.
+                return {"mean_height": dict.fromkeys(names), "mean_power": dict.fromkeys(names)}
+            found.append(height_and_power(run, before))
+        means = np.concatenate([means, np.array(found)], axis=-1)
+        ratio = means[1].mean(axis=-1) / means[0].mean(axis=-1)
+        apart = (means[1] - ratio[:, np.newaxis] * means[0]) / means[0].mean(axis=-1, keepdims=True)
+        off, margin = np.abs(ratio - 1), _half_width(apart)
+        if np.all(off + margin <= tolerance) or np.any(off - margin > tolerance):
+            break
     units = table.length, case.mass * table.gravity**2 / table.angular_frequency
-    middle, error = means.mean(axis=0), means.std(axis=0, ddof=1) / np.sqrt(balls)
-    height, power = (
-        Mean(float(m * unit), float(_STUDENT * e * unit))
-        for m, e, unit in zip(middle, error, units, strict=True)
-    )
-    return height, power
+    values: dict[str, Any] = {"mean_error": {}}
+    for k, (name, unit) in enumerate(zip(("height", "power"), units, strict=True)):
+        middle, width = means[:, k].mean(axis=-1) * unit, _half_width(means[:, k]) * unit
+        pairs = map(Mean, middle.tolist(), width.tolist())
+        values[f"mean_{name}"] = dict(zip(names, pairs, strict=True))
+        values["mean_error"][name] = Mean(float(off[k]), float(margin[k]))
+    return values
 
 
-def height_and_power(sequence: ImpactSequence, before: int = 0) -> tuple[float, float]:
-    """Means over time of a ball's height and of the power that the table transfers, dimensionless.
+def _half_width(samples: np.ndarray) -> np.ndarray:
+    """Half the width of the confidence interval of a mean over the last axis."""
+    return _STUDENT * samples.std(axis=-1, ddof=1) / np.sqrt(samples.shape[-1])
 
-    They are taken from the impact number ``before`` to the last one recorded.
+
+def height_and_power(sequence: ImpactSequence, before: int = 0) -> tuple[np.ndarray, np.ndarray]:
+    """Means over time of each ball's height and of the power that the table transfers to it.
+
+    They are dimensionless, of the shape of the balls, and taken from the impact number ``before``
+    to the last one recorded.
 
     Examples
     --------
@@ -152,7 +171,7 @@ def height_and_power(sequence: ImpactSequence, before: int = 0) -> tuple[float, 
 
     >>> from bouncing_ball.motion.simulation import simulate
     >>> height, power = height_and_power(simulate(1.0, 0.0, 0.0, -2.0, 5))
-    >>> round(height, 12), round(power, 12)
+    >>> round(float(height), 12), round(float(power), 12)
     (1.333333333333, 0.0)
     """
     lam, part = sequence.amplitude, slice(before, -1)
@@ -164,16 +183,53 @@ def height_and_power(sequence: ImpactSequence, before: int = 0) -> tuple[float, 
     low = sequence.release_displacement[part] + left
     flown = (low + (bounce / 2 - flight / 6) * flight) * flight
     work = bounce * lam * np.cos(end) - impact * lam * np.cos(phase) + left - lift
-    # The integrals over the contact are computed by Gauss's rule.
-    half = duration[:, np.newaxis] / 2
-    inside = history(sequence, (time[part, np.newaxis] + half * (1 + _NODES)).ravel())
-    shape = (*duration.shape, _NODES.size)
-    height, pushed = inside.height, inside.velocity * inside.table
-    held, moved = (half[:, 0] * (x.reshape(shape) @ _WEIGHTS) for x in (height, pushed))
-    # If a contact is an instant all nodes are at its start, and the integral is zero.
-    held, moved = (np.where(duration > 0, x, 0.0) for x in (held, moved))
+    law = sequence.contact
+    if isinstance(law, SpringDamper) and has_closed_form(law):
+        held, moved = _of_spring_damper(sequence, law, part)
+    elif law is not None:
+        held, moved = _by_nodes(sequence, part)
+    else:
+        # A ball that sticks is at the table's level, with its velocity.
+        held = lam * (np.cos(phase) - np.cos(end))
+        moved = (left * left - lift * lift) / 2
     total = time[-1] - time[before]
-    return float(np.sum(flown + held) / total), float(np.sum(work + moved) / total)
+    return np.sum(flown + held, axis=0) / total, np.sum(work + moved, axis=0) / total
+
+
+def _of_spring_damper(
+    sequence: ImpactSequence, law: SpringDamper, part: slice
+) -> tuple[np.ndarray, np.ndarray]:
+    """∫ z dt and ∫ z′ w dt over linear contacts, in closed form."""
+    phase, duration, lam = sequence.phase[part], sequence.contact_duration[part], sequence.amplitude
+    angle = np.array([phase, phase + duration])
+    w, w_rate = lam * np.sin(angle), lam * np.cos(angle)
+    gap = np.array([sequence.displacement[part], sequence.release_displacement[part]])
+    rate = np.array([sequence.relative_velocity[part], sequence.relative_bounce_velocity[part]])
+
+    def change(values: np.ndarray) -> np.ndarray:
+        return values[1] - values[0]
+
+    stiffness, loss = law.frequency_ratio**2, 2 * law.damping_ratio * law.frequency_ratio
+    of_rate = change(w * w / 2 - w - rate * w_rate - gap * w - loss * gap * w_rate)
+    of_level = change(w_rate - w * w_rate / 2 - rate * w + gap * w_rate - loss * gap * w)
+    of_level = of_level + lam * lam * duration / 2
+    s = stiffness - 1
+    by_rate = (s * of_rate - loss * of_level) / (s * s + loss * loss)
+    sunk = -(change(w_rate + rate + loss * gap) + duration) / stiffness
+    return sunk - change(w_rate), change(gap * w + w * w / 2) - by_rate
+
+
+def _by_nodes(sequence: ImpactSequence, part: slice) -> tuple[np.ndarray, np.ndarray]:
+    """∫ z dt and ∫ z′ w dt over the contacts of each ball."""
+    if sequence.time.ndim > 1:
+        each = [_by_nodes(sequence[k], part) for k in range(sequence.time.shape[1])]
+        held, moved = np.moveaxis(np.array(each), 0, -1)
+        return held, moved
+    half = sequence.contact_duration[part, np.newaxis] / 2
+    inside = history(sequence, (sequence.time[part, np.newaxis] + half * (1 + _NODES)).ravel())
+    values = inside.height, inside.velocity * inside.table
+    held, moved = (half[:, 0] * (x.reshape(-1, _NODES.size) @ _WEIGHTS) for x in values)
+    return held, moved
 
 
 def headline(motion: Motion, family: Family) -> str:

@@ -115,7 +115,7 @@ class Motion:
     does not; ``laid`` is the kind for a ball laid on the table, None if it is the same. If the
     orbit is not stable, the same numbers follow for the restitution model, and for each model
     either the ``greatest`` height, of motions that repeat in the same way, or means over time of
-    the height and of the power that the table transfers.
+    the height and of the power that the table transfers, with the moduli of their relative errors.
     """
 
     kind: str
@@ -128,6 +128,7 @@ class Motion:
     greatest: dict[str, float] | None = None
     mean_height: dict[str, Mean | None] | None = None
     mean_power: dict[str, Mean | None] | None = None
+    mean_error: dict[str, Mean] | None = None
 
 
 @dataclass(frozen=True)
@@ -197,7 +198,8 @@ class Design:
     ``frequency_ratio``, ``damping_ratio`` and ``amplitude`` are ϖ, ζ and Λ; ``restitution`` is that
     of a free impact by the release rule, ``measured_restitution`` that by the rule of this contact;
     ``n`` is the family of the verdict and ``question`` holds the arguments of the call. Up to Λ =
-    ``permanent_contact`` a ball may stay down; it is None for a Hertz contact.
+    ``permanent_contact`` a ball may stay down; None if no such threshold was found. ``law`` has the
+    ``name`` of a contact law and its parameters, with powers of kg, m and s as units.
     """
 
     frequency_ratio: Annotated[float, Row("frequency ratio ϖ")]
@@ -215,6 +217,7 @@ class Design:
     ]
     measured_restitution: float
     permanent_contact: Annotated[float | None, Row("permanent contact up to Λ")]
+    law: dict[str, Any] | None
     corrected: Corrected
     orbits: tuple[Family, ...]
     needed: Needed
@@ -253,8 +256,11 @@ class Design:
         contact = Physical(self.case.mass, self.stiffness, self.damping)
         engine, one = engine_named(self.question["engine"]), self.judged
         rule, error = self.case.contact.release, self.question["restitution_error"]
+        settings = engine.settings(contact, rule, error)
+        if self.law is not None:
+            settings = engine.of_law(settings, self.case.mass, self.law)
         return replace(
-            engine.settings(contact, rule, error),
+            settings,
             max_height=one.max_height,
             contact_duration=one.contact_duration,
             penetration=one.greatest_compression,

@@ -1,7 +1,10 @@
 """The verdict in one sentence, with its reason."""
 
+import math
 from collections.abc import Mapping
 from typing import NamedTuple
+
+import numpy as np
 
 from bouncing_ball.accuracy.quantities import Quantity
 from bouncing_ball.attractors.motions import Kind
@@ -9,8 +12,10 @@ from bouncing_ball.calculator.case import Case
 from bouncing_ball.calculator.results import QUANTITIES, Family, Motion, Needed
 from bouncing_ball.calculator.units import percent, shown
 from bouncing_ball.contacts.contact_law import ContactLaw
+from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.laws.tsuji import Tsuji
 from bouncing_ball.contacts.release import Release
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 
 class Verdict(NamedTuple):
@@ -74,14 +79,10 @@ def judged_by_motion(motion: Motion, tolerance: float, n: int) -> Verdict:
         error = abs(simple / exact - 1)
         found = f"the greatest height of this motion is {shown(error, '%')} off"
         return _within(error, 0.0, tolerance, found, about)
-    errors = []
-    for name, means in (("height", motion.mean_height), ("power", motion.mean_power)):
-        exact, simple = (means or {"": None, "no": None}).values()
-        if exact is None or simple is None:
-            sentence = "Whether the restitution model is good enough for this motion is not known."
-            return Verdict(False, sentence, f"{about}, and some balls come to rest")
-        off = abs(simple.value / exact.value - 1)
-        errors.append((off, (exact.half_width + simple.half_width) / abs(exact.value), name))
+    if motion.mean_error is None:
+        sentence = "Whether the restitution model is good enough for this motion is not known."
+        return Verdict(False, sentence, f"{about}, and some balls come to rest")
+    errors = [(one.value, one.half_width, name) for name, one in motion.mean_error.items()]
     found = " and ".join(
         f"the mean {x} is {shown(e, '%')} ± {shown(h, '%')} off" for e, h, x in errors
     )
@@ -102,7 +103,8 @@ def _within(error: float, margin: float, tolerance: float, found: str, why: str)
     if error - margin > tolerance:
         sentence = f"The restitution model is not good enough: {found}, beyond {asked}."
         return Verdict(False, sentence, why)
-    sentence = f"Whether the restitution model is good enough is open: {found}, of {asked} allowed."
+    at_most = shown(error + margin, "%")
+    sentence = f"The restitution model is not decided at {asked}: {found}, so at most {at_most}."
     return Verdict(False, sentence, f"{why}; the sample is too small to decide")
 
 
@@ -149,10 +151,27 @@ def _contact(law: ContactLaw) -> str:
     return "Hertz contact with Tsuji's damping" if hertz else f"{law.name} contact"
 
 
+def _cost_of(law: Impedance, case: Case, family: Family) -> str:
+    """What an impedance changes at the depth of the orbit."""
+    about = "stiffness, damping, ϖ and ζ are those of the spring and damper of this solref"
+    spring = SpringDamperModel(case.contact).orbit(family.n, case.table.amplitude)
+    if family.greatest_compression is None or family.max_height is None or not spring.exists:
+        return about
+    depth = np.array(family.greatest_compression / case.table.length)
+    off = float(spring.max_height) * case.table.length / family.max_height - 1
+    change = f"{shown(abs(off), '%')} {'higher' if off > 0 else 'lower'}"
+    return (
+        f"{about}: at the orbit's depth of {shown(family.greatest_compression, 'm')}, where the "
+        f"impedance is {float(law.impedance(depth)):.3g}, they would bounce {change}"
+    )
+
+
 def notes(case: Case, family: Family) -> tuple[str, ...]:
     """What a user should know beside the verdict."""
     found, contact, orbit = [], case.contact, f"{family.n}-T orbit"
-    if case.law is not None:
+    if isinstance(case.law, Impedance):
+        found.append(_cost_of(case.law, case, family))
+    elif case.law is not None:
         found.append(
             "stiffness, damping, ϖ and ζ, and the ϖ that is needed, are those of a linear contact: "
             f"it has the r of the {_contact(case.law)}, and its duration at the impact"
@@ -162,6 +181,8 @@ def notes(case: Case, family: Family) -> tuple[str, ...]:
                 "the restitution of this law depends on the speed: it is r at the speed of the "
                 "restitution model's lowest stable orbit"
             )
+    if math.isnan(case.permanent_contact):
+        found.append("no Λ of permanent contact was found: weakly damped, the contact rings")
     if not family.exists:
         found.append(f"at this Λ the contact has no {orbit}")
     elif not (family.is_stable and family.is_admissible):

@@ -1,6 +1,5 @@
 """``bouncing-ball design``: the calculator's answer, as JSON or as text."""
 
-from collections.abc import Mapping
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -8,11 +7,9 @@ from typing import Any, NamedTuple
 from bouncing_ball.accuracy.quantities import OF_IMPACTS, Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.calculator import design as calculator
-from bouncing_ball.calculator.contact_data import LOSSY, STIFF
 from bouncing_ball.calculator.results import QUANTITIES, Contact, Design, Family, rows
-from bouncing_ball.calculator.units import number, percent, shown
+from bouncing_ball.calculator.units import percent, shown
 from bouncing_ball.cli.options import option
-from bouncing_ball.engines import engine_named
 from bouncing_ball.engines.engine import EngineSettings
 from bouncing_ball.errors import ModelError, ParameterError, extra
 from bouncing_ball.signatures import takes
@@ -22,6 +19,7 @@ _SIMPLE = "error law", "corrected"
 
 # What says that there is a table; for an engine there need not be one.
 _TABLE = ("frequency", "angular_frequency", "period", "table_amplitude", "acceleration")
+_OF_CONTACT = ("engine", "release", "law", "from_engine", "solref", "solimp", "parameters")
 
 
 class Answer(NamedTuple):
@@ -35,10 +33,6 @@ class Answer(NamedTuple):
 def design(
     *,
     plot: Path | None = None,
-    from_engine: str | None = None,
-    solref: str | None = None,
-    solimp: str | None = None,
-    parameters: Mapping[str, float] | None = None,
     all_families: bool = False,
     **given: Any,
 ) -> Answer:
@@ -48,14 +42,6 @@ def design(
     ----------
     plot
         A page to print: .pdf, .png or .svg.
-    from_engine
-        The engine whose parameters are given, in place of stiffness and loss.
-    solref
-        Of MuJoCo: "-K -B" per unit of mass, or "TIMECONST DAMPRATIO".
-    solimp
-        Of MuJoCo: "DMIN DMAX WIDTH".
-    parameters
-        Of another engine: its parameter, such as kn=1e5.
     all_families
         Print all results for every family; by default a line for each, unless n is given.
 
@@ -66,45 +52,17 @@ def design(
     """
     if plot is not None and plot.suffix not in _DRAWINGS:
         raise ModelError(f"'{plot}' does not end in {' or '.join(_DRAWINGS)}")
-    notes: tuple[str, ...] = ()
-    values = {"solref": solref, "solimp": solimp, **dict(parameters or {})}
-    values = {name: value for name, value in values.items() if value is not None}
-    if from_engine is not None:
-        given, notes = _read(from_engine, values, given)
-    elif values:
-        name = next(iter(values))
-        what = f"{{{name}}}" if name in ("solref", "solimp") else f"{{parameters}} {name}"
-        raise ParameterError(f"{what} needs {{from_engine}}, the engine that has it")
-    if (from_engine or given.get("engine")) and all(given.get(name) is None for name in _TABLE):
+    engines = given.get("from_engine"), given.get("engine")
+    if any(engines) and all(given.get(name) is None for name in _TABLE):
         if plot is not None:
             raise ParameterError("{plot} needs a table, such as {frequency} and {acceleration}")
-        names = {"engine", "release", "law", *calculator.quantities()}
-        alone = {name: value for name, value in given.items() if name in names}
-        return Answer(replace(calculator.contact(**alone), notes=notes))
+        names = {*_OF_CONTACT, *calculator.quantities()}
+        return Answer(calculator.contact(**{name: x for name, x in given.items() if name in names}))
     found = calculator.design(**given)
     if plot is not None:
         _draw(found, plot)
     whole = all_families or given.get("n") is not None
-    return Answer(replace(found, notes=(*notes, *found.notes)), whole)
-
-
-def _read(
-    name: str, parameters: Mapping[str, Any], given: Mapping[str, Any]
-) -> tuple[dict[str, Any], tuple[str, ...]]:
-    """An engine's parameters as k and c, and remarks on them."""
-    engine = engine_named(name)
-    for other in (*STIFF, *LOSSY):
-        if given.get(other) is not None:
-            raise ParameterError(f"{{{other}}} does not go with {{from_engine}}, which says it")
-    mass = given.get("mass")
-    contact = engine.read(
-        parameters, None if mass is None else number("mass", mass, calculator.quantities()["mass"])
-    )
-    found = {"stiffness": contact.stiffness, "damping": contact.damping}
-    # For another engine the release is the one of that engine.
-    rule = given.get("release")
-    rule = rule if given.get("engine") else str(engine.release(rule))
-    return {**given, **found, "release": rule}, engine.remarks(parameters)
+    return Answer(found, whole)
 
 
 def _draw(found: Design, path: Path) -> None:
@@ -120,7 +78,7 @@ def _draw(found: Design, path: Path) -> None:
 
 
 def _line(name: str, *columns: str) -> str:
-    return f"{name:<38}" + "".join(f"{column:<18}" for column in columns).rstrip()
+    return f"{name:<38}" + "".join(f"{column + ' ':<18}" for column in columns).rstrip()
 
 
 def _error(one: Family, quantity: Quantity) -> str:
@@ -197,6 +155,18 @@ def _whole(found: Design) -> list[str]:
     ]
 
 
+def _law_rows(found: Design) -> list[tuple[str, str]]:
+    """The parameters of a contact law, with their units."""
+    law = found.case.law
+    if law is None or found.law is None:
+        return []
+    names = law.parameter_names()
+    units = [law.units[name].name if name in law.units else "" for name in names]
+    words = [f"{law.name}, {name.replace('_', ' ')}" for name in names]
+    values = (shown(found.law[name], unit) for name, unit in zip(names, units, strict=True))
+    return list(zip(words, values, strict=True))
+
+
 def lines(given: Answer) -> list[str]:
     """The answer as text, with the verdict first."""
     found = given.found
@@ -216,8 +186,9 @@ def lines(given: Answer) -> list[str]:
         *(f"Note: {note}." for note in found.notes),
         *engine,
         "",
-        *(_line(*row) for row in rows(found)),
-        f"Time step: {found.time_step.rule}.",
+        *(_line(*row) for row in rows(found) if not engine or row[0] != "largest time step"),
+        *([] if engine else [f"Time step: {found.time_step.rule}."]),
+        *(_line(*row) for row in _law_rows(found)),
         "",
         _line(asked, "exact", *_SIMPLE),
         _line("", exact, shown(need.by_law), corrected),

@@ -8,32 +8,17 @@ from importlib import import_module
 from typing import Any
 
 from bouncing_ball import __version__
-from bouncing_ball.cli.explained import explained
+from bouncing_ball.cli.explained import COMMANDS, explained
 from bouncing_ball.cli.options import Parser, add_options, option, positional
 from bouncing_ball.cli.output import fail, say
 from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, extra
-
-# The purpose of each subcommand, and the module of its call. A module is imported when its
-# subcommand is used, because the list of subcommands needs no numpy.
-_COMMANDS = {
-    "orbit": ("the n-T orbit at an amplitude", "cli.answers"),
-    "limits": ("saddle-node and period doubling of the n-T orbits", "cli.answers"),
-    "error-law": ("error of the restitution model to first order, K/ϖ", "cli.answers"),
-    "permanent-contact": ("the amplitude up to which the ball stays on the table", "cli.answers"),
-    "simulate": ("a sequence of impacts from any initial impact", "cli.answers"),
-    "motion": ("the motion on which a ball ends", "cli.long_run"),
-    "diagram": ("the motions on which balls end, over the amplitude", "cli.long_run"),
-    "design": ("whether a restitution coefficient is enough, or which contact is", "cli.design"),
-    "explain": ("where an artifact comes from, and how it is made again", "provenance.explain"),
-    "diff": ("whether two folders of artifacts say the same", "cli.diff"),
-}
 
 
 def _module(command: str) -> Any:
     """The module of a subcommand, with its call, and ``lines``, which makes its answer readable."""
     try:
         with extra("pipeline"):
-            return import_module(f"bouncing_ball.{_COMMANDS[command][1]}")
+            return import_module(f"bouncing_ball.{COMMANDS[command]['module']}")
     except ModelError as error:
         fail(str(error), status=2)
 
@@ -57,7 +42,8 @@ def parser(arguments: list[str]) -> Parser:
     )
     top.add_argument("--version", action="version", version=f"{top.prog} {__version__}")
     commands = top.add_subparsers(dest="command", parser_class=Parser)
-    for name, (text, _) in _COMMANDS.items():
+    for name, command in COMMANDS.items():
+        text = command["purpose"]
         sub = commands.add_parser(name, help=text, description=text, epilog=explained(name))
         if name in arguments:
             add_options(sub, _call(name))
@@ -76,7 +62,7 @@ def main(arguments: list[str] | None = None) -> None:
     given = vars(top.parse_args(arguments))
     command, as_json = given.pop("command"), given.pop("json", False)
     if command is None:
-        top.error(f"a command is missing, one of {', '.join(_COMMANDS)}")
+        top.error(f"a command is missing, one of {', '.join(COMMANDS)}")
     call = _call(command)
     places = [given.pop(name) for name in positional(call)]
     import numpy as np

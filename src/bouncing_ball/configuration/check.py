@@ -41,8 +41,7 @@ def configuration_model(studies: Mapping[str, str], config: Mapping[str, Any]) -
     for artifact, study in sorted(studies.items()):
         for name, kind in taken(study).items():
             if name == "parameters":
-                where, key = section(artifact, config)
-                places[where][key] = (kind, ...)
+                places[section(artifact, config)][artifact] = (kind, ...)
             else:
                 keys[name] = (kind, ...)
     for name, fields in places.items():

@@ -72,8 +72,8 @@ def taken(study: str) -> dict[str, Any]:
     return {name: each.annotation for name, each in signature if name != "data"}
 
 
-def section(artifact: str, run: Mapping[str, Any]) -> tuple[str, ...]:
-    """The section and the key of an artifact's parameters in the configuration.
+def section(artifact: str, run: Mapping[str, Any]) -> str:
+    """The section of the configuration that has an artifact's parameters.
 
     Raises
     ------
@@ -83,11 +83,11 @@ def section(artifact: str, run: Mapping[str, Any]) -> tuple[str, ...]:
     Examples
     --------
     >>> section("fig02", {"figures": {"fig02": {"n": 1}}})
-    ('figures', 'fig02')
+    'figures'
     """
     for name in SECTIONS:
         if artifact in (run.get(name) or {}):
-            return name, artifact
+            return name
     raise ConfigurationError(
         f"{artifact} has no parameters: a key {artifact} in one of {', '.join(SECTIONS)}"
     )
@@ -107,11 +107,7 @@ def arguments(study: str, artifact: str, run: Mapping[str, Any]) -> dict[str, An
     >>> arguments("studies.frequency_sweeps.apparent_restitution", "fig05", run)
     {'parameters': {'n': 1}, 'release': 'force'}
     """
-    given = {}
-    for name in taken(study):
-        if name == "parameters":
-            kind, key = section(artifact, run)
-            given[name] = run[kind][key]
-        else:
-            given[name] = run[name]
-    return given
+    return {
+        name: run[section(artifact, run)][artifact] if name == "parameters" else run[name]
+        for name in taken(study)
+    }

@@ -209,20 +209,20 @@ def _grip_slopes(law: ContactLaw, m: int, root, rate):
 
 def _loading(law: ContactLaw, root):
     """The derivative of the grip by the load."""
-    return 0.0 if law.impedance is None else law.loaded_grip(0 * root, 0 * root, 1.0)
+    return law.loaded_grip(root, 0 * root, 1.0) - law.grip(root, 0 * root)
 
 
 def _left(law: ContactLaw, m: int, start: Start, now: _Motion, until, root, rate, time):
     """Functions that are positive up to the end of a panel, one in each row.
 
-    They are the grip, or the time left; for a law with an impedance q, because its load may
-    hold the ball up to p = 0; and the function that changes its sign at the law's kink.
+    They are the grip, or the time left; for a law that feels its load q, because the load may hold
+    the ball up to p = 0; and the function that changes its sign at the law's kink.
     """
     if until is None:
-        rows = [_grip(law, m, root, rate, None if law.impedance is None else _load(start, time))]
+        rows = [_grip(law, m, root, rate, _load(start, time) if law.feels_load else None)]
     else:
         rows = [until - time]
-    rows += [root] * (law.impedance is not None and until is None)
+    rows += [root] * (law.feels_load and until is None)
     if law.has_kink:
         rows.append(now.side * law.kink(root**m, rate))
     return np.array(rows)
@@ -234,7 +234,7 @@ def _falls(law: ContactLaw, m: int, start: Start, now: _Motion, until, root, rat
     if until is None:
         by_root, by_rate = _grip_slopes(law, m, root, rate)
         rows = [by_root * rate + by_rate * final]
-        if law.impedance is not None:
+        if law.feels_load:
             turning = start.amplitude * np.cos(start.phase + time) * lever
             rows = [rows[0] - _loading(law, root) * turning, rate]
     else:
@@ -271,7 +271,6 @@ def _panel(
     last, more = np.zeros(now.step.size, dtype=bool), np.zeros(now.step.size)
     step = longer = now.step
     reached, first = ~last, np.zeros(last.size, dtype=int)
-    share = None if law.impedance is None else 1 - law.impedance
     for sweep in range(_SWEEPS):
         old, new = new, old
         rate = old[:-1]
@@ -286,9 +285,8 @@ def _panel(
             _lever(m, inside, lever)
             _summed(now.time, step, lever, t)
             load = _load(start, t[:-1])
-            if share is not None:
-                load *= share
-        np.subtract(load, force(inside, rate), out=push)
+        pushed = law.loaded_force(inside, rate, load) if law.feels_load else force(inside, rate)
+        np.subtract(load, pushed, out=push)
         if m > 1:
             push *= lever
         _summed(now.rate, step, push, new)
@@ -322,10 +320,18 @@ def _panel(
     new[-1] += final * more
     by_rate, by_time = (np.abs(tail @ x).max(axis=0) for x in (push, lever))
     error = np.maximum(by_rate / now.speed, by_time * now.speed / now.length) * step
-    full = None if share is None else _load(start, t[:-1])
-    held = ((q[:-1] > 0) & (_grip(law, m, q[:-1], rate, full) > 0)).all(axis=0)
+    held = np.ones_like(last)
+    # Up to a time a smooth force may be continued, for a steady contact that is sought.
+    if until is None or law.root > 1:
+        full = _load(start, t[:-1]) if law.feels_load else None
+        held = ((q[:-1] > 0) & (_grip(law, m, q[:-1], rate, full) > 0)).all(axis=0)
+    if law.has_kink:
+        # Both turns of a sign that changes twice in a panel would be missed at its end. A panel up
+        # to a time may be so short that rounding gives the sign.
+        smooth = (now.side * law.kink(q[:-1] ** m, rate) > 0).all(axis=0)
+        held &= smooth if until is None else smooth | last
     turned = last & (first == len(left) - 1) if law.has_kink else np.zeros_like(last)
-    surfaced = first == 1 if share is not None and until is None else np.zeros_like(last)
+    surfaced = first == 1 if law.feels_load and until is None else np.zeros_like(last)
     good = reached & held & (change <= _ENOUGH) & (error <= _SPECTRUM)
     slow = (early / _CHANGE) ** (-1 / (2 * _EARLY))
     slower = np.minimum((error / _SPECTRUM) ** (-1 / count), slow)
@@ -384,15 +390,18 @@ def _derivatives(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray):
     m, q, rate = law.root, panel.root[:-1].T, panel.rate[:-1].T
     angle = start.phase[:, np.newaxis] + panel.time[:-1].T
     lever, bend = _lever(m, q), m * (m - 1) * q ** max(m - 2, 0)
-    slopes = slopes_of(law.force, panel.root[:-1] ** m, panel.rate[:-1])
+    state = panel.root[:-1] ** m, panel.rate[:-1]
+    load = _load(start, panel.time[:-1]) if law.feels_load else 0.0
+    slopes = slopes_of(lambda p, u: law.loaded_force(p, u, load), *state)
 
     def column(rows):
         return rows[:, :, np.newaxis]
 
     by_root = column(bend * panel.push.T / lever - lever * lever * slopes.by_penetration.T)
     by_rate = column(-lever * slopes.by_rate.T)
-    # The share of the load that acts on the ball.
-    felt = lever if law.impedance is None else lever * np.reshape(1 - law.impedance, (-1, 1))
+    # The share of the load that acts on the ball; the force is linear in the load.
+    carried = law.loaded_force(*state, 1.0) - law.force(*state) if law.feels_load else np.zeros(1)
+    felt = lever * (1 - carried.T)
     by_time = column(-felt * start.amplitude[:, np.newaxis] * np.cos(angle))
     step = panel.step[:, np.newaxis, np.newaxis]
     whole = step * integral
@@ -422,9 +431,7 @@ def _at_release(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray, st
     turning = -start.amplitude * np.cos(angle)
     falls = by_root * rate + by_rate * final + by_load * turning * lever
     # If the force has a step at the release, the grip vanishes at another rate.
-    force = law.force(root**law.root, rate)
-    if law.impedance is not None:
-        force = force + law.impedance * _load(start, panel.time[-1])
+    force = law.loaded_force(root**law.root, rate, _load(start, panel.time[-1]))
     step = np.where(by_rate == 0, 0.0, by_rate * lever * force)
     load = turning[:, np.newaxis] * by[:, 2]
     load += np.stack([turning, 0 * angle, -np.sin(angle), np.ones_like(angle)], axis=1)
@@ -520,7 +527,8 @@ def march(
             if not active.size:
                 break
     root, rate, time = (np.where(done, x, np.nan) for x in state[:3])
-    depth = np.maximum(root, 0.0) ** law.root
+    # Between two times of a motion that is sought a ball may be above the table.
+    depth = root if law.root == 1 and until is not None else np.maximum(root, 0.0) ** law.root
     if until is None and law.release is Release.DISPLACEMENT:
         depth *= 0
     return Contacts(time, depth, rate, jacobian, contraction)

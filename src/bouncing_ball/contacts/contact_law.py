@@ -28,6 +28,15 @@ from bouncing_ball.errors import ModelError, require
 _IMAGINARY = 1e-20
 
 
+class Unit(NamedTuple):
+    """The SI unit of a parameter, and its powers of mass, length and time."""
+
+    name: str
+    mass: float = 0.0
+    length: float = 0.0
+    time: float = 0.0
+
+
 class Slopes(NamedTuple):
     """Derivatives of a function of (p, p′), of the shape of the arguments."""
 
@@ -63,6 +72,8 @@ class ContactLaw(Batch, ABC):
     name: ClassVar[str]
     formula: ClassVar[str]
     """The force, as the help of the command line shows it."""
+    units: ClassVar[dict[str, Unit]] = {}
+    """The units of those parameters that are not numbers."""
     root: ClassVar[int] = 2
     release = Release.DISPLACEMENT
 
@@ -85,17 +96,21 @@ class ContactLaw(Batch, ABC):
         """
         return 0.0 if self.release is Release.DISPLACEMENT else None
 
+    feels_load: ClassVar[bool] = False
+    """Whether the force in contact depends on the load, as :meth:`loaded_force` says.
+
+    The ball is then released where the grip under the load vanishes, or where p = 0, whichever
+    comes first.
+    """
+
+    def loaded_force(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
+        """The force under a load a, in which it is linear; by default f(p, p′)."""
+        return self.force(penetration, rate)
+
     @property
-    def impedance(self) -> Any:
-        """The share d of the load that does not act on the ball in contact; None if there is none.
-
-        Then p″ = (1 - d) a - f, and the force on the ball is f + d a. The ball is released where
-        the grip under the load vanishes, or where p = 0, whichever comes first.
-        """
-        return None
-
-    has_kink: ClassVar[bool] = False
-    """Whether the force is smooth only where :meth:`kink` does not change its sign."""
+    def has_kink(self) -> bool:
+        """Whether the force is smooth only where :meth:`kink` does not change its sign."""
+        return False
 
     def kink(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """A function that changes its sign where the force, which is continuous, has a kink."""
@@ -107,9 +122,7 @@ class ContactLaw(Batch, ABC):
         return self.force(penetration, rate) if lag is None else penetration + lag * rate
 
     def loaded_grip(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
-        """The grip under a load a, which differs from :meth:`grip` only if the law has an
-        impedance.
-        """
+        """The grip under a load a, by default that without."""
         return self.grip(penetration, rate)
 
     @property
@@ -153,6 +166,14 @@ class ContactLaw(Batch, ABC):
     def parameters(self) -> dict[str, Any]:
         """Names and values of the law's numbers."""
         return {name: getattr(self, name) for name in self.parameter_names()}
+
+    def in_si(self, mass: float, length: float, time: float) -> dict[str, float]:
+        """The numbers of a single law in SI units, from the units of mass, length and time."""
+        found = {}
+        for name, value in self.parameters().items():
+            unit = self.units.get(name, Unit(""))
+            found[name] = float(value) * mass**unit.mass * length**unit.length * time**unit.time
+        return found
 
     @property
     def label(self) -> str:

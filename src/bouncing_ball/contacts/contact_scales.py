@@ -53,6 +53,28 @@ def depth(law: ContactLaw, rate: np.ndarray, power: float, wanted: np.ndarray) -
     )
 
 
+def rest(law: ContactLaw) -> float:
+    """The penetration of one law under the weight of a ball at rest, ``f(p, 0) = 1``.
+
+    Examples
+    --------
+    >>> from bouncing_ball.contacts.spring_damper import SpringDamper
+    >>> round(rest(SpringDamper(2.0, 0.1)), 6)
+    0.25
+    """
+    weight = np.ones(1)
+    deepest = float(depth(law, 0 * weight, 0.0, weight)[0])
+    if not law.feels_load:
+        return deepest
+    # The load adds to the force, so that the ball lies less deep.
+    from scipy.optimize import brentq
+
+    def surplus(p: float) -> float:
+        return law.loaded_force(p * weight, 0 * weight, 1.0)[0] - 1
+
+    return brentq(surplus, 0.0, 2 * deepest)
+
+
 def scales(law: ContactLaw, speed: np.ndarray, load: np.ndarray) -> Scales:
     """Scales of contacts with an impact speed under a load of at most ``load``.
 

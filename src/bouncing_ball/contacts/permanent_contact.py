@@ -26,6 +26,11 @@ t², so that half as many roots as in an impact make the contact smooth. Newton'
 starts from the contact that follows its load quasi-statically; the number of nodes is doubled
 until the Legendre coefficients have fallen.
 
+A law with a kink is not smooth there, and its contact is the one that goes from its deepest part
+through the touch back to the same state in one period, by the panels of
+:mod:`bouncing_ball.contacts.collocation`, which end at kinks. If the law feels the load the ball
+may also touch the surface, p = p′ = 0, before the grip vanishes; the lower threshold counts.
+
 All quantities are dimensionless.
 """
 
@@ -34,8 +39,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.collocation import MOST_PANELS, Start, march
 from bouncing_ball.contacts.contact_law import ContactLaw, check_damping, check_positive, slopes_of
-from bouncing_ball.contacts.contact_scales import depth
+from bouncing_ball.contacts.contact_scales import depth, rest
 from bouncing_ball.contacts.quadrature import Scheme, scheme
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import ModelError, require
@@ -192,6 +198,38 @@ def _solved(s: Scheme, law: ContactLaw, z: np.ndarray) -> np.ndarray | None:
     return None
 
 
+def _by_panels(law: ContactLaw, at_surface: bool) -> float:
+    """Λ of the steady contact that touches the surface, or its release; NaN if none was found."""
+    from scipy.optimize import root
+
+    unit = rest(law)
+
+    def motion(z: np.ndarray, times: ArrayLike):
+        """p and p′ after times from half a period before the touch."""
+        end = np.atleast_1d(times).astype(float)
+        state = unit * z[0], unit * z[1], z[2] - _PERIOD / 2, z[3], 1.0
+        found = march(law, Start(*(x + 0 * end for x in state)), MOST_PANELS, end)
+        return found.penetration, found.rate
+
+    def defects(z: np.ndarray) -> np.ndarray:
+        (p, last), (u, last_rate) = motion(z, [_PERIOD / 2, _PERIOD])
+        phase, lam = z[2:]
+        load, small = 1 - lam * np.sin(phase), 1e-20j
+        push = load - law.loaded_force(p, u, load)
+        moved = p + small * u, u + small * push, load - small * lam * np.cos(phase)
+        falls = np.imag(law.loaded_grip(*moved)) / small.imag
+        touch = (p, u) if at_surface else (law.loaded_grip(p, u, load), falls)
+        return np.array([*touch, last - unit * z[0], last_rate - unit * z[1]]) / unit
+
+    found = root(defects, [2.0, 0.0, np.pi / 2, 1.0], tol=_SETTLED)
+    times = np.linspace(0.0, _PERIOD, _LEVELS[0])
+    p, u = motion(found.x, times)
+    load = 1 - found.x[3] * np.sin(found.x[2] - _PERIOD / 2 + times)
+    held = np.minimum(p, law.loaded_grip(p, u, load)) if law.feels_load else law.grip(p, u)
+    solved = np.max(np.abs(found.fun)) < _SPECTRUM**2 and found.x[3] > 0
+    return float(found.x[3]) if solved and np.min(held) > -_SPECTRUM * unit else np.nan
+
+
 def permanent_contact(law: ContactLaw) -> float:
     """The threshold of one law, a value of Λ.
 
@@ -211,7 +249,11 @@ def permanent_contact(law: ContactLaw) -> float:
     if law.permanent_contact is not None:
         return float(law.permanent_contact)
     with np.errstate(all="ignore"):
-        for count in _LEVELS:
+        if law.has_kink:
+            touches = [_by_panels(law, at_surface) for at_surface in (False, law.feels_load)]
+            if np.isfinite(touches).any():
+                return float(np.nanmin(touches))
+        for count in () if law.has_kink else _LEVELS:
             s = scheme(count, max(1, law.root // 2))
             z = _solved(s, law, _start(s, law))
             if z is not None:

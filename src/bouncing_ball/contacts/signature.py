@@ -43,7 +43,9 @@ the instant ::
 
 One collocation at each speed gives all of these. Between speeds the four functions are
 interpolated by Chebyshev polynomials in ln v, in which they are smooth. A panel covers a factor
-of eight in speed, and is computed when it is first needed.
+of eight in speed, and is computed when it is first needed. Where the deepest point of an impact
+reaches a kink at a given depth, they have only a few derivatives. The panels of such laws are
+therefore shorter, and the errors there are some 10⁻⁶ of t_c, σ and D, and 10⁻⁸ of r.
 
 All quantities are dimensionless; all functions broadcast.
 """
@@ -65,6 +67,8 @@ from bouncing_ball.errors import ModelError
 # that of 1/(1 + C v), the interpolation error is of the order of 6⁻²⁴.
 _WIDTH = np.log(8.0)
 _NODES = 24
+# The number of panels in one of those, for a law with kinks at given depths.
+_PARTS = 16
 # Speeds beyond these are replaced by them, because no impact is so slow or so fast.
 _SLOWEST, _FASTEST = 1e-30, 1e30
 
@@ -109,11 +113,15 @@ def free_impact(law: ContactLaw, speed: ArrayLike) -> Instant:
     return Instant(delay, r, load, end.duration, d_restitution=(-by_speed - r) / v)
 
 
+def _width(law: ContactLaw) -> float:
+    return _WIDTH / _PARTS if law.has_kink and law.lag is None else _WIDTH
+
+
 @lru_cache(maxsize=4096)
 def _panel(law_type: type[ContactLaw], values: tuple, number: int) -> np.ndarray:
     """Chebyshev coefficients of t_c, r, σ and D over a panel, shape (nodes, 4)."""
-    x = chebyshev.chebpts1(_NODES)
-    instant = free_impact(law_type(*values), np.exp((number + (x + 1) / 2) * _WIDTH))
+    x, law = chebyshev.chebpts1(_NODES), law_type(*values)
+    instant = free_impact(law, np.exp((number + (x + 1) / 2) * _width(law)))
     return chebyshev.chebfit(x, np.stack(instant[:4], axis=1), _NODES - 1)
 
 
@@ -177,14 +185,14 @@ class Signature(Batch):
         v = np.asarray(speed, dtype=float)
         if self.is_constant:
             return Instant(*(x + 0 * v for x in self._known))
-        v = np.clip(v, _SLOWEST, _FASTEST)
-        log = np.log(v) / _WIDTH
+        v, width = np.clip(v, _SLOWEST, _FASTEST), _width(self.law)
+        log = np.log(v) / width
         number = np.floor(np.where(np.isnan(log), 0.0, log)).astype(int)
         values = np.full((2, 4, *v.shape), np.nan)
         key = tuple(x if isinstance(x, str) else float(x) for x in vars(self.law).values())
         for panel in np.unique(number):
             coefficients = _panel(type(self.law), key, int(panel))
-            slopes = chebyshev.chebder(coefficients) * (2 / _WIDTH)
+            slopes = chebyshev.chebder(coefficients) * (2 / width)
             here = number == panel
             x = 2 * (log[here] - panel) - 1
             values[0, :, here] = chebyshev.chebval(x, coefficients).T

@@ -25,7 +25,7 @@ from typing import ClassVar, NamedTuple, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.contact_law import ContactLaw, check_damping, check_positive
+from bouncing_ball.contacts.contact_law import ContactLaw, Unit, check_damping, check_positive
 from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
 from bouncing_ball.contacts.instant import Instant
 from bouncing_ball.contacts.oscillator import responses
@@ -81,6 +81,7 @@ class SpringDamper(ContactLaw):
     name: ClassVar[str] = "linear"
     formula: ClassVar[str] = "W² p + 2 Z W p′"
     root: ClassVar[int] = 1
+    units: ClassVar[dict[str, Unit]] = {"frequency_ratio": Unit("rad/s", 0, 0, -1)}
 
     def __post_init__(self):
         check_positive(self.frequency_ratio, "frequency ratio ϖ")

@@ -1,11 +1,16 @@
 """The interface of an engine: parameters from k, c and m, a release, a scheme, a text to paste."""
 
 import math
+import re
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
+from importlib.resources import files
 from typing import Any, ClassVar, NamedTuple
 
+import numpy as np
+
+from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.engines.scheme import Scheme, free_impact, steps_for
 from bouncing_ball.errors import ModelError, require
@@ -13,6 +18,7 @@ from bouncing_ball.errors import ModelError, require
 ERROR = 0.001
 """The error of a free impact's restitution that a time step may cause, by default."""
 
+_PLACE = re.compile(r"@([\w.]+)@")
 Parameters = Mapping[str, float | list[float]]
 
 
@@ -87,25 +93,61 @@ class EngineSettings:
     penetration: float | None = None
 
 
+def text_of(name: str) -> str:
+    """A text to paste, with places for its numbers."""
+    return files(__package__).joinpath(f"snippets/{name}.txt").read_text("utf-8")
+
+
+def filled(text: str, numbers: Mapping[str, str]) -> str:
+    """A text with numbers in their places, without the lines about numbers that do not exist."""
+    lines = (line for line in text.splitlines() if numbers.keys() >= {*_PLACE.findall(line)})
+    return _PLACE.sub(lambda place: numbers[place[1]], "\n".join(lines))
+
+
 class Engine(ABC):
     """A physics engine and its linear contact between a ball and a wall at rest or moved.
 
     A subclass defines its ``name``, the ``names`` of its parameters, its ``releases`` with the
-    default first, and the ``scheme`` by which it moves a ball in contact.
+    default first, and the ``scheme`` by which it moves a ball in contact. Its text to paste is
+    ``snippets/NAME.txt``.
     """
 
     name: ClassVar[str]
     names: ClassVar[tuple[str, ...]]
     releases: ClassVar[tuple[Release, ...]]
     scheme: ClassVar[Scheme]
+    laws: ClassVar[dict[str, str]] = {}
+    """Other contact laws of the engine, by the names that are asked for."""
 
     @abstractmethod
     def parameters(self, contact: Physical) -> Parameters:
         """The parameters of a contact, in the units and under the names of the engine."""
 
-    @abstractmethod
+    def numbers(self, contact: Physical) -> dict[str, float]:
+        """The parameters of a contact, those in lists with their place after a dot."""
+        found: dict[str, float] = {}
+        for name, value in self.parameters(contact).items():
+            many = {f"{name}.{k}": x for k, x in enumerate(np.ravel(value).tolist())}
+            found |= many if isinstance(value, list) else {name: value}
+        return found
+
+    def template(self, release: Release) -> str:
+        """The text to paste, with the names of its numbers in their places, as ``@name@``.
+
+        In the file ``snippets/NAME.txt`` the lines for one release only begin with its name.
+        """
+        lines = (line.rpartition("|") for line in text_of(self.name).splitlines())
+        return "\n".join(line for rule, _, line in lines if rule in ("", release))
+
     def snippet(self, contact: Physical, release: Release, time_step: float) -> str:
-        """The text to paste for a contact, with a time step in s; its comments give the units."""
+        """The text to paste for a contact, with a time step in s; its comments give the units.
+
+        A line about a restitution that does not exist is left out.
+        """
+        values = {"mass": contact.mass, "time_step": time_step, **self.numbers(contact)}
+        texts = {name: repr(value) for name, value in values.items()}
+        texts |= {rule: f"{r:.4f}" for rule, r in self.restitutions(contact, release).items()}
+        return filled(self.template(release), texts)
 
     @abstractmethod
     def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
@@ -116,6 +158,30 @@ class Engine(ABC):
         ModelError
             If a parameter or the mass is missing, unknown, or outside its range.
         """
+
+    def law(
+        self, parameters: Mapping[str, Any], time: float = 1.0, length: float = 1.0
+    ) -> ContactLaw | None:
+        """The law of a contact with these parameters, in units of time and length in SI units.
+
+        None if it is the spring and damper of :meth:`read`.
+        """
+        return None
+
+    def of_law(
+        self, settings: EngineSettings, mass: float, law: Mapping[str, Any]
+    ) -> EngineSettings:
+        """Settings of a linear contact with the parameters and the text of a law in their place.
+
+        ``law`` has the law's name and its parameters in SI units. The time step remains that of
+        the linear contact with the same restitution and duration.
+
+        Raises
+        ------
+        ModelError
+            If the engine has no such law.
+        """
+        raise ModelError(f"{law['name']} is not written for {self.name}")
 
     def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
         """Sentences on how the engine with these parameters differs from a spring and a damper."""

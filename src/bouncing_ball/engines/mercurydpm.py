@@ -1,7 +1,7 @@
 """MercuryDPM: a linear viscoelastic species, whose damper pulls until the ball has left."""
 
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.engines.engine import Physical, Proportional
+from bouncing_ball.engines.engine import Proportional
 from bouncing_ball.engines.scheme import Scheme
 
 
@@ -10,6 +10,7 @@ class MercuryDPM(Proportional):
 
     Examples
     --------
+    >>> from bouncing_ball.engines.engine import Physical
     >>> MercuryDPM().parameters(Physical(mass=2.0, stiffness=200.0, damping=4.0))
     {'stiffness': 200.0, 'dissipation': 4.0}
     """
@@ -18,12 +19,3 @@ class MercuryDPM(Proportional):
     names = ("stiffness", "dissipation")
     releases = (Release.DISPLACEMENT,)
     scheme = Scheme.SEMI_IMPLICIT
-
-    def snippet(self, contact: Physical, release: Release, time_step: float) -> str:
-        stiffness, dissipation = self.parameters(contact).values()
-        return f"""\
-LinearViscoelasticSpecies species;
-species.setStiffness({stiffness!r});  // N/m
-species.setDissipation({dissipation!r});  // N s/m, for a ball of {contact.mass!r} kg and a wall
-speciesHandler.copyAndAddObject(species);
-setTimeStep({time_step!r});  // s"""

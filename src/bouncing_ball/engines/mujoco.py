@@ -11,7 +11,7 @@ and the contact has ::
 
 per unit of mass. The impedance then affects the load only: in contact the ball feels the share
 1 - d of gravity and of the table's acceleration. A spring and a damper have d = 0, and the smallest
-d of MuJoCo is 10⁻⁴.
+d of MuJoCo is 10⁻⁴. Any impedance is the law :mod:`bouncing_ball.contacts.laws.impedance`.
 """
 
 from collections.abc import Mapping, Sequence
@@ -21,6 +21,8 @@ import numpy as np
 
 from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.signature import free_impact
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.engines.engine import Engine, Physical
 from bouncing_ball.engines.scheme import Scheme
 from bouncing_ball.errors import ModelError
@@ -29,6 +31,8 @@ from bouncing_ball.errors import ModelError
 _DEFAULT = (0.9, 0.95, 0.001, 0.5, 2.0)
 # The limits that MuJoCo imposes on an impedance.
 _LEAST, _MOST = 1e-4, 0.9999
+# Up to this impedance a contact is taken for a spring and a damper.
+_FELT = 0.01
 
 
 def _numbers(name: str, value: str | Sequence[float], counts: range) -> list[float]:
@@ -109,37 +113,41 @@ class MuJoCo(Engine):
             "two positive ones, a time constant and a damping ratio"
         )
 
-    def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
-        least, most, width = impedance(parameters.get("solimp", ()))[:3]
-        found = []
-        if most > 0.01:
-            found.append(
-                f"with the impedance {most:g} a contact feels {1 - most:.2g} of the load (gravity, "
-                'table), and a spring and a damper all of it: solimp = "1e-4 1e-4 0.001"'
-            )
-        contact = self.read(parameters, 1.0) if "solref" in parameters else None
-        if found and contact is not None and contact.damping_ratio < 1:
-            # At 1 rad/s of a table the frequency ratio is the contact's own frequency.
-            own = contact.angular_frequency, contact.damping_ratio
-            loads = (Impedance(*own, d).signature.load for d in (most, 0.0))
-            new, old = (float(load) for load in loads)
-            found.append(
-                f"under a load a this r is r + σ a/v with σ = {new:.4g} s, and {old:.4g} s for "
-                "a spring and a damper"
-            )
-        if least != most:
-            found.append(
-                f"this is the contact below the depth of {width:g} m; at the surface the spring is "
-                f"{(least / most) ** 2:.2g} and the damper {least / most:.2g} of it"
-            )
-        return tuple(found)
+    def law(
+        self, parameters: Mapping[str, Any], time: float = 1.0, length: float = 1.0
+    ) -> Impedance | None:
+        least, most, width, *shape = impedance(parameters.get("solimp", ()))
+        contact = self.read(parameters, 1.0)
+        if max(least, most) <= _FELT or contact.damping_ratio >= 1:
+            return None
+        if not width > 0:
+            least = most = (least + most) / 2
+        own = contact.angular_frequency * time, contact.damping_ratio
+        return Impedance(*own, most, least, (width or 1.0) / length, *shape)
 
-    def snippet(self, contact: Physical, release: Release, time_step: float) -> str:
-        found = self.parameters(contact)
-        solref, solimp = (" ".join(map(repr, found[name])) for name in ("solref", "solimp"))
-        return f"""\
-<option timestep="{time_step!r}"/>  <!-- s -->
-<default>
-  <!-- Of ball ({contact.mass!r} kg) and table alike: -k/m in 1/s^2, -c/m in 1/s; shares, m -->
-  <geom condim="1" solref="{solref}" solimp="{solimp}"/>
-</default>"""
+    def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
+        law = self.law(parameters)
+        if law is None:
+            return ()
+        most, share = law.share, law.at_surface / law.share
+        spring = SpringDamper(law.frequency_ratio, law.damping_ratio, Release.FORCE)
+        # Deep below the width the impedance is constant.
+        deep = Impedance(law.frequency_ratio, law.damping_ratio, most)
+        new, old = (float(free_impact(each, 1.0).load) for each in (deep, spring))
+        found = [
+            f"with the impedance {most:g} a contact feels {1 - most:.2g} of the load (gravity, "
+            'table), and a spring and a damper all of it: solimp = "1e-4 1e-4 0.001"',
+            f"under a load a this r is r + σ a/v with σ = {new:.4g} s, and {old:.4g} s for "
+            "a spring and a damper",
+        ]
+        if law.has_kink:
+            speeds = law.width * law.frequency_ratio * np.array([0.1, 1.0, 10.0])
+            impacts = free_impact(law, speeds).restitution
+            each = (f"{r:.4f} at {v:.3g} m/s" for r, v in zip(impacts, speeds, strict=True))
+            found += [
+                f"this is the contact below the depth of {law.width:g} m; at the surface the "
+                f"spring is {share**2:.2g} and the damper {share:.2g} of it",
+                f"a free impact has r = {', '.join(each)}, and {float(spring.restitution):.4f} "
+                "where it is much deeper than that",
+            ]
+        return tuple(found)

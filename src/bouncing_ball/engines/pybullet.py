@@ -1,7 +1,7 @@
 """PyBullet: a spring and a damper on each of two bodies, as one constraint."""
 
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.engines.engine import Physical, Proportional
+from bouncing_ball.engines.engine import Proportional
 from bouncing_ball.engines.scheme import Scheme
 
 
@@ -12,6 +12,7 @@ class PyBullet(Proportional):
 
     Examples
     --------
+    >>> from bouncing_ball.engines.engine import Physical
     >>> found = PyBullet().parameters(Physical(mass=2.0, stiffness=200.0, damping=4.0))
     >>> found
     {'contactStiffness': 400.0, 'contactDamping': 2.0}
@@ -26,15 +27,3 @@ class PyBullet(Proportional):
 
     def factors(self, mass: float) -> tuple[float, float]:
         return 2.0, 0.5
-
-    def snippet(self, contact: Physical, release: Release, time_step: float) -> str:
-        stiffness, damping = self.parameters(contact).values()
-        return f"""\
-# s; more substeps would divide it
-pybullet.setPhysicsEngineParameter(fixedTimeStep={time_step!r}, numSubSteps=1)
-# The ball has {contact.mass!r} kg; the same of ball and table, in N/m and N s/m.
-for body in (ball, table):
-    pybullet.changeDynamics(
-        body, -1, contactStiffness={stiffness!r}, contactDamping={damping!r},
-        restitution=0, linearDamping=0, angularDamping=0,
-    )"""

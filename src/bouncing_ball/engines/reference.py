@@ -11,8 +11,6 @@ from bouncing_ball.contacts.release import Release
 from bouncing_ball.engines import ENGINES
 from bouncing_ball.engines.engine import Engine, Physical
 
-# k, m and a step whose digits stand nowhere else in a text, in parts or in products.
-_MARKED, _STEP = Physical(1.37, 523.19, 7.513), 0.0123457
 # m, k, r and the error of r that a time step may leave, from light to heavy and elastic.
 _CASES = (
     (0.5, 1e5, 0.75, 1e-3),
@@ -20,41 +18,6 @@ _CASES = (
     (3.0, 2e3, 0.3, 2e-3),
     (1.0, 1e4, 1.0, 0.02),
 )
-
-
-def numbers(engine: Engine, contact: Physical) -> dict[str, float]:
-    """The parameters of an engine, those in lists with their place after a dot.
-
-    Examples
-    --------
-    >>> found = numbers(ENGINES["mujoco"], Physical(1.0, 100.0, 2.0))
-    >>> found["solref.1"], list(found)
-    (-2.0, ['solref.0', 'solref.1', 'solimp.0', 'solimp.1', 'solimp.2'])
-    """
-    found: dict[str, float] = {}
-    for name, value in engine.parameters(contact).items():
-        if isinstance(value, list):
-            found |= {f"{name}.{place}": one for place, one in enumerate(value)}
-        else:
-            found[name] = value
-    return found
-
-
-def template(engine: Engine, release: Release) -> str:
-    """The snippet of an engine with the names of its numbers in their places, as ``@name@``.
-
-    Examples
-    --------
-    >>> print(template(ENGINES["drake"], Release.FORCE).splitlines()[0])
-    plant = MultibodyPlant(time_step=@time_step@)  # s
-    """
-    places = {repr(value): name for name, value in numbers(engine, _MARKED).items()}
-    places |= {repr(_MARKED.mass): "mass", repr(_STEP): "time_step"}
-    places |= {f"{_MARKED.restitution(rule):.4f}": str(rule) for rule in Release}
-    text = engine.snippet(_MARKED, release, _STEP)
-    for number in sorted(places, key=len, reverse=True):
-        text = text.replace(number, f"@{places[number]}@")
-    return text
 
 
 def _case(engine: Engine, release: Release, *case: float) -> dict[str, Any]:
@@ -75,7 +38,7 @@ def as_json() -> str:
     engines = {
         engine.name: {
             "scheme": str(engine.scheme),
-            "snippets": {str(rule): template(engine, rule) for rule in engine.releases},
+            "snippets": {str(rule): engine.template(rule) for rule in engine.releases},
         }
         for engine in ENGINES.values()
     }

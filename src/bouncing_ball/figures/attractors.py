@@ -185,7 +185,7 @@ def mean_motions(data: xr.Dataset) -> Figure:
             _mesh(axes, one, place, **look)
             _dot(axes, one, one.decision == "undecided", {"marker": "x", "markersize": 3})
         row[0].set_ylabel(f"{simple} model\n$r$")
-        _draw_shares(panel, data.sel(simple=simple, motion_group="all"), "right", "mean", _MEANS)
+        _draw_shares(panel, data.sel(simple=simple), "right", "mean", _MEANS)
         panel.set_title(f"{simple} model")
     for mean, top, bottom in zip(means, *rows, strict=True):
         top.set_title(mean)

@@ -5,8 +5,7 @@ The datasets are those of :mod:`bouncing_ball.attractors.labelled`.
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
-from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -14,7 +13,7 @@ from matplotlib.patches import Patch
 from bouncing_ball.datasets.labelled import CASE
 from bouncing_ball.figures.canvas import WIDE, WIDTH, canvas, legend_below
 from bouncing_ball.figures.labels import in_a_row, symbol, title
-from bouncing_ball.figures.style import COLOURS
+from bouncing_ball.figures.style import COLOURS, Look
 
 KINDS = ("orbit", "subharmonic", "locked", "permanent contact", "chaotic", "undecided")
 """The kinds of motion in the order of their colours."""
@@ -98,8 +97,11 @@ def basins(data: xr.Dataset) -> Figure:
     shown = min(len(_AREAS), order.size)
     rank = np.empty(order.size, dtype=int)
     rank[order] = np.minimum(np.arange(order.size), shown - 1)
-    colours = ListedColormap(_AREAS[:shown])
-    _areas(axes, data, rank[data.destination.values], colours, shown)
+    place = data.start_phase.values / np.pi, data.start_speed.values, rank[data.destination.values]
+    look: Look = {"cmap": ListedColormap(_AREAS[:shown]), "vmin": -0.5, "vmax": shown - 0.5}
+    axes.pcolormesh(*place, rasterized=True, **look)
+    axes.set(xlabel=r"phase of the first impact $\varphi/\pi$", title=title(data))
+    axes.set_ylabel(r"speed of the first impact $-\delta'$")
     names = [_name(data.isel(motion=k)) for k in order[:shown]]
     if order.size > shown:
         rest = float(data.share.values[order[shown - 1 :]].sum())
@@ -107,16 +109,6 @@ def basins(data: xr.Dataset) -> Figure:
     patches = [Patch(color=_AREAS[k], label=name) for k, name in enumerate(names)]
     legend_below(figure, patches, ncols=3)
     return figure
-
-
-def _areas(
-    axes: Axes, data: xr.Dataset, rank: np.ndarray, colours: ListedColormap, shown: int
-) -> None:
-    phase, speed = data.start_phase.values / np.pi, data.start_speed.values
-    norm = BoundaryNorm(np.arange(shown + 1) - 0.5, shown)
-    axes.pcolormesh(phase, speed, rank, cmap=colours, norm=norm, rasterized=True)
-    axes.set(xlabel=r"phase of the first impact $\varphi/\pi$", title=title(data))
-    axes.set_ylabel(r"speed of the first impact $-\delta'$")
 
 
 def _name(motion: xr.Dataset) -> str:

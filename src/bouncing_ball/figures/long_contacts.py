@@ -1,21 +1,15 @@
-"""Permanent contact and the orbits with a long contact: cascade of flights and basins."""
+"""Permanent contact and the orbits with a long contact: cascade of flights."""
 
-import numpy as np
 import xarray as xr
-from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 
 from bouncing_ball.datasets.selection import each
-from bouncing_ball.figures.canvas import WIDE, canvas, coloured, legend_below, logarithmic
+from bouncing_ball.figures.canvas import WIDE, canvas, coloured, logarithmic
 from bouncing_ball.figures.labels import number
-from bouncing_ball.figures.style import COLOURS, GUIDE, Look
+from bouncing_ball.figures.style import COLOURS, GUIDE
 
-# Colours in the order of the motions; they are five steps of grey.
-_FILLS = ("#ffffff", "#b9d7ea", "#b34a10", "#e0a030", "#000000")
 _DASHES = ("-", (0, (6, 1.5)), (0, (4, 1.5, 1, 1.5)), (0, (2, 1)))
 _RATIO = r"frequency ratio $\varpi$"
-_ORBITS = {1: "o", 2: "^"}
 
 
 def cascade_of_flights(data: xr.Dataset) -> Figure:
@@ -39,30 +33,4 @@ def cascade_of_flights(data: xr.Dataset) -> Figure:
     right.set(yscale="log", xlabel="opening $k$", ylabel=r"$E_k$ for $\varpi\to\infty$")
     right.set(xticks=data.flights.values, title=r"limits; dotted: $E_{k+1}/E_k=1/r^2$")
     right.legend(loc="upper left", title="$r$, from above")
-    return figure
-
-
-def basins(data: xr.Dataset) -> Figure:
-    """ext_basins: a panel for each Λ, in which each start has the colour of the motion it
-    leads to.
-    """
-    figure, row = canvas(WIDE, 3.1, columns=data.sizes["case"], sharey=True, squeeze=False)
-    image: Look = {"origin": "lower", "aspect": "auto", "interpolation": "none"}
-    image |= {"extent": (-1.0, 1.0, 0.0, data.attrs["velocity_max"])}
-    image |= {"cmap": ListedColormap(_FILLS), "vmin": -0.5, "vmax": len(_FILLS) - 0.5}
-    for one, axes in zip(each(data, "case"), row[0], strict=True):
-        axes.imshow(one.destination, **image)
-        for k, mark in _ORBITS.items():
-            at = one.orbit_phase[k] / np.pi, one.orbit_speed[k]
-            axes.plot(*at, mark, color="#000000", markerfacecolor="#ffffff", markersize=5)
-        # The variable, not the attribute of this name, which is a list.
-        amplitude = number(float(one["amplitude"]))
-        axes.set(title=rf"$\Lambda={amplitude}$", xlabel=r"phase of impact $\varphi/\pi$")
-        axes.spines[["top", "right"]].set_visible(True)
-    row[0, 0].set_ylabel(r"relative speed of impact $-\delta′$")
-    handles = [
-        Patch(facecolor=fill, edgecolor="#000000", linewidth=0.5, label=str(motion))
-        for fill, motion in zip(_FILLS, data.motion.values, strict=True)
-    ]
-    legend_below(figure, handles, ncols=len(handles), fontsize=7)
     return figure

@@ -39,7 +39,6 @@ def height_error(data: xr.Dataset) -> Figure:
     axes.set_ylim(top=1.09 * limit)
     axes.legend(loc="lower right")
     _draw_error(below, data, "h", digits=1)
-    logarithmic(below, data.frequency_ratio)
     return figure
 
 
@@ -52,7 +51,6 @@ def permanent_contact_error(data: xr.Dataset) -> Figure:
     axes.set(xlabel="", ylabel=r"threshold amplitude $\Lambda$")
     axes.legend(loc="upper right")
     _draw_error(below, data, "PC", digits=2)
-    below.set_xlabel(r"frequency ratio $\varpi$")
     return figure
 
 
@@ -94,7 +92,7 @@ def _draw_error(axes: Axes, data: xr.Dataset, name: str, digits: int) -> None:
         axes.plot(found, tolerance, "o", color="black", markersize=4)
         value = rf"$\varpi_{{{name},{100 * tolerance:g}\%}}={found:.{digits}f}$"
         note(axes, value, (found, tolerance), (5, 5), fontsize=8)
-    logarithmic(axes, yscale="log", ylabel="relative error")
+    logarithmic(axes, data.frequency_ratio, yscale="log", ylabel="relative error")
 
 
 def _draw_shifts(axes: Axes, data: xr.Dataset) -> None:

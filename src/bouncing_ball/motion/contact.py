@@ -36,14 +36,26 @@ class ContactDynamics(Dynamics):
     block: ClassVar[int] = 1 << 16
 
     def depart(self, impact: Impact) -> Departure:
-        """The end of each contact; undecided where none was found."""
+        """The end of each contact; undecided where none was found.
+
+        Under a load that pulls, a slow ball meets no force. Its contact has no duration, and it
+        flies on into the table.
+        """
         one = np.ones_like(impact.phase)
         # Without the maximum a displacement of 0 gives the depth -0.
         depth = np.maximum(-impact.displacement, 0.0)
         start = Start(depth, -impact.velocity, impact.phase, self.amplitude * one, one)
         end = march(self.law, start, MOST_PANELS)
+        # Below the table's level a ball that is released may sink, if the load pulls it.
+        rate = np.where(end.penetration > 0, -end.rate, np.maximum(-end.rate, 0.0))
+        if self.law.feels_load:
+            load = 1 - table(impact.phase, self.amplitude)[1]
+            free = (depth == 0) & (self.law.loaded_grip(depth, start.rate, load) < 0)
+            for column, value in zip(end[:3], (0.0, depth, start.rate), strict=True):
+                column[free] = (value + 0 * depth)[free]
+            rate = np.where(free, impact.velocity, rate)
         phase, lost = impact.phase + end.duration, np.isnan(end.duration)
-        state = -end.penetration, np.maximum(-end.rate, 0.0), *table(phase, self.amplitude)
+        state = -end.penetration, rate, *table(phase, self.amplitude)
         status = np.where(lost, Status.UNDECIDED, Status.BOUNCING)
         duration = np.where(lost, np.inf, end.duration)
         return Departure(phase, duration, Flight(*state, self.amplitude), status)

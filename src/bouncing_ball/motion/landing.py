@@ -83,7 +83,7 @@ class Flight(Motion):
 
 
 class Rise(Motion):
-    """The motion δ of balls released below the table's level, while they rise."""
+    """The motion δ of balls below the table's level, until they rise no more and fall faster."""
 
     def __init__(self, flight: Flight):
         self.flight = flight
@@ -91,7 +91,8 @@ class Rise(Motion):
     def __call__(self, time: np.ndarray) -> State:
         displacement, rate, second, third = self.flight.gap(time)
         lam = self.flight.amplitude
-        return State(displacement, rate, second, third, 1 + lam, lam, lam, rate <= 0)
+        ended = (rate <= 0) & (second <= 0)
+        return State(displacement, rate, second, third, 1 + lam, lam, lam, ended)
 
 
 class Fall(Motion):

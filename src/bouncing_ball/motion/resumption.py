@@ -10,9 +10,10 @@ Most balls leave fast: with G = 1 + Λ the strongest relative gravity,
     v² + 2Gδ_b > 0   and   √(v² + 2Gδ_b) ≥ κ G
 
 are sufficient for δ to reach 0 while y increases. Only the other balls are
-followed, by the same certified steps. If a law has no lag, κ follows from the slopes of its grip
-at the release, and the grip of slow balls is sampled until they are out of the
-table; it is not certified that the grip does not return between two samples.
+followed, by the same certified steps. A ball that meets no force when it lands, because the load
+pulls it, is followed in the same way while it sinks. If a law has no lag, κ follows from the slopes
+of its grip at the release, and the grip of slow balls is sampled until they are out of the table;
+it is not certified that the grip does not return between two samples.
 """
 
 import numpy as np
@@ -68,7 +69,11 @@ def _leaves_fast(flight: Flight, law: ContactLaw) -> np.ndarray:
         # A grip that knows the load changes with it too, by Λ a unit of time at most.
         late = (law.loaded_grip(*state, 1.0) - law.loaded_grip(*state, 0.0)) / slopes.by_penetration
     inside, table = flight.room(), flight.amplitude
-    return (inside > 0) & (np.sqrt(np.maximum(inside, 0.0)) >= lag * (1 + table) + late * table)
+    return (
+        (inside > 0)
+        & (flight.velocity >= 0)
+        & (np.sqrt(np.maximum(inside, 0.0)) >= lag * (1 + table) + late * table)
+    )
 
 
 def _certified(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.ndarray]:

@@ -114,6 +114,8 @@ class Diagram(Parameters):
 
 SIMPLE = ("restitution", "corrected")
 MODELS = (*SIMPLE, "spring-damper")
+LIMITS = ("", "_low", "_high")
+"""Ends of the names of an estimate and of the limits of its interval."""
 GROUPS = ("all", "orbit", "subharmonic", "locked", "locked, 1 to 4 T", "locked, above 10 T",
           "chaotic")  # fmt: skip
 """Nodes by what the ball of the simple model ends on; ``all`` has permanent contact as well."""
@@ -146,6 +148,17 @@ def share(chosen: np.ndarray, confidence: float) -> tuple[float, float, float, f
         return 0, np.nan, np.nan, np.nan
     tested = binomtest(int(chosen.sum()), chosen.size)
     return chosen.size, tested.statistic, *tested.proportion_ci(confidence, "wilson")
+
+
+def with_limits(estimates: dict[str, tuple]) -> dict[str, tuple]:
+    """Variables with their limits, from their dimensions and estimates, which have those, an
+    estimate and its limits along the last axis.
+    """
+    return {
+        f"{name}{end}": (dims, np.array(values)[..., k])
+        for name, (dims, values) in estimates.items()
+        for k, end in enumerate(LIMITS)
+    }
 
 
 def agreement(simple: Motions, contact: Motions, confidence: float) -> np.ndarray:
@@ -186,7 +199,7 @@ def locking(parameters: Locking, release: Release) -> xr.Dataset:
     shares = [[agreement(x, each[-1], level) for x in each[:-1]] for each in by_ratio]
     dims = ("model", "restitution", "amplitude")
     of_shares = ("simple", "frequency_ratio", "motion_group")
-    nodes, known, low, high = np.transpose(shares, (2, 1, 0, 3))
+    nodes, *limits = np.transpose(shares, (2, 1, 0, 3))
     r = parameters.restitution.grid()
     first = models(r, parameters.frequency_ratio[0], release)
     ends = {
@@ -195,16 +208,12 @@ def locking(parameters: Locking, release: Release) -> xr.Dataset:
     }
     return described(
         {
-            "kind": (dims, np.stack([each.kind for each in found])),
-            "periods": (dims, np.stack([each.periods for each in found])),
-            "impacts": (dims, np.stack([each.impacts for each in found])),
-            "lyapunov_exponent": (dims, np.stack([each.exponent for each in found])),
+            **{x: (dims, [getattr(y, x) for y in found]) for x in ("kind", "periods", "impacts")},
+            "lyapunov_exponent": (dims, [each.exponent for each in found]),
             "lyapunov_error": (dims, np.maximum(_KNOWN, [each.exponent_error for each in found])),
             **{x: (dims[:2], np.stack([o.amplitude for o in y])) for x, y in ends.items()},
-            "agreement": (of_shares, known),
-            "agreement_low": (of_shares, low),
-            "agreement_high": (of_shares, high),
             "agreement_nodes": (of_shares, nodes),
+            **{f"agreement{x}": (of_shares, y) for x, y in zip(LIMITS, limits, strict=True)},
         },
         coords={
             "model": list(MODELS),

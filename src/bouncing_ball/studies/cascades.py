@@ -16,7 +16,17 @@ from bouncing_ball.datasets.variables import described
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
-from bouncing_ball.parameters import Family, LossyRestitution, Many, Parameters, Span
+from bouncing_ball.parameters import Family, LossyRestitution, Many, Parameters, Span, number
+
+_GRAVITY = 9.80665
+"""Standard gravity in m/s²."""
+
+
+class Measured(Parameters):
+    """Period doublings measured over the amplitude of a table, at an assumed frequency."""
+
+    frequency: Annotated[float, number("frequency of the table", "Hz", gt=0, le=1e6)]
+    amplitudes: Many[Annotated[float, number("amplitude of a doubling", "m", gt=0, le=1)]]
 
 
 class Cascades(Parameters):
@@ -34,6 +44,7 @@ class Cascades(Parameters):
             le=MOST,
         ),
     ]
+    measured: Measured
 
 
 _STIFF = np.array([1000.0, 2000.0])
@@ -68,9 +79,12 @@ def cascades(parameters: Cascades, release: Release) -> xr.Dataset:
     model. The restitution model's is K/ϖ to first order with K = ``cascade_coefficient``
     (restitution, doubling), and the corrected model's C/ϖ² with C = ``cascade_second_order``, both
     measured at two stiff contacts with the next order eliminated (Richardson). NaN where a
-    doubling was not found.
+    doubling was not found. ``measured_cascade`` (doubling,) is Λ of a measurement.
     """
     r, ratios = np.array(parameters.restitution), parameters.frequency_ratio.grid()
+    known = np.array(parameters.measured.amplitudes) / _GRAVITY
+    known *= (2 * np.pi * parameters.measured.frequency) ** 2
+    measured = np.pad(known, (0, parameters.doublings - known.size), constant_values=np.nan)
     along = np.concatenate([ratios, _STIFF])
     simple, corrected, exact = _of_models(parameters.n, r, along, release, parameters.doublings)
     errors = np.stack([exact.amplitude / x.amplitude - 1 for x in (simple, corrected)])
@@ -83,6 +97,7 @@ def cascades(parameters: Cascades, release: Release) -> xr.Dataset:
     return described(
         {
             "restitution_cascade": (("restitution", "doubling"), simple.amplitude[..., 0].T),
+            "measured_cascade": ("doubling", measured),
             "cascade_ratio": (("restitution", "step"), simple.ratios()[..., 0].T),
             "contact_cascade_ratio": (("restitution", "step", "frequency_ratio"), of_contact),
             "cascade_error": (("model", "restitution", "doubling", "frequency_ratio"), error),

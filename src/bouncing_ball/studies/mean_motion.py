@@ -11,14 +11,12 @@ from bouncing_ball.attractors.means import means
 from bouncing_ball.contacts.spring_damper import Release
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.parameters import Seed, Tolerance, number
-from bouncing_ball.studies.attractors import SIMPLE, Grid, group, share
+from bouncing_ball.studies.attractors import LIMITS, SIMPLE, Grid, share
 
 DECISIONS = ("from this on", "not at any", "undecided", "no number")
 """What is known of the smallest ϖ: it is known, the largest one is not enough, the interval of
 some error contains the tolerance, or the simple model's value is infinite."""
 MEANS = ("power", "height", "flights", "exponent")
-NODES = ("all", "orbit", "locked", "chaotic")
-"""Nodes by what all balls of the simple model end on, of the corrected model at the largest ϖ."""
 
 # Speeds of balls at the start are up to this times Λ.
 _FASTEST = 4.0
@@ -85,15 +83,15 @@ def mean_motions(parameters: MeanMotions, release: Release) -> xr.Dataset:
     restitution, amplitude) are (contact - simple)/simple of the power, height, flights per period
     and exponent. ``needed_ratio`` (simple, mean, restitution, amplitude) is the smallest ϖ of those
     tried from which on all errors are within the tolerance, NaN where ``decision`` is not "from
-    this on", see :data:`DECISIONS`. ``right`` (simple, mean, motion_group, ϖ) is the share of the
-    nodes that are known to be right from this ϖ on, of those with a number, for :data:`NODES`; with
-    its Wilson limits ``right_low`` and ``right_high`` and the number of nodes ``right_nodes``.
+    this on", see :data:`DECISIONS`. ``right`` (simple, mean, ϖ) is the share of the nodes that are
+    known to be right from this ϖ on, of those with a number, with its Wilson limits ``right_low``
+    and ``right_high`` and the number of nodes ``right_nodes``.
     """
     lam, compared = parameters.models(release, starts=True)
     random, balls = np.random.default_rng(parameters.seed), parameters.starts
     phase, speed = random.uniform(-np.pi, np.pi, balls), random.uniform(0.0, _FASTEST, balls)
     velocity = lam * (np.cos(phase) - speed)
-    values, motions = [], []
+    values = []
     for model in compared:
         found = label(model.impact_law, lam, phase, velocity, impacts=parameters.impacts)
         flights, height, power, exponent = means(model.impact_law, lam, found, parameters.samples)
@@ -101,7 +99,6 @@ def mean_motions(parameters: MeanMotions, release: Release) -> xr.Dataset:
         of = np.stack([power, height, flights, exponent])
         # Over the mean, ϖ, r, Λ and the ball; the restitution model has one ϖ.
         values.append(of.reshape(len(MEANS), -1, *found.shape[-3:]))
-        motions.append(found)
     *simple, contact = values
     errors = np.stack([_errors(x, contact, parameters.confidence) for x in simple])
     along = np.moveaxis(errors, (1, 3), (0, 1))
@@ -109,26 +106,23 @@ def mean_motions(parameters: MeanMotions, release: Release) -> xr.Dataset:
     ratios = np.array(parameters.frequency_ratio)
     least = np.where(known == 0, ratios[np.minimum(place, ratios.size - 1)], np.nan)
     right = np.stack([(known == 0) & (place <= k) for k in range(ratios.size)], axis=2)
-    shares = np.empty((len(SIMPLE), len(MEANS), len(NODES), ratios.size, 4))
-    for s, q, g, k in np.ndindex(shares.shape[:-1]):
-        inside = np.all(group(motions[s], NODES[g]), axis=-1).reshape(-1, *known.shape[-2:])[-1]
-        here = inside & (known[s, q] != DECISIONS.index("no number"))
-        shares[s, q, g, k] = share(right[s, q, k][here], parameters.confidence)
+    counted = known != DECISIONS.index("no number")
+    shares = np.empty((*right.shape[:3], 4))
+    for s, q, k in np.ndindex(right.shape[:3]):
+        shares[s, q, k] = share(right[s, q, k][counted[s, q]], parameters.confidence)
     dims, nodes = ("simple", "mean"), ("restitution", "amplitude")
-    names = ("right_nodes", "right", "right_low", "right_high")
-    of_shares = (*dims, "motion_group", "frequency_ratio")
+    names = ("right_nodes", *(f"right{x}" for x in LIMITS))
     return described(
         {
             "mean_error": ((*dims, "frequency_ratio", *nodes), errors[:, 0]),
             "mean_margin": ((*dims, "frequency_ratio", *nodes), errors[:, 1]),
             "needed_ratio": ((*dims, *nodes), least),
             "decision": ((*dims, *nodes), np.array(DECISIONS)[known]),
-            **{x: (of_shares, shares[..., k]) for k, x in enumerate(names)},
+            **{x: ((*dims, "frequency_ratio"), shares[..., k]) for k, x in enumerate(names)},
         },
         coords={
             "simple": list(SIMPLE),
             "mean": list(MEANS),
-            "motion_group": list(NODES),
             "frequency_ratio": ratios,
             "restitution": parameters.restitution.grid(),
             "amplitude": parameters.amplitude.grid(),

@@ -1,6 +1,5 @@
 """How long balls wander before they lock, in the restitution model and in contacts."""
 
-import warnings
 from typing import Annotated
 
 import numpy as np
@@ -21,7 +20,7 @@ from bouncing_ball.parameters import (
     Seed,
     number,
 )
-from bouncing_ball.studies.attractors import Confidence, group, models
+from bouncing_ball.studies.attractors import LIMITS, Confidence, group, models
 
 # Distance from an impact of the final motion at which a ball has arrived there.
 _NEAR = 1e-3
@@ -68,8 +67,8 @@ def transients(parameters: Transients, release: Release) -> xr.Dataset:
     """The shares of balls that have not arrived at the motion on which they lock.
 
     ``survival`` (case, life_ratio, life) is Kaplan and Meier's estimate after so many periods
-    of the table, with ``survival_low`` and ``survival_high``; ``mean_life`` (case,
-    life_ratio) with its limits is in periods as well, see :func:`mean_life`. A ball that
+    of the table; ``mean_life`` (case, life_ratio) with its limits is in periods as well, see
+    :func:`mean_life`. A ball that
     is not seen to lock counts as given up at its last impact, and one that ends on an orbit
     without sticking does not count. The restitution model has ϖ = ∞.
     ``case_restitution`` and ``case_amplitude`` are over the case.
@@ -95,22 +94,16 @@ def transients(parameters: Transients, release: Release) -> xr.Dataset:
     time, end, other = (np.concatenate(x, axis=1) for x in (times, ends, elsewhere))
     grid, level = np.linspace(0, parameters.impacts, _TIMES), parameters.confidence
     shape = time.shape[:-1]
-    survival, life = np.empty((3, *shape, _TIMES)), np.empty((3, *shape))
+    survival, life = np.empty((*shape, _TIMES)), np.empty((3, *shape))
     for k in np.ndindex(shape):
         own, locks = time[k][~other[k]], end[k][~other[k]]
-        curve = ecdf(CensoredData.right_censored(own, ~locks)).sf
-        with warnings.catch_warnings(action="ignore"):
-            # The limits of a share of 0 or 1 are undefined, and NaN.
-            limits = curve.confidence_interval(level, method="log-log")
-        survival[:, *k] = [x.evaluate(grid) for x in (curve, limits.low, limits.high)]
+        survival[k] = ecdf(CensoredData.right_censored(own, ~locks)).sf.evaluate(grid)
         life[:, *k] = mean_life(own, locks, level)
-    dims, limited = ("case", "life_ratio"), ("", "_low", "_high")
+    dims = ("case", "life_ratio")
     return described(
         {
-            **{
-                f"survival{x}": ((*dims, "life"), y) for x, y in zip(limited, survival, strict=True)
-            },
-            **{f"mean_life{x}": (dims, y) for x, y in zip(limited, life, strict=True)},
+            "survival": ((*dims, "life"), survival),
+            **{f"mean_life{x}": (dims, y) for x, y in zip(LIMITS, life, strict=True)},
             "case_restitution": ("case", r),
             "case_amplitude": ("case", lam),
         },

@@ -5,6 +5,11 @@ force of the spring, so that the force grows from zero. During restitution it at
 and the ball is released where p + κ p′ = 0, κ = c/k. The force has a kink where p = κ p′, at the
 time κ of a short impact. The law is homogeneous, so that r is the same at every speed.
 
+In a steady contact without a flight p is a sinusoid about the depth at rest as long as the force is
+linear. Then p + κ p′, which ends the contact, and p - κ p′, whose zero is the kink, have the same
+least value. Up to the threshold of permanent contact the force is therefore linear, and the
+threshold is that of the spring-damper with its force release.
+
 Physical parameters: ``k = m Ω² ϖ²``, ``c = 2 m Ω ζϖ``.
 
 Source: Modelica Standard Library, ``Mechanics.Rotational.Components.ElastoBacklash2``, and its
@@ -12,13 +17,15 @@ issue 2247.
 """
 
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.contact_law import ContactLaw, check_damping, check_positive
+from bouncing_ball.contacts.contact_law import ContactLaw, Unit, check_damping, check_positive
+from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.spring_damper import SpringDamper
 
 
 @dataclass(frozen=True, repr=False)
@@ -48,8 +55,9 @@ class ElastoBacklash(ContactLaw):
     name: ClassVar[str] = "elasto-backlash"
     formula: ClassVar[str] = "ϖ² p + min(2ζϖ p′, ϖ² p)"
     root: ClassVar[int] = 1
+    units: ClassVar[dict[str, Unit]] = SpringDamper.units
     release = Release.FORCE
-    has_kink: ClassVar[bool] = True
+    has_kink: ClassVar[Any] = True
 
     def __post_init__(self):
         check_positive(self.frequency_ratio, "frequency ratio ϖ")
@@ -69,6 +77,12 @@ class ElastoBacklash(ContactLaw):
     def kink(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """p - κ p′, whose zero is the kink; without damping it has no zero."""
         return np.where(self.lag == 0, 1.0, penetration - self.lag * rate)
+
+    @property
+    def permanent_contact(self) -> np.ndarray:
+        """Λ_F(ϖ) of the spring-damper with the force release."""
+        ratio, zeta = self.frequency_ratio, self.damping_ratio
+        return permanent_contact_threshold(ratio, zeta, Release.FORCE)
 
     @classmethod
     def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:

@@ -2,12 +2,12 @@
 
 from abc import abstractmethod
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.contact_law import ContactLaw, check_damping, check_positive
+from bouncing_ball.contacts.contact_law import ContactLaw, Unit, check_damping, check_positive
 
 
 @dataclass(frozen=True, repr=False)
@@ -25,8 +25,11 @@ class Hertz(ContactLaw):
         If K or C is outside its range.
     """
 
+    power: ClassVar[float] = 1.5
     stiffness: float | np.ndarray
     damping: float | np.ndarray
+
+    units: ClassVar[dict[str, Unit]] = {"stiffness": Unit("N/m^1.5", 1, -0.5, -2)}
 
     def __post_init__(self):
         check_positive(self.stiffness, "stiffness K")
@@ -43,9 +46,9 @@ class Hertz(ContactLaw):
 
     @classmethod
     def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
-        """The law with K = v²/P^{5/2}, and C equal to ``group`` times :meth:`damping_unit`."""
+        """The law with K = v²/P^{1+ν}, ν the power of p, and C = ``group`` :meth:`damping_unit`."""
         scale, v = np.asarray(length, dtype=float), np.asarray(speed, dtype=float)
-        stiffness = v * v / scale**2.5
+        stiffness = v * v / scale ** (1 + cls.power)
         return cls(stiffness, group * cls.damping_unit(scale, v) + 0 * stiffness)
 
     @staticmethod

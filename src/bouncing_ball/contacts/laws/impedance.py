@@ -1,22 +1,33 @@
-r"""MuJoCo's contact with a constant impedance d, which reduces the load on the ball.
+r"""MuJoCo's contact, whose impedance d(p) scales the load on the ball and, if it varies, the force.
 
-MuJoCo gives a contact the acceleration ``a₁ = (1 - d) a₀ - d (b v + κ x)``, with a₀ that of all
-other forces. With direct ``solref``, d cancels in stiffness and damping, and affects
-the load alone ::
+MuJoCo gives a contact the acceleration ``a₁ = (1 - d) a₀ - d (b v + k x)``, with a₀ that of all
+other forces, x = -p, and from a direct ``solref`` ``b = 2ζϖ/d_max``, ``k = ϖ² d/d_max²``. With
+``s = d/d_max`` ::
 
-    p″ = (1 - d) a - ϖ² p - 2ζϖ p′,   force  ϖ² p + 2ζϖ p′ + d a ≥ 0
+    p″ = (1 - d) a - f,   f = s (ϖ² s p + 2ζϖ p′),   force on the ball  f + d a ≥ 0
 
-The ball is released where this force vanishes, or where p = 0 if that comes first. Without load
-the impact is that of the spring-damper with its force release, with the same t_c, r and D. A load
-a moves the ball in contact by the share 1 - d of its effect on the spring-damper. At the release,
-where p + κ p′ = -d a/ϖ², the acceleration without load is zero, so that ∂p′_e/∂a is also 1 - d of
-that of the spring-damper, whereas the flights outside feel all of a. Hence, with κ = 2ζ/ϖ, ::
+The impedance grows from d_min at the surface to d_max at the depth W, by a power ν on both sides
+of the midpoint c, ::
+
+    d = d_min + (d_max - d_min) y(p/W),   y(x) = x^ν/c^{ν-1},   1 - (1 - x)^ν/(1 - c)^{ν-1}
+
+for x ≤ c and c ≤ x ≤ 1. Its slope or curvature has steps at p = cW and p = W, which count as kinks
+of the force. The ball is released where the force vanishes, or where p = 0 if that comes first.
+
+If d is constant, s = 1, and d affects the load alone. Without load the impact is then that of the
+spring-damper with its force release, with the same t_c, r and D. A load a moves the ball in contact
+by the share 1 - d of its effect on the spring-damper. At the release, where p + κ p′ = -d a/ϖ², the
+acceleration without load is zero, so that ∂p′_e/∂a is also 1 - d of that of the spring-damper,
+whereas the flights outside feel all of a. Hence, with κ = 2ζ/ϖ, ::
 
     σ_d = (1 - r) D - (2 - d) κ r = σ + d κ r
 
-The steady contact without a flight needs both p and the force to stay positive ::
+and a steady contact without a flight needs both p and the force to stay positive ::
 
     Λ ≤ |ϖ² - 1 + 2iζϖ| / max(ϖ², |ϖ² - d + 2iζϖ|)
+
+If d varies, r depends on the speed, and the signature comes from free impacts. Physical
+parameters: ``k/m = Ω² ϖ²``, ``c/m = 2Ωζϖ``, and the width is W g/Ω².
 
 Source: MuJoCo's documentation, *Solver parameters*, read with the engine itself.
 """
@@ -27,7 +38,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.contact_law import ContactLaw
+from bouncing_ball.contacts.contact_law import ContactLaw, Unit, check_positive
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.instant import Instant
 from bouncing_ball.contacts.release import Release
@@ -44,73 +55,119 @@ class Impedance(ContactLaw):
     frequency_ratio, damping_ratio : float or array
         ϖ > 0 and ζ in [0, 1).
     share : float or array
-        d in [0, 1); 0.95 below the depth ``width`` is MuJoCo's default.
+        d_max in [0, 1), the impedance from the depth ``width`` on; MuJoCo's default is 0.95.
+    at_surface : float or array, optional
+        d_min in [0, 1); by default d_max, so that d is constant. MuJoCo's default is 0.9.
+    width, midpoint, power : float or array
+        W > 0 in units of g/Ω², c in (0, 1) and ν ≥ 1.
 
     Raises
     ------
     ModelError
-        If ϖ, ζ or d is outside its range.
+        If a number is outside its range.
 
     Examples
     --------
     >>> law = Impedance(2.0, 0.5, 0.75)
     >>> float(law.grip(1.0, -2.0)), float(law.loaded_grip(1.0, -2.0, 4.0))
     (0.0, 0.75)
+    >>> Impedance(2.0, 0.5, 0.75, 0.25, width=4.0).impedance(np.array([0.0, 1.0, 3.0, 5.0]))
+    array([0.25  , 0.3125, 0.6875, 0.75  ])
     """
 
     frequency_ratio: float | np.ndarray
     damping_ratio: float | np.ndarray
     share: float | np.ndarray = 0.95
+    at_surface: Any = None
+    width: float | np.ndarray = 1.0
+    midpoint: float | np.ndarray = 0.5
+    power: float | np.ndarray = 2.0
 
     name: ClassVar[str] = "impedance"
     formula: ClassVar[str] = "ϖ² p + 2ζϖ p′ and d of the load"
     root: ClassVar[int] = 1
+    units: ClassVar[dict[str, Unit]] = SpringDamper.units | {"width": Unit("m", 0, 1, 0)}
     release = Release.FORCE
     lag: ClassVar[None] = None
+    feels_load: ClassVar[bool] = True
 
     def __post_init__(self):
         # The spring-damper checks the ranges of ϖ and ζ.
         _ = self._spring.signature
-        d = np.asarray(self.share, dtype=float)
-        require((d >= 0) & (d < 1), d, "impedance d", "in [0, 1)")
+        if self.at_surface is None:
+            object.__setattr__(self, "at_surface", self.share)
+        for d in map(np.asarray, (self.share, self.at_surface)):
+            require((d >= 0) & (d < 1), d, "impedance d", "in [0, 1)")
+        check_positive(self.width, "width W")
+        c, power = np.asarray(self.midpoint), np.asarray(self.power)
+        require((c > 0) & (c < 1), c, "midpoint", "in (0, 1)")
+        require(power >= 1, power, "power", "at least 1")
 
     @property
     def _spring(self) -> SpringDamper:
         return SpringDamper(self.frequency_ratio, self.damping_ratio, Release.FORCE)
 
     @property
-    def impedance(self) -> Any:
-        """The impedance d, by the name that all laws have."""
-        return self.share
+    def _varies(self) -> np.ndarray:
+        return np.not_equal(self.share, self.at_surface)
+
+    @property
+    def has_kink(self) -> bool:
+        """Whether d depends on the depth."""
+        return bool(np.any(self._varies))
+
+    def kink(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """(p - cW)(p - W), which changes its sign at both depths."""
+        ends = (penetration - self.midpoint * self.width) * (penetration - self.width)
+        return np.where(self._varies, ends, 1.0)
+
+    def impedance(self, penetration: np.ndarray) -> np.ndarray:
+        """d(p)."""
+        if not self.has_kink:
+            return self.share + 0 * penetration
+        x, c, more = penetration / self.width, self.midpoint, np.asarray(self.power) - 1
+        x = np.where(np.real(x) > 0, np.where(np.real(x) < 1, x, 1.0), 0.0)
+        low, high = x * (x / c) ** more, 1 - (1 - x) * ((1 - x) / (1 - c)) ** more
+        y = np.where(np.real(x) < c, low, high)
+        return self.at_surface + (self.share - self.at_surface) * y
+
+    def _part(self, penetration: np.ndarray) -> np.ndarray:
+        """s = d/d_max."""
+        if not self.has_kink:
+            return np.ones_like(penetration)
+        return np.where(self._varies, self.impedance(penetration) / self.share, 1.0)
 
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """ϖ² p + 2ζϖ p′, the force over the weight without the share d of the load."""
-        return self._spring.force(penetration, rate)
+        """s (ϖ² s p + 2ζϖ p′), the force over the weight without the share d of the load."""
+        s = self._part(penetration)
+        return s * self._spring.force(s * penetration, rate)
+
+    def loaded_force(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
+        """f + d a, the whole force on the ball with a load a."""
+        return self.force(penetration, rate) + self.impedance(penetration) * load
 
     def grip(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """p + κ p′, the grip without load."""
-        return penetration + self._spring.lag * rate
+        """s p + κ p′, the grip without load."""
+        return self._part(penetration) * penetration + self._spring.lag * rate
 
     def loaded_grip(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
-        """p + κ p′ + d a/ϖ², the grip with a load a."""
+        """s p + κ p′ + d_max a/ϖ², the grip with a load a."""
         held = self.share * load / np.asarray(self.frequency_ratio) ** 2
         return self.grip(penetration, rate) + held
 
     @property
-    def signature(self) -> Instant:
-        """The signature of the spring-damper with σ_d in place of σ.
-
-        Raises
-        ------
-        ModelError
-            If ζ ≥ 1.
-        """
+    def signature(self) -> Instant | None:
+        """The signature of the spring-damper with σ_d in place of σ; None if d varies."""
+        if self.has_kink:
+            return None
         free, spring = self._spring.signature, self._spring
         return free._replace(load=free.load + self.share * spring.lag * free.restitution)
 
     @property
-    def permanent_contact(self) -> np.ndarray:
-        """Λ up to which a steady contact never releases the ball, of the law's shape."""
+    def permanent_contact(self) -> Any:
+        """Λ up to which a steady contact never releases the ball; None if d varies."""
+        if self.has_kink:
+            return None
         omega, zeta = np.asarray(self.frequency_ratio), np.asarray(self.damping_ratio)
         stiffness, loss = omega * omega, 2 * zeta * omega
         held = np.maximum(stiffness, np.hypot(stiffness - self.share, loss))
@@ -118,7 +175,7 @@ class Impedance(ContactLaw):
 
     @classmethod
     def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
-        """The law with ϖ = v/P and ζ = group, and the default d."""
+        """The law with ϖ = v/P and ζ = group, and a constant d of 0.95."""
         ratio = np.asarray(speed, dtype=float) / np.asarray(length, dtype=float)
         return cls(ratio, group + 0 * ratio)
 

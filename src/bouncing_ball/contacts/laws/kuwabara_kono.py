@@ -21,6 +21,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from bouncing_ball.contacts.contact_law import Unit
 from bouncing_ball.contacts.laws.hertz import Hertz
 from bouncing_ball.contacts.release import Release
 
@@ -44,6 +45,8 @@ class KuwabaraKono(Hertz):
     name: ClassVar[str] = "kuwabara-kono"
     formula: ClassVar[str] = "K (p^1.5 + C √p p′)"
     release = Release.FORCE
+
+    units: ClassVar[dict[str, Unit]] = Hertz.units | {"damping": Unit("s", 0, 0, 1)}
 
     def root_force(self, root: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """K q (q² + C p′)."""

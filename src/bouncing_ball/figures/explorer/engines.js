@@ -6,7 +6,8 @@
 const ENGINE_NUMBERS = {
   generic: (m, k, c) => ({mass: m, stiffness: k, damping: c}),
   mujoco: (m, k, c) =>
-    ({"solref.0": 0 - k / m, "solref.1": 0 - c / m, "solimp.1": 1e-4, "solimp.2": 0.001}),
+    ({"solref.0": 0 - k / m, "solref.1": 0 - c / m,
+      "solimp.0": 1e-4, "solimp.1": 1e-4, "solimp.2": 0.001}),
   lammps: (m, k, c) => ({kn: k, gamma_n: c * (1 / m)}),
   liggghts: (m, k, c) => ({kn: k, gamman: c * (1 / m)}),
   pybullet: (m, k, c) => ({contactStiffness: 2 * k, contactDamping: 0.5 * c}),

@@ -1,0 +1,50 @@
+"""A contact that is given by the parameters of an engine."""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from bouncing_ball.calculator.case import Table
+from bouncing_ball.calculator.contact_data import LOSSY, STIFF
+from bouncing_ball.calculator.units import Unit, number
+from bouncing_ball.contacts.contact_law import ContactLaw
+from bouncing_ball.engines import engine_named
+from bouncing_ball.engines.engine import Engine
+from bouncing_ball.errors import ParameterError
+
+
+class Source(NamedTuple):
+    """An engine and the parameters of its contact that are given."""
+
+    engine: Engine
+    parameters: dict[str, Any]
+
+    def law(self, table: Table) -> ContactLaw | None:
+        """The law of this contact on a table; None if it is a spring and a damper."""
+        return self.engine.law(self.parameters, table.time, table.length)
+
+    def remarks(self) -> tuple[str, ...]:
+        """Sentences on how the contact differs from a spring and a damper."""
+        return self.engine.remarks(self.parameters)
+
+
+def read_engine(said: Mapping[str, Any]) -> tuple[Source | None, dict[str, Any]]:
+    """The engine whose parameters are given, and these parameters as stiffness and damping."""
+    names, name = ("solref", "solimp"), said.get("from_engine")
+    values = {**{x: said.get(x) for x in names}, **dict(said.get("parameters") or {})}
+    values = {x: value for x, value in values.items() if value is not None}
+    if name is None:
+        if values:
+            first = next(iter(values))
+            what = f"{{{first}}}" if first in names else f"{{parameters}} {first}"
+            raise ParameterError(f"{what} needs {{from_engine}}, the engine that has it")
+        return None, dict(said)
+    source = Source(engine_named(name), values)
+    for other in (*STIFF, *LOSSY):
+        if said.get(other) is not None:
+            raise ParameterError(f"{{{other}}} does not go with {{from_engine}}, which says it")
+    mass, rule = said.get("mass"), said.get("release")
+    mass = None if mass is None else number("mass", mass, Unit("kg", "20 g"))
+    contact = source.engine.read(values, mass)
+    # For another engine the release is the one of that engine.
+    rule = rule if said.get("engine") else str(source.engine.release(rule))
+    return source, {**said, **contact._asdict(), "mass": mass, "release": rule}

@@ -1,0 +1,49 @@
+"""Where balls end that start at many phases and speeds, in three models."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from bouncing_ball.figures.canvas import WIDE, canvas, legend_below
+from bouncing_ball.figures.labels import number
+from bouncing_ball.figures.style import Look
+
+# Colours in the order of the motions; they are five steps of grey.
+_FILLS = ("#ffffff", "#d3e6f2", "#e0a030", "#3f7fae", "#000000")
+
+
+def basins(data: xr.Dataset) -> Figure:
+    """A row for each case, with a panel for each model in which each start has the colour of the
+    motion it leads to, and the exponent of uncertainty.
+    """
+    cases, models = data.sizes["case"], data["model"].values
+    size: Look = {"rows": cases, "columns": len(models), "sharex": True, "sharey": True}
+    figure, rows = canvas(WIDE, 0.6 + 2.5 * cases, **size, squeeze=False)
+    image: Look = {"origin": "lower", "aspect": "auto", "interpolation": "none"}
+    image |= {"extent": (-1.0, 1.0, 0.0, data.attrs["velocity_max"])}
+    image |= {"cmap": ListedColormap(_FILLS), "vmin": -0.5, "vmax": len(_FILLS) - 0.5}
+    for case, model in np.ndindex(rows.shape):
+        axes, one = rows[case, model], data.isel(case=case, model=model)
+        axes.imshow(one.destination, **image)
+        alpha, *limits = (
+            f"{float(one[f'uncertainty_exponent{x}']):.2f}" for x in ("", "_low", "_high")
+        )
+        axes.set_title(rf"{models[model]}; $\alpha={alpha}$ ({' to '.join(limits)})", fontsize=8)
+        axes.spines[["top", "right"]].set_visible(True)
+    for row, case in zip(rows, data.case.values, strict=True):
+        place = data.sel(case=case)
+        r, ratio, lam = (
+            number(float(place[f"case_{x}"])) for x in ("restitution", "ratio", "amplitude")
+        )
+        name = rf"$r={r}$, $\varpi={ratio}$, $\Lambda={lam}$"
+        row[0].set_ylabel(f"{name}\nspeed of impact $-\\delta′$")
+    for axes in rows[-1]:
+        axes.set_xlabel(r"phase of impact $\varphi/\pi$")
+    handles = [
+        Patch(facecolor=fill, edgecolor="#000000", linewidth=0.5, label=str(motion))
+        for fill, motion in zip(_FILLS, data.motion.values, strict=True)
+    ]
+    legend_below(figure, handles, ncols=len(handles), fontsize=7)
+    return figure

@@ -1,0 +1,119 @@
+"""Where balls end that start at many phases and speeds, in the three models (beyond the paper)."""
+
+from typing import Annotated
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.attractors.mapper import label
+from bouncing_ball.attractors.motions import Kind, Motions
+from bouncing_ball.contacts.spring_damper import Release
+from bouncing_ball.datasets.variables import described
+from bouncing_ball.parameters import (
+    FrequencyRatio,
+    Many,
+    Parameters,
+    Seed,
+    number,
+)
+from bouncing_ball.studies.attractors import MODELS, Confidence, Impacts, models, share, with_limits
+from bouncing_ball.studies.transients import Place
+from bouncing_ball.studies.uncertainty import exponent
+
+MOTIONS = ("permanent contact", "1-T orbit", "other orbits", "locked", "no repetition")
+"""The motions on which a ball may end. An orbit whose contact lasts longer than an oscillation is
+locked."""
+
+
+class Case(Place):
+    """One contact and one Λ."""
+
+    frequency_ratio: FrequencyRatio
+
+
+class Basins(Parameters):
+    """Starts on an even grid for the picture, and random ones for shares and exponents."""
+
+    cases: Many[Case]
+    velocity_max: Annotated[
+        float, number("largest relative speed of impact at the start", ge=0.1, le=100)
+    ]
+    starts: Annotated[int, number("starts along each axis, at middles of cells", ge=10, le=1000)]
+    random: Annotated[int, number("random starts for each case", ge=10, le=10**6)]
+    shifts: Many[Annotated[float, number("changes of the phase at the start", "rad", gt=0, le=1)]]
+    impacts: Impacts
+    confidence: Confidence
+    seed: Seed
+
+
+def _destination(found: Motions) -> np.ndarray:
+    """Indices of motions in :data:`MOTIONS`."""
+    kind = found.kind
+    first = (kind == Kind.ORBIT) & (found.periods == 1) & (found.impacts == 1)
+    others = (kind == Kind.ORBIT) | (kind == Kind.SUBHARMONIC)
+    where = [kind == Kind.PERMANENT_CONTACT, first, others, kind == Kind.LOCKED]
+    return np.select(where, range(len(where)), len(where))
+
+
+def basins(parameters: Basins, release: Release) -> xr.Dataset:
+    """Where balls end that start with an impact at (φ, δ′), in three models of each case.
+
+    ``destination`` (case, model, start_speed, start_phase) is an index into :data:`MOTIONS`, with φ
+    in rad and the speed -δ′ at the middles of cells. Of the random starts, ``basin_share`` (case,
+    model, motion) is the share that ends on a motion, and ``uncertain_share`` (case, model, shift)
+    the share that ends on another one if φ changes by the shift, with ``uncertainty_exponent``
+    (case, model). Each has limits, ``_low`` and ``_high``. ``case_restitution``, ``case_ratio`` and
+    ``case_amplitude`` are over the case.
+    """
+    r, lam, ratio = (np.array([getattr(x, y) for x in parameters.cases]) for y in Case.model_fields)
+    count, level = parameters.starts, parameters.confidence
+    random = np.random.default_rng(parameters.seed)
+    middle, shifts = (np.arange(count) + 0.5) / count, np.array(parameters.shifts)
+    phase, speed = 2 * np.pi * middle - np.pi, parameters.velocity_max * middle
+    drawn = random.uniform(-np.pi, np.pi, parameters.random)
+    fast = random.uniform(0, parameters.velocity_max, parameters.random)
+    beside = drawn + np.array([0.0, *shifts])[:, np.newaxis]
+    start = np.concatenate([np.meshgrid(phase, speed)[0].ravel(), beside.ravel()])
+    towards = np.concatenate([np.repeat(speed, count), np.tile(fast, shifts.size + 1)])
+    amplitude = lam[:, np.newaxis]
+    shape = lam.size, len(MODELS)
+    ends = np.empty((*shape, start.size), dtype=np.int8)
+    for k, model in enumerate(models(r[:, np.newaxis], ratio[:, np.newaxis], release)):
+        velocity = amplitude * np.cos(start) - towards
+        found = label(model.impact_law, amplitude, start, velocity, impacts=parameters.impacts)
+        ends[:, k] = _destination(found)
+    image, sample = np.split(ends, [count * count], axis=-1)
+    first, *others = np.moveaxis(sample.reshape(*shape, -1, parameters.random), 2, 0)
+    changed = np.stack([x != first for x in others], axis=2)
+    kinds, dims = range(len(MOTIONS)), ("case", "model")
+    estimates: dict[str, tuple] = {
+        "basin_share": (
+            (*dims, "motion"),
+            [[[share(x == k, level)[1:] for k in kinds] for x in case] for case in first],
+        ),
+        "uncertain_share": (
+            (*dims, "shift"),
+            [[[share(y, level)[1:] for y in x] for x in case] for case in changed],
+        ),
+        "uncertainty_exponent": (
+            dims,
+            [[exponent(x.T, shifts, level) for x in case] for case in changed],
+        ),
+    }
+    image = image.reshape(*shape, count, count)
+    return described(
+        {
+            "destination": ((*dims, "start_speed", "start_phase"), image),
+            **with_limits(estimates),
+            "case_restitution": ("case", r),
+            "case_ratio": ("case", ratio),
+            "case_amplitude": ("case", lam),
+        },
+        coords={
+            "model": list(MODELS),
+            "motion": list(MOTIONS),
+            "shift": shifts,
+            "start_phase": phase,
+            "start_speed": speed,
+        },
+    )

@@ -26,7 +26,7 @@ _SHOWN = (
 # Balls that end at rest, on an orbit, on a doubled one, and locked. None comes near chaos, which
 # no two computers have in common.
 _GIVEN = ("ball_restitution", "ball_frequency_ratio", "ball_amplitude", "start_phase", "velocity")
-_BALLS = np.broadcast_arrays(0.5, 80.0, [0.6, 1.2, 1.6, 2.5], 0.85, -3.0)
+_BALLS = np.broadcast_arrays(0.5, 80.0, [0.6, 1.2, 1.6, 2.5], 1.0, -3.0)
 _ENDS = ("periods", "impacts", "end_impact", "end_phase", "end_speed", "end_time")
 
 

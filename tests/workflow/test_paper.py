@@ -38,8 +38,9 @@ def test_every_figure_and_table_is_shown(texts, pristine):
 def test_every_claim_stands_with_its_verdict(texts, pristine):
     claims = read_dataset(pristine.path / "results/figures/claims.nc")
     for name, verdict in zip(claims.claim.values, claims.verdict.values, strict=True):
+        # Other tables have rows of this name, too, and no verdict in them.
         rows = [line for line in texts[1].splitlines() if line.startswith(f"| {name} |")]
-        assert len(rows) == 1 and rows[0].endswith(f"| {verdict} |")
+        assert [row.endswith(f"| {verdict} |") for row in rows].count(True) == 1
 
 
 def test_the_explanations_that_are_needed_hold(pristine):

@@ -9,15 +9,8 @@ from bouncing_ball.attractors.rattling import openings, stiff_openings
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.orbits.long_contact import joining_ratio
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
-from bouncing_ball.parameters import (
-    LossyRestitution,
-    Many,
-    Parameters,
-    Span,
-    number,
-)
+from bouncing_ball.parameters import LossyRestitution, Many, Parameters, Span, number
 
 
 class Flights(Parameters):
@@ -28,19 +21,14 @@ class Flights(Parameters):
     flights: Annotated[int, number("openings that are followed", ge=2, le=6)]
 
 
-# Range of ϖ in which the families of short and long contacts separate, for all r ≥ 0.3.
-_PARTING = (1.9, 4.0)
-
-
 def cascade_of_flights(parameters: Flights, release: Release) -> xr.Dataset:
     """The amplitudes at which the T-periodic orbit above Λ_SD has one flight more per period.
 
     The dataset has ``threshold_amplitude`` Λ_SD (restitution, ϖ); ``opening_amplitude`` and
     ``opening_multiplier`` (restitution, flights, ϖ), the Λ up to which the orbit has so many
-    flights and the larger modulus of its multipliers there, NaN where no stable one was found;
-    ``stiff_opening`` (restitution, flights), the limit of E = ϖ²(Λ - Λ_SD) for stiff contacts; and
-    ``joining_ratio`` (restitution,), the ϖ below which the orbits with a short and a long contact
-    are one family. All but the first are NaN unless the release is the displacement's.
+    flights and the larger modulus of its multipliers there, NaN where no stable one was found; and
+    ``stiff_opening`` (restitution, flights), the limit of E = ϖ²(Λ - Λ_SD) for stiff contacts. All
+    but the first are NaN unless the release is the displacement's.
     """
     restitution, ratio = np.array(parameters.restitution), parameters.frequency_ratio.grid()
     zeta, most = damping_ratio(restitution), parameters.flights
@@ -49,12 +37,10 @@ def cascade_of_flights(parameters: Flights, release: Release) -> xr.Dataset:
         np.full((2, zeta.size, most, ratio.size), np.nan),
         np.full((zeta.size, most), np.nan),
     )
-    joining = np.full(zeta.shape, np.nan)
     if release is Release.DISPLACEMENT:
         found = np.array(openings(zeta, ratio, most))
         found = np.where(found[1] < 1, found, np.nan)
         stiff = np.stack([stiff_openings(z, most) for z in zeta])
-        joining = joining_ratio(zeta, release, *_PARTING)
     dims = ("restitution", "flights", "frequency_ratio")
     held = SpringDamperModel(law).permanent_contact_threshold()
     return described(
@@ -63,7 +49,6 @@ def cascade_of_flights(parameters: Flights, release: Release) -> xr.Dataset:
             "opening_amplitude": (dims, found[0]),
             "opening_multiplier": (dims, found[1]),
             "stiff_opening": (dims[:2], stiff),
-            "joining_ratio": ("restitution", joining),
         },
         coords={
             "restitution": restitution,

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 import yaml
 
-from bouncing_ball.claims.ledger import CLAIMS, READS, ledger
+from bouncing_ball.claims.ledger import CLAIMS, ledger
 from bouncing_ball.claims.parameters import PARAMETERS
 from bouncing_ball.claims.tally import tally
 from bouncing_ball.compare.data import compare_datasets
@@ -19,8 +19,8 @@ CONFIG = yaml.safe_load((ROOT / "config" / "config.yaml").read_text(encoding="ut
 
 @pytest.fixture(scope="module")
 def data(recorded, table):
-    assert table["claims"]["reads"] == list(READS)
-    return {name: recorded[name] for name in READS}
+    assert table["claims"]["reads"] == list(PARAMETERS)
+    return {name: recorded[name] for name in PARAMETERS}
 
 
 @pytest.fixture(scope="module")

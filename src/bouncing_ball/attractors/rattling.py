@@ -141,19 +141,6 @@ class Rattling:
         return whole.spectral_radius()
 
 
-class _Landing(NamedTuple):
-    """A flight and the contact that follows it in the limit of stiff contacts.
-
-    ``times`` and ``speeds`` are those of the legs before the contact and at its start; ``top_time``
-    is the time of the contact at which x is highest, ``top``.
-    """
-
-    times: tuple[float, ...]
-    speeds: tuple[float, ...]
-    top_time: float
-    top: float
-
-
 def _held(t, excess: float, aside: float, root: complex, swing: complex):
     """x in the contact of the limit: p, and the free oscillation Re(swing e^{root t})."""
     return excess - (aside + t) ** 2 / 2 + np.real(swing * np.exp(root * t))
@@ -163,11 +150,16 @@ def _held_rate(t, excess: float, aside: float, root: complex, swing: complex):
     return -aside - t + np.real(root * swing * np.exp(root * t))
 
 
-def _landings(excess: float, zeta: float, most: int) -> list[_Landing]:
-    """The landings at E until a contact stays closed; at most so many."""
+def _landings(excess: float, zeta: float, most: int) -> list[tuple[float, tuple[float, ...]]]:
+    """The landings of the limit at E until a contact stays closed; at most so many.
+
+    Each has the highest x in the contact that follows and the unknowns of :class:`Rattling`: the
+    release, E, the time of the highest x, the durations of the legs before, and the speeds.
+    """
     root = complex(-zeta, np.sqrt((1 - zeta) * (1 + zeta)))
     speed = np.sqrt(2 * excess)
-    place, found = 2 * zeta - speed, []
+    place = release = 2 * zeta - speed
+    found: list[tuple[float, tuple[float, ...]]] = []
     times, speeds = (), (speed,)
     for _ in range(most):
         pull = excess + 2 * zeta * zeta - 1 - place * place / 2
@@ -186,8 +178,9 @@ def _landings(excess: float, zeta: float, most: int) -> list[_Landing]:
         if not turns.size:
             break
         top = brentq(_held_rate, *time[turns[0] + np.arange(2)], args=free, xtol=1e-14)
-        found.append(_Landing(times, speeds, top, float(_held(top, *free))))
-        if found[-1].top <= 0:
+        highest = float(_held(top, *free))
+        found.append((highest, (release, excess, top, *times, *speeds)))
+        if highest <= 0:
             break
         bottom = brentq(_held_rate, 0.0, time[np.argmax(slope > 0)], args=free)
         contact = brentq(_held, bottom, top, args=free, xtol=1e-14)
@@ -204,7 +197,7 @@ def _stiff_openings(zeta: float, most: int) -> list[np.ndarray]:
 
     def top(excess: float) -> float:
         landings = _landings(excess, zeta, len(found) + 1)
-        return landings[-1].top if len(landings) > len(found) else -1.0
+        return landings[-1][0] if len(landings) > len(found) else -1.0
 
     high = 1e-3
     while len(found) < most:
@@ -212,9 +205,7 @@ def _stiff_openings(zeta: float, most: int) -> list[np.ndarray]:
         while top(high) < 0:
             low, high = high, _STEP * high
         excess = brentq(top, low, high, xtol=1e-13)
-        last = _landings(excess, zeta, len(found) + 1)[-1]
-        release = 2 * zeta - np.sqrt(2 * excess)
-        found.append(np.array([release, excess, last.top_time, *last.times, *last.speeds]))
+        found.append(np.array(_landings(excess, zeta, len(found) + 1)[-1][1]))
         high = excess * (1 + _ABOVE)
     return found
 

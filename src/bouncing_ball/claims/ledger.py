@@ -27,8 +27,6 @@ _SECTIONS = (
 )
 CLAIMS: tuple[Claim, ...] = tuple(claim for section in _SECTIONS for claim in defined_in(section))
 """Every claim of the paper that can be decided, in the order of the paper."""
-READS = tuple(parameters.PARAMETERS)
-"""The datasets that decide these claims."""
 
 
 def _row(claim: Claim, data: Mapping[str, xr.Dataset], holding: set[str]) -> dict[str, object]:
@@ -80,7 +78,7 @@ def ledger(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
     Parameters
     ----------
     data : mapping of str to xarray.Dataset
-        The datasets of :data:`READS`, by name.
+        The datasets that decide the claims, by name: those of ``parameters.yaml``.
 
     Returns
     -------

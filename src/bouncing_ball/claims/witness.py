@@ -173,17 +173,12 @@ def simulation_returns(orbit: Orbit, cycles: int) -> np.ndarray:
 
     It is the largest difference in φ, δ′ and the last period, relative to the larger of Λ and n.
     """
-    start = orbit.phase, orbit.relative_impact_velocity
-    time, phase, speed = None, *start
+    phase, speed = start = orbit.phase, orbit.relative_impact_velocity
     for _ in range(cycles):
-        time, phase, speed = _next(orbit, phase, speed)
-    off = time - 2 * np.pi * orbit.n, reduce_angle(phase - start[0]), speed - start[1]
+        cycle = orbit.cycle(phase, speed)
+        phase, speed = cycle.phase, cycle.relative_velocity
+    off = cycle.time - 2 * np.pi * orbit.n, reduce_angle(phase - start[0]), speed - start[1]
     return np.max(np.abs(off), axis=0) / _size(orbit)
-
-
-def _next(orbit: Orbit, phase: np.ndarray, speed: np.ndarray) -> tuple[np.ndarray, ...]:
-    cycle = orbit.cycle(phase, speed)
-    return cycle.time, cycle.phase, cycle.relative_velocity
 
 
 def simulation_leaves(orbit: Orbit) -> np.ndarray:
@@ -197,8 +192,9 @@ def simulation_leaves(orbit: Orbit) -> np.ndarray:
     every, which = np.arange(orbit.size), np.argmax(np.abs(values), axis=-1)
     nudge = _NUDGE * np.abs(orbit.relative_impact_velocity) * vectors[every, :, which].real.T
     at = np.stack([orbit.phase, orbit.relative_impact_velocity])
-    (ahead, fast), (behind, slow) = (_next(orbit, *(at + x))[1:] for x in (nudge, -nudge))
-    apart = np.stack([reduce_angle(ahead - behind), fast - slow])
+    ahead, behind = (orbit.cycle(*(at + x)) for x in (nudge, -nudge))
+    faster = ahead.relative_velocity - behind.relative_velocity
+    apart = np.stack([reduce_angle(ahead.phase - behind.phase), faster])
     growth = np.sum(apart * nudge, axis=0) / (2 * np.sum(nudge * nudge, axis=0))
     return np.abs(growth / values[every, which].real - 1)
 

@@ -50,10 +50,8 @@ def _threshold(form: str, within: str, never: str):
     """A column of thresholds, with the given texts where they are outside the range scanned."""
 
     def column(part: xr.Dataset) -> str:
-        status = part.threshold_status.item()
-        if status == "found":
-            return number(part.error_threshold, form)
-        return within if status.startswith("within") else never
+        outside = within if part.threshold_status.item().startswith("within") else never
+        return number(part.error_threshold, form, outside)
 
     return column
 
@@ -165,17 +163,6 @@ def ext_orders(data: xr.Dataset) -> Table:
     return header, [*body, ["permanent contact, second order", *numbers]]
 
 
-def ext_hertz(data: xr.Dataset) -> Table:
-    """Stability ranges on contacts of other laws, from saddle-node to period doubling."""
-
-    def ends(part: xr.Dataset) -> str:
-        return "–".join(f"{end:.4f}" for end in part.bifurcation_amplitude.values)
-
-    families = {f"n = {n}": at(ends, n=n) for n in data.n.values}
-    columns = {"law": text("law"), "π/(D + κ)": value("shown_ratio", "g"), **families}
-    return table(each(data, "law", "shown_ratio"), columns)
-
-
 def ext_laws(data: xr.Dataset) -> Table:
     """Errors on contacts of five laws with the same restitution coefficient and centroid.
 
@@ -194,10 +181,7 @@ def ext_laws(data: xr.Dataset) -> Table:
     return table(each(data, "quantity", "law"), columns)
 
 
-_OF_ENGINES = (
-    *("free_steps", "measured_restitution", "contact_steps", "height_scatter"),
-    "limit_error",
-)
+_OF_ENGINES = "free_steps measured_restitution contact_steps height_scatter limit_error".split()
 
 
 def ext_engines(data: xr.Dataset) -> Table:
@@ -228,10 +212,10 @@ def ext_engines(data: xr.Dataset) -> Table:
     for case in each(shown, "release", "restitution"):
         parts += [one for one in each(case, "engine") if np.isfinite(one.free_steps)]
         for one in each(case, "model"):
-            of_engines = one[[*_OF_ENGINES]].isel(engine=0, drop=True) * np.nan
             name, error = f"{one.model.item()} model", one.model_error
             own = {"engine": name, "height_error": error, "bounce_time": one.model_time}
-            parts.append(of_engines.assign(own))
+            blank = dict.fromkeys(_OF_ENGINES, np.nan)
+            parts.append(one.isel(engine=0, drop=True).assign(blank | own))
     return table(parts, columns)
 
 

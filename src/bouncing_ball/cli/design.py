@@ -78,7 +78,7 @@ def _draw(found: Design, path: Path) -> None:
 
 
 def _line(name: str, *columns: str) -> str:
-    return f"{name:<38}" + "".join(f"{column:<18}" for column in columns).rstrip()
+    return f"{name:<38}" + "".join(f"{column + ' ':<18}" for column in columns).rstrip()
 
 
 def _error(one: Family, quantity: Quantity) -> str:

@@ -2,7 +2,7 @@
 
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.laws.elasto_backlash import ElastoBacklash
-from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
+from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley, LinearHuntCrossley
 from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji
@@ -10,6 +10,14 @@ from bouncing_ball.contacts.spring_damper import SpringDamper
 
 LAWS: dict[str, type[ContactLaw]] = {
     law.name: law
-    for law in (HuntCrossley, Tsuji, KuwabaraKono, SpringDamper, ElastoBacklash, Impedance)
+    for law in (
+        HuntCrossley,
+        LinearHuntCrossley,
+        Tsuji,
+        KuwabaraKono,
+        SpringDamper,
+        ElastoBacklash,
+        Impedance,
+    )
 }
 """The laws by their names on the command line and in calls."""

@@ -36,6 +36,20 @@ def test_a_drop_test_and_a_contact_time_are_met():
     assert settings.time_step * settings.steps == pytest.approx(2e-3, rel=1e-9)
 
 
+def test_hunt_and_crossleys_contact_is_written_for_drake():
+    asked = {"contact_time": "2 ms", "restitution": 0.8, "law": "hunt-crossley"}
+    found = design(**TABLE, **asked, engine="drake")
+    settings, law = found.engine("drake"), found.law
+    assert law["name"] == "hunt-crossley-linear" and settings.restitution == pytest.approx(0.8)
+    both = {"point_contact_stiffness": 2 * law["stiffness"]}
+    both["hunt_crossley_dissipation"] = law["damping"]
+    assert settings.parameters == pytest.approx(both, rel=1e-11)
+    assert all(repr(value) in settings.snippet for value in settings.parameters.values())
+    assert found.time_step.largest == settings.time_step
+    with pytest.raises(ModelError, match="tsuji is not written for drake"):
+        design(**TABLE, **asked | {"law": "tsuji"}, engine="drake")
+
+
 def test_a_damper_is_kept_and_its_restitution_is_the_engines():
     settings = design(**STIFF, damping=100.0).engine("mujoco")
     assert settings.parameters["solref"] == [-2e6, -200.0]

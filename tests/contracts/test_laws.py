@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 from bouncing_ball.contacts.collocation import contacts, path
 from bouncing_ball.contacts.contact_law import ContactLaw, slopes_of
 from bouncing_ball.contacts.laws.elasto_backlash import ElastoBacklash
-from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
+from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley, LinearHuntCrossley
 from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji
@@ -282,6 +282,13 @@ def test_an_impact_of_a_simulation_is_the_contact(law):
     known = np.isfinite(end.duration)
     assert known.mean() > 0.8
     np.testing.assert_allclose(np.array(found)[:, known], np.array(end[:3])[:, known], atol=1e-11)
+
+
+@pytest.mark.parametrize("law", [HuntCrossley(4e3, 0.08), LinearHuntCrossley(100.0, 0.3)])
+def test_hunt_and_crossleys_restitution_is_that_of_any_spring(law):
+    # u du/(1 + C u) = -K p^ν dp on both ways: the spring's energy is the same.
+    r, loss = free_impact(law, SPEED).restitution, law.damping * SPEED
+    assert loss - np.log1p(loss) == pytest.approx(-loss * r - np.log1p(-loss * r), rel=1e-12)
 
 
 HERTZ = [HuntCrossley(4e3, 0.08), Tsuji(4e3, 0.3), KuwabaraKono(4e3, 0.005)]

@@ -22,7 +22,7 @@ import pytest
 import xarray as xr
 from pandas import DataFrame
 
-from bouncing_ball import limits, simulate
+from bouncing_ball import design, limits, simulate
 from bouncing_ball.contacts.collocation import contacts
 from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
 from bouncing_ball.contacts.laws.impedance import Impedance
@@ -33,6 +33,7 @@ from bouncing_ball.datasets.variables import describe
 from bouncing_ball.engines import ENGINES
 from bouncing_ball.engines.engine import EngineSettings, Physical
 from bouncing_ball.engines.scheme import Scheme, error_in_steps, steps_for
+from bouncing_ball.orbits.restitution_orbit import rigid_speed
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 ROOT = Path(__file__).parents[2]
@@ -316,6 +317,24 @@ def test_a_free_impact_has_the_promised_restitution(name, release, restitution, 
     assert found.restitution == pytest.approx(restitution, rel=1e-9)
     # The digits of the flight are those of a height of one, in steps.
     assert abs(farthest - restitution) <= error + 1e-5
+
+
+@pytest.mark.engines
+@pytest.mark.filterwarnings("default")
+@pytest.mark.parametrize("restitution", LOSSES)
+def test_drakes_hunt_and_crossley_has_the_restitution_at_the_orbits_speed(restitution):
+    only_if_installed("drake")
+    table = {"mass": 0.5, "frequency": 20.0, "acceleration": "0.8 g", "n": 1}
+    contact = {"contact_time": 2e-3, "restitution": restitution, "law": "hunt-crossley"}
+    made = design(**table, **contact, engine="drake", restitution_error=0.01)
+    found = made.engine_settings()
+    speed = float(rigid_speed(1, restitution)) * made.case.table.length / made.case.table.time
+    for fraction in (0.02, 0.5, 0.98):
+        start = fraction * found.time_step * speed
+        away, _ = drake(Trial(found, 0.5, start, -speed, 2 * found.steps))
+        r = (away[-1] - away[-2]) / found.time_step / speed
+        # The step is that of the linear contact with this r.
+        assert abs(r - restitution) <= 1.05 * 0.01
 
 
 @pytest.mark.engines

@@ -93,10 +93,8 @@ def _contact(dynamics: Dynamics, impact: Impact, departure: Departure, after: An
     lam, flight, time = dynamics.amplitude, departure.flight, departure.duration
     stiffness = dynamics.law.frequency_ratio**2
     loss = 2 * dynamics.law.damping_ratio * dynamics.law.frequency_ratio
-    depth, rate = (
-        np.array([a, b])
-        for a, b in zip(impact[1:3], (flight.displacement, flight.velocity), strict=True)
-    )
+    depth = np.array([impact.displacement, flight.displacement])
+    rate = np.array([impact.velocity, flight.velocity])
     x, y = np.array([table(impact.phase, lam), (flight.x, flight.y)]).swapaxes(0, 1)
     cosine, sine = x / lam, y / lam
 
@@ -119,13 +117,8 @@ def _instant(dynamics: Dynamics, impact: Impact, departure: Departure, after: An
     hit = impact.known
     if hit is None:
         x, y = table(impact.phase, lam)
-        low, thrown, arrival, begin, end = (
-            y,
-            departure.flight.velocity + x,
-            impact.velocity + x,
-            0,
-            0,
-        )
+        low, thrown, arrival = y, departure.flight.velocity + x, impact.velocity + x
+        begin = end = 0.0
     else:
         x, y = table(hit.phase, lam)
         low, thrown, arrival = hit.height, hit.velocity, hit.arrival

@@ -269,11 +269,14 @@ def _of_law(
     name: str | None, engine: str | None, release: str | None, given: dict[str, float]
 ) -> type[ContactLaw] | None:
     """The kind of a contact law, which a free impact gives its parameters; None if it is linear."""
+    if name is not None and engine is not None and name != SpringDamper.name:
+        laws = engine_named(engine).laws
+        if name not in {*laws, *laws.values()}:
+            raise ParameterError(f"{{law}} {name} is not written for {engine}: leave {{law}} out")
+        name = laws.get(name, name)
     kind = None if name is None else law_named(name)
     if kind is None or kind is SpringDamper:
         return None
-    if engine is not None:
-        raise ParameterError(f"{{law}} {name} is not written for {engine}: leave {{law}} out")
     if release is not None:
         raise ParameterError(f"{{release}} does not go with {{law}} {name}, which has its own")
     for other in ("stiffness", "damping", "damping_ratio", "reduced_modulus", "youngs_modulus"):

@@ -189,7 +189,9 @@ def height_and_power(sequence: ImpactSequence, before: int = 0) -> tuple[np.ndar
     elif law is not None:
         held, moved = _by_nodes(sequence, part)
     else:
-        held = moved = np.zeros_like(flown)
+        # A ball that sticks is at the table's level, with its velocity.
+        held = lam * (np.cos(phase) - np.cos(end))
+        moved = (left * left - lift * lift) / 2
     total = time[-1] - time[before]
     return np.sum(flown + held, axis=0) / total, np.sum(work + moved, axis=0) / total
 

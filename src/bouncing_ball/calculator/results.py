@@ -256,8 +256,11 @@ class Design:
         contact = Physical(self.case.mass, self.stiffness, self.damping)
         engine, one = engine_named(self.question["engine"]), self.judged
         rule, error = self.case.contact.release, self.question["restitution_error"]
+        settings = engine.settings(contact, rule, error)
+        if self.law is not None:
+            settings = engine.of_law(settings, self.case.mass, self.law)
         return replace(
-            engine.settings(contact, rule, error),
+            settings,
             max_height=one.max_height,
             contact_duration=one.contact_duration,
             penetration=one.greatest_compression,

@@ -1,10 +1,18 @@
 """Drake: point contact with the relaxation time τ = c/k, f = k (p + τ p′) ≥ 0."""
 
 from collections.abc import Mapping
-from typing import Any
+from dataclasses import replace
+from typing import Any, ClassVar
 
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.engines.engine import Engine, Parameters, Physical
+from bouncing_ball.engines.engine import (
+    Engine,
+    EngineSettings,
+    Parameters,
+    Physical,
+    filled,
+    text_of,
+)
 from bouncing_ball.engines.scheme import Scheme
 
 
@@ -13,7 +21,8 @@ class Drake(Engine):
 
     Drake combines two bodies: their springs are in series, and their relaxation times are added.
     With the same numbers for ball and table these are 2k in N/m and τ/2 = c/(2k) in s. The other
-    approximations, and ``hunt_crossley_dissipation``, are another contact law.
+    approximations have Hunt and Crossley's damping in place of it, f = k p (1 + d p′), whose
+    ``hunt_crossley_dissipation`` d in s/m is that of both bodies if they are alike.
 
     Examples
     --------
@@ -28,6 +37,7 @@ class Drake(Engine):
     names = ("point_contact_stiffness", "relaxation_time")
     releases = (Release.FORCE,)
     scheme = Scheme.IMPLICIT
+    laws: ClassVar[dict[str, str]] = {"hunt-crossley": "hunt-crossley-linear"}
 
     def parameters(self, contact: Physical) -> Parameters:
         time = contact.damping / contact.stiffness / 2
@@ -36,3 +46,14 @@ class Drake(Engine):
     def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
         m, double, half_time = self._two(parameters, mass)
         return Physical(m, double / 2, double * half_time)
+
+    def of_law(
+        self, settings: EngineSettings, mass: float, law: Mapping[str, Any]
+    ) -> EngineSettings:
+        values = {
+            "point_contact_stiffness": float(f"{2 * law['stiffness']:.12g}"),
+            "hunt_crossley_dissipation": float(f"{law['damping']:.12g}"),
+        }
+        numbers = {"mass": mass, "time_step": settings.time_step, **values}
+        text = filled(text_of("drake-hunt-crossley"), {x: repr(y) for x, y in numbers.items()})
+        return replace(settings, parameters=values, snippet=text)

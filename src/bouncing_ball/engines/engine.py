@@ -18,6 +18,7 @@ from bouncing_ball.errors import ModelError, require
 ERROR = 0.001
 """The error of a free impact's restitution that a time step may cause, by default."""
 
+_PLACE = re.compile(r"@([\w.]+)@")
 Parameters = Mapping[str, float | list[float]]
 
 
@@ -92,6 +93,17 @@ class EngineSettings:
     penetration: float | None = None
 
 
+def text_of(name: str) -> str:
+    """A text to paste, with places for its numbers."""
+    return files(__package__).joinpath(f"snippets/{name}.txt").read_text("utf-8")
+
+
+def filled(text: str, numbers: Mapping[str, str]) -> str:
+    """A text with numbers in their places, without the lines about numbers that do not exist."""
+    lines = (line for line in text.splitlines() if numbers.keys() >= {*_PLACE.findall(line)})
+    return _PLACE.sub(lambda place: numbers[place[1]], "\n".join(lines))
+
+
 class Engine(ABC):
     """A physics engine and its linear contact between a ball and a wall at rest or moved.
 
@@ -104,6 +116,8 @@ class Engine(ABC):
     names: ClassVar[tuple[str, ...]]
     releases: ClassVar[tuple[Release, ...]]
     scheme: ClassVar[Scheme]
+    laws: ClassVar[dict[str, str]] = {}
+    """Other contact laws of the engine, by the names that are asked for."""
 
     @abstractmethod
     def parameters(self, contact: Physical) -> Parameters:
@@ -122,8 +136,7 @@ class Engine(ABC):
 
         In the file ``snippets/NAME.txt`` the lines for one release only begin with its name.
         """
-        text = files(__package__).joinpath(f"snippets/{self.name}.txt").read_text("utf-8")
-        lines = (line.rpartition("|") for line in text.splitlines())
+        lines = (line.rpartition("|") for line in text_of(self.name).splitlines())
         return "\n".join(line for rule, _, line in lines if rule in ("", release))
 
     def snippet(self, contact: Physical, release: Release, time_step: float) -> str:
@@ -134,12 +147,7 @@ class Engine(ABC):
         values = {"mass": contact.mass, "time_step": time_step, **self.numbers(contact)}
         texts = {name: repr(value) for name, value in values.items()}
         texts |= {rule: f"{r:.4f}" for rule, r in self.restitutions(contact, release).items()}
-        names = re.compile(r"@([\w.]+)@")
-        return "\n".join(
-            names.sub(lambda name: texts[name[1]], line)
-            for line in self.template(release).splitlines()
-            if texts.keys() >= {*names.findall(line)}
-        )
+        return filled(self.template(release), texts)
 
     @abstractmethod
     def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
@@ -159,6 +167,21 @@ class Engine(ABC):
         None if it is the spring and damper of :meth:`read`.
         """
         return None
+
+    def of_law(
+        self, settings: EngineSettings, mass: float, law: Mapping[str, Any]
+    ) -> EngineSettings:
+        """Settings of a linear contact with the parameters and the text of a law in their place.
+
+        ``law`` has the law's name and its parameters in SI units. The time step remains that of
+        the linear contact with the same restitution and duration.
+
+        Raises
+        ------
+        ModelError
+            If the engine has no such law.
+        """
+        raise ModelError(f"{law['name']} is not written for {self.name}")
 
     def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
         """Sentences on how the engine with these parameters differs from a spring and a damper."""

@@ -143,6 +143,17 @@ def share(chosen: np.ndarray, confidence: float) -> tuple[float, float, float, f
     return chosen.size, tested.statistic, *tested.proportion_ci(confidence, "wilson")
 
 
+def with_limits(estimates: dict[str, tuple]) -> dict[str, tuple]:
+    """Variables with their limits, from their dimensions and estimates, which have those, an
+    estimate and its limits along the last axis.
+    """
+    return {
+        f"{name}{end}": (dims, np.array(values)[..., k])
+        for name, (dims, values) in estimates.items()
+        for k, end in enumerate(LIMITS)
+    }
+
+
 def agreement(simple: Motions, contact: Motions, confidence: float) -> np.ndarray:
     """Shares of the nodes at which two models have motions of one kind and period.
 

@@ -17,7 +17,7 @@ from bouncing_ball.parameters import (
     listed,
     number,
 )
-from bouncing_ball.studies.attractors import LIMITS, MODELS, Confidence, Impacts, models, share
+from bouncing_ball.studies.attractors import MODELS, Confidence, Impacts, models, share, with_limits
 from bouncing_ball.studies.transients import Place
 from bouncing_ball.studies.uncertainty import exponent
 
@@ -84,27 +84,26 @@ def basins(parameters: Basins, release: Release) -> xr.Dataset:
     image, sample = np.split(ends, [count * count], axis=-1)
     first, *others = np.moveaxis(sample.reshape(*shape, -1, parameters.random), 2, 0)
     changed = np.stack([x != first for x in others], axis=2)
-    cells = list(np.ndindex(shape))
-    shares = [[share(first[c] == k, level)[1:] for k in range(len(MOTIONS))] for c in cells]
-    uncertain = [[share(x, level)[1:] for x in changed[c]] for c in cells]
-    exponents = [exponent(changed[c].T, shifts, level) for c in cells]
-    dims = ("case", "model")
-    values: dict[str, tuple] = {
-        "basin_share": ((*dims, "motion"), shares),
-        "uncertain_share": ((*dims, "shift"), uncertain),
-        "uncertainty_exponent": (dims, exponents),
+    kinds, dims = range(len(MOTIONS)), ("case", "model")
+    estimates: dict[str, tuple] = {
+        "basin_share": (
+            (*dims, "motion"),
+            [[[share(x == k, level)[1:] for k in kinds] for x in case] for case in first],
+        ),
+        "uncertain_share": (
+            (*dims, "shift"),
+            [[[share(y, level)[1:] for y in x] for x in case] for case in changed],
+        ),
+        "uncertainty_exponent": (
+            dims,
+            [[exponent(x.T, shifts, level) for x in case] for case in changed],
+        ),
     }
+    image = image.reshape(*shape, count, count)
     return described(
         {
-            "destination": (
-                (*dims, "start_speed", "start_phase"),
-                image.reshape(*shape, count, count),
-            ),
-            **{
-                f"{name}{end}": (over, np.reshape(x, (*shape, *np.shape(x)[1:]))[..., k])
-                for name, (over, x) in values.items()
-                for k, end in enumerate(LIMITS)
-            },
+            "destination": ((*dims, "start_speed", "start_phase"), image),
+            **with_limits(estimates),
             "case_restitution": ("case", r),
             "case_ratio": ("case", ratio),
             "case_amplitude": ("case", lam),

@@ -12,7 +12,7 @@ from bouncing_ball.attractors.motions import Kind
 from bouncing_ball.contacts.spring_damper import Release
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.parameters import Many, Seed, number
-from bouncing_ball.studies.attractors import LIMITS, Grid, models, share
+from bouncing_ball.studies.attractors import Grid, models, share, with_limits
 from bouncing_ball.studies.transients import Transients, transients
 from bouncing_ball.studies.uncertainty import exponent
 
@@ -58,46 +58,31 @@ def locked_orbits(parameters: LockedOrbits, release: Release) -> xr.Dataset:
         random.uniform(x.min, x.max, parameters.nodes)
         for x in (parameters.restitution, parameters.amplitude)
     )
-    found = returns(r, lam, parameters.impacts)
-    sticks, period, s = found.periods > 0, found.periods, found.sensitivity
     ratios, shifts = (np.array(x) for x in (parameters.frequency_ratio, parameters.shifts))
+    # All changes of Λ, of which the first is 0, are followed together.
+    found = returns(r, lam + np.array([[0.0], *shifts[:, np.newaxis]]), parameters.impacts)
+    (period, *moved), s, wait = found.periods, found.sensitivity[0], found.wait[0]
+    sticks, changed = period > 0, np.array(moved) != period
     contact = models(r, ratios[:, np.newaxis], release)[-1].impact_law
     motion = label(contact, lam, -np.pi / 2, 0.0, impacts=parameters.impacts)
     same = (motion.kind == Kind.LOCKED) & (motion.periods == period)
     right = np.logical_and.accumulate(same[::-1])[::-1]
     least = np.where(right.any(axis=0), ratios[np.argmax(right, axis=0)], np.inf)
-    place = np.digitize(ratios[:, np.newaxis] * found.wait / s, _EDGES) - 1
+    place = np.digitize(ratios[:, np.newaxis] * wait / s, _EDGES) - 1
     by_place = [share(same[(place == k) & sticks], level)[1:] for k in range(_EDGES.size - 1)]
-    changed = returns(r, lam + shifts[:, np.newaxis], parameters.impacts).periods != period
     same, changed = same[:, sticks], changed[:, sticks]
-    predictors = (x[sticks] for x in (s / found.wait, period))
-    limits = {
+    correlations = [correlation(x[sticks], least[sticks], level) for x in (s / wait, period)]
+    nodes = {"restitution": r, "amplitude": lam, "periods": period, "sensitivity": s}
+    nodes |= {"wait": wait, "needed_ratio": np.where(sticks, least, np.nan)}
+    limited = {
         "same": ("frequency_ratio", [share(x, level)[1:] for x in same]),
         "same_by_prediction": ("predicted", by_place),
-        "rank_correlation": (
-            "predictor",
-            [correlation(x, least[sticks], level) for x in predictors],
-        ),
+        "rank_correlation": ("predictor", correlations),
         "jump_share": ("shift", [share(x, level)[1:] for x in changed]),
         "uncertainty_exponent": ((), exponent(changed.T, shifts, level)),
     }
-    nodes = {
-        "restitution": r,
-        "amplitude": lam,
-        "periods": period,
-        "sensitivity": s,
-        "wait": found.wait,
-        "needed_ratio": np.where(sticks, least, np.nan),
-    }
     data = described(
-        {
-            **{name: ("node", values) for name, values in nodes.items()},
-            **{
-                f"{name}{end}": (dims, np.array(values)[..., k])
-                for name, (dims, values) in limits.items()
-                for k, end in enumerate(LIMITS)
-            },
-        },
+        {name: ("node", values) for name, values in nodes.items()} | with_limits(limited),
         coords={
             "frequency_ratio": ratios,
             "predicted": np.sqrt(_EDGES[1:] * _EDGES[:-1]),

@@ -56,7 +56,7 @@ def test_verdicts_come_from_the_claims(render):
 
 
 def test_what_is_not_there_is_an_error(render):
-    with pytest.raises(ModelError, match="no claim 'height' in the ledger"):
+    with pytest.raises(KeyError, match="height"):
         render('{{ claims("height") }}')
 
 

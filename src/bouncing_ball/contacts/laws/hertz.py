@@ -25,6 +25,7 @@ class Hertz(ContactLaw):
         If K or C is outside its range.
     """
 
+    power: ClassVar[float] = 1.5
     stiffness: float | np.ndarray
     damping: float | np.ndarray
 
@@ -45,9 +46,9 @@ class Hertz(ContactLaw):
 
     @classmethod
     def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
-        """The law with K = v²/P^{5/2}, and C equal to ``group`` times :meth:`damping_unit`."""
+        """The law with K = v²/P^{1+ν}, ν the power of p, and C = ``group`` :meth:`damping_unit`."""
         scale, v = np.asarray(length, dtype=float), np.asarray(speed, dtype=float)
-        stiffness = v * v / scale**2.5
+        stiffness = v * v / scale ** (1 + cls.power)
         return cls(stiffness, group * cls.damping_unit(scale, v) + 0 * stiffness)
 
     @staticmethod

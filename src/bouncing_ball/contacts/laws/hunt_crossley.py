@@ -51,3 +51,31 @@ class HuntCrossley(Hertz):
     def damping_unit(length: np.ndarray, speed: np.ndarray) -> np.ndarray:
         """The unit 1/v of C."""
         return 1 / speed
+
+
+@dataclass(frozen=True, repr=False)
+class LinearHuntCrossley(HuntCrossley):
+    """A linear spring with this damping, as Drake's point contact has it.
+
+    The power of p does not enter the restitution coefficient.
+
+    Parameters
+    ----------
+    stiffness, damping : float or array
+        K > 0 and C ≥ 0.
+
+    Examples
+    --------
+    >>> float(LinearHuntCrossley(2.0, 0.5).force(4.0, 1.0))
+    12.0
+    """
+
+    name: ClassVar[str] = "hunt-crossley-linear"
+    formula: ClassVar[str] = "K p (1 + C p′)"
+    root: ClassVar[int] = 1
+    power: ClassVar[float] = 1.0
+    units: ClassVar[dict[str, Unit]] = HuntCrossley.units | {"stiffness": Unit("N/m", 1, 0, -2)}
+
+    def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """K p (1 + C p′)."""
+        return self.stiffness * penetration * (1 + self.damping * rate)

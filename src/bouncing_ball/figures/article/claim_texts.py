@@ -5,7 +5,6 @@ from typing import Any
 import xarray as xr
 
 from bouncing_ball.datasets.selection import each
-from bouncing_ball.errors import ModelError
 from bouncing_ball.figures.tables.rows import found_text
 
 
@@ -24,15 +23,7 @@ class Claims:
         self.all = list(self._claims.values())
 
     def __call__(self, name: str) -> Any:
-        """The claim with an id.
-
-        Raises
-        ------
-        ModelError
-            If the ledger has no such claim.
-        """
-        if name not in self._claims:
-            raise ModelError(f"no claim {name!r} in the ledger")
+        """The claim with an id."""
         return self._claims[name]
 
     def count(self, verdict: str = "", *, table: str = "", group: str = "independent") -> int:

@@ -23,7 +23,7 @@ def render_article(
     Raises
     ------
     ModelError
-        If a claim or a reference does not exist.
+        If a reference does not exist.
     KeyError, jinja2.UndefinedError
         If a template names anything else that does not exist.
     """

@@ -44,11 +44,8 @@ def require_memory(balls: int, what: str) -> None:
 
 def _columns(found: Motions, dims: tuple[str, ...]) -> dict[str, Any]:
     names = {"exponent": "lyapunov_exponent", "exponent_error": "lyapunov_error"}
-    return {
-        names.get(name, name): (dims, value)
-        for name, value in vars(found).items()
-        if name != "followed"
-    }
+    shown = {name: value for name, value in vars(found).items() if name != "followed"}
+    return {names.get(name, name): (dims, value) for name, value in shown.items()}
 
 
 def _described(data: dict[str, Any], coords: dict[str, Any], **attributes: Any) -> Any:

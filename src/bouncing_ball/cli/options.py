@@ -142,11 +142,5 @@ def add_options(parser: argparse.ArgumentParser, call: Callable) -> None:
         if not required and default not in (None, False):
             shown = f"{default:.4g}" if isinstance(default, float) else default
             text += f" (default: {shown})"
-        parser.add_argument(
-            option(name),
-            dest=name,
-            required=required,
-            default=None if required else default,
-            help=text.replace("%", "%%"),
-            **reading,
-        )
+        reading |= {"default": None if required else default, "help": text.replace("%", "%%")}
+        parser.add_argument(option(name), dest=name, required=required, **reading)

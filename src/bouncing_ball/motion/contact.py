@@ -144,18 +144,13 @@ class LinearContactDynamics(ContactDynamics):
         left, speed = flight.displacement, flight.velocity
         last = (flight.y - 1) - loss * speed - stiffness * left
         # A deviation along the motion changes the time only.
-        by_phase = Deviation(
-            np.ones_like(passed),
-            speed - level * rate - impulse * first,
-            last + stiffness * impulse * rate - impulse_rate * first,
-        )
+        fall = speed - level * rate - impulse * first
+        pull = last + stiffness * impulse * rate - impulse_rate * first
         before, held = (np.where(x < 0, lag, 0.0) for x in (depth, after.displacement))
-        by_rate = Deviation(
-            np.zeros_like(passed),
-            impulse - before * level,
-            impulse_rate + before * stiffness * impulse,
-        )
-        released = (x.to_event(speed, last, lag) for x in (by_phase, by_rate))
+        by_rate = impulse - before * level, impulse_rate + before * stiffness * impulse
+        one = np.ones_like(passed)
+        moved = Deviation(one, fall, pull), Deviation(0 * one, *by_rate)
+        released = (x.to_event(speed, last, lag) for x in moved)
         return self.landed(released, departure, after, passed, held)
 
     def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:

@@ -1,5 +1,7 @@
 """The quantities that datasets and answers contain of orbits, and of a branch with its ends."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
@@ -19,12 +21,8 @@ from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.orbits.system import OrbitSystem
 
 OBSERVED = (
-    "phase",
-    "contact_duration",
-    "release_phase",
-    "impact_velocity",
-    "bounce_velocity",
-    "apparent_restitution",
+    *("phase", "contact_duration", "release_phase"),
+    *("impact_velocity", "bounce_velocity", "apparent_restitution"),
 )
 PLACE = ("amplitude", "phase", "contact_duration")
 """The quantities that the datasets contain of special orbits."""
@@ -43,11 +41,8 @@ def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
     >>> found
     {'phase': 1.5707963267948966, 'stable': False, 'admissible': True}
     """
-    return {
-        **{name: getattr(orbit, name) for name in names},
-        "stable": orbit.is_stable(),
-        "admissible": orbit.is_admissible(),
-    }
+    judged = {"stable": orbit.is_stable(), "admissible": orbit.is_admissible()}
+    return {name: getattr(orbit, name) for name in names} | judged
 
 
 def followed(
@@ -104,21 +99,14 @@ def orbits_in_columns(
     floquet = orbit.multipliers()
     along = columns(orbit, "amplitude", *OBSERVED) | {"residual": orbit.defect()}
     places = {name: getattr(special, name) for name in PLACE} | {"residual": special.defect()}
-    return xr.Dataset(
-        {
-            **{name: ("point", values) for name, values in along.items()},
-            "multiplier_real": (("point", "multiplier"), floquet.real),
-            "multiplier_imag": (("point", "multiplier"), floquet.imag),
-            "special_kind": ("special", np.array(kinds, dtype=object)),
-            **{f"special_{name}": ("special", values) for name, values in places.items()},
-            "end_reason": ("end", ends),
-        },
-        coords={
-            # Numbers, so that branches with different numbers of special points are aligned.
-            "special": np.arange(len(kinds)),
-            "end": ["unstable side", "stable side"],
-        },
-    )
+    data: dict[str, Any] = {name: ("point", values) for name, values in along.items()}
+    for part in ("real", "imag"):
+        data[f"multiplier_{part}"] = ("point", "multiplier"), getattr(floquet, part)
+    data["special_kind"] = "special", np.array(kinds, dtype=object)
+    data |= {f"special_{name}": ("special", values) for name, values in places.items()}
+    # Numbers, so that branches with different numbers of special points are aligned.
+    coords = {"special": np.arange(len(kinds)), "end": ["unstable side", "stable side"]}
+    return xr.Dataset(data | {"end_reason": ("end", ends)}, coords)
 
 
 def no_branch(count: int, error: Exception) -> xr.Dataset:

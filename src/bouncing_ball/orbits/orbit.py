@@ -24,13 +24,8 @@ from bouncing_ball.motion.simulation import next_impact
 from bouncing_ball.orbits import stability
 
 OBSERVABLES = (
-    "amplitude",
-    "phase",
-    "contact_duration",
-    "impact_velocity",
-    "bounce_velocity",
-    "apparent_restitution",
-    "max_height",
+    *("amplitude", "phase", "contact_duration", "impact_velocity", "bounce_velocity"),
+    *("apparent_restitution", "max_height"),
 )
 """The seven observables of an orbit, by the names that datasets and the command line use."""
 
@@ -355,10 +350,8 @@ class Orbit(Batch, ABC):
 
     def distance(self, other: Orbit) -> np.ndarray:
         """Largest difference to other orbits in Λ, φ, z′_i, and in D times :attr:`clock`."""
-        differences = (
-            self.amplitude - other.amplitude,
-            reduce_angle(self.phase - other.phase),
-            (self.contact_duration - other.contact_duration) * self.clock,
-            self.impact_velocity - other.impact_velocity,
-        )
-        return np.max(np.abs(np.broadcast_arrays(*differences)), axis=0)
+        turned = reduce_angle(self.phase - other.phase)
+        longer = (self.contact_duration - other.contact_duration) * self.clock
+        faster = self.impact_velocity - other.impact_velocity
+        every = np.broadcast_arrays(self.amplitude - other.amplitude, turned, longer, faster)
+        return np.max(np.abs(every), axis=0)

@@ -22,6 +22,15 @@ from bouncing_ball.orbits.stability import Bifurcation
 # permanent contact. The equations are singular there, and rounding enters
 # divided by both: stop where 1e-12 is left.
 _MARGIN = 1e-4
+# The ends of a branch: name, reason, and the function of an orbit that is positive before.
+_ENDS: tuple[tuple[str, str, Callable[[Any], np.ndarray]], ...] = (
+    ("contact lost", "the ball no longer closes in on the table at impact",
+     lambda orbit: -orbit.relative_impact_velocity - _MARGIN),
+    ("release lost", "the ball no longer leaves the table as the contact ends",
+     lambda orbit: orbit.relative_bounce_velocity),
+    ("flight lost", "the contact fills the whole cycle",
+     lambda orbit: orbit.flight_time - _MARGIN),
+)  # fmt: skip
 
 
 class OrbitSystem(ABC):
@@ -60,27 +69,11 @@ class OrbitSystem(ABC):
         def bifurcation(kind: Bifurcation) -> Event:
             return Event(kind, lambda y: kind.test(*self.orbit(y).trace_and_determinant()))
 
-        return (
-            *map(bifurcation, Bifurcation),
-            Event(
-                "contact lost",
-                lambda y: -self.orbit(y).relative_impact_velocity - _MARGIN,
-                terminal=True,
-                reason="contact lost: the ball no longer closes in on the table at impact",
-            ),
-            Event(
-                "release lost",
-                lambda y: self.orbit(y).relative_bounce_velocity,
-                terminal=True,
-                reason="release lost: the ball no longer leaves the table as the contact ends",
-            ),
-            Event(
-                "flight lost",
-                lambda y: self.orbit(y).flight_time - _MARGIN,
-                terminal=True,
-                reason="flight lost: the contact fills the whole cycle",
-            ),
-        )
+        def end(name: str, why: str, left: Callable[[Any], np.ndarray]) -> Event:
+            reason = f"{name}: {why}"
+            return Event(name, lambda y: left(self.orbit(y)), terminal=True, reason=reason)
+
+        return (*map(bifurcation, Bifurcation), *(end(*each) for each in _ENDS))
 
 
 @dataclass(frozen=True)

@@ -184,10 +184,15 @@ def passes(tree: Path, *tests: str) -> bool:
     return ended.returncode in (0, 5)
 
 
+def mirror(path: Path) -> list[str]:
+    """The folders of the tests next to a module."""
+    layer = path.relative_to(PACKAGE).parts[0]
+    return [f"tests/{layer}", *(["tests/contracts"] if layer in CONTRACTS else [])]
+
+
 def survives(tree: Path, path: Path, fault: Fault, near: bool) -> bool:
     """Whether no test notices a fault, or none next to it."""
-    layer = path.relative_to(PACKAGE).parts[0]
-    folders = [f"tests/{layer}", *(["tests/contracts"] if layer in CONTRACTS else [])]
+    folders = mirror(path)
     own = [name for name in [f"{folders[0]}/test_{path.stem}.py"] if (tree / name).exists()]
     before = [*folders, "tests/workflow", "tests/figures"]
     right = (tree / path).read_text()
@@ -220,7 +225,8 @@ def main() -> None:
                 (tree / name).parent.mkdir(parents=True, exist_ok=True)
                 shutil.copy(ROOT / name, tree / name)
             trees.put(tree)
-        if not options.near and not passes(tree, *EVERYTHING):
+        beside = sorted({folder for path, _ in drawn for folder in mirror(path)})
+        if not passes(tree, *(["src", *beside] if options.near else EVERYTHING)):
             sys.exit("the tests fail without any fault: see make quick")
 
         def tried(drawn_fault: tuple[Path, Fault]) -> bool:

@@ -21,7 +21,6 @@ RUN = read_yaml(CONFIG / "config.yaml")
 SLOW = {
     "ext_basins",
     "ext_diagram",
-    "ext_hertz",
     "ext_laws",
     "ext_locked",
     "ext_locking",

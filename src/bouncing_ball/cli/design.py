@@ -155,16 +155,15 @@ def _whole(found: Design) -> list[str]:
     ]
 
 
-def _law_rows(found: Design) -> list[tuple[str, str]]:
+def _law_lines(found: Design) -> list[str]:
     """The parameters of a contact law, with their units."""
-    law = found.case.law
-    if law is None or found.law is None:
-        return []
-    names = law.parameter_names()
-    units = [law.units[name].name if name in law.units else "" for name in names]
-    words = [f"{law.name}, {name.replace('_', ' ')}" for name in names]
-    values = (shown(found.law[name], unit) for name, unit in zip(names, units, strict=True))
-    return list(zip(words, values, strict=True))
+    law, values = found.case.law, dict(found.law or {})
+    name = values.pop("name", "")
+    units = {} if law is None else law.units
+    return [
+        _line(f"{name}, {key.replace('_', ' ')}", shown(x, units[key].name if key in units else ""))
+        for key, x in values.items()
+    ]
 
 
 def lines(given: Answer) -> list[str]:
@@ -188,7 +187,7 @@ def lines(given: Answer) -> list[str]:
         "",
         *(_line(*row) for row in rows(found) if not engine or row[0] != "largest time step"),
         *([] if engine else [f"Time step: {found.time_step.rule}."]),
-        *(_line(*row) for row in _law_rows(found)),
+        *_law_lines(found),
         "",
         _line(asked, "exact", *_SIMPLE),
         _line("", exact, shown(need.by_law), corrected),

@@ -1,12 +1,9 @@
 """Errors of the restitution and of the corrected model, quantity by quantity.
 
-They are shown on linear contacts (ext_orders) and on contacts of other laws (ext_laws), together
-with Figures 8, 14 and 16 on the latter (ext_hertz), and beside physics engines (ext_engines).
+They are shown on linear contacts (ext_orders), on contacts of other laws (ext_laws) and beside
+physics engines (ext_engines).
 """
 
-from itertools import cycle
-
-import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -15,7 +12,7 @@ from matplotlib.ticker import LogFormatterSciNotation
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.figures.canvas import WIDE, canvas, legend_below, logarithmic
 from bouncing_ball.figures.labels import QUANTITIES, note, number, parameters
-from bouncing_ball.figures.style import COLOURS, GUIDE, LAWS, MODELS, RESTITUTION, Look
+from bouncing_ball.figures.style import COLOURS, GUIDE, LAWS, MODELS, Look
 
 # Time stepping of engines by dashes, and engines by shapes.
 _SCHEMES: dict[str, Look] = {
@@ -24,8 +21,6 @@ _SCHEMES: dict[str, Look] = {
 }
 _ENGINES = "osxD"
 _MARKED: Look = {"linestyle": "none", "color": "black", "markerfacecolor": "none", "markersize": 4}
-# The linear contact, whose threshold is smooth, comes first.
-_SHAPES = ("", "o", "s", "^")
 
 
 def orders(data: xr.Dataset) -> Figure:
@@ -71,34 +66,6 @@ def contact_laws(data: xr.Dataset) -> Figure:
     # The first of the two lines of each law.
     lines = figure.axes[0].lines[: 2 * data.sizes["law"] : 2]
     spare.legend(lines, data["law"].values, loc="upper left", title=title)
-    return figure
-
-
-def figures_of_laws(data: xr.Dataset) -> Figure:
-    """ext_hertz: phase against Λ; height and permanent contact against π/(D + κ)."""
-    figure, (branches, heights, held) = canvas(WIDE, 2.9, columns=3)
-    ratio, marked = data.centroid_ratio.values, []
-    for law, shape in zip(data["law"].values, cycle(_SHAPES), strict=False):
-        look, part = LAWS[law] | {"linewidth": 1.0}, data.sel(law=law)
-        (line, *_) = branches.plot(part.amplitude.T, part.phase.T / np.pi, **look)
-        heights.plot(ratio, part.max_height, **look)
-        # The threshold of a nonlinear contact oscillates between samples, so that the line only
-        # connects the samples, and breaks off where no threshold was found.
-        drawn = {"linewidth": 0.3, "linestyle": "-"} if shape else {"linewidth": 0.8}
-        drawn |= {"marker": shape, "markersize": 1.8}
-        marked.append((line, *held.plot(ratio, part.threshold_amplitude, **look | drawn)))
-    heights.axhline(float(data.restitution_max_height), color=RESTITUTION, linewidth=0.6)
-    held.axhline(1.0, color=RESTITUTION, linewidth=0.6)
-    listed = ", ".join(f"{x:g}" for x in data.shown_ratio.values)
-    branches.set(xlabel=r"$\Lambda$", ylabel=r"phase $\varphi/\pi$")
-    branches.set_title(
-        rf"{parameters(data, 'restitution')}, $\pi/(D+\kappa)$ = {listed}", fontsize=8
-    )
-    title = parameters(data, "restitution", of="heights__")
-    for axes, quantity in ((heights, "max_height"), (held, "permanent_contact")):
-        logarithmic(axes, xlabel=r"$\pi/(D+\kappa)$", ylabel=QUANTITIES[quantity])
-        axes.set_title(title, fontsize=8)
-    legend_below(figure, marked, labels=data["law"].values, ncols=len(marked))
     return figure
 
 

@@ -9,7 +9,7 @@ contact with the same centroid. Errors are relative to the simple model as in Eq
 
 from collections.abc import Callable
 from contextlib import suppress
-from functools import lru_cache, partial
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -31,11 +31,9 @@ from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.law_model import LawModel, law_at_orbit
 from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.orbits.restitution_orbit import rigid_speed
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
-from bouncing_ball.orbits.stability import Side
-from bouncing_ball.parameters import FrequencyRatio, LawRestitution, Many, Tolerance
-from bouncing_ball.studies.parameters import FamilyBranches, OrbitsAlongRatio
+from bouncing_ball.parameters import LawRestitution, Tolerance
+from bouncing_ball.studies.parameters import OrbitsAlongRatio
 
 HERTZ = ("hunt-crossley", "tsuji", "kuwabara-kono")
 LINEAR = {"linear": Release.DISPLACEMENT, "linear, force release": Release.FORCE}
@@ -54,14 +52,6 @@ class LawErrors(OneOrbit):
     """One orbit along π/(D + κ), and the relative error tolerated of its greatest height."""
 
     tolerance: Tolerance
-
-
-class FiguresOfLaws(FamilyBranches):
-    """Families whose branches are followed, and the orbit whose greatest height is shown."""
-
-    restitution: LawRestitution
-    frequency_ratio: Many[FrequencyRatio]
-    heights: OneOrbit
 
 
 @lru_cache
@@ -206,91 +196,5 @@ def law_errors(parameters: LawErrors) -> xr.Dataset:
             "model": list(SIMPLE),
             "quantity": list(QUANTITIES),
             "centroid_ratio": parameters.frequency_ratio.grid(),
-        },
-    )
-
-
-def _rows(name: str, parameters: FiguresOfLaws, n: ArrayLike) -> ImpactModel:
-    """The contacts of the branches of n-T orbits, shape (ratio, n).
-
-    Each has r and π/(D + κ) at the impact speed 2nπ/(1 + r), which the orbit of the restitution
-    model has at every Λ, so that both ends of a branch are those of one contact.
-    """
-    r, ratios = parameters.restitution, np.array(parameters.frequency_ratio)[:, np.newaxis]
-    duration = np.pi / ratios * share_in_contact(name, r)
-    return exact_model(name, r, duration, rigid_speed(np.asarray(n), r))
-
-
-def _bounds(name: str, parameters: FiguresOfLaws) -> np.ndarray:
-    """Λ of both bifurcations, shape (bound, ratio, n)."""
-    n = np.broadcast_to(parameters.n, (len(parameters.frequency_ratio), len(parameters.n)))
-    model = _rows(name, parameters, n)
-    return np.array([getattr(model, bound)(n).amplitude for bound in BOUNDS])
-
-
-def _domains(name: str, parameters: FiguresOfLaws) -> np.ndarray:
-    """Λ and φ along branches of the first family, from the unstable side over the fold.
-
-    Shape (2, ratio, point).
-    """
-    n, top = parameters.n[0], parameters.amplitude_max
-    model = _rows(name, parameters, n)
-    fold = model.saddle_node(n)
-    steps = np.linspace(0.0, 1.0, parameters.points)[1:] ** 2
-    lam = fold.amplitude + steps * (top - fold.amplitude)
-    left, right = (model.orbit(n, lam, side).phase for side in (Side.UNSTABLE, Side.STABLE))
-    amplitudes = np.hstack([lam[:, ::-1], fold.amplitude, lam])
-    return np.array([amplitudes, np.hstack([left[:, ::-1], fold.phase, right])])
-
-
-def _height_and_hold(one: OneOrbit, exact: Any) -> np.ndarray:
-    """Greatest height and threshold of permanent contact of each contact, shape (2, ratio)."""
-    height = exact.orbit(one.n, one.amplitude).max_height
-    if isinstance(exact, SpringDamperModel):
-        return np.array([height, exact.permanent_contact_threshold()])
-    held = np.full(height.shape, np.nan)
-    for place in range(held.size):
-        # No steady motion that just touches was found where it stays NaN.
-        with suppress(ModelError):
-            held[place] = LawModel(exact.law.take(place)).permanent_contact_threshold()
-    return np.array([height, held])
-
-
-def figures_of_laws(parameters: FiguresOfLaws) -> xr.Dataset:
-    """Table 1 and Figs. 8, 14 and 16 on contacts of the same r and centroid.
-
-    The dataset has ``bifurcation_amplitude`` (law, bound, shown_ratio, n), values of Λ;
-    ``amplitude`` and ``phase`` in rad along branches (law, shown_ratio, point); ``max_height`` and
-    ``threshold_amplitude`` of permanent contact (law, centroid_ratio), both of the contact with r
-    at the speed of this orbit, NaN where there is no such orbit or threshold; and the number
-    ``restitution_max_height``. Both ratios are π/(D + κ).
-
-    Raises
-    ------
-    NoOrbitError
-        If a law has the orbit at no π/(D + κ).
-    ModelError
-        If a law has no contact with r and D.
-    """
-    one, names = parameters.heights, ("linear", *HERTZ)
-    bounds = [_bounds(name, parameters) for name in names]
-    branches = np.array([_domains(name, parameters) for name in names])
-    rigid = RestitutionModel(one.restitution).orbit(one.n, one.amplitude)
-    shown = np.array([along(name, one, partial(_height_and_hold, one)) for name in names])
-    return described(
-        {
-            "bifurcation_amplitude": (("law", "bound", "shown_ratio", "n"), np.array(bounds)),
-            "amplitude": (("law", "shown_ratio", "point"), branches[:, 0]),
-            "phase": (("law", "shown_ratio", "point"), branches[:, 1]),
-            "max_height": (("law", "centroid_ratio"), shown[:, 0]),
-            "restitution_max_height": ((), float(rigid.max_height)),
-            "threshold_amplitude": (("law", "centroid_ratio"), shown[:, 1]),
-        },
-        coords={
-            "law": list(names),
-            "bound": list(BOUNDS),
-            "shown_ratio": np.array(parameters.frequency_ratio),
-            "n": np.array(parameters.n),
-            "centroid_ratio": one.frequency_ratio.grid(),
         },
     )

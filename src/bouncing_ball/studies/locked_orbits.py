@@ -58,21 +58,22 @@ def locked_orbits(parameters: LockedOrbits, release: Release) -> xr.Dataset:
         random.uniform(x.min, x.max, parameters.nodes)
         for x in (parameters.restitution, parameters.amplitude)
     )
-    found = returns(r, lam, parameters.impacts)
-    sticks, period, s = found.periods > 0, found.periods, found.sensitivity
     ratios, shifts = (np.array(x) for x in (parameters.frequency_ratio, parameters.shifts))
+    # All changes of Λ, of which the first is 0, are followed together.
+    found = returns(r, lam + np.array([[0.0], *shifts[:, np.newaxis]]), parameters.impacts)
+    (period, *moved), s, wait = found.periods, found.sensitivity[0], found.wait[0]
+    sticks, changed = period > 0, np.array(moved) != period
     contact = models(r, ratios[:, np.newaxis], release)[-1].impact_law
     motion = label(contact, lam, -np.pi / 2, 0.0, impacts=parameters.impacts)
     same = (motion.kind == Kind.LOCKED) & (motion.periods == period)
     right = np.logical_and.accumulate(same[::-1])[::-1]
     least = np.where(right.any(axis=0), ratios[np.argmax(right, axis=0)], np.inf)
-    place = np.digitize(ratios[:, np.newaxis] * found.wait / s, _EDGES) - 1
+    place = np.digitize(ratios[:, np.newaxis] * wait / s, _EDGES) - 1
     by_place = [share(same[(place == k) & sticks], level)[1:] for k in range(_EDGES.size - 1)]
-    changed = returns(r, lam + shifts[:, np.newaxis], parameters.impacts).periods != period
     same, changed = same[:, sticks], changed[:, sticks]
-    correlations = [correlation(x[sticks], least[sticks], level) for x in (s / found.wait, period)]
+    correlations = [correlation(x[sticks], least[sticks], level) for x in (s / wait, period)]
     nodes = {"restitution": r, "amplitude": lam, "periods": period, "sensitivity": s}
-    nodes |= {"wait": found.wait, "needed_ratio": np.where(sticks, least, np.nan)}
+    nodes |= {"wait": wait, "needed_ratio": np.where(sticks, least, np.nan)}
     limited = {
         "same": ("frequency_ratio", [share(x, level)[1:] for x in same]),
         "same_by_prediction": ("predicted", by_place),

@@ -8,16 +8,9 @@ from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji
 from bouncing_ball.contacts.spring_damper import SpringDamper
 
+_HERTZ = (HuntCrossley, LinearHuntCrossley, Tsuji, KuwabaraKono)
+
 LAWS: dict[str, type[ContactLaw]] = {
-    law.name: law
-    for law in (
-        HuntCrossley,
-        LinearHuntCrossley,
-        Tsuji,
-        KuwabaraKono,
-        SpringDamper,
-        ElastoBacklash,
-        Impedance,
-    )
+    law.name: law for law in (*_HERTZ, SpringDamper, ElastoBacklash, Impedance)
 }
 """The laws by their names on the command line and in calls."""

@@ -163,17 +163,6 @@ def ext_orders(data: xr.Dataset) -> Table:
     return header, [*body, ["permanent contact, second order", *numbers]]
 
 
-def ext_hertz(data: xr.Dataset) -> Table:
-    """Stability ranges on contacts of other laws, from saddle-node to period doubling."""
-
-    def ends(part: xr.Dataset) -> str:
-        return "–".join(f"{end:.4f}" for end in part.bifurcation_amplitude.values)
-
-    families = {f"n = {n}": at(ends, n=n) for n in data.n.values}
-    columns = {"law": text("law"), "π/(D + κ)": value("shown_ratio", "g"), **families}
-    return table(each(data, "law", "shown_ratio"), columns)
-
-
 def ext_laws(data: xr.Dataset) -> Table:
     """Errors on contacts of five laws with the same restitution coefficient and centroid.
 

@@ -267,11 +267,7 @@ def coefficients(
 
 
 def law_thresholds(
-    n: ArrayLike,
-    damping_ratio: ArrayLike,
-    amplitude: ArrayLike,
-    release: Release,
-    tolerance: float,
+    n: ArrayLike, damping_ratio: ArrayLike, amplitude: ArrayLike, release: Release, tolerance: float
 ) -> ByQuantity:
     """The ϖ from which each error is within a tolerance ε by the law, |K|/ε or √(|K₂|/ε).
 

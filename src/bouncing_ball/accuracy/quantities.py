@@ -31,10 +31,7 @@ OF_IMPACTS = tuple(Quantity)[:6]
 
 
 def values(
-    model: ImpactModel,
-    n: ArrayLike,
-    amplitude: ArrayLike,
-    quantities: Iterable[str] = OF_IMPACTS,
+    model: ImpactModel, n: ArrayLike, amplitude: ArrayLike, quantities: Iterable[str] = OF_IMPACTS
 ) -> np.ndarray:
     """Quantities in a model, all those of the orbit from one search for it.
 

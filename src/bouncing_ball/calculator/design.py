@@ -7,13 +7,7 @@ from typing import Annotated, Any, get_args
 from bouncing_ball.accuracy.quantities import OF_ORBITS, Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.calculator.case import Case, Table
-from bouncing_ball.calculator.contact_data import (
-    STANDARD_GRAVITY,
-    case_of,
-    loss,
-    meant,
-    table_of,
-)
+from bouncing_ball.calculator.contact_data import STANDARD_GRAVITY, case_of, loss, meant, table_of
 from bouncing_ball.calculator.engine_data import read_engine
 from bouncing_ball.calculator.families import families, finite
 from bouncing_ball.calculator.motion import headline, of_family
@@ -220,11 +214,7 @@ def _chosen(
 
 
 def contact(
-    *,
-    engine: str | None = None,
-    release: Rule | None = None,
-    law: str | None = None,
-    **given: Any,
+    *, engine: str | None = None, release: Rule | None = None, law: str | None = None, **given: Any
 ) -> Contact:
     """A contact without a table, for an engine, from the parameters of :func:`design`.
 

@@ -30,12 +30,7 @@ class Answer(NamedTuple):
 
 
 @takes(calculator.design)
-def design(
-    *,
-    plot: Path | None = None,
-    all_families: bool = False,
-    **given: Any,
-) -> Answer:
+def design(*, plot: Path | None = None, all_families: bool = False, **given: Any) -> Answer:
     """The calculator's answer, and the page to print; of an engine's contact without a table.
 
     Parameters

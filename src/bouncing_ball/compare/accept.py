@@ -102,7 +102,4 @@ def accept(
     said = [line for artifact in taken for line in _copied(artifact, record, results)]
     if not said:
         return ["Nothing to accept: the record says what the results say."]
-    return [
-        *said,
-        "Now commit the record, and say why: git add figures config *.md && git commit",
-    ]
+    return [*said, "Now commit the record, and say why: git add figures config *.md && git commit"]

@@ -17,9 +17,7 @@ _TINY, _ROUNDING = np.finfo(float).tiny, 4e-16
 
 
 def grazing_points(
-    problem: Problem,
-    admissible_at: Callable[[np.ndarray], np.ndarray],
-    points: np.ndarray,
+    problem: Problem, admissible_at: Callable[[np.ndarray], np.ndarray], points: np.ndarray
 ) -> np.ndarray:
     """The last admissible points of a branch, one for each change of admissibility along it.
 

@@ -255,9 +255,5 @@ def orbit_diagrams(parameters: Diagram, release: Release) -> xr.Dataset:
             "lyapunov_exponent": (("model", "amplitude"), exponent),
             "lyapunov_error": (("model", "amplitude"), error),
         },
-        coords={
-            "model": list(MODELS),
-            "amplitude": lam,
-            "bin_phase": (edges[1:] + edges[:-1]) / 2,
-        },
+        coords={"model": list(MODELS), "amplitude": lam, "bin_phase": (edges[1:] + edges[:-1]) / 2},
     )

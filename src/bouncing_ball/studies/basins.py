@@ -9,14 +9,7 @@ from bouncing_ball.attractors.mapper import label
 from bouncing_ball.attractors.motions import Kind, Motions
 from bouncing_ball.contacts.spring_damper import Release
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.parameters import (
-    FrequencyRatio,
-    Many,
-    Parameters,
-    Seed,
-    listed,
-    number,
-)
+from bouncing_ball.parameters import FrequencyRatio, Many, Parameters, Seed, listed, number
 from bouncing_ball.studies.attractors import MODELS, Confidence, Impacts, models, share, with_limits
 from bouncing_ball.studies.transients import Place
 from bouncing_ball.studies.uncertainty import exponent

@@ -193,6 +193,14 @@ def _write(found: Motions, ball: _Ball, which: np.ndarray, kind: ArrayLike, **va
     found.fill(ball.lane[which], kind=kind, followed=ball.seen[which], **values)
 
 
+def _repeats(
+    found: Motions, ball: _Ball, which: np.ndarray, kind: ArrayLike, *values: ArrayLike
+) -> None:
+    """Store the periods, impacts and exponents of motions that repeat."""
+    known = dict(zip(("periods", "impacts", "exponent"), values, strict=True))
+    _write(found, ball, which, kind, exponent_error=0.0, **known)
+
+
 def _resting(
     dynamics: Dynamics, impact: Impact, departure: Departure, ball: _Ball, found: Motions
 ) -> np.ndarray:
@@ -209,15 +217,10 @@ def _resting(
         if sticks.any():
             time = ball.time + departure.duration
             again, lost = sticks & (ball.lift >= 0), ball.stretch.lost()
-            ball.lap[again & lost] = (ball.seen - ball.lift)[again & lost]
+            lap, periods = ball.seen - ball.lift, _periods(time - ball.lift_time)
+            ball.lap[again & lost] = lap[again & lost]
             again &= ~lost
-            _write(
-                *(found, ball, again, Kind.LOCKED),
-                periods=_periods(time - ball.lift_time)[again],
-                impacts=(ball.seen - ball.lift)[again],
-                exponent=-np.inf,
-                exponent_error=0.0,
-            )
+            _repeats(found, ball, again, Kind.LOCKED, periods[again], lap[again], -np.inf)
             ball.lift[sticks], ball.lift_time[sticks] = ball.seen[sticks], time[sticks]
             done |= again
     return np.flatnonzero(~done)
@@ -266,13 +269,11 @@ def _returning(
         length, sure, first = ball.seen[near] - mark.impact[near], back & second, back & ~second
         own, whole = near[sure], np.gcd(periods, length)[sure] == 1
         repeats = np.where(whole, Kind.ORBIT, Kind.SUBHARMONIC)
-        _write(
-            *(found, ball, own, np.where(mark.stuck[own] > 0, Kind.LOCKED, repeats)),
-            periods=periods[sure],
-            impacts=length[sure],
-            exponent=(np.log(radius) / periods)[sure],
-            exponent_error=0.0,
+        kind, exponent = (
+            np.where(mark.stuck[own] > 0, Kind.LOCKED, repeats),
+            np.log(radius) / periods,
         )
+        _repeats(found, ball, own, kind, periods[sure], length[sure], exponent[sure])
         done[own] = True
         mark.turn[near[first]], moves[near[first]] = length[first], True
     _mark(ball, np.flatnonzero(moves & ~done), *state)

@@ -139,18 +139,9 @@ def _touch(law: ContactLaw, unknowns: np.ndarray):
     push = 1 - lam * np.sin(phase) - law.force(inside, u)
     value = np.array([law.grip(p, u), by.by_penetration * u + by.by_rate * push])
     # The second derivatives of the grip are neglected.
-    rows = np.array(
-        [
-            [by.by_penetration, by.by_rate, 0.0, 0.0],
-            [
-                -by.by_rate * force.by_penetration,
-                by.by_penetration - by.by_rate * force.by_rate,
-                -by.by_rate * lam * np.cos(phase),
-                -by.by_rate * np.sin(phase),
-            ],
-        ]
-    )
-    return value, rows
+    pushed = force.by_penetration, force.by_rate, lam * np.cos(phase), np.sin(phase)
+    turning = np.array([0.0, by.by_penetration, 0.0, 0.0]) - by.by_rate * np.array(pushed)
+    return value, np.array([[by.by_penetration, by.by_rate, 0.0, 0.0], turning])
 
 
 def _equations(s: Scheme, law: ContactLaw, z: np.ndarray):

@@ -28,11 +28,8 @@ class Deviation(NamedTuple):
         """The deviation at the event δ + κ δ′ = 0, where the motion has δ′ and δ″."""
         missing = self.displacement + lag * self.velocity
         later = -missing / (velocity + lag * acceleration)
-        return type(self)(
-            self.phase + later,
-            self.displacement + velocity * later,
-            self.velocity + acceleration * later,
-        )
+        place, pace = self.displacement + velocity * later, self.velocity + acceleration * later
+        return type(self)(self.phase + later, place, pace)
 
     def flown(self, start, end, time, velocity, lag) -> Self:
         """The deviation at the next event, after a flight with the table's (X, Y) at its ends.

@@ -27,19 +27,12 @@ from bouncing_ball.parameters import (
     LossyRestitution,
     Many,
     Parameters,
+    listed,
     number,
 )
 
 Confidence = Annotated[float, number("level of the confidence intervals", gt=0.5, lt=1)]
-Impacts = Annotated[
-    int,
-    number(
-        "impacts after which a ball that has not repeated is given up; an exponent with an error "
-        "needs some hundreds",
-        ge=200,
-        le=100000,
-    ),
-]
+Impacts = Annotated[int, listed("Impacts")]
 
 
 class Even(Interval):

@@ -14,6 +14,7 @@ from bouncing_ball.parameters import (
     Many,
     Parameters,
     Seed,
+    listed,
     number,
 )
 from bouncing_ball.studies.attractors import MODELS, Confidence, Impacts, models, share, with_limits
@@ -35,9 +36,7 @@ class Basins(Parameters):
     """Starts on an even grid for the picture, and random ones for shares and exponents."""
 
     cases: Many[Case]
-    velocity_max: Annotated[
-        float, number("largest relative speed of impact at the start", ge=0.1, le=100)
-    ]
+    velocity_max: Annotated[float, listed("velocity_max")]
     starts: Annotated[int, number("starts along each axis, at middles of cells", ge=10, le=1000)]
     random: Annotated[int, number("random starts for each case", ge=10, le=10**6)]
     shifts: Many[Annotated[float, number("changes of the phase at the start", "rad", gt=0, le=1)]]

@@ -4,7 +4,7 @@ from itertools import product
 from typing import Any
 
 from bouncing_ball.claims import evidence
-from bouncing_ball.claims.claim import Claim, claim, formula
+from bouncing_ball.claims.claim import Claim, claim, formulas
 from bouncing_ball.claims.paper import explanations as why
 from bouncing_ball.claims.paper import restitution_model
 from bouncing_ball.claims.parameters import STIFF
@@ -14,10 +14,7 @@ from bouncing_ball.studies.printed_table1 import AXES, printed_text
 
 _FIGURES = "Figs. 8 and 9"
 
-EQUATIONS = [
-    formula("orbit equations", "Eqs. 18-26", "equations of the n-T orbits", "Eqs. 21-26"),
-    formula("velocity balance", "Eq. 27", "bouncing-off velocity from that of impact"),
-]
+EQUATIONS = formulas("orbits")
 
 
 @claim("Abstract and Eqs. 21-26")

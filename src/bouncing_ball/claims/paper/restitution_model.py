@@ -1,15 +1,10 @@
 """Claims about the restitution model, Eqs. 1-9 and Fig. 3."""
 
-from bouncing_ball.claims.claim import Claim, claim, formula, of_formula
+from bouncing_ball.claims.claim import Claim, claim, formula, formulas, of_formula
 from bouncing_ball.claims.evidence import GRID
 from bouncing_ball.claims.verdict import at_most
 
-MOTION = [
-    formula("restitution law", "Eq. 2", "velocity of the ball after an impact"),
-    formula("flight", "Eqs. 1, 3 and 4", "flight of the ball", "Eq. 4"),
-    formula("impact map", "Eq. 5", "phase and velocity from one impact to the next"),
-    formula("fixed point", "Eq. 6", "phase and velocity of the n-T orbit"),
-]
+MOTION = formulas("motion")
 saddle_node = formula("saddle-node", "Eq. 7", "the n-T orbits appear here, in a saddle-node")
 
 

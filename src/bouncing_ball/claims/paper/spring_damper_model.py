@@ -1,7 +1,7 @@
 """Claims about the spring-damper model and its damping, Eqs. 10-16."""
 
 from bouncing_ball.claims import evidence
-from bouncing_ball.claims.claim import claim, formula, of_formula
+from bouncing_ball.claims.claim import claim, formulas, of_formula
 from bouncing_ball.claims.verdict import at_least, at_most
 
 _RATIO = "ϖ = Ω/ω, Ω of the contact"
@@ -25,18 +25,7 @@ def frequency_ratio(data):
     }
 
 
-EQUATIONS = [
-    formula(
-        "contact equation",
-        "Eqs. 10-11",
-        "equation of contact, in physical and in dimensionless variables",
-        _RATIO,
-        remark="with the contact's frequency over the table's as the frequency ratio",
-    ),
-    formula("contact response", "Eqs. 12-13", "response of the ball in contact"),
-    formula("free flight", "Eqs. 14-15", "motion of the ball in flight"),
-    formula("damping", "Eq. 16", "damping ratio that gives the restitution coefficient"),
-]
+EQUATIONS = formulas("contact")
 
 
 @claim("after Eq. 16")

@@ -21,7 +21,8 @@ def decimal(value: float, digits: int) -> str:
     >>> decimal(82.1774, 2), decimal(float("nan"), 2), decimal(float("inf"), 2)
     ('82.18', '–', '∞')
     """
-    return _typeset(f"{float(value):.{digits}f}")
+    # Rounding has no sign.
+    return _typeset(f"{round(float(value), digits) + 0.0:.{digits}f}")
 
 
 def short(value: float, digits: int = 6) -> str:

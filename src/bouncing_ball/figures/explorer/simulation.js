@@ -9,8 +9,9 @@ const tableAt = (phase, amplitude) => [amplitude * Math.cos(phase), amplitude * 
 
 // ---- The first upward zero of y after a time at which y ≤ 0, by steps that cannot pass over a
 // zero: first_zero.py. `at` gives y, y′, y″, y‴, bounds of y″, |y‴|, |y⁗| from then on, and whether
-// to stop without a zero. NaN if it stops.
-const MOST_STEPS = 100000;
+// to stop without a zero: then there is none, and the time is infinite. NaN after too many steps.
+const MOST_STEPS = 20000;
+let stepsTaken = 0;
 const zeroOfParabola = (bound, v, square, twice) => {
   const root = Math.sqrt(Math.max(square + bound * twice, 0));
   return v > 0 ? twice / (v + root) : (root - v) / bound;
@@ -18,7 +19,8 @@ const zeroOfParabola = (bound, v, square, twice) => {
 
 function firstZero(at, start, skip = time => time) {
   let time = start;
-  for (let k = 0; k < MOST_STEPS; k++) {
+  for (let k = 0; ; k++, stepsTaken++) {
+    if (k === MOST_STEPS) return NaN;
     const {y, v, a, j, most, ended} = at(time), [second, third, fourth] = most;
     if (y >= 0 && (v > 0 || (v === 0 && a >= 0))) break;
     const twice = -2 * Math.min(y, 0), square = v * v;
@@ -28,20 +30,20 @@ function firstZero(at, start, skip = time => time) {
       const growth = Math.max(j, 0) + fourth * reach / 4;
       const bound = Math.min(a + reach * growth / 3, second);
       const longer = Math.min(zeroOfParabola(Math.max(bound, 1e-300), v, square, twice), reach);
+      const further = longer === reach && longer > step && reach < Infinity;
       step = Math.max(step, longer);
-      if (longer < reach || !(reach < Infinity)) break;
+      if (!further) break;
     }
     if (!(v > 0)) step = Math.max(step, -3 * a / (third + 1e-300));
     const bend = (Math.abs(j) + fourth * first) * first * first;
     const near = v > 0 && second * twice <= square / 4 && bend <= 3e-4 * v;
-    if (ended && !near) return NaN;
+    if (ended && !near) return Infinity;
     const later = skip(time + step);
     if (near || later === time) {
       time = later;
       break;
     }
     time = later;
-    if (k === MOST_STEPS - 1) return NaN;
   }
   // One more step of the parabola, if the zero is certainly simple.
   const {y, v, a, most} = at(time), twice = -2 * y, square = v * v;
@@ -120,8 +122,9 @@ function departByContact(contact, amplitude, phase, u) {
     return {y: gap, v: speed, a: pull, j: push, ended: free + (steady - level) <= 2e-15 * level,
       most: [bound + steady, omega * bound + steady, stiffness * bound + steady]};
   };
-  const duration = firstZero(at, 0), stays = Number.isNaN(duration), end = phase + duration;
-  if (stays) return {point, duration: Infinity, settling: 0, sticks: true, stays};
+  const duration = firstZero(at, 0), stays = !Number.isFinite(duration), end = phase + duration;
+  if (stays)
+    return {point, duration: Infinity, settling: 0, sticks: true, stays, lost: Number.isNaN(duration)};
   const [leftX, leftY] = tableAt(end, amplitude);
   return {point, phase: end, v: Math.max(contactState(contact, point, duration).speed, 0),
     x: leftX, y: leftY, duration, settling: 0, sticks: duration * damped > TURN, stays};
@@ -161,7 +164,8 @@ function heightSince({at, left, hang}, model, amplitude, since) {
 // again; else its state must return twice in the same number of impacts, and not almost return in
 // a part of them, as it does while it slowly comes to an orbit from both sides. What larger rounding
 // errors would change does not count: the ball then goes on.
-const SAME = 1e-7, NEAR = 1e-4, GRAIN = 1e-14, MOST_IMPACTS = 4000;
+// It also goes on if its long contacts take too many steps.
+const SAME = 1e-7, NEAR = 1e-4, GRAIN = 1e-14, MOST_IMPACTS = 4000, MOST_WORK = 200000;
 function endOf(...start) {
   const found = followed(...start, 0);
   if (found.kind === "goes on" || found.kind === "stays") return found;
@@ -172,8 +176,9 @@ function endOf(...start) {
 
 function followed(model, amplitude, phase, velocity, grain) {
   let k = 0, mark = null, turn = 0, almost = 0, lift = null, stuck = false, top = -Infinity;
-  const seen = [], end = (kind, periods, impacts, more) => ({kind, periods, impacts, top, seen, ...more});
+  const last = stepsTaken + MOST_WORK, seen = [], end = (kind, periods, impacts, more) => ({kind, periods, impacts, top, seen, ...more});
   for (const {time, at, u, left} of impactsOf(model, amplitude, phase, velocity, grain)) {
+    if (left.lost || stepsTaken > last) return end("goes on", 0, 0);
     if (left.stays) return end("stays", 1, 0, {since: time + left.settling});
     seen.push(reduced(at));
     const thrown = Math.max(left.v + left.x, 0);
@@ -202,8 +207,8 @@ const SAID = {
   repeats: ({periods, impacts}) => `repeats itself after ${counted(periods, impacts)}`,
   sticks: ({periods, impacts}) =>
     `sticks to the table, is thrown off again, and repeats itself after ${counted(periods, impacts)}`,
-  "goes on": () => `has not repeated itself within ${MOST_IMPACTS} impacts, or rounding errors would `
-    + "decide when it does",
+  "goes on": ({seen}) => `has not repeated itself within ${seen.length} impacts, or rounding errors `
+    + "would decide when it does",
 };
 const many = (count, what) => `${count} ${what}${count === 1 ? "" : "s"}`;
 const counted = (periods, impacts) =>

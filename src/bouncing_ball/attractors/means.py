@@ -1,14 +1,8 @@
 """Means over time of balls: their flights, height, received power and the growth of deviations.
 
-The work of the table on a ball in a contact is, per unit of mass and with w = Λ sin τ, ::
-
-    W = ∫ (z″ + 1) w′ dτ = [z′ w′ + w] + ∫ z′ w dτ
-
-of which nothing is lost in a flight. In the mean over a long time it is what the contacts
-dissipate. In a spring-damper contact the integral follows from those of δ cos τ and δ sin τ,
-for which the equation of motion, multiplied by cos τ and by sin τ, gives two linear equations. At
-an instantaneous impact W is the impulse times w′; while a ball rests on the table it is the
-integral of (1 - w) w′.
+The work W of the table on a ball (:mod:`bouncing_ball.motion.work`) is none in a flight, and in the
+mean over a long time it is what the contacts dissipate. At an instantaneous impact W is the impulse
+times w′, and while a ball rests on the table it is the integral of (1 - w) w′.
 """
 
 from typing import Any
@@ -23,6 +17,7 @@ from bouncing_ball.motion.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.motion.ensembles import pick
 from bouncing_ball.motion.sequence import Status
 from bouncing_ball.motion.simulation import Law, first_impacts
+from bouncing_ball.motion.work import change, over_contact
 
 
 def means(law: Law, amplitude: ArrayLike, found: Motions, samples: int) -> np.ndarray:
@@ -91,24 +86,19 @@ def _add_up(dynamics: Dynamics, impact: Impact, left: np.ndarray, total: np.ndar
 def _contact(dynamics: Dynamics, impact: Impact, departure: Departure, after: Any, passed: Any):
     """Integral of z and work over spring-damper contacts; time, first z and z′ of the flights."""
     lam, flight, time = dynamics.amplitude, departure.flight, departure.duration
-    stiffness = dynamics.law.frequency_ratio**2
-    loss = 2 * dynamics.law.damping_ratio * dynamics.law.frequency_ratio
-    depth = np.array([impact.displacement, flight.displacement])
-    rate = np.array([impact.velocity, flight.velocity])
+    depth, rate = (
+        np.array([a, b])
+        for a, b in zip(impact[1:3], (flight.displacement, flight.velocity), strict=True)
+    )
     x, y = np.array([table(impact.phase, lam), (flight.x, flight.y)]).swapaxes(0, 1)
-    cosine, sine = x / lam, y / lam
-
-    def change(values):
-        return values[1] - values[0]
-
-    by_cosine = change(sine * (y / 2 - 1) - rate * cosine - depth * (sine + loss * cosine))
-    by_sine = change(cosine * (1 - y / 2) - rate * sine + depth * (cosine - loss * sine))
-    by_sine += lam * time / 2
-    rest = stiffness - 1
-    inner = (rest * by_cosine - loss * by_sine) / (rest * rest + loss * loss)
-    work = change((rate + x) * x + y + depth * y + y * y / 2) - lam * inner
-    height = (-time - change(x + rate + loss * depth)) / stiffness - change(x)
-    return height, work, passed - time, depth[1] + y[1], rate[1] + x[1]
+    height, moved = over_contact(dynamics.law, lam, time, (x, y), depth, rate)
+    return (
+        height,
+        change((rate + x) * x + y) + moved,
+        passed - time,
+        depth[1] + y[1],
+        rate[1] + x[1],
+    )
 
 
 def _instant(dynamics: Dynamics, impact: Impact, departure: Departure, after: Any, passed: Any):

@@ -1,21 +1,11 @@
-r"""The motion on which a ball ends, and how accurately the restitution model predicts it.
+"""The motion on which a ball ends, and how accurately the restitution model predicts it.
 
 A ball on a stable orbit stays there. A ball near an unstable one leaves, and the mapper computes
 the motion on which it ends (:mod:`bouncing_ball.attractors.mapper`). Motions that repeat in the
 same way in both models are compared by their greatest height. Other motions are compared by means
-over time of the height, and of the power that the table transfers to the ball. Its work in a
-contact is, per unit of mass, ::
-
-    ∫ (z″ + 1) w′ dt = [z′ w′ + w] + ∫ z′ w dt
-
-because w″ = -w. At an instantaneous impact it is the first term alone, the impulse times w′.
-In a linear contact ϖ² δ = w - 1 - δ″ - l δ′ with l = 2ζϖ. Integrated by parts this gives ::
-
-    ϖ² ∫ δ dt = -[w′ + δ′ + l δ] - D
-    (ϖ² - 1) I + l J = [w²/2 - w - δ′ w′ - δ w - l δ w′],                 I = ∫ δ w′ dt
-    (ϖ² - 1) J - l I = Λ² D/2 + [w′ - w w′/2 - δ′ w + δ w′ - l δ w],      J = ∫ δ w dt
-
-For other laws the integrals are computed by Gauss's rule.
+over time of the height, and of the power that the table transfers to the ball
+(:mod:`bouncing_ball.motion.work`); for laws other than the linear one Gauss's rule integrates over
+the contacts.
 
 In a chaotic motion the balls of both models start alike, and each gives a pair of means. The error
 of the ratio of both means is that of the differences within the pairs, which counts what the pairs
@@ -37,6 +27,7 @@ from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.history import history
 from bouncing_ball.motion.linear_contact import has_closed_form
 from bouncing_ball.motion.sequence import ImpactSequence, Status
+from bouncing_ball.motion.work import over_contact
 
 # Relative change of the velocity of an orbit, for a start beside it.
 _BESIDE = 1e-3
@@ -185,7 +176,11 @@ def height_and_power(sequence: ImpactSequence, before: int = 0) -> tuple[np.ndar
     work = bounce * lam * np.cos(end) - impact * lam * np.cos(phase) + left - lift
     law = sequence.contact
     if isinstance(law, SpringDamper) and has_closed_form(law):
-        held, moved = _of_spring_damper(sequence, law, part)
+        angle = np.array([phase, end])
+        gap = np.array([sequence.displacement, sequence.release_displacement])[:, part]
+        rate = np.array([sequence.relative_velocity, sequence.relative_bounce_velocity])[:, part]
+        place = lam * np.cos(angle), lam * np.sin(angle)
+        held, moved = over_contact(law, lam, duration, place, gap, rate)
     elif law is not None:
         held, moved = _by_nodes(sequence, part)
     else:
@@ -194,29 +189,6 @@ def height_and_power(sequence: ImpactSequence, before: int = 0) -> tuple[np.ndar
         moved = (left * left - lift * lift) / 2
     total = time[-1] - time[before]
     return np.sum(flown + held, axis=0) / total, np.sum(work + moved, axis=0) / total
-
-
-def _of_spring_damper(
-    sequence: ImpactSequence, law: SpringDamper, part: slice
-) -> tuple[np.ndarray, np.ndarray]:
-    """∫ z dt and ∫ z′ w dt over linear contacts, in closed form."""
-    phase, duration, lam = sequence.phase[part], sequence.contact_duration[part], sequence.amplitude
-    angle = np.array([phase, phase + duration])
-    w, w_rate = lam * np.sin(angle), lam * np.cos(angle)
-    gap = np.array([sequence.displacement[part], sequence.release_displacement[part]])
-    rate = np.array([sequence.relative_velocity[part], sequence.relative_bounce_velocity[part]])
-
-    def change(values: np.ndarray) -> np.ndarray:
-        return values[1] - values[0]
-
-    stiffness, loss = law.frequency_ratio**2, 2 * law.damping_ratio * law.frequency_ratio
-    of_rate = change(w * w / 2 - w - rate * w_rate - gap * w - loss * gap * w_rate)
-    of_level = change(w_rate - w * w_rate / 2 - rate * w + gap * w_rate - loss * gap * w)
-    of_level = of_level + lam * lam * duration / 2
-    s = stiffness - 1
-    by_rate = (s * of_rate - loss * of_level) / (s * s + loss * loss)
-    sunk = -(change(w_rate + rate + loss * gap) + duration) / stiffness
-    return sunk - change(w_rate), change(gap * w + w * w / 2) - by_rate
 
 
 def _by_nodes(sequence: ImpactSequence, part: slice) -> tuple[np.ndarray, np.ndarray]:

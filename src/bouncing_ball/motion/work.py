@@ -1,0 +1,60 @@
+"""Height and received power of a ball in a spring-damper contact, integrated in closed form.
+
+The work of the table w = Λ sin τ on a ball is, per unit of mass, ::
+
+    ∫ (z″ + 1) w′ dτ = [z′ w′ + w] + ∫ z′ w dτ
+
+because w″ = -w. In a linear contact ϖ² δ = w - 1 - δ″ - l δ′ with l = 2ζϖ. Integrated by parts this
+gives ::
+
+    ϖ² ∫ δ dτ = -[w′ + δ′ + l δ] - D
+    (ϖ² - 1) I + l J = [w²/2 - w - δ′ w′ - δ w - l δ w′],                 I = ∫ δ w′ dτ
+    (ϖ² - 1) J - l I = Λ² D/2 + [w′ - w w′/2 - δ′ w + δ w′ - l δ w],      J = ∫ δ w dτ
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.contacts.spring_damper import SpringDamper
+
+
+def change(values: np.ndarray) -> np.ndarray:
+    """The difference of the values at the end and at the start of a contact."""
+    return values[1] - values[0]
+
+
+def over_contact(
+    law: SpringDamper, amplitude: ArrayLike, duration: Any, table: Any, gap: Any, rate: Any
+) -> tuple[np.ndarray, np.ndarray]:
+    """The integrals ∫ z dτ and ∫ z′ w dτ over contacts.
+
+    Parameters
+    ----------
+    law : SpringDamper
+    amplitude, duration : array_like
+        Λ and the duration D of the contacts.
+    table : tuple of array
+        w′ and w, each at the start and at the end of the contacts, shape (2, ...).
+    gap, rate : array, shape (2, ...)
+        δ and δ′ at the start and at the end.
+
+    Examples
+    --------
+    On a table at rest z = δ, and no power is received:
+
+    >>> law, still = SpringDamper(2.0, 0.0), np.zeros((2, 1))
+    >>> gap, rate = np.array([[0.0], [0.0]]), np.array([[-1.0], [1.0]])
+    >>> [float(x[0]) for x in over_contact(law, 0.0, 2.0, (still, still), gap, rate)]
+    [-1.0, 0.0]
+    """
+    (w_rate, w), stiffness = table, law.frequency_ratio**2
+    loss = 2 * law.damping_ratio * law.frequency_ratio
+    of_rate = change(w * w / 2 - w - rate * w_rate - gap * w - loss * gap * w_rate)
+    of_level = change(w_rate - w * w_rate / 2 - rate * w + gap * w_rate - loss * gap * w)
+    of_level = of_level + np.square(amplitude) * duration / 2
+    s = stiffness - 1
+    by_rate = (s * of_rate - loss * of_level) / (s * s + loss * loss)
+    sunk = -(change(w_rate + rate + loss * gap) + duration) / stiffness
+    return sunk - change(w_rate), change(gap * w + w * w / 2) - by_rate

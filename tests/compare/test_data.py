@@ -63,7 +63,7 @@ def test_no_budget_hides_what_a_reader_sees():
     # What engines gave is a measurement, and no picture of the run is made of a new one.
     # Where rounding decides about motions there are statistics, with their standard errors.
     statistics = [budget for name in PICTURES for budget in ARTIFACTS[name].values()]
-    assert all(budget.share <= 0.05 and budget.size <= 5 for budget in statistics)
+    assert all(budget.share <= 0.3 and budget.size <= 7 for budget in statistics)
     computed = [own for name, own in ARTIFACTS.items() if name not in ("engines", *PICTURES)]
     budgets = [budget for own in computed for budget in own.values()]
     assert len(budgets) > 20

@@ -30,12 +30,12 @@ def short(value: float, digits: int = 6) -> str:
 
     Examples
     --------
-    >>> short(0.85), short(10000.0), short(2.5e-13, 2)
-    ('0.85', '10⁴', '2.5·10⁻¹³')
+    >>> short(0.85), short(10000.0), short(2.5e-13, 2), short(99.7, 2)
+    ('0.85', '10⁴', '2.5·10⁻¹³', '100')
     """
     value = float(value)
     if not (0 < abs(value) < 1e-3 or 1e4 <= abs(value) < math.inf):
-        return _typeset(f"{value:.{digits}g}")
+        return _typeset(f"{float(f'{value:.{digits}g}'):.15g}")
     mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
     factor = f"{float(mantissa):g}"
     power = f"10{str(int(exponent)).translate(_SUPERSCRIPTS)}"

@@ -35,6 +35,15 @@ def test_every_figure_and_table_is_shown(texts, pristine):
         assert rows and "".join(rows) in text
 
 
+def test_the_page_of_claims_explains_its_columns_before_them(pristine):
+    page = (pristine.path / "results/figures/claims.md").read_text(encoding="utf-8")
+    words, _, header = page.partition("\n| ")
+    assert words.startswith("# ") and "](../supplement.md)" in words
+    columns = [name.strip() for name in header.partition("\n")[0].strip("|").split(" | ")]
+    for said in (*columns, *map(str, Verdict)):
+        assert f"**{said}**" in words or f"*{said}*" in words, said
+
+
 def test_every_claim_stands_with_its_verdict(texts, pristine):
     claims = read_dataset(pristine.path / "results/figures/claims.nc")
     for name, verdict in zip(claims.claim.values, claims.verdict.values, strict=True):

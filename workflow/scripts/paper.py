@@ -7,6 +7,7 @@ from bouncing_ball.datasets.files import write_text
 from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.figures.article.render import render_article
 from bouncing_ball.figures.atlas.tables import shares
+from bouncing_ball.figures.tables import rows
 from bouncing_ball.figures.tables.formats import to_markdown
 from bouncing_ball.pipeline.job import logged, read_input
 
@@ -19,6 +20,8 @@ with logged(snakemake) as lines:
     data = {Path(path).stem: read_input(path) for path in snakemake.input.data}
     tables = {Path(path).stem: text_of(path) for path in snakemake.input.tables}
     data["atlas"] = read_dataset(snakemake.input.atlas)
+    # Its page begins with words, which the supplement has already.
+    tables["claims"] = to_markdown(*rows.claims(data["claims"]))
     tables["atlas"] = to_markdown(*shares(data["atlas"]))
     for template, path in (("article", "paper"), ("supplement", "supplement")):
         file = Path(snakemake.input.templates[0]).with_name(f"{template}.md.j2")

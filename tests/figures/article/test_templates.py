@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
+from docutils.utils.math.latex2mathml import tex2mathml
 
 from bouncing_ball.claims.ledger import CLAIMS
 
@@ -61,3 +62,12 @@ def test_no_number_is_typed(template):
 def test_no_number_is_typed_into_an_explanation():
     for why in {claim.explanation for claim in CLAIMS} - {None}:
         assert typed_numbers(why.__doc__) == [], why
+
+
+@pytest.mark.parametrize("name", ["article", "supplement"])
+def test_the_site_can_typeset_every_formula(accepted, name):
+    # With an unknown command the site would not be built.
+    formulas = [part.strip("$") for part in mathematics(accepted[name])]
+    assert len(formulas) > 10
+    for formula in formulas:
+        assert tex2mathml(formula).startswith("<math"), formula

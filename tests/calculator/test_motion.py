@@ -75,6 +75,24 @@ def test_the_headline_says_what_the_ball_does(amplitude, kind, says):
         assert simple.value == pytest.approx(power.mean(), abs=margin)
 
 
+@pytest.mark.parametrize(
+    ("amplitude", "restitution", "kind", "says"),
+    [(0.2, 0.85, "permanent contact", "stays at rest."), (1.1, 0.2, "locked", "sticks to the")],
+)
+def test_where_there_is_no_orbit_the_ball_is_laid_on_the_table(amplitude, restitution, kind, says):
+    given = UNIT | {"n": None, "restitution": restitution, "stiffness": 5000.0}
+    found = design(**given, acceleration=f"{amplitude} m/s^2", tolerance="20 %")
+    assert found.headline.startswith("No model has an n-T orbit.") and says in found.headline
+    assert found.motion.kind == found.motion.restitution_kind == kind and found.is_good_enough
+    assert "no n-T orbit in any model" in found.reason and not found.judged.exists
+
+
+def test_a_verdict_on_an_orbit_says_that_it_leaves_out_a_ball_laid_on_the_table():
+    found = design(**UNIT | {"n": 7, "stiffness": 1e5}, acceleration=2.0, tolerance="20 %")
+    assert found.motion.kind == "orbit" and found.motion.laid not in (None, "permanent contact")
+    assert found.verdict.endswith(", which is not judged.") and "; a ball laid" in found.verdict
+
+
 def test_without_loss_a_ball_stays_beside_the_orbit(short_runs):
     lossless = UNIT | {"restitution": 1.0, "stiffness": 1e4, "tolerance": "5 %"}
     found = design(**lossless, acceleration=0.5)
@@ -99,13 +117,14 @@ LOCKED = ("locked", "locked")
 @pytest.mark.parametrize(
     ("found", "good", "says"),
     [
-        (motion("permanent contact", "permanent contact"), True, "the ball comes to rest"),
+        (motion("permanent contact", "permanent contact"), True, "the ball rests in both models"),
         (motion("locked", "permanent contact"), False, "its motion is permanent contact, and the"),
         (motion("subharmonic", "orbit"), False, "is periodic, and the contact's is doubled"),
         (motion(*LOCKED, greatest={"a": 1.0, "b": 1.04}), True, "is 4 % off, within 5 %"),
         (motion(*LOCKED, greatest={"a": 1.0, "b": 1.06}), False, "is 6 % off, beyond 5 %"),
         (motion("chaotic", "chaotic"), False, "is not known"),
         (means(0.02, 0.005), True, "height is 2 % ± 0.5 % off and the mean power is 1 % ± 0 % off"),
+        (means(0.0, 0.02), True, "height is at most 2 % off and the mean power is at most 2 % off"),
         (means(0.04, 0.02), False, "not decided at 5 %: the mean height is 4 % ± 2 % off"),
         (means(0.12, 0.005), False, "not good enough: the mean height is 12 % ± 0.5 % off"),
     ],

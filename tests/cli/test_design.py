@@ -73,9 +73,9 @@ def test_choosing(said):
     [
         (("--stiffness", "-5N/m"), 2, "stiffness = -5 N/m is not a number in"),
         (
-            ("--acceleration", "0.1 g"),
+            ("--acceleration", "0.1 g", "--n", "1"),
             1,
-            "no n-T orbit in any model, and a ball laid on the table stays at rest: the",
+            "no 1-T orbit in any model, and a ball laid on the table stays at rest: the",
         ),
         (
             ("--acceleration", "0.8"),

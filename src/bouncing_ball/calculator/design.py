@@ -10,7 +10,7 @@ from bouncing_ball.calculator.case import Case, Table
 from bouncing_ball.calculator.contact_data import STANDARD_GRAVITY, case_of, loss, meant, table_of
 from bouncing_ball.calculator.engine_data import read_engine
 from bouncing_ball.calculator.families import families, finite
-from bouncing_ball.calculator.motion import headline, of_family
+from bouncing_ball.calculator.motion import aside, headline, of_family
 from bouncing_ball.calculator.needed import RATIOS, needed
 from bouncing_ball.calculator.results import (
     QUANTITIES,
@@ -175,6 +175,7 @@ def design(
     table = table_of(given)
     lam, asked = table.amplitude, _FAMILIES if n is None else [n]
     require(lam < _LARGEST, lam, "Λ", f"below {_LARGEST:g}")
+    case, remarks = None, source.remarks() if source else ()
     try:
         case, need = case_of(given, table, rule, asked, kind), None
         if case is None:
@@ -182,12 +183,14 @@ def design(
         elif source and not engine:
             # For another engine it is the spring and damper that is written.
             case = replace(case, law=source.law(table))
-        return _design(case, need, asked, question, source.remarks() if source else ())
+        return _design(case, need, asked, question, remarks)
     except NoOrbitError as error:
         bare = str(acceleration).strip()
-        if not bare.replace(".", "", 1).isdigit():
+        if bare.replace(".", "", 1).isdigit():
+            raise NoOrbitError(f"{error}; did you mean {bare} g?") from None
+        if n is not None or case is None:
             raise
-        raise NoOrbitError(f"{error}; did you mean {bare} g?") from None
+        return _design(case, None, asked, question, remarks, str(error))
 
 
 def _chosen(
@@ -322,10 +325,14 @@ def _design(
     asked: Sequence[int],
     question: dict[str, Any],
     remarks: tuple[str, ...],
+    no_orbit: str = "",
 ) -> Design:
-    """Everything that is known of a contact, given, or chosen for what is needed."""
+    """Everything that is known of a contact, given, or chosen for what is needed.
+
+    If ``no_orbit`` says why no model has an orbit, the ball is one that is laid on the table.
+    """
     contact, table = case.contact, case.table
-    ratio, found = float(contact.frequency_ratio), families(case, asked)
+    ratio, found = float(contact.frequency_ratio), families(case, asked, bool(no_orbit))
     require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
     # The verdict is about the first stable family, or the first that exists.
     one = max(found, key=lambda one: (one.exists, one.is_stable and one.is_admissible))
@@ -342,7 +349,11 @@ def _design(
     # A threshold of permanent contact is none of an orbit.
     if motion.restitution_kind is not None and need.quantity in OF_ORBITS:
         judged = judged_by_motion(motion, need.tolerance, one.n)
-        verdict = judged._replace(verdict=before + judged.verdict)
+        verdict = judged._replace(verdict=before + judged.verdict, reason=no_orbit or judged.reason)
+    elif need.quantity in OF_ORBITS:
+        verdict = verdict._replace(
+            verdict=f"{verdict.verdict[:-1]}{aside(motion, table.amplitude)}."
+        )
     si: dict[str, Any] = case.in_si()
     delay, r, load = map(float, case.instant(one.n)[:3])
     answer = Design(

@@ -90,8 +90,10 @@ def _standing(orbit: Orbit, values: np.ndarray, amplitude: float) -> Standing:
     )
 
 
-def families(case: Case, asked: Sequence[int]) -> tuple[Family, ...]:
+def families(case: Case, asked: Sequence[int], or_first: bool = False) -> tuple[Family, ...]:
     """Those of the families ``asked`` in which some model has an orbit.
+
+    If there is none, that is an error, or with ``or_first`` the first of them without an orbit.
 
     Raises
     ------
@@ -116,6 +118,7 @@ def families(case: Case, asked: Sequence[int]) -> tuple[Family, ...]:
         found.append([*(getattr(orbits[-1], quantity) for quantity in OF_ORBITS), *limits])
     values = np.array(found)
     there = np.any([orbit.exists for orbit in orbits], axis=0)
+    there[0] |= or_first and not there.any()
     if not there.any():
         lowest = values[0, len(OF_ORBITS), 0]
         which = f"{asked[0]}-T orbit" if len(asked) == 1 else "n-T orbit"

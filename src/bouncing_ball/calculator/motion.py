@@ -23,6 +23,7 @@ from bouncing_ball.attractors.mapper import label
 from bouncing_ball.attractors.motions import Kind
 from bouncing_ball.calculator.case import Case
 from bouncing_ball.calculator.results import Family, Mean, Motion
+from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.history import history
 from bouncing_ball.motion.linear_contact import has_closed_form
@@ -58,11 +59,14 @@ def of_family(case: Case, family: Family, tolerance: float) -> Motion:
     if family.exists and family.is_stable and family.is_admissible:
         return Motion(str(Kind.ORBIT), family.n, 1, _laid(case, family))
     orbits = (case.models[name].orbit(family.n, lam) for name in (exact, simple, "corrected"))
-    orbit = next(orbit for orbit in orbits if orbit.exists)
+    orbit = next((orbit for orbit in orbits if orbit.exists), None)
     lossless = float(case.contact.restitution) == 1 and family.exists and family.is_admissible
-    if lossless and abs(float(orbit.trace_and_determinant()[0])) < 2:
+    if orbit is not None and lossless and abs(float(orbit.trace_and_determinant()[0])) < 2:
         return Motion(str(Kind.UNDECIDED), 0, 0)
-    start = _Start(float(orbit.phase), float(orbit.impact_velocity) * (1 + _BESIDE))
+    # Where no model has an orbit: a ball laid on the table as that is fastest on its way down.
+    start = _Start(np.pi, -lam)
+    if orbit is not None:
+        start = _Start(float(orbit.phase), float(orbit.impact_velocity) * (1 + _BESIDE))
     found = {
         name: label(_law(case, name), lam, start.phase, start.velocity, impacts=_IMPACTS)
         for name in (exact, simple)
@@ -204,6 +208,14 @@ def _by_nodes(sequence: ImpactSequence, part: slice) -> tuple[np.ndarray, np.nda
     return held, moved
 
 
+def aside(motion: Motion, amplitude: float) -> str:
+    """What a verdict on the orbit leaves out, if a ball laid on the table ends elsewhere."""
+    rests = motion.laid == Kind.PERMANENT_CONTACT and amplitude <= RESTITUTION_THRESHOLD
+    if motion.laid is None or rests:
+        return ""
+    return f"; a ball laid on the table {_DOES[motion.laid]}, which is not judged"
+
+
 def headline(motion: Motion, family: Family) -> str:
     """The motion of the ball, in one sentence."""
     orbit = f"{family.n}-T orbit"
@@ -220,6 +232,9 @@ def headline(motion: Motion, family: Family) -> str:
     if motion.periods > 1 and motion.kind != Kind.PERMANENT_CONTACT:
         does += f", every {motion.periods} periods of the table and {motion.impacts} impacts"
     why = "not stable" if family.is_admissible else "inadmissible: another impact comes first"
+    if not any(each.exists for each in family.standing.values()):
+        does = "stays at rest" if motion.kind == Kind.PERMANENT_CONTACT else does
+        return f"No model has an n-T orbit. A ball that is laid on the table {does}."
     if not family.exists:
         return f"The contact has no {orbit}: a ball that starts like one {does}."
     return f"No ball stays on the {orbit}, which is {why}: one that starts beside it {does}."

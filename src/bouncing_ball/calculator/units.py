@@ -138,8 +138,10 @@ def percent(share: float) -> str:
     return f"{100 * share:.6g} %"
 
 
-def shown(value: float | None, unit: str = "") -> str:
+def shown(value: float | None, unit: str = "", least: float = 1e-5) -> str:
     """A value as text: four digits with a prefix of its unit, or a share in "%" with two digits.
+
+    A share below ``least``, or below 1e-5 if that is less, is said to be less than it.
 
     Examples
     --------
@@ -147,12 +149,14 @@ def shown(value: float | None, unit: str = "") -> str:
     ('12.5 µs', '20 MN/m', 'none', '1.25e-05')
     >>> [shown(share, "%") for share in (0.0123, 2.5e-5, 1e-9, 0.995)]
     ['1.2 %', '0.0025 %', 'less than 0.001 %', '100 %']
+    >>> shown(2.5e-6, "%", 1e-6), shown(1e-9, "%", 1e-6)
+    ('0.00025 %', 'less than 0.0001 %')
     """
     if value is None:
         return "none"
     if unit == "%":
-        if 0 < value < 1e-5:
-            return "less than 0.001 %"
+        if 0 < value < (least := min(least, 1e-5)):
+            return f"less than {percent(least)}"
         return f"{100 * value:.2g} %" if value < 0.995 else f"{100 * value:.0f} %"
     if value == 0 or not unit:
         return f"{value:.4g} {unit}".rstrip()

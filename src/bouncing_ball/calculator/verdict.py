@@ -57,7 +57,8 @@ def assessed(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
         sentence = f"Whether the restitution model is good enough in the {name} is not known."
         return Verdict(False, sentence, "this contact, or the model, has no value to compare")
     good = wrong is None and error is not None and error <= needed.tolerance
-    off = f"{subject} is {shown(error, '%')} off, {'within' if good else 'beyond'} {tolerance}"
+    found, place = shown(error, "%", needed.tolerance), "within" if good else "beyond"
+    off = f"{subject} is {found} off, {place} {tolerance}"
     instead = _instead(family, needed)
     found = f"good enough: {off}" if good else f"not good enough: {wrong or off}{instead}"
     reason = _reason(needed, frequency_ratio, good, tolerance)
@@ -69,7 +70,11 @@ def judged_by_motion(motion: Motion, tolerance: float, n: int) -> Verdict:
     about = f"the errors of the {n}-T orbit are those of a motion that no ball has"
     kinds = motion.kind, motion.restitution_kind
     if kinds == (Kind.PERMANENT_CONTACT,) * 2:
-        return Verdict(True, "The restitution model is good enough: the ball comes to rest.", about)
+        return Verdict(
+            True,
+            "The restitution model is good enough: the ball rests in both models.",
+            about,
+        )
     # Locked and chaotic motions of long periods are alike in the mean, but no others are.
     if len({*kinds}) > 1 and {*kinds} & {Kind.PERMANENT_CONTACT, Kind.ORBIT, Kind.SUBHARMONIC}:
         sentence = f"its motion is {_named(kinds[1])}, and the contact's is {_named(kinds[0])}"
@@ -83,9 +88,7 @@ def judged_by_motion(motion: Motion, tolerance: float, n: int) -> Verdict:
         sentence = "Whether the restitution model is good enough for this motion is not known."
         return Verdict(False, sentence, f"{about}, and some balls come to rest")
     errors = [(one.value, one.half_width, name) for name, one in motion.mean_error.items()]
-    found = " and ".join(
-        f"the mean {x} is {shown(e, '%')} ± {shown(h, '%')} off" for e, h, x in errors
-    )
+    found = " and ".join(f"the mean {x} is {_between(e, h)} off" for e, h, x in errors)
     worst = max(errors)
     return _within(worst[0], worst[1], tolerance, found, f"{about}: means over time are compared")
 
@@ -93,6 +96,12 @@ def judged_by_motion(motion: Motion, tolerance: float, n: int) -> Verdict:
 def _named(kind: str | None) -> str:
     words: dict[str | None, str] = {Kind.ORBIT: "periodic", Kind.SUBHARMONIC: "doubled"}
     return words.get(kind, str(kind))
+
+
+def _between(error: float, margin: float) -> str:
+    if margin > error:
+        return f"at most {shown(error + margin, '%')}"
+    return f"{shown(error, '%')} ± {shown(margin, '%')}"
 
 
 def _within(error: float, margin: float, tolerance: float, found: str, why: str) -> Verdict:
@@ -103,8 +112,7 @@ def _within(error: float, margin: float, tolerance: float, found: str, why: str)
     if error - margin > tolerance:
         sentence = f"The restitution model is not good enough: {found}, beyond {asked}."
         return Verdict(False, sentence, why)
-    at_most = shown(error + margin, "%")
-    sentence = f"The restitution model is not decided at {asked}: {found}, so at most {at_most}."
+    sentence = f"The restitution model is not decided at {asked}: {found}."
     return Verdict(False, sentence, f"{why}; the sample is too small to decide")
 
 
@@ -113,7 +121,7 @@ def _instead(family: Family, needed: Needed) -> str:
     error, corrected = family.corrected_errors[needed.quantity], family.standing["corrected"]
     same = (family.exists, family.is_stable) == (corrected.exists, corrected.is_stable)
     if same and error is not None and error <= needed.tolerance:
-        return f"; the corrected restitution model is, with {shown(error, '%')}"
+        return f"; the corrected restitution model is, with {shown(error, '%', needed.tolerance)}"
     return "; nor is the corrected one: simulate the contact"
 
 

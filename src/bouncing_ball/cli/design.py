@@ -11,7 +11,7 @@ from bouncing_ball.calculator.results import QUANTITIES, Contact, Design, Family
 from bouncing_ball.calculator.units import percent, shown
 from bouncing_ball.cli.options import option
 from bouncing_ball.engines.engine import EngineSettings
-from bouncing_ball.errors import ModelError, ParameterError, extra
+from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, extra
 from bouncing_ball.signatures import takes
 
 _DRAWINGS = (".pdf", ".png", ".svg")
@@ -61,6 +61,8 @@ def design(*, plot: Path | None = None, all_families: bool = False, **given: Any
 
 
 def _draw(found: Design, path: Path) -> None:
+    if not any(each.exists for each in found.judged.standing.values()):
+        raise NoOrbitError(f"the page is that of an orbit: {found.reason}")
     from bouncing_ball.calculator.page_data import page
 
     with extra("plot"):
@@ -122,15 +124,15 @@ def _engine_lines(engine: EngineSettings) -> list[str]:
 
 def _short(found: Design) -> list[str]:
     """A line for each family, and the options that print the rest."""
-    quantity = found.needed.quantity
+    quantity, least = found.needed.quantity, found.needed.tolerance
     error = f"{QUANTITIES[Quantity(quantity)]} off by"
     head = (
         f"{'orbit':<9}{'stable':<9}{'greatest height':<18}{'peak force':<13}{error:<40}corrected by"
     )
     rows = [
         f"{f'{one.n}-T':<9}{('no', 'yes')[one.is_stable]:<9}{shown(one.max_height, 'm'):<18}"
-        f"{shown(one.peak_force, 'N'):<13}{shown(one.errors[quantity], '%'):<40}"
-        f"{shown(one.corrected_errors[quantity], '%')}"
+        f"{shown(one.peak_force, 'N'):<13}{shown(one.errors[quantity], '%', least):<40}"
+        f"{shown(one.corrected_errors[quantity], '%', least)}"
         for one in found.orbits
     ]
     about = (

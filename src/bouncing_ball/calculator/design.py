@@ -348,12 +348,11 @@ def _design(
     motion = of_family(case, one, need.tolerance)
     # A threshold of permanent contact is none of an orbit.
     if motion.restitution_kind is not None and need.quantity in OF_ORBITS:
-        judged = judged_by_motion(motion, need.tolerance, one.n)
-        verdict = judged._replace(verdict=before + judged.verdict, reason=no_orbit or judged.reason)
+        end = judged_by_motion(motion, need.tolerance, one.n)
+        verdict = end._replace(verdict=before + end.verdict, reason=no_orbit or end.reason)
     elif need.quantity in OF_ORBITS:
-        verdict = verdict._replace(
-            verdict=f"{verdict.verdict[:-1]}{aside(motion, table.amplitude)}."
-        )
+        said = f"{verdict.verdict[:-1]}{aside(motion, table.amplitude)}."
+        verdict = verdict._replace(verdict=said)
     si: dict[str, Any] = case.in_si()
     delay, r, load = map(float, case.instant(one.n)[:3])
     answer = Design(

@@ -213,7 +213,7 @@ def aside(motion: Motion, amplitude: float) -> str:
     rests = motion.laid == Kind.PERMANENT_CONTACT and amplitude <= RESTITUTION_THRESHOLD
     if motion.laid is None or rests:
         return ""
-    return f"; a ball laid on the table {_DOES[motion.laid]}, which is not judged"
+    return f"; a ball laid on the table {_LAID[motion.laid]}, which is not judged"
 
 
 def headline(motion: Motion, family: Family) -> str:
@@ -223,18 +223,16 @@ def headline(motion: Motion, family: Family) -> str:
         said = f"A ball on the {orbit} stays on it: it is stable"
         if motion.laid is None:
             return f"{said}."
-        rests = motion.laid == Kind.PERMANENT_CONTACT
-        does = "stays at rest" if rests else _DOES[motion.laid]
-        return f"{said}. Laid on the table a ball {does}."
+        return f"{said}. Laid on the table a ball {_LAID[motion.laid]}."
     if motion.restitution_kind is None:
         return f"A ball beside the {orbit} stays beside it: nothing is lost, and it ends nowhere."
-    does = _DOES[motion.kind]
+    none = not any(each.exists for each in family.standing.values())
+    does = (_LAID if none else _DOES)[motion.kind]
     if motion.periods > 1 and motion.kind != Kind.PERMANENT_CONTACT:
         does += f", every {motion.periods} periods of the table and {motion.impacts} impacts"
     why = "not stable" if family.is_admissible else "inadmissible: another impact comes first"
-    if not any(each.exists for each in family.standing.values()):
-        does = "stays at rest" if motion.kind == Kind.PERMANENT_CONTACT else does
-        return f"No model has an n-T orbit. A ball that is laid on the table {does}."
+    if none:
+        return f"No model has an n-T orbit. Laid on the table a ball {does}."
     if not family.exists:
         return f"The contact has no {orbit}: a ball that starts like one {does}."
     return f"No ball stays on the {orbit}, which is {why}: one that starts beside it {does}."
@@ -248,3 +246,4 @@ _DOES: Mapping[str, str] = {
     Kind.CHAOTIC: "ends in chaotic motion",
     Kind.UNDECIDED: "shows no motion that repeats, and is not known to be chaotic",
 }
+_LAID = {**_DOES, Kind.PERMANENT_CONTACT: "stays at rest"}

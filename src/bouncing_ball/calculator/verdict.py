@@ -98,10 +98,8 @@ def _named(kind: str | None) -> str:
     return words.get(kind, str(kind))
 
 
-def _between(error: float, margin: float) -> str:
-    if margin > error:
-        return f"at most {shown(error + margin, '%')}"
-    return f"{shown(error, '%')} ± {shown(margin, '%')}"
+def _between(e: float, h: float) -> str:
+    return f"at most {shown(e + h, '%')}" if h > e else f"{shown(e, '%')} ± {shown(h, '%')}"
 
 
 def _within(error: float, margin: float, tolerance: float, found: str, why: str) -> Verdict:

@@ -82,6 +82,27 @@ def test_every_model_answers_single_numbers_with_single_numbers(given):
     assert repr(bouncing_ball.orbit(1, 0.9, **given)) == repr(orbit)
 
 
+@pytest.mark.parametrize(
+    ("name", "given"),
+    [
+        ("history", {"amplitude": 1.0, "periods": 1.0}),
+        ("drop", {"height": [5.0, 8.0], "periods": 1.0}),
+        ("branch", {"n": [1, 2], "points": 20}),
+        ("motion_of", {"amplitude": [1.0, 1.1]}),
+        ("lyapunov_exponent", {"amplitude": 1.0, "phase": 1.1}),
+        ("orbit_diagram", {"amplitudes": [1.0, 1.1], "impacts": 50, "samples": 4}),
+        ("basins", {"amplitude": 1.0, "starts": 4}),
+    ],
+)
+def test_a_model_has_the_calls_as_methods(name, given, refusal):
+    call, model = getattr(bouncing_ball, name), bouncing_ball.model(0.85)
+    assert getattr(model, name)(**given).equals(call(**given, restitution=0.85))
+    with refusal(bouncing_ball.ModelError, "restitution does not go with model, which is a model"):
+        call(**given, restitution=0.85, model=model)
+    with refusal(bouncing_ball.ModelError, "several models have no labels"):
+        getattr(bouncing_ball.model([0.5, 0.85]), name)(**given)
+
+
 def test_a_sequence_counts_the_impacts_that_it_has():
     stuck = bouncing_ball.simulate(0.6, restitution=0.2, impacts=50)
     assert type(stuck.impacts) is int and stuck.impacts < 50

@@ -92,10 +92,16 @@ def design(
     ----------
     mass
         Mass m of the ball.
-    frequency, angular_frequency, period
-        Rate of the table: give one of the three. Hz are cycles, rad/s are not.
-    table_amplitude, acceleration
-        Motion of the table, in m or m/s²: give one of the two. "2 g" is twice standard gravity.
+    frequency
+        Cycles of the table in a second, in Hz; or give the angular frequency or the period.
+    angular_frequency
+        Ω of the table in rad/s, in place of the frequency.
+    period
+        Duration of a cycle of the table, in place of the frequency.
+    table_amplitude
+        Amplitude A of the table's motion, in m; or give the acceleration.
+    acceleration
+        Largest acceleration AΩ² of the table, in m/s²; "2 g" is twice standard gravity.
     gravity
         g, 9.80665 m/s² by default; in a gear pair the drag torque over the inertia.
     stiffness
@@ -104,10 +110,14 @@ def design(
         Duration of a free impact, in place of the stiffness.
     reduced_modulus
         E* of a Hertz contact with the damping of Tsuji, with its radius.
-    youngs_modulus, poissons_ratio
-        E and ν of the ball, in place of E*: 1/E* = (1 - ν²)/E of the ball plus that of the table.
-    table_youngs_modulus, table_poissons_ratio
-        E and ν of the table.
+    youngs_modulus
+        E of the ball, in place of E*: 1/E* = (1 - ν²)/E of the ball plus that of the table.
+    poissons_ratio
+        ν of the ball.
+    table_youngs_modulus
+        E of the table.
+    table_poissons_ratio
+        ν of the table.
     radius
         R of a Hertz contact: the radius of curvature, which for a ball on a plane is its radius.
     damping

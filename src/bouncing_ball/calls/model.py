@@ -112,6 +112,10 @@ def model_of_impact(amplitude: Any, phase: Any, velocity: Any, **impact: Any) ->
 def impact_model(given: Mapping[str, Any], law_at: LawAt | None) -> ImpactModel:
     """The model of the parameters that are not None."""
     given = {name: value for name, value in given.items() if value is not None}
+    if isinstance(of := given.pop("model", None), ImpactModel):
+        _refuse(given, tuple(given), "does not go with {model}, which is a model")
+        return of
+    given |= {} if of is None else {"model": of}
     known = inspect.signature(model).parameters
     for name in given:
         _demand(name in known, f"unknown parameter {{}}: a model has {', '.join(known)}", name)

@@ -31,7 +31,7 @@ class Parser(argparse.ArgumentParser):
         self._negative_number_matcher = re.compile(r"-\.?\d")
 
     def error(self, message: str) -> NoReturn:
-        self.exit(2, f"{self.prog}: {escaped(message)}\n")
+        self.exit(2, f"{self.prog.split()[0]}: {escaped(message)}\n")
 
     def _print_message(self, message: str, file: Any = None) -> None:
         # argparse has no message for help that cannot be written.

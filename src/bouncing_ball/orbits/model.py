@@ -45,6 +45,25 @@ def labelled() -> Any:
     return import_module("bouncing_ball.orbits.labelled")
 
 
+def _call(name: str) -> Any:
+    """The call of this name as a method of a single model, which is its ``model``.
+
+    Calls are made of models, and their module is imported on first use.
+    """
+    module, name = name.split(".")
+
+    def method(self: ImpactModel, *places: Any, **given: Any) -> Any:
+        if self.shape:
+            call = f"bouncing_ball.{name}(…, frequency_ratio=[5, 10])"
+            raise ModelError(f"several models have no labels: give their parameters to {call}")
+        call = getattr(import_module(f"bouncing_ball.calls.{module}"), name)
+        return call(*places, model=self, **given).assign_attrs(model=self.label)
+
+    method.__name__ = name
+    method.__doc__ = f"The labelled dataset of :func:`bouncing_ball.{name}` for this model."
+    return method
+
+
 class Route(StrEnum):
     """Numerical routes to a model's orbits, which the tests compare with each other.
 
@@ -212,51 +231,11 @@ class ImpactModel(Batch, ABC):
         """
         return simulate(self.impact_law, amplitude, phase, velocity, impacts)
 
-    def history(
-        self,
-        amplitude: ArrayLike,
-        phase: ArrayLike = 0.0,
-        velocity: ArrayLike = -np.pi,
-        *,
-        periods: float = 10.0,
-        samples: int = 200,
-    ) -> Any:
-        """A ball over time from a first impact: :func:`bouncing_ball.history`."""
-        grid = self._grid(amplitude=amplitude, phase=phase, velocity=velocity)
-        return labelled().history(grid, self._same, periods, samples)
-
-    def drop(
-        self,
-        height: ArrayLike,
-        amplitude: ArrayLike = 0.0,
-        phase: ArrayLike = 0.0,
-        *,
-        periods: float = 10.0,
-        samples: int = 200,
-    ) -> Any:
-        """A ball that is released at rest: :func:`bouncing_ball.drop`."""
-        grid = self._grid(height=height, amplitude=amplitude, phase=phase)
-        return labelled().drop(grid, self._same, periods, samples)
-
-    def branch(self, n: ArrayLike, *, amplitude_max: float | None = None, points: int = 300) -> Any:
-        """The branch of n-T orbits over Λ: :func:`bouncing_ball.branch`."""
-        return labelled().branches(self._grid(n=n), self._same, amplitude_max, points)
-
-    def _same(self, *_: Any, **__: Any) -> Any:
-        """This model, whatever the place of a grid."""
-        return self
-
-    def _grid(self, **given: Any) -> Any:
-        """The arguments of a labelled result of a single model.
-
-        Several models have no labels, so that a call with names for their parameters is needed.
-        """
-        if self.shape:
-            call = "bouncing_ball.history(…, frequency_ratio=[5, 10])"
-            raise ModelError(f"several models have no labels: give their parameters to {call}")
-        found = labelled().Grid(**given)
-        found.attrs["model"] = self.label
-        return found
+    history, drop = _call("motion.history"), _call("motion.drop")
+    branch = _call("orbits.branch")
+    motion_of, basins = _call("long_run.motion_of"), _call("long_run.basins")
+    lyapunov_exponent = _call("long_run.lyapunov_exponent")
+    orbit_diagram = _call("long_run.orbit_diagram")
 
     def cycle(self, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
         """The Poincaré map, from an impact (φ, δ′) to the next one (route SIMULATION).

@@ -60,8 +60,8 @@ function showStage(state) {
     Object.assign(document.createElement("data"), {value: JSON.stringify({name, kind, periods, impacts})})));
   const performers = ends.flatMap(({name, model}) =>
     Array.from({length: balls}, (_, k) => new Performer(name, model, state, k)));
-  const begin = state.from * TURN + Math.max(...performers.map(({offset}) => offset));
-  stage = {state, performers, begin, now: begin, fastest: 1e-9, draw: null};
+  const first = Math.max(...performers.map(({offset}) => offset)), begin = first + state.from * TURN;
+  stage = {state, performers, first, now: begin, fastest: 1e-9, draw: null};
   const top = Math.max(a, ...ends.map(end => end.top), 0.5), low = -Math.max(a, 0.08 * top);
   stage.draw = drawStage(stage, [low - 0.06 * (top - low), 1.08 * top]);
   place(begin);
@@ -124,7 +124,7 @@ function place(now, loud = false) {
   });
   stage.now = now;
   stage.draw(now);
-  $("stage-time").textContent = `time: ${(now / TURN).toFixed(2)} periods of the table`;
+  $("stage-time").textContent = `time: ${((now - stage.first) / TURN).toFixed(2)} periods of the table since the first impact`;
 }
 
 // ---- The orbit diagram around the stage's Λ, from the start of the first ball, and its slice there.

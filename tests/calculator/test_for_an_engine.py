@@ -3,7 +3,6 @@
 import pytest
 
 from bouncing_ball import design
-from bouncing_ball.calculator.design import contact
 from bouncing_ball.errors import ModelError
 
 TABLE = {"mass": 0.5, "frequency": "20 Hz", "acceleration": "0.8 g", "n": 1}
@@ -65,14 +64,25 @@ def test_a_contact_that_is_chosen_has_settings_too():
 
 def test_a_contact_without_a_table_is_that_of_one_with_it():
     asked = {"restitution": 0.75, "engine": "mujoco", "restitution_error": "1 %"}
-    alone = contact(mass=0.5, stiffness=1e6, **asked)
-    with_table = design(**STIFF, **asked).engine("mujoco")
-    assert alone.engine.parameters["solref"] == pytest.approx(with_table.parameters["solref"])
-    assert alone.engine.steps == with_table.steps
-    assert alone.engine.error == 0.01 and alone.engine.max_height is None
-    finer = contact(mass=0.5, stiffness=1e6, **asked | {"restitution_error": 0.001}).engine
-    assert finer.steps > 9 * alone.engine.steps
-    assert alone.measured_restitution == pytest.approx(0.75)
+    found = design(mass=0.5, stiffness=1e6, **asked)
+    alone, with_table = found.engine("mujoco"), design(**STIFF, **asked).engine("mujoco")
+    assert alone.parameters["solref"] == pytest.approx(with_table.parameters["solref"])
+    assert alone.steps == with_table.steps
+    assert alone.error == 0.01 and alone.max_height is None
+    finer = design(mass=0.5, stiffness=1e6, **asked | {"restitution_error": 0.001})
+    assert finer.engine("mujoco").steps > 9 * alone.steps
+    assert found.measured_restitution == pytest.approx(0.75)
+    # The same, if the engine is named later.
+    del asked["engine"]
+    assert design(mass=0.5, stiffness=1e6, **asked).engine("mujoco") == alone
+
+
+@pytest.mark.parametrize("table", [{}, TABLE])
+def test_from_one_engine_to_another_of_another_release(table):
+    given = {"mass": 0.5, "from_engine": "lammps", "parameters": {"kn": 1e5, "gamma_n": 20}}
+    found = design(**table | given)
+    assert found.question["release"] is None
+    assert found.engine("mujoco").parameters["solref"] == pytest.approx([-2e5, -20])
 
 
 @pytest.mark.parametrize(
@@ -89,10 +99,10 @@ def test_a_contact_without_a_table_is_that_of_one_with_it():
         ({"stiffness": None, "reduced_modulus": 1e9, "radius": 0.01}, "is not written for mujoco"),
         (
             {"stiffness": None, "reduced_modulus": 1e9, "radius": 0.01, "engine": None},
-            "a Hertz contact needs a table",
+            "how fast the table moves is missing",
         ),
     ],
 )
 def test_mistakes(given, says, refusal):
     with refusal(ModelError, says):
-        contact(**{"engine": "mujoco", "mass": 1.0, "stiffness": 1e5, "restitution": 0.8} | given)
+        design(**{"engine": "mujoco", "mass": 1.0, "stiffness": 1e5, "restitution": 0.8} | given)

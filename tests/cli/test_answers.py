@@ -215,7 +215,10 @@ def test_a_missing_orbit_exits_1_with_the_reason(refused, capsys):
         ("contact --measured-restitution 0.1 --release force", "r = 0.1 is not in (e⁻², 1]"),
         ("simulate --restitution 0.5 --amplitude 1 --velocity 9", "rises from the table"),
         ("law tsuji --restitution 0.65", "needs --set stiffness=NUMBER, --set damping=NUMBER, or"),
-        ("law rubber", "unknown contact law 'rubber': one of hunt-crossley, tsuji"),
+        (
+            "law rubber",
+            "unknown contact law 'rubber': one of hunt-crossley, hunt-crossley-linear, tsuji",
+        ),
         ("law tsuji --set stiffness", "'stiffness' is not NAME=NUMBER"),
         ("law tsuji --set stiffness=inf", "is not NAME=NUMBER"),
         ("law tsuji --set stiffness=1", "tsuji needs --set damping=NUMBER as well"),

@@ -13,6 +13,7 @@ BALL = ("design", "--mass", "0.5")
 STIFF = (*BALL, "--stiffness", "100 kN/m", "--restitution", "0.75")
 SHAKEN = ("--frequency", "20 Hz", "--acceleration", "0.8 g", "--n", "1")
 FROM = ("design", "--from", "mujoco", "--solref", "-284244 -68.8", "--solimp", "0.9 0.95 0.001")
+CROSSLEY = (*BALL, "--law", "hunt-crossley", "--contact-time", "2 ms", "--restitution", "0.8")
 OTHER = ("--from", "lammps", "--set", "kn=1e5")
 
 
@@ -55,7 +56,7 @@ def test_the_text_with_a_table_has_what_to_expect(said):
 
 def test_what_a_solref_means_needs_no_table(ask, said):
     found = ask(*FROM, "--mass", "500 g")
-    assert found["stiffness"] == pytest.approx(142122) and found["engine"] is None
+    assert found["stiffness"] == pytest.approx(142122) and "engine" not in found
     assert found["damping"] == pytest.approx(34.4)
     assert found["natural_frequency"] == pytest.approx(math.sqrt(284244))
     assert found["damping_ratio"] == pytest.approx(0.0645, abs=5e-5)
@@ -72,6 +73,8 @@ def test_what_a_solref_means_needs_no_table(ask, said):
     default = ask(*BALL, "--from", "mujoco", "--solref", "0.02 1")
     assert default["damping_ratio"] == pytest.approx(1)
     assert default["measured_restitution"] == pytest.approx(math.exp(-2))
+    load, law = default["notes"]
+    assert "0.95 a contact feels 0.05 of the load" in load and "has ζ ≥ 1, for which σ" in law
 
 
 def test_with_a_table_it_is_a_design(ask):
@@ -109,7 +112,13 @@ def test_from_one_engine_to_another(ask):
         ((*BALL, "--from", "mujoco"), "solref is missing"),
         ((*BALL, "--from", "mujoco", "--solref", "-1"), "solref = '-1' is not 2 numbers"),
         ((*BALL, "--from", "mujoco", "--solref", "0.02 1", "--engine", "lammps"), "so far below 1"),
-        ((*BALL, "--from", "mujoco", "--solref", "0.02 1", *SHAKEN), "overdamped"),
+        (
+            (*BALL, "--from", "mujoco", "--solref", "0.02 1", *SHAKEN),
+            "ζ = 1.0 is not below 1: without a",
+        ),
+        ((*FROM, "--mass", "1", "--solimp", "a b"), "solimp = 'a b' is not 0 to 5 numbers"),
+        ((*FROM, "--mass", "1", "--law", "tsuji"), "--law does not go with --from, which says it"),
+        ((*CROSSLEY, "--engine", "drake"), "--law hunt-crossley needs a table, such as --freq"),
         ((*BALL, "--from", "unreal"), "unknown engine 'unreal'"),
         ((*BALL, "--solref", "-1 -1"), "--solref needs --from, the engine that has it"),
         ((*BALL, "--set", "kn=1"), "--set kn needs --from"),

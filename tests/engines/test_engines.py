@@ -64,7 +64,6 @@ def test_a_text_with_places_for_numbers_is_the_snippet(name, release):
 
 def test_the_release_is_written_where_there_are_two():
     words = {"lammps": "limit_damping", "liggghts": "limitForce on", "generic": "max(0.0"}
-    # LIGGGHTS 3.8.0 refuses it before the wall, and with it there has r = 0.5 and 0.75 to 0.001.
     assert ENGINES["liggghts"].settings(CONTACT, "force").snippet.endswith("0.0 limitForce on")
     for name, word in words.items():
         for release in Release:

@@ -292,7 +292,8 @@ def record():
     data["engine_version"] = ("engine", made)
     write_dataset(describe(data), ROOT / "results" / "config" / "engines.nc")
     table, free = whole.to_string(), DataFrame(free).to_string()
-    named = dict(zip(RUN, made, strict=True))
+    named = dict.fromkeys(ENGINES, "no wheel, not run") | dict(zip(RUN, made, strict=True))
+    del named["generic"]
     text = f"{named}\n\n{free}\n\nHeights, as shares of the exact one\n{table}\n"
     (ROOT / "results" / "engines.txt").write_text(text, encoding="utf-8")
 

@@ -41,6 +41,8 @@ STEP_RULE = f"a contact takes {STEPS} steps, the default of MFiX-Exa (mfix.tcoll
 _FAMILIES = range(1, 9)
 # Beyond this the squares of ϖ and Λ leave no digits; the rest of the command line has the same.
 _LARGEST = 1e8
+# What says that there is a table.
+_TABLE = {"frequency", "angular_frequency", "period", "table_amplitude", "acceleration"}
 _LOSS = Unit("", "0.85", Range(0, 1, "(]"))
 _POISSON = Unit("", "0.3", Range(-1, 0.5, "(]"))
 _NONE_TOO = Range(0, 1e40, "[]")
@@ -80,13 +82,14 @@ def design(
     solref: str | Sequence[float] | None = None,
     solimp: str | Sequence[float] | None = None,
     parameters: Mapping[str, float] | None = None,
-) -> Design:
-    """Assess a contact, or choose one.
+) -> Design | Contact:
+    """Assess a contact, or choose one; without a table, say which contact this is.
 
     Parameters are plain numbers in SI units, texts such as ``"50 Hz"``, or pint
     quantities. With a stiffness (or a contact time, or E* and R of a Hertz contact)
     the question is whether the restitution model is good enough for this contact;
-    without one, which contact a simulation needs for the tolerance.
+    without one, which contact a simulation needs for the tolerance. A contact without a table
+    has no orbit; it can be written for an engine.
 
     Parameters
     ----------
@@ -172,16 +175,22 @@ def design(
     ...                stiffness="1e7 N/m", restitution=0.85)
     >>> round(found.frequency_ratio, 3), found.orbits[0].is_stable, found.is_good_enough
     (71.176, True, False)
+    >>> found = design(mass=0.5, stiffness="50 kN/m", restitution=0.75).engine("mujoco")
+    >>> round(found.restitution, 6), found.release
+    (0.75, 'force')
     """
     source, said = read_engine(locals())
-    given, release = _read(said), said["release"]
+    given = _read(said)
     question = given | {"n": n, "release": release, "quantity": quantity, "engine": engine}
-    question["law"], kind = law, _of_law(law, engine, release, given)
-    rule = _under(engine, release, given)
+    question["law"], kind = law, _of_law(law, engine, said["release"], given)
+    rule, remarks = _under(engine, said["release"], given), source.remarks() if source else ()
     if quantity not in QUANTITIES:
         raise ModelError(f"unknown quantity {quantity!r}: one of {', '.join(QUANTITIES)}")
     if n is not None and (n != int(n) or n < 1):
         raise ModelError(f"index of the family n = {n} is not a positive integer")
+    known = given.keys()
+    if n is None and not known & _TABLE and (engine or known & {"stiffness", "contact_time"}):
+        return _contact(given, rule, kind, question, remarks)
     table = table_of(given)
     lam, asked = table.amplitude, _FAMILIES if n is None else [n]
     require(lam < _LARGEST, lam, "Λ", f"below {_LARGEST:g}")
@@ -226,46 +235,27 @@ def _chosen(
     return Case(given["mass"], table, stiff), need
 
 
-def contact(
-    *, engine: str | None = None, release: Rule | None = None, law: str | None = None, **given: Any
+def _contact(
+    given: dict[str, float],
+    rule: Release,
+    kind: type[ContactLaw] | None,
+    question: dict[str, Any],
+    remarks: tuple[str, ...],
 ) -> Contact:
-    """A contact without a table, for an engine, from the parameters of :func:`design`.
-
-    Raises
-    ------
-    ModelError
-        One line, if something is missing, contradictory or of the wrong kind.
-
-    Examples
-    --------
-    >>> found = contact(engine="mujoco", mass=0.5, stiffness="50 kN/m", restitution=0.75)
-    >>> round(found.engine.restitution, 6), found.engine.release
-    (0.75, 'force')
-    """
-    source, given = read_engine({**given, "engine": engine, "release": release})
-    release, given = given["release"], _read(given)
-    _of_law(law, engine, release, given)
-    rule, error = _under(engine, release, given), given.get("restitution_error", ERROR)
+    """A contact without a table."""
     # With a table of 1 rad/s the frequency ratio is the frequency of the contact.
     case = case_of(given, Table(1.0, 1.0, STANDARD_GRAVITY), rule, [1])
     if case is None:
         raise ParameterError("no stiffness: give {stiffness}, or {contact_time}")
-    if case.law is not None:
-        raise ModelError("a Hertz contact needs a table: its duration depends on the speed")
+    if kind is not None:
+        needs = "a table, such as {frequency} and {acceleration}"
+        raise ParameterError(f"{{law}} {question['law']} needs {needs}: r depends on the speed")
     zeta, omega = float(case.contact.damping_ratio), float(case.contact.frequency_ratio)
     stiffness = given.get("stiffness", case.mass * omega**2)
     damping = given.get("damping", 2 * zeta * case.mass * omega)
     physical = Physical(case.mass, stiffness, damping)
-    return Contact(
-        *physical,
-        zeta,
-        omega,
-        physical.contact_time(rule),
-        str(rule),
-        physical.restitution(rule),
-        engine_named(engine).settings(physical, rule, error) if engine else None,
-        source.remarks() if source else (),
-    )
+    time, r = physical.contact_time(rule), physical.restitution(rule)
+    return Contact(*physical, zeta, omega, time, str(rule), r, remarks, question)
 
 
 def _of_law(
@@ -342,6 +332,8 @@ def _design(
     If ``no_orbit`` says why no model has an orbit, the ball is one that is laid on the table.
     """
     contact, table = case.contact, case.table
+    only = "below 1: without a table r is computed, with one only underdamped contacts are"
+    require(contact.damping_ratio < 1, contact.damping_ratio, "damping ratio ζ", only)
     ratio, found = float(contact.frequency_ratio), families(case, asked, bool(no_orbit))
     require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
     # The verdict is about the first stable family, or the first that exists.

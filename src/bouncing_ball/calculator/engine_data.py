@@ -39,7 +39,7 @@ def read_engine(said: Mapping[str, Any]) -> tuple[Source | None, dict[str, Any]]
             raise ParameterError(f"{what} needs {{from_engine}}, the engine that has it")
         return None, dict(said)
     source = Source(engine_named(name), values)
-    for other in (*STIFF, *LOSSY):
+    for other in (*STIFF, *LOSSY, "law"):
         if said.get(other) is not None:
             raise ParameterError(f"{{{other}}} does not go with {{from_engine}}, which says it")
     mass, rule = said.get("mass"), said.get("release")

@@ -3,6 +3,7 @@
 JSON has all of them under their names; the text and the page list those that have words.
 """
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, is_dataclass, replace
 from typing import Annotated, Any, NamedTuple, get_type_hints
 
@@ -172,11 +173,46 @@ class Corrected:
     load: Annotated[float, Row("corrected model, load σ", "s")]
 
 
+class _ForEngines(ABC):
+    """An answer that is given again for an engine."""
+
+    question: dict[str, Any]
+
+    def engine(self, name: str, release: str | None = None) -> EngineSettings:
+        """The settings to write into an engine, see :mod:`bouncing_ball.engines`, and their effect.
+
+        A given restitution is met under the release of the engine, whichever release this design
+        has.
+
+        Raises
+        ------
+        ModelError
+            If there is no such engine, or it has no such release or no such contact.
+        NoOrbitError
+            If the contact of the engine then has no orbit.
+        """
+        # It makes designs of this class.
+        from bouncing_ball.calculator.design import design
+
+        asked = {"engine": name} | ({"release": release} if release else {})
+        found = self if self.question.items() >= asked.items() else design(**self.question | asked)
+        return found.engine_settings()
+
+    @abstractmethod
+    def engine_settings(self) -> EngineSettings:
+        """The settings of the engine for which this design was made."""
+
+    def _settings(self, contact: Physical, release: str) -> EngineSettings:
+        engine, error = engine_named(self.question["engine"]), self.question["restitution_error"]
+        return engine.settings(contact, release, error)
+
+
 @dataclass(frozen=True)
-class Contact:
-    """A contact without a table, in SI units, and the settings of the engine that it is for.
+class Contact(_ForEngines):
+    """A contact without a table, in SI units.
 
     ``natural_frequency`` is ω = √(k/m) in rad/s: on a table that moves with Ω it gives ϖ = ω/Ω.
+    ``question`` holds the arguments of the call.
     """
 
     mass: Annotated[float, Row("mass in kg")]
@@ -187,12 +223,16 @@ class Contact:
     contact_time: Annotated[float, Row("contact time", "s")]
     release: str
     measured_restitution: Annotated[float, Row("restitution of a free impact")]
-    engine: EngineSettings | None = None
-    notes: tuple[str, ...] = ()
+    notes: tuple[str, ...]
+    question: dict[str, Any]
+
+    def engine_settings(self) -> EngineSettings:
+        contact = Physical(self.mass, self.stiffness, self.damping)
+        return self._settings(contact, self.release)
 
 
 @dataclass(frozen=True)
-class Design:
+class Design(_ForEngines):
     """The answer of the calculator about a contact; times in s, lengths in m, forces in N.
 
     ``frequency_ratio``, ``damping_ratio`` and ``amplitude`` are ϖ, ζ and Λ; ``restitution`` is that
@@ -231,34 +271,11 @@ class Design:
     n: int
     question: dict[str, Any]
 
-    def engine(self, name: str, release: str | None = None) -> EngineSettings:
-        """The settings to write into an engine, see :mod:`bouncing_ball.engines`, and their effect.
-
-        A given restitution is met under the release of the engine, whichever release this design
-        has.
-
-        Raises
-        ------
-        ModelError
-            If there is no such engine, or it has no such release or no such contact.
-        NoOrbitError
-            If the contact of the engine then has no orbit.
-        """
-        # It makes designs of this class.
-        from bouncing_ball.calculator.design import design
-
-        asked = {"engine": name} | ({"release": release} if release else {})
-        found = self if self.question.items() >= asked.items() else design(**self.question | asked)
-        return found.engine_settings()
-
     def engine_settings(self) -> EngineSettings:
-        """The settings of the engine for which this design was made."""
-        contact = Physical(self.case.mass, self.stiffness, self.damping)
-        engine, one = engine_named(self.question["engine"]), self.judged
-        rule, error = self.case.contact.release, self.question["restitution_error"]
-        settings = engine.settings(contact, rule, error)
+        contact, one = Physical(self.case.mass, self.stiffness, self.damping), self.judged
+        settings = self._settings(contact, self.case.contact.release)
         if self.law is not None:
-            settings = engine.of_law(settings, self.case.mass, self.law)
+            settings = engine_named(settings.name).of_law(settings, self.case.mass, self.law)
         return replace(
             settings,
             max_height=one.max_height,

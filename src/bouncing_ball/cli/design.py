@@ -1,6 +1,6 @@
 """``bouncing-ball design``: the calculator's answer, as JSON or as text."""
 
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -16,10 +16,6 @@ from bouncing_ball.signatures import takes
 
 _DRAWINGS = (".pdf", ".png", ".svg")
 _SIMPLE = "error law", "corrected"
-
-# What says that there is a table; for an engine there need not be one.
-_TABLE = ("frequency", "angular_frequency", "period", "table_amplitude", "acceleration")
-_OF_CONTACT = ("engine", "release", "law", "from_engine", "solref", "solimp", "parameters")
 
 
 class Answer(NamedTuple):
@@ -47,14 +43,10 @@ def design(*, plot: Path | None = None, all_families: bool = False, **given: Any
     """
     if plot is not None and plot.suffix not in _DRAWINGS:
         raise ModelError(f"'{plot}' does not end in {' or '.join(_DRAWINGS)}")
-    engines = given.get("from_engine"), given.get("engine")
-    if any(engines) and all(given.get(name) is None for name in _TABLE):
-        if plot is not None:
-            raise ParameterError("{plot} needs a table, such as {frequency} and {acceleration}")
-        names = {*_OF_CONTACT, *calculator.quantities()}
-        return Answer(calculator.contact(**{name: x for name, x in given.items() if name in names}))
     found = calculator.design(**given)
     if plot is not None:
+        if isinstance(found, Contact):
+            raise ParameterError("{plot} needs a table, such as {frequency} and {acceleration}")
         _draw(found, plot)
     whole = all_families or given.get("n") is not None
     return Answer(found, whole)
@@ -98,7 +90,7 @@ def document(given: Answer) -> dict[str, Any]:
     """The answer as its JSON has it, with the settings of the engine that it is for."""
     found = given.found
     answer = asdict(found)
-    if isinstance(found, Design) and found.question["engine"]:
+    if found.question["engine"]:
         answer["engine"] = asdict(found.engine_settings())
     return answer
 
@@ -166,11 +158,11 @@ def _law_lines(found: Design) -> list[str]:
 def lines(given: Answer) -> list[str]:
     """The answer as text, with the verdict first."""
     found = given.found
-    if isinstance(found, Contact):
-        about = [_line(*row) for row in rows(replace(found, engine=None))]
-        about += [_line("release", found.release), *(f"Note: {note}." for note in found.notes)]
-        return about + (_engine_lines(found.engine) if found.engine else [])
     engine = _engine_lines(found.engine_settings()) if found.question["engine"] else []
+    if isinstance(found, Contact):
+        about = [_line(*row) for row in rows(found)]
+        about += [_line("release", found.release), *(f"Note: {note}." for note in found.notes)]
+        return about + engine
     need, always = found.needed, ThresholdStatus.ALWAYS_WITHIN
     asked = f"ϖ for {percent(need.tolerance)} in the {QUANTITIES[Quantity(need.quantity)]}"
     exact = "any" if need.status == always else shown(need.frequency_ratio)

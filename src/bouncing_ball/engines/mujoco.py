@@ -42,7 +42,7 @@ def _numbers(name: str, value: str | Sequence[float], counts: range) -> list[flo
     try:
         found = [float(part) for part in parts]
     except (TypeError, ValueError):
-        found = []
+        found = [np.nan]
     if len(found) not in counts or not np.all(np.isfinite(found)):
         shown = value if isinstance(value, str) else " ".join(map(str, parts))
         raise ModelError(f"{name} = {shown!r} is not {allowed}")
@@ -67,7 +67,9 @@ def impedance(solimp: str | Sequence[float] = ()) -> list[float]:
         if not 0 <= value <= 1:
             raise ModelError(f"solimp has the impedance {value:g}, which is not in [0, 1]")
     found = given + list(_DEFAULT[len(given) :])
-    return [float(np.clip(d, _LEAST, _MOST)) for d in found[:2]] + found[2:]
+    shares = [float(np.clip(d, _LEAST, _MOST)) for d in found[:2]]
+    # Without a width MuJoCo takes the mean.
+    return (shares if found[2] > 0 else [sum(shares) / 2] * 2) + found[2:]
 
 
 class MuJoCo(Engine):
@@ -120,34 +122,35 @@ class MuJoCo(Engine):
         contact = self.read(parameters, 1.0)
         if max(least, most) <= _FELT or contact.damping_ratio >= 1:
             return None
-        if not width > 0:
-            least = most = (least + most) / 2
         own = contact.angular_frequency * time, contact.damping_ratio
         return Impedance(*own, most, least, (width or 1.0) / length, *shape)
 
     def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
-        law = self.law(parameters)
+        law, (least, most, *_) = self.law(parameters), impedance(parameters.get("solimp", ()))
+        found = (
+            f"with the impedance {most:g} a contact feels {1 - most:.2g} of the load (gravity, "
+            'table), and a spring and a damper all of it: solimp = "1e-4 1e-4 0.001"',
+        )
         if law is None:
-            return ()
-        most, share = law.share, law.at_surface / law.share
+            high = "this contact has ζ ≥ 1, for which σ and r at each depth are not computed"
+            return (*found, high) if max(least, most) > _FELT else ()
+        share = least / most
         spring = SpringDamper(law.frequency_ratio, law.damping_ratio, Release.FORCE)
         # Deep below the width the impedance is constant.
         deep = Impedance(law.frequency_ratio, law.damping_ratio, most)
         new, old = (float(free_impact(each, 1.0).load) for each in (deep, spring))
-        found = [
-            f"with the impedance {most:g} a contact feels {1 - most:.2g} of the load (gravity, "
-            'table), and a spring and a damper all of it: solimp = "1e-4 1e-4 0.001"',
+        found += (
             f"under a load a this r is r + σ a/v with σ = {new:.4g} s, and {old:.4g} s for "
             "a spring and a damper",
-        ]
+        )
         if law.has_kink:
             speeds = law.width * law.frequency_ratio * np.array([0.1, 1.0, 10.0])
             impacts = free_impact(law, speeds).restitution
             each = (f"{r:.4f} at {v:.3g} m/s" for r, v in zip(impacts, speeds, strict=True))
-            found += [
+            found += (
                 f"this is the contact below the depth of {law.width:g} m; at the surface the "
                 f"spring is {share**2:.2g} and the damper {share:.2g} of it",
                 f"a free impact has r = {', '.join(each)}, and {float(spring.restitution):.4f} "
                 "where it is much deeper than that",
-            ]
-        return tuple(found)
+            )
+        return found

@@ -50,7 +50,8 @@ def percent(share: float, digits: int = 3) -> str:
     >>> percent(0.01), percent(0.0279, 2)
     ('1 %', '2.8 %')
     """
-    return f"{short(100 * float(share), digits)} %"
+    # A share of a sample may lie between two texts, where its last digit must not decide.
+    return f"{short(100 * float(share) * (1 + 1e-9), digits)} %"
 
 
 def listed(values, word: str = "and") -> str:

@@ -180,7 +180,9 @@ function physical(found, state) {
     ["frequency ratio ϖ", found.contact.omega, ""], ["damping ratio ζ", zeta, ""],
     ["damping c", 2 * zeta * Math.sqrt(state.k * mass), "N s/m"],
     ["amplitude of the table", state.acc * length, "m"],
-    ["contact time, free", start, "s"], ["largest time step, a fiftieth of it", start / 50, "s"],
+    ["contact time, free", start, "s"],
+    // There is one time step, an engine's if one is chosen.
+    ...(state.engine === "none" ? [["largest time step, a fiftieth of it", start / 50, "s"]] : []),
     ["static deflection", mass * GRAVITY / state.k, "m"],
     ["greatest height", orbit.max_height * length, "m"],
     ["duration of contact", orbit.contact_duration * time, "s"],

@@ -185,7 +185,7 @@ _OF_ENGINES = "free_steps measured_restitution contact_steps height_scatter limi
 
 
 def ext_engines(data: xr.Dataset) -> Table:
-    """Physics engines and models: restitution, steps, and the height of one orbit.
+    """Physics engines and models: restitution, steps, and the heights of orbits.
 
     Errors are those at the smaller step, the mean of the bounces ± their scatter; at its limit the
     first order of the step is taken off. Times are over the simulation's, from event to event.
@@ -196,6 +196,7 @@ def ext_engines(data: xr.Dataset) -> Table:
         "engine or model": text("engine"),
         "release": text("release"),
         "r": value("restitution", "g"),
+        "n": value("n", "g"),
         f"steps in a contact for {100 * tolerance.item():g} % in r": value("free_steps", ".0f"),
         "r got": value("measured_restitution", ".4f"),
         "steps in a contact": lambda part: number(part.contact_steps.max(), ".0f"),
@@ -207,9 +208,9 @@ def ext_engines(data: xr.Dataset) -> Table:
         f"time of a bounce, ϖ = {', '.join(ratios)}": lambda part: _listed(part.bounce_time, ".1f"),
     }
     # The keyword is another argument of sel.
-    shown = data.sel({"n": data.attrs["n"], "tolerance": tolerance}).isel(refinement=-1)
+    shown = data.sel({"tolerance": tolerance}).isel(refinement=-1)
     parts: list[xr.Dataset] = []
-    for case in each(shown, "release", "restitution"):
+    for case in each(shown, "release", "restitution", "n"):
         parts += [one for one in each(case, "engine") if np.isfinite(one.free_steps)]
         for one in each(case, "model"):
             name, error = f"{one.model.item()} model", one.model_error

@@ -153,7 +153,9 @@ def test_errors_and_verdicts_are_those_of_the_calculator(seen, capsys, short_run
             assert "unstable" in state["verdict"]
         elif one["exists"] and one["is_admissible"]:
             judged.add(said["is_good_enough"])
-            assert state["verdict"].startswith(said["verdict"])
+            # The page judges orbits only, and no ball that is laid on the table.
+            verdict = said["verdict"].partition("; a ball laid")[0].rstrip(".")
+            assert state["verdict"].startswith(verdict)
     assert judged == {True, False}
 
 

@@ -61,7 +61,7 @@ function showStage(state) {
   const performers = ends.flatMap(({name, model}) =>
     Array.from({length: balls}, (_, k) => new Performer(name, model, state, k)));
   const first = Math.max(...performers.map(({offset}) => offset)), begin = first + state.from * TURN;
-  stage = {state, performers, first, now: begin, fastest: 1e-9, draw: null};
+  stage = {state, performers, first, begin, now: begin, fastest: 1e-9, draw: null};
   const top = Math.max(a, ...ends.map(end => end.top), 0.5), low = -Math.max(a, 0.08 * top);
   stage.draw = drawStage(stage, [low - 0.06 * (top - low), 1.08 * top]);
   place(begin);

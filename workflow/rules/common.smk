@@ -50,3 +50,10 @@ ACCEPTED = {"engines": "config/engines.nc", "ext_atlas": "config/atlas.nc"}
 def modules(*names):
     files = sources("bouncing_ball.pipeline.job", *(f"bouncing_ball.{name}" for name in names))
     return [os.path.relpath(file) for file in files]
+
+
+# Words before a table: the template and what it includes, and the modules that render it.
+def words_before(wildcards):
+    templates = (f"{ARTICLE}/{wildcards.table}_{part}.md.j2" for part in ("head", "columns"))
+    needed = [*templates, *modules("figures.article.render")]
+    return needed if wildcards.table == "claims" else []

@@ -1,19 +1,12 @@
 # Datasets in, tables out: CSV and Markdown, each table from the dataset of its name.
 
 
-# Words before a table: the template and what it includes, and the modules that render it.
-def head(wildcards):
-    templates = (f"{ARTICLE}/{wildcards.table}_{part}.md.j2" for part in ("head", "columns"))
-    needed = [*templates, *modules("figures.article.render")]
-    return needed if wildcards.table == "claims" else []
-
-
 rule set_table:
     message:
         "Setting {wildcards.table}"
     input:
         data="results/figures/{table}.nc",
-        head=head,
+        head=words_before,
         source=modules("figures.tables.rows"),
     output:
         csv="results/figures/{table}.csv",

@@ -58,18 +58,16 @@ def _ratio(value: float | xr.DataArray) -> str:
 
 
 def worst(data: xr.Dataset) -> Table:
-    """The orbit with the largest error at the rule of thumb, by rule, model and quantity.
-
-    The digits of r and Λ are enough to compute this error again.
+    """The orbit with the restitution model's largest error at the rule of thumb, by release and
+    quantity. The digits of r and Λ are enough to compute this error again.
     """
     columns: Columns = {
         "release": text("release"),
-        "model": text("model"),
         "quantity": quantity,
         "error": lambda part: f"{100 * float(part.worst_error):.3g} %",
         "n": text("n"),
         "r": value("worst_restitution", ".11g"),
         "Λ": value("worst_amplitude", ".11g"),
     }
-    parts = each(data, "release", "model", "quantity")
+    parts = each(data.sel(model="restitution"), "release", "quantity")
     return table((part.isel(n=int(part.worst_error.values.argmax())) for part in parts), columns)

@@ -1,4 +1,4 @@
-"""The corrected model against the exact one: its error is of second order in the contact time."""
+"""The corrected model against the exact one: its error falls as 1/ϖ², and not as 1/ϖ."""
 
 import matplotlib.pyplot as plt
 import numpy as np

@@ -1,4 +1,4 @@
-"""A doubling cascade: the motion repeats after 1, 2, 4, 8 … impacts, and then no longer."""
+"""A doubling cascade: the motion repeats after 1, 2, 4, 8 … impacts, and then not at all."""
 
 import matplotlib.pyplot as plt
 import numpy as np

@@ -230,7 +230,10 @@ def test_a_missing_orbit_exits_1_with_the_reason(refused, capsys):
         ("free --release force", "--release is allowed with --set of --law linear only"),
         ("free --speed 1e300", "v = 1e+300 has no stiffness within the range"),
         ("@ --duration 1", "--duration needs --law"),
-        ("law tsuji --set stiffness=9 --set damping=1 --release force", "--release is not allowed: tsuji"),
+        (
+            "law tsuji --set stiffness=9 --set damping=1 --release force",
+            "--release is not allowed: tsuji",
+        ),
         ("law tsuji --set stiffness=9 --set damping=2.3", "C = 2.3 is not below √5"),
     ],
 )

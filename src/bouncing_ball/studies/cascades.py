@@ -14,7 +14,6 @@ from bouncing_ball.accuracy.errors import models
 from bouncing_ball.attractors.cascade import MOST, cascade
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.parameters import Family, LossyRestitution, Many, Parameters, Span, number
 
 _GRAVITY = 9.80665
@@ -68,12 +67,10 @@ def cascades(parameters: Cascades, release: Release) -> xr.Dataset:
     measured = np.pad(known, (0, parameters.doublings - known.size), constant_values=np.nan)
     along = np.concatenate([ratios, _STIFF])
     contact = SpringDamper.from_restitution(r[:, np.newaxis], along, release)
-    exact_model, rigid, repaired = models(contact)
     # The restitution model, which has the r of a free impact on the contact, has no ϖ.
-    rigid = RestitutionModel(rigid.restitution[:, :1])
+    of_models = models(contact[:, :1])[1], models(contact)[2], models(contact)[0]
     simple, corrected, exact = (
-        cascade(model.period_doubling(parameters.n), parameters.doublings)
-        for model in (rigid, repaired, exact_model)
+        cascade(model.period_doubling(parameters.n), parameters.doublings) for model in of_models
     )
     errors = np.stack([exact.amplitude / x.amplitude - 1 for x in (simple, corrected)])
     once, twice = np.moveaxis(

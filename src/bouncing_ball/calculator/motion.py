@@ -28,7 +28,7 @@ from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.history import history
 from bouncing_ball.motion.linear_contact import has_closed_form
 from bouncing_ball.motion.sequence import ImpactSequence, Status
-from bouncing_ball.motion.work import over_contact
+from bouncing_ball.motion.work import over_steps
 
 # Relative change of the velocity of an orbit, for a start beside it.
 _BESIDE = 1e-3
@@ -169,30 +169,16 @@ def height_and_power(sequence: ImpactSequence, before: int = 0) -> tuple[np.ndar
     >>> round(float(height), 12), round(float(power), 12)
     (1.333333333333, 0.0)
     """
-    lam, part = sequence.amplitude, slice(before, -1)
-    time, phase, duration = sequence.time, sequence.phase[part], sequence.contact_duration[part]
-    impact, bounce = sequence.impact_velocity[part], sequence.bounce_velocity[part]
-    end = phase + duration
-    flight = time[before + 1 :] - time[part] - duration
-    lift, left = lam * np.sin(phase), lam * np.sin(end)
-    low = sequence.release_displacement[part] + left
-    flown = (low + (bounce / 2 - flight / 6) * flight) * flight
-    work = bounce * lam * np.cos(end) - impact * lam * np.cos(phase) + left - lift
-    law = sequence.contact
-    if isinstance(law, SpringDamper) and has_closed_form(law):
-        angle = np.array([phase, end])
-        gap = np.array([sequence.displacement, sequence.release_displacement])[:, part]
-        rate = np.array([sequence.relative_velocity, sequence.relative_bounce_velocity])[:, part]
-        place = lam * np.cos(angle), lam * np.sin(angle)
-        held, moved = over_contact(law, lam, duration, place, gap, rate)
-    elif law is not None:
-        held, moved = _by_nodes(sequence, part)
-    else:
-        # A ball that sticks is at the table's level, with its velocity.
-        held = lam * (np.cos(phase) - np.cos(end))
-        moved = (left * left - lift * lift) / 2
-    total = time[-1] - time[before]
-    return np.sum(flown + held, axis=0) / total, np.sum(work + moved, axis=0) / total
+    part, law, time = slice(before, -1), sequence.contact, sequence.time
+    duration, phase = sequence.contact_duration[part], sequence.phase[part]
+    gap = np.array([sequence.displacement, sequence.release_displacement])[:, part]
+    rate = np.array([sequence.relative_velocity, sequence.relative_bounce_velocity])[:, part]
+    closed = law is None or (isinstance(law, SpringDamper) and has_closed_form(law))
+    inside = None if closed else _by_nodes(sequence, part)
+    ends, flown = np.array([phase, phase + duration]), np.diff(time[before:], axis=0) - duration
+    sums = over_steps(law, sequence.amplitude, duration, ends, gap, rate, flown, inside)
+    height, power = (np.sum(x, axis=0) / (time[-1] - time[before]) for x in sums)
+    return height, power
 
 
 def _by_nodes(sequence: ImpactSequence, part: slice) -> tuple[np.ndarray, np.ndarray]:

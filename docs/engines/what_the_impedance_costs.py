@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from bouncing_ball.accuracy.errors import relative
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.release import Release
@@ -25,5 +26,5 @@ for ratio in (10.0, 20.0, 50.0):
         orbit, corrected = (model.require_orbit(1, AMPLITUDE) for model in models)
         shares = Signature(law)(-orbit.relative_impact_velocity)
         numbers = float(shares.load / shares.duration), orbit.max_height
-        errors = (f"{x / orbit.max_height - 1:>14.3%}" for x in (other, corrected.max_height))
+        errors = (f"{relative(orbit.max_height, x):>14.3%}" for x in (other, corrected.max_height))
         print(f"{ratio:<5g}  {name:<11}  {numbers[0]:.4f}   {numbers[1]:.4f}  ", *errors)

@@ -69,7 +69,7 @@ def test_the_headline_says_what_the_ball_does(amplitude, kind, says):
         for name in ("height", "power"):
             exact, simple = getattr(found.motion, f"mean_{name}").values()
             off, margin = vars(found.motion.mean_error[name]).values()
-            assert off == pytest.approx(abs(simple.value / exact.value - 1), rel=1e-9)
+            assert off == pytest.approx(abs(exact.value / simple.value - 1), rel=1e-9)
             shown = (
                 f"at most {100 * (off + margin):.2g} %" if margin > off else f"{100 * off:.2g} % ±"
             )
@@ -89,7 +89,7 @@ def test_the_headline_says_what_the_ball_does(amplitude, kind, says):
 )
 def test_where_there_is_no_orbit_the_ball_is_laid_on_the_table(amplitude, restitution, kind, says):
     given = UNIT | {"n": None, "restitution": restitution, "stiffness": 5000.0}
-    found = design(**given, acceleration=f"{amplitude} m/s^2", tolerance="20 %")
+    found = design(**given, acceleration=f"{amplitude} m/s^2", tolerance="40 %")
     assert found.headline.startswith("No model has an n-T orbit.") and says in found.headline
     assert found.motion.kind == found.motion.restitution_kind == kind and found.is_good_enough
     assert "no n-T orbit in any model" in found.reason and not found.judged.exists

@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from bouncing_ball.accuracy.errors import relative
 from bouncing_ball.attractors.mapper import label
 from bouncing_ball.attractors.motions import Kind
 from bouncing_ball.calculator.case import Case
@@ -133,9 +134,10 @@ def _compared(
                 return {"mean_height": dict.fromkeys(names), "mean_power": dict.fromkeys(names)}
             found.append(height_and_power(run, before))
         means = np.concatenate([means, np.array(found)], axis=-1)
-        ratio = means[1].mean(axis=-1) / means[0].mean(axis=-1)
-        apart = (means[1] - ratio[:, np.newaxis] * means[0]) / means[0].mean(axis=-1, keepdims=True)
-        off, margin = np.abs(ratio - 1), _half_width(apart)
+        exact, simple = means
+        off = relative(exact.mean(axis=-1), simple.mean(axis=-1))[:, np.newaxis]
+        apart = (exact - (1 + off) * simple) / simple.mean(axis=-1, keepdims=True)
+        off, margin = np.abs(off[:, 0]), _half_width(apart)
         if np.all(off + margin <= tolerance) or np.any(off - margin > tolerance):
             break
     units = table.length, case.mass * table.gravity**2 / table.angular_frequency
@@ -199,37 +201,37 @@ def aside(motion: Motion, amplitude: float) -> str:
     rests = motion.laid == Kind.PERMANENT_CONTACT and amplitude <= RESTITUTION_THRESHOLD
     if motion.laid is None or rests:
         return ""
-    return f"; a ball laid on the table {_LAID[motion.laid]}, which is not judged"
+    return f"; a ball laid on the table {_LAID[motion.laid]}, and is not judged"
 
 
 def headline(motion: Motion, family: Family) -> str:
     """The motion of the ball, in one sentence."""
     orbit = f"{family.n}-T orbit"
     if motion.kind == Kind.ORBIT and motion.restitution_kind is None:
-        said = f"A ball on the {orbit} stays on it: it is stable"
+        said = f"The {orbit} is stable: a ball on it stays on it."
         if motion.laid is None:
-            return f"{said}."
-        return f"{said}. Laid on the table a ball {_LAID[motion.laid]}."
+            return said
+        return f"{said} A ball laid on the table {_LAID[motion.laid]}."
     if motion.restitution_kind is None:
-        return f"A ball beside the {orbit} stays beside it: nothing is lost, and it ends nowhere."
+        return f"A ball near the {orbit} stays near it, because the contact loses no energy."
     none = not any(each.exists for each in family.standing.values())
     does = (_LAID if none else _DOES)[motion.kind]
     if motion.periods > 1 and motion.kind != Kind.PERMANENT_CONTACT:
-        does += f", every {motion.periods} periods of the table and {motion.impacts} impacts"
-    why = "not stable" if family.is_admissible else "inadmissible: another impact comes first"
+        does += f" after {motion.periods} periods of the table and {motion.impacts} impacts"
+    why = "not stable" if family.is_admissible else "not admissible"
     if none:
-        return f"No model has an n-T orbit. Laid on the table a ball {does}."
+        return f"No model has an n-T orbit. A ball laid on the table {does}."
     if not family.exists:
-        return f"The contact has no {orbit}: a ball that starts like one {does}."
-    return f"No ball stays on the {orbit}, which is {why}: one that starts beside it {does}."
+        return f"The contact has no {orbit}. A ball that starts as on such an orbit {does}."
+    return f"The {orbit} is {why}. A ball that starts near it {does}."
 
 
 _DOES: Mapping[str, str] = {
-    Kind.ORBIT: "repeats itself on a periodic orbit",
-    Kind.SUBHARMONIC: "repeats itself with a multiple of a period (doubled)",
-    Kind.LOCKED: "repeats itself and sticks to the table on the way (locked)",
+    Kind.ORBIT: "settles on a periodic orbit, which repeats",
+    Kind.SUBHARMONIC: "settles on a doubled orbit, which repeats",
+    Kind.LOCKED: "settles on a locked motion, which sticks to the table and repeats",
     Kind.PERMANENT_CONTACT: "comes to rest on the table",
     Kind.CHAOTIC: "ends in chaotic motion",
-    Kind.UNDECIDED: "shows no motion that repeats, and is not known to be chaotic",
+    Kind.UNDECIDED: "shows no periodic motion and is not known to be chaotic",
 }
 _LAID = {**_DOES, Kind.PERMANENT_CONTACT: "stays at rest"}

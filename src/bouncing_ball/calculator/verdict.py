@@ -86,17 +86,11 @@ def judged_by_motion(motion: Motion, tolerance: float, n: int) -> Verdict:
         return _within(error, 0.0, tolerance, found, about)
     if motion.mean_error is None:
         sentence = "Whether the restitution model is good enough for this motion is not known."
-        return Verdict(
-            False,
-            sentence,
-            f"{about}; some balls come to rest, so that means are not compared either",
-        )
+        return Verdict(False, sentence, f"{about}; nor are means, as some balls come to rest")
     errors = [(one.value, one.half_width, name) for name, one in motion.mean_error.items()]
     found = " and ".join(f"the mean {x} is {_between(e, h)} off" for e, h, x in errors)
     worst = max(errors)
-    return _within(
-        worst[0], worst[1], tolerance, found, f"{about}; means over time are compared instead"
-    )
+    return _within(worst[0], worst[1], tolerance, found, f"{about}; means over time are compared")
 
 
 def _named(kind: str | None) -> str:

@@ -26,9 +26,7 @@ from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.parameters import Family, Many, Parameters, Restitution, Seed, number
 
-Steps = Annotated[
-    int, number("number of time steps in a contact; fewer than 8 do not resolve it", ge=8, le=4096)
-]
+Steps = Annotated[int, number("time steps in a contact, at least 8 to resolve it", ge=8, le=4096)]
 
 
 class EngineOrbit(Parameters):

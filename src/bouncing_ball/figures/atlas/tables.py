@@ -7,7 +7,7 @@ import xarray as xr
 
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.figures.tables.formats import Table, words
-from bouncing_ball.figures.tables.layout import Columns, quantity, table, text, value
+from bouncing_ball.figures.tables.layout import Columns, table, text, value
 
 _MODELS = ("restitution", "corrected")
 
@@ -15,67 +15,75 @@ _MODELS = ("restitution", "corrected")
 def shares(data: xr.Dataset) -> Table:
     """Accuracy of the models on all nodes, by release rule and quantity; header and rows.
 
-    A limit of the families has no position in the stable range, and no error at one ϖ.
+    A limit of the families has no position in the stable range. Suprema are those of all orbits.
     """
     rule, tolerance = float(data.rule_of_thumb), float(data.summary_tolerance)
     header = [
         "release",
         "quantity",
         f"right from ϖ = {rule:g} on",
-        f"largest error at ϖ = {rule:g}",
-        f"ϖ for {100 * tolerance:g} %: half of the orbits",
-        "99 %",
-        "all",
-        "all, corrected model",
+        f"supremum of the error at ϖ = {rule:g}",
+        f"ϖ for {100 * tolerance:g} %: half of the nodes",
+        "99 % of the nodes",
+        "all orbits",
+        "all orbits, corrected model",
     ]
     body = []
     at = data.sel({"tolerance": tolerance})  # the keyword is another argument of sel
     for one in each(at.sel(frequency_ratio=rule), "release"):
-        for part in each(one, "quantity"):
-            simple, corrected = (part.sel(model=model) for model in _MODELS)
-            # The mean of the shares is that of all nodes, because every n has equally many.
-            holding, error = float(simple.holding_share.mean()), float(simple.worst_error.max())
-            most = [simple.needed_quantile.sel(share=share).max() for share in (0.5, 0.99)]
-            needed = (*most, simple.needed.max(), corrected.needed.max())
-            cells = [quantity(part), f"{100 * holding:.2f} %", f"{100 * error:.3g} %"]
-            body.append([one.release.item(), *cells, *map(_ratio, needed)])
-        for part in each(one, "limit_quantity"):
-            simple, corrected = (part.limit_needed.sel(model=x).values for x in _MODELS)
-            there = simple[np.isfinite(simple)]
-            needed = (*np.quantile(there, (0.5, 0.99, 1.0)), np.nanmax(corrected))
-            cells = [words(part.limit_quantity.item()), f"{100 * np.mean(there <= rule):.2f} %", ""]
-            body.append([one.release.item(), *cells, *map(_ratio, needed)])
+        for part in each(one.max("n"), "supremum_quantity"):
+            name = part.supremum_quantity.item()
+            if name in one["quantity"]:
+                simple = one.sel(model="restitution", quantity=name)
+                # The mean of the shares is that of all nodes, because every n has equally many.
+                holding = float(simple.holding_share.mean())
+                most = [simple.needed_quantile.sel(share=share).max() for share in (0.5, 0.99)]
+            else:
+                limits = one.limit_needed.sel(model="restitution", limit_quantity=name).values
+                there = limits[np.isfinite(limits)]
+                holding, most = np.mean(there <= rule), [*np.quantile(there, (0.5, 0.99))]
+            cells = [words(name), f"{100 * holding:.2f} %", _error(part.isel(model=0))]
+            every = part.supremum_needed.values
+            body.append([one.release.item(), *cells, *map(_ratio, (*most, *every))])
     return header, body
+
+
+def _error(part: xr.Dataset) -> str:
+    value = 100 * float(part.worst_error)
+    return f"{value:.3g} %" if np.isfinite(value) else "unbounded"
 
 
 def _ratio(value: float | xr.DataArray) -> str:
     """A frequency ratio rounded up, so that it suffices."""
     number = float(value)
     if not np.isfinite(number):
-        return "beyond the atlas"
+        return "none"
     unit = 10.0 ** (np.floor(np.log10(number)) - 1)
     return f"{np.ceil(number / unit * (1 - 1e-12)) * unit:g}"
 
 
 def worst(data: xr.Dataset) -> Table:
-    """The orbit with the largest error at the rule of thumb, by rule, model and quantity.
+    """The orbit at which an error has its supremum at the rule of thumb, by rule, model, quantity.
 
-    Each has the command that prints the exact orbit. With ``--model corrected`` it prints
+    An unbounded error has none. Each has the command that prints the exact orbit. With ``--model corrected`` it prints
     the corrected one, and with ``--model restitution``, but without ``--frequency-ratio``
     and ``--release``, that of the restitution model.
     """
     columns: Columns = {
         "release": text("release"),
         "model": text("model"),
-        "quantity": quantity,
-        "error": lambda part: f"{100 * float(part.worst_error):.3g} %",
+        "quantity": lambda part: words(part.supremum_quantity.item()),
+        "error": _error,
         "n": text("n"),
         "r": value("worst_restitution", ".4g"),
         "Λ": value("worst_amplitude", ".5g"),
         "command": _command,
     }
-    parts = each(data, "release", "model", "quantity")
-    return table((part.isel(n=int(part.worst_error.values.argmax())) for part in parts), columns)
+    parts = each(
+        data.sel(supremum_quantity=data["quantity"].values), "release", "model", "supremum_quantity"
+    )
+    largest = (part.isel(n=int(part.worst_error.values.argmax())) for part in parts)
+    return table((part for part in largest if np.isfinite(part.worst_error)), columns)
 
 
 def _command(part: xr.Dataset) -> str:

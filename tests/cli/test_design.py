@@ -2,7 +2,6 @@
 
 import json
 from dataclasses import asdict
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -39,12 +38,11 @@ def test_json_is_the_answer_of_the_call(ask):
     assert ask(*case.split())["orbits"][0]["errors"]["saddle_node"] is None
 
 
-def test_the_text_begins_with_the_verdict_of_the_readme(said):
+def test_the_text_begins_with_the_verdict(said):
     text = said(*CASE, *STIFF, "--all")
     lines = text.splitlines()
-    readme = (Path(__file__).parents[2] / "README.md").read_text("utf-8")
     assert lines[0].startswith("A ball on the 1-T orbit stays on it")
-    assert all(line in readme for line in lines[:3])
+    assert lines[1].startswith("The restitution model") and lines[2].startswith("Reason: ")
     words = ("contact time", "peak force", "force over weight", "largest time step", "3-T orbit")
     assert all(word in text for word in words)
     # It does not depend on n.

@@ -1,7 +1,7 @@
 r"""The cascade of flights between permanent contact and chattering, for a linear contact.
 
 At Λ_SD permanent contact ends, and a T-periodic orbit begins that flies once per period
-(``docs/closed-form.md``, section 5). As Λ grows the contact after its landing oscillates higher,
+(``docs/closed-form.md``, section 4). As Λ grows the contact after its landing oscillates higher,
 until it touches the table's level. There it opens, and beyond the orbit has one flight more. The
 flight grows from nothing and changes the return map as the power 3/2 of Λ - Λ_k, so that the orbit
 keeps its multipliers there and is followed on. Opening k, where flight k + 1 begins, is at

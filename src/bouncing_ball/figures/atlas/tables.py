@@ -63,33 +63,18 @@ def _ratio(value: float | xr.DataArray) -> str:
 
 
 def worst(data: xr.Dataset) -> Table:
-    """The orbit at which an error has its supremum at the rule of thumb, by rule, model, quantity.
-
-    An unbounded error has none. Each has the command that prints the exact orbit. With ``--model corrected`` it prints
-    the corrected one, and with ``--model restitution``, but without ``--frequency-ratio``
-    and ``--release``, that of the restitution model.
+    """The orbit at which the restitution model's error has its supremum at the rule of thumb, by
+    release and quantity, if it is bounded. The digits of r and Λ are enough to compute the error.
     """
     columns: Columns = {
         "release": text("release"),
-        "model": text("model"),
         "quantity": lambda part: words(part.supremum_quantity.item()),
         "error": _error,
         "n": text("n"),
-        "r": value("worst_restitution", ".4g"),
-        "Λ": value("worst_amplitude", ".5g"),
-        "command": _command,
+        "r": value("worst_restitution", ".15g"),
+        "Λ": value("worst_amplitude", ".15g"),
     }
-    parts = each(
-        data.sel(supremum_quantity=data["quantity"].values), "release", "model", "supremum_quantity"
-    )
+    simple = data.sel(model="restitution", supremum_quantity=data["quantity"].values)
+    parts = each(simple, "release", "supremum_quantity")
     largest = (part.isel(n=int(part.worst_error.values.argmax())) for part in parts)
     return table((part for part in largest if np.isfinite(part.worst_error)), columns)
-
-
-def _command(part: xr.Dataset) -> str:
-    rule = "" if part.release == "displacement" else f" --release {part.release.item()}"
-    r, lam = (float(part[f"worst_{name}"]) for name in ("restitution", "amplitude"))
-    return (
-        f"`bouncing-ball orbit --n {part.n:d} --measured-restitution {r!r} "
-        f"--frequency-ratio {float(part.rule_of_thumb):g} --amplitude {lam!r}{rule}`"
-    )

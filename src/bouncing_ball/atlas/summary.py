@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.accuracy.error_law import coefficients
-from bouncing_ball.accuracy.quantities import OF_ORBITS
+from bouncing_ball.accuracy.quantities import OF_ORBITS, Quantity
 from bouncing_ball.atlas.plan import Plan
 from bouncing_ball.atlas.suprema import suprema
 from bouncing_ball.datasets.variables import described
@@ -17,7 +17,7 @@ TOLERANCE = 0.01
 """The tolerance of charts and tables."""
 RULE_OF_THUMB = 100.0
 """The ϖ above which the paper regards the restitution model as accurate."""
-QUANTILES = (0.5, 0.9, 0.99, 1.0)
+QUANTILES = (0.5, 0.9, 0.99)
 _TILES = ("restitution", "position")
 
 
@@ -45,7 +45,8 @@ def summary(plan: Plan, atlas: xr.Dataset) -> xr.Dataset:
         "rule_of_thumb": rule,
         **suprema(plan, rule, tolerance),
     }
-    return described(data, {"restitution_edge": plan.edges, "position_edge": plan.positions})
+    edges = {"restitution_edge": plan.edges, "position_edge": plan.positions}
+    return described(data, edges | {"supremum_quantity": list(map(str, Quantity))})
 
 
 def _share(atlas: xr.Dataset, name: str) -> xr.DataArray:
@@ -62,10 +63,9 @@ def _quantiles(atlas: xr.Dataset) -> xr.DataArray:
     share = counts.cumsum("threshold_bin") / counts.sum("threshold_bin")
     ends = xr.DataArray(np.append(atlas.threshold_bin[1:], np.inf), dims="threshold_bin")
     largest = atlas.largest_threshold.max(_TILES)
-    places = [(share >= q).argmax("threshold_bin") for q in QUANTILES[:-1]]
+    places = [(share >= q).argmax("threshold_bin") for q in QUANTILES]
     found = [np.minimum(ends.isel(threshold_bin=place), largest) for place in places]
-    shares = xr.DataArray(list(QUANTILES), dims="share", name="share")
-    return xr.concat([*found, largest], shares).transpose(..., "share")
+    return xr.concat(found, xr.Variable("share", list(QUANTILES))).transpose(..., "share")
 
 
 def _law(plan: Plan) -> xr.Variable:

@@ -1,10 +1,13 @@
 """The accepted summary, the charts that are drawn from it, and the orbits that it names."""
 
+import json
+import shlex
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from bouncing_ball.cli.main import main
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.netcdf import parameter_attributes, read_dataset
 from bouncing_ball.figures.atlas.charts import charts

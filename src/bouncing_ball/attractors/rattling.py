@@ -30,7 +30,7 @@ from scipy.optimize import brentq
 
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.continuation.corrector import NewtonSettings, newton
+from bouncing_ball.continuation.corrector import NewtonSettings, solve
 from bouncing_ball.errors import require
 from bouncing_ball.motion.angles import table
 from bouncing_ball.motion.landing import Flight
@@ -59,7 +59,7 @@ class Openings(NamedTuple):
 class Rattling:
     """T-periodic orbits with k flights whose long contact touches the table's level.
 
-    It is a :class:`~bouncing_ball.continuation.problem.Problem` without a parameter. The k flights
+    The k flights
     and k contacts are 2k legs, and y = (φ, Λ, t, T_0, …, T_{2k-2}, v_0, …, v_{2k-1}): the phase φ
     at the first release, the time t in the last contact at which it touches, the durations of all
     legs but this one, and δ′ at their starts. Each leg ends at δ = 0 with the next δ′, and the
@@ -111,19 +111,6 @@ class Rattling:
         (states, changes), (by_leg, ends) = self.legs(y), self._linear
         missed, matrix = states - np.inner(y, ends), changes @ by_leg - ends
         return missed.reshape(y.shape), matrix.reshape(*y.shape, -1)
-
-    def residual(self, y: np.ndarray) -> np.ndarray:
-        """All equations but δ′ = 0 at the touch, shape (..., 4k + 1)."""
-        return self.system(y)[0][..., :-1]
-
-    def jacobian(self, y: np.ndarray) -> np.ndarray:
-        """Jacobian of the residual, shape (..., 4k + 1, 4k + 2)."""
-        return self.system(y)[1][..., :-1, :]
-
-    def touch(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """δ′ at the touch, and its gradient."""
-        missed, matrix = self.system(y)
-        return missed[..., -1], matrix[..., -1, :]
 
     def multiplier(self, y: np.ndarray) -> np.ndarray:
         """Larger modulus of the multipliers, of the leading shape of y."""
@@ -306,7 +293,7 @@ def _followed(
         line = near[:, np.newaxis] + away[..., np.newaxis] * (near - far)[:, np.newaxis]
         guess = np.where(known[..., np.newaxis], points, line)[:, 1:]
         with np.errstate(all="ignore"):
-            solved = newton(problem, zero + unit * guess, problem.touch, _SETTINGS)
+            solved = solve(problem.system, zero + unit * guess, _SETTINGS)
         forward = (solved.point[..., 2 : 2 + size // 2] > 0).all(axis=-1)
         known = np.insert(solved.converged & forward, 0, True, axis=1)
         known = np.logical_and.accumulate(known, axis=1)

@@ -65,7 +65,7 @@ def lowest(data: Mapping[str, xr.Dataset], parameters: Lowest) -> xr.Dataset:
 def test_a_figure_with_its_own_parameters_and_a_stage_on_the_dataset_of_another(fresh):
     fresh.rewrite(ARTIFACTS, "beyond_the_paper:\n", ENTRY)
     assert fresh.refusal().startswith(
-        "configuration: ext_heights has no parameters: a key ext_heights"
+        "configuration: ext_heights has no parameters: add a key ext_heights"
     )
     fresh.rewrite(CONFIG, "studies:\n  formulas:", PARAMETERS)
     (fresh.path / FIGURE).write_text(DRAWING, encoding="utf-8")

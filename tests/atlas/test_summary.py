@@ -73,7 +73,9 @@ def made():
     # The same for all quantities, and for both families.
     atlas = xr.Dataset(data, coords).isel(quantity=[0] * 4, limit_quantity=[0] * 3, n=[0, 0])
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(suprema, "largest", lambda _, row, kind, ratio, span: 0.7 / span[0] / ratio)
+        patch.setattr(
+            suprema, "largest", lambda _, row, kind, ratio, low, high=0.0: 0.7 / low / ratio
+        )
         return summary(PLAN, atlas.isel(model=[0, 0]))
 
 

@@ -45,7 +45,7 @@ def test_what_has_moved_is_copied_and_the_rest_is_not(pair, run):
     assert run() == [
         "removed figures/fig09.svg",
         "copied figures/fig05.nc",
-        "Now commit the record with the reason: git add figures config *.md && git commit",
+        "Commit the record with the reason: git add figures config *.md && git commit",
     ]
     after = contents(pair)
     assert not (pair.record / "figures" / "fig09.svg").exists()

@@ -102,7 +102,4 @@ def accept(
     said = [line for artifact in taken for line in _copied(artifact, record, results)]
     if not said:
         return ["Nothing to accept: the results agree with the record."]
-    return [
-        *said,
-        "Now commit the record with the reason: git add figures config *.md && git commit",
-    ]
+    return [*said, "Commit the record with the reason: git add figures config *.md && git commit"]

@@ -48,5 +48,5 @@ def locked_orbits(data: xr.Dataset) -> Figure:
         lives.plot([], [], color="#8c8c8c", linestyle=dashes, label=name)
     lives.set(xlabel="table periods", ylabel="share of balls not locked", title="transients")
     lives.set(yscale="log", ylim=(0.01, 6))
-    lives.legend(fontsize=6, ncols=2)
+    lives.legend(fontsize=6, ncols=2, loc="upper right")
     return figure

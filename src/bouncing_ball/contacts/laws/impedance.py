@@ -33,6 +33,7 @@ Source: MuJoCo's documentation, *Solver parameters*, read with the engine itself
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -103,15 +104,15 @@ class Impedance(ContactLaw):
         require((c > 0) & (c < 1), c, "midpoint", "in (0, 1)")
         require(power >= 1, power, "power", "at least 1")
 
-    @property
+    @cached_property
     def _spring(self) -> SpringDamper:
         return SpringDamper(self.frequency_ratio, self.damping_ratio, Release.FORCE)
 
-    @property
+    @cached_property
     def _varies(self) -> np.ndarray:
         return np.not_equal(self.share, self.at_surface)
 
-    @property
+    @cached_property
     def has_kink(self) -> bool:
         """Whether d depends on the depth."""
         return bool(np.any(self._varies))

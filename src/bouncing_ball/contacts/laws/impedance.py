@@ -104,6 +104,7 @@ class Impedance(ContactLaw):
         require((c > 0) & (c < 1), c, "midpoint", "in (0, 1)")
         require(power >= 1, power, "power", "at least 1")
 
+    # Cached, because each evaluation of the force needs them.
     @cached_property
     def _spring(self) -> SpringDamper:
         return SpringDamper(self.frequency_ratio, self.damping_ratio, Release.FORCE)
@@ -126,11 +127,12 @@ class Impedance(ContactLaw):
         """d(p)."""
         if not self.has_kink:
             return self.share + 0 * penetration
-        x, c, more = penetration / self.width, self.midpoint, np.asarray(self.power) - 1
-        x = np.where(np.real(x) > 0, np.where(np.real(x) < 1, x, 1.0), 0.0)
-        low, high = x * (x / c) ** more, 1 - (1 - x) * ((1 - x) / (1 - c)) ** more
-        y = np.where(np.real(x) < c, low, high)
-        return self.at_surface + (self.share - self.at_surface) * y
+        x = np.minimum(np.maximum(penetration / self.width, 0.0), 1.0)
+        # Both sides of the midpoint have one formula, from their ends.
+        low = np.real(x) < self.midpoint
+        end, side = np.where(low, x, 1 - x), np.where(low, self.midpoint, 1 - self.midpoint)
+        y = end * (end / side) ** (self.power - 1)
+        return self.at_surface + (self.share - self.at_surface) * np.where(low, y, 1 - y)
 
     def _part(self, penetration: np.ndarray) -> np.ndarray:
         """s = d/d_max."""

@@ -3,8 +3,8 @@
 Single faults are put into modules as these are imported, one at a time. First ``make quick``
 runs without a fault, and each test is noted with the functions that it calls. For a fault the
 tests run that reach its function, the nearest first, and then all others of its folder. A fault
-is noticed if one of them fails, or hangs. What survives is listed: it changes nothing, or a
-test is missing.
+is noticed if one of them fails, or hangs. What survives is listed: it changes nothing, for a
+reason that stands in ``equivalent_faults.yaml``, or a test is missing.
 
 usage: python tests/mutants.py [--count 200] [--seed 2011] [--workers 2] [--only PART ...]
 """
@@ -27,6 +27,7 @@ from types import CodeType, FrameType
 from typing import Any, NamedTuple
 
 import pytest
+import yaml
 from hypothesis import Phase, settings
 
 ROOT = Path(__file__).parents[1]
@@ -308,6 +309,17 @@ def survives(work: tuple[Path, Fault, dict[str, float]]) -> bool:
     return not files or passes(files, Chosen(seconds))
 
 
+def reasons(tree: Path) -> dict[tuple[Path, int, str, str], str]:
+    """Why faults change nothing, by module, line and change."""
+    found = {}
+    for each in yaml.safe_load((tree / "tests" / "equivalent_faults.yaml").read_text()):
+        path = PACKAGE / each["module"]
+        for k, line in enumerate((tree / path).read_text().splitlines(), start=1):
+            if line.strip() == each["line"]:
+                found[path, k, *each["fault"].split(" → ")] = each["because"]
+    return found
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=200)
@@ -328,19 +340,22 @@ def main() -> None:
         found = pool.map(reached, [x for x in parts if x not in ELSEWHERE], chunksize=1)
         if None in found:
             sys.exit("the tests fail without any fault: see make quick")
-        left, tests = drawn, dict(ChainMap(*found))
+        tests, known = dict(ChainMap(*found)), reasons(ROOT)
+        survived, equal = drawn, 0
         for near in (True, False):
-            tried = left
-            left = []
+            tried, survived = survived, []
             work = ((*each, chosen(*each, tests, near)) for each in tried)
             for (path, fault), lives in zip(tried, pool.imap(survives, work), strict=True):
-                if lives:
-                    left.append((path, fault))
-                if not (lives and near):
-                    state = "SURVIVED" if lives else "noticed "
-                    where = f"{state} {path}:{fault.line}:"
-                    print(f"{where} {fault.before}  →  {fault.after}", flush=True)
-    print(f"{len(drawn) - len(left)} of {len(drawn)} faults noticed, {len(left)} survived")
+                why = known.get((path, fault.line, fault.before, fault.after), "") if lives else ""
+                equal += bool(why)
+                if lives and not why:
+                    survived.append((path, fault))
+                if why or not (lives and near):
+                    state = "noticed " if not lives else "equal   " if why else "SURVIVED"
+                    change = f"{path}:{fault.line}: {fault.before}  →  {fault.after}"
+                    print(state, change, why and f"({why})", flush=True)
+    counts = f"{equal} change nothing, {len(survived)} survived"
+    print(f"{len(drawn) - equal - len(survived)} of {len(drawn)} faults noticed, {counts}")
 
 
 if __name__ == "__main__":

@@ -57,6 +57,12 @@ def test_a_contact_is_found_whatever_its_neighbours():
         assert float(together.duration[k]) == pytest.approx(float(alone.duration), rel=1e-14)
 
 
+def test_an_impedance_varies_whatever_its_neighbours():
+    # At x = 1/4 of the width d is x²/c = 1/8 of the way up, with c = 1/2, if it varies.
+    law = Impedance(2.0, 0.5, 0.75, np.array([0.25, 0.75]), width=4.0)
+    assert law.has_kink and law.impedance(np.ones(2)).tolist() == [0.3125, 0.75]
+
+
 def test_what_does_not_end_is_no_contact():
     # A ball put down slowly on a table at rest stays.
     assert np.isnan(contacts(HuntCrossley(100.0, 0.5), 0.01).duration)

@@ -31,6 +31,16 @@ def test_the_elastic_hertz_impact(law):
     )
 
 
+def test_next_to_its_end_a_path_is_a_straight_line():
+    # A free ball leaves an undamped spring with the speed of its impact: p = v h.
+    law = HuntCrossley(50.0, 0.0)
+    end = contacts(law, 2.0, weight=0.0)
+    h = 1e-9 * end.duration
+    depth, rate = path(law, end, end.duration - h, 2.0, weight=0.0)
+    # The end is known to a rounding or two, a millionth of h.
+    assert float(depth) == pytest.approx(2 * h, rel=1e-5) and float(rate) == pytest.approx(-2.0)
+
+
 @pytest.mark.parametrize("restitution", [0.95, 0.65, 0.3, 0.1])
 def test_tsujis_damping_gives_its_restitution_at_every_speed(restitution):
     law = Tsuji(300.0, tsuji_damping(restitution))
@@ -84,6 +94,15 @@ class _Sinking(ContactLaw):
 
     def force(self, penetration, rate):
         return penetration + 4 * rate
+
+
+@pytest.mark.parametrize(
+    ("name", "values"), [("midpoint", [0.0, 1.0]), ("share", [-0.1, 1.0]), ("power", [0.9])]
+)
+def test_the_ranges_of_an_impedance(name, values):
+    for value in values:
+        with pytest.raises(ModelError, match=f"= {value} is not"):
+            Impedance(2.0, 0.5, **{name: value})
 
 
 def test_what_a_law_cannot_do_is_said():

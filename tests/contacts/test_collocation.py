@@ -6,14 +6,16 @@ import numpy as np
 import pytest
 from scipy.special import beta
 
-from bouncing_ball.contacts.collocation import contacts, path
+from bouncing_ball.contacts.collocation import Start, _falls, _left, _Motion, contacts, path
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.law_choice import law_of_impact
+from bouncing_ball.contacts.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
 from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji, tsuji_damping
 from bouncing_ball.contacts.signature import free_impact
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError
 
 
@@ -65,6 +67,30 @@ def test_a_contact_is_found_whatever_its_neighbours():
     for k in (0, 2):
         alone = contacts(law[k], [3.0, 0, 2.0][k], 0.5, 0.9)
         assert float(together.duration[k]) == pytest.approx(float(alone.duration), rel=1e-14)
+
+
+@pytest.mark.parametrize("until", [None, np.ones(1)], ids=["release", "time"])
+@pytest.mark.parametrize(
+    "law",
+    [
+        SpringDamper(3.0, 0.1, "force"),
+        Impedance(3.0, 0.1, 0.9, 0.5, width=0.5),
+        ElastoBacklash(3.0, 0.2),
+        KuwabaraKono(50.0, 0.1),
+        Tsuji(50.0, 0.2),
+    ],
+)
+def test_the_end_of_a_panel_is_sought_with_the_derivatives_of_what_vanishes_there(law, until):
+    start = Start(*np.array([0.0, 2.0, 0.4, 1.2, 1.0])[:, np.newaxis])
+    now, m = _Motion(*np.ones((8, 1))), law.root
+    state, slope = (
+        np.array([[0.3], [-0.7], [0.2]]),
+        np.array([[-0.7], [-1.7], [m * 0.3 ** (m - 1)]]),
+    )
+    # dq/ds is p′ and dt/ds is λ, and p″λ is any number. Central differences, 10⁻¹² + ε/10⁻⁶.
+    ahead, back = (_left(law, m, start, now, until, *(state + h * slope)) for h in (1e-6, -1e-6))
+    found = _falls(law, m, start, now, until, *state, slope[1])
+    np.testing.assert_allclose(found, (ahead - back) / 2e-6, rtol=1e-8)
 
 
 def test_an_impedance_varies_whatever_its_neighbours():

@@ -11,7 +11,7 @@ ours = bouncing_ball.design(
 r, ratio = np.linspace(0.6, 1.0, 81)[:, np.newaxis], np.geomspace(5, 1000, 80)
 exact = bouncing_ball.model(restitution=r, frequency_ratio=ratio).orbit(1, ours.amplitude)
 simple = bouncing_ball.model(restitution=r).orbit(1, ours.amplitude)
-percent = 100 * abs(simple.max_height / exact.max_height - 1)
+percent = 100 * abs(exact.max_height / simple.max_height - 1)
 figure, axes = plt.subplots(layout="constrained")
 lines = axes.contour(r[:, 0], ratio, percent.T, levels=[0.1, 1, 10], colors="black")
 axes.clabel(lines, fmt="%g %%")

@@ -41,7 +41,7 @@ def test_json_is_the_answer_of_the_call(ask):
 def test_the_text_begins_with_the_verdict(said):
     text = said(*CASE, *STIFF, "--all")
     lines = text.splitlines()
-    assert lines[0].startswith("A ball on the 1-T orbit stays on it")
+    assert lines[0].startswith("The 1-T orbit is stable")
     assert lines[1].startswith("The restitution model") and lines[2].startswith("Reason: ")
     words = ("contact time", "peak force", "force over weight", "largest time step", "3-T orbit")
     assert all(word in text for word in words)
@@ -53,7 +53,7 @@ def test_the_text_begins_with_the_verdict(said):
 def test_without_a_family_each_has_one_line(said):
     short = said(*CASE, *STIFF).splitlines()
     assert [line.split()[:2] for line in short[-4:-1]] == [[f"{n}-T", "yes"] for n in (1, 2, 3)]
-    assert "--n 1 prints all" in short[-1] and "--all of all" in short[-1]
+    assert "--n 1 prints all" in short[-1] and "--all for all" in short[-1]
     assert len(short) < 35
     one = said(*CASE, *STIFF, "--n", "2")
     assert "2-T orbit" in one and "period doubling at Λ" in one and "3-T" not in one
@@ -78,13 +78,13 @@ def test_choosing(said):
         (
             ("--acceleration", "0.8"),
             1,
-            "of gravity, and the 1-T orbit needs 0.2526; did you mean 0.8 g?",
+            "times gravity, and the 1-T orbit needs 0.2526; did you mean 0.8 g?",
         ),
         (("--damping-ratio", "0.1"), 2, "--damping-ratio and --restitution contradict each other"),
         (("--rebound-height", "1 m"), 2, "--rebound-height and --drop-height are needed together"),
         (("--tolerance", "5"), 2, "--tolerance = 5 is not a number in (0, 1): did you mean 5 %?"),
         (("--gravity", "1.62 m/s3"), 2, "--gravity = 1.62 m/s3 is of the dimension"),
-        (("--radius", "5 mm"), 2, "--radius of a Hertz contact goes with --reduced-modulus"),
+        (("--radius", "5 mm"), 2, "--radius of a Hertz contact needs --reduced-modulus"),
         (("--plot", "page.jpg"), 2, "'page.jpg' does not end in .pdf or .png or .svg"),
         (("--plot", "/dev/null/page.png"), 2, "/dev/null/page.png cannot be written"),
     ],

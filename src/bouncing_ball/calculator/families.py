@@ -113,8 +113,10 @@ def families(case: Case, asked: Sequence[int], or_first: bool = False) -> tuple[
     found: list[list[np.ndarray]] = []
     for model in case.models.values():
         still = np.full(n.shape, RESTITUTION_THRESHOLD if found else case.permanent_contact)
-        limits = model.saddle_node(n).amplitude, model.period_doubling(n).amplitude, still
-        orbits.append(model.orbit(n, lam))
+        node = model.saddle_node(n).amplitude
+        limits = node, model.period_doubling(n).amplitude, still
+        # Below its saddle-node a model has no orbit to be looked for.
+        orbits.append(model.orbit(n, np.where(lam < node, np.nan, lam)))
         found.append([*(getattr(orbits[-1], quantity) for quantity in OF_ORBITS), *limits])
     values = np.array(found)
     there = np.any([orbit.exists for orbit in orbits], axis=0)
@@ -125,7 +127,7 @@ def families(case: Case, asked: Sequence[int], or_first: bool = False) -> tuple[
         laid = lam <= case.permanent_contact
         rests = ", and a ball laid on the table stays at rest" if laid else ""
         raise NoOrbitError(
-            f"no {which} in any model{rests}: the table's acceleration is Λ = {lam:.4g} of "
+            f"no {which} in any model{rests}: the table's acceleration is Λ = {lam:.4g} times "
             f"gravity, and the {asked[0]}-T orbit needs {lowest:.4g}"
         )
     return tuple(

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bouncing_ball.accuracy.errors import modulus, relative
 from bouncing_ball.accuracy.quantities import Quantity
 from bouncing_ball.attractors.motions import Kind
 from bouncing_ball.calculator.case import Case
@@ -55,7 +56,7 @@ def assessed(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
     if wrong is None and error is None:
         name = QUANTITIES[Quantity(needed.quantity)]
         sentence = f"Whether the restitution model is good enough in the {name} is not known."
-        return Verdict(False, sentence, "this contact, or the model, has no value to compare")
+        return Verdict(False, sentence, "the contact or the model has no value to compare")
     good = wrong is None and error is not None and error <= needed.tolerance
     found, place = shown(error, "%", needed.tolerance), "within" if good else "beyond"
     off = f"{subject} is {found} off, {place} {tolerance}"
@@ -67,7 +68,7 @@ def assessed(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
 
 def judged_by_motion(motion: Motion, tolerance: float, n: int) -> Verdict:
     """The verdict where no ball stays on the orbit: about the motion on which it ends."""
-    about = f"the errors of the {n}-T orbit are those of a motion that no ball has"
+    about = f"no ball stays on the {n}-T orbit, so that its errors are not judged"
     kinds = motion.kind, motion.restitution_kind
     if kinds == (Kind.PERMANENT_CONTACT,) * 2:
         return Verdict(
@@ -80,17 +81,16 @@ def judged_by_motion(motion: Motion, tolerance: float, n: int) -> Verdict:
         sentence = f"its motion is {_named(kinds[1])}, and the contact's is {_named(kinds[0])}"
         return Verdict(False, f"The restitution model is not good enough: {sentence}.", about)
     if motion.greatest is not None:
-        exact, simple = motion.greatest.values()
-        error = abs(simple / exact - 1)
+        error = float(modulus(relative(*motion.greatest.values())))
         found = f"the greatest height of this motion is {shown(error, '%')} off"
         return _within(error, 0.0, tolerance, found, about)
     if motion.mean_error is None:
         sentence = "Whether the restitution model is good enough for this motion is not known."
-        return Verdict(False, sentence, f"{about}, and some balls come to rest")
+        return Verdict(False, sentence, f"{about}; nor are means, as some balls come to rest")
     errors = [(one.value, one.half_width, name) for name, one in motion.mean_error.items()]
     found = " and ".join(f"the mean {x} is {_between(e, h)} off" for e, h, x in errors)
     worst = max(errors)
-    return _within(worst[0], worst[1], tolerance, found, f"{about}: means over time are compared")
+    return _within(worst[0], worst[1], tolerance, found, f"{about}; means over time are compared")
 
 
 def _named(kind: str | None) -> str:
@@ -110,7 +110,7 @@ def _within(error: float, margin: float, tolerance: float, found: str, why: str)
     if error - margin > tolerance:
         sentence = f"The restitution model is not good enough: {found}, beyond {asked}."
         return Verdict(False, sentence, why)
-    sentence = f"The restitution model is not decided at {asked}: {found}."
+    sentence = f"Whether the restitution model is good enough is not decided at {asked}: {found}."
     return Verdict(False, sentence, f"{why}; the sample is too small to decide")
 
 
@@ -133,7 +133,7 @@ def _reason(needed: Needed, frequency_ratio: float, good: bool, tolerance: str) 
         f"ϖ = {needed.frequency_ratio:.4g} from which on the error stays within {tolerance}"
     )
     if good and place == "below":
-        text += ": that it is small here is an accident of its passing through zero"
+        text += "; it is small here only because it passes through zero near this ϖ"
     return text
 
 
@@ -164,11 +164,11 @@ def _cost_of(law: Impedance, case: Case, family: Family) -> str:
     if family.greatest_compression is None or family.max_height is None or not spring.exists:
         return about
     depth = np.array(family.greatest_compression / case.table.length)
-    off = float(spring.max_height) * case.table.length / family.max_height - 1
-    change = f"{shown(abs(off), '%')} {'higher' if off > 0 else 'lower'}"
+    off = float(relative(family.max_height, spring.max_height * case.table.length))
     return (
         f"{about}: at the orbit's depth of {shown(family.greatest_compression, 'm')}, where the "
-        f"impedance is {float(law.impedance(depth)):.3g}, they would bounce {change}"
+        f"impedance is {float(law.impedance(depth)):.3g}, the ball bounces {shown(abs(off), '%')} "
+        f"{'higher' if off > 0 else 'lower'} than with them"
     )
 
 
@@ -188,16 +188,18 @@ def notes(case: Case, family: Family) -> tuple[str, ...]:
                 "restitution model's lowest stable orbit"
             )
     if math.isnan(case.permanent_contact):
-        found.append("no Λ of permanent contact was found: weakly damped, the contact rings")
+        found.append(
+            "no threshold of permanent contact was found, because the contact is weakly damped"
+        )
     if not family.exists:
         found.append(f"at this Λ the contact has no {orbit}")
     elif not (family.is_stable and family.is_admissible):
-        what = "unstable" if family.is_admissible else "inadmissible: another impact comes first"
-        found.append(f"the {orbit} is {what}, and no ball will keep to it")
+        what = "unstable" if family.is_admissible else "inadmissible (an earlier impact occurs)"
+        found.append(f"the {orbit} is {what}, so that no ball stays on it")
     if contact.frequency_ratio < 1:
-        found.append("the contact is slower than the table: no impact, but a ball on a spring")
+        found.append("the contact is slower than the table: the ball oscillates on a spring")
     if case.law is None and contact.release is Release.DISPLACEMENT and contact.damping_ratio > 0:
         found.append(
-            "the contact pulls before it is released at δ = 0; one that cannot pull has the other r"
+            "the contact pulls before its release at δ = 0; if it cannot, its r is the other one"
         )
     return tuple(found)

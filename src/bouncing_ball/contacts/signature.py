@@ -50,7 +50,7 @@ therefore shorter, and the errors there are some 10⁻⁶ of t_c, σ and D, and 
 All quantities are dimensionless; all functions broadcast.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -103,8 +103,8 @@ def free_impact(law: ContactLaw, speed: ArrayLike) -> Instant:
     if not np.all(np.isfinite(end.duration)):
         lost = np.broadcast_to(v, end.duration.shape)[np.isnan(end.duration)][0]
         raise ModelError(
-            f"{law.name}: no end of a free impact of speed {lost:.3g} was found; the law must let "
-            "the ball go within a dozen oscillations: is it adhesive, or damped too strongly?"
+            f"{law.name}: a free impact of speed {lost:.3g} does not end within a dozen "
+            "oscillations, because the law is adhesive or damped too strongly"
         )
     by_speed, by_load = end.jacobian[..., 2, 1], end.jacobian[..., 2, 3]
     r = -end.rate / v
@@ -189,7 +189,8 @@ class Signature(Batch):
         log = np.log(v) / width
         number = np.floor(np.where(np.isnan(log), 0.0, log)).astype(int)
         values = np.full((2, 4, *v.shape), np.nan)
-        key = tuple(x if isinstance(x, str) else float(x) for x in vars(self.law).values())
+        numbers = (getattr(self.law, field.name) for field in fields(self.law))
+        key = tuple(x if isinstance(x, str) else float(x) for x in numbers)
         for panel in np.unique(number):
             coefficients = _panel(type(self.law), key, int(panel))
             slopes = chebyshev.chebder(coefficients) * (2 / width)

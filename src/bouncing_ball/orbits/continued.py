@@ -169,7 +169,7 @@ def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Any:
     on_side = test > 0 if side is Side.STABLE else test < 0
     if np.all(on_side):
         return found
-    for k in np.flatnonzero(~np.broadcast_to(on_side, shape)):
+    for k in np.flatnonzero(~np.broadcast_to(on_side, shape).reshape(-1) & np.isfinite(lam)):
         y[k] = _on_branch(search.model.take(k), int(search.n[k]), float(lam[k]), side)
     return _shaped(model, n, y, shape)
 

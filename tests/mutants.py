@@ -35,8 +35,6 @@ PACKAGE = Path("src/bouncing_ball")
 LAYERS = ["contacts", "continuation", "motion", "orbits", "attractors", "accuracy", "studies",
           "claims", "engines", "calculator", "atlas", "compare"]  # fmt: skip
 QUICK = "not long and not slow and not cluster and not engines and not docs"
-# The tests of all models and laws are in a folder of their own.
-CONTRACTS = {"contacts", "continuation", "motion", "orbits"}
 # What this does not run: pictures, and runs of the pipeline.
 ELSEWHERE = {"tests/figures", "tests/speed", "tests/workflow"}
 # Imported once for all processes.
@@ -45,26 +43,17 @@ LIBRARIES = ["matplotlib", "mpmath", "netCDF4", "pint", "pydantic", "scipy.optim
 LONGER = 60
 Functions = set[tuple[str, int]]
 # Another operator of the same kind: a sign, an exponent, a border, a condition.
+_EXCHANGED = [
+    (ast.Add, ast.Sub), (ast.Mult, ast.Div), (ast.BitAnd, ast.BitOr), (ast.And, ast.Or),
+    (ast.Eq, ast.NotEq), (ast.Is, ast.IsNot), (ast.In, ast.NotIn),
+]  # fmt: skip
 _OPERATORS: dict[type, tuple[type, ...]] = {
-    ast.Add: (ast.Sub,),
-    ast.Sub: (ast.Add,),
-    ast.Mult: (ast.Div,),
-    ast.Div: (ast.Mult,),
+    **{one: (other,) for pair in _EXCHANGED for one, other in (pair, pair[::-1])},
     ast.Pow: (ast.Mult,),
-    ast.BitAnd: (ast.BitOr,),
-    ast.BitOr: (ast.BitAnd,),
-    ast.And: (ast.Or,),
-    ast.Or: (ast.And,),
     ast.Lt: (ast.LtE, ast.Gt),
     ast.LtE: (ast.Lt, ast.Gt),
     ast.Gt: (ast.GtE, ast.Lt),
     ast.GtE: (ast.Gt, ast.Lt),
-    ast.Eq: (ast.NotEq,),
-    ast.NotEq: (ast.Eq,),
-    ast.Is: (ast.IsNot,),
-    ast.IsNot: (ast.Is,),
-    ast.In: (ast.NotIn,),
-    ast.NotIn: (ast.In,),
 }
 # A function for its neighbour.
 _NEIGHBOURS = {
@@ -106,15 +95,10 @@ def faults(source: str) -> list[Fault]:
             start = min([node.lineno, *(each.lineno for each in node.decorator_list)])
             first |= dict.fromkeys(range(start, node.end_lineno + 1), start)
     return [
-        Fault(
-            first.get(node.lineno, 0),
-            node.lineno,
-            ast.unparse(node),
-            ast.unparse(wrong),
-            _with(source, node, wrong),
-        )
+        Fault(first.get(node.lineno, 0), node.lineno, *map(ast.unparse, (node, wrong)), with_it)
         for node in _computing(tree)
         for wrong in _wrong(node)
+        for with_it in [_with(source, node, wrong)]
     ]
 
 
@@ -279,7 +263,8 @@ def chosen(
     """
     layer = path.relative_to(PACKAGE).parts[0]
     own = str(path), f"tests/{layer}/test_{path.stem}.py"
-    folders = f"tests/{layer}/", *(["tests/contracts/"] if layer in CONTRACTS else [])
+    # The tests of all models and laws are in a folder of their own.
+    folders = f"tests/{layer}/", "tests/contracts/"
     reaching = {name for name, (_, calls) in tests.items() if (str(path), fault.function) in calls}
     beside = {name for name in tests if name.startswith((*own, *folders))}
     found = reaching & beside if near else reaching ^ beside

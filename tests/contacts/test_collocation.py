@@ -15,7 +15,6 @@ from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji, tsuji_damping
 from bouncing_ball.contacts.signature import free_impact
-from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError
 
 
@@ -71,14 +70,7 @@ def test_a_contact_is_found_whatever_its_neighbours():
 
 @pytest.mark.parametrize("until", [None, np.ones(1)], ids=["release", "time"])
 @pytest.mark.parametrize(
-    "law",
-    [
-        SpringDamper(3.0, 0.1, "force"),
-        Impedance(3.0, 0.1, 0.9, 0.5, width=0.5),
-        ElastoBacklash(3.0, 0.2),
-        KuwabaraKono(50.0, 0.1),
-        Tsuji(50.0, 0.2),
-    ],
+    "law", [ElastoBacklash(3.0, 0.2), Impedance(3.0, 0.1, 0.9, 0.5, width=0.5), Tsuji(50.0, 0.2)]
 )
 def test_the_end_of_a_panel_is_sought_with_the_derivatives_of_what_vanishes_there(law, until):
     start = Start(*np.array([0.0, 2.0, 0.4, 1.2, 1.0])[:, np.newaxis])
@@ -122,13 +114,10 @@ class _Sinking(ContactLaw):
         return penetration + 4 * rate
 
 
-@pytest.mark.parametrize(
-    ("name", "values"), [("midpoint", [0.0, 1.0]), ("share", [-0.1, 1.0]), ("power", [0.9])]
-)
-def test_the_ranges_of_an_impedance(name, values):
-    for value in values:
-        with pytest.raises(ModelError, match=f"= {value} is not"):
-            Impedance(2.0, 0.5, **{name: value})
+def test_the_ranges_of_an_impedance():
+    for wrong in ({"midpoint": 0.0}, {"midpoint": 1.0}, {"share": 1.0}, {"power": 0.9}):
+        with pytest.raises(ModelError, match=f"= {max(wrong.values())} is not"):
+            Impedance(2.0, 0.5, **wrong)
 
 
 def test_what_a_law_cannot_do_is_said():

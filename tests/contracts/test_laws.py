@@ -167,7 +167,8 @@ def test_the_force_does_the_work_and_the_release_is_the_first(law):
     ends[1:1] = [
         brentq(lambda t: law.kink(*path(law, end, t, *START)), *two, 1e-8) for two in pairs
     ]
-    # A slope that steps 1e-8 beside the end of a part errs by 1e-16. t = D x²(3 - 2x) undoes the roots at the ends, for the most part.
+    # t = D x²(3 - 2x) undoes the roots at the ends, for the most part. A slope that steps 1e-8
+    # beside the end of a part errs by 1e-16.
     x, weight = np.polynomial.legendre.leggauss(200)
     x, work = (x + 1) / 2, 0.0
     for start, long in zip(ends, np.diff(ends), strict=False):

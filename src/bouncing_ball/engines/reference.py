@@ -9,7 +9,7 @@ from typing import Any
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.engines import ENGINES
-from bouncing_ball.engines.engine import Engine, Physical
+from bouncing_ball.engines.engine import Engine, Physical, text_of
 
 # m, k, r and the error of r that a time step may leave, from light to heavy and elastic.
 _CASES = (
@@ -38,7 +38,8 @@ def as_json() -> str:
     engines = {
         engine.name: {
             "scheme": str(engine.scheme),
-            "snippets": {str(rule): engine.template(rule) for rule in engine.releases},
+            "snippets": {str(rule): engine.template(rule) for rule in engine.releases}
+            | {law: text_of(f"{engine.name}-{law}").rstrip() for law in engine.laws},
         }
         for engine in ENGINES.values()
     }

@@ -69,7 +69,7 @@ def test_the_headline_says_what_the_ball_does(amplitude, kind, says):
         for name in ("height", "power"):
             exact, simple = getattr(found.motion, f"mean_{name}").values()
             off, margin = vars(found.motion.mean_error[name]).values()
-            assert off == pytest.approx(abs(simple.value / exact.value - 1), rel=1e-9)
+            assert off == pytest.approx(abs(exact.value / simple.value - 1), rel=1e-9)
             shown = (
                 f"at most {100 * (off + margin):.2g} %" if margin > off else f"{100 * off:.2g} % ±"
             )
@@ -89,7 +89,7 @@ def test_the_headline_says_what_the_ball_does(amplitude, kind, says):
 )
 def test_where_there_is_no_orbit_the_ball_is_laid_on_the_table(amplitude, restitution, kind, says):
     given = UNIT | {"n": None, "restitution": restitution, "stiffness": 5000.0}
-    found = design(**given, acceleration=f"{amplitude} m/s^2", tolerance="20 %")
+    found = design(**given, acceleration=f"{amplitude} m/s^2", tolerance="40 %")
     assert found.headline.startswith("No model has an n-T orbit.") and says in found.headline
     assert found.motion.kind == found.motion.restitution_kind == kind and found.is_good_enough
     assert "no n-T orbit in any model" in found.reason and not found.judged.exists
@@ -128,8 +128,8 @@ LOCKED = ("locked", "locked")
         (motion("permanent contact", "permanent contact"), True, "the ball rests in both models"),
         (motion("locked", "permanent contact"), False, "its motion is permanent contact, and the"),
         (motion("subharmonic", "orbit"), False, "is periodic, and the contact's is doubled"),
-        (motion(*LOCKED, greatest={"a": 1.0, "b": 1.04}), True, "is 4 % off, within 5 %"),
-        (motion(*LOCKED, greatest={"a": 1.0, "b": 1.06}), False, "is 6 % off, beyond 5 %"),
+        (motion(*LOCKED, greatest={"a": 1.04, "b": 1.0}), True, "is 4 % off, within 5 %"),
+        (motion(*LOCKED, greatest={"a": 1.06, "b": 1.0}), False, "is 6 % off, beyond 5 %"),
         (motion("chaotic", "chaotic"), False, "is not known"),
         (means(0.02, 0.005), True, "height is 2 % ± 0.5 % off and the mean power is 1 % ± 0 % off"),
         (means(0.0, 0.02), True, "height is at most 2 % off and the mean power is 1 % ± 0 % off"),

@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from bouncing_ball.accuracy.errors import relative
 from bouncing_ball.attractors.mapper import label
 from bouncing_ball.attractors.motions import Kind
 from bouncing_ball.calculator.case import Case
@@ -133,9 +134,10 @@ def _compared(
                 return {"mean_height": dict.fromkeys(names), "mean_power": dict.fromkeys(names)}
             found.append(height_and_power(run, before))
         means = np.concatenate([means, np.array(found)], axis=-1)
-        ratio = means[1].mean(axis=-1) / means[0].mean(axis=-1)
-        apart = (means[1] - ratio[:, np.newaxis] * means[0]) / means[0].mean(axis=-1, keepdims=True)
-        off, margin = np.abs(ratio - 1), _half_width(apart)
+        exact, simple = means
+        off = relative(exact.mean(axis=-1), simple.mean(axis=-1))[:, np.newaxis]
+        apart = (exact - (1 + off) * simple) / simple.mean(axis=-1, keepdims=True)
+        off, margin = np.abs(off[:, 0]), _half_width(apart)
         if np.all(off + margin <= tolerance) or np.any(off - margin > tolerance):
             break
     units = table.length, case.mass * table.gravity**2 / table.angular_frequency

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bouncing_ball.accuracy.errors import modulus, relative
 from bouncing_ball.accuracy.quantities import Quantity
 from bouncing_ball.attractors.motions import Kind
 from bouncing_ball.calculator.case import Case
@@ -80,8 +81,7 @@ def judged_by_motion(motion: Motion, tolerance: float, n: int) -> Verdict:
         sentence = f"its motion is {_named(kinds[1])}, and the contact's is {_named(kinds[0])}"
         return Verdict(False, f"The restitution model is not good enough: {sentence}.", about)
     if motion.greatest is not None:
-        exact, simple = motion.greatest.values()
-        error = abs(simple / exact - 1)
+        error = float(modulus(relative(*motion.greatest.values())))
         found = f"the greatest height of this motion is {shown(error, '%')} off"
         return _within(error, 0.0, tolerance, found, about)
     if motion.mean_error is None:
@@ -164,11 +164,11 @@ def _cost_of(law: Impedance, case: Case, family: Family) -> str:
     if family.greatest_compression is None or family.max_height is None or not spring.exists:
         return about
     depth = np.array(family.greatest_compression / case.table.length)
-    off = float(spring.max_height) * case.table.length / family.max_height - 1
-    change = f"{shown(abs(off), '%')} {'higher' if off > 0 else 'lower'}"
+    off = float(relative(family.max_height, spring.max_height * case.table.length))
     return (
         f"{about}: at the orbit's depth of {shown(family.greatest_compression, 'm')}, where the "
-        f"impedance is {float(law.impedance(depth)):.3g}, they would bounce {change}"
+        f"impedance is {float(law.impedance(depth)):.3g}, the ball bounces {shown(abs(off), '%')} "
+        f"{'higher' if off > 0 else 'lower'} than with them"
     )
 
 

@@ -50,7 +50,7 @@ therefore shorter, and the errors there are some 10⁻⁶ of t_c, σ and D, and 
 All quantities are dimensionless; all functions broadcast.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -189,7 +189,8 @@ class Signature(Batch):
         log = np.log(v) / width
         number = np.floor(np.where(np.isnan(log), 0.0, log)).astype(int)
         values = np.full((2, 4, *v.shape), np.nan)
-        key = tuple(x if isinstance(x, str) else float(x) for x in vars(self.law).values())
+        numbers = (getattr(self.law, field.name) for field in fields(self.law))
+        key = tuple(x if isinstance(x, str) else float(x) for x in numbers)
         for panel in np.unique(number):
             coefficients = _panel(type(self.law), key, int(panel))
             slopes = chebyshev.chebder(coefficients) * (2 / width)

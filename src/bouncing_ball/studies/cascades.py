@@ -11,7 +11,7 @@ import xarray as xr
 from pydantic import Field
 
 from bouncing_ball.accuracy.errors import models
-from bouncing_ball.attractors.cascade import MOST, cascade
+from bouncing_ball.attractors.period_doublings import MOST, cascade
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.parameters import Family, LossyRestitution, Many, Parameters, Span, number

@@ -33,6 +33,7 @@ Source: MuJoCo's documentation, *Solver parameters*, read with the engine itself
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -103,15 +104,16 @@ class Impedance(ContactLaw):
         require((c > 0) & (c < 1), c, "midpoint", "in (0, 1)")
         require(power >= 1, power, "power", "at least 1")
 
-    @property
+    # Cached, because each evaluation of the force needs them.
+    @cached_property
     def _spring(self) -> SpringDamper:
         return SpringDamper(self.frequency_ratio, self.damping_ratio, Release.FORCE)
 
-    @property
+    @cached_property
     def _varies(self) -> np.ndarray:
         return np.not_equal(self.share, self.at_surface)
 
-    @property
+    @cached_property
     def has_kink(self) -> bool:
         """Whether d depends on the depth."""
         return bool(np.any(self._varies))
@@ -125,11 +127,12 @@ class Impedance(ContactLaw):
         """d(p)."""
         if not self.has_kink:
             return self.share + 0 * penetration
-        x, c, more = penetration / self.width, self.midpoint, np.asarray(self.power) - 1
-        x = np.where(np.real(x) > 0, np.where(np.real(x) < 1, x, 1.0), 0.0)
-        low, high = x * (x / c) ** more, 1 - (1 - x) * ((1 - x) / (1 - c)) ** more
-        y = np.where(np.real(x) < c, low, high)
-        return self.at_surface + (self.share - self.at_surface) * y
+        x = np.minimum(np.maximum(penetration / self.width, 0.0), 1.0)
+        # Both sides of the midpoint have one formula, from their ends.
+        low = np.real(x) < self.midpoint
+        end, side = np.where(low, x, 1 - x), np.where(low, self.midpoint, 1 - self.midpoint)
+        y = end * (end / side) ** (self.power - 1)
+        return self.at_surface + (self.share - self.at_surface) * np.where(low, y, 1 - y)
 
     def _part(self, penetration: np.ndarray) -> np.ndarray:
         """s = d/d_max."""

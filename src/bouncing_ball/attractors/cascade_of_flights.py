@@ -56,7 +56,7 @@ class Openings(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Rattling:
+class OpeningContacts:
     """T-periodic orbits with k flights whose long contact touches the table's level.
 
     The k flights
@@ -140,8 +140,9 @@ def _held_rate(t, excess: float, aside: float, root: complex, swing: complex):
 def _landings(excess: float, zeta: float, most: int) -> list[tuple[float, tuple[float, ...]]]:
     """The landings of the limit at E until a contact stays closed; at most so many.
 
-    Each has the highest x in the contact that follows and the unknowns of :class:`Rattling`: the
-    release, E, the time of the highest x, the durations of the legs before, and the speeds.
+    Each has the highest x in the contact that follows and the unknowns of
+    :class:`OpeningContacts`: the release, E, the time of the highest x, the durations of the legs
+    before, and the speeds.
     """
     root = complex(-zeta, np.sqrt((1 - zeta) * (1 + zeta)))
     speed = np.sqrt(2 * excess)
@@ -177,9 +178,7 @@ def _landings(excess: float, zeta: float, most: int) -> list[tuple[float, tuple[
 
 
 def _stiff_openings(zeta: float, most: int) -> list[np.ndarray]:
-    """The unknowns of :class:`Rattling` at each opening, in the units of the limit, with E for
-    Λ.
-    """
+    """The unknowns of :class:`OpeningContacts` at each opening, in units of the limit, E for Λ."""
     found: list[np.ndarray] = []
 
     def top(excess: float) -> float:
@@ -243,7 +242,7 @@ def openings(damping_ratio: ArrayLike, frequency_ratio: np.ndarray, most: int) -
     found, before = np.full((2, most, *held.shape), np.nan), held
     for k in range(most):
         start = np.stack([one[k] for one in stiff])
-        problem = Rattling(
+        problem = OpeningContacts(
             SpringDamper(omega[:, np.newaxis], zetas[:, np.newaxis, np.newaxis]), k + 1
         )
         points = _followed(problem, omega, start, held)
@@ -271,7 +270,7 @@ def _returns(contact: SpringDamper, flights: int, points: np.ndarray) -> np.ndar
 
 
 def _followed(
-    problem: Rattling, omega: np.ndarray, start: np.ndarray, held: np.ndarray
+    problem: OpeningContacts, omega: np.ndarray, start: np.ndarray, held: np.ndarray
 ) -> np.ndarray:
     """The orbits at the openings, from the limit on, shape (ζ, ϖ, unknowns)."""
     size = start.shape[-1]

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.attractors.cascade import FEIGENBAUM, Turns, cascade
 from bouncing_ball.attractors.mapper import label
+from bouncing_ball.attractors.period_doublings import FEIGENBAUM, Turns, cascade
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError
 from bouncing_ball.motion.simulation import simulate

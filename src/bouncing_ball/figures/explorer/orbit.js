@@ -212,9 +212,9 @@ function lawNotes(found, n, amplitude, {law, length, contact}) {
   const about = "stiffness, damping, ϖ and ζ are those of the spring and damper of this solref";
   const spring = contactModel(contact).orbit(n, amplitude, "stable");
   if (!orbit.exists || !spring.exists) return [about];
-  const {depth} = loadsOf(orbit), off = spring.max_height / orbit.max_height - 1;
+  const {depth} = loadsOf(orbit), off = orbit.max_height / spring.max_height - 1;
   return [`${about}: at the orbit's depth of ${prefixed(depth * length, "m")}, where the impedance is `
-    + `${general(law.share(depth), 3)}, they would bounce ${percent(Math.abs(off))} ${off > 0 ? "higher" : "lower"}`];
+    + `${general(law.share(depth), 3)}, the ball bounces ${percent(Math.abs(off))} ${off > 0 ? "higher" : "lower"} than with them`];
 }
 
 // What an engine is to be told, and the rows of it.

@@ -45,5 +45,4 @@ def as_json() -> str:
     }
     cases = [_case(*pair, *case) for pair in pairs for case in _CASES]
     # In a page, no text opens or closes a tag.
-    text = json.dumps({"engines": engines, "cases": cases}, allow_nan=False)
-    return text.replace("<", "\\u003c")
+    return json.dumps({"engines": engines, "cases": cases}, allow_nan=False).replace("<", "\\u003c")

@@ -65,6 +65,5 @@ def to_html(data: xr.Dataset, engines: str) -> str:
         references=references(data),
         engines=engines,
         scenes=json.loads(scenes),
-        names=list(json.loads(engines)["engines"]),
         bound=repr(BOUND),
     )

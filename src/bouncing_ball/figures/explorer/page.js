@@ -8,7 +8,8 @@ const BOUND = Number(document.body.dataset.bound);
 // ---- The page.
 const SELECTS = ["engine", "given", "model", "pace", "view"];
 let current = DEFAULTS;
-$("laws").append(...Object.keys(LAWS).map(name => new Option(name)));
+for (const [id, names] of [["laws", LAWS], ["engines-from", ENGINES], ["engine", ENGINES]])
+  $(id).append(...Object.keys(names).map(name => new Option(name)));
 // A state without an answer: why, and nothing of the answer before it.
 function refuse(text) {
   $("refused").textContent = text;

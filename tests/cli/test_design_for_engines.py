@@ -9,6 +9,8 @@ import pytest
 from bouncing_ball import design
 from bouncing_ball.engines import ENGINES
 
+pytestmark = pytest.mark.usefixtures("short_runs")
+
 BALL = ("design", "--mass", "0.5")
 STIFF = (*BALL, "--stiffness", "100 kN/m", "--restitution", "0.75")
 SHAKEN = ("--frequency", "20 Hz", "--acceleration", "0.8 g", "--n", "1")

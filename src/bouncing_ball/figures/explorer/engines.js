@@ -189,10 +189,11 @@ function caseOf({given, engine, release, r, n, t, one, two, m, k, f}) {
   return {mass, time, length, stiffness, damping, contact, law: {name, ...law}, remarks: []};
 }
 
-// The numbers of a law in SI units: name, value, unit.
+// The numbers of a law in SI units: words, value, unit, name.
 const inSi = ({law, mass, time, length}) => Object.entries(law.numbers).map(([name, value]) => {
   const [unit, a, b, c] = LAW_UNITS[law.name][name] ?? ["", 0, 0, 0];
-  return [`${law.name}, ${name}`, value * mass ** a * length ** b * time ** c, unit];
+  const si = value * mass ** a * length ** b * time ** c;
+  return [`${law.name}, ${name}`, si, unit, `law ${name.replaceAll(" ", "_")}`];
 });
 
 // What to write into an engine for a contact of mass, stiffness and damping, with the law of it.

@@ -147,32 +147,32 @@ function fillTables(found, question) {
         value, `${k ? "corrected_errors" : "errors"} ${key}`]))));
 }
 
-// Lengths, times and forces of the physical tab, by name.
+// Lengths, times and forces of the physical tab: words, value, unit, and the name in the JSON of `design`.
 function physical(found, state, {mass, time, length, stiffness, damping, law}) {
   const orbit = found.orbits[0], {omega, zeta} = found.contact, weight = mass * GRAVITY;
   const start = freeAngle(found.contact) / dampedFrequency(found.contact) * time;
   const {depth, force} = loadsOf(orbit);
   return [
-    ["frequency ratio ϖ", omega, ""], ["damping ratio ζ", zeta, ""],
-    ["stiffness k", stiffness, "N/m"], ["damping c", damping, "N s/m"],
+    ["frequency ratio ϖ", omega, "", "frequency_ratio"], ["damping ratio ζ", zeta, "", "damping_ratio"],
+    ["stiffness k", stiffness, "N/m", "stiffness"], ["damping c", damping, "N s/m", "damping"],
     ["natural frequency ω", omega / time, "rad/s"],
-    ["restitution of a free impact", found.own, ""],
+    ["restitution of a free impact", found.own, "", "measured_restitution"],
     ...(law ? inSi({law, mass, time, length}) : []),
     ["amplitude of the table", state.acc * length, "m"],
-    ["contact time, free", start, "s"],
+    ["contact time, free", start, "s", "contact_time"],
     // There is one time step, an engine's if one is chosen.
-    ...(state.engine === "none" ? [["largest time step, a fiftieth of it", start / 50, "s"]] : []),
-    ["static deflection", law ? restOf(law) * length : weight / stiffness, "m"],
-    ["permanent contact up to Λ", found.thresholds[0], ""],
-    ["greatest height", orbit.max_height * length, "m"],
-    ["duration of contact", orbit.contact_duration * time, "s"],
-    ["impact speed", -orbit.relative_impact_velocity * GRAVITY * time, "m/s"],
-    ["greatest compression (sampled)", depth * length, "m"],
-    ["peak force (sampled)", force * weight, "N"],
-    ["peak force over weight (sampled)", force, ""],
-    ["corrected model: delay t_c", found.signature.delay * time, "s"],
-    ["corrected model: restitution r", found.signature.r, ""],
-    ["corrected model: load σ", found.signature.load * time, "s"],
+    ...(state.engine === "none" ? [["largest time step, a fiftieth of it", start / 50, "s", "largest"]] : []),
+    ["static deflection", law ? restOf(law) * length : weight / stiffness, "m", "static_deflection"],
+    ["permanent contact up to Λ", found.thresholds[0], "", "permanent_contact"],
+    ["greatest height", orbit.max_height * length, "m", "max_height"],
+    ["duration of contact", orbit.contact_duration * time, "s", "contact_duration"],
+    ["impact speed", -orbit.relative_impact_velocity * GRAVITY * time, "m/s", "impact_speed"],
+    ["greatest compression (sampled)", depth * length, "m", "greatest_compression"],
+    ["peak force (sampled)", force * weight, "N", "peak_force"],
+    ["peak force over weight (sampled)", force, "", "peak_force_over_weight"],
+    ["corrected model: delay t_c", found.signature.delay * time, "s", "delay"],
+    ["corrected model: restitution r", found.signature.r, "", "restitution"],
+    ["corrected model: load σ", found.signature.load * time, "s", "load"],
   ];
 }
 
@@ -223,13 +223,13 @@ function showEngine({engine, e}, one) {
   if (engine === "none") return [];
   const {release} = one.contact;
   // Drake's law has its numbers in SI units.
-  const law = one.law && Object.fromEntries(inSi(one).map(([name, value]) => [name.split(", ")[1], value]));
+  const law = one.law && Object.fromEntries(inSi(one).map(([, value,, key]) => [key.slice(4), value]));
   const found = settingsOf(ENGINES, engine, release, one, e, law);
   $("paste-says").textContent = `For ${engine}, whose contacts end by ${release} `
     + `(r = ${shown(found.restitution, 4)}, within ${e} in ${found.steps} steps of ${found.scheme} `
     + "in a contact):";
   $("snippet").textContent = found.snippet;
-  return [[`time step for an error of ${e} in r`, found.time_step, "s"]];
+  return [[`time step for an error of ${e} in r`, found.time_step, "s", "largest"]];
 }
 
 // ---- The animation: it waits until it is asked, and for those who want no motion stays so.

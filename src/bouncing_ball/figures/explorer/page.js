@@ -64,7 +64,7 @@ function show(hash) {
   if (state.tab === "design") {
     const one = question.physical;
     $("design-rows").replaceChildren(...[...showEngine(state, one), ...physical(found, state, one)].map(
-      ([name, value, unit]) => row(name, [[unit ? prefixed(value, unit) : shown(value), value, name]])));
+      ([name, value, unit, key]) => row(name, [[unit ? prefixed(value, unit) : shown(value), value, key ?? name]])));
     $("notes").replaceChildren(...notesOf(found, question, one).map(note => {
       const item = document.createElement("li");
       item.textContent = `${note}.`;

@@ -45,7 +45,7 @@ def test_hunt_and_crossleys_contact_is_written_for_drake():
     assert settings.parameters == pytest.approx(both, rel=1e-11)
     assert all(repr(value) in settings.snippet for value in settings.parameters.values())
     assert found.time_step.largest == settings.time_step
-    with pytest.raises(ModelError, match="tsuji is not written for drake"):
+    with pytest.raises(ModelError, match="tsuji cannot be written for drake"):
         design(**TABLE, **asked | {"law": "tsuji"}, engine="drake")
 
 
@@ -96,7 +96,10 @@ def test_from_one_engine_to_another_of_another_release(table):
         ({"measured_restitution": 0.7}, "contradict each other"),
         ({"restitution": 0.1}, "the range of the force release"),
         ({"restitution_error": 0.0}, "restitution_error = 0 is not a number in (0, 1)"),
-        ({"stiffness": None, "reduced_modulus": 1e9, "radius": 0.01}, "is not written for mujoco"),
+        (
+            {"stiffness": None, "reduced_modulus": 1e9, "radius": 0.01},
+            "cannot be written for mujoco",
+        ),
         (
             {"stiffness": None, "reduced_modulus": 1e9, "radius": 0.01, "engine": None},
             "the frequency of the table is missing",

@@ -371,7 +371,7 @@ def test_a_law_is_refused_with_what_it_does_not_have():
         ({"stiffness": 1e5}, "stiffness is not allowed with law hunt-crossley"),
         ({}, "law hunt-crossley needs contact_time"),
         ({"contact_time": 3e-4, "release": "force"}, "release is not allowed with law"),
-        ({"contact_time": 3e-4, "engine": "mujoco"}, "cannot be written for mujoco"),
+        ({"contact_time": 3e-4, "engine": "mujoco"}, "is not written for mujoco"),
     ]:
         with pytest.raises(ModelError, match=re.escape(said)):
             design(**given, law="hunt-crossley", **more)

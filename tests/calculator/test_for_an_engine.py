@@ -45,7 +45,7 @@ def test_hunt_and_crossleys_contact_is_written_for_drake():
     assert settings.parameters == pytest.approx(both, rel=1e-11)
     assert all(repr(value) in settings.snippet for value in settings.parameters.values())
     assert found.time_step.largest == settings.time_step
-    with pytest.raises(ModelError, match="tsuji cannot be written for drake"):
+    with pytest.raises(ModelError, match="tsuji is not written for drake"):
         design(**TABLE, **asked | {"law": "tsuji"}, engine="drake")
 
 
@@ -98,7 +98,7 @@ def test_from_one_engine_to_another_of_another_release(table):
         ({"restitution_error": 0.0}, "restitution_error = 0 is not a number in (0, 1)"),
         (
             {"stiffness": None, "reduced_modulus": 1e9, "radius": 0.01},
-            "cannot be written for mujoco",
+            "is not written for mujoco",
         ),
         (
             {"stiffness": None, "reduced_modulus": 1e9, "radius": 0.01, "engine": None},

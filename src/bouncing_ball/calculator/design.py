@@ -269,9 +269,7 @@ def _of_law(
     if name is not None and engine is not None and name != SpringDamper.name:
         laws = engine_named(engine).laws
         if name not in {*laws, *laws.values()}:
-            raise ParameterError(
-                f"{{law}} {name} cannot be written for {engine}: leave {{law}} out"
-            )
+            raise ParameterError(f"{{law}} {name} is not written for {engine}: leave {{law}} out")
         name = laws.get(name, name)
     kind = None if name is None else law_named(name)
     if kind is None or kind is SpringDamper:
@@ -297,7 +295,7 @@ def _under(engine: str | None, release: str | None, given: dict[str, float]) -> 
         return Release.of(release or Release.DISPLACEMENT)
     rule = engine_named(engine).release(release)
     if "reduced_modulus" in given or "youngs_modulus" in given:
-        raise ParameterError(f"a Hertz contact cannot be written for {engine}: give {{stiffness}}")
+        raise ParameterError(f"a Hertz contact is not written for {engine}: give {{stiffness}}")
     if "measured_restitution" not in given and "restitution" in given:
         given["measured_restitution"] = given.pop("restitution")
     return rule

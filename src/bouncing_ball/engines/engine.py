@@ -181,7 +181,7 @@ class Engine(ABC):
         ModelError
             If the engine has no such law.
         """
-        raise ModelError(f"{law['name']} cannot be written for {self.name}")
+        raise ModelError(f"{law['name']} is not written for {self.name}")
 
     def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
         """Sentences on how the engine with these parameters differs from a spring and a damper."""

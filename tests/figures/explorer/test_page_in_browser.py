@@ -83,11 +83,9 @@ FAULTY = {
     "engine=drake&release=displacement": "--engine drake --release displacement --stiffness 1",
     "given=mujoco&one=1 -2": "--from mujoco --solref '1 -2'",
     "given=mujoco": "--from mujoco",
-    "given=mujoco&one=-1e5": "--from mujoco --solref=-1e5",
     "given=mujoco&one=-1e5 -20&two=0.9 1.2": "--from mujoco --solref '-1e5 -20' --solimp '0.9 1.2'",
     "given=lammps&one=1e5": "--from lammps --set kn=1e5",
     "given=lammps&one=-1e5&two=20": "--from lammps --set kn=-1e5 --set gamma_n=20",
-    "given=lammps&one=0&two=20": "--from lammps --set kn=0 --set gamma_n=20",
     "given=tsuji&engine=mujoco": "--law tsuji --engine mujoco --contact-time 1 --restitution 1",
     "given=tsuji&release=force": "--law tsuji --release force --contact-time 1 --restitution 1",
 }  # fmt: skip
@@ -248,6 +246,7 @@ def test_step_and_play_and_what_is_refused_on_the_stage(seen):
     assert rising["verdict"] == rising["command"] == "" and rising["picture"] == 0
 
 
+MODELS = "spring-damper", "restitution", "corrected"
 SAMPLED = {"greatest_compression", "peak_force", "peak_force_over_weight", "permanent_contact"}
 
 
@@ -275,8 +274,7 @@ def test_the_physical_tab_says_what_the_command_prints(case, seen, capsys, short
     numbers |= {f"law {name}": x for name, x in law.items()}
     numbers = {name: numbers[name] for name in page if name in numbers}
     assert len(numbers) >= 18
-    for model, found in orbit["standing"].items():
-        name = model if model in ("restitution", "corrected") else "spring-damper"
+    for name, found in zip(MODELS, orbit["standing"].values(), strict=True):
         numbers |= {f"{name} {x}": found[x] for x in ("saddle_node", "period_doubling")}
     agree(page, {name: numbers[name] for name in numbers if name not in SAMPLED}, rel=bound)
     agree(page, {name: numbers[name] for name in SAMPLED}, rel=1e-5)
@@ -284,22 +282,16 @@ def test_the_physical_tab_says_what_the_command_prints(case, seen, capsys, short
         agree(page, {f"{kind} {x}": y for x, y in orbit[kind].items()}, rel=0, abs=30 * bound)
     if orbit["is_stable"] and orbit["is_admissible"]:
         # The page judges orbits only, and no ball that is laid on the table.
-        assert state["verdict"].startswith(
-            said["verdict"].partition("; a ball laid")[0].rstrip(".")
-        )
+        verdict = said["verdict"].partition("; a ball laid")[0].rstrip(".")
+        assert state["verdict"].startswith(verdict)
     else:
         assert "unstable" in state["verdict"] or not orbit["exists"]
-    assert [note.replace(", and the ϖ that is needed,", "") for note in said["notes"]] == [
-        note.removesuffix(".") for note in state["notes"]
-    ]
+    notes = [f"{note.replace(', and the ϖ that is needed,', '')}." for note in said["notes"]]
+    assert state["notes"] == notes
     if engine != "none":
-        settings, number = said["engine"], r"\d+\.\d+(?:e[+-]\d+)?"
+        settings = said["engine"]
         assert f"in {settings['steps']} steps of {settings['scheme']}" in state["says"]
-        texts = state["snippet"], settings["snippet"]
-        assert len({re.sub(number, "", text) for text in texts}) == 1
-        pasted, printed = ([float(x) for x in re.findall(number, text)] for text in texts)
-        # The same text, but for a law's stiffness, which comes from a simulated impact.
-        assert pasted == pytest.approx(printed, rel=1e-11 if law else 0, abs=0)
+        assert state["snippet"] == settings["snippet"]
 
 
 def test_bad_input_is_refused_in_the_words_of_the_command(seen, capsys):

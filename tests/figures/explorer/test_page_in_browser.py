@@ -87,7 +87,6 @@ FAULTY = {
     "given=lammps&one=1e5": "--from lammps --set kn=1e5",
     "given=lammps&one=-1e5&two=20": "--from lammps --set kn=-1e5 --set gamma_n=20",
     "given=tsuji&engine=mujoco": "--law tsuji --engine mujoco --contact-time 1 --restitution 1",
-    "given=tsuji&release=force": "--law tsuji --release force --contact-time 1 --restitution 1",
 }  # fmt: skip
 
 
@@ -182,8 +181,8 @@ def test_no_request_leaves_the_page(seen):
 def test_address_slider_and_typed_values(seen):
     assert seen["refused"] == "Not a value here, and left out: nonsense = 1."
     assert "--restitution 0.65 --frequency-ratio 6 --amplitude 1 " in seen["first"]["command"]
-    assert "--restitution 0.5 --frequency-ratio 20 --amplitude 1.2" in seen["byAddress"]["command"]
-    assert "--release force" in seen["byAddress"]["command"]
+    given = "--restitution 0.5 --frequency-ratio 20 --amplitude 1.2 --n 1 --release force"
+    assert given in seen["byAddress"]["command"]
     assert "w=31.62" in seen["bySlider"]["hash"] and seen["bySlider"]["typed"] == "31.62"
     # What is out of range is marked, changes no address, and leaves no answer beside it.
     says = "restitution coefficient r: 1.5 is not a number from 0.001 to 1."

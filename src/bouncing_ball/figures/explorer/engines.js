@@ -179,7 +179,7 @@ function caseOf({given, engine, release, r, n, t, one, two, m, k, f}) {
     return {mass, time, length, stiffness: k, damping: 2 * contact.zeta * Math.sqrt(k * mass), contact, law: null, remarks: []};
   }
   const laws = ENGINE_LAWS[engine] ?? {};
-  refuseIf(engine !== "none" && !laws[given], `--law ${given} cannot be written for ${engine}: leave --law out`);
+  refuseIf(engine !== "none" && !laws[given], `--law ${given} is not written for ${engine}: leave --law out`);
   const name = laws[given] ?? given, unit = contactOf(r, 1, release, true), duration = t / 1000 / time;
   const contact = {...unit, omega: freeAngle(unit) / dampedFrequency(unit) / duration};
   const law = lawOfImpact(name, r, duration, 2 * Math.PI * n / (1 + r));
@@ -206,7 +206,7 @@ function settingsOf(engines, name, release, {mass, stiffness, damping}, error, l
   const numbers = law ? {point_contact_stiffness: rounded(2 * law.stiffness),
     hunt_crossley_dissipation: rounded(law.damping)} : ENGINE_NUMBERS[name](m, k, c);
   const texts = Object.fromEntries(
-    Object.entries({mass: m, time_step, ...numbers}).map(([key, x]) => [key, repr(x)]));
+    Object.entries({mass: law ? mass : m, time_step, ...numbers}).map(([key, x]) => [key, repr(x)]));
   for (const rule of ["displacement", "force"]) texts[rule] = ownRestitution(of(rule)).toFixed(4);
   return {scheme, steps, time_step, restitution: ownRestitution(contact),
     snippet: snippets[law ? "hunt-crossley" : release].replace(/@([\w.]+)@/g, (_, key) => texts[key])};

@@ -11,9 +11,8 @@ configfile: "config/config.yaml"
 
 
 include: "workflow/rules/common.smk"
-# The stages of the paper by their names (restitution_model, apparent_restitution, time_histories,
-# continuation_of_orbits, permanent_contact, error_thresholds, beyond_the_paper, audit), and which
-# figure comes from which: workflow/artifacts.yaml. Each is a rule: parameters in, datasets out.
+# The stages of the paper by their names, and which figures and tables belong to each: parameters
+# in, datasets out.
 include: "workflow/rules/study.smk"
 include: "workflow/rules/check.smk"
 # Datasets in, figures, tables and text out.

@@ -1,40 +1,47 @@
 """Do the tests notice a wrong line?  ``make mutants``
 
-A sample of single faults is put into copies of the tree, one at a time. The
-doctests of the module and the tests of its folder run first, then those of ``make quick``. A fault
+Single faults are put into modules as these are imported, one at a time. First ``make quick``
+runs without a fault, and each test is noted with the functions that it calls. For a fault the
+tests run that reach its function, the nearest first, and then all others of its folder. A fault
 is noticed if one of them fails, or hangs. What survives is listed: it changes nothing, or a
-test is missing. With ``--near`` only the tests next to the fault run, in a fraction of the time;
-what survives it may still be noticed elsewhere.
+test is missing.
 
-usage: python tests/mutants.py [--count 200] [--seed 2011] [--near] [--workers 2] [--only PART ...]
+usage: python tests/mutants.py [--count 200] [--seed 2011] [--workers 2] [--only PART ...]
 """
 
 import argparse
 import ast
 import hashlib
+import importlib
+import multiprocessing
 import os
-import queue
-import shutil
-import subprocess
+import signal
 import sys
-import tempfile
-from collections import Counter
-from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
+import time
+from collections import ChainMap, Counter, defaultdict
+from collections.abc import Iterable, Iterator, Sequence
+from importlib.machinery import SourceFileLoader
 from itertools import islice
 from pathlib import Path
-from typing import NamedTuple
+from types import CodeType, FrameType
+from typing import Any, NamedTuple
+
+import pytest
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = Path("src/bouncing_ball")
 LAYERS = ["contacts", "continuation", "motion", "orbits", "attractors", "accuracy", "studies",
           "claims", "engines", "calculator", "atlas", "compare"]  # fmt: skip
-QUICK = "not long and not slow and not cluster and not engines"
+QUICK = "not long and not slow and not cluster and not engines and not docs"
 # The tests of all models and laws are in a folder of their own.
 CONTRACTS = {"contacts", "continuation", "motion", "orbits"}
-EVERYTHING = ["src", "tests", "--ignore=tests/workflow", "--ignore=tests/figures"]
-# In seconds; some tests take minutes on a busy machine, and only a hang takes this long.
-HANGS = 1800
+# What this does not run: pictures, and runs of the pipeline.
+ELSEWHERE = {"tests/figures", "tests/speed", "tests/workflow"}
+# Imported once for all processes.
+LIBRARIES = ["matplotlib", "mpmath", "netCDF4", "pint", "pydantic", "scipy.optimize", "xarray"]
+# A test hangs that takes this many times as long as without a fault, and one second more.
+LONGER = 60
+Functions = set[tuple[str, int]]
 # Another operator of the same kind: a sign, an exponent, a border, a condition.
 _OPERATORS: dict[type, tuple[type, ...]] = {
     ast.Add: (ast.Sub,),
@@ -67,8 +74,9 @@ _SMALL = 1e-3
 
 
 class Fault(NamedTuple):
-    """One fault: where it is, what it changes, and the source that has it."""
+    """One fault: its function and its line, what it changes, and the source that has it."""
 
+    function: int
     line: int
     before: str
     after: str
@@ -88,9 +96,22 @@ def faults(source: str) -> list[Fault]:
     -a → a
     0 → 1
     """
+    tree = ast.parse(source)
+    first: dict[int, int] = {}
+    # Outer functions come before inner ones; a function begins at its decorators.
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef):
+            start = min([node.lineno, *(each.lineno for each in node.decorator_list)])
+            first |= dict.fromkeys(range(start, node.end_lineno + 1), start)
     return [
-        Fault(node.lineno, ast.unparse(node), ast.unparse(wrong), _with(source, node, wrong))
-        for node in _computing(ast.parse(source))
+        Fault(
+            first.get(node.lineno, 0),
+            node.lineno,
+            ast.unparse(node),
+            ast.unparse(wrong),
+            _with(source, node, wrong),
+        )
+        for node in _computing(tree)
         for wrong in _wrong(node)
     ]
 
@@ -170,39 +191,122 @@ def sample(count: int, seed: int, only: Sequence[str] = ("",)) -> list[tuple[Pat
     return [(name, fault) for _, name, fault in islice(asked, count)]
 
 
-def passes(tree: Path, *tests: str) -> bool:
-    """Whether tests pass in a copy of the tree; one that collects nothing passes."""
-    command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "-m", QUICK]
-    environment = {**os.environ, "PYTHONPATH": str(tree / "src"), "OMP_NUM_THREADS": "1",
-                   "PYTHONDONTWRITEBYTECODE": "1"}  # fmt: skip
-    try:
-        ended = subprocess.run(
-            [*command, *tests], cwd=tree, env=environment, capture_output=True, timeout=HANGS
-        )
-    except subprocess.TimeoutExpired:
-        return False
-    return ended.returncode in (0, 5)
+class Reach:
+    """A plugin of pytest: the seconds that each test takes, and the functions that it calls.
+
+    A function is the path of its module with its first line; the line 0 stands for the module.
+    """
+
+    def __init__(self) -> None:
+        self.tests: dict[str, tuple[float, Functions]] = {}
+        self._fixtures: dict[str, Functions] = defaultdict(set)
+
+    def _note(self, functions: Functions) -> None:
+        def call(frame: FrameType, event: str, argument: object) -> None:
+            functions.add((frame.f_code.co_filename, frame.f_code.co_firstlineno))
+
+        sys.settrace(call)
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_fixture_setup(self, fixturedef: Any) -> Iterator[None]:
+        # A fixture of a session is set up in one test and used in others.
+        outer = sys.gettrace()
+        self._note(self._fixtures[fixturedef.argname])
+        result = yield
+        sys.settrace(outer)
+        return result
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_protocol(self, item: Any) -> Iterator[None]:
+        calls, start = set(), time.process_time()
+        self._note(calls)
+        result = yield
+        sys.settrace(None)
+        calls.update(*(self._fixtures[name] for name in getattr(item, "fixturenames", ())))
+        functions = {(os.path.relpath(name), line) for name, line in calls}
+        functions |= {(name, 0) for name, _ in functions}
+        self.tests[item.nodeid] = time.process_time() - start, functions
+        return result
 
 
-def mirror(path: Path) -> list[str]:
-    """The folders of the tests next to a module."""
+class Chosen:
+    """A plugin of pytest: some tests only, each as long as it may take."""
+
+    def __init__(self, seconds: dict[str, float]) -> None:
+        self._seconds = seconds
+
+    def pytest_collection(self) -> None:
+        # pytest asks to be the first that imports it.
+        from hypothesis import Phase, settings
+
+        # It is enough that a random example fails; it need not be the simplest one.
+        settings.register_profile("first", settings(), phases=[Phase.explicit, Phase.generate])
+        settings.load_profile("first")
+        # A test that hangs is interrupted.
+        signal.signal(signal.SIGALRM, signal.default_int_handler)
+
+    def pytest_collection_modifyitems(self, items: list[Any]) -> None:
+        items[:] = [item for item in items if item.nodeid in self._seconds]
+
+    def pytest_runtest_setup(self, item: Any) -> None:
+        signal.setitimer(signal.ITIMER_REAL, LONGER * (1 + self._seconds[item.nodeid]))
+
+
+def passes(files: Iterable[str], plugin: Reach | Chosen) -> bool:
+    """Whether tests pass, or there are none; in a process of their own."""
+    silence = os.open(os.devnull, os.O_WRONLY)
+    for stream in (1, 2):
+        os.dup2(silence, stream)
+    options = ["-q", "-x", "--tb=no", "-p", "no:cacheprovider", "-m", QUICK]
+    code = pytest.main([*options, *files], [plugin])
+    signal.setitimer(signal.ITIMER_REAL, 0)
+    return code in (0, 5)
+
+
+def reached(part: str) -> dict[str, tuple[float, Functions]] | None:
+    """What the tests of a folder reach; None if they fail."""
+    reach = Reach()
+    return reach.tests if passes([part], reach) else None
+
+
+def chosen(
+    path: Path, fault: Fault, tests: dict[str, tuple[float, Functions]], near: bool
+) -> dict[str, float]:
+    """The seconds of the tests for a fault, in the order in which their files run.
+
+    Near it are those of its module and of the folders beside it that reach it. The others are
+    those elsewhere that reach it, and those beside it that do not: a cache may hide that they do.
+    """
     layer = path.relative_to(PACKAGE).parts[0]
-    return [f"tests/{layer}", *(["tests/contracts"] if layer in CONTRACTS else [])]
+    own = str(path), f"tests/{layer}/test_{path.stem}.py"
+    folders = f"tests/{layer}/", *(["tests/contracts/"] if layer in CONTRACTS else [])
+    reaching = {name for name, (_, calls) in tests.items() if (str(path), fault.function) in calls}
+    beside = {name for name in tests if name.startswith((*own, *folders))}
+    found = reaching & beside if near else reaching ^ beside
+    spent: Counter[str] = Counter()
+    for name in found:
+        spent[name.split("::")[0]] += tests[name][0]
+
+    def order(name: str) -> tuple[bool, bool, float]:
+        file = name.split("::")[0]
+        return name not in reaching, file not in own, spent[file]
+
+    return {name: tests[name][0] for name in sorted(found, key=order)}
 
 
-def survives(tree: Path, path: Path, fault: Fault, near: bool) -> bool:
-    """Whether no test notices a fault, or none next to it."""
-    folders = mirror(path)
-    own = [name for name in [f"{folders[0]}/test_{path.stem}.py"] if (tree / name).exists()]
-    before = [*folders, "tests/workflow", "tests/figures"]
-    right = (tree / path).read_text()
-    (tree / path).write_text(fault.source)
-    try:
-        if not passes(tree, str(path), *own, *folders):
-            return False
-        return near or passes(tree, "src", "tests", *(f"--ignore={folder}" for folder in before))
-    finally:
-        (tree / path).write_text(right)
+def survives(work: tuple[Path, Fault, dict[str, float]]) -> bool:
+    """Whether no test notices a fault."""
+    path, fault, seconds = work
+    wrong, right = str(path.absolute()), SourceFileLoader.get_code
+
+    def get_code(self: SourceFileLoader, name: str) -> CodeType | None:
+        if self.path == wrong:
+            return compile(fault.source, wrong, "exec", dont_inherit=True)
+        return right(self, name)
+
+    SourceFileLoader.get_code = get_code
+    files = dict.fromkeys(name.split("::")[0] for name in seconds)
+    return not files or passes(files, Chosen(seconds))
 
 
 def main() -> None:
@@ -210,39 +314,34 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--seed", type=int, default=2011)
     parser.add_argument("--only", nargs="*", default=[""], help="parts of the paths of modules")
-    parser.add_argument("--near", action="store_true", help="the tests next to a fault only")
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
     options = parser.parse_args()
     drawn = sample(options.count, options.seed, options.only)
-    trees: queue.SimpleQueue[Path] = queue.SimpleQueue()
-    with tempfile.TemporaryDirectory() as folder:
-        for worker in range(options.workers):
-            tree = Path(folder) / str(worker)
-            tracked = subprocess.run(
-                ["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=True, text=True
-            ).stdout.split("\0")
-            for name in filter(None, tracked):
-                (tree / name).parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy(ROOT / name, tree / name)
-            trees.put(tree)
-        beside = sorted({folder for path, _ in drawn for folder in mirror(path)})
-        if not passes(tree, *(["src", *beside] if options.near else EVERYTHING)):
+    # Each part and each fault has a process, a fork of this one, which has the libraries.
+    os.chdir(ROOT)
+    os.environ["OMP_NUM_THREADS"] = "1"
+    for name in LIBRARIES:
+        importlib.import_module(name)
+    parts = [*PACKAGE.iterdir(), *Path("tests").iterdir()]
+    parts = sorted(str(x) for x in parts if x.is_dir() or x.suffix == ".py")
+    context = multiprocessing.get_context("fork")
+    with context.Pool(options.workers, maxtasksperchild=1) as pool:
+        found = pool.map(reached, [x for x in parts if x not in ELSEWHERE], chunksize=1)
+        if None in found:
             sys.exit("the tests fail without any fault: see make quick")
-
-        def tried(drawn_fault: tuple[Path, Fault]) -> bool:
-            tree = trees.get()
-            try:
-                return survives(tree, *drawn_fault, options.near)
-            finally:
-                trees.put(tree)
-
-        survived = 0
-        with ThreadPoolExecutor(options.workers) as pool:
-            for (path, fault), alive in zip(drawn, pool.map(tried, drawn), strict=True):
-                survived += alive
-                state = "SURVIVED" if alive else "noticed "
-                print(f"{state} {path}:{fault.line}: {fault.before}  →  {fault.after}", flush=True)
-    print(f"{len(drawn) - survived} of {len(drawn)} faults noticed, {survived} survived")
+        left, tests = drawn, dict(ChainMap(*found))
+        for near in (True, False):
+            tried = left
+            left = []
+            work = ((*each, chosen(*each, tests, near)) for each in tried)
+            for (path, fault), lives in zip(tried, pool.imap(survives, work), strict=True):
+                if lives:
+                    left.append((path, fault))
+                if not (lives and near):
+                    state = "SURVIVED" if lives else "noticed "
+                    where = f"{state} {path}:{fault.line}:"
+                    print(f"{where} {fault.before}  →  {fault.after}", flush=True)
+    print(f"{len(drawn) - len(left)} of {len(drawn)} faults noticed, {len(left)} survived")
 
 
 if __name__ == "__main__":

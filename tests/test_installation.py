@@ -63,7 +63,7 @@ def test_what_is_not_installed_is_said_in_one_line(command, extra):
     done = without_extras(f"from bouncing_ball.cli.main import main; main({command!r})")
     assert done.returncode == 2
     assert re.fullmatch(
-        rf"bouncing-ball: \w+ is not installed, and this needs it: install the extra '{extra}', "
+        rf"bouncing-ball: \w+ is not installed: install the extra '{extra}', "
         rf'for example pip install "\.\[{extra}\]"\n',
         done.stderr,
     )

@@ -97,7 +97,7 @@ def test_every_model_answers_single_numbers_with_single_numbers(given):
 def test_a_model_has_the_calls_as_methods(name, given, refusal):
     call, model = getattr(bouncing_ball, name), bouncing_ball.model(0.85)
     assert getattr(model, name)(**given).equals(call(**given, restitution=0.85))
-    with refusal(bouncing_ball.ModelError, "restitution does not go with model, which is a model"):
+    with refusal(bouncing_ball.ModelError, "restitution is not allowed with model, which has its"):
         call(**given, restitution=0.85, model=model)
     with refusal(bouncing_ball.ModelError, "several models have no labels"):
         getattr(bouncing_ball.model([0.5, 0.85]), name)(**given)
@@ -135,7 +135,7 @@ def test_arrays_give_labelled_orbits_and_limits(given):
     [
         (
             lambda: bouncing_ball.orbit(1, [0.5, 1.0], index=1, **CONTACT),
-            "is for one orbit, and not",
+            "is for one orbit and does not",
         ),
         (lambda: bouncing_ball.orbit(1, [0.5, 1.0], side="all", **CONTACT), "side all is for one"),
         (lambda: bouncing_ball.orbit(1, 1.0, side="up", **CONTACT), "one of stable, unstable, all"),
@@ -151,7 +151,7 @@ def test_arrays_give_labelled_orbits_and_limits(given):
         (lambda: bouncing_ball.orbit(1, "a", restitution=0.85), "amplitude = 'a' is not a number"),
         # A text of the user is shown as it is, and is no placeholder of a message.
         (lambda: bouncing_ball.orbit(1, "{law} {}", restitution=0.85), "= '{law} {}' is not a num"),
-        (lambda: bouncing_ball.orbit(1, 1.0, **{"{n}": 1}), "unknown parameter '{n}': a model has"),
+        (lambda: bouncing_ball.orbit(1, 1.0, **{"{n}": 1}), "unknown parameter '{n}': choose from"),
         (
             lambda: bouncing_ball.model(law="tsuji", parameters={"{x}": 1.0}),
             "unknown parameter '{x}' of tsuji",

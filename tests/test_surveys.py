@@ -136,20 +136,20 @@ def test_a_plot_shows_the_data_and_is_a_picture(data, tmp_path):
         (lambda: bb.history([], restitution=0.5), "amplitude has no entries"),
         (
             lambda: bb.history(1.0, restitution=0.5, periods=10_000, samples=10_000),
-            "100000001 states in all are more than 10000000",
+            "100000001 states exceed the limit of 10000000",
         ),
         (
             lambda: bb.drop(9.0, law="tsuji", restitution=[0.5, 0.6], duration=0.1),
-            "restitution of law tsuji is one number",
+            "restitution must be a single number with law tsuji",
         ),
         (
             lambda: bb.drop(9.0, law="tsuji", parameters={"stiffness": [9.0, 8.0], "damping": 1.0}),
-            "parameters are numbers here",
+            "parameters must be single numbers",
         ),
-        (lambda: bb.history(1.0, restitution=0.5, foo=3), "unknown parameter 'foo': a model has"),
+        (lambda: bb.history(1.0, restitution=0.5, foo=3), "unknown parameter 'foo': choose from"),
         (
             lambda: bb.history(1.0, **CONTACT, release=["force", "displacement"]),
-            "release is one value, or an array of numbers",
+            "release must be one value or an array of numbers",
         ),
         (lambda: bb.branch(0, restitution=0.5), "n = 0 is not a whole number from 1 to 1000"),
         (lambda: bb.branch(1, restitution=0.5, amplitude_max=0.1), "no 1-T orbit up to Λ = 0.1"),

@@ -21,7 +21,9 @@ pair = bouncing_ball.design(
     damping=damping,
     n=1,
 )
-print(pair.verdict)
+one = pair.judged
+errors = one.errors["max_height"], one.corrected_errors["max_height"]
+print(f"height: restitution model {errors[0]:.1%} off, corrected model {errors[1]:.3%}")
 orbit = pair.orbits[0]
 worst = max(orbit.errors, key=orbit.errors.get)
 print(f"largest error: {worst}, {100 * orbit.errors[worst]:.1f} %")

@@ -13,7 +13,9 @@ ball = bouncing_ball.design(
     measured_restitution=0.9,
     n=1,
 )
-print(ball.verdict)
+one = ball.judged
+errors = one.errors["max_height"], one.corrected_errors["max_height"]
+print(f"height: restitution model {errors[0]:.1%} off, corrected model {errors[1]:.3%}")
 delay, load = ball.corrected.delay, ball.corrected.load
 r = ball.corrected.restitution
 print(f"corrected: rebound {delay:.2g} s later, r = {r:.2g} + {load:.1g} s · a/v")

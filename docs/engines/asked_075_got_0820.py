@@ -11,10 +11,12 @@ mujoco = ENGINES["mujoco"]
 
 # k and c were multiplied by the mass; MuJoCo's numbers are k/m and c/m.
 written = mujoco.read({"solref": "-284244 -68.8"}, MASS)
-print(f"written: zeta = {written.damping_ratio:.4f}, r = {written.restitution(Release.FORCE):.4f}")
+r = written.restitution(Release.FORCE)
+print(f"as written         zeta = {written.damping_ratio:.4f}, r = {r:.4f}")
 
+# The zeta that has r = 0.75 by either release, in MuJoCo, which has the force release.
 for release in (Release.DISPLACEMENT, Release.FORCE):
     zeta = float(damping_ratio(0.75, release))
     contact = Physical(MASS, STIFFNESS, 2 * zeta * MASS * OMEGA)
     r = contact.restitution(Release.FORCE)
-    print(f"zeta of 0.75 by the {release} release: {zeta:.4f}, MuJoCo's r = {r:.4f}")
+    print(f"for {release:12}   zeta = {zeta:.4f}, r = {r:.4f}")

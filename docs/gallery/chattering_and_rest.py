@@ -1,4 +1,4 @@
-"""Chattering and rest: infinitely many impacts in a finite time, then the ball stays down."""
+"""Chattering and rest: infinitely many impacts in a finite time bring the ball to rest."""
 
 import matplotlib.pyplot as plt
 import numpy as np

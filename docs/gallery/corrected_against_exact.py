@@ -1,4 +1,4 @@
-"""The corrected model against the exact one: its error falls twice as fast with the stiffness."""
+"""The corrected model against the exact one: its error falls as 1/ϖ², and not as 1/ϖ."""
 
 import matplotlib.pyplot as plt
 import numpy as np

@@ -1,4 +1,4 @@
-"""A doubling cascade: 1 impact in a repetition becomes 2, 4, 8 … and then none repeats."""
+"""A doubling cascade: the motion repeats after 1, 2, 4, 8 … impacts, and then not at all."""
 
 import matplotlib.pyplot as plt
 import numpy as np

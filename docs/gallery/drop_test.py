@@ -1,4 +1,4 @@
-"""How a drop test gives r: the square root of the ratio of two heights that follow each other."""
+"""How a drop test gives r: the square root of the ratio of two successive heights is r."""
 
 from itertools import pairwise
 

@@ -1,4 +1,4 @@
-"""Five balls that start alike and part: their first speeds differ by a thousandth."""
+"""Five balls that start alike and part: their initial speeds differ by a thousandth."""
 
 import matplotlib.pyplot as plt
 import numpy as np

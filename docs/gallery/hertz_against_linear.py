@@ -1,4 +1,4 @@
-"""Hertz against linear: two contacts with the same restitution and the same duration."""
+"""Hertz against linear: both contacts have the same restitution coefficient and duration."""
 
 import matplotlib.pyplot as plt
 

@@ -1,4 +1,4 @@
-"""The orbit diagram: on which phases does a ball land in the long run, for each amplitude?"""
+"""The orbit diagram: the phases at which a ball lands in the long run, for each amplitude."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Permanent contact and the first flight: a compliant contact is lifted more easily."""
+"""Permanent contact and the first flight: a compliant contact opens at a smaller amplitude."""
 
 import matplotlib.pyplot as plt
 import numpy as np

@@ -1,4 +1,4 @@
-"""The validity chart with one's own contact on it: where is a restitution coefficient enough?"""
+"""The validity chart with your contact: where is a restitution coefficient enough?"""
 
 import matplotlib.pyplot as plt
 import numpy as np

@@ -62,7 +62,7 @@ def extra(name: str) -> Iterator[None]:
     ...     import no_such_package
     Traceback (most recent call last):
     ...
-    bouncing_ball.errors.ModelError: no_such_package is not installed, and this needs it: \
+    bouncing_ball.errors.ModelError: no_such_package is not installed: \
 install the extra 'plot', for example pip install ".[plot]"
     """
     try:
@@ -70,7 +70,7 @@ install the extra 'plot', for example pip install ".[plot]"
     except ModuleNotFoundError as error:
         package = str(error.name).partition(".")[0]
         raise ModelError(
-            f"{package} is not installed, and this needs it: "
+            f"{package} is not installed: "
             f'install the extra {name!r}, for example pip install ".[{name}]"'
         ) from None
 

@@ -51,7 +51,7 @@ def test_the_diagram_has_the_orbits_and_their_period_doubling(given):
 
 
 def test_an_attractor_is_followed_from_where_starts_find_it():
-    lam = np.linspace(1.6, 1.7, 11)
+    lam = np.linspace(1.6, 1.7, 6)
     found = bb.orbit_diagram(lam, starts=1, impacts=300, **R)
     # The orbit of period 2 at all of them up to its own doubling, 1.667.
     for k in np.flatnonzero(lam < 1.66):
@@ -72,9 +72,9 @@ def test_shares_are_those_of_balls_one_by_one():
 
 def test_the_exponent_is_that_of_the_motion():
     lam = [1.0, 2.0]
-    found = bb.lyapunov_exponent(lam, phase=1.1, restitution=0.85, impacts=1500)
+    found = bb.lyapunov_exponent(lam, phase=1.1, restitution=0.85, impacts=500)
     assert found.kind.values.tolist() == ["orbit", "chaotic"]
-    both = bb.motion_of(lam, phase=1.1, restitution=0.85, impacts=1500)
+    both = bb.motion_of(lam, phase=1.1, restitution=0.85, impacts=500)
     assert found.lyapunov_exponent.identical(both.lyapunov_exponent)
 
 
@@ -100,14 +100,13 @@ def test_a_mistake_is_one_line_with_what_is_allowed(call, text):
     "given", [{}, {"amplitude": [1.0, 2.0, 3.0]}, {"phase": [0.1, 0.2], "amplitude": [1.0, 2.0]}]
 )
 def test_every_answer_draws_itself(given, tmp_path):
-    given = {"amplitude": 3.0} | given
-    for k, found in enumerate((
-        bb.motion_of(**given, impacts=200, **R),
-        bb.lyapunov_exponent(**given, impacts=200, **R),
-        bb.orbit_diagram(given["amplitude"], starts=1, impacts=50, **R),
-        bb.basins(3.0, starts=5, impacts=200, **R),
-    )):  # fmt: skip
-        found.plot(tmp_path / f"{k}.png")
+    given = {"amplitude": 3.0} | given | R
+    found = [bb.motion_of(**given, impacts=200), bb.lyapunov_exponent(**given, impacts=200)]
+    if "phase" in given:
+        found.append(bb.orbit_diagram(given["amplitude"], starts=1, impacts=50, **R))
+        found.append(bb.basins(3.0, starts=5, impacts=200, **R))
+    for k, data in enumerate(found):
+        data.plot(tmp_path / f"{k}.png")
         assert (tmp_path / f"{k}.png").stat().st_size > 1000
 
 

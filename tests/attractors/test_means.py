@@ -13,9 +13,9 @@ from bouncing_ball.studies.attractors import models
 RELEASE = Release.DISPLACEMENT
 
 
-def found_and_means(model, amplitude, samples=200):
+def found_and_means(model, amplitude, samples=100):
     velocity = amplitude * np.cos(1.0) - 9.0
-    found = label(model.impact_law, amplitude, 1.0, velocity, impacts=500)
+    found = label(model.impact_law, amplitude, 1.0, velocity, impacts=250)
     return found, means(model.impact_law, amplitude, found, samples)
 
 
@@ -26,7 +26,7 @@ def test_height_and_power_are_those_of_quadrature(r, amplitude, ratio, release, 
     monkeypatch.setattr(motion, "has_closed_form", lambda law: False)
     for model in models(np.array(r), ratio, release)[::2]:
         found, of = found_and_means(model, amplitude)
-        impacts = (int(found.impacts) or 200) + 1
+        impacts = (int(found.impacts) or 100) + 1
         start = float(found.end_phase), float(found.end_velocity)
         wanted = height_and_power(model.simulate(amplitude, *start, impacts))
         assert [float(x) for x in of[1:3]] == pytest.approx(wanted, rel=1e-6)
@@ -58,7 +58,7 @@ def test_errors_of_the_means_are_of_first_and_of_second_order():
 
 def test_the_exponent_is_the_mappers_and_a_ball_at_rest_has_no_means():
     law = np.array([0.85, 0.85])
-    found = label(law, np.array([2.0, 0.9]), 0.0, np.array([-9.0, 0.0]), impacts=800)
-    of = means(law, np.array([2.0, 0.9]), found, 800)
+    found = label(law, np.array([2.0, 0.9]), 0.0, np.array([-9.0, 0.0]), impacts=400)
+    of = means(law, np.array([2.0, 0.9]), found, 400)
     assert abs(of[3, 0] - found.exponent[0]) < 8 * found.exponent_error[0]
     assert found.kind[1] == "permanent contact" and np.isnan(of[:, 1]).all()

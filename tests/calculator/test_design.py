@@ -184,7 +184,7 @@ def test_a_hertz_contact_is_judged_by_its_own_orbits():
     # Its threshold is computed, and within 1 % of that of a rigid table.
     assert errors["permanent_contact"] == pytest.approx(1 - found.permanent_contact, rel=1e-12)
     assert found.is_good_enough and "permanent contact is 0.082 % off" in found.verdict
-    assert not any("pulls before it is released" in note for note in found.notes)
+    assert not any("pulls before its release" in note for note in found.notes)
     # k x^{3/2} and α √(m k) x^{1/4} of Tsuji's law.
     assert found.law["stiffness"] == pytest.approx(4 / 3 * 115e9 * math.sqrt(5e-3), rel=1e-12)
     assert found.law["damping"] == float(found.case.law.damping)
@@ -205,8 +205,8 @@ def test_an_orbit_that_is_stable_in_the_simple_model_alone():
     found = design(**UNIT, acceleration=1.0379, stiffness=100.0, tolerance=0.9)
     assert found.orbits[0].errors["max_height"] < 0.9 and not found.is_good_enough
     assert "its motion is periodic, and the contact's is" in found.verdict
-    assert found.headline.startswith("No ball stays on the 1-T orbit, which is not stable")
-    assert "the 1-T orbit is unstable, and no ball will keep to it" in found.notes
+    assert found.headline.startswith("The 1-T orbit is not stable.")
+    assert "the 1-T orbit is unstable, so that no ball stays on it" in found.notes
 
 
 @pytest.mark.parametrize("name", ["exists", "is_stable", "is_admissible"])
@@ -232,8 +232,8 @@ def test_the_tolerance_itself_is_within_the_tolerance(steel):
         assert assessed(one, need, 71.0).is_good_enough is good
     # Within it below the last crossing: the error passes through zero.
     need = dataclasses.replace(steel.needed, tolerance=error, frequency_ratio=80.0)
-    assert "an accident of its passing through zero" in assessed(one, need, 71.0).reason
-    assert "accident" not in assessed(one, need, 80.0).reason
+    assert "passes through zero near this ϖ" in assessed(one, need, 71.0).reason
+    assert "zero" not in assessed(one, need, 80.0).reason
 
 
 def test_the_verdict_is_about_the_first_stable_family():
@@ -251,7 +251,7 @@ def test_a_stable_orbit_on_which_another_impact_comes_first_is_not_preferred():
     assert np.max(orbit.contact_motion(inside)[0]) > 0.7
     assert two.is_stable and not two.is_admissible and not one.is_stable and found.n == 1
     (note,) = [x for x in notes(found.case, two) if "2-T" in x]
-    assert note.startswith("the 2-T orbit is inadmissible: another impact comes first")
+    assert note.startswith("the 2-T orbit is inadmissible")
 
 
 @pytest.mark.parametrize(
@@ -261,7 +261,7 @@ def test_a_stable_orbit_on_which_another_impact_comes_first_is_not_preferred():
 )
 def test_a_damped_contact_released_at_the_table_pulls(change, pulls):
     found = design(**STEEL | {"restitution": 0.85, "n": 1} | change)
-    assert any("pulls before it is released" in note for note in found.notes) is pulls
+    assert any("pulls before its release" in note for note in found.notes) is pulls
 
 
 @pytest.mark.parametrize(("ratio", "noted"), [(0.999, True), (1.001, False)])
@@ -303,19 +303,19 @@ def test_no_orbit_or_no_contact(change, says, refusal):
         ({"n": 1.5}, "not a positive integer"),
         ({"stiffness": -1.0}, "stiffness = -1 N/m is not a number in [1e-40, 1e+40]"),
         ({"mass": None}, "mass is missing"),
-        ({"frequency": None}, "how fast the table moves is missing"),
-        ({"acceleration": None}, "how far the table moves is missing"),
+        ({"frequency": None}, "the frequency of the table is missing"),
+        ({"acceleration": None}, "the amplitude of the table is missing"),
         ({"table_amplitude": "1 mm"}, "contradict each other"),
         ({"quantity": "colour"}, "one of max_height"),
         ({"release": "glue"}, "unknown release"),
         ({"restitution": 0.0}, "restitution = 0 is not a number in (0, 1]"),
         ({"restitution": None, "damping_ratio": 0.9999999}, "damping_ratio = 0.9999999"),
-        ({"restitution": None, "damping": "5 N s/m", "stiffness": None}, "missing"),
+        ({"restitution": None, "damping": "5 N s/m", "stiffness": None}, "needs stiffness"),
         ({"stiffness": 1e40}, "ϖ = "),
         # Its square is beyond all numbers, or below them.
         ({"frequency": 1e300}, "frequency = 1e+300 Hz is not a number in"),
         ({"mass": 1e-300}, "mass = 1e-300 kg is not a number in"),
-        (HERTZ | {"stiffness": None, "release": "force"}, "released at δ = 0"),
+        (HERTZ | {"stiffness": None, "release": "force"}, "has the displacement release only"),
         ({"tolerance": 5}, "tolerance = 5 is not a number in (0, 1): did you mean 5 %?"),
         ({"tolerance": 1}, "did you mean 1 %?"),
         ({"restitution": "85"}, "restitution = 85 is not a number in (0, 1]: did you mean 85 %?"),
@@ -368,9 +368,9 @@ def test_every_law_is_designed_for_by_its_impact(name):
 def test_a_law_is_refused_with_what_it_does_not_have():
     given = {"mass": 0.02, "frequency": 50.0, "acceleration": "1 g", "restitution": 0.65}
     for more, said in [
-        ({"stiffness": 1e5}, "stiffness does not go with law hunt-crossley"),
+        ({"stiffness": 1e5}, "stiffness is not allowed with law hunt-crossley"),
         ({}, "law hunt-crossley needs contact_time"),
-        ({"contact_time": 3e-4, "release": "force"}, "release does not go with law"),
+        ({"contact_time": 3e-4, "release": "force"}, "release is not allowed with law"),
         ({"contact_time": 3e-4, "engine": "mujoco"}, "is not written for mujoco"),
     ]:
         with pytest.raises(ModelError, match=re.escape(said)):

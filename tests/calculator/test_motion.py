@@ -43,9 +43,13 @@ def test_the_mean_height_is_that_of_a_dense_history():
 @pytest.mark.parametrize(
     ("amplitude", "kind", "says"),
     [
-        (0.8, "orbit", "A ball on the 1-T orbit stays on it: it is stable. Laid on the table a"),
-        (1.1, "subharmonic", "(doubled), every 2 periods of the table and 2 impacts."),
-        (2.0, "chaotic", "one that starts beside it ends in chaotic motion."),
+        (0.8, "orbit", "The 1-T orbit is stable: a ball on it stays on it. A ball laid on the"),
+        (
+            1.1,
+            "subharmonic",
+            "doubled orbit, which repeats after 2 periods of the table and 2 impacts.",
+        ),
+        (2.0, "chaotic", "A ball that starts near it ends in chaotic motion."),
     ],
 )
 def test_the_headline_says_what_the_ball_does(amplitude, kind, says):
@@ -65,7 +69,7 @@ def test_the_headline_says_what_the_ball_does(amplitude, kind, says):
         for name in ("height", "power"):
             exact, simple = getattr(found.motion, f"mean_{name}").values()
             off, margin = vars(found.motion.mean_error[name]).values()
-            assert off == pytest.approx(abs(simple.value / exact.value - 1), rel=1e-9)
+            assert off == pytest.approx(abs(exact.value / simple.value - 1), rel=1e-9)
             shown = (
                 f"at most {100 * (off + margin):.2g} %" if margin > off else f"{100 * off:.2g} % ±"
             )
@@ -85,7 +89,7 @@ def test_the_headline_says_what_the_ball_does(amplitude, kind, says):
 )
 def test_where_there_is_no_orbit_the_ball_is_laid_on_the_table(amplitude, restitution, kind, says):
     given = UNIT | {"n": None, "restitution": restitution, "stiffness": 5000.0}
-    found = design(**given, acceleration=f"{amplitude} m/s^2", tolerance="20 %")
+    found = design(**given, acceleration=f"{amplitude} m/s^2", tolerance="40 %")
     assert found.headline.startswith("No model has an n-T orbit.") and says in found.headline
     assert found.motion.kind == found.motion.restitution_kind == kind and found.is_good_enough
     assert "no n-T orbit in any model" in found.reason and not found.judged.exists
@@ -94,13 +98,13 @@ def test_where_there_is_no_orbit_the_ball_is_laid_on_the_table(amplitude, restit
 def test_a_verdict_on_an_orbit_says_that_it_leaves_out_a_ball_laid_on_the_table():
     found = design(**UNIT | {"n": 7, "stiffness": 1e5}, acceleration=2.0, tolerance="20 %")
     assert found.motion.kind == "orbit" and found.motion.laid not in (None, "permanent contact")
-    assert found.verdict.endswith(", which is not judged.") and "; a ball laid" in found.verdict
+    assert found.verdict.endswith(", and is not judged.") and "; a ball laid" in found.verdict
 
 
 def test_without_loss_a_ball_stays_beside_the_orbit(short_runs):
     lossless = UNIT | {"restitution": 1.0, "stiffness": 1e4, "tolerance": "5 %"}
     found = design(**lossless, acceleration=0.5)
-    assert "nothing is lost" in found.headline and found.is_good_enough
+    assert "loses no energy" in found.headline and found.is_good_enough
     # Beyond the period doubling at Λ = 1 neighbours leave it even so.
     beyond = design(**lossless, acceleration=1.2)
     assert "not stable" in beyond.headline and "1-T orbit" not in beyond.verdict
@@ -124,8 +128,8 @@ LOCKED = ("locked", "locked")
         (motion("permanent contact", "permanent contact"), True, "the ball rests in both models"),
         (motion("locked", "permanent contact"), False, "its motion is permanent contact, and the"),
         (motion("subharmonic", "orbit"), False, "is periodic, and the contact's is doubled"),
-        (motion(*LOCKED, greatest={"a": 1.0, "b": 1.04}), True, "is 4 % off, within 5 %"),
-        (motion(*LOCKED, greatest={"a": 1.0, "b": 1.06}), False, "is 6 % off, beyond 5 %"),
+        (motion(*LOCKED, greatest={"a": 1.04, "b": 1.0}), True, "is 4 % off, within 5 %"),
+        (motion(*LOCKED, greatest={"a": 1.06, "b": 1.0}), False, "is 6 % off, beyond 5 %"),
         (motion("chaotic", "chaotic"), False, "is not known"),
         (means(0.02, 0.005), True, "height is 2 % ± 0.5 % off and the mean power is 1 % ± 0 % off"),
         (means(0.0, 0.02), True, "height is at most 2 % off and the mean power is 1 % ± 0 % off"),

@@ -178,3 +178,10 @@ def test_a_curve_moved_across_is_off_by_its_distance(slope, shift):
     found = curve(x, slope * x, x, slope * x + shift)
     away = abs(shift) / np.hypot(1, slope)
     assert found[50] == pytest.approx(away, rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize("shift", [-3.5, -3.0, 2.5, 3.0, 3.5])
+def test_along_a_straight_curve_three_samples_are_within_reach(shift):
+    # Sample k is compared with the chords from sample k - 3 to k + 3.
+    x = np.arange(12.0)
+    assert curve(x, 0 * x, x + shift, 0 * x)[6] == max(abs(shift) - 3, 0)

@@ -60,7 +60,7 @@ SPAN = (*FIG05, "frequency_ratio")
         ((*FIG08, "resitution"), 1, "figures.fig08.resitution = 1, did you mean restitution?"),
         (("figure",), {}, "unknown key figure = {}, did you mean figures? Allowed here: "),
         (FIG08, 3, "figures.fig08 = 3 must be a mapping of the keys n, restitution, "),
-        (FIG08, REMOVED, "fig08 has no parameters: a key fig08 in one of figures, tables"),
+        (FIG08, REMOVED, "fig08 has no parameters: add a key fig08 to one of figures, tables"),
         (
             (*FIG08, "restitution"),
             1.2,

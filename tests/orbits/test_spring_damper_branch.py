@@ -100,7 +100,7 @@ def test_permanent_contact_continues_into_a_stable_orbit(restitution, omega):
     threshold = permanent_contact_threshold(omega, zeta)
     rise = 8 * (point.amplitude / threshold - 1) / flight**2 - 1
     assert np.all(np.abs(rise) < 0.05)
-    # The rounding of Λ, below 1e-13 (section 5 there), over T²/8.
+    # The rounding of Λ, below 1e-13 (section 3 there), over T²/8.
     rounding = 8e-13 / flight[1] ** 2
     assert rise[1] == pytest.approx(rise[0] / 2, rel=0.1, abs=rounding)
     decay = np.exp(-2 * np.pi * zeta * omega)

@@ -1,10 +1,15 @@
 """Shares, correlations, mean lives and exponents against closed forms."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.stats import norm
 
+from bouncing_ball.attractors.motions import Kind
 from bouncing_ball.configuration.study import typed
+from bouncing_ball.contacts.release import Release
+from bouncing_ball.studies import transients
 from bouncing_ball.studies.locked_orbits import correlation, locked_orbits
 from bouncing_ball.studies.transients import mean_life
 from bouncing_ball.studies.uncertainty import exponent
@@ -49,3 +54,19 @@ def test_a_contact_agrees_where_the_prediction_says():
         data.same[1] == right[data.periods > 0].mean() and data.jump_share[0] >= data.jump_share[1]
     )
     assert np.all(data.survival.isel(life=0) == 1) and np.all(data.mean_life_low < data.mean_life)
+
+
+def test_a_ball_has_arrived_where_phase_and_velocity_agree(monkeypatch):
+    # Impacts a period apart: at the phase of the end, at its velocity, and then at both.
+    phase, velocity = np.reshape([[1.0, 2, 1], [-5, -4, -4]], (2, 3, 1, 1, 1)) * np.ones(10)
+    time = 2 * np.pi * np.cumsum(np.ones_like(phase), axis=0)
+    path = SimpleNamespace(time=time, phase=phase, impact_velocity=velocity)
+    kinds = {"kind": np.full((1, 1, 10), Kind.LOCKED), "periods": 1}
+    end = SimpleNamespace(end_phase=1.0, end_velocity=-4.0, **kinds)
+    model = SimpleNamespace(impact_law=None, simulate=lambda *_: path)
+    monkeypatch.setattr(transients, "models", lambda *_: (model,) * 3)
+    monkeypatch.setattr(transients, "label", lambda *_, **__: end)
+    case = {"cases": [{"restitution": 0.5, "amplitude": 2.5}], "frequency_ratio": [10.0]}
+    asked = transients.Transients(**case, balls=10, impacts=50, confidence=0.95, seed=1)
+    data = transients.transients(asked, Release.DISPLACEMENT)
+    assert np.all(data.mean_life == 3)

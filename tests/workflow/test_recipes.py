@@ -13,8 +13,10 @@ def changed(tree):
     return {line.split()[-1] for line in tree.git("status", "--porcelain").splitlines()}
 
 
-ENTRY = """beyond_the_paper:
-  ext_heights: { study: studies.frequency_sweeps.frequency_sweep, drawing: heights.heights }
+ENTRY = """ext_heights:
+  study: studies.frequency_sweeps.frequency_sweep
+  drawing: heights.heights
+ext_release:
 """
 PARAMETERS = """  ext_heights:
     n: 1
@@ -63,24 +65,27 @@ def lowest(data: Mapping[str, xr.Dataset], parameters: Lowest) -> xr.Dataset:
 
 
 def test_a_figure_with_its_own_parameters_and_a_stage_on_the_dataset_of_another(fresh):
-    fresh.rewrite(ARTIFACTS, "beyond_the_paper:\n", ENTRY)
+    fresh.rewrite(ARTIFACTS, "ext_release:\n", ENTRY)
     assert fresh.refusal().startswith(
-        "configuration: ext_heights has no parameters: a key ext_heights"
+        "configuration: ext_heights has no parameters: add a key ext_heights"
     )
     fresh.rewrite(CONFIG, "studies:\n  formulas:", PARAMETERS)
     (fresh.path / FIGURE).write_text(DRAWING, encoding="utf-8")
     assert changed(fresh) == {ARTIFACTS, CONFIG, FIGURE}
     (fresh.path / STAGE).write_text(STUDY, encoding="utf-8")
-    entry = "beyond_the_paper:\n  lowest: { study: studies.lowest.lowest, reads: [fig11] }\n"
-    fresh.rewrite(ARTIFACTS, "beyond_the_paper:\n", entry)
-    fresh.rewrite(CONFIG, "studies:\n  formulas:", "studies:\n  lowest: { n: 110 }\n  formulas:")
+    entry = "ext_lowest: { study: studies.lowest.lowest, reads: [fig11] }\next_release:\n"
+    fresh.rewrite(ARTIFACTS, "ext_release:\n", entry)
+    lowest = "studies:\n  ext_lowest: { n: 110 }\n  formulas:"
+    fresh.rewrite(CONFIG, "studies:\n  formulas:", lowest)
     assert changed(fresh) == {ARTIFACTS, CONFIG, FIGURE, STAGE}
-    assert fresh.refusal().startswith("configuration: studies.lowest.n = 110 must be at most 20")
-    fresh.rewrite(CONFIG, "lowest: { n: 110 }", "lowest: { n: 11 }")
-    fresh.run("--cores", "1", "ext_heights", "lowest")
+    assert fresh.refusal().startswith(
+        "configuration: studies.ext_lowest.n = 110 must be at most 20"
+    )
+    fresh.rewrite(CONFIG, "ext_lowest: { n: 110 }", "ext_lowest: { n: 11 }")
+    fresh.run("--cores", "1", "ext_heights", "ext_lowest")
     made = {path.name: path for path in (fresh.path / "results/figures").iterdir()}
     figure = {f"ext_heights.{kind}" for kind in ("nc", "png", "svg")}
-    assert made.keys() == {*figure, "fig11.nc", "lowest.nc"}
+    assert made.keys() == {*figure, "fig11.nc", "ext_lowest.nc"}
     # The tree has changes that its commit has not.
     assert {read_provenance(path)["dirty"] for path in made.values()} == {"yes"}
 

@@ -54,14 +54,13 @@ rule atlas_merge:
 
 rule atlas:
     message:
-        "Atlas: its summary, with charts and tables"
+        "Atlas: its summary, with charts and a table"
     input:
         parts=[rules.atlas_merge.output.data],
         source=modules("atlas.summary", "figures.atlas.charts", "figures.atlas.tables"),
     output:
         data="results/atlas/summary.nc",
         charts=expand("results/atlas/{chart}.png", chart=CHARTS),
-        shares="results/atlas/shares.md",
         worst="results/atlas/worst.md",
     params:
         title="The atlas in short",

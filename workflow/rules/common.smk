@@ -34,9 +34,8 @@ from bouncing_ball.pipeline.sources import sources
 # Snakemake writes these two lines before every job, and they do not name it.
 logger.addFilter(lambda record: not str(record.msg).startswith(("Select jobs", "Execute ")))
 
-# Every artifact with what it is made by, from the table of the stages.
-STAGES = read_yaml(Path(ROOT, "workflow/artifacts.yaml"))
-TABLE = {name: entry for stage in STAGES.values() for name, entry in stage.items()}
+# Every artifact with what it is made by.
+TABLE = read_yaml(Path(ROOT, "workflow/artifacts.yaml"))
 STUDIES, DRAWINGS, TABLES = (
     {name: entry[key] for name, entry in TABLE.items() if key in entry}
     for key in ("study", "drawing", "table")

@@ -7,7 +7,7 @@ from bouncing_ball.atlas.summary import summary
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.datasets.netcdf import parameter_attributes
 from bouncing_ball.figures.atlas.charts import charts
-from bouncing_ball.figures.atlas.tables import shares, worst
+from bouncing_ball.figures.atlas.tables import worst
 from bouncing_ball.figures.files import save
 from bouncing_ball.figures.style import style
 from bouncing_ball.figures.tables.formats import to_markdown
@@ -19,8 +19,7 @@ with logged(snakemake), style():
     data = summary(Plan(**parameters), read_input(path))
     publish(snakemake, data, parameter_attributes(parameters), compressed=True)
     metadata = provenance(snakemake)
-    folder = Path(snakemake.output.shares).parent
+    folder = Path(snakemake.output.worst).parent
     for name, figure in charts(data):
         save(figure, folder / f"{name}.png", metadata)
-    write_text(snakemake.output.shares, to_markdown(*shares(data)))
     write_text(snakemake.output.worst, to_markdown(*worst(data)))

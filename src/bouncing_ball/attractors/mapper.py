@@ -17,6 +17,11 @@ With instantaneous impacts the motion after sticking does not depend on earlier 
 ball always leaves in the state of the lift-off. A motion that sticks twice therefore repeats,
 unless rounding errors grow to its size in between. In a contact of finite stiffness the
 dependence decreases by a finite factor, and the state is compared as for any other motion.
+
+Balls are followed by + - × ÷ and √ only, so that the same bits give the same motion on every
+processor. A ball that wanders for long before it settles loses the digits of its start, and then
+the last of them decides where it ends: see ``digits_lost`` of
+:class:`~bouncing_ball.attractors.motions.Motions`.
 """
 
 from typing import Any, NamedTuple, Self
@@ -190,7 +195,8 @@ def _joined(one: Any, other: Any) -> Any:
 
 
 def _write(found: Motions, ball: _Ball, which: np.ndarray, kind: ArrayLike, **values: Any) -> None:
-    found.fill(ball.lane[which], kind=kind, followed=ball.seen[which], **values)
+    lost = ball.stretch.most[which] / np.log(10)
+    found.fill(ball.lane[which], kind=kind, followed=ball.seen[which], digits_lost=lost, **values)
 
 
 def _repeats(

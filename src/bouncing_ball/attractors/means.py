@@ -1,11 +1,4 @@
-"""Means over time of balls: their flights, height, received power and the growth of deviations.
-
-The work W of the table on a ball (:mod:`bouncing_ball.motion.work`) is none in a flight, and in the
-mean over a long time it is what the contacts dissipate. At an instantaneous impact W is the impulse
-times w′, and while a ball rests on the table it is the integral of (1 - w) w′.
-"""
-
-from typing import Any
+"""Means over time of balls: their flights, height, received power and the growth of deviations."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,7 +10,7 @@ from bouncing_ball.motion.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.motion.ensembles import pick
 from bouncing_ball.motion.sequence import Status
 from bouncing_ball.motion.simulation import Law, first_impacts
-from bouncing_ball.motion.work import change, over_contact
+from bouncing_ball.motion.work import over_steps
 
 
 def means(law: Law, amplitude: ArrayLike, found: Motions, samples: int) -> np.ndarray:
@@ -76,47 +69,24 @@ def _add_up(dynamics: Dynamics, impact: Impact, left: np.ndarray, total: np.ndar
         along, length = np.where(length > 0, along, 1.0), np.where(length > 0, length, 1.0)
         along, across = along / length, across / length
         flights = np.where(departure.settling > 0, np.inf, 1.0)
-        of = _contact if isinstance(dynamics, LinearContactDynamics) else _instant
-        height, work, flight, low, thrown = of(dynamics, impact, departure, after, passed)
-        height = height + (low + (thrown / 2 - flight / 6) * flight) * flight
+        height, work = _step(dynamics, impact, departure, after, passed)
         total[:, ball] += np.stack([passed, flights + 0 * passed, height, work, np.log(length)])
         impact, done = after, done + 1
 
 
-def _contact(dynamics: Dynamics, impact: Impact, departure: Departure, after: Any, passed: Any):
-    """Integral of z and work over spring-damper contacts; time, first z and z′ of the flights."""
-    lam, flight, time = dynamics.amplitude, departure.flight, departure.duration
-    depth, rate = (
-        np.array([a, b])
-        for a, b in zip(impact[1:3], (flight.displacement, flight.velocity), strict=True)
-    )
-    x, y = np.array([table(impact.phase, lam), (flight.x, flight.y)]).swapaxes(0, 1)
-    height, moved = over_contact(dynamics.law, lam, time, (x, y), depth, rate)
-    return (
-        height,
-        change((rate + x) * x + y) + moved,
-        passed - time,
-        depth[1] + y[1],
-        rate[1] + x[1],
-    )
-
-
-def _instant(dynamics: Dynamics, impact: Impact, departure: Departure, after: Any, passed: Any):
-    """The same at instantaneous impacts and while balls rest, from one instant to the next."""
-    lam, sticks = dynamics.amplitude, dynamics.sticks(impact, departure)
-    hit = impact.known
-    if hit is None:
-        x, y = table(impact.phase, lam)
-        low, thrown, arrival = y, departure.flight.velocity + x, impact.velocity + x
-        begin = end = 0.0
-    else:
-        x, y = table(hit.phase, lam)
-        low, thrown, arrival = hit.height, hit.velocity, hit.arrival
-        begin, end = hit.instant.delay, after.known.instant.delay
-    x1, y1 = departure.flight.x, departure.flight.y
-    thrown, low = np.where(sticks, x1, thrown), np.where(sticks, y1, low)
-    rest = np.where(sticks, departure.duration - begin, 0.0)
-    work = (np.where(sticks, x, thrown) - arrival) * x
-    work = work + np.where(sticks, y1 - y - (y1 * y1 - y * y) / 2, 0.0)
-    height = np.where(sticks, x - x1, 0.0)
-    return height, work, passed - begin + end - rest, low, thrown
+def _step(
+    dynamics: Dynamics, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """∫ z dτ and the work from an impact to the next; in the corrected model between instants."""
+    lam, flight, hit = dynamics.amplitude, departure.flight, impact.known
+    start, end = impact[:3], (departure.phase, flight.displacement, flight.velocity)
+    duration = departure.duration
+    if hit is not None:
+        (x, y), sticks = table(hit.phase, lam), dynamics.sticks(impact, departure)
+        start, thrown = ((hit.phase, hit.height - y, v - x) for v in (hit.arrival, hit.velocity))
+        end = tuple(np.where(sticks, *pair) for pair in zip(end, thrown, strict=True))
+        begin, late = hit.instant.delay, after.known.instant.delay
+        duration, passed = np.where(sticks, duration - begin, 0.0), passed - begin + late
+    law = dynamics.law if isinstance(dynamics, LinearContactDynamics) else None
+    phase, gap, rate = map(np.array, zip(start, end, strict=True))
+    return over_steps(law, lam, duration, phase, gap, rate, passed - duration)

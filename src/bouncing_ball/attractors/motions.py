@@ -63,6 +63,11 @@ class Motions(Batch):
     end_phase, end_velocity : array
         Table phase φ and absolute velocity z′_i at the last of these impacts, before it: a start
         from which the ball is on the motion. NaN in permanent contact.
+    digits_lost : array
+        Decimal digits of the start that the motion has lost on the way: the logarithm of the most
+        by which a deviation has grown. A double has 16 digits. With more than about 14 lost, the
+        last one decides on which of several motions the ball ends, though the answer to the same
+        bits is the same everywhere. It grows with the impacts of a chaotic motion.
     """
 
     kind: np.ndarray
@@ -74,6 +79,7 @@ class Motions(Batch):
     followed: np.ndarray
     end_phase: np.ndarray
     end_velocity: np.ndarray
+    digits_lost: np.ndarray
 
     @classmethod
     def unknown(cls, balls: int) -> Self:
@@ -81,8 +87,8 @@ class Motions(Batch):
         text = (np.full(balls, "", dtype=np.array(list(names)).dtype) for names in (Kind, Reason))
         kind, reason = text
         periods, impacts, followed = np.zeros((3, balls), dtype=int)
-        exponent, error, phase, velocity = np.full((4, balls), np.nan)
-        return cls(kind, periods, impacts, exponent, error, reason, followed, phase, velocity)
+        exponent, error, phase, velocity, lost = np.full((5, balls), np.nan)
+        return cls(kind, periods, impacts, exponent, error, reason, followed, phase, velocity, lost)
 
     def fill(self, index: np.ndarray, **values: ArrayLike) -> None:
         """Store results of the balls with these indices."""

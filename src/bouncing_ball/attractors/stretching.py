@@ -30,9 +30,10 @@ class Stretching(NamedTuple):
     along: np.ndarray
     across: np.ndarray
     growth: np.ndarray
-    # The least that the growth has been, at all and since the mark, and the most by which it has
-    # grown since the mark.
+    # The least that the growth has been, and the most by which it has grown: at all, the former
+    # since the ball forgot its past, and since the mark.
     least: np.ndarray
+    most: np.ndarray
     lowest: np.ndarray
     worst: np.ndarray
     # Growth and time at the last mean; the number of means, sums of growth and time over them and
@@ -44,7 +45,7 @@ class Stretching(NamedTuple):
     @classmethod
     def of(cls, balls: int) -> Self:
         """The stretching of so many balls before their first flights."""
-        columns: Any = np.eye(8, 1) + np.zeros(balls)
+        columns: Any = np.eye(9, 1) + np.zeros(balls)
         return cls._make([*columns, np.zeros((balls, 6))])
 
     def grow(self, change: Jacobian) -> np.ndarray:
@@ -61,6 +62,7 @@ class Stretching(NamedTuple):
         """Add the growth, at the time of the impact that is the ball's number ``seen``."""
         self.growth[:] += grown
         np.minimum(self.least, self.growth, out=self.least)
+        np.maximum(self.most, self.growth - self.least, out=self.most)
         np.minimum(self.lowest, self.growth, out=self.lowest)
         np.maximum(self.worst, self.growth - self.lowest, out=self.worst)
         at = np.flatnonzero(seen % _BATCH == 0)

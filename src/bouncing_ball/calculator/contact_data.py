@@ -54,7 +54,7 @@ def _one_of(given: Given, names: tuple[str, ...], what: str, give: str = "") -> 
     found = [name for name in names if name in given]
     if len(found) > 1:
         both = " and ".join(f"{{{name}}}" for name in found)
-        raise ParameterError(f"{both} contradict each other: each says {what}; give one of them")
+        raise ParameterError(f"{both} contradict each other, because each gives {what}: give one")
     if give and not found:
         raise ParameterError(f"{what} is missing: give {give}")
     return found[0] if found else ""
@@ -76,10 +76,10 @@ def loss(given: Given, release: Release) -> float:
     """
     single = ", ".join(f"{{{name}}}" for name in LOSSY[:-1])
     ways = f"one of {single}, or {{drop_height}} and {{rebound_height}}"
-    name = _one_of(given, LOSSY, "how much the contact loses", ways)
+    name = _one_of(given, LOSSY, "the loss of the contact", ways)
     if name == "damping":
         raise ParameterError(
-            "{damping} needs {stiffness}, which is missing; a restitution does not"
+            "{damping} needs {stiffness}: give it, or {restitution} in place of {damping}"
         )
     if name == "damping_ratio":
         return _oscillating(given[name], release, "{damping_ratio}")
@@ -97,8 +97,8 @@ def _oscillating(zeta: float, release: Release, name: str) -> float:
     pulls = release is Release.DISPLACEMENT
     bounces = not pulls or (zeta < 1 and SpringDamper(1.0, zeta, release).restitution > 0)
     if not bounces:
-        enough = "so far below 1, the critical damping, that it bounces"
-        raise ParameterError(f"{name} = {zeta:.12g} is not {enough}")
+        why = "near the critical damping 1 and above it the ball does not bounce"
+        raise ParameterError(f"{name} = {zeta:.12g} is too large: {why}")
     return zeta
 
 
@@ -131,11 +131,11 @@ def reduced_modulus(given: Given) -> float | None:
             )
     elastic = "youngs_modulus" if known else "reduced_modulus"
     if (elastic in given) != ("radius" in given):
-        ways = "{reduced_modulus}, or with {youngs_modulus} and the other data of both materials"
+        ways = "{reduced_modulus}, or {youngs_modulus} and the other data of both materials"
         raise ParameterError(
             f"{{{elastic}}} needs {{radius}}, the radius of curvature at the contact"
             if elastic in given
-            else f"{{radius}} of a Hertz contact goes with {ways}"
+            else f"{{radius}} of a Hertz contact needs {ways}"
         )
     if not known:
         return given.get("reduced_modulus")
@@ -172,9 +172,9 @@ def table_of(given: Given) -> Table:
     3.0
     """
     fast = ("frequency", "angular_frequency", "period")
-    rate = _one_of(given, fast, "how fast the table moves", "{frequency}, such as 50 Hz")
+    rate = _one_of(given, fast, "the frequency of the table", "{frequency}, such as 50 Hz")
     ways = "{acceleration}, such as 2 g, or {table_amplitude}, such as 0.1 mm"
-    far = _one_of(given, ("table_amplitude", "acceleration"), "how far the table moves", ways)
+    far = _one_of(given, ("table_amplitude", "acceleration"), "the amplitude of the table", ways)
     value, turn = given[rate], 2 * math.pi
     omega = {"frequency": turn * value, "period": turn / value}.get(rate, value)
     moved = given[far] if far == "table_amplitude" else given["acceleration"] / omega**2
@@ -229,13 +229,13 @@ def case_of(
             raise ParameterError(f"{{{first}}} and {{{second}}} are needed together")
     if "mass" not in given:
         raise ParameterError("the mass is missing: give {mass}, such as 20 g")
-    stiff, mass = _one_of(given, STIFF, "how stiff the contact is"), given["mass"]
+    stiff, mass = _one_of(given, STIFF, "the stiffness of the contact"), given["mass"]
     modulus = reduced_modulus(given)
     if not stiff:
         return None
     if stiff == "stiffness":
         omega = math.sqrt(given["stiffness"] / mass)
-        if _one_of(given, LOSSY, "how much the contact loses") == "damping":
+        if _one_of(given, LOSSY, "the loss of the contact") == "damping":
             zeta = given["damping"] / (2 * mass * omega)
             zeta = _oscillating(zeta, release, "damping ratio ζ of this {damping}")
         else:
@@ -252,7 +252,9 @@ def case_of(
             law = law_of_impact(kind, r, duration, speed)
     else:
         if release is not Release.DISPLACEMENT:
-            raise ModelError("a Hertz contact with Tsuji's damping is released at δ = 0: no force")
+            raise ModelError(
+                "a Hertz contact with Tsuji's damping has the displacement release only"
+            )
         r = float(unit.restitution)
         law = hertz(mass, modulus, given["radius"], r, table)
         speed = rigid_speed(meant(asked, r, table.amplitude), r)

@@ -83,91 +83,95 @@ def design(
     solimp: str | Sequence[float] | None = None,
     parameters: Mapping[str, float] | None = None,
 ) -> Design | Contact:
-    """Assess a contact, or choose one; without a table, say which contact this is.
+    """Assess a contact or choose one; without a table, describe the contact.
 
     Parameters are plain numbers in SI units, texts such as ``"50 Hz"``, or pint
     quantities. With a stiffness (or a contact time, or E* and R of a Hertz contact)
-    the question is whether the restitution model is good enough for this contact;
-    without one, which contact a simulation needs for the tolerance. A contact without a table
-    has no orbit; it can be written for an engine.
+    the answer says whether the restitution model is good enough for this contact;
+    without one, it gives the contact that a simulation needs for the tolerance. A contact without
+    a table has no orbit, but can be written for an engine.
 
     Parameters
     ----------
     mass
         Mass m of the ball.
     frequency
-        Cycles of the table in a second, in Hz; or give the angular frequency or the period.
+        Frequency of the table in Hz; or give the angular frequency or the period.
     angular_frequency
-        Ω of the table in rad/s, in place of the frequency.
+        Angular frequency Ω of the table in rad/s, in place of the frequency.
     period
-        Duration of a cycle of the table, in place of the frequency.
+        Period of the table, in place of the frequency.
     table_amplitude
         Amplitude A of the table's motion, in m; or give the acceleration.
     acceleration
         Largest acceleration AΩ² of the table, in m/s²; "2 g" is twice standard gravity.
     gravity
-        g, 9.80665 m/s² by default; in a gear pair the drag torque over the inertia.
+        Acceleration of gravity, by default 9.80665 m/s². For a gear pair, the deceleration by the
+        drag torque.
     stiffness
-        k of the contact. Without any stiffness a contact is chosen.
+        Stiffness k of the contact. If no parameter gives a stiffness, a contact is chosen.
     contact_time
         Duration of a free impact, in place of the stiffness.
     reduced_modulus
-        E* of a Hertz contact with the damping of Tsuji, with its radius.
+        Reduced modulus E* of a Hertz contact with the damping of Tsuji; needs the radius.
     youngs_modulus
-        E of the ball, in place of E*: 1/E* = (1 - ν²)/E of the ball plus that of the table.
+        Young's modulus E of the ball, in place of E*, where 1/E* is the sum of (1 - ν²)/E of the
+        ball and of the table.
     poissons_ratio
-        ν of the ball.
+        Poisson's ratio ν of the ball.
     table_youngs_modulus
-        E of the table.
+        Young's modulus of the table.
     table_poissons_ratio
-        ν of the table.
+        Poisson's ratio of the table.
     radius
-        R of a Hertz contact: the radius of curvature, which for a ball on a plane is its radius.
+        Radius of curvature R of a Hertz contact; for a ball on a plane, the radius of the ball.
     damping
-        c of the contact, with its stiffness.
+        Damping c of the contact; needs the stiffness.
     damping_ratio
-        Damping ratio ζ.
+        Damping ratio ζ = c/(2√(km)) of the contact.
     restitution
         Restitution coefficient of a free impact that ends at the table's level,
-        r = exp(-πζ/√(1 - ζ²)), Eq. 16 of the paper; for an engine, r under its release.
+        r = exp(-πζ/√(1 - ζ²)), Eq. 16 of the paper. With an engine, r under its release.
     measured_restitution
-        Restitution coefficient that a free impact has under the release rule.
+        Restitution coefficient of a free impact under the given release, as a drop test measures
+        it.
     drop_height
-        Height of a drop test, with that of the rebound.
+        Height of the drop in a drop test; needs the height of the rebound.
     rebound_height
         Height of the rebound in a drop test.
     n
-        Index of the family; by default the first eight, and a verdict on the first stable one.
+        Index n of the family. By default n = 1 to 8, with a verdict on the first stable orbit.
     release
-        What ends a contact: "displacement", the default without an engine, or "force".
+        Where a contact ends: "displacement" at the table's level, the default without an engine,
+        or "force" where the contact force vanishes.
     law
-        The law of the contact, such as hunt-crossley, in place of the linear one. It has the
-        restitution and the contact time of a free impact at the orbit's speed.
+        Name of a contact law, such as hunt-crossley, in place of the linear one. It gets the given
+        restitution coefficient and contact time at the impact speed of the orbit.
     quantity
         The quantity that must be accurate: max_height, bounce_velocity, phase,
         apparent_restitution, saddle_node, period_doubling or permanent_contact.
     tolerance
-        Relative error of the quantity that is allowed: "5 %" or 0.05.
+        Largest relative error of the quantity, such as "5 %" or 0.05.
     engine
-        The engine whose contact this is: generic, mujoco, lammps, liggghts, pybullet, drake or
-        mercurydpm. Its release is that of the contact, and a restitution is met under it.
+        Physics engine for which the contact is written: generic, mujoco, lammps, liggghts,
+        pybullet, drake or mercurydpm. The contact then ends as in this engine.
     restitution_error
-        Error of a free impact's restitution that the engine's time step may cause.
+        Largest error of the restitution coefficient that the engine's time step may cause.
     from_engine
-        The engine whose parameters are given, in place of stiffness and loss.
+        Physics engine whose parameters are given, in place of stiffness and loss.
     solref
-        Of MuJoCo: "-K -B" per unit of mass, or "TIMECONST DAMPRATIO".
+        For MuJoCo: "-K -B" per unit of mass, or "TIMECONST DAMPRATIO".
     solimp
-        Of MuJoCo: "DMIN DMAX WIDTH MIDPOINT POWER", or the first of them.
+        For MuJoCo: "DMIN DMAX WIDTH MIDPOINT POWER", or the first of these numbers.
     parameters
-        Of another engine: its parameter, such as kn=1e5.
+        For the other engines: a parameter by its name, such as kn=1e5.
 
     Raises
     ------
     ModelError
-        In one line, if something is missing, contradictory or of the wrong kind.
+        If a parameter is missing, out of range or contradicts another.
     NoOrbitError
-        If no model has an orbit there.
+        If no model has the orbit.
 
     Examples
     --------
@@ -271,13 +275,15 @@ def _of_law(
     if kind is None or kind is SpringDamper:
         return None
     if release is not None:
-        raise ParameterError(f"{{release}} does not go with {{law}} {name}, which has its own")
+        raise ParameterError(f"{{release}} is not allowed with {{law}} {name}, which has its own")
     for other in ("stiffness", "damping", "damping_ratio", "reduced_modulus", "youngs_modulus"):
         if other in given:
             instead = "give {contact_time} and {restitution}"
-            raise ParameterError(f"{{{other}}} does not go with {{law}} {name}: {instead}")
+            raise ParameterError(f"{{{other}}} is not allowed with {{law}} {name}: {instead}")
     if "contact_time" not in given:
-        raise ParameterError(f"{{law}} {name} needs {{contact_time}}, of a free impact")
+        raise ParameterError(
+            f"{{law}} {name} needs {{contact_time}}, the duration of a free impact"
+        )
     if "restitution" in given:
         given["measured_restitution"] = given.pop("restitution")
     return kind

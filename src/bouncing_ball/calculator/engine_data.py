@@ -36,12 +36,12 @@ def read_engine(said: Mapping[str, Any]) -> tuple[Source | None, dict[str, Any]]
         if values:
             first = next(iter(values))
             what = f"{{{first}}}" if first in names else f"{{parameters}} {first}"
-            raise ParameterError(f"{what} needs {{from_engine}}, the engine that has it")
+            raise ParameterError(f"{what} needs {{from_engine}}, the name of the engine")
         return None, dict(said)
     source = Source(engine_named(name), values)
     for other in (*STIFF, *LOSSY, "law"):
         if said.get(other) is not None:
-            raise ParameterError(f"{{{other}}} does not go with {{from_engine}}, which says it")
+            raise ParameterError(f"{{{other}}} is not allowed with {{from_engine}}")
     mass, rule = said.get("mass"), said.get("release")
     mass = None if mass is None else number("mass", mass, Unit("kg", "20 g"))
     contact = source.engine.read(values, mass)

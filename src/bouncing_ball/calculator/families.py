@@ -126,15 +126,15 @@ def families(case: Case, asked: Sequence[int], or_first: bool = False) -> tuple[
             f"no {which} in any model{rests}: the table's acceleration is Λ = {lam:.4g} of "
             f"gravity, and the {asked[0]}-T orbit needs {nodes[0][0]:.4g}"
         )
-    there, found = np.flatnonzero(there), []
+    there = np.flatnonzero(there)
+    found: list[list[np.ndarray]] = []
     for model, orbit, node in zip(models, orbits, nodes, strict=True):
         still = RESTITUTION_THRESHOLD if found else case.permanent_contact
         limits = node[there], model.period_doubling(n[there]).amplitude, still + 0 * node[there]
         found.append([*(getattr(orbit[there], quantity) for quantity in OF_ORBITS), *limits])
-    values = np.array(found)
     return tuple(
-        _family(case, asked[k], [orbit[k] for orbit in orbits], values[:, :, column])
-        for column, k in enumerate(there.tolist())
+        _family(case, asked[k], [orbit[k] for orbit in orbits], values)
+        for k, values in zip(there.tolist(), np.moveaxis(np.array(found), -1, 0), strict=True)
     )
 
 

@@ -29,7 +29,7 @@ from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.history import history
 from bouncing_ball.motion.linear_contact import has_closed_form
 from bouncing_ball.motion.sequence import ImpactSequence, Status
-from bouncing_ball.motion.work import over_contact
+from bouncing_ball.motion.work import over_steps
 
 # Relative change of the velocity of an orbit, for a start beside it.
 _BESIDE = 1e-3
@@ -171,30 +171,16 @@ def height_and_power(sequence: ImpactSequence, before: int = 0) -> tuple[np.ndar
     >>> round(float(height), 12), round(float(power), 12)
     (1.333333333333, 0.0)
     """
-    lam, part = sequence.amplitude, slice(before, -1)
-    time, phase, duration = sequence.time, sequence.phase[part], sequence.contact_duration[part]
-    impact, bounce = sequence.impact_velocity[part], sequence.bounce_velocity[part]
-    end = phase + duration
-    flight = time[before + 1 :] - time[part] - duration
-    lift, left = lam * np.sin(phase), lam * np.sin(end)
-    low = sequence.release_displacement[part] + left
-    flown = (low + (bounce / 2 - flight / 6) * flight) * flight
-    work = bounce * lam * np.cos(end) - impact * lam * np.cos(phase) + left - lift
-    law = sequence.contact
-    if isinstance(law, SpringDamper) and has_closed_form(law):
-        angle = np.array([phase, end])
-        gap = np.array([sequence.displacement, sequence.release_displacement])[:, part]
-        rate = np.array([sequence.relative_velocity, sequence.relative_bounce_velocity])[:, part]
-        place = lam * np.cos(angle), lam * np.sin(angle)
-        held, moved = over_contact(law, lam, duration, place, gap, rate)
-    elif law is not None:
-        held, moved = _by_nodes(sequence, part)
-    else:
-        # A ball that sticks is at the table's level, with its velocity.
-        held = lam * (np.cos(phase) - np.cos(end))
-        moved = (left * left - lift * lift) / 2
-    total = time[-1] - time[before]
-    return np.sum(flown + held, axis=0) / total, np.sum(work + moved, axis=0) / total
+    part, law, time = slice(before, -1), sequence.contact, sequence.time
+    duration, phase = sequence.contact_duration[part], sequence.phase[part]
+    gap = np.array([sequence.displacement, sequence.release_displacement])[:, part]
+    rate = np.array([sequence.relative_velocity, sequence.relative_bounce_velocity])[:, part]
+    closed = law is None or (isinstance(law, SpringDamper) and has_closed_form(law))
+    inside = None if closed else _by_nodes(sequence, part)
+    ends, flown = np.array([phase, phase + duration]), np.diff(time[before:], axis=0) - duration
+    sums = over_steps(law, sequence.amplitude, duration, ends, gap, rate, flown, inside)
+    height, power = (np.sum(x, axis=0) / (time[-1] - time[before]) for x in sums)
+    return height, power
 
 
 def _by_nodes(sequence: ImpactSequence, part: slice) -> tuple[np.ndarray, np.ndarray]:
@@ -215,37 +201,37 @@ def aside(motion: Motion, amplitude: float) -> str:
     rests = motion.laid == Kind.PERMANENT_CONTACT and amplitude <= RESTITUTION_THRESHOLD
     if motion.laid is None or rests:
         return ""
-    return f"; a ball laid on the table {_LAID[motion.laid]}, which is not judged"
+    return f"; a ball laid on the table {_LAID[motion.laid]}, and is not judged"
 
 
 def headline(motion: Motion, family: Family) -> str:
     """The motion of the ball, in one sentence."""
     orbit = f"{family.n}-T orbit"
     if motion.kind == Kind.ORBIT and motion.restitution_kind is None:
-        said = f"A ball on the {orbit} stays on it: it is stable"
+        said = f"The {orbit} is stable: a ball on it stays on it."
         if motion.laid is None:
-            return f"{said}."
-        return f"{said}. Laid on the table a ball {_LAID[motion.laid]}."
+            return said
+        return f"{said} A ball laid on the table {_LAID[motion.laid]}."
     if motion.restitution_kind is None:
-        return f"A ball beside the {orbit} stays beside it: nothing is lost, and it ends nowhere."
+        return f"A ball near the {orbit} stays near it, because the contact loses no energy."
     none = not any(each.exists for each in family.standing.values())
     does = (_LAID if none else _DOES)[motion.kind]
     if motion.periods > 1 and motion.kind != Kind.PERMANENT_CONTACT:
-        does += f", every {motion.periods} periods of the table and {motion.impacts} impacts"
-    why = "not stable" if family.is_admissible else "inadmissible: another impact comes first"
+        does += f" after {motion.periods} periods of the table and {motion.impacts} impacts"
+    why = "not stable" if family.is_admissible else "not admissible"
     if none:
-        return f"No model has an n-T orbit. Laid on the table a ball {does}."
+        return f"No model has an n-T orbit. A ball laid on the table {does}."
     if not family.exists:
-        return f"The contact has no {orbit}: a ball that starts like one {does}."
-    return f"No ball stays on the {orbit}, which is {why}: one that starts beside it {does}."
+        return f"The contact has no {orbit}. A ball that starts as on such an orbit {does}."
+    return f"The {orbit} is {why}. A ball that starts near it {does}."
 
 
 _DOES: Mapping[str, str] = {
-    Kind.ORBIT: "repeats itself on a periodic orbit",
-    Kind.SUBHARMONIC: "repeats itself with a multiple of a period (doubled)",
-    Kind.LOCKED: "repeats itself and sticks to the table on the way (locked)",
+    Kind.ORBIT: "settles on a periodic orbit, which repeats",
+    Kind.SUBHARMONIC: "settles on a doubled orbit, which repeats",
+    Kind.LOCKED: "settles on a locked motion, which sticks to the table and repeats",
     Kind.PERMANENT_CONTACT: "comes to rest on the table",
     Kind.CHAOTIC: "ends in chaotic motion",
-    Kind.UNDECIDED: "shows no motion that repeats, and is not known to be chaotic",
+    Kind.UNDECIDED: "shows no periodic motion and is not known to be chaotic",
 }
 _LAID = {**_DOES, Kind.PERMANENT_CONTACT: "stays at rest"}

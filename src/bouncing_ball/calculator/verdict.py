@@ -68,7 +68,7 @@ def assessed(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
 
 def judged_by_motion(motion: Motion, tolerance: float, n: int) -> Verdict:
     """The verdict where no ball stays on the orbit: about the motion on which it ends."""
-    about = f"the errors of the {n}-T orbit are those of a motion that no ball has"
+    about = f"no ball stays on the {n}-T orbit, so that its errors are not judged"
     kinds = motion.kind, motion.restitution_kind
     if kinds == (Kind.PERMANENT_CONTACT,) * 2:
         return Verdict(
@@ -133,7 +133,7 @@ def _reason(needed: Needed, frequency_ratio: float, good: bool, tolerance: str) 
         f"ϖ = {needed.frequency_ratio:.4g} from which on the error stays within {tolerance}"
     )
     if good and place == "below":
-        text += ": that it is small here is an accident of its passing through zero"
+        text += "; it is small here only because it passes through zero near this ϖ"
     return text
 
 
@@ -188,16 +188,18 @@ def notes(case: Case, family: Family) -> tuple[str, ...]:
                 "restitution model's lowest stable orbit"
             )
     if math.isnan(case.permanent_contact):
-        found.append("no Λ of permanent contact was found: weakly damped, the contact rings")
+        found.append(
+            "no threshold of permanent contact was found, because the contact is weakly damped"
+        )
     if not family.exists:
         found.append(f"at this Λ the contact has no {orbit}")
     elif not (family.is_stable and family.is_admissible):
-        what = "unstable" if family.is_admissible else "inadmissible: another impact comes first"
-        found.append(f"the {orbit} is {what}, and no ball will keep to it")
+        what = "unstable" if family.is_admissible else "inadmissible (an earlier impact occurs)"
+        found.append(f"the {orbit} is {what}, so that no ball stays on it")
     if contact.frequency_ratio < 1:
-        found.append("the contact is slower than the table: no impact, but a ball on a spring")
+        found.append("the contact is slower than the table: the ball oscillates on a spring")
     if case.law is None and contact.release is Release.DISPLACEMENT and contact.damping_ratio > 0:
         found.append(
-            "the contact pulls before it is released at δ = 0; one that cannot pull has the other r"
+            "the contact pulls before its release at δ = 0; if it cannot, its r is the other one"
         )
     return tuple(found)

@@ -1,4 +1,4 @@
-"""Calls about the long run: the motion on which a ball ends, over Λ, and of many starts."""
+"""Calls about the motions on which balls end: of one ball, over Λ, and of many starts."""
 
 import math
 from collections.abc import Mapping
@@ -23,7 +23,7 @@ Many = Annotated[int, count(100_000)]
 def motion_of(
     amplitude, *, phase=0.0, velocity=-math.pi, impacts: Followed = 4000, **impact: Any
 ) -> Labelled:
-    """The motion on which a ball ends that starts with an impact as in
+    """The motion on which a ball ends, after a first impact as in
     :func:`bouncing_ball.simulate`.
 
     Parameters
@@ -36,8 +36,8 @@ def motion_of(
     Labelled
         ``kind``, one of "orbit", "subharmonic", "locked", "permanent contact", "chaotic" and
         "undecided" (:class:`bouncing_ball.attractors.motions.Kind`), the ``periods`` of the table
-        and the ``impacts`` until it repeats, its ``lyapunov_exponent`` per period of the table
-        with ``lyapunov_error``, the ``reason`` of an undecided one, and an impact on it.
+        and the ``impacts`` until the motion repeats, its ``lyapunov_exponent`` per period of the
+        table with ``lyapunov_error``, the ``reason`` if it is undecided, and one of its impacts.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def motion_of(
 
     Examples
     --------
-    A ball that sticks and is thrown again in the same way each time:
+    A ball that sticks to the table and is thrown off again, each time in the same way:
 
     >>> found = motion_of(3.0, restitution=0.6)
     >>> found.kind.item(), found.periods.item()
@@ -72,8 +72,8 @@ def lyapunov_exponent(amplitude: AnyAmplitude, **given: Any) -> Labelled:
     -------
     Labelled
         ``lyapunov_exponent`` with ``lyapunov_error``, its standard error, and the ``kind`` of the
-        motion. Of one that repeats it is that of the larger multiplier: negative, and -∞ where
-        the later motion does not depend on earlier impacts.
+        motion. For a periodic motion it follows from the larger multiplier, and is -∞ if the
+        later motion does not depend on earlier impacts.
 
     Examples
     --------
@@ -91,7 +91,7 @@ def lyapunov_exponent(amplitude: AnyAmplitude, **given: Any) -> Labelled:
 def orbit_diagram(
     amplitudes: AnyAmplitude, *, starts: Many = 6, samples: Many = 64, impacts=1000, **impact: Any
 ) -> Labelled:
-    """The attractors over Λ: from several starts, and followed to both sides.
+    """The attractors over Λ, reached from several starts and by following them in Λ.
 
     ``impacts`` and the model are given as in :func:`motion_of`.
 
@@ -100,16 +100,16 @@ def orbit_diagram(
     amplitudes : array_like
         Excitation amplitudes Λ in rising order.
     starts : int
-        Balls that start at each of them, spread evenly over phases and speeds, before those
-        that start beside the n-T orbits up to n = 3.
+        Number of balls at each amplitude, spread evenly over phases and speeds. Further balls
+        start near the n-T orbits up to n = 3.
     samples : int
-        Impacts shown of a motion that does not repeat, and at most of one that does.
+        Largest number of impacts recorded of each motion.
 
     Returns
     -------
     Labelled
-        As :func:`motion_of` of each ``start``, and of two balls that are followed upwards and
-        downwards in Λ; ``impact_phase`` and ``impact_speed`` of each ``impact`` on the motion.
+        As for :func:`motion_of`, for each ``start`` and for two balls that are followed upwards
+        and downwards in Λ; ``impact_phase`` and ``impact_speed`` of each ``impact`` recorded.
 
     Raises
     ------
@@ -119,7 +119,7 @@ def orbit_diagram(
 
     Examples
     --------
-    Before and beyond the period doubling, of the ball that starts beside the 1-T orbit:
+    Below and above the period doubling, for the ball that starts near the 1-T orbit:
 
     >>> found = orbit_diagram([1.5, 1.6], restitution=0.5, impacts=200)
     >>> found.impacts.isel(start=6).values.tolist()
@@ -149,15 +149,15 @@ def basins(
     Parameters
     ----------
     starts : int
-        Starts along each of the axes, phase of the table and relative speed.
+        Number of starts along each axis, the phase of the table and the relative speed.
     velocity_max : float, optional
-        Greatest relative speed of the first impact; by default one that balls seldom exceed.
+        Largest relative speed of the first impact; balls seldom exceed the default.
 
     Returns
     -------
     Labelled
-        ``destination``, the number of a ``motion`` for each start, and of each motion its kind,
-        periods, impacts and ``share`` with its standard error.
+        ``destination``, the number of a ``motion`` for each start; and the kind, the periods,
+        the impacts and the ``share`` of each motion, with the standard error of the share.
 
     Raises
     ------

@@ -54,29 +54,31 @@ def model(
     Parameters
     ----------
     restitution : array_like, optional
-        Restitution coefficient r in (0, 1]; a contact has then the damping ratio ζ with
-        r = exp(-πζ/√(1 - ζ²)), Eq. 16 of the paper.
+        Restitution coefficient r in (0, 1]. A spring-damper contact then has the damping ratio
+        ζ with r = exp(-πζ/√(1 - ζ²)), Eq. 16 of the paper.
     frequency_ratio : array_like, optional
-        Frequency ratio ϖ of a spring-damper contact; without it an impact is an instant.
+        Frequency ratio ϖ of a spring-damper contact. Without it, impacts are instants.
     release : str, optional
-        What ends a contact: "displacement", as in the paper and by default, or "force".
+        Where a contact ends: "displacement" at the table's level, as in the paper and by
+        default, or "force" where the contact force vanishes.
     damping_ratio : array_like, optional
-        Damping ratio ζ in [0, 1) of the contact, in place of the restitution.
+        Damping ratio ζ in [0, 1) of the contact, in place of the restitution coefficient.
     measured_restitution : array_like, optional
-        Restitution coefficient that a free impact really has, in place of the restitution,
-        which is that of the displacement release: the force release has a higher one.
+        Restitution coefficient of a free impact under the given release, in place of
+        restitution, which always refers to the displacement release.
     model : str, optional
-        "restitution", "spring-damper" or "corrected"; by default a spring-damper if ϖ is
-        given, and else a restitution coefficient.
+        "restitution", "spring-damper" or "corrected". By default "spring-damper" if ϖ is
+        given, and otherwise "restitution".
     law : str, optional
-        Name of a contact law, in place of the spring-damper.
+        Name of a contact law, in place of the linear spring and damper.
     parameters : mapping, optional
-        The law's parameters by name, such as stiffness=1000.
+        Parameters of the contact law by name, such as stiffness=1000.
     duration : float, optional
-        In place of the law's parameters, with the restitution: duration D of a free impact.
+        Duration D of a free impact. With the restitution coefficient it replaces the
+        parameters of the contact law.
     speed : float, optional
-        Impact speed of that free impact. By default it is that of the orbit; for limits that
-        of the restitution model, 2πn/(1 + r); for a simulation that of the first impact.
+        Speed of that free impact. The default is the impact speed of the orbit; for limits,
+        that of the restitution model, 2πn/(1 + r); for a simulation, that of the first impact.
 
     Raises
     ------
@@ -113,12 +115,12 @@ def impact_model(given: Mapping[str, Any], law_at: LawAt | None) -> ImpactModel:
     """The model of the parameters that are not None."""
     given = {name: value for name, value in given.items() if value is not None}
     if isinstance(of := given.pop("model", None), ImpactModel):
-        _refuse(given, tuple(given), "does not go with {model}, which is a model")
+        _refuse(given, tuple(given), "is not allowed with {model}, which has its parameters")
         return of
     given |= {} if of is None else {"model": of}
     known = inspect.signature(model).parameters
     for name in given:
-        _demand(name in known, f"unknown parameter {{}}: a model has {', '.join(known)}", name)
+        _demand(name in known, f"unknown parameter {{}}: choose from {', '.join(known)}", name)
     check(model, given)
     losses = [name for name in LOSS if name in given]
     if len(losses) > 1:
@@ -150,24 +152,24 @@ def _law(given: Mapping[str, Any], law_at: LawAt | None) -> ContactLaw:
     """The contact law, by its parameters or by its free impact."""
     kind, r, duration = law_named(given["law"]), given.get("restitution"), given.get("duration")
     if given.get("model") in ("restitution", "spring-damper"):
-        why = f"{given['model']} has no {{law}}: corrected, or none, for the law itself"
+        why = f"{given['model']} has no {{law}}: give corrected, or no {{model}} for the law itself"
         _refuse(given, ("model",), why)
     instead = "{parameters}, or {restitution} and {duration}"
     linear = ("frequency_ratio", "damping_ratio", "measured_restitution")
-    _refuse(given, linear, f"does not go with {{law}} {kind.name}: {instead}")
+    _refuse(given, linear, f"is not allowed with {{law}} {kind.name}: give {instead}")
     needs = ", ".join(
         f"{{parameters}} {name.replace('_', '-')}=NUMBER" for name in kind.parameter_names()
     )
     if "parameters" in given:
-        why = f"does not go with {{parameters}}: {needs} are all of {kind.name}"
+        why = f"is not allowed with {{parameters}}: {needs} determine {kind.name}"
         _refuse(given, ("restitution", "duration", "speed"), why)
         return _law_of_parameters(kind, given)
     if r is None or duration is None:
         raise ParameterError(
             f"{{law}} {kind.name} needs {needs}, or {{restitution}} and {{duration}}"
         )
-    _refuse(given, ("release",), "goes with {law} linear and {parameters} only")
-    several = f"{{restitution}} of {{law}} {kind.name} is one number: its law is found for it"
+    _refuse(given, ("release",), "is allowed with {parameters} of {law} linear only")
+    several = f"{{restitution}} must be a single number with {{law}} {kind.name}"
     _demand(not np.ndim(r), several)
     if "speed" in given:
         return law_of_impact(kind, r, duration, given["speed"])
@@ -183,9 +185,9 @@ def _law_of_parameters(kind: type[ContactLaw], given: Mapping[str, Any]) -> Cont
         all_of = f"its parameters are {', '.join(known)}"
         _demand(name in known, f"unknown parameter {{}} of {kind.name}: {all_of}", name)
     for name in known:
-        _demand(name in named, f"{kind.name} needs {{parameters}} {name}=NUMBER as well")
+        _demand(name in named, f"{kind.name} also needs {{parameters}} {name}=NUMBER")
     if "release" in given:
-        why = f"the release is part of {kind.name}: {{release}} is for the linear law"
+        why = f"{{release}} is not allowed: {kind.name} determines where a contact ends"
         _demand("release" in kind.__dataclass_fields__, why)
         named["release"] = Release.of(given["release"])
     return kind(**named)

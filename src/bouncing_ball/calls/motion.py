@@ -1,4 +1,4 @@
-"""Calls that follow a ball from its first impact, or from where it is let go."""
+"""Calls that follow a ball from its first impact, or from the height at which it is dropped."""
 
 import math
 from typing import Annotated, Any
@@ -23,7 +23,7 @@ def simulate(
     impacts: Impacts = 100,
     **impact: Any,
 ) -> Any:
-    """Impacts in order, from a first one at a phase of the table.
+    """The sequence of impacts that begins with a given first impact.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def simulate(
     velocity : array_like
         Absolute velocity of the ball before the first impact.
     impacts : int
-        Number of impacts.
+        Largest number of impacts.
     impact
         The parameters of :func:`bouncing_ball.model`.
 
@@ -73,15 +73,15 @@ def history(
     Parameters
     ----------
     periods : float
-        Periods 2π of the table that are shown.
+        Number of periods 2π of the table.
     samples : int
-        Samples of each period.
+        Number of samples in each period.
 
     Returns
     -------
     Labelled
-        ``ball`` z, ``ball_velocity`` z′, ``table`` w and whether they are in ``contact`` over
-        ``time``, behind the axes of the arguments that are arrays.
+        ``ball`` z, ``ball_velocity`` z′, ``table`` w and whether they are in ``contact``. The
+        last axis is ``time``; each argument that is an array has an axis before it.
 
     Raises
     ------
@@ -103,27 +103,27 @@ def history(
 def drop(
     height: Positive, amplitude=0.0, *, phase=0.0, periods=10.0, samples=200, **impact: Any
 ) -> Any:
-    """A ball that is let go at rest above a table, which rests itself unless Λ is given.
+    """A ball that is dropped at rest above a table, which does not move unless Λ is given.
 
-    The parameters are those of :func:`history` otherwise.
+    The other parameters are those of :func:`history`.
 
     Parameters
     ----------
     height : array_like
         Height of the ball above the middle of the table's motion, in units of g/Ω².
     phase : array_like
-        Phase of the table when the ball is let go.
+        Phase of the table when the ball is dropped.
 
     Returns
     -------
     Labelled
-        As of :func:`history`; the time is that since the ball was let go.
+        As for :func:`history`; the time begins when the ball is dropped.
 
     Raises
     ------
     ModelError
         If a parameter is missing, out of range or contradicts another, or if the ball
-        would be let go below the table.
+        would be dropped below the table.
 
     Examples
     --------

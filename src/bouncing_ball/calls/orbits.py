@@ -19,7 +19,7 @@ Points = Annotated[int, count(10_000, low=10)]
 
 
 class Limits(NamedTuple):
-    """The orbits between which a family is stable; NaN where there is none."""
+    """The two orbits that bound the stable range of a family; NaN where there is none."""
 
     saddle_node: Orbit
     period_doubling: Orbit
@@ -46,23 +46,23 @@ def orbit(
     amplitude : array_like
         Excitation amplitude Λ > 0.
     side : str
-        Side of the saddle-node: "stable", the one that is stable next to it, or "unstable".
-        "all" is every orbit at this amplitude, in order of contact duration.
+        Side of the branch: "stable" or "unstable" next to the saddle-node, or "all" for every
+        orbit at this amplitude, in order of contact duration.
     index : int, optional
-        The number of one of all orbits, from 1.
+        Number of one of the orbits that side "all" lists, from 1.
     impact
         The parameters of :func:`model`.
 
     Returns
     -------
     Orbit or Labelled
-        One orbit, whose numbers are Python's floats. If a parameter is an array, a dataset of
-        the orbits' observables with an axis named after each array; NaN where there is no orbit.
+        One orbit, with Python floats. If a parameter is an array, a dataset of the observables
+        of all orbits with an axis named after each array; NaN where there is no orbit.
 
     Raises
     ------
     NoOrbitError
-        If there is none, with the reason.
+        If the orbit does not exist; the message gives the reason.
     ModelError
         If a parameter is missing, out of range or contradicts another.
 
@@ -84,7 +84,7 @@ def orbit(
     if _arrays(impact, n, amplitude):
         if side == "all" or index is not None:
             of_one = "{side} all" if side == "all" else "{index}"
-            raise ParameterError(f"{of_one} is for one orbit, and not for arrays of parameters")
+            raise ParameterError(f"{of_one} is for one orbit and does not accept arrays")
         grid = labelled().Grid(n=n, amplitude=amplitude, **impact)
         return labelled().orbits(grid, _model_of_orbit, Side(side))
     branch = Side.STABLE if side == "all" else Side(side)
@@ -164,9 +164,9 @@ def branch(
     n : array_like of int
         Index n of the family.
     amplitude_max : float, optional
-        The Λ up to which it is followed; by default 1.4 times that of the period doubling.
+        Largest Λ of the branch; by default 1.4 times that of the period doubling.
     points : int
-        Points of the branch, at equal steps of arclength.
+        Number of points along the branch, at equal steps of arclength.
     impact
         The parameters of :func:`bouncing_ball.model`.
 

@@ -32,9 +32,9 @@ def design(*, plot: Path | None = None, all_families: bool = False, **given: Any
     Parameters
     ----------
     plot
-        A page to print: .pdf, .png or .svg.
+        File for one page to print: .pdf, .png or .svg.
     all_families
-        Print all results for every family; by default a line for each, unless n is given.
+        Print all results for every family. By default each family has one line, unless n is given.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def design(*, plot: Path | None = None, all_families: bool = False, **given: Any
 
 def _draw(found: Design, path: Path) -> None:
     if not any(each.exists for each in found.judged.standing.values()):
-        raise NoOrbitError(f"the page is that of an orbit: {found.reason}")
+        raise NoOrbitError(f"without an orbit there is no page to print: {found.reason}")
     from bouncing_ball.calculator.page_data import page
 
     with extra("plot"):
@@ -127,9 +127,7 @@ def _short(found: Design) -> list[str]:
         f"{shown(one.corrected_errors[quantity], '%', least)}"
         for one in found.orbits
     ]
-    about = (
-        f"{option('n')} {found.n} prints all that is known of one, {option('all_families')} of all"
-    )
+    about = f"{option('n')} {found.n} prints all results for one, {option('all_families')} for all"
     return ["", head, *rows, f"({about}.)"]
 
 

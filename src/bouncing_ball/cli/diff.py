@@ -26,9 +26,9 @@ def diff(
     results
         Folder with the new artifacts.
     artifacts
-        Such as fig08 or table1; all of them if none is named.
+        Artifacts to compare, such as fig08 or table1. By default all of them.
     html
-        One page with all pictures.
+        File for a page that shows both versions of all pictures.
     """
     try:
         comparison = compare_folders(record, results, artifacts)

@@ -52,7 +52,7 @@ def diagram(
     """
     low, high = amplitudes
     if not low < high:
-        raise ParameterError(f"{{amplitudes}} {low:g} {high:g} is empty: the second is larger")
+        raise ParameterError(f"{{amplitudes}} {low:g} {high:g}: the second must be larger")
     found = long_run.orbit_diagram(np.linspace(low, high, points), **given)
     if plot is not None:
         found.plot(plot)

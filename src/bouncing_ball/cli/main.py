@@ -38,7 +38,7 @@ def parser(arguments: list[str]) -> Parser:
         prog="bouncing-ball",
         description="Periodic orbits of a ball on a vibrating table. All quantities are "
         "dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g; only design has units.",
-        epilog="bouncing-ball COMMAND --help explains a command and has examples of it",
+        epilog="bouncing-ball COMMAND --help explains a command and gives examples",
     )
     top.add_argument("--version", action="version", version=f"{top.prog} {__version__}")
     commands = top.add_subparsers(dest="command", parser_class=Parser)

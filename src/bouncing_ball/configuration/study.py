@@ -89,7 +89,7 @@ def section(artifact: str, run: Mapping[str, Any]) -> str:
         if artifact in (run.get(name) or {}):
             return name
     raise ConfigurationError(
-        f"{artifact} has no parameters: a key {artifact} in one of {', '.join(SECTIONS)}"
+        f"{artifact} has no parameters: add a key {artifact} to one of {', '.join(SECTIONS)}"
     )
 
 

@@ -253,6 +253,6 @@ def permanent_contact(law: ContactLaw) -> float:
                     # The same motion, half a period later, has -Λ.
                     return abs(float(z[-1]))
     raise ModelError(
-        f"no steady contact that just touches its release was found for {law.label}: "
-        "weakly damped, it rings"
+        f"no threshold of permanent contact was found for {law.label}, because it is too weakly "
+        "damped"
     )

@@ -103,8 +103,8 @@ def free_impact(law: ContactLaw, speed: ArrayLike) -> Instant:
     if not np.all(np.isfinite(end.duration)):
         lost = np.broadcast_to(v, end.duration.shape)[np.isnan(end.duration)][0]
         raise ModelError(
-            f"{law.name}: no end of a free impact of speed {lost:.3g} was found; the law must let "
-            "the ball go within a dozen oscillations: is it adhesive, or damped too strongly?"
+            f"{law.name}: a free impact of speed {lost:.3g} does not end within a dozen "
+            "oscillations, because the law is adhesive or damped too strongly"
         )
     by_speed, by_load = end.jacobian[..., 2, 1], end.jacobian[..., 2, 3]
     r = -end.rate / v

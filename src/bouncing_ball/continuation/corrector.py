@@ -1,4 +1,4 @@
-"""Newton's method on the problem with one condition added, and tangents."""
+"""Newton's method on square systems, on the problem with one condition added, and tangents."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -39,6 +39,8 @@ class NewtonSettings(NamedTuple):
     longest: float = np.inf
 
 
+Equations = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+"""Maps y (..., N) to the values of N equations (..., N) and their Jacobian (..., N, N)."""
 Condition = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 """Maps y (..., N + 1) to a value (...,) and its gradient (..., N + 1)."""
 
@@ -67,6 +69,26 @@ def newton(
         A guess has not converged if it ran out of iterations, met a singular matrix or left
         the domain of F.
     """
+
+    def equations(y):
+        value, gradient = condition(y)
+        right = np.concatenate([problem.residual(y), value[..., np.newaxis]], axis=-1)
+        return right, np.concatenate([problem.jacobian(y), gradient[..., np.newaxis, :]], axis=-2)
+
+    return solve(equations, guess, settings)
+
+
+def solve(
+    equations: Equations, guess: np.ndarray, settings: NewtonSettings = NewtonSettings()
+) -> Correction:
+    """Solve N equations in N unknowns, from many guesses together.
+
+    Examples
+    --------
+    >>> found = solve(lambda y: (y * y - 4, 2 * y[..., np.newaxis]), np.array([[1.0], [-3.0]]))
+    >>> found.point.tolist(), found.converged.tolist()
+    ([[2.0], [-2.0]], [True, True])
+    """
     y = np.array(guess, dtype=float)
     shape = y.shape[:-1]
     converged, going = np.zeros(shape, dtype=bool), np.ones(shape, dtype=bool)
@@ -74,9 +96,7 @@ def newton(
     iteration = 0
     while iteration < settings.max_iterations and np.any(going):
         iteration += 1
-        value, gradient = condition(y)
-        right = np.concatenate([problem.residual(y), value[..., np.newaxis]], axis=-1)
-        matrix = np.concatenate([problem.jacobian(y), gradient[..., np.newaxis, :]], axis=-2)
+        right, matrix = equations(y)
         residual = np.where(going, np.max(np.abs(right), axis=-1), residual)
         going &= np.isfinite(residual) & np.all(np.isfinite(matrix), axis=(-2, -1))
         change = _solve(np.where(going[..., np.newaxis, np.newaxis], matrix, np.nan), right)

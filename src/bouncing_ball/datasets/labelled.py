@@ -75,7 +75,9 @@ class Grid:
     def __init__(self, **given: Any) -> None:
         for name, value in given.items():
             if isinstance(value, Mapping) and any(np.ndim(x) for x in value.values()):
-                raise ParameterError(f"{{{name}}} are numbers here: an array has no axis of a name")
+                raise ParameterError(
+                    f"{{{name}}} must be single numbers, because an array needs a named axis"
+                )
         self.coords = {
             name: _axis(name, value).assign_attrs(VARIABLES.get(name, {}))
             for name, value in given.items()
@@ -127,5 +129,5 @@ def _axis(name: str, value: Any) -> xr.DataArray:
             f"{{{name}}} has {array.ndim} axes without names: give an xarray.DataArray"
         )
     if array.dtype.kind not in "iuf":
-        raise ParameterError(f"{{{name}}} is one value, or an array of numbers")
+        raise ParameterError(f"{{{name}}} must be one value or an array of numbers")
     return xr.DataArray(array, dims=name, coords={name: array})

@@ -245,9 +245,13 @@ class Engine(ABC):
         """The mass, after a check that it is given and that all parameters belong to the engine."""
         if unknown := set(parameters) - set(self.names):
             names = " and ".join(self.names)
-            raise ModelError(f"{self.name} has no {sorted(unknown)[0]!r}: its contact has {names}")
+            raise ModelError(
+                f"{self.name} has no {sorted(unknown)[0]!r}: its parameters are {names}"
+            )
         if mass is None:
-            raise ModelError(f"the mass is missing: {self.name}'s parameters do not have it")
+            raise ModelError(
+                f"the mass is missing: the parameters of {self.name} do not contain it"
+            )
         require(0 < mass < math.inf, mass, "mass", "a positive number of kg")
         return float(mass)
 
@@ -257,7 +261,7 @@ class Engine(ABC):
         for name in self.names:
             if name not in parameters:
                 both = " and ".join(self.names)
-                raise ModelError(f"{name} is missing: the contact of {self.name} has {both}")
+                raise ModelError(f"{name} is missing: the parameters of {self.name} are {both}")
             found.append(value := float(parameters[name]))
             require(0 <= value < math.inf, value, name, "a number of at least 0")
         require(found[0] > 0, found[0], self.names[0], "positive")

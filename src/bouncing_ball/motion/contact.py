@@ -44,16 +44,18 @@ class ContactDynamics(Dynamics):
         one = np.ones_like(impact.phase)
         # Without the maximum a displacement of 0 gives the depth -0.
         depth = np.maximum(-impact.displacement, 0.0)
-        start = Start(depth, -impact.velocity, impact.phase, self.amplitude * one, one)
+        load = 1 - table(impact.phase, self.amplitude)[1]
+        grip = self.law.loaded_grip(depth, -impact.velocity, load)
+        free = (depth == 0) & (grip < 0) & self.law.feels_load
+        # No contact is sought for these, because none of its panels would be accepted.
+        rate = np.where(free, np.nan, -impact.velocity)
+        start = Start(depth, rate, impact.phase, self.amplitude * one, one)
         end = march(self.law, start, MOST_PANELS)
         # Below the table's level a ball that is released may sink, if the load pulls it.
         rate = np.where(end.penetration > 0, -end.rate, np.maximum(-end.rate, 0.0))
-        if self.law.feels_load:
-            load = 1 - table(impact.phase, self.amplitude)[1]
-            free = (depth == 0) & (self.law.loaded_grip(depth, start.rate, load) < 0)
-            for column, value in zip(end[:3], (0.0, depth, start.rate), strict=True):
-                column[free] = (value + 0 * depth)[free]
-            rate = np.where(free, impact.velocity, rate)
+        for column, value in zip(end[:3], (0 * depth, depth, -impact.velocity), strict=True):
+            column[free] = value[free]
+        rate = np.where(free, impact.velocity, rate)
         phase, lost = impact.phase + end.duration, np.isnan(end.duration)
         state = -end.penetration, rate, *table(phase, self.amplitude)
         status = np.where(lost, Status.UNDECIDED, Status.BOUNCING)

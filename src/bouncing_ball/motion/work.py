@@ -10,6 +10,10 @@ gives ::
     ϖ² ∫ δ dτ = -[w′ + δ′ + l δ] - D
     (ϖ² - 1) I + l J = [w²/2 - w - δ′ w′ - δ w - l δ w′],                 I = ∫ δ w′ dτ
     (ϖ² - 1) J - l I = Λ² D/2 + [w′ - w w′/2 - δ′ w + δ w′ - l δ w],      J = ∫ δ w dτ
+
+The work is none in a flight, and in the mean over a long time it is what the contacts dissipate. At
+an instantaneous impact it is the impulse times w′, and while a ball rests on the table it is the
+integral of (1 - w) w′.
 """
 
 from typing import Any
@@ -18,6 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.motion.angles import table
 
 
 def change(values: np.ndarray) -> np.ndarray:
@@ -26,7 +31,7 @@ def change(values: np.ndarray) -> np.ndarray:
 
 
 def over_contact(
-    law: SpringDamper, amplitude: ArrayLike, duration: Any, table: Any, gap: Any, rate: Any
+    law: SpringDamper, amplitude: ArrayLike, duration: Any, level: Any, gap: Any, rate: Any
 ) -> tuple[np.ndarray, np.ndarray]:
     """The integrals ∫ z dτ and ∫ z′ w dτ over contacts.
 
@@ -35,7 +40,7 @@ def over_contact(
     law : SpringDamper
     amplitude, duration : array_like
         Λ and the duration D of the contacts.
-    table : tuple of array
+    level : tuple of array
         w′ and w, each at the start and at the end of the contacts, shape (2, ...).
     gap, rate : array, shape (2, ...)
         δ and δ′ at the start and at the end.
@@ -49,7 +54,7 @@ def over_contact(
     >>> [float(x[0]) for x in over_contact(law, 0.0, 2.0, (still, still), gap, rate)]
     [-1.0, 0.0]
     """
-    (w_rate, w), stiffness = table, law.frequency_ratio**2
+    (w_rate, w), stiffness = level, law.frequency_ratio**2
     loss = 2 * law.damping_ratio * law.frequency_ratio
     of_rate = change(w * w / 2 - w - rate * w_rate - gap * w - loss * gap * w_rate)
     of_level = change(w_rate - w * w_rate / 2 - rate * w + gap * w_rate - loss * gap * w)
@@ -58,3 +63,48 @@ def over_contact(
     by_rate = (s * of_rate - loss * of_level) / (s * s + loss * loss)
     sunk = -(change(w_rate + rate + loss * gap) + duration) / stiffness
     return sunk - change(w_rate), change(gap * w + w * w / 2) - by_rate
+
+
+def over_steps(
+    law: Any,
+    amplitude: Any,
+    duration: Any,
+    phase: np.ndarray,
+    gap: np.ndarray,
+    rate: np.ndarray,
+    flown: Any,
+    inside: tuple[np.ndarray, np.ndarray] | None = None,
+) -> tuple[np.ndarray, np.ndarray]:
+    """The integral ∫ z dτ and the work of the table over contacts and the flights after them.
+
+    Parameters
+    ----------
+    law : SpringDamper or None
+        None where an impact is an instant, and a contact that lasts is a rest on the table.
+    amplitude, duration : array_like
+        Λ and the duration D of the contacts.
+    phase, gap, rate : array, shape (2, ...)
+        φ, δ and δ′ at the start and at the end of the contacts.
+    flown : array_like
+        The duration of the flights.
+    inside : tuple of array, optional
+        ∫ z dτ and ∫ z′ w dτ over the contacts of another law.
+
+    Examples
+    --------
+    A ball that leaves a table at rest with z′ = 3 flies for 6, and its mean height is 3:
+
+    >>> phase, gap, rate = np.zeros((2, 1)), np.zeros((2, 1)), np.array([[-3.0], [3.0]])
+    >>> [float(x[0]) for x in over_steps(None, 0.0, 0.0, phase, gap, rate, 6.0)]
+    [18.0, 0.0]
+    """
+    w_rate, w = table(phase, amplitude)
+    if inside is not None:
+        held, moved = inside
+    elif law is None:
+        held, moved = -change(w_rate), change(w * w) / 2
+    else:
+        held, moved = over_contact(law, amplitude, duration, (w_rate, w), gap, rate)
+    low, velocity = (gap + w)[1], rate + w_rate
+    height = held + (low + (velocity[1] / 2 - flown / 6) * flown) * flown
+    return height, change(velocity * w_rate + w) + moved

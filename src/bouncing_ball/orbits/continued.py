@@ -167,18 +167,16 @@ def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Any:
     found = _shaped(model, n, y, shape)
     test = Bifurcation.SADDLE_NODE.test(*found.trace_and_determinant())
     on_side = test > 0 if side is Side.STABLE else test < 0
-    if np.all(on_side):
-        return found
-    y[np.broadcast_to(~on_side, shape).reshape(-1)] = np.nan
+    y[~np.broadcast_to(on_side, shape).reshape(-1)] = np.nan
     missing = np.flatnonzero(np.isnan(y[:, 0]) & np.isfinite(lam))
-    # All folds at once, because each computation of contacts costs nearly as much as one.
-    models = search.model.take(missing)
-    folds = bifurcation(models, search.n[missing], Bifurcation.SADDLE_NODE)
-    points = models.system(search.n[missing]).point(folds)
-    for k, fold in zip(missing, points, strict=True):
+    if not missing.size:
+        return found if np.all(on_side) else _shaped(model, n, y, shape)
+    # All folds at once, because many contacts cost little more than one.
+    models, index = search.model.take(missing), search.n[missing]
+    folds = models.system(index).point(models.saddle_node(index))
+    for k, fold in zip(missing, folds, strict=True):
         if lam[k] >= fold[-1]:
-            one = search.model.take(k)
-            y[k] = _on_branch(one, int(search.n[k]), fold, float(lam[k]), side)
+            y[k] = _on_branch(search.model.take(k), int(search.n[k]), fold, float(lam[k]), side)
     return _shaped(model, n, y, shape)
 
 

@@ -52,7 +52,9 @@ def instants(periods: float, samples: int, balls: int) -> np.ndarray:
     """
     count = math.ceil(periods * samples) + 1
     if count * balls > _STATES:
-        raise ModelError(f"{count * balls} states in all are more than {_STATES}: ask for less")
+        raise ModelError(
+            f"{count * balls} states exceed the limit of {_STATES}: use fewer samples or balls"
+        )
     return np.linspace(0.0, 2 * np.pi * periods, count)
 
 
@@ -112,7 +114,9 @@ def _followed(model: Any, start: Sequence[np.ndarray], time: np.ndarray) -> dict
             balls = [of_one_ball(found[k], each) for k, each in enumerate(time)]
             return {name: np.array([getattr(x, y) for x in balls]) for name, y in _SHOWN.items()}
         if impacts == _MOST:
-            raise ModelError(f"a ball has more than {_MOST} impacts in this time: ask for less")
+            raise ModelError(
+                f"a ball has more than {_MOST} impacts in this time: use fewer periods"
+            )
         impacts *= 4
 
 

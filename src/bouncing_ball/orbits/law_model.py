@@ -202,6 +202,6 @@ def law_at_orbit(
         if np.all(np.abs(missed) <= _SETTLED * speed):
             return law_of_impact(kind, restitution, taken, speed)
     raise NoOrbitError(
-        f"no {n}-T orbit at Λ = {amplitude:g} whose own impact has r = {restitution:g} and "
+        f"no {n}-T orbit at Λ = {amplitude:g} whose impact has r = {restitution:g} and "
         f"D = {float(taken.flat[0]):g} was found for {kind.name}"
     )

@@ -55,7 +55,7 @@ def _call(name: str) -> Any:
     def method(self: ImpactModel, *places: Any, **given: Any) -> Any:
         if self.shape:
             call = f"bouncing_ball.{name}(…, frequency_ratio=[5, 10])"
-            raise ModelError(f"several models have no labels: give their parameters to {call}")
+            raise ModelError(f"several models have no labels: pass their parameters, as in {call}")
         call = getattr(import_module(f"bouncing_ball.calls.{module}"), name)
         return call(*places, model=self, **given).assign_attrs(model=self.label)
 
@@ -267,7 +267,7 @@ class ImpactModel(Batch, ABC):
         if not orbit.is_admissible():
             raise NoOrbitError(
                 f"the {n}-T orbit at Λ = {amplitude:g} for {self.label} is inadmissible: "
-                "another impact or release comes first"
+                "an earlier impact or release occurs"
             )
         return orbit
 

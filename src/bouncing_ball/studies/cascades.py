@@ -10,12 +10,10 @@ import numpy as np
 import xarray as xr
 from pydantic import Field
 
-from bouncing_ball.attractors.cascade import MOST, Cascade, cascade
+from bouncing_ball.accuracy.errors import models
+from bouncing_ball.attractors.period_doublings import MOST, cascade
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.parameters import Family, LossyRestitution, Many, Parameters, Span, number
 
 _GRAVITY = 9.80665
@@ -51,24 +49,6 @@ _STIFF = np.array([1000.0, 2000.0])
 """Two ϖ for K: higher orders contribute at smaller ϖ, and rounding at much larger ones."""
 
 
-def _of_models(
-    n: int, restitution: np.ndarray, ratios: np.ndarray, release: Release, doublings: int
-) -> tuple[Cascade, Cascade, Cascade]:
-    """Cascades of the restitution model, shape (k, r, 1), and of the corrected model and the
-    contact.
-
-    The latter have shape (k, r, ϖ). The simple models have the r of a free impact on the contact.
-    """
-    contact = SpringDamper.from_restitution(restitution[:, np.newaxis], ratios, release)
-    models = (
-        RestitutionModel(contact.restitution[:, :1]),
-        CorrectedModel.of_contact(contact),
-        SpringDamperModel(contact),
-    )
-    simple, corrected, exact = (cascade(m.period_doubling(n), doublings) for m in models)
-    return simple, corrected, exact
-
-
 def cascades(parameters: Cascades, release: Release) -> xr.Dataset:
     """Λ at the period doublings of the orbits of 2ᵏ n table periods, k = 0, 1, …
 
@@ -86,7 +66,12 @@ def cascades(parameters: Cascades, release: Release) -> xr.Dataset:
     known *= (2 * np.pi * parameters.measured.frequency) ** 2
     measured = np.pad(known, (0, parameters.doublings - known.size), constant_values=np.nan)
     along = np.concatenate([ratios, _STIFF])
-    simple, corrected, exact = _of_models(parameters.n, r, along, release, parameters.doublings)
+    contact = SpringDamper.from_restitution(r[:, np.newaxis], along, release)
+    # The restitution model, which has the r of a free impact on the contact, has no ϖ.
+    of_models = models(contact[:, :1])[1], models(contact)[2], models(contact)[0]
+    simple, corrected, exact = (
+        cascade(model.period_doubling(parameters.n), parameters.doublings) for model in of_models
+    )
     errors = np.stack([exact.amplitude / x.amplitude - 1 for x in (simple, corrected)])
     once, twice = np.moveaxis(
         errors[..., -2:] * _STIFF ** np.array([1, 2]).reshape(2, 1, 1, 1), -1, 0

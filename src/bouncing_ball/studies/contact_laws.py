@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike
-from scipy.optimize import root_scalar
 
 from bouncing_ball.accuracy.errors import SIMPLE, relative
 from bouncing_ball.accuracy.quantities import Quantity, values
@@ -39,6 +39,8 @@ HERTZ = ("hunt-crossley", "tsuji", "kuwabara-kono")
 LINEAR = {"linear": Release.DISPLACEMENT, "linear, force release": Release.FORCE}
 NAMES = (*LINEAR, *HERTZ)
 BOUNDS = (Quantity.SADDLE_NODE, Quantity.PERIOD_DOUBLING)
+# Differences in ln ϖ of the orbits that locate a threshold.
+_BESIDE = np.linspace(-0.02, 0.02, 5)
 QUANTITIES = (Quantity.MAX_HEIGHT, Quantity.BOUNCE_VELOCITY, Quantity.PHASE, *BOUNDS)
 
 
@@ -159,18 +161,18 @@ def _errors(name: str, parameters: LawErrors) -> tuple[np.ndarray, float]:
         repaired = corrected_values(exact, *asked)
         return np.abs([relative(wanted, x) for x in (constant, repaired)])
 
-    def excess(log: float) -> float:
-        exact = own_models(name, parameters, np.exp([log])).orbit(n, lam)
-        error = relative(exact.max_height, rigid.orbit(n, lam).max_height)
-        return float(np.log(np.abs(error) / parameters.tolerance).item())
-
     errors, ratios = along(name, parameters, both), parameters.frequency_ratio.grid()
     outside = np.flatnonzero(errors[0, 0] > parameters.tolerance)
     if not outside.size or outside[-1] == ratios.size - 1:
         return errors, np.nan
-    # ln(error/tolerance) is nearly a straight line in ln ϖ.
-    bracket = np.log(ratios[outside[-1] + np.arange(2)])
-    return errors, float(np.exp(root_scalar(excess, x0=bracket[0], x1=bracket[1]).root))
+    # ln(error/tolerance) is nearly a straight line in ln ϖ: its zero between two nodes, and then by
+    # the polynomial through orbits beside that, which is exact to rounding.
+    sides = outside[-1] + np.arange(2)
+    guess = np.interp(0, -np.log(errors[0, 0, sides] / parameters.tolerance), np.log(ratios[sides]))
+    exact = own_models(name, parameters, np.exp(guess + _BESIDE)).orbit(n, lam)
+    error = np.abs(relative(exact.max_height, rigid.orbit(n, lam).max_height))
+    line = Polynomial.fit(np.log(error / parameters.tolerance), _BESIDE, _BESIDE.size - 1)
+    return errors, float(np.exp(guess + line(0.0)))
 
 
 def law_errors(parameters: LawErrors) -> xr.Dataset:

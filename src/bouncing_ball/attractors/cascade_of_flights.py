@@ -1,7 +1,7 @@
 r"""The cascade of flights between permanent contact and chattering, for a linear contact.
 
 At Λ_SD permanent contact ends, and a T-periodic orbit begins that flies once per period
-(``docs/closed-form.md``, section 5). As Λ grows the contact after its landing oscillates higher,
+(``docs/closed-form.md``, section 4). As Λ grows the contact after its landing oscillates higher,
 until it touches the table's level. There it opens, and beyond the orbit has one flight more. The
 flight grows from nothing and changes the return map as the power 3/2 of Λ - Λ_k, so that the orbit
 keeps its multipliers there and is followed on. Opening k, where flight k + 1 begins, is at
@@ -30,7 +30,7 @@ from scipy.optimize import brentq
 
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.continuation.corrector import NewtonSettings, newton
+from bouncing_ball.continuation.corrector import NewtonSettings, solve
 from bouncing_ball.errors import require
 from bouncing_ball.motion.angles import table
 from bouncing_ball.motion.landing import Flight
@@ -56,10 +56,10 @@ class Openings(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Rattling:
+class OpeningContacts:
     """T-periodic orbits with k flights whose long contact touches the table's level.
 
-    It is a :class:`~bouncing_ball.continuation.problem.Problem` without a parameter. The k flights
+    The k flights
     and k contacts are 2k legs, and y = (φ, Λ, t, T_0, …, T_{2k-2}, v_0, …, v_{2k-1}): the phase φ
     at the first release, the time t in the last contact at which it touches, the durations of all
     legs but this one, and δ′ at their starts. Each leg ends at δ = 0 with the next δ′, and the
@@ -112,19 +112,6 @@ class Rattling:
         missed, matrix = states - np.inner(y, ends), changes @ by_leg - ends
         return missed.reshape(y.shape), matrix.reshape(*y.shape, -1)
 
-    def residual(self, y: np.ndarray) -> np.ndarray:
-        """All equations but δ′ = 0 at the touch, shape (..., 4k + 1)."""
-        return self.system(y)[0][..., :-1]
-
-    def jacobian(self, y: np.ndarray) -> np.ndarray:
-        """Jacobian of the residual, shape (..., 4k + 1, 4k + 2)."""
-        return self.system(y)[1][..., :-1, :]
-
-    def touch(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """δ′ at the touch, and its gradient."""
-        missed, matrix = self.system(y)
-        return missed[..., -1], matrix[..., -1, :]
-
     def multiplier(self, y: np.ndarray) -> np.ndarray:
         """Larger modulus of the multipliers, of the leading shape of y."""
         states, changes = self.legs(y)
@@ -153,8 +140,9 @@ def _held_rate(t, excess: float, aside: float, root: complex, swing: complex):
 def _landings(excess: float, zeta: float, most: int) -> list[tuple[float, tuple[float, ...]]]:
     """The landings of the limit at E until a contact stays closed; at most so many.
 
-    Each has the highest x in the contact that follows and the unknowns of :class:`Rattling`: the
-    release, E, the time of the highest x, the durations of the legs before, and the speeds.
+    Each has the highest x in the contact that follows and the unknowns of
+    :class:`OpeningContacts`: the release, E, the time of the highest x, the durations of the legs
+    before, and the speeds.
     """
     root = complex(-zeta, np.sqrt((1 - zeta) * (1 + zeta)))
     speed = np.sqrt(2 * excess)
@@ -190,9 +178,7 @@ def _landings(excess: float, zeta: float, most: int) -> list[tuple[float, tuple[
 
 
 def _stiff_openings(zeta: float, most: int) -> list[np.ndarray]:
-    """The unknowns of :class:`Rattling` at each opening, in the units of the limit, with E for
-    Λ.
-    """
+    """The unknowns of :class:`OpeningContacts` at each opening, in units of the limit, E for Λ."""
     found: list[np.ndarray] = []
 
     def top(excess: float) -> float:
@@ -256,7 +242,7 @@ def openings(damping_ratio: ArrayLike, frequency_ratio: np.ndarray, most: int) -
     found, before = np.full((2, most, *held.shape), np.nan), held
     for k in range(most):
         start = np.stack([one[k] for one in stiff])
-        problem = Rattling(
+        problem = OpeningContacts(
             SpringDamper(omega[:, np.newaxis], zetas[:, np.newaxis, np.newaxis]), k + 1
         )
         points = _followed(problem, omega, start, held)
@@ -284,7 +270,7 @@ def _returns(contact: SpringDamper, flights: int, points: np.ndarray) -> np.ndar
 
 
 def _followed(
-    problem: Rattling, omega: np.ndarray, start: np.ndarray, held: np.ndarray
+    problem: OpeningContacts, omega: np.ndarray, start: np.ndarray, held: np.ndarray
 ) -> np.ndarray:
     """The orbits at the openings, from the limit on, shape (ζ, ϖ, unknowns)."""
     size = start.shape[-1]
@@ -306,7 +292,7 @@ def _followed(
         line = near[:, np.newaxis] + away[..., np.newaxis] * (near - far)[:, np.newaxis]
         guess = np.where(known[..., np.newaxis], points, line)[:, 1:]
         with np.errstate(all="ignore"):
-            solved = newton(problem, zero + unit * guess, problem.touch, _SETTINGS)
+            solved = solve(problem.system, zero + unit * guess, _SETTINGS)
         forward = (solved.point[..., 2 : 2 + size // 2] > 0).all(axis=-1)
         known = np.insert(solved.converged & forward, 0, True, axis=1)
         known = np.logical_and.accumulate(known, axis=1)

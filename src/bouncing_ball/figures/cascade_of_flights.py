@@ -1,4 +1,4 @@
-"""Permanent contact and the orbits with a long contact: cascade of flights."""
+"""The cascade of flights: openings of the long contact over ϖ, and their limits."""
 
 import xarray as xr
 from matplotlib.figure import Figure

@@ -15,8 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.continuation.corrector import NewtonSettings, newton
-from bouncing_ball.continuation.events import vanishing
+from bouncing_ball.continuation.corrector import NewtonSettings, solve
 from bouncing_ball.errors import require
 from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.motion.simulation import Law, in_a_row
@@ -27,13 +26,14 @@ FEIGENBAUM = 4.669201609102990
 """Limit of the ratio of successive distances between period doublings of a dissipative map
 (M. J. Feigenbaum, 1978)."""
 
-# Step of the central difference in Λ, which affects the convergence of Newton's method only.
-_DIFFERENCE = 3e-7
+# Step of the central differences, which affects the convergence of Newton's method only.
+_DIFFERENCE = 1e-6
 _SETTINGS = NewtonSettings(max_iterations=25, longest=0.3)
 # The doubled orbit is computed at this part of the estimated distance in Λ to its next doubling,
 # which is at first the second number and then follows from the ratio above. The map starts beside
-# the old orbit, by this part of the square root of the distance, and is iterated so often.
-_SHARE, _FIRST, _ASIDE, _TURNS = 0.7, 0.12, 0.1, 20
+# the old orbit, by this part of the square root of the distance, and is iterated over so many
+# impacts, and turns at least: the first distances are the least certain.
+_SHARE, _FIRST, _ASIDE, _IMPACTS, _TURNS = 0.7, 0.12, 0.1, 48, 10
 MOST = 8
 """Largest number of doublings that double precision resolves."""
 
@@ -57,8 +57,7 @@ class Cascade(NamedTuple):
 
 @dataclass(frozen=True)
 class Turns:
-    """Orbits with m impacts in m n periods, as a
-    :class:`~bouncing_ball.continuation.problem.Problem` with y = (φ, δ′, Λ).
+    """Orbits with m impacts in m n periods at their period doublings: equations for y = (φ, δ′, Λ).
 
     Parameters
     ----------
@@ -91,29 +90,20 @@ class Turns:
         end, velocity, time, *entries = (x.reshape(shape) for x in (end, velocity, time, *change))
         return end, velocity, time, Jacobian(*entries)
 
-    def residual(self, y: np.ndarray) -> np.ndarray:
-        """The differences in time and velocity between Pᵐ(s) and s, shape (..., 2)."""
-        _, velocity, time, _ = self.after(y)
-        return self._defects(y, velocity, time)
-
-    def _defects(self, y: np.ndarray, velocity: np.ndarray, time: np.ndarray) -> np.ndarray:
+    def system(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The differences in time and velocity between Pᵐ(s) and s, and 1 + tr M + det M, shape
+        (..., 3), with their Jacobian; what M does not give is by central differences.
+        """
+        steps = _DIFFERENCE * np.concatenate([np.zeros((1, 3)), np.eye(3), -np.eye(3)])
+        moved = y + steps.reshape(7, *(1,) * (y.ndim - 1), 3)
+        _, velocity, time, m = self.after(moved)
         late = time - 2 * np.pi * np.asarray(self.n) * self.impacts
-        return np.stack([late, velocity - y[..., 1]], axis=-1)
-
-    def jacobian(self, y: np.ndarray) -> np.ndarray:
-        """Jacobian of the residual, shape (..., 2, 3); the column of Λ by differences."""
-        step = np.array([[0, 0, 0], [0, 0, _DIFFERENCE], [0, 0, -_DIFFERENCE]])
-        moved = y + step.reshape(3, *(1,) * (y.ndim - 1), 3)
-        _, velocity, time, change = self.after(moved)
-        defects, here = self._defects(moved, velocity, time), [x[0] for x in change]
-        by_state = np.stack(here, axis=-1).reshape(*y.shape[:-1], 2, 2) - np.eye(2)
-        by_amplitude = (defects[1] - defects[2]) / (2 * _DIFFERENCE)
-        return np.concatenate([by_state, by_amplitude[..., np.newaxis]], axis=-1)
-
-    def doubling(self, y: np.ndarray) -> np.ndarray:
-        """1 + tr M + det M, of the leading shape of y."""
-        change = self.after(y)[-1]
-        return 1 + change.a + change.d + change.a * change.d - change.b * change.c
+        double = 1 + m.a + m.d + m.a * m.d - m.b * m.c
+        values = np.stack([late, velocity - moved[..., 1], double], axis=-1)
+        matrix = np.moveaxis(values[1:4] - values[4:], 0, -1) / (2 * _DIFFERENCE)
+        by_state = np.stack([x[0] for x in m], axis=-1).reshape(*y.shape[:-1], 2, 2)
+        matrix[..., :2, :2] = by_state - np.eye(2)
+        return values[0], matrix
 
 
 def cascade(orbit: Orbit, doublings: int) -> Cascade:
@@ -157,7 +147,7 @@ def _followed(row: Orbit, doublings: int) -> np.ndarray:
     for k in range(1, doublings):
         old, turns = (Turns(row.law, row.n, 2**m) for m in (k - 1, k))
         near = _doubled(old, turns, y, _SHARE * gap)
-        solved = newton(turns, near, vanishing(turns.doubling), _SETTINGS)
+        solved = solve(turns.system, near, _SETTINGS)
         # A cascade rises in Λ; a doubling below the previous one is that of the old orbit.
         good &= solved.converged & (solved.point[:, -1] > y[:, -1])
         gap = np.where(good, (solved.point[:, -1] - y[:, -1]) / FEIGENBAUM, gap)
@@ -173,7 +163,7 @@ def _doubled(old: Turns, turns: Turns, y: np.ndarray, above: np.ndarray) -> np.n
     along = np.stack([-1 - change.d, change.c], axis=-1)
     aside = _ASIDE * np.sqrt(above) / np.hypot(*np.moveaxis(along, -1, 0))
     y = y + np.concatenate([along * aside[:, np.newaxis], above[:, np.newaxis]], axis=-1)
-    for _ in range(_TURNS):
+    for _ in range(max(_TURNS, _IMPACTS // turns.impacts)):
         phase, velocity, _, _ = turns.after(y)
         y[:, 0], y[:, 1] = reduce_angle(phase), velocity
     return y

@@ -5,8 +5,8 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from bouncing_ball.attractors.cascade_of_flights import OpeningContacts, openings, stiff_openings
 from bouncing_ball.attractors.mapper import label
-from bouncing_ball.attractors.rattling import Rattling, openings, stiff_openings
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import SpringDamper
@@ -59,12 +59,12 @@ def test_balls_have_as_many_flights_as_the_cascade_says():
 
 def test_the_derivatives_and_the_multipliers_are_those_of_the_motion():
     law, rng = SpringDamper(9.0, 0.12), np.random.default_rng(2)
-    problem = Rattling(law, 2)
+    problem = OpeningContacts(law, 2)
     y = np.array([1.4, 1.2, 0.3, 0.5, 0.3, 0.4, 0.4, -0.3, 0.2, -0.2])
     y, step = y * (1 + 0.01 * rng.normal(size=(3, 10))), 1e-6 * np.eye(10)
-    around = [problem.residual(y[:, np.newaxis] + sign * step) for sign in (1, -1)]
+    around = [problem.system(y[:, np.newaxis] + sign * step)[0] for sign in (1, -1)]
     slopes = np.moveaxis((around[0] - around[1]) / 2e-6, 1, -1)
-    np.testing.assert_allclose(problem.jacobian(y), slopes, atol=1e-8)
+    np.testing.assert_allclose(problem.system(y)[1], slopes, atol=1e-8)
     zeta = damping_ratio(0.85)
     found = openings([zeta], np.array([20.0]), 2)
     excess = 400 * (found.amplitude - permanent_contact_threshold(20.0, zeta))

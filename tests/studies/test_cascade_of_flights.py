@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.configuration.study import typed
-from bouncing_ball.studies.long_contacts import cascade_of_flights
+from bouncing_ball.studies.cascade_of_flights import cascade_of_flights
 
 FLIGHTS = {
     "restitution": [0.85, 0.65],

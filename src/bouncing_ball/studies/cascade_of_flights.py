@@ -5,7 +5,7 @@ from typing import Annotated
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.attractors.rattling import openings, stiff_openings
+from bouncing_ball.attractors.cascade_of_flights import openings, stiff_openings
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import described

@@ -78,7 +78,7 @@ def test_choosing(said):
         (
             ("--acceleration", "0.8"),
             1,
-            "of gravity, and the 1-T orbit needs 0.2526; did you mean 0.8 g?",
+            "times gravity, and the 1-T orbit needs 0.2526; did you mean 0.8 g?",
         ),
         (("--damping-ratio", "0.1"), 2, "--damping-ratio and --restitution contradict each other"),
         (("--rebound-height", "1 m"), 2, "--rebound-height and --drop-height are needed together"),

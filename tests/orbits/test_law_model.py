@@ -143,7 +143,7 @@ def test_far_above_the_fold_orbits_are_walked_to_or_said_not_to_be_found(monkeyp
     assert orbit.trace_and_determinant()[0] > 2
     # A walk of a few steps does not arrive, and one of 300 takes seconds.
     monkeypatch.setattr("bouncing_ball.orbits.continued._POINTS", 20)
-    with pytest.raises(NoOrbitError, match="none was found, and there may be one"):
+    with pytest.raises(NoOrbitError, match="none was found, but one may exist"):
         model.require_orbit(20, 1000.0, Side.UNSTABLE)
 
 

@@ -73,7 +73,7 @@ def test_a_required_orbit_that_is_missing(refusal):
     soft = SpringDamper(2.592, float(damping_ratio(0.0893)))
     with refusal(NoOrbitError, "no 1-T orbit at Λ = 0.5 for ϖ = 2.592", "does not reach this Λ"):
         SpringDamperModel(soft).require_orbit(1, 0.5)
-    with refusal(NoOrbitError, "Λ = 2.5", "no saddle-node, and so no other side"):
+    with refusal(NoOrbitError, "Λ = 2.5", "no saddle-node and therefore no other side"):
         SpringDamperModel(soft).require_orbit(1, 2.5, Side.UNSTABLE)
     # The unstable side of r = 0.85, ϖ = 2 turns at Λ = 1.176.
     with refusal(NoOrbitError, "Λ = 1.3", "does not reach this Λ"):

@@ -54,14 +54,13 @@ rule atlas_merge:
 
 rule atlas:
     message:
-        "Atlas: its summary, with charts and a table"
+        "Atlas: its summary, with charts"
     input:
         parts=[rules.atlas_merge.output.data],
-        source=modules("atlas.summary", "figures.atlas.charts", "figures.atlas.tables"),
+        source=modules("atlas.summary", "figures.atlas.charts"),
     output:
         data="results/atlas/summary.nc",
         charts=expand("results/atlas/{chart}.png", chart=CHARTS),
-        worst="results/atlas/worst.md",
     params:
         title="The atlas in short",
         parameters=ATLAS,

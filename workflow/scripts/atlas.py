@@ -4,13 +4,10 @@ from pathlib import Path
 
 from bouncing_ball.atlas.plan import Plan
 from bouncing_ball.atlas.summary import summary
-from bouncing_ball.datasets.files import write_text
 from bouncing_ball.datasets.netcdf import parameter_attributes
 from bouncing_ball.figures.atlas.charts import charts
-from bouncing_ball.figures.atlas.tables import worst
 from bouncing_ball.figures.files import save
 from bouncing_ball.figures.style import style
-from bouncing_ball.figures.tables.formats import to_markdown
 from bouncing_ball.pipeline.job import logged, provenance, publish, read_input
 
 with logged(snakemake), style():
@@ -19,7 +16,6 @@ with logged(snakemake), style():
     data = summary(Plan(**parameters), read_input(path))
     publish(snakemake, data, parameter_attributes(parameters), compressed=True)
     metadata = provenance(snakemake)
-    folder = Path(snakemake.output.worst).parent
+    folder = Path(snakemake.output.data).parent
     for name, figure in charts(data):
         save(figure, folder / f"{name}.png", metadata)
-    write_text(snakemake.output.worst, to_markdown(*worst(data)))

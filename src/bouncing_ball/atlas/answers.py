@@ -1,4 +1,4 @@
-"""The answers kept of the orbits of tiles: thresholds, extremes and counts.
+"""The answers kept of the orbits of tiles: thresholds and counts.
 
 Nodes are walked in blocks. Of each node its thresholds and its errors at the examined ϖ are kept
 until the tiles of the block are complete. The answers of a tile, which the files contain, are
@@ -64,8 +64,6 @@ def _of_nodes(plan: Plan, row: int, index: np.ndarray) -> xr.Dataset:
             "exceeded": (("quantity", ratio, "node"), left.stated & left.exceeded),
             "unstable": ((ratio, "node"), ~stable[at]),
             "sought": ("node", sum(step.sought.sum(axis=0) for step in steps)),
-            "restitution": ("node", nodes.restitution),
-            "amplitude": ("node", nodes.amplitude),
         }
     )
 
@@ -73,9 +71,8 @@ def _of_nodes(plan: Plan, row: int, index: np.ndarray) -> xr.Dataset:
 def row_answers(plan: Plan, row: int) -> xr.Dataset:
     """The answers of the tiles of a row, over ``position``.
 
-    Maxima over the nodes of a tile are ``largest_threshold``, a ϖ, and ``largest_error`` at each
-    examined ϖ, with its place ``worst_restitution`` and ``worst_amplitude``; the other variables
-    are numbers of nodes. Dimensions are model, quantity, tolerance, threshold_bin and ϖ.
+    ``largest_threshold`` is the largest ϖ that a node of a tile needs; the other variables are
+    numbers of nodes. Dimensions are model, quantity, tolerance, threshold_bin and the examined ϖ.
     """
     size = plan.nodes_per_tile * max(1, BLOCK // plan.nodes_per_tile)
     every = np.arange(plan.nodes_per_row)
@@ -89,9 +86,6 @@ def _of_tiles(plan: Plan, row: int, nodes: np.ndarray) -> xr.Dataset:
     blocks = [_of_nodes(plan, row, nodes[k : k + BLOCK]) for k in starts]
     tiles = xr.concat(blocks, "node").coarsen(node=plan.nodes_per_tile)
     each = tiles.construct(node=("position", "own"))
-    size = abs(each.error).where(np.isfinite(each.error), -np.inf)
-    # The first of the nodes with the largest error; none where no error is finite.
-    largest, worst = size.max("own"), each.isel(own=size.argmax("own"))
     # A bin is open at its upper end, except the first, which has the thresholds at the smallest ϖ.
     place = np.searchsorted(bins, each.threshold, side="right") - 1
     place = np.where(each.threshold <= plan.ratios[0] * (1 + 1e-12), 0, place)
@@ -107,12 +101,7 @@ def _of_tiles(plan: Plan, row: int, nodes: np.ndarray) -> xr.Dataset:
         "unstable": each.unstable.sum("own"),
         "sought": each.sought.sum("own"),
     }
-    extremes = {
-        "largest_threshold": each.threshold.max("own"),
-        "largest_error": largest,
-        "worst_restitution": worst.restitution.where(largest >= 0),
-        "worst_amplitude": worst.amplitude.where(largest >= 0),
-    }
-    found = xr.Dataset(counts).astype(np.int32).assign(extremes)
+    largest = each.threshold.max("own")
+    found = xr.Dataset(counts).astype(np.int32).assign(largest_threshold=largest)
     order = ("position", "model", "quantity", "tolerance", "threshold_bin", "frequency_ratio")
     return found.transpose(*order)

@@ -65,7 +65,7 @@ class Ranges(Parameters):
     """Equal ranges, with equally spaced nodes in each."""
 
     tiles: Annotated[int, number("number of equal ranges", ge=1, le=2000)]
-    samples: Annotated[int, number("even nodes in each range", ge=1, le=10000)]
+    samples: Annotated[int, number("number of evenly spaced nodes in each range", ge=1, le=10000)]
 
 
 class RestitutionRanges(Interval, Ranges):

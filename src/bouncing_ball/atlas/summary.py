@@ -1,22 +1,23 @@
 """The summary of the atlas, which is small enough for the accepted record.
 
 It has the frequency ratio needed for one tolerance over r, Λ and n; the shares of nodes on
-which a rule of thumb holds; the orbits with the largest errors; and the accuracy of the error law.
+which a rule of thumb holds; the suprema of the errors; and the accuracy of the error law.
 """
 
 import numpy as np
 import xarray as xr
 
 from bouncing_ball.accuracy.error_law import coefficients
-from bouncing_ball.accuracy.quantities import OF_ORBITS
+from bouncing_ball.accuracy.quantities import OF_ORBITS, Quantity
 from bouncing_ball.atlas.plan import Plan
+from bouncing_ball.atlas.suprema import suprema
 from bouncing_ball.datasets.variables import described
 
 TOLERANCE = 0.01
 """The tolerance of charts and tables."""
 RULE_OF_THUMB = 100.0
 """The ϖ above which the paper regards the restitution model as accurate."""
-QUANTILES = (0.5, 0.9, 0.99, 1.0)
+QUANTILES = (0.5, 0.9, 0.99)
 _TILES = ("restitution", "position")
 
 
@@ -27,32 +28,25 @@ def summary(plan: Plan, atlas: xr.Dataset) -> xr.Dataset:
     """
     near = atlas.sel({"tolerance": TOLERANCE, "frequency_ratio": RULE_OF_THUMB}, method="nearest")
     tolerance, rule = float(near.tolerance), float(near.frequency_ratio)
-    there = atlas.sel({"frequency_ratio": rule}, drop=True)
-    failing = there.exceeding.sel({"tolerance": tolerance}, drop=True)
-    worst = there.largest_error.fillna(-np.inf).argmax(_TILES)
     data = {
         "needed": atlas.largest_threshold.sel({"tolerance": tolerance}, drop=True).astype("f4"),
         "limit_needed": atlas.limit_needed,
         "holding_share": _share(atlas, "holding"),
         "exceeding_share": _share(atlas, "exceeding"),
         "needed_quantile": _quantiles(atlas),
-        "failing_restitution": _reach(plan.edges, failing, "restitution"),
-        "failing_position": _reach(plan.positions, failing, "position"),
         "unstable_share": _share(atlas, "unstable"),
         "law_stated": atlas.law_stated.sum(("n", *_TILES)),
         "law_exceeding": atlas.law_exceeding.sum(("n", *_TILES)),
-        # The node with the largest error, for each rule, n, model and quantity.
-        "worst_error": there.largest_error.isel(worst, drop=True),
-        "worst_restitution": there.worst_restitution.isel(worst, drop=True),
-        "worst_amplitude": there.worst_amplitude.isel(worst, drop=True),
         "law_coefficient": _law(plan),
         "orbits": plan.orbits,
         "sought_orbits": int(atlas.sought.sum()),
         "resolution": plan.resolution,
         "summary_tolerance": tolerance,
         "rule_of_thumb": rule,
+        **suprema(plan, rule, tolerance),
     }
-    return described(data, {"restitution_edge": plan.edges, "position_edge": plan.positions})
+    edges = {"restitution_edge": plan.edges, "position_edge": plan.positions}
+    return described(data, edges | {"supremum_quantity": list(map(str, Quantity))})
 
 
 def _share(atlas: xr.Dataset, name: str) -> xr.DataArray:
@@ -69,18 +63,9 @@ def _quantiles(atlas: xr.Dataset) -> xr.DataArray:
     share = counts.cumsum("threshold_bin") / counts.sum("threshold_bin")
     ends = xr.DataArray(np.append(atlas.threshold_bin[1:], np.inf), dims="threshold_bin")
     largest = atlas.largest_threshold.max(_TILES)
-    places = [(share >= q).argmax("threshold_bin") for q in QUANTILES[:-1]]
+    places = [(share >= q).argmax("threshold_bin") for q in QUANTILES]
     found = [np.minimum(ends.isel(threshold_bin=place), largest) for place in places]
-    shares = xr.DataArray(list(QUANTILES), dims="share", name="share")
-    return xr.concat([*found, largest], shares).transpose(..., "share")
-
-
-def _reach(edges: np.ndarray, exceeding: xr.DataArray, along: str) -> xr.DataArray:
-    """Upper end of the last range in which a node fails; 0 where none does."""
-    others = [name for name in _TILES if name != along]
-    fails = exceeding.sum(others) > 0
-    ends = xr.DataArray(edges[1:], {along: exceeding[along]}, (along,))
-    return ends.where(fails, 0.0).max(along)
+    return xr.concat(found, xr.Variable("share", list(QUANTILES))).transpose(..., "share")
 
 
 def _law(plan: Plan) -> xr.Variable:

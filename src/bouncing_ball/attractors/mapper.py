@@ -52,7 +52,7 @@ _SHARE, _LEAST = 0.5, 8
 # Standard errors by which an exponent is positive: once in three million by chance.
 _ERRORS = 5.0
 # Balls followed at once: the late ones among fewer decide on the number of steps.
-_BLOCK = 1 << 16
+_BLOCK, _KEPT = 1 << 16, 1 << 24
 _REASONS = list(Reason)
 
 
@@ -138,6 +138,8 @@ def label(
     (['orbit', 'subharmonic', 'locked'], [1, 2, 6], [1, 2])
     """
     dynamics, start, relative, shape = first_impacts(law, amplitude, phase, velocity)
+    # Freed once, so much memory stays with the process, and is not asked for again at each step.
+    np.empty(_KEPT, dtype=np.int8)
     # Derivatives of long turns may overflow, and those of a ball that sticks are zero.
     with np.errstate(all="ignore"):
         found = _follow(dynamics, start, relative, impacts)

@@ -127,7 +127,7 @@ def families(case: Case, asked: Sequence[int], or_first: bool = False) -> tuple[
         laid = lam <= case.permanent_contact
         rests = ", and a ball laid on the table stays at rest" if laid else ""
         raise NoOrbitError(
-            f"no {which} in any model{rests}: the table's acceleration is Λ = {lam:.4g} of "
+            f"no {which} in any model{rests}: the table's acceleration is Λ = {lam:.4g} times "
             f"gravity, and the {asked[0]}-T orbit needs {lowest:.4g}"
         )
     return tuple(

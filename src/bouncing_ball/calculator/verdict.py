@@ -56,7 +56,7 @@ def assessed(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
     if wrong is None and error is None:
         name = QUANTITIES[Quantity(needed.quantity)]
         sentence = f"Whether the restitution model is good enough in the {name} is not known."
-        return Verdict(False, sentence, "this contact, or the model, has no value to compare")
+        return Verdict(False, sentence, "the contact or the model has no value to compare")
     good = wrong is None and error is not None and error <= needed.tolerance
     found, place = shown(error, "%", needed.tolerance), "within" if good else "beyond"
     off = f"{subject} is {found} off, {place} {tolerance}"
@@ -86,11 +86,11 @@ def judged_by_motion(motion: Motion, tolerance: float, n: int) -> Verdict:
         return _within(error, 0.0, tolerance, found, about)
     if motion.mean_error is None:
         sentence = "Whether the restitution model is good enough for this motion is not known."
-        return Verdict(False, sentence, f"{about}, and some balls come to rest")
+        return Verdict(False, sentence, f"{about}; nor are means, as some balls come to rest")
     errors = [(one.value, one.half_width, name) for name, one in motion.mean_error.items()]
     found = " and ".join(f"the mean {x} is {_between(e, h)} off" for e, h, x in errors)
     worst = max(errors)
-    return _within(worst[0], worst[1], tolerance, found, f"{about}: means over time are compared")
+    return _within(worst[0], worst[1], tolerance, found, f"{about}; means over time are compared")
 
 
 def _named(kind: str | None) -> str:
@@ -110,7 +110,7 @@ def _within(error: float, margin: float, tolerance: float, found: str, why: str)
     if error - margin > tolerance:
         sentence = f"The restitution model is not good enough: {found}, beyond {asked}."
         return Verdict(False, sentence, why)
-    sentence = f"The restitution model is not decided at {asked}: {found}."
+    sentence = f"Whether the restitution model is good enough is not decided at {asked}: {found}."
     return Verdict(False, sentence, f"{why}; the sample is too small to decide")
 
 

@@ -82,7 +82,7 @@ def _assignment(text: str) -> tuple[str, float]:
     name, _, value = text.partition("=")
     number = _number(value)
     if not name or number not in Range():
-        raise argparse.ArgumentTypeError(f"{text!r} is not NAME=NUMBER, as stiffness=1000")
+        raise argparse.ArgumentTypeError(f"{text!r} is not NAME=NUMBER, such as stiffness=1000")
     return name, number
 
 

@@ -9,39 +9,48 @@ place of the result, or of 1 where it vanishes.
 """
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+# Numbers of a formula are arrays without an axis: numpy converts a float anew at each operation,
+# which takes as long as the operation on some hundred balls.
 # 2π = _TURN_HIGH + _TURN_LOW; the first has 33 significant bits, so that its product with any
 # integer below 2²⁰ is exact (Cody and Waite). The same for ln 2.
-_TURN_HIGH = float.fromhex("0x1.921fb544p+2")
-_TURN_LOW = float.fromhex("0x1.0b4611a626331p-32")
-_TURNS = 1 / (2 * np.pi)
-_LN2_HIGH, _LN2_LOW = 0.693145751953125, 1.42860682030941723212e-6
-_LOG2E = 1 / math.log(2)
+_TURN_HIGH = np.array(float.fromhex("0x1.921fb544p+2"))
+_TURN_LOW = np.array(float.fromhex("0x1.0b4611a626331p-32"))
+_TURNS = np.array(1 / (2 * np.pi))
+_LN2_HIGH, _LN2_LOW = map(np.array, (0.693145751953125, 1.42860682030941723212e-6))
+_LOG2E = np.array(1 / math.log(2))
+_QUARTER, _ONE, _TWO, _LEAST, _MOST = map(np.array, (0.25, 1.0, 2.0, -746.0, 709.0))
+
+
+def _arrays(*rows: Sequence[float]) -> list[list[np.ndarray]]:
+    return [[np.array(x) for x in row] for row in rows]
+
 
 # Numerators and denominators, from the highest power; those of one power more begin with 1.
-_TAN = (
+_TAN = _arrays(
     (-1.30936939181383734205e4, 1.15351664838587416140e6, -1.79565251976484877988e7),
     (1.0, 1.36812963470692954678e4, -1.32089234440210967447e6, 2.50083801823357915839e7,
      -5.38695755929454629881e7),
 )  # fmt: skip
-_EXP = (
+_EXP = _arrays(
     (1.26177193074810590878e-4, 3.02994407707441961300e-2, 9.99999999999999999910e-1),
     (3.00198505138664455042e-6, 2.52448340349684104192e-3, 2.27265548208155028766e-1, 2.0),
 )
-_ATAN = (
+_ATAN = _arrays(
     (-8.750608600031904122785e-1, -1.615753718733365076637e1, -7.500855792314704667340e1,
      -1.228866684490136173410e2, -6.485021904942025371773e1),
     (1.0, 2.485846490142306297962e1, 1.650270098316988542046e2, 4.328810604912902668951e2,
      4.853903996359136964868e2, 1.945506571482613964425e2),
 )  # fmt: skip
 # Of ln((1 + f)/(1 - f))/2f in f², |f| ≤ 3 - 2√2.
-_LOG = tuple(1 / (2 * k + 1) for k in range(12, -1, -1))
+(_LOG,) = _arrays([1 / (2 * k + 1) for k in range(12, -1, -1)])
 
 
-def _polynomial(coefficients: tuple[float, ...], x: np.ndarray) -> np.ndarray:
+def _polynomial(coefficients: Sequence[np.ndarray], x: np.ndarray) -> np.ndarray:
     value = coefficients[0] * x + coefficients[1]
     for coefficient in coefficients[2:]:
         value *= x
@@ -74,15 +83,15 @@ def sine_and_versine(angle: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     >>> sine.tolist(), versine.tolist()
     ([0.0, 1e-09], [0.0, 5e-19])
     """
-    quarter = 0.25 * reduce_angle(np.asarray(angle, dtype=float))
+    quarter = _QUARTER * reduce_angle(np.asarray(angle, dtype=float))
     square = quarter * quarter
     tangent = quarter + quarter * (
         square * _polynomial(_TAN[0], square) / _polynomial(_TAN[1], square)
     )
-    scale = 2 / (1 + tangent * tangent)
+    scale = _TWO / (_ONE + tangent * tangent)
     half = tangent * scale
-    double = 2 * half
-    return double * (1 - tangent * half), double * half
+    double = _TWO * half
+    return double * (_ONE - tangent * half), double * half
 
 
 def sine_and_cosine(angle: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
@@ -99,12 +108,12 @@ def exponential(x: ArrayLike) -> np.ndarray:
     >>> exponential([0.0, -1e3]).tolist()
     [1.0, 0.0]
     """
-    clipped = np.clip(x, -746.0, 709.0)
+    clipped = np.minimum(np.maximum(x, _LEAST), _MOST)
     power = np.rint(clipped * _LOG2E)
     rest = (clipped - power * _LN2_HIGH) - power * _LN2_LOW
     square = rest * rest
     odd = rest * _polynomial(_EXP[0], square)
-    value = 1 + 2 * (odd / (_polynomial(_EXP[1], square) - odd))
+    value = _ONE + _TWO * (odd / (_polynomial(_EXP[1], square) - odd))
     # 2^power by its bits.
     scale = ((np.maximum(power, -1023.0).astype(np.int64) + 1023) << 52).view(np.float64)
     return value * scale

@@ -14,20 +14,20 @@ _BEYOND = 1e15
 
 
 def locked_orbits(data: xr.Dataset) -> Figure:
-    """The share with the same period by ϖ w/S and by ϖ, the share next to a discontinuity, and the
+    """The share with the same period by ϖ W/S and by ϖ, the share next to a discontinuity, and the
     survival of transients.
     """
     figure, ((by_place, by_ratio), (jumps, lives)) = canvas(WIDE, 5.4, rows=2, columns=2)
     look: Look = {"color": COLOURS[1], "marker": "o"}
     bars(by_place, data.predicted.values, data, "same_by_prediction", **look)
     by_place.axvline(1.0, **GUIDE)
-    logarithmic(by_place, xlabel=r"$\varpi\,w/S$", ylim=(0, 1.03))
+    logarithmic(by_place, xlabel=r"$\varpi\,W/S$", ylim=(0, 1.03))
     by_place.set_ylabel("share with the same\nlocked period")
     by_place.set_title(r"all $\varpi$ together, by the prediction")
     wanted = np.sort((data.sensitivity / data.wait).dropna("node").values)
     share = np.arange(1, wanted.size + 1) / wanted.size
     by_ratio.plot(
-        wanted, share, color=COLOURS[3], linewidth=1.2, label=r"predicted: $\varpi\geq S/w$"
+        wanted, share, color=COLOURS[3], linewidth=1.2, label=r"predicted: $\varpi\geq S/W$"
     )
     bars(
         by_ratio,

@@ -30,7 +30,7 @@ class Row:
     def take(self, which: Any) -> Self:
         """The same object for some of the balls."""
         part = object.__new__(type(self))
-        vars(part).update((name, pick(value, which)) for name, value in vars(self).items())
+        vars(part).update({name: pick(value, which) for name, value in vars(self).items()})
         return part
 
 

@@ -37,7 +37,8 @@ _REACH = 4.0
 # Steps after which the search ends as undecided. Each step is a considerable part of the
 # shorter of the function's time scales, so that this is hundreds of oscillations.
 _MAX_STEPS = 3000
-_TINY = 1e-300
+# As in :mod:`bouncing_ball.contacts.elementary`.
+_ZERO, _THIRD, _TINY = map(np.array, (0.0, 1 / 3, 1e-300))
 
 
 class State(NamedTuple):
@@ -90,7 +91,7 @@ def _root(bound, v, rising, square, twice):
 
     The arguments are v, its sign and its square, and -2y.
     """
-    root = np.sqrt(np.maximum(square + bound * twice, 0.0))
+    root = np.sqrt(np.maximum(square + bound * twice, _ZERO))
     falling = (root - v) / np.maximum(bound, _TINY)
     return np.where(rising, twice / (v + root + _TINY), falling)
 
@@ -109,7 +110,7 @@ def safe_step(state: State) -> tuple[np.ndarray, np.ndarray]:
     """
     v, rising, square = state.rate, state.rate > 0, state.rate * state.rate
     # Where y touches zero from below, rounding may give a positive value.
-    twice = -2 * np.minimum(state.value, 0.0)
+    twice = -2 * np.minimum(state.value, _ZERO)
     start = v, rising, square, twice
     first = _root(state.second_bound, *start)
     step = _prolonged(first, start, state)
@@ -129,11 +130,11 @@ def _prolonged(first, start, state: State):
     while True:
         *start, second, third, second_bound, fourth_bound = own
         reach = _REACH * now
-        growth = np.maximum(third, 0.0) + 0.25 * fourth_bound * reach
-        bound = np.minimum(second + reach * growth * (1 / 3), second_bound)
+        growth = np.maximum(third, _ZERO) + 0.25 * fourth_bound * reach
+        bound = np.minimum(second + reach * growth * _THIRD, second_bound)
         longer = np.minimum(_root(bound, *start), reach)
         # Where the reach limited the step, a longer reach is tried.
-        further = np.flatnonzero((longer == reach) & (longer > now))
+        further = ((longer == reach) & (longer > now)).nonzero()[0]
         now = np.maximum(now, longer)
         if step is first:
             step = now
@@ -168,7 +169,7 @@ def first_zero(motion: Motion, start: np.ndarray) -> Zero:
         later = np.where(here, now, later)
         done |= later == now
         time[active] = later
-        left = np.flatnonzero(~done)
+        left = (~done).nonzero()[0]
         if left.size == 0:
             break
         active = left if isinstance(active, slice) else active[left]

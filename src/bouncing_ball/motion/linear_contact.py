@@ -17,9 +17,8 @@ The contact therefore never ends if at some time ::
 
 import numpy as np
 
-from bouncing_ball.contacts.elementary import arctangent, exponential
+from bouncing_ball.contacts.elementary import arctangent, exponential, sine_and_cosine
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.motion.angles import sine_and_versine
 from bouncing_ball.motion.first_zero import Motion, State, Zero, first_zero
 
 # √γ below which the steady part loses too many digits: its relative error is ε/√γ.
@@ -93,18 +92,16 @@ class ContactMotion(Motion):
         return -lag * velocity, velocity
 
     def __call__(self, time: np.ndarray) -> State:
-        sine, versine = sine_and_versine(self.damped * time)
-        cosine = 1 - versine
+        angles = np.array([self.damped * time, time])
+        (sine, slow_sine), (cosine, slow_cosine) = sine_and_cosine(angles)
         decay = exponential(-self.decay * time)
         a, b = self.a * decay, self.b * decay
         free = a * cosine + b * sine
         free_rate = self.damped * (b * cosine - a * sine) - self.decay * free
         free_second = -2 * self.decay * free_rate - self.stiffness * free
         free_third = -2 * self.decay * free_second - self.stiffness * free_rate
-        sine, versine = sine_and_versine(time)
-        cosine = 1 - versine
-        forced = self.sine * sine + self.cosine * cosine
-        forced_rate = self.sine * cosine - self.cosine * sine
+        forced = self.sine * slow_sine + self.cosine * slow_cosine
+        forced_rate = self.sine * slow_cosine - self.cosine * slow_sine
         level = 1 / self.stiffness
         envelope = self.envelope * decay
         bound = self.stiffness * envelope
@@ -133,7 +130,7 @@ class ContactMotion(Motion):
         ratio = np.where(inside, ratio, 0.0)
         rising = arctangent(ratio, np.sqrt((1 - ratio) * (1 + ratio)))
         now = time + arctangent(self.cosine, self.sine)
-        below = inside & (sine_and_versine(now)[0] < ratio)
+        below = inside & (sine_and_cosine(now)[0] < ratio)
         # The time stays before the crossing by more than the rounding of the crossing.
         wait = np.mod(rising - now, 2 * np.pi) - 1e-9
         # Rounding must not turn a crossing that is due now into one a turn later.

@@ -84,9 +84,9 @@ class Absence(StrEnum):
 
     NONE = "there is one"
     BELOW_SADDLE_NODE = "below the saddle-node"
-    NO_OTHER_SIDE = "the branch has no saddle-node, and so no other side"
+    NO_OTHER_SIDE = "the branch has no saddle-node and therefore no other side"
     NOT_REACHED = "this side of the branch does not reach this Λ"
-    NOT_FOUND = "none was found, and there may be one"
+    NOT_FOUND = "none was found, but one may exist"
 
 
 # The methods whose results for single numbers are Python numbers.

@@ -26,7 +26,11 @@ from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.parameters import Family, Many, Parameters, Restitution, Seed, number
 
+<<<<<<< HEAD
 Steps = Annotated[int, number("time steps in a contact; fewer than 8 are none", ge=8, le=131072)]
+=======
+Steps = Annotated[int, number("time steps in a contact, at least 8 to resolve it", ge=8, le=4096)]
+>>>>>>> main
 
 
 class EngineOrbit(Parameters):
@@ -39,8 +43,8 @@ class EngineOrbit(Parameters):
     release: Annotated[Release, Strict(False)]
     steps: Annotated[Many[Steps], AfterValidator(sorted)]
     balls: Annotated[int, number("balls in each simulation", ge=1, le=1000)]
-    transient: Annotated[int, number("impacts that are not looked at", ge=0, le=1000)]
-    impacts: Annotated[int, number("impacts that are looked at", ge=1, le=1000)]
+    transient: Annotated[int, number("number of first impacts that are skipped", ge=0, le=1000)]
+    impacts: Annotated[int, number("number of impacts that are recorded", ge=1, le=1000)]
     seed: Seed
 
 

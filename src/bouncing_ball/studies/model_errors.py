@@ -31,7 +31,7 @@ class Orders(OrbitErrors):
     restitution: LossyRestitution
     seed: Seed
     samples: Annotated[Samples, Field(description="random orbits whose orders are measured")]
-    law_samples: Annotated[Samples, Field(description="random orbits on which the law is tried")]
+    law_samples: Annotated[Samples, Field(description="random orbits on which the law is tested")]
 
 
 _STIFF = 500.0

@@ -41,7 +41,7 @@ class Transients(Parameters):
     cases: Many[Place]
     frequency_ratio: Many[FrequencyRatio]
     balls: Annotated[int, number("random starts for each case and ϖ", ge=10, le=10000)]
-    impacts: Annotated[int, number("impacts after which a ball is given up", ge=50, le=100000)]
+    impacts: Annotated[int, number("largest number of impacts of a ball", ge=50, le=100000)]
     confidence: Confidence
     seed: Seed
 

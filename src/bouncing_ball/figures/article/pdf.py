@@ -40,12 +40,8 @@ def for_pdf(markdown: str) -> str:
     return _OUTSIDE.sub("](../", _TABLE.sub(_STICKY, captioned))
 
 
-def article_pdf(
-    markdown: str, template: str | Path, folder: str | Path, long_tables: bool = False
-) -> bytes:
+def article_pdf(markdown: str, template: str | Path, folder: str | Path) -> bytes:
     """The PDF of an article, set with a Typst template of pandoc; its pictures are in a folder.
-
-    A table stays on one page, unless there are ``long_tables``.
 
     Raises
     ------
@@ -58,7 +54,6 @@ def article_pdf(
         raise ModelError("Typst is missing: pip install 'bouncing-ball[pdf]'") from None
     # The heading of the first level is the title.
     options = ["--standalone", f"--template={template}", "--shift-heading-level-by=-1"]
-    options.append(f"--variable=breakable:{str(long_tables).lower()}")
     source = pandoc(for_pdf(markdown), _READER, "typst", *options).encode()
     # Its types know a text and a folder of one kind only.
     compiler: Any = typst.compile

@@ -1,0 +1,92 @@
+"""Suprema of the errors over all orbits of the atlas, between its nodes too.
+
+The modulus of an error is maximised over r and over the whole stable range, on a grid that is
+refined around its largest value. Next to the saddle-node, p = 0, where most errors are largest,
+they vary with √p; the grid is therefore even in √p.
+"""
+
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+
+from bouncing_ball.accuracy.errors import SIMPLE, errors, modulus
+from bouncing_ball.accuracy.quantities import OF_LIMITS, Quantity
+from bouncing_ball.accuracy.thresholds import thresholds
+from bouncing_ball.atlas.plan import Plan
+
+# Points along r and √p, and grids, each of which divides their distances by four: a place is known
+# to 1/2000, and a maximum, which is flat there or in a corner, to the square of this.
+_POINTS, _ROUNDS = 9, 5
+# √p next to the saddle-node. The restitution model's phase is 0 there, so that its relative error
+# grows as 1/√p; no other error of an existing orbit is above this bound.
+_NEAREST, _UNBOUNDED = 1e-6, 1e3
+# At r = 1 the saddle-node is at Λ = 0, and its relative error 0/0.
+_BELOW = 1 - 1e-9
+# Number of ϖ that are scanned for a crossing.
+_SCANNED = 12
+
+
+def largest(
+    plan: Plan, row: int, kind: tuple[str, Quantity], ratio: float, low: float, high: float = 0.0
+) -> float:
+    """The largest error at ϖ over p and a range of r, or at one r, for the rule and n of a row.
+
+    ``kind`` is the model and the quantity. The error is infinite if it is unbounded, or if a model
+    lacks an orbit.
+    """
+    model, quantity = kind
+    # The limits of the range do not depend on the place in it.
+    first = 1.0 if quantity in OF_LIMITS else _NEAREST
+    start, end = np.array([(low, high or low), (first, 1.0)]).T
+    for _ in range(_ROUNDS):
+        grid = (np.unique(part) for part in np.linspace(start, end, _POINTS).T)
+        r, root = (x.ravel() for x in np.meshgrid(*grid))
+        nodes = plan.placed(row, r, root**2)
+        every = errors(nodes.contact(ratio), nodes.n, nodes.amplitude, [quantity])
+        size = modulus(every[SIMPLE.index(model), 0])
+        best = int(size.argmax())
+        place, step = np.array([r[best], root[best]]), (end - start) / (_POINTS - 1)
+        start, end = np.maximum(start, place - step), np.minimum(end, place + step)
+    return float(size[best]) if size[best] < _UNBOUNDED else np.inf
+
+
+def tolerated(error: Callable[[float], float], grid: np.ndarray, tolerance: float) -> float:
+    """The place from which on an error is tolerated, by
+    :func:`~bouncing_ball.accuracy.thresholds.thresholds`; NaN if it is at all places or at none.
+
+    Examples
+    --------
+    >>> [round(tolerated(lambda x: 1 / x, np.array([1.0, 3.0]), y), 9) for y in (0.5, 2.0, 0.1)]
+    [2.0, nan, nan]
+    """
+
+    def each(places: np.ndarray, _: object) -> np.ndarray:
+        return np.array([error(place) for place in places])
+
+    return thresholds(each, grid, each(grid, None)[np.newaxis], tolerance).ratio.item()
+
+
+def suprema(plan: Plan, rule: float, tolerance: float) -> dict[str, tuple]:
+    """Variables of the suprema at a ϖ, and of the ϖ and r from which on they are tolerated.
+
+    Over (release, n, model, supremum_quantity) they are ``supremum`` at the ϖ of the rule and
+    ``supremum_needed``, the ϖ from which on all orbits are within the tolerance. Over
+    (release, n) it is ``failing_restitution``, the r below which the restitution model's greatest
+    height exceeds it at the rule's ϖ. The last two are those of :func:`tolerated`.
+    """
+    shape = *plan.shape[:2], len(SIMPLE), len(Quantity)
+    found, failing = np.empty((2, *shape)), np.empty(shape[:2])
+    scanned = np.geomspace(plan.ratios[0], plan.ratios[-1], _SCANNED)
+    for place in np.ndindex(shape):
+        tiles = np.ravel_multi_index((*place[:2], np.arange(plan.shape[2])), plan.shape)
+        edges = _BELOW * plan.edges[np.append(np.isin(tiles, plan.rows), True)]
+        error = partial(largest, plan, tiles[0], (SIMPLE[place[2]], tuple(Quantity)[place[3]]))
+        along_ratio = partial(error, low=edges[0], high=edges[-1])
+        found[0][place] = along_ratio(rule)
+        found[1][place] = tolerated(along_ratio, scanned, tolerance)
+        if place[2:] == (0, 0):
+            failing[place[:2]] = tolerated(partial(error, rule), edges, tolerance)
+    dims = "release", "n", "model", "supremum_quantity"
+    every = {"supremum": (dims, found[0]), "supremum_needed": (dims, found[1])}
+    return {**every, "failing_restitution": (dims[:2], failing)}

@@ -76,7 +76,7 @@ setup-engines: $(SETUP)
 	    $(PIP) --only-binary :all: "$$engine" || echo "No wheel of $$engine."; done
 
 # The snippets of `design --engine`, run by the engines that are installed: some ten minutes.
-# results/config/engines.nc and a table of it, results/engines.txt; make accept ONLY=engines.
+# The dataset is results/config/engines.nc; make accept ONLY=engines.
 test-engines: $(SETUP)
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m engines tests/engines
 

@@ -23,8 +23,7 @@ import xarray as xr
 from pandas import DataFrame
 
 from bouncing_ball import design, limits, simulate
-from bouncing_ball.accuracy.errors import errors, relative
-from bouncing_ball.configuration.yaml_file import read_yaml
+from bouncing_ball.accuracy.errors import relative
 from bouncing_ball.contacts.collocation import contacts
 from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
 from bouncing_ball.contacts.laws.impedance import Impedance
@@ -42,7 +41,6 @@ from bouncing_ball.engines.scheme import (
 )
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
-from bouncing_ball.studies.engines import EngineOrbit, step_errors, steps_of
 
 ROOT = Path(__file__).parents[2]
 RADIUS = 1.0
@@ -300,19 +298,6 @@ def without_steps(steps, means, scatters):
     return limit, float(np.linalg.norm([*weights(x) * scatters, limit - fewer]))
 
 
-def at_the_corrected_models_error(scheme, frequency_ratio):
-    """The configured orbit, the corrected model's error, and the steps in a contact with it."""
-    parameters = read_yaml(ROOT / "config" / "config.yaml")["extensions"]["ext_engines"]
-    p = EngineOrbit.model_validate(parameters)
-    case = p.release, p.restitution, p.n, frequency_ratio
-    zeta = float(damping_ratio(p.restitution, p.release))
-    contact = SpringDamper(np.array([float(frequency_ratio)]), zeta, p.release)
-    orbit = SpringDamperModel(contact).orbit(p.n, exact_orbit(*case).amplitude)
-    level = abs(errors(contact, p.n, orbit.amplitude, ["max_height"])[1, 0, 0])
-    simulated = step_errors(orbit, p)[[*Scheme].index(scheme), 0]
-    return case, level, round(steps_of(np.array(p.steps), simulated, level))
-
-
 def installed(name):
     return find_spec({"drake": "pydrake"}.get(name, name)) is not None
 
@@ -324,7 +309,7 @@ def only_if_installed(name):
 
 @pytest.fixture(scope="module")
 def record():
-    """What the tests measure: the dataset and its table, in results/ at the end."""
+    """What the tests measure: the dataset in results/, written at the end."""
     free: list[dict] = []
     shaken: list[dict] = []
     alone: list[dict] = []
@@ -346,11 +331,6 @@ def record():
     made = [version(name) if installed(name) else "not installed" for name in RUN]
     data["engine_version"] = ("engine", made)
     write_dataset(describe(data), ROOT / "results" / "config" / "engines.nc")
-    tables = [each.to_string() for each in (DataFrame(free), whole, ends, single)]
-    named = dict.fromkeys(ENGINES, "no wheel, not run") | dict(zip(RUN, made, strict=True))
-    del named["generic"]
-    text = "\n\n".join([str(named), *tables]) + "\n"
-    (ROOT / "results" / "engines.txt").write_text(text, encoding="utf-8")
 
 
 @pytest.mark.engines
@@ -463,8 +443,13 @@ def test_an_orbit_has_the_exact_height(name, release, restitution, n, frequency_
 @pytest.mark.parametrize("name", RUN)
 def test_a_bounce_is_as_right_as_the_corrected_models(name, frequency_ratio, record):
     only_if_installed(name)
-    case, level, steps = at_the_corrected_models_error(ENGINES[name].scheme, frequency_ratio)
-    release, r, n, _ = case
+    data = read_dataset(ROOT / "figures" / "ext_engines.nc").sel(frequency_ratio=frequency_ratio)
+    release, r, n = Release.of(data.attrs["release"]), data.attrs["restitution"], data.attrs["n"]
+    case = release, r, n, frequency_ratio
+    model = {"release": release, "restitution": r, "n": n, "model": "corrected"}
+    level = abs(float(data.model_error.sel(model)))
+    equal = data.equal_steps.sel(scheme=ENGINES[name].scheme) / data.steps_in_bounce * data.steps
+    steps = round(float(equal[0]))
     row = {"engine": name, "frequency_ratio": frequency_ratio, "single_steps": steps}
     zeta = float(damping_ratio(r, release))
     contact = Physical(1.0, frequency_ratio**2, 2 * zeta * frequency_ratio)

@@ -11,7 +11,7 @@ from matplotlib.ticker import LogFormatterSciNotation
 
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.figures.canvas import WIDE, canvas, legend_below, logarithmic
-from bouncing_ball.figures.labels import QUANTITIES, note, number, parameters
+from bouncing_ball.figures.labels import QUANTITIES, number, parameters
 from bouncing_ball.figures.style import COLOURS, GUIDE, LAWS, MODELS, Look
 
 # Time stepping of engines by dashes, and engines by shapes.
@@ -114,7 +114,7 @@ def _draw_steps(axes: Axes, part: xr.Dataset, scheme: str) -> None:
     axes.plot(end, level, marker="|", markersize=9, color="black")
     if scheme == "semi-implicit Euler":
         name = f"${number(float(f'{end:.2g}'))}$× fewer"
-        note(axes, name, (end, level), (2, -5), ha="right", va="top", fontsize=8)
+        axes.text(0.04, 0.12, f"corrected: {name}", transform=axes.transAxes, fontsize=8)
 
 
 def _by_quantity(data: xr.Dataset, height: float, xlabel: str) -> tuple[Figure, dict[str, Axes]]:

@@ -26,11 +26,7 @@ from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.parameters import Family, Many, Parameters, Restitution, Seed, number
 
-<<<<<<< HEAD
-Steps = Annotated[int, number("time steps in a contact; fewer than 8 are none", ge=8, le=131072)]
-=======
-Steps = Annotated[int, number("time steps in a contact, at least 8 to resolve it", ge=8, le=4096)]
->>>>>>> main
+Steps = Annotated[int, number("time steps in a contact, at least 8 to resolve it", ge=8, le=131072)]
 
 
 class EngineOrbit(Parameters):

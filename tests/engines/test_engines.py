@@ -2,9 +2,13 @@
 
 import re
 
+import hypothesis
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+from bouncing_ball import design
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.engines import ENGINES, engine_named
@@ -23,11 +27,18 @@ def per_mass(restitution, release=Release.DISPLACEMENT):
 
 
 @pytest.mark.parametrize("name", ENGINES)
-def test_there_and_back(name):
+@given(mass=st.floats(1e-3, 1e3), stiffness=st.floats(1.0, 1e9), r=st.floats(0.2, 1.0))
+@hypothesis.settings(max_examples=20)
+def test_there_and_back(name, mass, stiffness, r):
     engine = ENGINES[name]
     assert engine.name == name and repr(engine) == f"{type(engine).__name__}()"
-    again = engine.read(engine.parameters(CONTACT), CONTACT.mass)
-    assert again == pytest.approx(CONTACT, rel=1e-14)
+    made = design(mass=mass, stiffness=stiffness, restitution=r, engine=name)
+    parameters = made.engine_settings().parameters
+    again = design(mass=mass, from_engine=name, parameters=parameters)
+    # Twelve digits are written; of r near 1 the distance to 1 is that of c.
+    assert again.stiffness == pytest.approx(stiffness, rel=2e-11)
+    assert again.damping == pytest.approx(made.damping, rel=2e-11)
+    assert again.measured_restitution == pytest.approx(r, rel=1e-10)
 
 
 @pytest.mark.parametrize(("name", "release"), BOTH)

@@ -290,8 +290,7 @@ def without_steps(steps, means, scatters):
     """
 
     def weights(x):
-        shares = x / (x - x[:, np.newaxis] + np.eye(x.size))
-        return np.prod(np.where(np.eye(x.size), 1.0, shares), axis=1)
+        return np.linalg.solve(np.vander(x, increasing=True).T, np.eye(x.size)[0])
 
     x = 1 / np.array(steps, dtype=float)
     limit, fewer = weights(x) @ means, weights(x[1:]) @ means[1:]

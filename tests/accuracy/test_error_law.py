@@ -76,9 +76,10 @@ def factors(seed, size, release):
     return remainder(*arguments, errors(contact, n, lam)[0]), arguments
 
 
-def test_the_remainder_is_fitted_to_one_sample():
+@pytest.mark.parametrize("size", [3000, pytest.param(20_000, marks=pytest.mark.long)])
+def test_the_remainder_is_fitted_to_one_sample(size):
     """M is the next power of two above the largest factor, of the height and of the phase."""
-    left, _ = factors(1, 20_000, Release.DISPLACEMENT)
+    left, _ = factors(1, size, Release.DISPLACEMENT)
     largest = np.nanmax(left.factor, axis=1)
     bound = array(REMAINDER)
     assert bound.tolist() == [2, 2, 4, 2, 2, 2] and np.all(largest < bound)

@@ -24,9 +24,7 @@ def test_every_variable_is_described(atlas, described):
 
 
 # A row has 24 nodes, a tile 8: blocks that end in the middle of tiles.
-@pytest.mark.parametrize(
-    ("order", "block"), [([0], 64), (range(10), 64), ([2, 0, 1], 64), ([0], 5), ([0], 17)]
-)
+@pytest.mark.parametrize(("order", "block"), [(range(10), 64), ([2, 0, 1], 5), ([0], 17)])
 def test_neither_shards_nor_blocks_change_a_byte(small, atlas, limits, order, block, monkeypatch):
     monkeypatch.setattr(answers, "BLOCK", block)
     plan = small(shards=len(order))

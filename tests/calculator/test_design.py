@@ -29,7 +29,7 @@ PAPER = {"mass": 0.02, "frequency": 50.0, "acceleration": "1 g", "restitution": 
 UNIT = {"mass": 1.0, "angular_frequency": 1.0, "gravity": 1.0, "restitution": 0.85, "n": 1}
 SHAKEN = {"mass": "4 g", "frequency": "50 Hz", "acceleration": "0.8 g"}
 # Of the laws, the others are designed for weekly.
-OFTEN = ("hunt-crossley", "impedance")
+OFTEN = ("hunt-crossley",)
 HERTZ = SHAKEN | {"reduced_modulus": "115 GPa", "radius": "5 mm"}
 
 

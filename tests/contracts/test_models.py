@@ -61,8 +61,8 @@ MODELS = {
     **{name: LawModel(law) for name, law in HERTZ.items()},
     "one's own": OWN["MODEL"],
 }
-# Other laws of the same model: two of them are tried often, and the others weekly.
-SELDOM = ("kuwabara-kono", "elasto-backlash")
+# Other laws of the same model: one of them is tried often, and the others weekly.
+SELDOM = ("kuwabara-kono", "elasto-backlash", "impedance")
 DISSIPATIVE = [name for name in MODELS if name not in ("elastic", "undamped contact")]
 # n, and Λ over the saddle-node's and below the table's grazing, Λ > 1 included.
 CASES = [(1, 0.3), (2, 0.3), (1, 0.6)]

@@ -183,15 +183,6 @@ def test_an_overdamped_ball_comes_back_where_nothing_pulls(zeta):
     assert found.time_step * found.steps == pytest.approx(end, rel=1e-11)
 
 
-@pytest.mark.parametrize("name", ENGINES)
-def test_each_release_of_an_engine_has_its_restitution(name):
-    found, zeta = ENGINES[name].settings(CONTACT), CONTACT.damping_ratio
-    angles = {"displacement": np.pi, "force": np.pi - 2 * np.arcsin(zeta)}
-    expected = {rule: np.exp(-zeta * angles[rule] / np.sqrt(1 - zeta**2)) for rule in angles}
-    assert found.restitutions == pytest.approx({x: expected[x] for x in ENGINES[name].releases})
-    assert found.restitution == found.restitutions[found.release]
-
-
 def test_no_damping_is_written_without_a_sign():
     found = ENGINES["mujoco"].settings(Physical(1.0, 1e4, 0.0))
     assert 'solref="-10000.0 0.0"' in found.snippet

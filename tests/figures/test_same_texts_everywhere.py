@@ -5,7 +5,6 @@ everything that is read from them is made again: evidence, verdicts, tables, tex
 """
 
 import numpy as np
-import pytest
 
 from bouncing_ball.compare.budgets import ROUNDING
 from bouncing_ball.datasets.rounding import ROUNDING_SIZE
@@ -32,9 +31,8 @@ def perturbed(data, rng):
     return other
 
 
-@pytest.mark.parametrize("seed", range(2))
-def test_rounding_changes_no_text(record, texts, accepted, seed):
-    rng = np.random.default_rng(seed)
+def test_rounding_changes_no_text(record, texts, accepted):
+    rng = np.random.default_rng(0)
     noisy = {name: perturbed(data, rng) for name, data in record.items()}
     moved = [
         f"{name}: {old} → {new}"
@@ -43,14 +41,3 @@ def test_rounding_changes_no_text(record, texts, accepted, seed):
         if old != new
     ]
     assert not moved
-
-
-def test_what_matters_changes_the_texts(record, texts, accepted):
-    # One last printed digit of one entry, and one formula that is wrong.
-    other = {name: data.copy(deep=True) for name, data in record.items()}
-    other["table1"]["computed"].values[0, 0, 0] += 1e-5
-    other["formulas"]["disagreement"].values[0] = 1e-3
-    made = texts(other)
-    assert all(made[name] != accepted[name] for name in made if "table1" in name)
-    assert all(made[name] != accepted[name] for name in made if "formulas" in name)
-    assert made["article"] != accepted["article"]

@@ -133,12 +133,12 @@ def test_permanent_contact_begins_and_ends_at_its_threshold(omega, zeta, release
     threshold = float(permanent_contact_threshold(omega, zeta, release))
     # Of the threshold some roundings are unknown.
     lam = threshold * np.array([1 - 1e-12, 1 + 1e-12])
-    sequence = simulate(contact, lam, 0.2, lam * np.cos(0.2) - 1e-3, 100)
+    sequence = simulate(contact, lam, 0.2, lam * np.cos(0.2) - 1e-3, 40)
     assert sequence.status.tolist() == [Status.PERMANENT_CONTACT, Status.BOUNCING]
     last = sequence.impacts[0] - 1
     assert sequence.contact_duration[last, 0] == np.inf
     assert np.all(np.isnan(sequence.time[last + 1 :, 0]))
-    assert sequence.impacts[1] == 100
+    assert sequence.impacts[1] == 40
 
 
 def test_cycle_of_a_permanent_contact():

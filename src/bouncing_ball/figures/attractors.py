@@ -25,15 +25,19 @@ _OTHERS = {
     "chaotic": "#f3d3c1",
     "undecided": "#ffffff",
 }
-# In grey too, what does not repeat is told by its dots, and what is unknown by crosses.
+# In grey too, what does not repeat is told by its dots, what is unknown by crosses, and other
+# areas whose grey is that of a period by strokes.
 _DOTS: dict[str, Look] = {
     "chaotic": {"marker": ".", "markersize": 1.3, "color": "#AA3A00", "markeredgewidth": 0},
     "undecided": {"marker": "x", "markersize": 1.6, "color": "#000000", "markeredgewidth": 0.3},
+    "permanent contact": {"marker": "_", "markersize": 2.5, "markeredgewidth": 0.4},
+    "subharmonic": {"marker": "|", "markersize": 2.5, "markeredgewidth": 0.4},
 }
 _UNKNOWN = {"not at any": "#000000", "undecided": "#ffffff", "no number": "#c8c8c8"}
 _MEANS = {name: (name, colour, marker) for name, colour, marker in zip(
     ("power", "height", "flights", "exponent"), COLOURS, "osv^", strict=False)}  # fmt: skip
-_HATCHES = {"chaotic": "......", "undecided": "xxxx"}
+_HATCHES = {"chaotic": "......", "undecided": "xxxx", "subharmonic": "||||||"}
+_HATCHES |= dict.fromkeys(("permanent contact", "no number"), "------")
 # Exponents beyond are drawn as these.
 _LOWEST, _HIGHEST = -1.5, 1.5
 # Lighter throughout, from blue below 0 to yellow above.
@@ -97,6 +101,7 @@ def _draw_kinds(axes: Axes, one: xr.Dataset) -> None:
 def _draw_exponent(axes: Axes, one: xr.Dataset):
     look: Look = {"cmap": _RATES, "vmin": _LOWEST, "vmax": _HIGHEST}
     image = _mesh(axes, one, one.lyapunov_exponent.values.clip(_LOWEST), **look)
+    _dot(axes, one, one.kind == "permanent contact", _DOTS["permanent contact"])
     _draw_bifurcations(axes, one)
     return image
 
@@ -171,7 +176,7 @@ def mean_motions(data: xr.Dataset) -> Figure:
     maps, below = parts
     rows = maps.subplots(2, len(means), sharex=True, sharey=True)
     fills = [
-        *map(to_hex, colormaps["viridis_r"](np.linspace(0, 0.9, len(ratios)))),
+        *map(to_hex, colormaps["viridis_r"](np.linspace(0, 0.75, len(ratios)))),
         *_UNKNOWN.values(),
     ]
     look: Look = {"cmap": ListedColormap(fills), "vmin": -0.5, "vmax": len(fills) - 0.5}
@@ -183,7 +188,8 @@ def mean_motions(data: xr.Dataset) -> Figure:
             for k, name in enumerate(_UNKNOWN, len(ratios)):
                 place[(one.decision == name).values] = k
             _mesh(axes, one, place, **look)
-            _dot(axes, one, one.decision == "undecided", {"marker": "x", "markersize": 3})
+            for name, marker in {"undecided": "x", "no number": "_"}.items():
+                _dot(axes, one, one.decision == name, {"marker": marker, "markersize": 3})
         row[0].set_ylabel(f"{simple} model\n$r$")
         _draw_shares(panel, data.sel(simple=simple), "right", "mean", _MEANS)
         panel.set_title(f"{simple} model")

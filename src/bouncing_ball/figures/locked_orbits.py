@@ -26,29 +26,16 @@ def locked_orbits(data: xr.Dataset) -> Figure:
     by_place.set_title(r"all $\varpi$ together, by the prediction")
     wanted = np.sort((data.sensitivity / data.wait).dropna("node").values)
     share = np.arange(1, wanted.size + 1) / wanted.size
-    by_ratio.plot(
-        wanted, share, color=COLOURS[3], linewidth=1.2, label=r"predicted: $\varpi\geq S/W$"
-    )
-    bars(
-        by_ratio,
-        data.frequency_ratio.values,
-        data,
-        "same",
-        label="contact",
-        **look,
-        linestyle="none",
-    )
+    by_ratio.plot(wanted, share, color=COLOURS[3], label=r"predicted: $\varpi\geq S/W$")
+    points: Look = look | {"label": "contact", "linestyle": "none"}
+    bars(by_ratio, data.frequency_ratio.values, data, "same", **points)
     logarithmic(by_ratio, xlabel=r"frequency ratio $\varpi$", ylim=(0, 1.03), xlim=(1, _BEYOND))
     by_ratio.xaxis.set_major_formatter(lambda value, _: f"$10^{{{np.log10(value):.0f}}}$")
     by_ratio.set_title("by frequency ratio")
     by_ratio.legend(loc="lower right")
     bars(jumps, data["shift"].values, data, "jump_share", **look)
-    logarithmic(
-        jumps,
-        xlabel=r"change of $\Lambda$",
-        yscale="log",
-        ylabel="share with another\nlocked period",
-    )
+    logarithmic(jumps, xlabel=r"change of $\Lambda$", yscale="log")
+    jumps.set_ylabel("share with another\nlocked period")
     jumps.xaxis.set_major_formatter(lambda value, _: f"$10^{{{np.log10(value):.0f}}}$")
     jumps.set_title("next to a discontinuity")
     for one, colour in coloured(data, "case"):
@@ -59,9 +46,7 @@ def locked_orbits(data: xr.Dataset) -> Figure:
     for ratio, dashes in zip(data.life_ratio.values, _DASHES, strict=False):
         name = "restitution" if np.isinf(ratio) else rf"$\varpi={number(float(ratio))}$"
         lives.plot([], [], color="#8c8c8c", linestyle=dashes, label=name)
-    lives.set(
-        xlabel="table periods", ylabel="share of balls not locked", yscale="log", ylim=(0.01, 6)
-    )
-    lives.set_title("transients")
-    lives.legend(fontsize=6, ncols=2)
+    lives.set(xlabel="table periods", ylabel="share of balls not locked", title="transients")
+    lives.set(yscale="log", ylim=(0.01, 6))
+    lives.legend(fontsize=6, ncols=2, loc="upper right")
     return figure

@@ -84,43 +84,6 @@ def test_the_release_is_written_where_there_are_two():
 
 
 @pytest.mark.parametrize(
-    ("name", "release", "asked", "measured"),
-    [
-        ("lammps", None, 0.75, 0.7499),
-        ("lammps", None, 0.65, 0.6504),
-        ("lammps", "force", 0.75, 0.7626),
-        ("lammps", "force", 0.65, 0.6746),
-        ("mujoco", None, 0.75, 0.7628),
-        ("mujoco", None, 0.65, 0.6750),
-    ],
-)
-def test_what_engines_did_at_their_finest_step(name, release, asked, measured):
-    # Asked by Eq. 16, measured on the engines.
-    found = ENGINES[name].settings(per_mass(asked), release)
-    assert found.restitution == pytest.approx(measured, abs=5e-4)
-
-
-def test_the_thread_that_asked_for_075_and_got_082():
-    # MuJoCo discussion 3404: k and c of the whole mass, where MuJoCo takes those of a kilogram.
-    found = ENGINES["mujoco"].read(
-        {"solref": "-284244 -68.8", "solimp": "0.9 0.95 0.001"}, mass=0.5
-    )
-    assert (found.stiffness, found.damping) == (142122.0, 34.4)
-    assert found.damping_ratio == pytest.approx(0.0645, abs=5e-5)
-    # 0.8238 on the engine, without gravity, whose impedance begins at 0.9.
-    assert found.restitution(Release.FORCE) == pytest.approx(0.8231, abs=1e-4)
-
-
-def test_the_form_of_a_time_constant_and_a_damping_ratio():
-    # k/m = 1/(T² ζ²) and c/m = 2/T: measured on the engine, r = 0.752847.
-    zeta, omega = 0.0958, 500.0
-    found = ENGINES["mujoco"].read({"solref": [1 / (omega * zeta), zeta]}, mass=2.0)
-    assert found.damping_ratio == pytest.approx(zeta)
-    assert found.angular_frequency == pytest.approx(omega)
-    assert found.restitution(Release.FORCE) == pytest.approx(0.752847, abs=1e-5)
-
-
-@pytest.mark.parametrize(
     ("name", "parameters", "mass", "says"),
     [
         ("mujoco", {"solref": "-100 -1"}, None, "the mass is missing"),

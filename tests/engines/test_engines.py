@@ -129,11 +129,6 @@ def test_engines_and_releases_that_there_are_not(name, release, says, refusal):
         engine_named(name).settings(CONTACT, release)
 
 
-def test_a_contact_that_does_not_bounce(refusal):
-    with refusal(ModelError, "overdamped"):
-        ENGINES["lammps"].settings(Physical(1.0, 1.0, 2.0))
-
-
 @pytest.mark.parametrize("zeta", [1.0, 1.5, 20.0])
 def test_an_overdamped_ball_comes_back_where_nothing_pulls(zeta):
     # MuJoCo's default is ζ = 1. Of p = (e^{-at} - e^{-bt})/(b - a) the force ends where p″ = 0.

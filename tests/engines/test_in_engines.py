@@ -390,7 +390,6 @@ def test_the_impedance_takes_its_part_of_the_load(surface, share, zeta):
     step = 2 * float(end.duration) / steps
     least = " ".join(map(repr, found.parameters["solimp"]))
     snippet = found.snippet.replace(least, f"{surface!r} {share!r} 0.3")
-    assert snippet != found.snippet
     found = replace(
         found, time_step=step, snippet=re.sub('timestep="[^"]*"', f'timestep="{step!r}"', snippet)
     )

@@ -16,15 +16,8 @@ def test_every_script_is_on_the_page():
     assert set(SHOWN) == {f"docs/design/{path.name}" for path in scripts}
 
 
-# The others run weekly, as whole documents do.
-OFTEN = ("rubber_ball", "gear_pair")
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "script",
-    [pytest.param(x, marks=() if Path(x).stem in OFTEN else pytest.mark.long) for x in SHOWN],
-)
+@pytest.mark.parametrize("script", SHOWN)
 def test_a_worked_example(script, capsys):
     runpy.run_path(str(ROOT / script))
     assert capsys.readouterr().out == SHOWN[script]

@@ -24,7 +24,6 @@ SLOW = {
     "ext_laws",
     "ext_locked",
     "ext_locking",
-    "ext_means",
 }
 
 

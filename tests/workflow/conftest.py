@@ -37,7 +37,6 @@ COARSE = {
     ("ext_cascades", "samples"): 5,
     ("ext_diagram", "samples"): 12,
     ("ext_locked", "nodes"): 60,
-    ("ext_means", "starts"): 3,
     ("ext_locking", "samples"): 8,
 }
 

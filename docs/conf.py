@@ -64,7 +64,6 @@ PARTS = {
         "paper",
         "supplement",
         "figures/*",
-        "docs/atlas/*",
         "config/README",
         "docs/record",
     ],

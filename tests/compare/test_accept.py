@@ -45,13 +45,13 @@ def test_what_has_moved_is_copied_and_the_rest_is_not(pair, run):
     assert run() == [
         "removed figures/fig09.svg",
         "copied figures/fig05.nc",
-        "Now commit the record, and say why: git add figures config *.md && git commit",
+        "Commit the record with the reason: git add figures config *.md && git commit",
     ]
     after = contents(pair)
     assert not (pair.record / "figures" / "fig09.svg").exists()
     assert {path.name for path in after if after[path] != before[path]} == {"fig05.nc"}
     assert pair.compare().outcome.agrees
-    assert run() == ["Nothing to accept: the record says what the results say."]
+    assert run() == ["Nothing to accept: the results agree with the record."]
 
 
 def test_what_is_named_is_copied_and_nothing_else(pair, run, refusal):
@@ -70,8 +70,8 @@ def test_what_is_named_is_copied_and_nothing_else(pair, run, refusal):
 @pytest.mark.parametrize(
     ("state", "left", "config", "said"),
     [
-        (UNKNOWN, 0, "force", "the tree is not committed"),
-        (Revision("1f0e", "yes"), 0, "force", "the tree is not committed"),
+        (UNKNOWN, 0, "force", "some changes are not committed"),
+        (Revision("1f0e", "yes"), 0, "force", "some changes are not committed"),
         (Revision("1f0e", "no"), 0, "displacement", "config.yaml: {'release': 'displacement'}"),
         (Revision("1f0e", "no"), 3, "force", "Snakemake would still run 3 jobs"),
         (Revision("1f0e", "no"), 0, "force", "fig17.png is not made by this workflow: remove it"),

@@ -38,7 +38,7 @@ def test_a_run_against_its_record_which_then_is_accepted(recorded, monkeypatch):
     drifted(recorded, 0.5)
     lines = recorded.run("--cores", "1", "diff").stdout.splitlines()
     assert lines[-2].split()[:4] == ["fig11", "within", "budget", "50"]
-    assert lines[-1].endswith("The new artifacts say what the record says.")
+    assert lines[-1].endswith("The new artifacts agree with the record.")
     reports = recorded.path / "results" / "diff"
     assert {path.name for path in reports.iterdir()} == {"diff.txt", "index.html"}
     before = recorded.contents("results/diff")
@@ -66,7 +66,7 @@ def test_a_run_against_its_record_which_then_is_accepted(recorded, monkeypatch):
     record = recorded.contents("figures")
     done = recorded.run("--cores", "1", "accept", check=False)
     assert done.returncode == 1 and "Error" not in done.stderr
-    assert done.stderr.splitlines()[-1].startswith("accept: the tree is not committed")
+    assert done.stderr.splitlines()[-1].startswith("accept: some changes are not committed")
     assert recorded.contents("figures") == record
     readme.write_text(text, encoding="utf-8")
     monkeypatch.setitem(os.environ, "ONLY", "fig11,fig12")

@@ -89,11 +89,11 @@ def accept(
         of these names. Nothing is changed then.
     """
     if revision(record).dirty != "no":
-        raise ModelError("the tree is not committed: commit first, then accept what it makes")
+        raise ModelError("some changes are not committed: commit them, run again, then accept")
     if changed := changes(config, read_yaml(record / CONFIGURATION)):
-        raise ModelError(f"this run has other values than {CONFIGURATION}: {changed}")
+        raise ModelError(f"the values of this run differ from {CONFIGURATION}: {changed}")
     if left := jobs_left(record, files):
-        raise ModelError(f"Snakemake would still run {left} jobs: run it, and look at the diff")
+        raise ModelError(f"Snakemake would still run {left} jobs: run make all diff first")
     if foreign := sorted({*map(str, results.glob("figures/[!.]*"))} - {*files}):
         raise ModelError(f"{foreign[0]} is not made by this workflow: remove it")
     comparison = compare_folders(record, results, only)
@@ -101,5 +101,5 @@ def accept(
     taken = [each for each in comparison.parts if only or not each.outcome.agrees]
     said = [line for artifact in taken for line in _copied(artifact, record, results)]
     if not said:
-        return ["Nothing to accept: the record says what the results say."]
-    return [*said, "Now commit the record, and say why: git add figures config *.md && git commit"]
+        return ["Nothing to accept: the results agree with the record."]
+    return [*said, "Commit the record with the reason: git add figures config *.md && git commit"]

@@ -4,7 +4,7 @@ from bouncing_ball.compare.outcome import Outcome, Whole
 from bouncing_ball.errors import printable
 
 _SENTENCES = (
-    "The new artifacts say what the record says.",
+    "The new artifacts agree with the record.",
     "The new artifacts differ from the record.",
     "Some artifacts could not be compared.",
 )
@@ -16,7 +16,7 @@ def sentence(comparison: Whole) -> str:
     Examples
     --------
     >>> sentence(Whole("", (Whole("fig01"), Whole("fig02"))))
-    '2 identical. The new artifacts say what the record says.'
+    '2 identical. The new artifacts agree with the record.'
     """
     outcomes = [artifact.outcome for artifact in comparison.parts]
     found = [(outcomes.count(outcome), outcome) for outcome in reversed(Outcome)]
@@ -61,7 +61,7 @@ def to_terminal(comparison: Whole) -> str:
     Examples
     --------
     >>> print(to_terminal(Whole("", (Whole("fig01"),))), end="")
-    1 identical. The new artifacts say what the record says.
+    1 identical. The new artifacts agree with the record.
     """
     form = "{:<12}  {:<21}  {:>9}  {}".format
     lines = [form("artifact", "outcome", "of budget", "what")] if comparison.moved else []

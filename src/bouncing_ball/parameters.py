@@ -78,9 +78,7 @@ Seed = Annotated[int, listed("Seed")]
 class Sharded(Parameters):
     """The parameters of a study whose places jobs of their own may follow in pieces."""
 
-    shards: Annotated[
-        int, number("jobs that follow balls, at most one for each", ge=1, le=2000)
-    ] = 1
+    shards: Annotated[int, number("jobs among which places are divided", ge=1, le=2000)] = 1
 
 
 class Interval(Parameters):

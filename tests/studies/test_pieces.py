@@ -9,14 +9,9 @@ from bouncing_ball.datasets.pieces import Followed, joined, only
 
 GRID = {"amplitude": {"min": 1.0, "max": 4.0, "samples": 3}, "impacts": 200, "confidence": 0.95}
 GRID |= {"restitution": {"min": 0.3, "max": 0.8, "samples": 3}, "frequency_ratio": [30.0, 300.0]}
-CASE = {"restitution": 0.5, "amplitude": 1.45, "frequency_ratio": 30.0}
 STUDIES = {
     "attractors.locking": GRID | {"phase": 1.0, "impact_speed": 9.0},
     "mean_motion.mean_motions": GRID | {"starts": 3, "samples": 20, "tolerance": 0.01, "seed": 3},
-    "basins.basins": {
-        **{"cases": [CASE], "velocity_max": 9.0, "starts": 10, "random": 20, "shifts": [0.1, 0.01]},
-        **{"impacts": 200, "confidence": 0.95, "seed": 3},
-    },
 }
 
 

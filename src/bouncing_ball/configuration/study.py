@@ -17,8 +17,6 @@ from bouncing_ball.configuration.yaml_file import ConfigurationError
 
 SECTIONS = ("figures", "tables", "extensions", "studies")
 """Sections of the configuration in which each key is an artifact."""
-# Arguments that other jobs make.
-_OF_JOBS = ("data", "follow")
 
 
 def load(study: str) -> Callable[..., Any]:
@@ -72,7 +70,7 @@ def taken(study: str) -> dict[str, Any]:
     ['parameters', 'release', 'continuation']
     """
     signature = inspect.signature(load(study)).parameters.items()
-    return {name: each.annotation for name, each in signature if name not in _OF_JOBS}
+    return {name: each.annotation for name, each in signature if name not in ("data", "follow")}
 
 
 def section(artifact: str, run: Mapping[str, Any]) -> str:

@@ -1,6 +1,5 @@
 """Where balls end that start at many phases and speeds, in the three models (beyond the paper)."""
 
-from operator import call
 from typing import Annotated
 
 import numpy as np
@@ -9,9 +8,8 @@ import xarray as xr
 from bouncing_ball.attractors.mapper import label
 from bouncing_ball.attractors.motions import Kind, Motions
 from bouncing_ball.contacts.spring_damper import Release
-from bouncing_ball.datasets.pieces import Follow
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.parameters import FrequencyRatio, Many, Seed, Sharded, listed, number
+from bouncing_ball.parameters import FrequencyRatio, Many, Parameters, Seed, listed, number
 from bouncing_ball.studies.attractors import MODELS, Confidence, Impacts, models, share, with_limits
 from bouncing_ball.studies.transients import Place
 from bouncing_ball.studies.uncertainty import exponent
@@ -27,7 +25,7 @@ class Case(Place):
     frequency_ratio: FrequencyRatio
 
 
-class Basins(Sharded):
+class Basins(Parameters):
     """Starts on an even grid for the picture, and random ones for shares and exponents."""
 
     cases: Many[Case]
@@ -49,7 +47,7 @@ def _destination(found: Motions) -> np.ndarray:
     return np.select(where, range(len(where)), len(where))
 
 
-def basins(parameters: Basins, release: Release, follow: Follow = call) -> xr.Dataset:
+def basins(parameters: Basins, release: Release) -> xr.Dataset:
     """Where balls end that start with an impact at (φ, δ′), in three models of each case.
 
     ``destination`` (case, model, start_speed, start_phase) is an index into :data:`MOTIONS`, with φ
@@ -71,17 +69,11 @@ def basins(parameters: Basins, release: Release, follow: Follow = call) -> xr.Da
     towards = np.concatenate([np.repeat(speed, count), np.tile(fast, shifts.size + 1)])
     amplitude = lam[:, np.newaxis]
     shape = lam.size, len(MODELS)
-    compared = models(r[:, np.newaxis], ratio[:, np.newaxis], release)
-
-    def of_starts(start, towards):
-        ends = np.empty((*shape, start.size), dtype=np.int8)
-        for k, model in enumerate(compared):
-            velocity = amplitude * np.cos(start) - towards
-            found = label(model.impact_law, amplitude, start, velocity, impacts=parameters.impacts)
-            ends[:, k] = _destination(found)
-        return {"destination": ends}
-
-    ends = follow(of_starts, start, towards)["destination"]
+    ends = np.empty((*shape, start.size), dtype=np.int8)
+    for k, model in enumerate(models(r[:, np.newaxis], ratio[:, np.newaxis], release)):
+        velocity = amplitude * np.cos(start) - towards
+        found = label(model.impact_law, amplitude, start, velocity, impacts=parameters.impacts)
+        ends[:, k] = _destination(found)
     image, sample = np.split(ends, [count * count], axis=-1)
     first, *others = np.moveaxis(sample.reshape(*shape, -1, parameters.random), 2, 0)
     changed = np.stack([x != first for x in others], axis=2)

@@ -3,8 +3,8 @@
 Single faults are put into modules as these are imported, one at a time. First ``make quick``
 runs without a fault, and each test is noted with the functions that it calls. For a fault the
 tests run that reach its function, the nearest first, and then all others of its folder. A fault
-is noticed if one of them fails, or hangs. What survives is listed: it changes nothing, or a
-test is missing.
+is noticed if one of them fails, or hangs. What survives is listed: it changes nothing, for a
+reason that stands in ``equivalent_faults.yaml``, or a test is missing.
 
 usage: python tests/mutants.py [--count 200] [--seed 2011] [--workers 2] [--only PART ...]
 """
@@ -27,14 +27,14 @@ from types import CodeType, FrameType
 from typing import Any, NamedTuple
 
 import pytest
+import yaml
+from hypothesis import Phase, settings
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = Path("src/bouncing_ball")
 LAYERS = ["contacts", "continuation", "motion", "orbits", "attractors", "accuracy", "studies",
           "claims", "engines", "calculator", "atlas", "compare"]  # fmt: skip
 QUICK = "not long and not slow and not cluster and not engines and not docs"
-# The tests of all models and laws are in a folder of their own.
-CONTRACTS = {"contacts", "continuation", "motion", "orbits"}
 # What this does not run: pictures, and runs of the pipeline.
 ELSEWHERE = {"tests/figures", "tests/speed", "tests/workflow"}
 # Imported once for all processes.
@@ -43,26 +43,17 @@ LIBRARIES = ["matplotlib", "mpmath", "netCDF4", "pint", "pydantic", "scipy.optim
 LONGER = 60
 Functions = set[tuple[str, int]]
 # Another operator of the same kind: a sign, an exponent, a border, a condition.
+_EXCHANGED = [
+    (ast.Add, ast.Sub), (ast.Mult, ast.Div), (ast.BitAnd, ast.BitOr), (ast.And, ast.Or),
+    (ast.Eq, ast.NotEq), (ast.Is, ast.IsNot), (ast.In, ast.NotIn),
+]  # fmt: skip
 _OPERATORS: dict[type, tuple[type, ...]] = {
-    ast.Add: (ast.Sub,),
-    ast.Sub: (ast.Add,),
-    ast.Mult: (ast.Div,),
-    ast.Div: (ast.Mult,),
+    **{one: (other,) for pair in _EXCHANGED for one, other in (pair, pair[::-1])},
     ast.Pow: (ast.Mult,),
-    ast.BitAnd: (ast.BitOr,),
-    ast.BitOr: (ast.BitAnd,),
-    ast.And: (ast.Or,),
-    ast.Or: (ast.And,),
     ast.Lt: (ast.LtE, ast.Gt),
     ast.LtE: (ast.Lt, ast.Gt),
     ast.Gt: (ast.GtE, ast.Lt),
     ast.GtE: (ast.Gt, ast.Lt),
-    ast.Eq: (ast.NotEq,),
-    ast.NotEq: (ast.Eq,),
-    ast.Is: (ast.IsNot,),
-    ast.IsNot: (ast.Is,),
-    ast.In: (ast.NotIn,),
-    ast.NotIn: (ast.In,),
 }
 # A function for its neighbour.
 _NEIGHBOURS = {
@@ -104,15 +95,10 @@ def faults(source: str) -> list[Fault]:
             start = min([node.lineno, *(each.lineno for each in node.decorator_list)])
             first |= dict.fromkeys(range(start, node.end_lineno + 1), start)
     return [
-        Fault(
-            first.get(node.lineno, 0),
-            node.lineno,
-            ast.unparse(node),
-            ast.unparse(wrong),
-            _with(source, node, wrong),
-        )
+        Fault(first.get(node.lineno, 0), node.lineno, *map(ast.unparse, (node, wrong)), with_it)
         for node in _computing(tree)
         for wrong in _wrong(node)
+        for with_it in [_with(source, node, wrong)]
     ]
 
 
@@ -236,9 +222,6 @@ class Chosen:
         self._seconds = seconds
 
     def pytest_collection(self) -> None:
-        # pytest asks to be the first that imports it.
-        from hypothesis import Phase, settings
-
         # It is enough that a random example fails; it need not be the simplest one.
         settings.register_profile("first", settings(), phases=[Phase.explicit, Phase.generate])
         settings.load_profile("first")
@@ -254,13 +237,10 @@ class Chosen:
 
 def passes(files: Iterable[str], plugin: Reach | Chosen) -> bool:
     """Whether tests pass, or there are none; in a process of their own."""
-    silence = os.open(os.devnull, os.O_WRONLY)
-    for stream in (1, 2):
-        os.dup2(silence, stream)
-    options = ["-q", "-x", "--tb=no", "-p", "no:cacheprovider", "-m", QUICK]
-    code = pytest.main([*options, *files], [plugin])
-    signal.setitimer(signal.ITIMER_REAL, 0)
-    return code in (0, 5)
+    sys.stdout = open(os.devnull, "w")
+    # Modules that pytest rewrites would not have the fault.
+    options = ["-x", "--assert=plain", "--tb=no", "-p", "no:cacheprovider", "-m", QUICK]
+    return pytest.main([*options, *files], [plugin]) in (0, 5)
 
 
 def reached(part: str) -> dict[str, tuple[float, Functions]] | None:
@@ -279,7 +259,8 @@ def chosen(
     """
     layer = path.relative_to(PACKAGE).parts[0]
     own = str(path), f"tests/{layer}/test_{path.stem}.py"
-    folders = f"tests/{layer}/", *(["tests/contracts/"] if layer in CONTRACTS else [])
+    # The tests of all models and laws are in a folder of their own.
+    folders = f"tests/{layer}/", "tests/contracts/"
     reaching = {name for name, (_, calls) in tests.items() if (str(path), fault.function) in calls}
     beside = {name for name in tests if name.startswith((*own, *folders))}
     found = reaching & beside if near else reaching ^ beside
@@ -309,6 +290,17 @@ def survives(work: tuple[Path, Fault, dict[str, float]]) -> bool:
     return not files or passes(files, Chosen(seconds))
 
 
+def reasons(tree: Path) -> dict[tuple[Path, int, str, str], str]:
+    """Why faults change nothing, by module, line and change."""
+    found = {}
+    for each in yaml.safe_load((tree / "tests" / "equivalent_faults.yaml").read_text()):
+        path = PACKAGE / each["module"]
+        for k, line in enumerate((tree / path).read_text().splitlines(), start=1):
+            if line.strip() == each["line"]:
+                found[path, k, *each["fault"].split(" → ")] = each["because"]
+    return found
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=200)
@@ -329,19 +321,21 @@ def main() -> None:
         found = pool.map(reached, [x for x in parts if x not in ELSEWHERE], chunksize=1)
         if None in found:
             sys.exit("the tests fail without any fault: see make quick")
-        left, tests = drawn, dict(ChainMap(*found))
+        tests, known = dict(ChainMap(*found)), reasons(ROOT)
+        survived, equal = drawn, 0
         for near in (True, False):
-            tried = left
-            left = []
+            tried, survived = survived, []
             work = ((*each, chosen(*each, tests, near)) for each in tried)
             for (path, fault), lives in zip(tried, pool.imap(survives, work), strict=True):
-                if lives:
-                    left.append((path, fault))
-                if not (lives and near):
-                    state = "SURVIVED" if lives else "noticed "
-                    where = f"{state} {path}:{fault.line}:"
-                    print(f"{where} {fault.before}  →  {fault.after}", flush=True)
-    print(f"{len(drawn) - len(left)} of {len(drawn)} faults noticed, {len(left)} survived")
+                why = known.get((path, fault.line, fault.before, fault.after), "") if lives else ""
+                equal += bool(why)
+                if lives and not why:
+                    survived.append((path, fault))
+                if why or not (lives and near):
+                    state = "noticed " if not lives else "equal   " if why else "SURVIVED"
+                    change = f"{path}:{fault.line}: {fault.before}  →  {fault.after}"
+                    print(state, change, why and f"({why})", flush=True)
+    print(f"{len(drawn)} faults: {equal} change nothing, {len(survived)} survived")
 
 
 if __name__ == "__main__":

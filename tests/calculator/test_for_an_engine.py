@@ -96,7 +96,10 @@ def test_from_one_engine_to_another_of_another_release(table):
         ({"measured_restitution": 0.7}, "contradict each other"),
         ({"restitution": 0.1}, "the range of the force release"),
         ({"restitution_error": 0.0}, "restitution_error = 0 is not a number in (0, 1)"),
-        ({"stiffness": None, "reduced_modulus": 1e9, "radius": 0.01}, "is not written for mujoco"),
+        (
+            {"stiffness": None, "reduced_modulus": 1e9, "radius": 0.01},
+            "is not written for mujoco",
+        ),
         (
             {"stiffness": None, "reduced_modulus": 1e9, "radius": 0.01, "engine": None},
             "the frequency of the table is missing",

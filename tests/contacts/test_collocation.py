@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from scipy.special import beta
 
-from bouncing_ball.contacts.collocation import contacts, path
+from bouncing_ball.contacts.collocation import Start, _falls, _left, _Motion, contacts, path
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.law_choice import law_of_impact
+from bouncing_ball.contacts.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
 from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
@@ -29,6 +30,16 @@ def test_the_elastic_hertz_impact(law):
     assert float(path(law, end, end.duration / 2, v, weight=0.0)[0]) == pytest.approx(
         deepest, rel=1e-9
     )
+
+
+def test_next_to_its_end_a_path_is_a_straight_line():
+    # A free ball leaves an undamped spring with the speed of its impact: p = v h.
+    law = HuntCrossley(50.0, 0.0)
+    end = contacts(law, 2.0, weight=0.0)
+    h = 1e-9 * end.duration
+    depth, rate = path(law, end, end.duration - h, 2.0, weight=0.0)
+    # The end is known to a rounding or two, a millionth of h.
+    assert float(depth) == pytest.approx(2 * h, rel=1e-5) and float(rate) == pytest.approx(-2.0)
 
 
 @pytest.mark.parametrize("restitution", [0.95, 0.65, 0.3, 0.1])
@@ -57,6 +68,29 @@ def test_a_contact_is_found_whatever_its_neighbours():
         assert float(together.duration[k]) == pytest.approx(float(alone.duration), rel=1e-14)
 
 
+@pytest.mark.parametrize("until", [None, np.ones(1)], ids=["release", "time"])
+@pytest.mark.parametrize(
+    "law", [ElastoBacklash(3.0, 0.2), Impedance(3.0, 0.1, 0.9, 0.5, width=0.5), Tsuji(50.0, 0.2)]
+)
+def test_the_end_of_a_panel_is_sought_with_the_derivatives_of_what_vanishes_there(law, until):
+    start = Start(*np.array([0.0, 2.0, 0.4, 1.2, 1.0])[:, np.newaxis])
+    now, m = _Motion(*np.ones((8, 1))), law.root
+    state, slope = (
+        np.array([[0.3], [-0.7], [0.2]]),
+        np.array([[-0.7], [-1.7], [m * 0.3 ** (m - 1)]]),
+    )
+    # dq/ds is p′ and dt/ds is λ, and p″λ is any number. Central differences, 10⁻¹² + ε/10⁻⁶.
+    ahead, back = (_left(law, m, start, now, until, *(state + h * slope)) for h in (1e-6, -1e-6))
+    found = _falls(law, m, start, now, until, *state, slope[1])
+    np.testing.assert_allclose(found, (ahead - back) / 2e-6, rtol=1e-8)
+
+
+def test_an_impedance_varies_whatever_its_neighbours():
+    # At x = 1/4 of the width d is x²/c = 1/8 of the way up, with c = 1/2, if it varies.
+    law = Impedance(2.0, 0.5, 0.75, np.array([0.25, 0.75]), width=4.0)
+    assert law.has_kink and law.impedance(np.ones(2)).tolist() == [0.3125, 0.75]
+
+
 def test_what_does_not_end_is_no_contact():
     # A ball put down slowly on a table at rest stays.
     assert np.isnan(contacts(HuntCrossley(100.0, 0.5), 0.01).duration)
@@ -78,6 +112,12 @@ class _Sinking(ContactLaw):
 
     def force(self, penetration, rate):
         return penetration + 4 * rate
+
+
+def test_the_ranges_of_an_impedance():
+    for wrong in ({"midpoint": 0.0}, {"midpoint": 1.0}, {"share": 1.0}, {"power": 0.9}):
+        with pytest.raises(ModelError, match=f"= {max(wrong.values())} is not"):
+            Impedance(2.0, 0.5, **wrong)
 
 
 def test_what_a_law_cannot_do_is_said():

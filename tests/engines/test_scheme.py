@@ -91,7 +91,7 @@ def test_many_steps_follow_the_law_of_few():
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        ((0.1, 7), "7 steps in a contact are too few: at least 8"),
+        ((0.1, 7), "7 steps in a contact are too few: use at least 8"),
         ((-0.1, 50), "damping ratio ζ = -0.1 is not in [0, 1)"),
     ],
 )

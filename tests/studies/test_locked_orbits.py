@@ -58,9 +58,8 @@ def test_a_contact_agrees_where_the_prediction_says():
 
 def test_a_ball_has_arrived_where_phase_and_velocity_agree(monkeypatch):
     # Impacts a period apart: at the phase of the end, at its velocity, and then at both.
-    phase, velocity = np.reshape([[1.0, 2, 1], [-5, -4, -4]], (2, 3, 1, 1, 1)) * np.ones(10)
-    time = 2 * np.pi * np.cumsum(np.ones_like(phase), axis=0)
-    path = SimpleNamespace(time=time, phase=phase, impact_velocity=velocity)
+    rows = np.reshape([[1.0, 2, 1], [-5, -4, -4], [1, 2, 3]], (3, 3, 1, 1, 1)) * np.ones(10)
+    path = SimpleNamespace(phase=rows[0], impact_velocity=rows[1], time=2 * np.pi * rows[2])
     kinds = {"kind": np.full((1, 1, 10), Kind.LOCKED), "periods": 1}
     end = SimpleNamespace(end_phase=1.0, end_velocity=-4.0, **kinds)
     model = SimpleNamespace(impact_law=None, simulate=lambda *_: path)

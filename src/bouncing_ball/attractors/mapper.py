@@ -213,10 +213,8 @@ def _resting(
     dynamics: Dynamics, impact: Impact, departure: Departure, ball: _Ball, found: Motions
 ) -> np.ndarray:
     """Store which balls stay on the table, or stick for the second time; return the others."""
-    done, stays = (
-        (departure.status != Status.BOUNCING),
-        departure.status == Status.PERMANENT_CONTACT,
-    )
+    done = departure.status != Status.BOUNCING
+    stays = departure.status == Status.PERMANENT_CONTACT
     if done.any():
         _write(found, ball, stays, Kind.PERMANENT_CONTACT, periods=1, exponent_error=0.0)
         _write(found, ball, done & ~stays, Kind.UNDECIDED, reason=Reason.NO_RELEASE)
@@ -277,10 +275,8 @@ def _returning(
         length, sure, first = ball.seen[near] - mark.impact[near], back & second, back & ~second
         own, whole = near[sure], np.gcd(periods, length)[sure] == 1
         repeats = np.where(whole, Kind.ORBIT, Kind.SUBHARMONIC)
-        kind, exponent = (
-            np.where(mark.stuck[own] > 0, Kind.LOCKED, repeats),
-            np.log(radius) / periods,
-        )
+        kind = np.where(mark.stuck[own] > 0, Kind.LOCKED, repeats)
+        exponent = np.log(radius) / periods
         _repeats(found, ball, own, kind, periods[sure], length[sure], exponent[sure])
         done[own] = True
         mark.turn[near[first]], moves[near[first]] = length[first], True

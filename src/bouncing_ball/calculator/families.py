@@ -109,32 +109,30 @@ def families(case: Case, asked: Sequence[int], or_first: bool = False) -> tuple[
     [1]
     """
     n, lam = np.array(asked), case.table.amplitude
-    models = case.models.values()
-    nodes = [np.broadcast_to(model.saddle_node(n).amplitude, n.shape) for model in models]
-    # Below its saddle-node a model has no orbit to be looked for.
-    orbits = [
-        model.orbit(n, np.where(lam < node, np.nan, lam))
-        for model, node in zip(models, nodes, strict=True)
-    ]
+    orbits: list[Orbit] = []
+    found: list[list[np.ndarray]] = []
+    for model in case.models.values():
+        still = np.full(n.shape, RESTITUTION_THRESHOLD if found else case.permanent_contact)
+        node = model.saddle_node(n).amplitude
+        limits = node, model.period_doubling(n).amplitude, still
+        # Below its saddle-node a model has no orbit to be looked for.
+        orbits.append(model.orbit(n, np.where(lam < node, np.nan, lam)))
+        found.append([*(getattr(orbits[-1], quantity) for quantity in OF_ORBITS), *limits])
+    values = np.array(found)
     there = np.any([orbit.exists for orbit in orbits], axis=0)
     there[0] |= or_first and not there.any()
     if not there.any():
+        lowest = values[0, len(OF_ORBITS), 0]
         which = f"{asked[0]}-T orbit" if len(asked) == 1 else "n-T orbit"
         laid = lam <= case.permanent_contact
         rests = ", and a ball laid on the table stays at rest" if laid else ""
         raise NoOrbitError(
             f"no {which} in any model{rests}: the table's acceleration is Λ = {lam:.4g} times "
-            f"gravity, and the {asked[0]}-T orbit needs {nodes[0][0]:.4g}"
+            f"gravity, and the {asked[0]}-T orbit needs {lowest:.4g}"
         )
-    there = np.flatnonzero(there)
-    found: list[list[np.ndarray]] = []
-    for model, orbit, node in zip(models, orbits, nodes, strict=True):
-        still = RESTITUTION_THRESHOLD if found else case.permanent_contact
-        limits = node[there], model.period_doubling(n[there]).amplitude, still + 0 * node[there]
-        found.append([*(getattr(orbit[there], quantity) for quantity in OF_ORBITS), *limits])
     return tuple(
-        _family(case, asked[k], [orbit[k] for orbit in orbits], values)
-        for k, values in zip(there.tolist(), np.moveaxis(np.array(found), -1, 0), strict=True)
+        _family(case, asked[k], [orbit[k] for orbit in orbits], values[:, :, k])
+        for k in np.flatnonzero(there).tolist()
     )
 
 

@@ -81,7 +81,7 @@ def _family_lines(one: Family) -> list[str]:
         lines.append(_line(f"  {columns[0][0]}", *(text for _, text in columns)))
     if one.exists:
         lines += [_line(f"  {name}", text) for name, text in rows(one)]
-    holds = "error law" if one.law_holds else "law, not stated"
+    holds = "error law" if one.law_holds else "law, out of range"
     lines.append(_line("  relative error", "restitution", holds, "corrected"))
     return lines + [_error(one, quantity) for quantity in OF_IMPACTS]
 

@@ -22,7 +22,9 @@ def _entry(value: Any, shape: tuple[int, ...], index: Any) -> Any:
     """Some elements of a field; a scalar applies to all."""
     if isinstance(value, Batch):
         return value._entries(shape, index)
-    return np.broadcast_to(value, shape)[index] if np.ndim(value) else value
+    if not np.ndim(value):
+        return value
+    return (value if np.shape(value) == shape else np.broadcast_to(value, shape))[index]
 
 
 def in_words(value: Any) -> str:
@@ -129,7 +131,8 @@ class Batch:
     @property
     def shape(self) -> tuple[int, ...]:
         """The shape to which the fields broadcast."""
-        return np.broadcast_shapes(*(_shape(getattr(self, f.name)) for f in fields(self)))
+        shapes = {_shape(getattr(self, f.name)) for f in fields(self)} - {()}
+        return shapes.pop() if len(shapes) == 1 else np.broadcast_shapes(*shapes)
 
     @property
     def size(self) -> int:

@@ -117,7 +117,7 @@ def restitution_in_steps(
     0.91
     """
     if steps < _FEWEST:
-        raise ModelError(f"{steps} steps in a contact are too few: at least {_FEWEST}")
+        raise ModelError(f"{steps} steps in a contact are too few: use at least {_FEWEST}")
     zeta = float(damping_ratio)
     h = free_impact(zeta, release)[0] / steps
     power, lag = _step(scheme, zeta, h)

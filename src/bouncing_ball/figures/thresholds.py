@@ -106,7 +106,7 @@ def _draw_shifts(axes: Axes, data: xr.Dataset) -> None:
     axes.axhline(0.0, **GUIDE)
     ylabel, title = r"shift of $\Lambda$, force minus displacement", parameters(data, "restitution")
     logarithmic(axes, data.frequency_ratio, ylabel=ylabel, title=title)
-    axes.legend(fontsize=6, loc="lower right", bbox_to_anchor=(1, 0.1), ncols=2, columnspacing=0.5)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.17), ncols=2)
 
 
 def _draw_by_quantity(axes: Axes, data: xr.Dataset) -> None:

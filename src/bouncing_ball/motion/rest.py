@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.elementary import arctangent
 from bouncing_ball.motion.angles import reduce_angle, table
 from bouncing_ball.motion.dynamics import Departure
+from bouncing_ball.motion.ensembles import pick
 from bouncing_ball.motion.landing import Flight
 from bouncing_ball.motion.sequence import Status
 
@@ -71,5 +72,7 @@ def stay(departure: Departure, rests: np.ndarray, amplitude: np.ndarray) -> Depa
 
 def lifted(departure: Departure, amplitude: np.ndarray) -> np.ndarray:
     """Whether balls leave by lift-off, in the state that all balls have then."""
-    at = departure.phase == lift_off_phase(amplitude)
-    return at & (departure.flight.velocity == 0) & (departure.flight.displacement == 0)
+    rests = (departure.flight.velocity == 0) & (departure.flight.displacement == 0)
+    which = rests.nonzero()[0]
+    rests[which] = departure.phase[which] == lift_off_phase(pick(amplitude, which))
+    return rests

@@ -167,24 +167,19 @@ def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Any:
     found = _shaped(model, n, y, shape)
     test = Bifurcation.SADDLE_NODE.test(*found.trace_and_determinant())
     on_side = test > 0 if side is Side.STABLE else test < 0
-    y[~np.broadcast_to(on_side, shape).reshape(-1)] = np.nan
-    missing = np.flatnonzero(np.isnan(y[:, 0]) & np.isfinite(lam))
-    if not missing.size:
-        return found if np.all(on_side) else _shaped(model, n, y, shape)
-    # All folds at once, because many contacts cost little more than one.
-    models, index = search.model.take(missing), search.n[missing]
-    folds = models.system(index).point(models.saddle_node(index))
-    for k, fold in zip(missing, folds, strict=True):
-        if lam[k] >= fold[-1]:
-            y[k] = _on_branch(search.model.take(k), int(search.n[k]), fold, float(lam[k]), side)
+    if np.all(on_side):
+        return found
+    for k in np.flatnonzero(~np.broadcast_to(on_side, shape).reshape(-1) & np.isfinite(lam)):
+        y[k] = _on_branch(search.model.take(k), int(search.n[k]), float(lam[k]), side)
     return _shaped(model, n, y, shape)
 
 
-def _on_branch(
-    model: Any, n: int, fold: np.ndarray, amplitude: float, side: Side
-) -> np.ndarray | float:
+def _on_branch(model: Any, n: int, amplitude: float, side: Side) -> np.ndarray | float:
     """The point at Λ on the part of the branch next to the fold, on one side of it, or NaN."""
-    y = _beside_fold(model.system(n), fold, amplitude, side)
+    fold = model.saddle_node(n)
+    if not amplitude >= float(fold.amplitude):
+        return np.nan
+    y = _beside_fold(model.system(n), model.system(n).point(fold), amplitude, side)
     if np.all(np.isfinite(y)):
         return y
     found = continued(model, n, amplitude, farther=_ABOVE)

@@ -33,10 +33,8 @@ def cascade_of_flights(parameters: Flights, release: Release) -> xr.Dataset:
     restitution, ratio = np.array(parameters.restitution), parameters.frequency_ratio.grid()
     zeta, most = damping_ratio(restitution), parameters.flights
     law = SpringDamper(ratio, zeta[:, np.newaxis], release)
-    found, stiff = (
-        np.full((2, zeta.size, most, ratio.size), np.nan),
-        np.full((zeta.size, most), np.nan),
-    )
+    found = np.full((2, zeta.size, most, ratio.size), np.nan)
+    stiff = np.full((zeta.size, most), np.nan)
     if release is Release.DISPLACEMENT:
         found = np.array(openings(zeta, ratio, most))
         found = np.where(found[1] < 1, found, np.nan)

@@ -90,7 +90,7 @@ def over_range(data: xr.Dataset, quantity: str = "max_height", n: int = 1) -> Fi
         middle = (data.position_edge[1:].values + data.position_edge[:-1].values) / 2
         law = np.ma.masked_invalid(law.transpose("position", "restitution"))
         lines = row[0].contour(data.restitution, middle, law, levels=_LAW_LEVELS, **_LAW)
-        row[0].clabel(lines, fontsize=6, fmt="%g")
+        row[0].clabel(lines, levels=_LAW_LEVELS[::2], fontsize=8, fmt="%g")
     bar = figure.colorbar(mesh, ax=slots, ticks=LEVELS, format="%g", pad=0.02, shrink=0.8)
     bar.set_label(rf"$\varpi$ from which the error is below {100 * tolerance:g} %")
     figure.suptitle(rf"{QUANTITIES[quantity]}: how stiff a contact must be, $n={n}$", fontsize=10)

@@ -125,8 +125,7 @@ def reference():
 @pytest.fixture(scope="session")
 def recorded():
     """The accepted datasets by name."""
-    by_hand = ROOT / "config/ext_means.nc"
-    paths = [*sorted((ROOT / "figures").glob("*.nc")), by_hand]
+    paths = [*sorted((ROOT / "figures").glob("*.nc")), ROOT / "config/ext_means.nc"]
     return {path.stem: read_dataset(path) for path in paths}
 
 

@@ -14,20 +14,15 @@ def grid(low, high):
     return {"min": low, "max": high, "samples": 2}
 
 
-@pytest.mark.parametrize(
-    ("error", "margin", "place", "decision"),
-    [
-        ([0.2, 0.02, 0.001], 0.0, 2, "from this on"),
-        ([0.001, 0.02, 0.001], 0.0, 2, "from this on"),
-        ([0.001, -0.001, 0.001], 0.0, 0, "from this on"),
-        ([0.001, 0.001, -0.02], 0.0, 3, "not at any"),
-        ([0.2, 0.011, 0.001], 0.005, 2, "undecided"),
-        ([0.2, np.nan, 0.001], 0.0, 2, "no number"),
-    ],
-)
-def test_every_larger_ratio_must_be_right(error, margin, place, decision):
-    found = needed(np.array(error), np.full(3, margin), 0.01)
-    assert (int(found[0]), DECISIONS[int(found[1])]) == (place, decision)
+def test_every_larger_ratio_must_be_right():
+    # A column for each case, with a margin of the fifth.
+    small, nan = 0.001, np.nan
+    rows = [0.2, small, small, small, 0.2, 0.2], [0.02, 0.02, -small, small, 0.011, nan]
+    error = np.array([*rows, [small, small, small, -0.02, small, small]])
+    place, known = needed(error, np.tile([0, 0, 0, 0, 0.005, 0], (3, 1)), 0.01)
+    assert place.tolist() == [2, 2, 0, 3, 2, 2]
+    wanted = 3 * ["from this on"] + ["not at any", "undecided", "no number"]
+    assert [DECISIONS[k] for k in known] == wanted
 
 
 def test_errors_on_a_locked_orbit_decide_by_themselves():

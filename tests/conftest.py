@@ -138,8 +138,7 @@ def table():
 @pytest.fixture(scope="session")
 def stages(table):
     """The study of each artifact that a run makes."""
-    made = {name: entry for name, entry in table.items() if "accepted" not in entry}
-    return {name: entry["study"] for name, entry in made.items() if "study" in entry}
+    return {x: y["study"] for x, y in table.items() if "study" in y and "accepted" not in y}
 
 
 @pytest.fixture(scope="session")

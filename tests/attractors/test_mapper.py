@@ -160,8 +160,7 @@ def test_the_last_digit_of_the_start_decides_only_where_the_others_are_lost():
     rng = np.random.default_rng(0)
     r, amplitude, phase = rng.uniform([[0.3], [1.0], [-3]], [[0.95], [5], [3]], (3, 300))
     velocity = amplitude * np.cos(phase) - amplitude * rng.uniform(0, 4, 300)
-    beside = np.array([amplitude, np.nextafter(amplitude, 9)])
-    found = label(r, beside, phase, velocity, impacts=500)
+    found = label(r, [amplitude, np.nextafter(amplitude, 9)], phase, velocity, impacts=500)
     another = (found.kind[0] != found.kind[1]) | (found.impacts[0] != found.impacts[1])
     # An error of 2⁻⁵² that has grown by 10¹² is 2·10⁻⁴; no boundary of this sample is that near.
     kept = found.digits_lost[0] < 12

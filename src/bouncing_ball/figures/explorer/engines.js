@@ -206,7 +206,7 @@ function settingsOf(engines, name, release, {mass, stiffness, damping}, error, l
   const numbers = law ? {point_contact_stiffness: rounded(2 * law.stiffness),
     hunt_crossley_dissipation: rounded(law.damping)} : ENGINE_NUMBERS[name](m, k, c);
   const texts = Object.fromEntries(
-    Object.entries({mass: law ? mass : m, time_step, ...numbers}).map(([key, x]) => [key, repr(x)]));
+    Object.entries({mass: m, time_step, ...numbers}).map(([key, x]) => [key, repr(x)]));
   for (const rule of ["displacement", "force"]) texts[rule] = ownRestitution(of(rule)).toFixed(4);
   return {scheme, steps, time_step, restitution: ownRestitution(contact),
     snippet: snippets[law ? "hunt-crossley" : release].replace(/@([\w.]+)@/g, (_, key) => texts[key])};

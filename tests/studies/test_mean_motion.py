@@ -16,9 +16,8 @@ def grid(low, high):
 
 def test_every_larger_ratio_must_be_right():
     # A column for each case, with a margin of the fifth.
-    small, nan = 0.001, np.nan
-    rows = [0.2, small, small, small, 0.2, 0.2], [0.02, 0.02, -small, small, 0.011, nan]
-    error = np.array([*rows, [small, small, small, -0.02, small, small]])
+    rows = [0.2, 1e-3, 1e-3, 1e-3, 0.2, 0.2], [0.02, 0.02, -1e-3, 1e-3, 0.011, np.nan]
+    error = np.array([*rows, [1e-3, 1e-3, 1e-3, -0.02, 1e-3, 1e-3]])
     place, known = needed(error, np.tile([0, 0, 0, 0, 0.005, 0], (3, 1)), 0.01)
     assert place.tolist() == [2, 2, 0, 3, 2, 2] and np.all(known[:2] == 0)
     assert [DECISIONS[k] for k in known[2:]] == list(DECISIONS)

@@ -80,8 +80,9 @@ def test_pieces_give_the_dataset_of_one_job(tmp_path):
     given = START | {"amplitude": grid, "restitution": grid, "frequency_ratio": [30.0, 300.0]}
     run, parts = partial(typed(locking), given, Release.DISPLACEMENT), []
     for number in range(4):
-        found = pytest.raises(Followed, run, follow=only(number, 4)).value.args[0]
-        part = {x: ([*"abc"], y) for x, y in found.items()}
+        with pytest.raises(Followed) as found:
+            run(follow=only(number, 4))
+        part = {x: ([*"abc"], y) for x, y in found.value.args[0].items()}
         write_dataset(xr.Dataset(part), tmp_path / "part.nc")
         parts.append(read_dataset(tmp_path / "part.nc"))
     assert run(follow=joined(parts)).identical(run())

@@ -180,8 +180,8 @@ def copy_tree(tree: Tree, target: Path, ignored: Callable | None = None) -> Tree
 
 @pytest.fixture(scope="session")
 def coarse() -> set[str]:
-    """The datasets that these runs make from fewer samples."""
-    return {name for name, _ in COARSE}
+    """The datasets that these runs make from fewer samples, and one that they do not make."""
+    return {name for name, _ in COARSE} | {"ext_means"}
 
 
 @pytest.fixture(scope="session")

@@ -60,6 +60,7 @@ function show(hash) {
   const [good, sentence] = verdictOf(found, question);
   $("verdict").textContent = sentence;
   $("verdict").dataset.good = good;
+  for (const name of document.querySelectorAll(".exact")) name.textContent = found.law?.name ?? "spring-damper";
   fillTables(found, question);
   if (state.tab === "design") {
     const one = question.physical;

@@ -141,6 +141,22 @@ def stages(table):
 
 
 @pytest.fixture(scope="session")
+def coarse():
+    """Fewer samples or starts of the maps of balls, which take as long as everything else.
+
+    At their whole size they are compared with the record by `make diff`, and weekly.
+    """
+    return {
+        ("ext_basins", "starts"): 20,
+        ("ext_cascades", "samples"): 5,
+        ("ext_diagram", "samples"): 12,
+        ("ext_locked", "nodes"): 60,
+        ("ext_means", "starts"): 3,
+        ("ext_locking", "samples"): 8,
+    }
+
+
+@pytest.fixture(scope="session")
 def one_line():
     """Asserts that an exception's message is one line with the given parts."""
 

@@ -79,7 +79,7 @@ OTHER_SOURCES = {
 
 
 @pytest.fixture(scope="module")
-def results(stages):
+def results(stages, coarse):
     """For each artifact and variable, the results under all variations."""
     found = {}
     for artifact, study in stages.items():
@@ -87,7 +87,10 @@ def results(stages):
         # What is made of other datasets moves as they do.
         if "data" in inspect.signature(load(study)).parameters:
             continue
-        given = arguments(study, artifact, RUN)
+        fewer = {key: number for (name, key), number in coarse.items() if name == artifact}
+        given = mapped(
+            arguments(study, artifact, RUN), lambda key, x, fewer=fewer: fewer.get(key, x)
+        )
         record = made(**given)
         for vary in VARIATIONS:
             varied = vary(given)

@@ -125,7 +125,8 @@ def reference():
 @pytest.fixture(scope="session")
 def recorded():
     """The accepted datasets by name."""
-    return {path.stem: read_dataset(path) for path in sorted((ROOT / "figures").glob("*.nc"))}
+    paths = [*sorted((ROOT / "figures").glob("*.nc")), ROOT / "config/ext_means.nc"]
+    return {path.stem: read_dataset(path) for path in paths}
 
 
 @pytest.fixture(scope="session")

@@ -75,8 +75,8 @@ setup-engines: $(SETUP)
 	for engine in $$($(BIN)/python -c '$(ENGINES)'); do \
 	    $(PIP) --only-binary :all: "$$engine" || echo "No wheel of $$engine."; done
 
-# The snippets of `design --engine`, run by the engines that are installed: some three minutes.
-# results/config/engines.nc and a table of it, results/engines.txt; make accept ONLY=engines.
+# The snippets of `design --engine`, run by the engines that are installed: some ten minutes.
+# The dataset is results/config/engines.nc; make accept ONLY=engines.
 test-engines: $(SETUP)
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m engines tests/engines
 

@@ -125,7 +125,8 @@ def reference():
 @pytest.fixture(scope="session")
 def recorded():
     """The accepted datasets by name."""
-    return {path.stem: read_dataset(path) for path in sorted((ROOT / "figures").glob("*.nc"))}
+    paths = [*sorted((ROOT / "figures").glob("*.nc")), ROOT / "config/ext_means.nc"]
+    return {path.stem: read_dataset(path) for path in paths}
 
 
 @pytest.fixture(scope="session")
@@ -138,6 +139,22 @@ def table():
 def stages(table):
     """The study of each artifact."""
     return {name: entry["study"] for name, entry in table.items() if "study" in entry}
+
+
+@pytest.fixture(scope="session")
+def coarse():
+    """Fewer samples or starts of the maps of balls, which take as long as everything else.
+
+    At their whole size they are compared with the record by `make diff`, and weekly.
+    """
+    return {
+        ("ext_basins", "starts"): 20,
+        ("ext_cascades", "samples"): 5,
+        ("ext_diagram", "samples"): 12,
+        ("ext_locked", "nodes"): 60,
+        ("ext_means", "starts"): 3,
+        ("ext_locking", "samples"): 8,
+    }
 
 
 @pytest.fixture(scope="session")

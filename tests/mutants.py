@@ -315,13 +315,13 @@ def main() -> None:
     for name in LIBRARIES:
         importlib.import_module(name)
     parts = [*PACKAGE.iterdir(), *Path("tests").iterdir()]
-    parts = sorted(str(x) for x in parts if x.is_dir() or x.suffix == ".py")
+    parts = {str(x) for x in parts if x.is_dir() or x.suffix == ".py"} - ELSEWHERE
     context = multiprocessing.get_context("fork")
     with context.Pool(options.workers, maxtasksperchild=1) as pool:
-        found = pool.map(reached, [x for x in parts if x not in ELSEWHERE], chunksize=1)
-        if None in found:
-            sys.exit("the tests fail without any fault: see make quick")
-        tests, known = dict(ChainMap(*found)), reasons(ROOT)
+        found = dict(zip(parts, pool.map(reached, parts, chunksize=1), strict=True))
+        if failed := [part for part, tests in found.items() if tests is None]:
+            sys.exit(f"{failed} fail without any fault: see make quick")
+        tests, known = dict(ChainMap(*found.values())), reasons(ROOT)
         survived, equal = drawn, 0
         for near in (True, False):
             tried, survived = survived, []

@@ -75,6 +75,12 @@ Tolerance = Annotated[float, listed("Tolerance")]
 Seed = Annotated[int, listed("Seed")]
 
 
+class Sharded(Parameters):
+    """The parameters of a study whose places jobs of their own may follow in pieces."""
+
+    shards: Annotated[int, number("jobs among which places are divided", ge=1, le=2000)] = 1
+
+
 class Interval(Parameters):
     """Two ends, of which the second is above the first."""
 

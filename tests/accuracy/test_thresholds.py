@@ -71,7 +71,7 @@ def test_where_there_is_no_error_it_is_not_within_the_tolerance(absent):
 def test_the_thresholds_of_contacts_are_those_of_a_fine_scan(release):
     zeta, n, lam, tolerance = np.array([0.136, 0.05]), np.array([1, 2]), np.array([1.0, 0.9]), 0.01
     found = search(zeta, release, n, lam, RATIOS, tolerance, tuple(Quantity))
-    fine = np.geomspace(RATIOS[0], RATIOS[-1], 1001)
+    fine = np.geomspace(RATIOS[0], RATIOS[-1], 401)
     contact = SpringDamper(fine[:, np.newaxis], zeta, release)
     scanned = np.moveaxis(errors(contact, n, lam, Quantity), 2, -1)
     outside = modulus(scanned) > tolerance

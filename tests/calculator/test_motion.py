@@ -8,7 +8,6 @@ from bouncing_ball.calculator.motion import height_and_power
 from bouncing_ball.calculator.results import Mean, Motion
 from bouncing_ball.calculator.verdict import judged_by_motion
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.motion.history import history
 from bouncing_ball.motion.simulation import simulate
 
 UNIT = {"mass": 1.0, "angular_frequency": 1.0, "gravity": 1.0, "restitution": 0.85, "n": 1}
@@ -30,14 +29,6 @@ def test_an_instant_takes_its_impulse_times_the_speed_of_the_table():
     impulse = -1.6 * found.relative_velocity[:-1]
     work = np.sum(impulse * 2.3 * np.cos(found.phase[:-1]))
     assert height_and_power(found)[1] == pytest.approx(work / found.time[-1], rel=1e-12)
-
-
-def test_the_mean_height_is_that_of_a_dense_history():
-    found = simulate(SpringDamper(5.0, 0.1), 1.3, 0.4, -4.0, 12)
-    times = np.linspace(0.0, found.time[-1] * (1 - 1e-12), 400_001)
-    dense = np.trapezoid(history(found, times).height, times) / times[-1]
-    # The trapezoidal rule's error, with the force of the contact as the second derivative.
-    assert height_and_power(found)[0] == pytest.approx(dense, rel=1e-7)
 
 
 @pytest.mark.parametrize(

@@ -87,15 +87,6 @@ def test_with_a_table_it_is_a_design(ask):
     assert "feels 0.05 of the load" in found["notes"][0]
 
 
-def test_from_one_engine_to_another(ask):
-    found = ask(*BALL, *OTHER, "--set", "gamma_n=20", "--engine", "mujoco")
-    assert found["engine"]["parameters"]["solref"] == pytest.approx([-2e5, -20])
-    # The damper pulled in LAMMPS, and does not in MuJoCo.
-    pulls = ask(*BALL, *OTHER, "--set", "gamma_n=20")
-    assert pulls["release"] == "displacement" and found["release"] == "force"
-    assert pulls["measured_restitution"] < found["measured_restitution"]
-
-
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [

@@ -95,7 +95,12 @@ def test_diff_for_nobody_who_reads(tmp_path):
 @pytest.mark.parametrize(
     "example",
     [
-        pytest.param(each, id=each.split(" --mass")[0])
+        # A Hertz contact for each family takes seconds.
+        pytest.param(
+            each,
+            id=each.split(" --mass")[0],
+            marks=pytest.mark.long if "--radius" in each else (),
+        )
         for name, about in COMMANDS.items()
         for each in about["examples"]
         # The comparison needs a run; its calls are tested with it.

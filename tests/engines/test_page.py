@@ -52,14 +52,7 @@ def test_the_table_has_every_engine_with_its_formulas_and_releases():
         for parameter, cell in re.findall(r"`(\w+)` = ([^`]+?)(?:, (?=`)|$)", formulas):
             python = re.sub(r"(\d)(?=[kc])", r"\1*", cell.replace("−", "-"))
             values[parameter] = eval(python, dict(zip("mkc", contact, strict=True)))
-        # MuJoCo's impedance and the generic mass are in the snippet.
-        assert {x: np.ravel(found[x]).tolist() for x in values} == {
-            x: np.ravel(value).tolist() for x, value in values.items()
-        }
         assert set(values) >= set(ENGINES[name].names) - {"solimp"}
+        for parameter, value in values.items():
+            assert np.array_equal(found[parameter], value)
         assert re.findall("displacement|force", releases) == list(map(str, ENGINES[name].releases))
-
-
-def test_the_links_of_the_page_lead_somewhere():
-    links = re.findall(r"\]\(([^)#]+)\)", PAGE)
-    assert len(links) >= 4 and all((ROOT / "docs" / link).exists() for link in links)

@@ -12,11 +12,8 @@ from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
 from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji
-from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import Signature, free_impact
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.engines import ENGINES
-from bouncing_ball.engines.engine import Physical
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.orbits.continued import restitution_speed
 from bouncing_ball.orbits.corrected_model import CorrectedModel
@@ -70,19 +67,13 @@ def test_a_soft_contact_has_its_long_orbit_too():
     np.testing.assert_allclose(found.contact_duration, expected.contact_duration, rtol=1e-11)
 
 
-@pytest.mark.parametrize("name", [*LAWS, "by depth", "of two bodies"])
+@pytest.mark.parametrize("name", [*LAWS, "by depth"])
 def test_the_orders_of_the_corrected_model_and_the_error_law(name):
     errors = []
     for duration in (0.04, 0.02):
         if name == "by depth":
             # The width is that of the impact, so that r is the same at both durations.
             law = Impedance(np.pi / duration, 0.1, 0.95, 0.5, width=duration / 2)
-        elif name == "of two bodies":
-            # PyBullet's numbers of both bodies, whose springs are in series and dampers added.
-            omega = np.pi / duration
-            both = ENGINES["pybullet"].parameters(Physical(1.0, omega**2, 0.2 * omega))
-            spring, damper = both["contactStiffness"] / 2, 2 * both["contactDamping"]
-            law = SpringDamper(spring**0.5, damper / (2 * spring**0.5), Release.FORCE)
         else:
             law = law_at_orbit(LAWS[name], 0.65, duration, 1, 1.0)
         orbit, corrected = (

@@ -33,8 +33,6 @@ TRIED = {
     "hunt-crossley": ((8.4e-2, 2.5e-4), (2.7e-2, 2.9e-5), (7.8e-3, 2.7e-6)),
     "kuwabara-kono": ((9.7e-2, 2.8e-4), (3.0e-2, 3.2e-5), (8.9e-3, 2.9e-6)),
 }
-# The others are tried weekly.
-OFTEN = ("linear, force release", "hunt-crossley")
 ONE = {"n": 1, "restitution": 0.65, "amplitude": 1.0}
 TOLERATED = {"tolerance": 0.01, "frequency_ratio": {"min": 31.0, "max": 105.0, "samples": 2}}
 
@@ -85,9 +83,7 @@ def height_by_one_impact(law):
 
 
 @slow
-@pytest.mark.parametrize(
-    "name", [pytest.param(x, marks=() if x in OFTEN else pytest.mark.long) for x in TRIED]
-)
+@pytest.mark.parametrize("name", TRIED)
 def test_the_errors_are_those_of_the_trial(name):
     rigid = float(RestitutionModel(0.65).orbit(1, 1.0).max_height)
     for duration, (restitution, corrected) in zip(DURATIONS, TRIED[name], strict=True):

@@ -14,20 +14,13 @@ def grid(low, high):
     return {"min": low, "max": high, "samples": 2}
 
 
-@pytest.mark.parametrize(
-    ("error", "margin", "place", "decision"),
-    [
-        ([0.2, 0.02, 0.001], 0.0, 2, "from this on"),
-        ([0.001, 0.02, 0.001], 0.0, 2, "from this on"),
-        ([0.001, -0.001, 0.001], 0.0, 0, "from this on"),
-        ([0.001, 0.001, -0.02], 0.0, 3, "not at any"),
-        ([0.2, 0.011, 0.001], 0.005, 2, "undecided"),
-        ([0.2, np.nan, 0.001], 0.0, 2, "no number"),
-    ],
-)
-def test_every_larger_ratio_must_be_right(error, margin, place, decision):
-    found = needed(np.array(error), np.full(3, margin), 0.01)
-    assert (int(found[0]), DECISIONS[int(found[1])]) == (place, decision)
+def test_every_larger_ratio_must_be_right():
+    # A column for each case, with a margin of the fifth.
+    rows = [0.2, 1e-3, 1e-3, 1e-3, 0.2, 0.2], [0.02, 0.02, -1e-3, 1e-3, 0.011, np.nan]
+    error = np.array([*rows, [1e-3, 1e-3, 1e-3, -0.02, 1e-3, 1e-3]])
+    place, known = needed(error, np.tile([0, 0, 0, 0, 0.005, 0], (3, 1)), 0.01)
+    assert place.tolist() == [2, 2, 0, 3, 2, 2] and np.all(known[:2] == 0)
+    assert [DECISIONS[k] for k in known[2:]] == list(DECISIONS)
 
 
 def test_errors_on_a_locked_orbit_decide_by_themselves():

@@ -110,5 +110,5 @@ def test_the_flights_meet_at_the_centroid_of_the_force(described, release):
 
 def test_no_motion_is_no_history(refusal):
     soft = {"n": 2, "restitution": 0.3, "amplitude": 50.0, "frequency_ratio": 0.8}
-    with refusal(NoOrbitError, "is inadmissible: another impact"):
+    with refusal(NoOrbitError, "is inadmissible: an earlier impact"):
         contact_history(ONE | soft, "displacement")

@@ -30,17 +30,6 @@ IGNORED = shutil.ignore_patterns(
     ".git", ".venv*", "results", ".snakemake", "tests", "*.egg-info", "__pycache__", ".*_cache"
 )
 
-# Maps of balls that take as long as everything else, with fewer samples or starts; at their
-# whole size they are compared with the record by `make diff`, and weekly.
-COARSE = {
-    ("ext_basins", "starts"): 20,
-    ("ext_cascades", "samples"): 5,
-    ("ext_diagram", "samples"): 12,
-    ("ext_locked", "nodes"): 60,
-    ("ext_means", "starts"): 3,
-    ("ext_locking", "samples"): 8,
-}
-
 
 @dataclass(frozen=True)
 class Tree:
@@ -180,12 +169,6 @@ def copy_tree(tree: Tree, target: Path, ignored: Callable | None = None) -> Tree
 
 
 @pytest.fixture(scope="session")
-def coarse() -> set[str]:
-    """The datasets that these runs make from fewer samples."""
-    return {name for name, _ in COARSE}
-
-
-@pytest.fixture(scope="session")
 def shared(tmp_path_factory) -> Path:
     """A folder of this session, the same for all workers."""
     base = tmp_path_factory.getbasetemp()
@@ -227,18 +210,18 @@ def made_once(target: Path, make: Callable[[Path], None], python: str) -> Tree:
 
 
 @pytest.fixture(scope="session")
-def cloned(shared, warm) -> Tree:
+def cloned(shared, warm, coarse) -> Tree:
     """A fresh clone: the repository in a repository of its own with one commit."""
 
     def make(folder: Path) -> None:
         tree = copy_tree(Tree(ROOT), folder, IGNORED)
         config = folder / "config" / "config.yaml"
         text = config.read_text(encoding="utf-8")
-        for (name, key), number in COARSE.items():
+        for (name, key), number in coarse.items():
             start = text.index(f"  {name}:")
             end = text.index("\n\n", start)
-            coarse = re.sub(rf"\b({key}: )\d+", rf"\g<1>{number}", text[start:end])
-            text = text[:start] + coarse + text[end:]
+            fewer = re.sub(rf"\b({key}: )\d+", rf"\g<1>{number}", text[start:end])
+            text = text[:start] + fewer + text[end:]
         config.write_text(text, encoding="utf-8")
         tree.git("init", "--quiet")
         tree.commit("All")

@@ -11,7 +11,7 @@ rule paper:
         templates=sorted(map(str, Path(ARTICLE).glob("*.md.j2"))),
         atlas="config/atlas.nc",
         references=[f"{ARTICLE}/references.yaml", f"{ARTICLE}/numbered.csl"],
-        data=expand("results/figures/{name}.nc", name=STUDIES),
+        data=map(dataset, STUDIES),
         tables=expand("results/figures/{table}.md", table=TABLES),
         source=modules(
             *("figures.article.render", "figures.atlas.tables", "figures.tables.rows"),

@@ -3,7 +3,9 @@
 
 
 def files(name):
-    kinds = ["nc"] * (name in STUDIES) + ["png", "svg"] * (name in DRAWINGS)
+    kinds = ["nc"] * (name in STUDIES and name not in ACCEPTED) + ["png", "svg"] * (
+        name in DRAWINGS
+    )
     kinds += ["csv", "md"] * (name in TABLES) + ["html"] * (name == "explorer")
     return [f"results/figures/{name}.{kind}" for kind in kinds]
 

@@ -40,8 +40,14 @@ STUDIES, DRAWINGS, TABLES = (
     {name: entry[key] for name, entry in TABLE.items() if key in entry}
     for key in ("study", "drawing", "table")
 )
-# Datasets that no job makes: accepted by hand.
+# Datasets accepted by hand, which a run reads and does not make.
 ACCEPTED = {"engines": "config/engines.nc", "ext_atlas": "config/atlas.nc"}
+ACCEPTED |= {name: f"config/{name}.nc" for name, entry in TABLE.items() if "accepted" in entry}
+
+
+# The dataset that figures, claims and the article are made from.
+def dataset(name):
+    return ACCEPTED.get(name, f"results/figures/{name}.nc")
 
 
 # Source files that a job uses: those modules and all that they import. Relative paths, so

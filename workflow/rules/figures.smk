@@ -11,11 +11,7 @@ for name, drawing in DRAWINGS.items():
         message:
             f"Drawing {name}"
         input:
-            data=(
-                [ACCEPTED.get(name, f"results/figures/{name}.nc")]
-                if name in {*STUDIES, *ACCEPTED}
-                else []
-            ),
+            data=[dataset(name)] if name in {*STUDIES, *ACCEPTED} else [],
             source=modules(f"figures.{drawing}".rpartition(".")[0], "figures.files"),
             settings=os.path.relpath(Path(ROOT, "src/bouncing_ball/figures/matplotlibrc")),
         params:

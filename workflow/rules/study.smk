@@ -2,15 +2,43 @@
 # dataset out. workflow/artifacts.yaml says by which study. All values are dimensionless: times Ωt,
 # lengths Ω²y/g, velocities Ωẏ/g, with phases in radians. Figures 1 and 4 are drawn without data.
 
+from bouncing_ball.pipeline.atlas import numbered
+
+
+rule shard:
+    """The places of a study with `shards` in its parameters, followed by jobs of their own."""
+    message:
+        "{wildcards.artifact}: shard {wildcards.shard}"
+    input:
+        source=lambda w: modules(STUDIES[w.artifact].rpartition(".")[0]),
+    output:
+        data="results/shards/{artifact}/{shard}.nc",
+    params:
+        study=lambda w: STUDIES[w.artifact],
+        title=lambda w: f"{TABLE[w.artifact]['title']}: the places of one shard",
+        arguments=lambda w: arguments(STUDIES[w.artifact], w.artifact, config),
+    log:
+        "results/logs/shards/{artifact}/{shard}.log",
+    benchmark:
+        "results/benchmarks/shards/{artifact}/{shard}.tsv"
+    script:
+        "../scripts/shard.py"
+
+
+# The dataset is that of one job, byte for byte; a run that was interrupted goes on with the next.
+def shards_of(wildcards):
+    given = arguments(STUDIES[wildcards.artifact], wildcards.artifact, config)
+    names = numbered(given.get("parameters", {}).get("shards", 1))
+    return expand(rules.shard.output.data, shard=names, **wildcards) if len(names) > 1 else []
+
 
 rule study:
     """What all stages have in common. It makes nothing itself."""
     message:
         "{wildcards.artifact}: {params.title}"
     input:
-        data=lambda w: [
-            ACCEPTED.get(x, f"results/figures/{x}.nc") for x in TABLE[w.artifact].get("reads", [])
-        ],
+        data=lambda w: map(dataset, TABLE[w.artifact].get("reads", [])),
+        shards=shards_of,
         source=lambda w: modules(STUDIES[w.artifact].rpartition(".")[0]),
     output:
         data="results/figures/{artifact}.nc",

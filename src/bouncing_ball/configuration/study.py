@@ -2,7 +2,8 @@
 
 A study declares by its signature what it takes: ``study(parameters, release, continuation)``. Its
 ``parameters`` are a section of the configuration, for example ``figures.fig08``, ``data`` are the
-datasets that its rule names, and each further argument is the setting of the run with that name.
+datasets that its rule names, ``follow`` what its shards have found, and each further argument is
+the setting of the run with that name.
 """
 
 import inspect
@@ -56,7 +57,7 @@ def typed(study: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def taken(study: str) -> dict[str, Any]:
-    """The arguments of a study except the data, with their types.
+    """The arguments of a study from the configuration, with their types.
 
     Raises
     ------
@@ -69,7 +70,7 @@ def taken(study: str) -> dict[str, Any]:
     ['parameters', 'release', 'continuation']
     """
     signature = inspect.signature(load(study)).parameters.items()
-    return {name: each.annotation for name, each in signature if name != "data"}
+    return {name: each.annotation for name, each in signature if name not in ("data", "follow")}
 
 
 def section(artifact: str, run: Mapping[str, Any]) -> str:

@@ -54,6 +54,6 @@ class Drake(Engine):
             "point_contact_stiffness": float(f"{2 * law['stiffness']:.12g}"),
             "hunt_crossley_dissipation": float(f"{law['damping']:.12g}"),
         }
-        numbers = {"mass": mass, "time_step": settings.time_step, **values}
+        numbers = {"mass": float(f"{mass:.12g}"), "time_step": settings.time_step, **values}
         text = filled(text_of("drake-hunt-crossley"), {x: repr(y) for x, y in numbers.items()})
         return replace(settings, parameters=values, snippet=text)

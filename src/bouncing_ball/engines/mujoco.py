@@ -61,6 +61,8 @@ def impedance(solimp: str | Sequence[float] = ()) -> list[float]:
     --------
     >>> impedance("1e-4 1e-4")
     [0.0001, 0.0001, 0.001, 0.5, 2.0]
+    >>> impedance("0.25 0.75 0")
+    [0.5, 0.5, 0.0, 0.5, 2.0]
     """
     given = _numbers("solimp", solimp, range(6))
     for value in given[:2]:

@@ -9,7 +9,7 @@ from typing import Any
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.engines import ENGINES
-from bouncing_ball.engines.engine import Engine, Physical
+from bouncing_ball.engines.engine import Engine, Physical, text_of
 
 # m, k, r and the error of r that a time step may leave, from light to heavy and elastic.
 _CASES = (
@@ -38,11 +38,11 @@ def as_json() -> str:
     engines = {
         engine.name: {
             "scheme": str(engine.scheme),
-            "snippets": {str(rule): engine.template(rule) for rule in engine.releases},
+            "snippets": {str(rule): engine.template(rule) for rule in engine.releases}
+            | {law: text_of(f"{engine.name}-{law}").rstrip() for law in engine.laws},
         }
         for engine in ENGINES.values()
     }
     cases = [_case(*pair, *case) for pair in pairs for case in _CASES]
     # In a page, no text opens or closes a tag.
-    text = json.dumps({"engines": engines, "cases": cases}, allow_nan=False)
-    return text.replace("<", "\\u003c")
+    return json.dumps({"engines": engines, "cases": cases}, allow_nan=False).replace("<", "\\u003c")

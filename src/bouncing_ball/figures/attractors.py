@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 from matplotlib import colormaps
 from matplotlib.axes import Axes
-from matplotlib.colors import BoundaryNorm, ListedColormap, to_hex
+from matplotlib.colors import ListedColormap, to_hex
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
@@ -41,12 +41,9 @@ _HATCHES |= dict.fromkeys(("permanent contact", "no number"), "------")
 # Exponents beyond are drawn as these.
 _LOWEST, _HIGHEST = -1.5, 1.5
 # Lighter throughout, from blue below 0 to yellow above.
-_RATES = ListedColormap(
-    [
-        *colormaps["Blues_r"](np.linspace(0, 0.65, 128)),
-        *colormaps["YlOrBr_r"](np.linspace(0.5, 1, 128)),
-    ]
-).with_extremes(bad=_OTHERS["permanent contact"])
+_FALLING = colormaps["Blues_r"](np.linspace(0, 0.65, 128))
+_GROWING = colormaps["YlOrBr_r"](np.linspace(0.5, 1, 128))
+_RATES = ListedColormap([*_FALLING, *_GROWING]).with_extremes(bad=_OTHERS["permanent contact"])
 _LOOKS = {"all": ("all nodes", COLOURS[0], "o"), "orbit": ("n-T orbits", COLOURS[4], "s"),
           "locked, 1 to 4 T": ("locked, 1 to 4 T", COLOURS[2], "^"),
           "locked": ("locked", COLOURS[1], "D"),
@@ -90,9 +87,7 @@ def _draw_kinds(axes: Axes, one: xr.Dataset) -> None:
     for k, kind in enumerate(_OTHERS, len(_PERIODS)):
         place[(one.kind == kind).values] = k
     colours = ListedColormap([*_LOCKED, *_OTHERS.values()])
-    _mesh(
-        axes, one, place, cmap=colours, norm=BoundaryNorm(np.arange(colours.N + 1) - 0.5, colours.N)
-    )
+    _mesh(axes, one, place, cmap=colours, vmin=-0.5, vmax=colours.N - 0.5)
     for kind, look in _DOTS.items():
         _dot(axes, one, one.kind == kind, look)
     _draw_bifurcations(axes, one)
@@ -136,19 +131,14 @@ def _key(data: xr.Dataset) -> list:
     ]
     found = set(np.unique(data.kind))
     others = [(kind, fill) for kind, fill in _OTHERS.items() if kind in found]
-    return _patches(
-        [(f"locked, {names[0]}", _LOCKED[0]), *zip(names[1:], _LOCKED[1:], strict=True), *others]
-    )
+    names[0] = f"locked, {names[0]}"
+    return _patches([*zip(names, _LOCKED, strict=True), *others])
 
 
 def _patches(fills: Iterable[tuple[str, Any]]) -> list[Patch]:
     """Entries of a legend for areas, hatched where the areas have dots."""
-    return [
-        Patch(
-            facecolor=fill, label=name, hatch=_HATCHES.get(name), edgecolor="#000000", linewidth=0.4
-        )
-        for name, fill in fills
-    ]
+    look: Look = {"edgecolor": "#000000", "linewidth": 0.4}
+    return [Patch(facecolor=x, label=name, hatch=_HATCHES.get(name), **look) for name, x in fills]
 
 
 def _draw_shares(axes: Axes, one: xr.Dataset, name: str, dim: str, looks: Mapping) -> None:
@@ -175,10 +165,8 @@ def mean_motions(data: xr.Dataset) -> Figure:
     parts: Any = figure.subfigures(2, 1, height_ratios=(4.4, 2.2))
     maps, below = parts
     rows = maps.subplots(2, len(means), sharex=True, sharey=True)
-    fills = [
-        *map(to_hex, colormaps["viridis_r"](np.linspace(0, 0.75, len(ratios)))),
-        *_UNKNOWN.values(),
-    ]
+    known = map(to_hex, colormaps["viridis_r"](np.linspace(0, 0.75, len(ratios))))
+    fills = [*known, *_UNKNOWN.values()]
     look: Look = {"cmap": ListedColormap(fills), "vmin": -0.5, "vmax": len(fills) - 0.5}
     shares = below.subplots(1, 2, sharey=True)
     for simple, row, panel in zip(data.simple.values, rows, shares, strict=True):
@@ -200,9 +188,8 @@ def mean_motions(data: xr.Dataset) -> Figure:
     handles = _patches(zip([*names, *_UNKNOWN], fills, strict=True))
     maps.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=7)
     shares[0].set_ylabel("share of nodes known to be\nright from here on")
-    below.legend(
-        *shares[0].get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=7
-    )
+    handles = shares[0].get_legend_handles_labels()[0]
+    below.legend(handles=handles, loc="outside lower center", ncols=4, fontsize=7)
     return figure
 
 
@@ -219,12 +206,11 @@ def orbit_diagrams(data: xr.Dataset) -> Figure:
         axes.pcolormesh(lam, phase, shade, cmap="gist_heat_r", vmin=0, vmax=0.5, rasterized=True)
         axes.set(ylabel=r"phase of impact $\varphi/\pi$", ylim=(-1, 1))
         axes.spines[["top", "right"]].set_visible(True)
+        shown = ["restitution"] if model == "restitution" else ["restitution", "frequency_ratio"]
+        axes.set_title(f"{model} model; {parameters(data, *shown)}")
         exponent = one.lyapunov_exponent.values.clip(_LOWEST, _HIGHEST)
         panels[-1].plot(lam, exponent, label=f"{model} model", **MODELS[model])
     panels[-1].axhline(0, **GUIDE)
     panels[-1].set(xlabel=r"amplitude $\Lambda$", ylabel=r"largest $\lambda$ per $T$")
-    panels[0].set_title(f"restitution model; {parameters(data, 'restitution')}")
-    for axes, model in zip(panels[1:-1], models[1:], strict=True):
-        axes.set_title(f"{model} model; {parameters(data, 'restitution', 'frequency_ratio')}")
     legend_below(figure, panels[-1].get_legend_handles_labels()[0], ncols=3)
     return figure

@@ -27,23 +27,20 @@ def basins(data: xr.Dataset) -> Figure:
     for case, model in np.ndindex(rows.shape):
         axes, one = rows[case, model], data.isel(case=case, model=model)
         axes.imshow(one.destination, **image)
-        alpha, *limits = (
-            f"{float(one[f'uncertainty_exponent{x}']):.2f}" for x in ("", "_low", "_high")
-        )
-        axes.set_title(rf"{models[model]}; $\alpha={alpha}$ ({' to '.join(limits)})", fontsize=8)
+        ends = (float(one[f"uncertainty_exponent{x}"]) for x in ("", "_low", "_high"))
+        alpha, low, high = map("{:.2f}".format, ends)
+        axes.set_title(rf"{models[model]}; $\alpha={alpha}$ ({low} to {high})", fontsize=8)
         axes.spines[["top", "right"]].set_visible(True)
     for row, case in zip(rows, data.case.values, strict=True):
         place = data.sel(case=case)
-        r, ratio, lam = (
-            number(float(place[f"case_{x}"])) for x in ("restitution", "ratio", "amplitude")
-        )
+        of = (place[f"case_{x}"] for x in ("restitution", "ratio", "amplitude"))
+        r, ratio, lam = (number(float(x)) for x in of)
         name = rf"$r={r}$, $\varpi={ratio}$, $\Lambda={lam}$"
         row[0].set_ylabel(f"{name}\nspeed of impact $-\\delta′$")
     for axes in rows[-1]:
         axes.set_xlabel(r"phase of impact $\varphi/\pi$")
-    handles = [
-        Patch(facecolor=fill, edgecolor="#000000", linewidth=0.5, label=str(motion))
-        for fill, motion in zip(_FILLS, data.motion.values, strict=True)
-    ]
+    look: Look = {"edgecolor": "#000000", "linewidth": 0.5}
+    entries = zip(_FILLS, data.motion.values, strict=True)
+    handles = [Patch(facecolor=fill, label=str(motion), **look) for fill, motion in entries]
     legend_below(figure, handles, ncols=len(handles), fontsize=7)
     return figure

@@ -27,10 +27,8 @@ def cascades(data: xr.Dataset) -> Figure:
         errors.plot(ratio, guide, **GUIDE)
     logarithmic(errors, xlabel=r"frequency ratio $\varpi$", yscale="log", ylim=(1e-8, 1))
     errors.set_ylabel(r"relative error of $\Lambda$ at the period doublings")
-    chosen = parameters(data, "n")
-    errors.set_title(
-        rf"{chosen}, $r$ = {float(shown.restitution):g}; all doublings; dotted: slopes 1, 2"
-    )
+    chosen = rf"{parameters(data, 'n')}, $r$ = {float(shown.restitution):g}"
+    errors.set_title(f"{chosen}; all doublings; dotted: slopes 1, 2")
     for r, colour, dashes in zip(data.restitution.values, COLOURS, _DASHES, strict=False):
         one = data.cascade_coefficient.sel(restitution=r)
         name = rf"$r$ = {r:g}"

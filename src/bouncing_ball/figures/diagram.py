@@ -37,9 +37,8 @@ def orbit_diagram(data: xr.Dataset) -> Figure:
     """Phase and speed of the impacts on the attractors over Λ, in the colour of their kind."""
     figure, panels = canvas(WIDE, 5.0, rows=2, sharex=True)
     lam = np.broadcast_to(data.amplitude.values[:, np.newaxis, np.newaxis], data.impact_phase.shape)
-    for axes, name, unit in zip(
-        panels, ("impact_phase", "impact_speed"), (np.pi, 1.0), strict=True
-    ):
+    units = {"impact_phase": np.pi, "impact_speed": 1.0}
+    for axes, (name, unit) in zip(panels, units.items(), strict=True):
         for kind in reversed(KINDS):
             here = (data.kind == kind).values
             if here.any():

@@ -27,8 +27,7 @@ def locked_orbits(data: xr.Dataset) -> Figure:
     wanted = np.sort((data.sensitivity / data.wait).dropna("node").values)
     share = np.arange(1, wanted.size + 1) / wanted.size
     by_ratio.plot(wanted, share, color=COLOURS[3], label=r"predicted: $\varpi\geq S/W$")
-    points: Look = look | {"label": "contact", "linestyle": "none"}
-    bars(by_ratio, data.frequency_ratio.values, data, "same", **points)
+    bars(by_ratio, data.frequency_ratio.values, data, "same", label="contact", **look, ls="none")
     logarithmic(by_ratio, xlabel=r"frequency ratio $\varpi$", ylim=(0, 1.03), xlim=(1, _BEYOND))
     by_ratio.xaxis.set_major_formatter(lambda value, _: f"$10^{{{np.log10(value):.0f}}}$")
     by_ratio.set_title("by frequency ratio")

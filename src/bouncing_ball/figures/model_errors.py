@@ -11,7 +11,7 @@ from matplotlib.ticker import LogFormatterSciNotation
 
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.figures.canvas import WIDE, canvas, legend_below, logarithmic
-from bouncing_ball.figures.labels import QUANTITIES, note, number, parameters
+from bouncing_ball.figures.labels import QUANTITIES, number, parameters
 from bouncing_ball.figures.style import COLOURS, GUIDE, LAWS, MODELS, Look
 
 # Time stepping of engines by dashes, and engines by shapes.
@@ -86,6 +86,8 @@ def engines(data: xr.Dataset) -> Figure:
         for one, shape in zip(each(part, "engine"), _ENGINES, strict=True):
             look = _MARKED | {"marker": shape, "label": one.engine.item()}
             axes.plot(one.bounce_steps, one.bounce_error, **look)
+            alone = {"markerfacecolor": "black", "label": "_single bounces"}
+            axes.plot(one.single_bounce, one.single_error, **look | alone)
         # The error of the simulation is rounding, far below the panel.
         look = MODELS["spring-damper"] | {"transform": axes.transAxes}
         axes.plot([0, 1], [0.025, 0.025], label="event-driven, no steps: rounding", **look)
@@ -106,16 +108,13 @@ def engines(data: xr.Dataset) -> Figure:
 
 
 def _draw_steps(axes: Axes, part: xr.Dataset, scheme: str) -> None:
-    """The error of a scheme over its steps, thin where it is continued by its slope."""
-    steps, error = part.steps_in_bounce.values, part.step_error.values
-    axes.plot(steps, error, label=scheme, **_SCHEMES[scheme])
-    end = float(part.equal_steps)
-    level = error[-1] * steps[-1] / end
-    axes.plot([steps[-1], end], [error[-1], level], **_SCHEMES[scheme] | {"linewidth": 0.6})
+    """The error of a scheme over its steps, with a mark where it is the corrected model's."""
+    axes.plot(part.steps_in_bounce, part.step_error, label=scheme, **_SCHEMES[scheme])
+    end, level = float(part.equal_steps), abs(float(part.model_error.sel(model="corrected")))
     axes.plot(end, level, marker="|", markersize=9, color="black")
     if scheme == "semi-implicit Euler":
         name = f"${number(float(f'{end:.2g}'))}$× fewer"
-        note(axes, name, (end, level), (2, -5), ha="right", va="top", fontsize=8)
+        axes.text(0.04, 0.12, f"corrected: {name}", transform=axes.transAxes, fontsize=8)
 
 
 def _by_quantity(data: xr.Dataset, height: float, xlabel: str) -> tuple[Figure, dict[str, Axes]]:

@@ -120,7 +120,12 @@ class LawModel(ImpactModel):
         ModelError
             If the law does not release the ball.
         """
-        return free_impact(self.law, speed)
+        # Every search for an orbit or a bifurcation begins with the same impacts.
+        v, known = np.asarray(speed, dtype=float), self.__dict__.setdefault("_impacts", {})
+        key = v.shape, v.tobytes()
+        if key not in known:
+            known[key] = free_impact(self.law, v)
+        return known[key]
 
     def orbits(self, n: int, amplitude: float) -> LawOrbit:
         """All n-T orbits of one law at one Λ that lie on the branch from large Λ, shape (count,).

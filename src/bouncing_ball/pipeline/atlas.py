@@ -1,4 +1,4 @@
-"""Names and times of the atlas's shards, for its rules.
+"""Names of shards, and times of the atlas's, for the rules.
 
 Every job reads the rules, so that the plan is imported only when one of these functions is called.
 """
@@ -12,20 +12,22 @@ _SECONDS_PER_ORBIT = 3e-6
 _LEAST_MINUTES = 10
 
 
-def shard_names(parameters: Mapping[str, Any]) -> list[str]:
-    """The shards by number and count, so that a division into another number has other names.
+def numbered(count: int) -> list[str]:
+    """Shards by number and count, so that a division into another number has other names.
 
     Examples
     --------
-    >>> from bouncing_ball.configuration.yaml_file import read_yaml
-    >>> section = read_yaml("config/config.yaml")["atlas"]
-    >>> shard_names(section)[:2]
-    ['0000-of-0020', '0001-of-0020']
+    >>> numbered(2)
+    ['0000-of-0002', '0001-of-0002']
     """
+    return [f"{k:04d}-of-{count:04d}" for k in range(count)]
+
+
+def shard_names(parameters: Mapping[str, Any]) -> list[str]:
+    """The names of the atlas's shards."""
     from bouncing_ball.atlas.plan import Plan
 
-    count = len(Plan(**parameters).shard_rows())
-    return [f"{k:04d}-of-{count:04d}" for k in range(count)]
+    return numbered(len(Plan(**parameters).shard_rows()))
 
 
 def shard_minutes(parameters: Mapping[str, Any]) -> int:

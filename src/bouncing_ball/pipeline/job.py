@@ -23,6 +23,7 @@ from bouncing_ball.datasets.netcdf import (
     read_dataset,
     write_dataset,
 )
+from bouncing_ball.datasets.pieces import joined
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.progress import advance
 from bouncing_ball.provenance.origin import gather
@@ -109,7 +110,10 @@ def make_dataset(snakemake: Any) -> None:
         job = snakemake.params
         data = {Path(path).stem: read_input(path) for path in snakemake.input.data}
         given = dict(job.arguments)
-        dataset = typed(load(job.study))(**given, **({"data": data} if data else {}))
+        others: dict[str, Any] = {"data": data} if data else {}
+        if shards := snakemake.input.get("shards"):
+            others["follow"] = joined([read_input(path) for path in shards])
+        dataset = typed(load(job.study))(**given, **others)
         named = given.pop("parameters", {}) | given
         parameters = dataset.attrs or parameter_attributes(named)
         publish(snakemake, dataset, parameters)

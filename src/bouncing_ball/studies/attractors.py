@@ -4,6 +4,7 @@ Where a motion is chaotic, or lies next to the boundary of a basin, rounding dec
 tens of impacts. Datasets therefore hold what a motion is, and means over many impacts.
 """
 
+from operator import call
 from typing import Annotated
 
 import numpy as np
@@ -11,14 +12,13 @@ import xarray as xr
 from pydantic import Field
 from scipy.stats import binomtest
 
+from bouncing_ball.accuracy.errors import models as of_contact
 from bouncing_ball.attractors.labelled import diagram
 from bouncing_ball.attractors.mapper import label
 from bouncing_ball.attractors.motions import Kind, Motions
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
+from bouncing_ball.datasets.pieces import Follow
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.parameters import (
     Amplitude,
     AmplitudeMax,
@@ -27,6 +27,7 @@ from bouncing_ball.parameters import (
     LossyRestitution,
     Many,
     Parameters,
+    Sharded,
     listed,
     number,
 )
@@ -59,7 +60,7 @@ class Restitutions(Even):
     max: Annotated[LossyRestitution, Field(description="largest r, above min")]
 
 
-class Grid(Parameters):
+class Grid(Sharded):
     """A grid over (Λ, r), and contacts at several ϖ."""
 
     amplitude: Amplitudes
@@ -68,14 +69,15 @@ class Grid(Parameters):
     impacts: Impacts
     confidence: Confidence
 
-    def models(self, release: Release, starts: bool = False) -> tuple[np.ndarray, tuple]:
-        """Λ, shape (amplitude,), and the three models, of shape (ϖ, restitution, 1) or without ϖ;
-        each with a further axis of length 1 for starts, if requested.
-        """
-        tail = (1,) * starts
-        axes = self.amplitude.grid(), self.restitution.grid(), np.array(self.frequency_ratio)
-        lam, r, ratio = (x.reshape(-1, *(1,) * k, *tail) for k, x in enumerate(axes))
-        return lam, models(r, ratio, release)
+    def places(self) -> list[np.ndarray]:
+        """r and Λ of all nodes in a row, those with one r after each other."""
+        axes = np.meshgrid(self.restitution.grid(), self.amplitude.grid(), indexing="ij")
+        return [x.ravel() for x in axes]
+
+    def unfolded(self, values: np.ndarray) -> np.ndarray:
+        """Values over all nodes, their last axis, over (restitution, amplitude)."""
+        shape = self.restitution.samples, self.amplitude.samples
+        return values.reshape(*values.shape[:-1], *shape)
 
 
 class Locking(Grid):
@@ -116,12 +118,8 @@ GROUPS = ("all", "orbit", "subharmonic", "locked", "locked, 1 to 4 T", "locked, 
 
 def models(restitution: np.ndarray, ratio: float | np.ndarray, release: Release) -> tuple:
     """Restitution, corrected and spring-damper model, with the r that the contact really has."""
-    contact = SpringDamper.from_restitution(restitution, ratio, release)
-    return (
-        RestitutionModel(contact.restitution),
-        CorrectedModel.of_contact(contact),
-        SpringDamperModel(contact),
-    )
+    exact, *simple = of_contact(SpringDamper.from_restitution(restitution, ratio, release))
+    return *simple, exact
 
 
 def group(found: Motions, name: str) -> np.ndarray:
@@ -170,7 +168,7 @@ def agreement(simple: Motions, contact: Motions, confidence: float) -> np.ndarra
     return np.array([share(same[known & group(simple, x)], confidence) for x in GROUPS]).T
 
 
-def locking(parameters: Locking, release: Release) -> xr.Dataset:
+def locking(parameters: Locking, release: Release, follow: Follow = call) -> xr.Dataset:
     """The motions on which balls end over (Λ, r), and where the models agree on them.
 
     ``kind``, ``periods``, ``impacts``, ``lyapunov_exponent`` and ``lyapunov_error`` (model,
@@ -182,28 +180,36 @@ def locking(parameters: Locking, release: Release) -> xr.Dataset:
     which both are known: see :func:`agreement`. ``saddle_node_amplitude`` and
     ``period_doubling_amplitude`` (model, restitution) are of the 1-T orbit.
     """
-    lam, compared = parameters.models(release)
-    velocity = lam * np.cos(parameters.phase) - parameters.impact_speed
-    start = lam, parameters.phase, velocity
-    simple, *others = (label(x.impact_law, *start, impacts=parameters.impacts) for x in compared)
-    # The restitution model is the same at every ϖ.
-    by_ratio = [(simple, *each) for each in zip(*others, strict=True)]
-    found, level = by_ratio[0], parameters.confidence
-    shares = [[agreement(x, each[-1], level) for x in each[:-1]] for each in by_ratio]
+    ratios, level = np.array(parameters.frequency_ratio), parameters.confidence
+
+    def of_nodes(r, lam):
+        start = parameters.phase, lam * np.cos(parameters.phase) - parameters.impact_speed
+        found = [
+            vars(label(model.impact_law, lam, *start, impacts=parameters.impacts))
+            for model in models(r, ratios[:, np.newaxis], release)
+        ]
+        # The restitution model is the same at every ϖ.
+        shape = ratios.size, lam.size
+        return {x: np.stack([np.broadcast_to(each[x], shape) for each in found]) for x in found[0]}
+
+    motions = Motions(**follow(of_nodes, *parameters.places()))
+    pairs = [[(motions[k, m], motions[-1, m]) for m in range(ratios.size)] for k in range(2)]
+    shares = [[agreement(*pair, level) for pair in each] for each in pairs]
     dims = ("model", "restitution", "amplitude")
     of_shares = ("simple", "frequency_ratio", "motion_group")
-    nodes, *limits = np.transpose(shares, (2, 1, 0, 3))
+    nodes, *limits = np.moveaxis(np.array(shares), 2, 0)
     r = parameters.restitution.grid()
-    first = models(r, parameters.frequency_ratio[0], release)
+    first = models(r, ratios[0], release)
+    found = {x: parameters.unfolded(y[:, 0]) for x, y in vars(motions).items()}
     ends = {
         "saddle_node_amplitude": [each.saddle_node(1) for each in first],
         "period_doubling_amplitude": [each.period_doubling(1) for each in first],
     }
     return described(
         {
-            **{x: (dims, [getattr(y, x) for y in found]) for x in ("kind", "periods", "impacts")},
-            "lyapunov_exponent": (dims, [each.exponent for each in found]),
-            "lyapunov_error": (dims, np.maximum(_KNOWN, [each.exponent_error for each in found])),
+            **{x: (dims, found[x]) for x in ("kind", "periods", "impacts")},
+            "lyapunov_exponent": (dims, found["exponent"]),
+            "lyapunov_error": (dims, np.maximum(_KNOWN, found["exponent_error"])),
             **{x: (dims[:2], np.stack([o.amplitude for o in y])) for x, y in ends.items()},
             "agreement_nodes": (of_shares, nodes),
             **{f"agreement{x}": (of_shares, y) for x, y in zip(LIMITS, limits, strict=True)},
@@ -211,9 +217,9 @@ def locking(parameters: Locking, release: Release) -> xr.Dataset:
         coords={
             "model": list(MODELS),
             "restitution": r,
-            "amplitude": lam,
+            "amplitude": parameters.amplitude.grid(),
             "simple": list(SIMPLE),
-            "frequency_ratio": list(parameters.frequency_ratio),
+            "frequency_ratio": list(ratios),
             "motion_group": list(GROUPS),
         },
     )

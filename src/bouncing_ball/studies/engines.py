@@ -3,8 +3,8 @@ r"""Errors by the time steps of physics engines, against those of the models (be
 An engine's contact in N time steps has the restitution r_N of its scheme, which depends
 on the part of a step in which the contact begins (:mod:`bouncing_ball.engines.scheme`). The ball
 is therefore simulated here from event to event with the exact contact that has this r, which
-changes from impact to impact. The error of a height is ``z_N/z - 1`` with z of the exact n-T orbit.
-The results of the engines are read from the accepted dataset of their runs.
+changes from impact to impact. Errors of heights are relative to the engine's, or to the model's, as
+in Eq. 37. The results of the engines are read from the accepted dataset of their runs.
 """
 
 from collections.abc import Mapping
@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 from pydantic import AfterValidator, Strict
 
-from bouncing_ball.accuracy.errors import SIMPLE, models
+from bouncing_ball.accuracy.errors import SIMPLE, errors, relative
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
@@ -26,7 +26,7 @@ from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.parameters import Family, Many, Parameters, Restitution, Seed, number
 
-Steps = Annotated[int, number("time steps in a contact, at least 8 to resolve it", ge=8, le=4096)]
+Steps = Annotated[int, number("time steps in a contact, at least 8 to resolve it", ge=8, le=131072)]
 
 
 class EngineOrbit(Parameters):
@@ -82,7 +82,7 @@ def step_errors(orbit: Orbit, parameters: EngineOrbit) -> np.ndarray:
 
     Each impact begins in a random part of a time step. All simulations have the same random parts.
     """
-    p, zeta = parameters, float(orbit.law.damping_ratio[0])
+    p, zeta = parameters, float(np.ravel(orbit.law.damping_ratio)[0])
     tables = np.array(
         [[restitution_in_steps(x, zeta, p.release, k) for k in p.steps] for x in Scheme]
     )
@@ -93,7 +93,7 @@ def step_errors(orbit: Orbit, parameters: EngineOrbit) -> np.ndarray:
     drawn = np.broadcast_to(drawn, (*drawn.shape[:2], orbit.size, *drawn.shape[3:]))
     every = orbit[:, np.newaxis, np.newaxis]
     tops = greatest_heights(every, drawn)[p.transient :]
-    return np.sqrt(np.mean((tops / every.max_height - 1) ** 2, axis=(0, -1)))
+    return np.sqrt(np.mean(relative(every.max_height, tops) ** 2, axis=(0, -1)))
 
 
 def model_errors(orbit: Orbit, impacts: int) -> np.ndarray:
@@ -101,11 +101,22 @@ def model_errors(orbit: Orbit, impacts: int) -> np.ndarray:
 
     The simulation runs from event to event, and its error is the largest of some impacts.
     """
-    _, *simple = models(orbit.law)
-    off = [one.orbit(orbit.n, orbit.amplitude).max_height / orbit.max_height - 1 for one in simple]
+    off = errors(orbit.law, orbit.n, orbit.amplitude, ["max_height"])[:, 0]
     own = np.broadcast_to(orbit.law.restitution, (impacts, *orbit.amplitude.shape))
-    tops = greatest_heights(orbit, own) / orbit.max_height
-    return np.array([*off, np.max(np.abs(tops - 1), axis=0)])
+    tops = greatest_heights(orbit, own)
+    return np.array([*off, np.max(np.abs(relative(orbit.max_height, tops)), axis=0)])
+
+
+def steps_of(steps: np.ndarray, errors: np.ndarray, error: float) -> float:
+    """The steps with an error, by a power law between those next to it; NaN beyond them.
+
+    Examples
+    --------
+    >>> round(steps_of(np.array([10, 100]), np.array([0.1, 0.01]), 0.02), 12)
+    50.0
+    """
+    log = -np.log(error), -np.log(errors), np.log(steps)
+    return float(np.exp(np.interp(*log, left=np.nan, right=np.nan)))
 
 
 def conformance(data: Mapping[str, xr.Dataset], parameters: EngineOrbit) -> xr.Dataset:
@@ -122,13 +133,13 @@ def conformance(data: Mapping[str, xr.Dataset], parameters: EngineOrbit) -> xr.D
     -------
     xarray.Dataset
         The variables of the runs, and over their dimensions ``bounce_steps``, the time steps in a
-        period; ``bounce_error``, the root mean square error of a bounce; ``limit_error``, the mean
-        error without the first order of the step (Richardson's extrapolation of two steps).
+        period, and ``bounce_error``, the root mean square error of a bounce; ``single_bounce`` are
+        the time steps in a period of the ``single_error``.
         ``model_error`` is over (release, model, restitution, n, frequency_ratio), and for the
         spring-damper it is the error of its simulation. For one orbit there are ``step_error`` over
         (scheme, frequency_ratio, steps), see :func:`step_errors`, ``steps_in_bounce``, the time
-        steps in a period, and ``equal_steps`` over (scheme, frequency_ratio), the steps with the
-        corrected model's error.
+        steps in a period, and ``equal_steps`` over (scheme, frequency_ratio), those of the
+        corrected model's error by :func:`steps_of`.
 
     Raises
     ------
@@ -151,20 +162,15 @@ def conformance(data: Mapping[str, xr.Dataset], parameters: EngineOrbit) -> xr.D
     simulated = step_errors(orbits[shown][*place], parameters)
     corrected = np.abs(off[shown, SIMPLE.index("corrected")][*place])
     in_bounce = per_step[shown][*place, :, np.newaxis] * parameters.steps
-    steps, error = runs.contact_steps, runs.height_error
+    equal = [list(map(steps_of, in_bounce, each, corrected)) for each in simulated]
     found = {
-        "bounce_steps": steps * xr.DataArray(per_step, dims=("release", *along)),
-        "bounce_error": np.hypot(error, runs.height_scatter),
-        "limit_error": (steps * error).diff("refinement") / steps.diff("refinement"),
+        "bounce_steps": runs.contact_steps * xr.DataArray(per_step, dims=("release", *along)),
+        "bounce_error": np.hypot(runs.height_error, runs.height_scatter),
+        "single_bounce": runs.single_steps * xr.DataArray(per_step[shown][*place], dims=along[2]),
         "model_error": (("release", "model", *along), off),
         "step_error": (("scheme", "frequency_ratio", "steps"), simulated),
         "steps_in_bounce": (("frequency_ratio", "steps"), in_bounce),
-        # Beyond the last N the error falls as 1/N.
-        "equal_steps": (
-            ("scheme", "frequency_ratio"),
-            in_bounce[:, -1] * simulated[..., -1] / corrected,
-        ),
+        "equal_steps": (("scheme", "frequency_ratio"), equal),
     }
-    found["limit_error"] = found["limit_error"].isel(refinement=0, drop=True)
     axes = {"model": [*SIMPLE, "spring-damper"], "scheme": [*Scheme], "steps": [*parameters.steps]}
     return describe(runs.assign_coords(axes).assign(found).drop_attrs(deep=False))

@@ -1,5 +1,6 @@
 """From which ϖ on the means over a motion are right, over (Λ, r) (beyond the paper)."""
 
+from operator import call
 from typing import Annotated
 
 import numpy as np
@@ -9,9 +10,10 @@ from scipy.stats import t as student
 from bouncing_ball.attractors.mapper import label
 from bouncing_ball.attractors.means import means
 from bouncing_ball.contacts.spring_damper import Release
+from bouncing_ball.datasets.pieces import Follow
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.parameters import Seed, Tolerance, number
-from bouncing_ball.studies.attractors import LIMITS, SIMPLE, Grid, share
+from bouncing_ball.studies.attractors import LIMITS, SIMPLE, Grid, models, share
 
 DECISIONS = ("from this on", "not at any", "undecided", "no number")
 """What is known of the smallest ϖ: it is known, the largest one is not enough, the interval of
@@ -73,7 +75,7 @@ def _errors(simple: np.ndarray, contact: np.ndarray, confidence: float) -> np.nd
     return np.where(np.isfinite(found[0]), found, np.nan)
 
 
-def mean_motions(parameters: MeanMotions, release: Release) -> xr.Dataset:
+def mean_motions(parameters: MeanMotions, release: Release, follow: Follow = call) -> xr.Dataset:
     """The smallest ϖ from which on the means of a simple model are right, over (Λ, r).
 
     The balls of a node start with the same impacts in all models, random in phase and speed. Each
@@ -87,23 +89,29 @@ def mean_motions(parameters: MeanMotions, release: Release) -> xr.Dataset:
     known to be right from this ϖ on, of those with a number, with its Wilson limits ``right_low``
     and ``right_high`` and the number of nodes ``right_nodes``.
     """
-    lam, compared = parameters.models(release, starts=True)
+    ratios = np.array(parameters.frequency_ratio)
     random, balls = np.random.default_rng(parameters.seed), parameters.starts
     phase, speed = random.uniform(-np.pi, np.pi, balls), random.uniform(0.0, _FASTEST, balls)
-    velocity = lam * (np.cos(phase) - speed)
-    values = []
-    for model in compared:
-        found = label(model.impact_law, lam, phase, velocity, impacts=parameters.impacts)
-        flights, height, power, exponent = means(model.impact_law, lam, found, parameters.samples)
-        exponent = np.where(found.periods > 0, found.exponent, exponent)
-        of = np.stack([power, height, flights, exponent])
-        # Over the mean, ϖ, r, Λ and the ball; the restitution model has one ϖ.
-        values.append(of.reshape(len(MEANS), -1, *found.shape[-3:]))
-    *simple, contact = values
-    errors = np.stack([_errors(x, contact, parameters.confidence) for x in simple])
-    along = np.moveaxis(errors, (1, 3), (0, 1))
-    place, known = needed(along[0], along[1], parameters.tolerance)
-    ratios = np.array(parameters.frequency_ratio)
+
+    def of_nodes(r, lam):
+        r, lam = r[:, np.newaxis], lam[:, np.newaxis]
+        velocity, values = lam * (np.cos(phase) - speed), []
+        for model in models(r, ratios[:, np.newaxis, np.newaxis], release):
+            law = model.impact_law
+            found = label(law, lam, phase, velocity, impacts=parameters.impacts)
+            flights, height, power, exponent = means(law, lam, found, parameters.samples)
+            exponent = np.where(found.periods > 0, found.exponent, exponent)
+            of = np.stack([power, height, flights, exponent])
+            # Over the mean, ϖ, the node and the ball; the restitution model has one ϖ.
+            values.append(of.reshape(len(MEANS), -1, lam.size, balls))
+        *simple, contact = values
+        errors = np.stack([_errors(x, contact, parameters.confidence) for x in simple], axis=1)
+        return {"mean_error": errors[0], "mean_margin": errors[1]}
+
+    found = follow(of_nodes, *parameters.places())
+    along = {x: parameters.unfolded(y) for x, y in found.items()}
+    error, margin = (np.moveaxis(x, 2, 0) for x in along.values())
+    place, known = needed(error, margin, parameters.tolerance)
     least = np.where(known == 0, ratios[np.minimum(place, ratios.size - 1)], np.nan)
     right = np.stack([(known == 0) & (place <= k) for k in range(ratios.size)], axis=2)
     counted = known != DECISIONS.index("no number")
@@ -114,8 +122,7 @@ def mean_motions(parameters: MeanMotions, release: Release) -> xr.Dataset:
     names = ("right_nodes", *(f"right{x}" for x in LIMITS))
     return described(
         {
-            "mean_error": ((*dims, "frequency_ratio", *nodes), errors[:, 0]),
-            "mean_margin": ((*dims, "frequency_ratio", *nodes), errors[:, 1]),
+            **{x: ((*dims, "frequency_ratio", *nodes), y) for x, y in along.items()},
             "needed_ratio": ((*dims, *nodes), least),
             "decision": ((*dims, *nodes), np.array(DECISIONS)[known]),
             **{x: ((*dims, "frequency_ratio"), shares[..., k]) for k, x in enumerate(names)},

@@ -50,7 +50,10 @@ def test_a_supremum_is_reproduced_by_the_command_line_and_exceeded_by_no_node(da
         names = {"model": one, "supremum_quantity": needed["quantity"].values}
         # A node is known within one step of the grid.
         step = 1 + float(data.resolution)
-        assert np.all(needed.values <= step * data.supremum_needed.sel(names).values)
+        found = data.supremum_needed.sel(names)
+        # Without a threshold the error is unbounded, or tolerated at every ϖ.
+        found = found.where(found.notnull() | (data.supremum.sel(names) <= 0.01), np.inf)
+        assert np.all(needed.values <= step * found.fillna(float(needed.min())).values)
 
 
 def test_the_charts_are_drawn(data):

@@ -26,6 +26,9 @@ def shares(data: xr.Dataset) -> Table:
     ]
     body = []
     at = data.sel({"tolerance": tolerance})  # the keyword is another argument of sel
+    # Without a threshold an error is tolerated at every ϖ or, if it is not at the rule's, at none.
+    never = at.supremum_needed.isnull() & (at.supremum > tolerance)
+    at = at.assign(supremum_needed=at.supremum_needed.where(~never, np.inf))
     for one in each(at.sel(frequency_ratio=rule), "release"):
         for part in each(one.max("n"), "supremum_quantity"):
             name = part.supremum_quantity.item()

@@ -16,7 +16,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 BOUND = 1e-11
 """Difference from Python above which the badge is red: a hundred times the largest seen."""
-SCRIPTS = "model engines simulation plot state orbit sound stage page".split()
+SCRIPTS = "model law engines simulation plot state orbit sound stage page".split()
 
 
 def references(data: xr.Dataset) -> str:
@@ -65,6 +65,5 @@ def to_html(data: xr.Dataset, engines: str) -> str:
         references=references(data),
         engines=engines,
         scenes=json.loads(scenes),
-        names=list(json.loads(engines)["engines"]),
         bound=repr(BOUND),
     )

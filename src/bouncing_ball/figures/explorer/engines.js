@@ -53,33 +53,175 @@ function stepsFor(scheme, contact, error) {
   return good;
 }
 
-// What to write into an engine for a ball of m and k whose free impact has r by a release.
-function settingsOf(engines, name, release, mass, stiffness, restitution, error) {
-  const {scheme, snippets} = engines[name], round = x => Number(x.toPrecision(12));
-  const asked = contactOf(restitution, 1, release, true);
-  const [m, k] = [round(mass), round(stiffness)];
-  const c = round(2 * asked.zeta * mass * Math.sqrt(stiffness / mass)), omega = Math.sqrt(k / m);
-  const zeta = c / (2 * m * omega);
+// A number in so many digits, as Python's format g writes it.
+function general(x, digits) {
+  if (x === 0) return "0";
+  const [, power] = x.toExponential(digits - 1).split("e");
+  if (power >= -4 && power < digits) return String(Number(x.toPrecision(digits)));
+  const [number, sign] = [x.toExponential(digits - 1).split("e")[0], power < 0 ? "-" : "+"];
+  return `${Number(number)}e${sign}${String(Math.abs(power)).padStart(2, "0")}`;
+}
+const rounded = x => Number(x.toPrecision(12));
+
+// A contact without an answer: why, in the words of the package.
+class Refused extends Error {}
+const refuseIf = (wrong, why) => { if (wrong) throw new Refused(why); };
+
+// c of the contact between a mass and a wall whose free impact has r by a release.
+const dampingOf = (restitution, release, mass, stiffness) =>
+  2 * contactOf(restitution, 1, release, true).zeta * mass * Math.sqrt(stiffness / mass);
+
+// ---- The way back: the contact of an engine's parameters.
+const ENGINE_NAMES = {
+  generic: ["stiffness", "damping"], mujoco: ["solref", "solimp"], lammps: ["kn", "gamma_n"],
+  liggghts: ["kn", "gamman"], pybullet: ["contactStiffness", "contactDamping"],
+  drake: ["point_contact_stiffness", "relaxation_time"], mercurydpm: ["stiffness", "dissipation"],
+};
+const ENGINE_READS = {
+  generic: (m, a, b) => [a, b], lammps: (m, a, b) => [a, b / (1 / m)], liggghts: (m, a, b) => [a, b / (1 / m)],
+  pybullet: (m, a, b) => [a / 2, b / 0.5], drake: (m, a, b) => [a / 2, a * b], mercurydpm: (m, a, b) => [a, b],
+};
+
+// The numbers of an attribute, as many as are allowed.
+function numbersOf(name, text, least, most) {
+  const parts = text.trim().split(/\s+/).filter(Boolean), numbers = parts.map(Number);
+  const allowed = least === most ? `${least} numbers` : `${least} to ${most} numbers`;
+  refuseIf(numbers.length < least || numbers.length > most || !numbers.every(Number.isFinite),
+    `${name} = '${text}' is not ${allowed}`);
+  return numbers;
+}
+
+// dmin, dmax, width in m, midpoint and power of a solimp, with MuJoCo's defaults.
+function solimpOf(text) {
+  const given = numbersOf("solimp", text, 0, 5);
+  for (const d of given.slice(0, 2))
+    refuseIf(!(d >= 0 && d <= 1), `solimp has the impedance ${general(d, 6)}, which is not in [0, 1]`);
+  const found = [...given, ...[0.9, 0.95, 0.001, 0.5, 2].slice(given.length)];
+  const shares = found.slice(0, 2).map(d => Math.min(0.9999, Math.max(1e-4, d)));
+  return [...found[2] > 0 ? shares : shares.map(() => (shares[0] + shares[1]) / 2), ...found.slice(2)];
+}
+
+// k and c of the parameters of an engine, which are two texts.
+function readEngine(engine, mass, [one, two]) {
+  const names = ENGINE_NAMES[engine];
+  if (engine === "mujoco") {
+    solimpOf(two);
+    refuseIf(!one.trim(), "solref is missing: give it, such as '-10000 -20'");
+    const [a, b] = numbersOf("solref", one, 2, 2);
+    refuseIf(!(a < 0 && b <= 0) && !(a > 0 && b > 0), `solref = '${general(a, 6)} ${general(b, 6)}' is neither `
+      + "two negative numbers, -k/m and -c/m, nor two positive ones, a time constant and a damping ratio");
+    return a < 0 ? [-a * mass, Math.abs(b) * mass] : [mass / (a * b) ** 2, 2 * mass / a];
+  }
+  const values = [one, two].map((text, k) => {
+    refuseIf(!text.trim(), `${names[k]} is missing: the parameters of ${engine} are ${names.join(" and ")}`);
+    const [value] = numbersOf(names[k], text, 1, 1);
+    refuseIf(!(value >= 0), `${names[k]} = ${repr(value)} is not a number of at least 0`);
+    return value;
+  });
+  refuseIf(values[0] === 0, `${names[0]} = 0.0 is not positive`);
+  return ENGINE_READS[engine](mass, ...values);
+}
+
+// How MuJoCo's contact differs from a spring and a damper, in units of s and m: MuJoCo.remarks.
+function impedanceRemarks([least, most, width, midpoint, power], omega, zeta) {
+  const found = [`with the impedance ${general(most, 6)} a contact feels ${general(1 - most, 2)} of the load `
+    + '(gravity, table), and a spring and a damper all of it: solimp = "1e-4 1e-4 0.001"'];
+  if (Math.max(least, most) <= FELT) return [];
+  if (zeta >= 1) return [...found, "this contact has ζ ≥ 1, for which σ and r at each depth are not computed"];
+  const spring = {omega, zeta, release: "force", sine: zeta}, r = ownRestitution(spring), {load} = signatureOf(spring);
+  found.push(`under a load a this r is r + σ a/v with σ = ${general(load + most * 2 * zeta / omega * r, 4)} s, and `
+    + `${general(load, 4)} s for a spring and a damper`);
+  if (least === most) return found;
+  const share = least / most, depth = width || 1, law = impedanceLaw(omega, zeta, most, least, depth, midpoint, power);
+  const each = [0.1, 1, 10].map(part => part * depth * omega).map(v =>
+    `${(-contactUnder(law, v, () => 0).rate / v).toFixed(4)} at ${general(v, 3)} m/s`);
+  return [...found, `this is the contact below the depth of ${general(depth, 6)} m; at the surface the spring is `
+    + `${general(share ** 2, 2)} and the damper ${general(share, 2)} of it`,
+  `a free impact has r = ${each.join(", ")}, and ${r.toFixed(4)} where it is much deeper than that`];
+}
+// Up to this impedance a contact is taken for a spring and a damper.
+const FELT = 0.01;
+
+// ---- The case of the physical tab.
+// Powers of m, length and time of the numbers of a law, and their units in SI.
+const LAW_UNITS = {
+  "hunt-crossley": {stiffness: ["N/m^1.5", 1, -0.5, -2], damping: ["s/m", 0, -1, 1]},
+  "hunt-crossley-linear": {stiffness: ["N/m", 1, 0, -2], damping: ["s/m", 0, -1, 1]},
+  "tsuji": {stiffness: ["N/m^1.5", 1, -0.5, -2]},
+  "kuwabara-kono": {stiffness: ["N/m^1.5", 1, -0.5, -2], damping: ["s", 0, 0, 1]},
+  "elasto-backlash": {"frequency ratio": ["rad/s", 0, 0, -1]},
+  "impedance": {"frequency ratio": ["rad/s", 0, 0, -1], width: ["m", 0, 1, 0]},
+};
+// Engines that have a law besides the linear one, by its name.
+const ENGINE_LAWS = {drake: {"hunt-crossley": "hunt-crossley-linear", "hunt-crossley-linear": "hunt-crossley-linear"}};
+
+// The contact in SI units, its dimensionless groups, its law if it is not linear, and remarks.
+function caseOf({given, engine, release, r, n, t, one, two, m, k, f}) {
+  const mass = m / 1000, time = 1 / (2 * Math.PI * f), length = GRAVITY * time ** 2;
+  if (given in ENGINE_NAMES) {
+    const [stiffness, damping] = readEngine(given, mass, [one, two]);
+    const omega = Math.sqrt(stiffness / mass), zeta = damping / (2 * mass * omega);
+    const imposed = given === "mujoco" ? solimpOf(two) : null;
+    const remarks = imposed ? impedanceRemarks(imposed, omega, zeta) : [];
+    const root = Math.sqrt(zeta * zeta - 1), r = Math.exp(-2 * zeta * (root > 0 ? Math.asinh(root) / root : 1));
+    refuseIf(!(zeta < 1), `damping ratio ζ = ${repr(zeta)} is not below 1: a free impact `
+      + `${release === "force" ? `has r = ${r.toFixed(4)}` : "does not end"}, and orbits are computed for less damping only`);
+    const sine = release === "force" ? zeta : 0, contact = {omega: omega * time, zeta, release, sine};
+    let law = null;
+    if (imposed && engine === "none" && Math.max(...imposed.slice(0, 2)) > FELT) {
+      const [least, most, width, midpoint, power] = imposed;
+      law = {name: "impedance", ...impedanceLaw(omega * time, zeta, most, least, (width || 1) / length, midpoint, power)};
+    }
+    return {mass, time, length, stiffness, damping, contact, law, remarks};
+  }
+  if (given === "stiffness") {
+    const contact = contactOf(r, Math.sqrt(k / mass) * time, release, engine !== "none");
+    return {mass, time, length, stiffness: k, damping: 2 * contact.zeta * Math.sqrt(k * mass), contact, law: null, remarks: []};
+  }
+  const laws = ENGINE_LAWS[engine] ?? {};
+  refuseIf(engine !== "none" && !laws[given], `--law ${given} is not written for ${engine}: leave --law out`);
+  const name = laws[given] ?? given, unit = contactOf(r, 1, release, true), duration = t / 1000 / time;
+  const contact = {...unit, omega: freeAngle(unit) / dampedFrequency(unit) / duration};
+  const law = lawOfImpact(name, r, duration, 2 * Math.PI * n / (1 + r));
+  refuseIf(!law, `restitution coefficient r = ${general(r, 6)} is too small: no ${name} contact with it was found; `
+    + "damped so strongly, the ball hardly leaves");
+  const stiffness = mass * (contact.omega / time) ** 2, damping = 2 * contact.zeta * mass * contact.omega / time;
+  return {mass, time, length, stiffness, damping, contact, law: {name, ...law}, remarks: []};
+}
+
+// The numbers of a law in SI units: words, value, unit, name.
+const inSi = ({law, mass, time, length}) => Object.entries(law.numbers).map(([name, value]) => {
+  const [unit, a, b, c] = LAW_UNITS[law.name][name] ?? ["", 0, 0, 0];
+  const si = value * mass ** a * length ** b * time ** c;
+  return [`${law.name}, ${name}`, si, unit, `law ${name.replaceAll(" ", "_")}`];
+});
+
+// What to write into an engine for a contact of mass, stiffness and damping, with the law of it.
+function settingsOf(engines, name, release, {mass, stiffness, damping}, error, law = null) {
+  const {scheme, snippets} = engines[name], [m, k, c] = [mass, stiffness, damping].map(rounded);
+  const omega = Math.sqrt(k / m), zeta = c / (2 * m * omega);
   const of = rule => ({omega, zeta, release: rule, sine: rule === "force" ? zeta : 0});
   const contact = of(release), steps = stepsFor(scheme, contact, error);
-  const time_step = round(freeAngle(contact) / dampedFrequency(contact) / steps);
+  const time_step = rounded(freeAngle(contact) / dampedFrequency(contact) / steps);
+  const numbers = law ? {point_contact_stiffness: rounded(2 * law.stiffness),
+    hunt_crossley_dissipation: rounded(law.damping)} : ENGINE_NUMBERS[name](m, k, c);
   const texts = Object.fromEntries(
-    Object.entries({mass: m, time_step, ...ENGINE_NUMBERS[name](m, k, c)})
-      .map(([key, x]) => [key, repr(x)]));
+    Object.entries({mass: m, time_step, ...numbers}).map(([key, x]) => [key, repr(x)]));
   for (const rule of ["displacement", "force"]) texts[rule] = ownRestitution(of(rule)).toFixed(4);
   return {scheme, steps, time_step, restitution: ownRestitution(contact),
-    snippet: snippets[release].replace(/@([\w.]+)@/g, (_, key) => texts[key])};
+    snippet: snippets[law ? "hunt-crossley" : release].replace(/@([\w.]+)@/g, (_, key) => texts[key])};
 }
 
 // The settings of the package, computed again: the largest relative difference, and where.
 function compareEngines({engines, cases}) {
   let worst = 0, where = "";
-  for (const {state, values, snippet} of cases) {
-    const found = settingsOf(engines, ...state);
+  for (const {state: [name, release, mass, stiffness, restitution, error], values, snippet} of cases) {
+    const damping = dampingOf(restitution, release, mass, stiffness);
+    const found = settingsOf(engines, name, release, {mass, stiffness, damping}, error);
     const differences = [found.time_step, found.steps, found.restitution].map(
       (x, k) => Math.abs(x / values[k] - 1));
     const difference = found.snippet === snippet ? Math.max(...differences) : Infinity;
-    if (!(difference <= worst)) [worst, where] = [difference, `settings of ${state[0]}`];
+    if (!(difference <= worst)) [worst, where] = [difference, `settings of ${name}`];
   }
   return {worst, where, count: cases.length};
 }

@@ -154,8 +154,8 @@ function traceOf({omega, zeta, sine}, flight, [u, x, y], sinD, cosD, at, push) {
 }
 
 // ---- Roots, as bouncing_ball.orbits.spring_damper_limits finds them.
-// Chandrupatla's method, to four units in the last place of the root.
-function rootOf(f, a, b, fa = f(a), fb = f(b)) {
+// Chandrupatla's method, to four units in the last place of the root, or to what is near enough.
+function rootOf(f, a, b, fa = f(a), fb = f(b), near = 0) {
   if (fa === 0) return a;
   if (fb === 0) return b;
   let c = a, fc = fa, t = 0.5;
@@ -165,7 +165,7 @@ function rootOf(f, a, b, fa = f(a), fb = f(b)) {
     else [c, b, fc, fb] = [b, a, fb, fa];
     [a, fa] = [x, fx];
     const [m, fm] = Math.abs(fa) < Math.abs(fb) ? [a, fa] : [b, fb];
-    const least = 4 * Number.EPSILON * Math.abs(m) + Number.MIN_VALUE;
+    const least = 4 * Number.EPSILON * Math.abs(m) + Math.max(near, Number.MIN_VALUE);
     const limit = least / Math.abs(b - c);
     if (limit > 0.5 || fm === 0 || Number.isNaN(fx)) return m;
     const xi = (a - b) / (c - b), phi = (fa - fb) / (fc - fb);
@@ -279,7 +279,8 @@ function contactState(contact, point, s) {
   const table = point.x * Math.sin(s) + point.y * Math.cos(s);
   return {gap, speed, height: gap + table,
     velocity: speed + point.x * Math.cos(s) - point.y * Math.sin(s),
-    force: -(2 * zeta * omega * speed + omega * omega * gap)};
+    force: -(2 * zeta * omega * speed + omega * omega * gap),
+    grip: -gap - 2 * contact.sine / omega * speed};
 }
 
 function contactOrbit(point, contact, n) {
@@ -360,12 +361,27 @@ const correctedModel = ({delay, r, load, duration}) => ({
   },
 });
 
+// Points of a branch between two of the scan for its bifurcations.
+const FINE = 24;
 function contactModel(contact) {
   const folds = new Map(), flips = new Map();
   const of = (cache, n, find) => cache.has(n) ? cache.get(n) : cache.set(n, find()).get(n);
   return {
     name: "spring-damper",
     fold: n => of(folds, n, () => saddleNode(contact, n)),
+    // The branch as it is drawn, with a gap where the ball would rise at the touch.
+    drawn(n) {
+      const grid = scan(contact, n), found = [];
+      for (const [k, right] of grid.slice(1).entries())
+        for (let j = 0; j < FINE; j++) {
+          const eps = grid[k] + (right - grid[k]) * j / FINE, point = branchPoint(eps, contact, n);
+          // Beyond, the ball would cross the table in contact: solutions, but of no ball.
+          if (eps > 0 && !(point.u < 0)) return found;
+          found.push(point.u < 0 ? point : {...point, amplitude: NaN});
+        }
+      return found;
+    },
+    bifurcations(n) { return [this.fold(n), this.flip(n)].map(eps => branchPoint(eps, contact, n)); },
     flip(n) { return of(flips, n, () => periodDoubling(contact, n, this.fold(n))); },
     saddleNode(n) { return branchPoint(this.fold(n), contact, n).amplitude; },
     periodDoubling(n) { return branchPoint(this.flip(n), contact, n).amplitude; },
@@ -392,17 +408,17 @@ function permanentContact({omega, zeta, sine}) {
 }
 
 // Whether nothing comes between, by samples only: the package certifies it, this does not.
-function sampledAdmissible(orbit, contact, samples = 600) {
+function sampledAdmissible(orbit, samples = 600) {
   if (!orbit.exists || !(orbit.relative_impact_velocity < 0)) return false;
   const {amplitude, phase, contact_duration: end} = orbit, period = 2 * Math.PI * orbit.n;
-  for (let k = 1; k < samples; k++) {
-    const s = k * period / samples;
-    if (s > end && heightAt(orbit, s) <= amplitude * Math.sin(phase + s)) return false;
+  // A ball that is released below the table's level rises through it once.
+  for (let k = 1, above = false; k < samples; k++) {
+    const s = k * period / samples, rises = heightAt(orbit, s) > amplitude * Math.sin(phase + s);
+    if (s > end && above && !rises) return false;
+    above = s > end && rises;
   }
-  for (let k = 1; orbit.state && k < 64; k++) {
-    const at = orbit.state(k * end / 64), lag = 2 * contact.sine / contact.omega;
-    if (at.gap + lag * at.speed >= 0) return false;
-  }
+  for (let k = 1; orbit.state && k < 64; k++)
+    if (orbit.state(k * end / 64).grip <= 0) return false;
   return true;
 }
 
@@ -413,19 +429,23 @@ const QUANTITIES = {
   permanent_contact: "threshold of permanent contact",
 };
 
-// All that the page shows of one state.
-function answer({r, omega, amplitude, n, release, side = "stable", measured = false}) {
-  const contact = contactOf(r, omega, release, measured), own = ownRestitution(contact);
-  const models = [contactModel(contact), restitutionModel(own), correctedModel(signatureOf(contact))];
+// All that the page shows of one state: of a contact, or of r and ϖ, and of a law in its place.
+function answer({r, omega, amplitude, n, release, side = "stable", contact = contactOf(r, omega, release), law}) {
+  const own = ownRestitution(contact), top = 1.3 * Math.max(amplitude, 1.2);
+  const signature = law ? signatureOver(law) : null;
+  const models = [law ? lawModel(law, law.name, signature, own, top) : contactModel(contact), restitutionModel(own),
+    law ? correctedLawModel(signature, top) : correctedModel(signatureOf(contact))];
   const orbits = models.map(model => model.orbit(n, amplitude, side));
   const limits = models.map(m => ({saddle_node: m.saddleNode(n), period_doubling: m.periodDoubling(n)}));
-  const thresholds = [permanentContact(contact), 1, 1];
+  const thresholds = [law ? permanentContactOf(law) : permanentContact(contact), 1, 1];
   const value = (name, k) => name === "permanent_contact" ? thresholds[k]
     : name in limits[k] ? limits[k][name] : orbits[k].exists ? orbits[k][name] : NaN;
   const errors = k => Object.fromEntries(Object.keys(QUANTITIES).map(
     name => [name, Math.abs(value(name, 0) / value(name, k) - 1)]));
-  return {contact, own, signature: signatureOf(contact), models, orbits, limits, thresholds,
-    errors: errors(1), corrected: errors(2)};
+  return {contact, law, own, models, orbits, limits, thresholds, errors: errors(1), corrected: errors(2),
+    // Of a law at the speed of the restitution model's orbit, whose r is that of the contact.
+    signature: law ? {...signature(2 * Math.PI * n / (1 + own)), r: own} : signatureOf(contact),
+    at: signature};
 }
 
 // ---- What the package computed, computed again: the largest difference over the size of each

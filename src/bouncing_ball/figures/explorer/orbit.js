@@ -4,14 +4,12 @@
 const NAMES = ["spring-damper", "restitution", "corrected"];
 // Of their dots: each is seen where they lie upon each other.
 const SIZES = [8, 5.5, 3.5];
-// Points of a branch between two of the scan for its bifurcations.
-const FINE = 24;
 const TOLERANCE = 0.01;
 
 // What a ball does that starts beside an unstable orbit, as far as the page follows contacts.
 const BESIDE = 1e-3;
-function insteadOf({amplitude, phase, impact_velocity}, {contact}) {
-  if (contact.release === "force") return "bouncing-ball design says what the ball does instead";
+function insteadOf({amplitude, phase, impact_velocity}, {contact, law}) {
+  if (law || contact.release === "force") return "bouncing-ball design says what the ball does instead";
   const end = endOf({contact}, amplitude, phase, impact_velocity * (1 + BESIDE));
   return `one that starts beside it ${SAID[end.kind](end)}`;
 }
@@ -60,24 +58,11 @@ function drawBranch(found, {n, amplitude}) {
       plot.line(turned[true], `curve ${kind}`);
       plot.line(turned[false], `curve unstable ${kind}`);
     }
-  const grid = scan(found.contact, n), stable = [], unstable = [];
-  const fine = grid.slice(1).flatMap((right, k) =>
-    Array.from({length: FINE}, (_, j) => grid[k] + (right - grid[k]) * j / FINE));
-  for (const eps of fine) {
-    const at = branchPoint(eps, found.contact, n);
-    // Beyond, the ball would cross the table in contact: solutions, but of no ball.
-    if (eps > 0 && !(at.u < 0)) break;
-    const point = at.u < 0 ? [at.amplitude, at.phase / Math.PI] : [NaN, NaN];
-    const holds = isStable(at.trace, at.determinant);
-    stable.push(holds ? point : [NaN, NaN]);
-    unstable.push(holds ? [NaN, NaN] : point);
-  }
-  plot.line(stable, "curve spring-damper");
-  plot.line(unstable, "curve unstable spring-damper");
-  for (const [name, shape] of [["fold", "circle"], ["flip", "square"]]) {
-    const eps = contact[name](n), at = branchPoint(eps, found.contact, n);
-    plot.mark(shape, at.amplitude, at.phase / Math.PI, "bifurcation");
-  }
+  const points = contact.drawn(n), place = at => [at.amplitude, at.phase / Math.PI];
+  for (const stable of [true, false])
+    plot.line(points.map(at => isStable(at.trace, at.determinant) === stable ? place(at) : [NaN, NaN]),
+      `curve ${stable ? "" : "unstable "}spring-damper`);
+  contact.bifurcations(n).forEach((at, k) => plot.mark(["circle", "square"][k], ...place(at), "bifurcation"));
   found.orbits.forEach((orbit, k) => plot.mark("dot", amplitude, orbit.phase / Math.PI, `dot ${NAMES[k]}`, SIZES[k]));
 }
 
@@ -145,11 +130,10 @@ function fillTables(found, question) {
     return [text, value, key && `${name} ${key}`];
   });
   const yes = (orbit, value) => !orbit.exists ? "no orbit" : value ? "yes" : "no";
-  const {contact} = found;
   $("orbit-rows").replaceChildren(
     row("exists", cells(o => [o.exists ? "yes" : "no", o.exists, "exists"])),
     row("stable", cells(o => [yes(o, o.is_stable), o.is_stable, "is_stable"])),
-    row("admissible (sampled only)", cells(o => [yes(o, sampledAdmissible(o, contact))])),
+    row("admissible (sampled only)", cells(o => [yes(o, sampledAdmissible(o))])),
     row("saddle-node Λ", cells((o, l) => [shown(l.saddle_node), l.saddle_node, "saddle_node"])),
     row("period doubling Λ", cells((o, l) => [shown(l.period_doubling), l.period_doubling, "period_doubling"])),
     ...Object.entries(ORBIT_ROWS).map(([key, name]) => row(name, cells(o => [shown(o[key]), o[key], key]))),
@@ -163,51 +147,89 @@ function fillTables(found, question) {
         value, `${k ? "corrected_errors" : "errors"} ${key}`]))));
 }
 
-// Lengths, times and forces of the physical tab, by name.
-function physical(found, state) {
-  const mass = state.m / 1000, table = 2 * Math.PI * state.f, orbit = found.orbits[0];
-  const time = 1 / table, length = GRAVITY / table ** 2, zeta = found.contact.zeta;
+// Lengths, times and forces of the physical tab: words, value, unit, and the name in the JSON of `design`.
+function physical(found, state, {mass, time, length, stiffness, damping, law}) {
+  const orbit = found.orbits[0], {omega, zeta} = found.contact, weight = mass * GRAVITY;
   const start = freeAngle(found.contact) / dampedFrequency(found.contact) * time;
-  let depth = NaN, force = NaN;
-  if (orbit.exists) {
-    [depth, force] = [0, 0];
-    for (let k = 0; k <= 2000; k++) {
-      const at = orbit.state(k * orbit.contact_duration / 2000);
-      [depth, force] = [Math.max(depth, -at.gap), Math.max(force, at.force)];
-    }
-  }
+  const {depth, force} = loadsOf(orbit);
   return [
-    ["frequency ratio ϖ", found.contact.omega, ""], ["damping ratio ζ", zeta, ""],
-    ["damping c", 2 * zeta * Math.sqrt(state.k * mass), "N s/m"],
+    ["frequency ratio ϖ", omega, "", "frequency_ratio"], ["damping ratio ζ", zeta, "", "damping_ratio"],
+    ["stiffness k", stiffness, "N/m", "stiffness"], ["damping c", damping, "N s/m", "damping"],
+    ["natural frequency ω", omega / time, "rad/s"],
+    ["restitution of a free impact", found.own, "", "measured_restitution"],
+    ...(law ? inSi({law, mass, time, length}) : []),
     ["amplitude of the table", state.acc * length, "m"],
-    ["contact time, free", start, "s"],
+    ["contact time, free", start, "s", "contact_time"],
     // There is one time step, an engine's if one is chosen.
-    ...(state.engine === "none" ? [["largest time step, a fiftieth of it", start / 50, "s"]] : []),
-    ["static deflection", mass * GRAVITY / state.k, "m"],
-    ["greatest height", orbit.max_height * length, "m"],
-    ["duration of contact", orbit.contact_duration * time, "s"],
-    ["impact speed", -orbit.relative_impact_velocity * GRAVITY / table, "m/s"],
-    ["greatest compression (sampled)", depth * length, "m"],
-    ["peak force (sampled)", force * mass * GRAVITY, "N"],
-    ["peak force over weight (sampled)", force, ""],
-    ["corrected model: delay t_c", found.signature.delay * time, "s"],
-    ["corrected model: restitution r", found.signature.r, ""],
-    ["corrected model: load σ", found.signature.load * time, "s"],
+    ...(state.engine === "none" ? [["largest time step, a fiftieth of it", start / 50, "s", "largest"]] : []),
+    ["static deflection", law ? restOf(law) * length : weight / stiffness, "m", "static_deflection"],
+    ["permanent contact up to Λ", found.thresholds[0], "", "permanent_contact"],
+    ["greatest height", orbit.max_height * length, "m", "max_height"],
+    ["duration of contact", orbit.contact_duration * time, "s", "contact_duration"],
+    ["impact speed", -orbit.relative_impact_velocity * GRAVITY * time, "m/s", "impact_speed"],
+    ["greatest compression (sampled)", depth * length, "m", "greatest_compression"],
+    ["peak force (sampled)", force * weight, "N", "peak_force"],
+    ["peak force over weight (sampled)", force, "", "peak_force_over_weight"],
+    ["corrected model: delay t_c", found.signature.delay * time, "s", "delay"],
+    ["corrected model: restitution r", found.signature.r, "", "restitution"],
+    ["corrected model: load σ", found.signature.load * time, "s", "load"],
   ];
 }
 
+// Greatest compression and force of a contact, sampled.
+function loadsOf(orbit) {
+  let depth = orbit.exists ? 0 : NaN, force = depth;
+  for (let k = 0; orbit.exists && k <= 2000; k++) {
+    const at = orbit.state(k * orbit.contact_duration / 2000);
+    [depth, force] = [Math.max(depth, -at.gap), Math.max(force, at.force)];
+  }
+  return {depth, force};
+}
+
+// What the reader should know of the contact besides, in the words of calculator/verdict.py.
+function notesOf(found, {n, amplitude}, one) {
+  const [orbit] = found.orbits, {release, zeta, omega} = found.contact, name = `${n}-T orbit`;
+  const admissible = sampledAdmissible(orbit);
+  return [...one.remarks, ...one.law ? lawNotes(found, n, amplitude, one) : [],
+    ...Number.isNaN(found.thresholds[0]) ? ["no threshold of permanent contact was found, because the contact is weakly damped"] : [],
+    ...!orbit.exists ? [`at this Λ the contact has no ${name}`]
+      : orbit.is_stable && admissible ? [] : [`the ${name} is `
+        + `${admissible ? "unstable" : "inadmissible (an earlier impact occurs)"}, so that no ball stays on it`],
+    ...omega < 1 ? ["the contact is slower than the table: the ball oscillates on a spring"] : [],
+    ...!one.law && release === "displacement" && zeta > 0
+      ? ["the contact pulls before its release at δ = 0; if it cannot, its r is the other one"] : []];
+}
+
+function lawNotes(found, n, amplitude, {law, length, contact}) {
+  const [orbit] = found.orbits;
+  if (law.name !== "impedance") {
+    const what = law.name === "tsuji" ? "Hertz contact with Tsuji's damping" : `${law.name} contact`;
+    const speeds = [n, n + 1].map(k => 2 * Math.PI * k / (1 + found.own));
+    return [`stiffness, damping, ϖ and ζ are those of a linear contact: it has the r of the ${what}, and its duration at the impact`,
+      ...(speeds.every(v => Math.abs(found.at(v).r - found.own) < 1e-8) ? [] : ["the restitution of this law depends on "
+        + "the speed: it is r at the speed of the restitution model's lowest stable orbit"])];
+  }
+  const about = "stiffness, damping, ϖ and ζ are those of the spring and damper of this solref";
+  const spring = contactModel(contact).orbit(n, amplitude, "stable");
+  if (!orbit.exists || !spring.exists) return [about];
+  const {depth} = loadsOf(orbit), off = orbit.max_height / spring.max_height - 1;
+  return [`${about}: at the orbit's depth of ${prefixed(depth * length, "m")}, where the impedance is `
+    + `${general(law.share(depth), 3)}, the ball bounces ${percent(Math.abs(off))} ${off > 0 ? "higher" : "lower"} than with them`];
+}
+
 // What an engine is to be told, and the rows of it.
-function showEngine(state) {
-  const {engine, release, r, e} = state;
-  $("paste").hidden = $("e").parentElement.hidden = engine === "none";
+function showEngine({engine, e}, one) {
+  $("paste").hidden = engine === "none";
   if (engine === "none") return [];
-  const found = settingsOf(ENGINES, engine, release, state.m / 1000, state.k, r, e);
+  const {release} = one.contact;
+  // Drake's law has its numbers in SI units.
+  const law = one.law && Object.fromEntries(inSi(one).map(([, value,, key]) => [key.slice(4), value]));
+  const found = settingsOf(ENGINES, engine, release, one, e, law);
   $("paste-says").textContent = `For ${engine}, whose contacts end by ${release} `
     + `(r = ${shown(found.restitution, 4)}, within ${e} in ${found.steps} steps of ${found.scheme} `
     + "in a contact):";
   $("snippet").textContent = found.snippet;
-  return [["restitution of a free impact", found.restitution, ""],
-    [`time step for an error of ${e} in r`, found.time_step, "s"]];
+  return [[`time step for an error of ${e} in r`, found.time_step, "s", "largest"]];
 }
 
 // ---- The animation: it waits until it is asked, and for those who want no motion stays so.

@@ -6,8 +6,10 @@
 const BOUND = Number(document.body.dataset.bound);
 
 // ---- The page.
-const SELECTS = ["engine", "model", "pace", "view"];
+const SELECTS = ["engine", "given", "model", "pace", "view"];
 let current = DEFAULTS;
+for (const [id, names] of [["laws", LAWS], ["engines-from", ENGINES], ["engine", ENGINES]])
+  $(id).append(...Object.keys(names).map(name => new Option(name)));
 // A state without an answer: why, and nothing of the answer before it.
 function refuse(text) {
   $("refused").textContent = text;
@@ -31,9 +33,11 @@ function show(hash) {
   for (const id of ["contact-choice", "orbit-key", "orbit-views"]) $(id).hidden = onStage;
   $("slice-views").hidden = !onStage;
   $("command-name").textContent = `The same in the shell${onStage ? "" : ", with every digit and certified"}:`;
-  const rules = state.tab === "design" && ENGINES[state.engine]?.snippets;
   for (const choice of document.querySelectorAll("input[name=release]"))
-    choice.disabled = rules && !(choice.value in rules);
+    choice.disabled = !releasesOf(state).includes(choice.value);
+  for (const name of ["k", "r", "t", ...TEXTS]) field(name).hidden = !givenBy(state.given).includes(name);
+  field("e").hidden = state.engine === "none";
+  TEXTS.forEach((name, k) => field(name).querySelector("label").textContent = ENGINE_NAMES[state.given]?.[k]);
   if (why) return refuse(why);
   $("refused").textContent = refused.length ? `Not a value here, and left out: ${refused.join(", ")}.` : "";
   document.body.toggleAttribute("data-refused", false);
@@ -45,20 +49,42 @@ function show(hash) {
   }
   play(false);
   stage = null;
-  const question = asked(state), found = answer(question);
+  let question;
+  try {
+    question = asked(state);
+  } catch (error) {
+    if (!(error instanceof Refused)) throw error;
+    return refuse(error.message);
+  }
+  const found = answer(question);
   const [good, sentence] = verdictOf(found, question);
   $("verdict").textContent = sentence;
   $("verdict").dataset.good = good;
+  for (const name of document.querySelectorAll(".exact")) name.textContent = found.law?.name ?? "spring-damper";
   fillTables(found, question);
-  if (state.tab === "design")
-    $("design-rows").replaceChildren(...[...showEngine(state), ...physical(found, state)].map(
-      ([name, value, unit]) => row(name, [[unit ? prefixed(value, unit) : shown(value), value, name]])));
+  if (state.tab === "design") {
+    const one = question.physical;
+    $("design-rows").replaceChildren(...[...showEngine(state, one), ...physical(found, state, one)].map(
+      ([name, value, unit, key]) => row(name, [[unit ? prefixed(value, unit) : shown(value), value, key ?? name]])));
+    $("notes").replaceChildren(...notesOf(found, question, one).map(note => {
+      const item = document.createElement("li");
+      item.textContent = `${note}.`;
+      return item;
+    }));
+  }
   drawBranch(found, question);
   drawMotion(found, question);
   drawMultipliers(found);
 }
 
+// The control of a number or a text of the physical tab.
+const field = name => document.querySelector(`#panel-design [data-name=${name}]`).parentElement;
+
 function setControl(name, value) {
+  if (TEXTS.includes(name)) {
+    if (document.activeElement !== $(name)) $(name).value = value;
+    return;
+  }
   if (SELECTS.includes(name)) {
     $(name).value = value;
     return;
@@ -79,7 +105,7 @@ function setControl(name, value) {
 }
 
 function change(name, value) {
-  const next = hashOf({...current, [name]: value});
+  const next = hashOf(withRelease({...current, [name]: value}));
   history.replaceState(null, "", next);
   show(next);
 }
@@ -98,6 +124,7 @@ document.querySelectorAll("input[type=range]").forEach(slider => slider.addEvent
   const {name} = slider.dataset, value = Number(slider.value);
   change(name, name === "w" ? Number((10 ** value).toPrecision(4)) : value);
 }));
+for (const name of TEXTS) $(name).addEventListener("input", () => change(name, $(name).value));
 for (const name of SELECTS) $(name).addEventListener("change", () => change(name, $(name).value));
 document.querySelectorAll("input[type=radio]").forEach(choice => choice.addEventListener("change",
   () => change(choice.name, choice.value)));

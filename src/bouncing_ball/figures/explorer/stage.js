@@ -168,7 +168,8 @@ function drawDiagram(ends, {a, phi, v}) {
 let playing = null;
 function beat(at) {
   if (playing === null || !stage) return;
-  const passed = Math.min((at - playing) / 1000, 0.1);
+  // The first frame may have begun before it was asked to play.
+  const passed = Math.min(Math.max(at - playing, 0) / 1000, 0.1);
   playing = at;
   place(stage.now + passed * TURN / SECONDS / Number(stage.state.pace), true);
   requestAnimationFrame(beat);

@@ -7,14 +7,18 @@ const $ = id => document.getElementById(id);
 // differs from the one before, the periods that have passed, and how many times slower it plays.
 const DEFAULTS = {
   tab: "orbit", r: 0.85, w: 10, a: 0.8, n: 1, release: "displacement", side: "stable",
-  m: 20, f: 50, acc: 0.8, k: 1e7, engine: "none", e: 0.001,
+  m: 20, f: 50, acc: 0.8, k: 1e7, engine: "none", e: 0.001, given: "stiffness", t: 0.1,
+  one: "", two: "",
   model: "both", phi: 0, v: -3, balls: 1, dv: 0, dphi: 0, from: 0, pace: "1", view: "height",
 };
 const RANGES = {
   r: [0.001, 1], w: [0.1, 1e6], a: [0.001, 100], n: [1, 20],
   m: [1e-9, 1e9], f: [1e-6, 1e9], acc: [0.001, 100], k: [1e-9, 1e18], e: [1e-6, 0.5],
+  t: [1e-9, 1e6],
   phi: [-10, 10], v: [-1000, 1000], balls: [1, 9], dv: [-10, 10], dphi: [-10, 10], from: [0, 1000],
 };
+// The parameters of an engine, as they are written in it.
+const TEXTS = ["one", "two"];
 const WHOLE = ["n", "balls", "from"];
 // On the stage the table may be at rest.
 const rangeOf = (name, tab) => name === "a" && tab === "stage" ? [0, 100] : RANGES[name];
@@ -23,7 +27,7 @@ const REFERENCES = Object.fromEntries(["references", "engines", "scenes"].map(
 const {engines: {engines: ENGINES}, scenes: SCENES} = REFERENCES;
 const CHOICES = {
   tab: ["orbit", "design", "stage"], release: ["displacement", "force"], side: ["stable", "unstable"],
-  engine: ["none", ...Object.keys(ENGINES)],
+  engine: ["none", ...Object.keys(ENGINES)], given: ["stiffness", ...Object.keys(LAWS), ...Object.keys(ENGINES)],
   model: ["both", "restitution", "spring-damper"], pace: ["1", "4", "16"], view: ["height", "gap"],
 };
 const GRAVITY = 9.80665;
@@ -42,25 +46,45 @@ function parse(hash) {
   if (scene) given.delete("scene");
   for (const [name, text] of given) {
     const value = Number(text), range = rangeOf(name, tab);
-    if (name in CHOICES ? CHOICES[name].includes(text)
+    if (TEXTS.includes(name) || (name === "engine" && !CHOICES.engine.includes(text))) state[name] = text;
+    else if (name in CHOICES ? CHOICES[name].includes(text)
       : range && text.trim() !== "" && value >= range[0] && value <= range[1]
         && (!WHOLE.includes(name) || Number.isInteger(value)))
       state[name] = name in CHOICES ? text : value;
     else refused.push(`${name} = ${text}`
       + (name in DEFAULTS ? ` (in its place ${DEFAULTS[name]})` : ""));
   }
-  if (state.tab === "design" && state.engine !== "none") {
-    // An engine that lacks the chosen release rule is used with the rule that it has.
-    const rules = Object.keys(ENGINES[state.engine].snippets);
-    if (!rules.includes(state.release)) [state.release] = rules;
-  }
+  // Without a release in the address it is the engine's.
+  if (!given.has("release")) withRelease(state);
   return {state, refused};
+}
+
+// The releases that a state of the physical tab may have: those of its engine, or of the one whose
+// parameters are given; a law has its own.
+function releasesOf({tab, engine, given}) {
+  const name = engine === "none" ? given : engine;
+  if (tab !== "design") return CHOICES.release;
+  if (ENGINES[name]) return CHOICES.release.filter(rule => rule in ENGINES[name].snippets);
+  return name in LAWS ? ["displacement"] : CHOICES.release;
+}
+function withRelease(state) {
+  const rules = releasesOf(state);
+  if (!rules.includes(state.release)) [state.release] = rules;
+  return state;
 }
 
 // Why a state has no answer: an r that no contact of the engine has, or a ball that rises.
 function impossible(state) {
   const least = Math.exp(-2), {a, r, w, phi, v, dv, dphi} = state;
-  if (state.tab === "design" && state.engine !== "none" && state.release === "force" && r <= least)
+  const physical = state.tab === "design", {engine, given} = state;
+  if (physical && !CHOICES.engine.includes(engine))
+    return `unknown engine '${engine}': one of ${CHOICES.engine.slice(1).join(", ")}`;
+  if (physical && !releasesOf(state).includes(state.release)) {
+    const name = engine === "none" ? given : engine;
+    return name in LAWS ? `--release is not allowed with --law ${name}, which has its own`
+      : `${name} has no ${state.release} release: its contacts end by ${releasesOf(state).join(" and ")}`;
+  }
+  if (physical && !(given in ENGINES) && engine !== "none" && state.release === "force" && r <= least)
     return `r = ${r} is not above e⁻² = ${shown(least, 4)}, the least of an `
       + `underdamped contact of ${state.engine}, which ends by its force.`;
   if (state.tab !== "stage") return "";
@@ -75,10 +99,12 @@ function impossible(state) {
   return "";
 }
 
+// The numbers, or the texts, by which the contact of the physical tab is given.
+const givenBy = given => given in ENGINES ? TEXTS : given in LAWS ? ["t", "r"] : ["k", "r"];
 const TABS = {
   orbit: () => ["r", "w", "a", "n", "release", "side"],
-  design: ({engine}) => ["tab", "m", "f", "acc", "k", "r", "n", "release",
-    ...(engine === "none" ? [] : ["engine", "e"])],
+  design: ({engine, given}) => ["tab", "m", "f", "acc", ...givenBy(given), "n", "release",
+    ...(given === "stiffness" ? [] : ["given"]), ...(engine === "none" ? [] : ["engine", "e"])],
   stage: ({model}) => ["tab", "model", "r", ...(model === "restitution" ? [] : ["w"]), "a", "phi",
     "v", "balls", "dv", "dphi", "from", "pace", "view"],
 };
@@ -89,10 +115,9 @@ const hashOf = state => "#" + TABS[state.tab](state).map(
 function asked(state) {
   const {r, n, release, side} = state;
   if (state.tab === "orbit") return {r, n, release, side, omega: state.w, amplitude: state.a};
-  const omega = Math.sqrt(state.k / (state.m / 1000)) / (2 * Math.PI * state.f);
+  const one = caseOf(state);
   // The calculator asks for the orbit that is stable next to the saddle-node.
-  return {r, n, release, side: "stable", omega, amplitude: state.acc,
-    measured: state.engine !== "none"};
+  return {n, side: "stable", amplitude: state.acc, contact: one.contact, law: one.law, physical: one};
 }
 
 function commandOf(state) {
@@ -100,12 +125,17 @@ function commandOf(state) {
     return Object.keys(modelsOf(state)).map(model => `bouncing-ball motion --amplitude ${state.a} `
       + `--restitution ${state.r}${model === "restitution" ? "" : ` --frequency-ratio ${state.w}`} `
       + `--phase ${state.phi} --velocity ${state.v}`).join("\n");
-  const family = `--n ${state.n} --release ${state.release}`;
-  if (state.tab === "design")
-    return `bouncing-ball design --mass "${state.m} g" --frequency "${state.f} Hz" `
-      + `--acceleration "${state.acc} g" --stiffness "${state.k} N/m" --restitution ${state.r} `
-      + family + (state.engine === "none" ? ""
-        : ` --engine ${state.engine} --restitution-error ${state.e}`);
-  return `bouncing-ball orbit --restitution ${state.r} --frequency-ratio ${state.w} `
-    + `--amplitude ${state.a} ${family} --side ${state.side}`;
+  const {given, engine, release, r} = state;
+  if (state.tab === "orbit")
+    return `bouncing-ball orbit --restitution ${r} --frequency-ratio ${state.w} `
+      + `--amplitude ${state.a} --n ${state.n} --release ${release} --side ${state.side}`;
+  const texts = TEXTS.map((key, k) => [ENGINE_NAMES[given]?.[k], state[key].trim()]).filter(([, text]) => text);
+  const contact = given in LAWS ? [`--law ${given} --contact-time "${state.t} ms" --restitution ${r}`]
+    : given === "stiffness" ? [`--stiffness "${state.k} N/m" --restitution ${r}`]
+      : [`--from ${given}`, ...texts.map(([name, text]) =>
+        given === "mujoco" ? `--${name} "${text}"` : `--set ${name}=${text}`)];
+  return [`bouncing-ball design --mass "${state.m} g" --frequency "${state.f} Hz"`,
+    `--acceleration "${state.acc} g"`, ...contact, `--n ${state.n}`,
+    ...(given in LAWS ? [] : [`--release ${release}`]),
+    ...(engine === "none" ? [] : [`--engine ${engine} --restitution-error ${state.e}`])].join(" ");
 }

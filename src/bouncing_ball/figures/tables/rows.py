@@ -4,6 +4,8 @@ Each returns the header and the rows as texts, made of parts of the dataset and 
 :mod:`.layout`.
 """
 
+from functools import partial
+
 import numpy as np
 import xarray as xr
 
@@ -181,16 +183,17 @@ def ext_laws(data: xr.Dataset) -> Table:
     return table(each(data, "quantity", "law"), columns)
 
 
-_OF_ENGINES = "free_steps measured_restitution contact_steps height_scatter limit_error".split()
+_OF_ENGINES = (
+    "free_steps measured_restitution contact_steps height_scatter limit_error limit_scatter".split()
+)
 
 
 def ext_engines(data: xr.Dataset) -> Table:
     """Physics engines and models: restitution, steps, and the heights of orbits.
 
-    Errors are those at the smaller step, the mean of the bounces ± their scatter; at its limit the
-    first order of the step is taken off. Times are over the simulation's, from event to event.
+    Errors are those at the largest step, the mean of the bounces ± their scatter, and those at the
+    limit of small steps. Times are over the simulation's, from event to event.
     """
-    ratios = [f"{ratio:g}" for ratio in data.frequency_ratio.values]
     tolerance = data.tolerance.max()
     columns: Columns = {
         "engine or model": text("engine"),
@@ -201,14 +204,16 @@ def ext_engines(data: xr.Dataset) -> Table:
         "r got": value("measured_restitution", ".4f"),
         "steps in a contact": lambda part: number(part.contact_steps.max(), ".0f"),
         **{
-            f"height error, ϖ = {ratio}": at(_height, frequency_ratio=place)
-            for ratio, place in zip(ratios, data.frequency_ratio.values, strict=True)
+            f"{name} error, ϖ = {ratio:g}": at(partial(_error, name), frequency_ratio=ratio)
+            for name in ("height", "limit")
+            for ratio in data.frequency_ratio.values
         },
-        "at the step's limit": lambda part: _listed(100 * part.limit_error, "+.2f", " %"),
-        f"time of a bounce, ϖ = {', '.join(ratios)}": lambda part: _listed(part.bounce_time, ".1f"),
+        f"time of a bounce, ϖ = {_listed(data.frequency_ratio, 'g')}": lambda part: _listed(
+            part.bounce_time, ".1f"
+        ),
     }
     # The keyword is another argument of sel.
-    shown = data.sel({"tolerance": tolerance}).isel(refinement=-1)
+    shown = data.sel({"tolerance": tolerance}).isel(refinement=0)
     parts: list[xr.Dataset] = []
     for case in each(shown, "release", "restitution", "n"):
         parts += [one for one in each(case, "engine") if np.isfinite(one.free_steps)]
@@ -220,15 +225,16 @@ def ext_engines(data: xr.Dataset) -> Table:
     return table(parts, columns)
 
 
-def _listed(values: xr.DataArray, form: str, unit: str = "") -> str:
-    """Numbers in a cell; rounding has no sign."""
-    known = values.values[np.isfinite(values.values)].ravel()
-    return ", ".join(f"{value:{form}}" for value in known + 0.0) + unit if known.size else "–"
+def _listed(values: xr.DataArray, form: str) -> str:
+    """Those of some numbers that exist, in a cell."""
+    return ", ".join(f"{x:{form}}" for x in values.values.ravel() if np.isfinite(x))
 
 
-def _height(part: xr.Dataset) -> str:
-    """The mean error of a height and the scatter, in per cent."""
-    error, scatter = 100 * float(part.height_error), 100 * float(part.height_scatter)
+def _error(name: str, part: xr.Dataset) -> str:
+    """The mean error of a height, or its limit, and the scatter, in per cent."""
+    error, scatter = (100 * float(part[f"{name}_{what}"]) for what in ("error", "scatter"))
+    if not np.isfinite(error):
+        return "–"
     # Rounding has no sign.
     mean = f"{round(error, 3) + 0.0:+.3f}"
     return f"{mean} ± {scatter:.2f} %" if np.isfinite(scatter) else f"{mean} %"

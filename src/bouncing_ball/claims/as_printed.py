@@ -1,7 +1,7 @@
-"""The paper's equations as it prints them, as far as they are legible, right or wrong.
+"""The equations in the form that the paper prints, right or wrong, as far as they are legible.
 
-They are used only to be checked (:mod:`bouncing_ball.claims.formulas`); nothing else is
-computed from them. All quantities are dimensionless; the functions broadcast.
+They are used only for the check of :mod:`bouncing_ball.claims.formulas`; no other result is
+computed from them. All quantities are dimensionless, and the functions broadcast.
 """
 
 import numpy as np
@@ -31,7 +31,7 @@ def free_flight(time, start, height, velocity):
 
 
 def landing_defect(phase, velocity, flight, amplitude):
-    """First line of Eq. 5: Λ[sin(τ₀ + s) - sin τ₀] - (s v₀ - s²/2), zero at the landing.
+    """First line of Eq. 5: Λ[sin(τ₀ + s) - sin τ₀] - (s v₀ - s²/2), which is zero at the landing.
 
     Examples
     --------
@@ -79,7 +79,7 @@ def saddle_node(n, restitution):
 
 
 def period_doubling(n, restitution):
-    """Eq. 8: Λ = √(1 + [nπ (1 - r)/(1 + r)]²), which is that of Holmes' map.
+    """Eq. 8: Λ = √(1 + [nπ (1 - r)/(1 + r)]²), the period doubling of Holmes' map.
 
     Examples
     --------
@@ -179,7 +179,7 @@ def permanent_contact_threshold(frequency_ratio, damping_ratio):
 
 
 def permanent_contact_frequency_ratio(threshold, damping_ratio, sign):
-    """Eqs. 34 (sign +1) and 35 (sign -1): the ϖ at which Λ_SD has a value.
+    """Eqs. 34 (sign +1) and 35 (sign -1): the ϖ at which Λ_SD has a given value.
 
     Examples
     --------

@@ -1,7 +1,7 @@
 '''Claims and explanations as small functions of the datasets.
 
-A claim is a function whose docstring says what the paper claims, in our words, and which
-returns the finding that decides it::
+A claim is a function whose docstring states the claim of the paper in our words, and which
+returns the finding that decides the claim::
 
     @claim("Abstract and Introduction")
     def contact_shortens(data):
@@ -11,9 +11,9 @@ returns the finding that decides it::
         """
         return below(data["fig13"].contact_duration.diff("frequency_ratio"), 0)
 
-Its id is the function's name, unless another is given. Where a claim can be read in
-several ways, the function returns a finding for each reading, by the reading's name. If it is
-clear which of them the paper means, that one comes first, and the claim is ``meant``.
+The id of a claim is the name of the function, unless another id is given. If a claim can be read in
+several ways, the function returns a mapping from the name of each reading to its finding. If it is
+clear which reading the paper means, this reading comes first, and the claim is ``meant``.
 '''
 
 import inspect
@@ -30,13 +30,13 @@ from bouncing_ball.datasets.files import rows_beside
 from bouncing_ball.errors import ModelError
 
 Data = Mapping[str, Any]
-# An explanation of claims that are not reproduced: its docstring is the text, and it returns
-# checks that must hold for it.
+# An explanation of claims that are not reproduced is a function whose docstring is the text, and
+# which returns checks, all of which must hold.
 Explanation = Callable[[Data], Mapping[str, Finding]]
 
 
 def _answer(name: str, decide: Callable[[Data], Any], data: Data) -> Any:
-    """The result of a function of the datasets; data that it misses are an error of one line."""
+    """The result of a function of the datasets; missing data are an error with one line."""
     try:
         return decide(data)
     except (ModelError, KeyError, AttributeError) as error:
@@ -73,7 +73,7 @@ def name_of(function: Callable[..., Any]) -> str:
 
 
 def checked(explanation: Explanation, data: Data) -> tuple[bool, str]:
-    """Whether all checks of an explanation hold, and a text of them or why they were not made.
+    """Whether all checks of an explanation hold, and a text: the checks, or why none were made.
 
     Raises
     ------
@@ -95,28 +95,28 @@ class Claim:
     Parameters
     ----------
     id : str
-        Its name.
+        The name of the claim.
     kind : str
-        The group in which it is counted: ``number``, ``statement`` or ``restored formula``. The
-        signs of a restored formula are illegible in the text at hand, so that the check shows that
-        this form is right, and not that the paper printed it.
+        The group in which the claim is counted: ``number``, ``statement`` or ``restored formula``.
+        The signs of a restored formula are illegible in the text at hand, so that the check shows
+        that this form is right, and not that the paper printed it.
     item, statement : str
-        Its place in the paper, and what the paper says there, in our words.
+        The place in the paper, and the statement there in our words.
     decide : callable
-        A :class:`~bouncing_ball.claims.verdict.Finding` from the datasets, or a
-        mapping of findings by reading; numbers, if one is ``printed``.
+        A function of the datasets that returns a :class:`~bouncing_ball.claims.verdict.Finding`,
+        or a mapping of findings by reading; with ``printed``, it returns numbers instead.
     printed : str
-        The number as printed, with its digits; empty if there is none.
+        The number with the digits that the paper prints; empty if the claim is not a number.
     condition, remark : str
-        The decidable condition into which a statement is turned; how it was read.
+        The decidable condition that stands for the statement, and a remark on its reading.
     answer : str
-        What its author might answer to a verdict other than reproduced.
+        A possible answer of the authors to a verdict other than reproduced.
     meant : bool
-        Whether the first reading is the one that the paper means.
+        Whether the paper means the first reading.
     explanation : callable, optional
-        Why it is not reproduced: conditions on the datasets, by what is checked.
+        The reason why the claim is not reproduced: named conditions on the datasets.
     restates : Claim, optional
-        The claim that it repeats; the tally counts repetitions apart.
+        The claim that this claim repeats; the tally counts repetitions separately.
     """
 
     id: str
@@ -133,7 +133,7 @@ class Claim:
     restates: "Claim | None" = None
 
     def verdict(self, data: PaperData) -> tuple[Finding, str]:
-        """The finding, and a text that gives the reason if there is none.
+        """The finding, and a text that gives the reason if the claim has no verdict.
 
         Raises
         ------
@@ -162,12 +162,12 @@ def claim(item: str, id: str = "", **given: Any) -> Callable[[Callable[[Data], A
     Parameters
     ----------
     item : str
-        Its place in the paper.
+        The place of the claim in the paper.
     id : str
-        Its name, by default the function's.
+        The name of the claim, by default the name of the function.
     **given
-        Further fields of :class:`Claim`. With a number as ``printed``, its digits as a text, the
-        function returns the computed number.
+        Further fields of :class:`Claim`. With the digits of a number as ``printed``, the function
+        returns the computed number.
     """
     kind = "number" if "printed" in given else "statement"
 
@@ -179,9 +179,9 @@ def claim(item: str, id: str = "", **given: Any) -> Callable[[Callable[[Data], A
 
 
 def formula(name: str, item: str, text: str, row: str = "", **given: Any) -> Claim:
-    """A printed formula, decided by the row of its name in the dataset ``formulas``.
+    """The claim that a printed formula is right, decided by one row of the dataset ``formulas``.
 
-    The row is ``item`` unless ``row`` is given.
+    The name of the row is ``item`` unless ``row`` is given.
     """
 
     def decide(data: Data) -> Finding:
@@ -197,16 +197,16 @@ def formulas(where: str) -> list[Claim]:
 
 
 def of_formula(data: Data, row: str) -> Finding:
-    """The finding that a formula disagrees with its second computation by no more than rounding.
+    """The finding that a formula agrees with its second computation up to rounding.
 
-    ``row`` is its place along ``formula`` in the dataset ``formulas``.
+    ``row`` is the label of the formula along ``formula`` in the dataset ``formulas``.
     """
     one = data["formulas"].sel(formula=row)
     return at_most(one.disagreement, one.budget)
 
 
 def defined_in(module: ModuleType) -> Iterator[Claim]:
-    """The claims of a module in their order, those in lists included."""
+    """The claims of a module in their order, including claims in lists."""
     for value in vars(module).values():
         for one in value if isinstance(value, list) else [value]:
             if isinstance(one, Claim):

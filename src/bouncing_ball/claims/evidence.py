@@ -1,7 +1,7 @@
-"""The numbers that decide statements of the paper in words, read off the figures' datasets.
+"""The numbers that decide the verbal statements of the paper, taken from the figures' datasets.
 
-Nothing is simulated or solved here: datasets in, numbers out. A *softening* is the change
-from one row of Table 1 to the next row, whose contact is more compliant.
+This module simulates and solves nothing. A *softening* is the change from one row of Table 1 to the
+next row, whose contact is more compliant.
 """
 
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ from bouncing_ball.orbits.stability import Bifurcation
 
 Data = Mapping[str, xr.Dataset]
 BOUNDS = tuple(map(str, Bifurcation))
-# A logarithmic grid meets its round numbers, and a sample a bifurcation, up to rounding.
+# A point of a logarithmic grid equals a round number, and a sample a bifurcation, up to rounding.
 GRID = 1e-9
 
 
@@ -30,7 +30,7 @@ def curves(data: Data, *names: str) -> xr.Dataset:
     for name in names:
         sweep = data[name].reset_coords()[read + axes].rename(case="orbit")
         pairs = zip(*(sweep[axis].values for axis in axes), strict=True)
-        # Six digits, which rounding does not change and which tell the curves apart.
+        # Rounding does not change six digits, and six digits distinguish the curves.
         labels = [f"{name} r={r:.6g} Λ={lam:.6g}" for r, lam in pairs]
         parts.append(sweep.assign(n=data[name].attrs["n"]).assign_coords(orbit=labels))
     return xr.concat(parts, "orbit", data_vars="all")
@@ -43,7 +43,7 @@ def apparent(data: Data) -> xr.DataArray:
 
 
 def worst_when_stiff(values: xr.DataArray) -> xr.DataArray:
-    """Largest value among contacts that the paper regards as stiff; NaN if there is none."""
+    """Largest value among contacts that the paper regards as stiff; NaN without such contacts."""
     stiff = values.frequency_ratio >= STIFF * (1 - GRID)
     return values.where(stiff).max("frequency_ratio")
 
@@ -61,8 +61,10 @@ def dip(data: Data, amplitude: float) -> xr.DataArray:
 
 
 def short_of_lift(data: Data) -> xr.DataArray:
-    """The smallest 1 - Λ sin φ of Fig. 6, with φ of Eq. 6: r_a approaches r from below where it is
-    positive, because ``r_a - r = -ζ(1 + r)²(1 - Λ sin φ)/(nπϖ)`` to first order in 1/ϖ.
+    """The smallest 1 - Λ sin φ of Fig. 6, with φ of Eq. 6.
+
+    Where it is positive, r_a approaches r from below, because
+    ``r_a - r = -ζ(1 + r)²(1 - Λ sin φ)/(nπϖ)`` to first order in 1/ϖ.
     """
     sweep = data["fig06"]
     phase, _ = printed.fixed_point(sweep.attrs["n"], sweep.restitution, sweep.amplitude)
@@ -73,8 +75,8 @@ def short_of_lift(data: Data) -> xr.DataArray:
 def stiff_orbit_error(data: Data) -> xr.DataArray:
     """Figs. 5, 6 and 10: largest relative errors of the restitution model among stiff contacts.
 
-    Over ``orbit`` and ``measure``. The relative error of a phase depends on its origin, so that the
-    error is given as a share of a cycle as well.
+    The result is over ``orbit`` and ``measure``. The relative error of a phase depends on the
+    origin of the phase, so that the error is also given as a share of a cycle.
     """
     sweep = curves(data, "fig05", "fig06", "fig10")
     n, r, lam = sweep.n, sweep.restitution, sweep.amplitude
@@ -91,12 +93,12 @@ def stiff_orbit_error(data: Data) -> xr.DataArray:
 
 
 def amplitude_matters_below(data: Data) -> float:
-    """Fig. 10: the ϖ below which its curves are apart by more than 1 % of nπ; interpolated."""
+    """Fig. 10: the interpolated ϖ below which the curves differ by more than 1 % of nπ."""
     sweep, ratio = data["fig10"], data["fig10"].frequency_ratio.values
     apart = sweep.bounce_velocity.max("case") - sweep.bounce_velocity.min("case")
     share = np.ravel(apart / sweep.restitution_bounce_velocity)
     last = int(np.flatnonzero(share > TOLERANCE).max(initial=0))
-    # The share falls there with ϖ.
+    # Between these two points the share falls with ϖ.
     pair = slice(last + 1, last - 1 if last else None, -1)
     return float(np.exp(np.interp(TOLERANCE, share[pair], np.log(ratio[pair]))))
 
@@ -125,11 +127,10 @@ def folds(data: Data) -> int:
 
 @np.errstate(invalid="ignore")  # a range without an end
 def range_error(data: Data) -> xr.DataArray:
-    """Relative errors of the restitution model at both ends of the range of Fig. 15; NaN without
-    one.
+    """Relative errors of the restitution model at both ends of the range of Fig. 15.
 
-    Over ``bound``. The special points are in the order of the branch, which ends on the stable
-    side.
+    The result is over ``bound``, and NaN for an end that does not exist. The special points are in
+    the order of the branch, which ends on the stable side.
     """
     both = data["fig15"].isel(frequency_ratio=0)
     kinds, lam = both.special_kind.values, both.special_amplitude.values
@@ -144,7 +145,7 @@ def _rows(data: Data, source: str) -> xr.DataArray:
 
 
 def softening(data: Data) -> xr.DataArray:
-    """Change of the computed ends of Table 1 from each row to the next more compliant one."""
+    """Change of the computed ends of Table 1 from each row to the next more compliant row."""
     return _rows(data, "computed").diff("frequency_ratio")
 
 
@@ -155,7 +156,7 @@ def stiff_difference(data: Data, source: str, impact_map: str) -> xr.DataArray:
 
 
 def printed_slight_move(data: Data) -> xr.DataArray:
-    """The largest relative change printed from the stiffest row of Table 1 to the next one.
+    """The largest relative change of the printed ends from the stiffest row of Table 1 to the next.
 
     The paper calls this change slight.
     """

@@ -1,8 +1,8 @@
-"""Table 1 under eight readings of what the authors may have computed.
+"""Table 1 under eight hypotheses about the authors' computation, called readings.
 
-Six are the models of this package with another damping, release or rounding, and Eqs. 7
-and 8. Two alter an equation: a contact without gravity, and a period doubling whose
-linearised flight neglects the table's displacement, as Holmes' map does.
+Six readings are the models of this package with another damping, release or rounding, and Eqs. 7
+and 8. Two readings alter an equation: a contact without gravity, and a period doubling whose
+linearised flight neglects the displacement of the table, as Holmes' map does.
 """
 
 from collections.abc import Callable
@@ -22,10 +22,9 @@ from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.studies.printed_table1 import AXES, LAST_DIGIT, RESTITUTION, printed_table
 
 PRINTED_DAMPING = 0.052
-"""ζ as the paper rounds it, beside the one of Eq. 16."""
+"""ζ in the paper's rounding, an alternative to ζ by Eq. 16."""
 
-# Samples of a branch along ε, and their largest distance from ε = 0 in units of 1/ϖ, the scale
-# of the fold.
+# Number of samples of a branch along ε, and the largest |ε| in units of 1/ϖ, the scale of the fold.
 _SAMPLES, _REACH = 2001, 12.0
 
 
@@ -56,10 +55,10 @@ class WeightlessOrbit(SpringDamperOrbit):
 
 
 def high_bounce_monodromy(orbit: SpringDamperOrbit) -> np.ndarray:
-    """Monodromy of orbits with Holmes' linearised flight, shape (..., 2, 2).
+    """Monodromy of orbits with the linearised flight of Holmes' map, shape (..., 2, 2).
 
-    This flight ends at the height where it began, ``z′_b T - T²/2 = 0`` in place of Eq. 25, so that
-    ``dT = -T dz′_b/z′_i``.
+    This flight ends at the height at which it began, ``z′_b T - T²/2 = 0`` in place of Eq. 25, so
+    that ``dT = -T dz′_b/z′_i``.
     """
     d_duration, _, d_velocity = np.moveaxis(orbit.contact_jacobian()[..., :2], -2, 0)
     d_release = d_duration + np.array([1.0, 0.0])
@@ -77,19 +76,19 @@ def altered_ends(
 ) -> list[float]:
     """Λ at the saddle-node and the period doubling of a branch with altered equations.
 
-    The saddle-node is the minimum of Λ, whatever the linearisation gives, because no orbit has a
-    smaller Λ. The period doubling is the root of 1 + tr + det next to it, on the side of
-    the short contacts.
+    The saddle-node is the minimum of Λ along the branch for any linearisation, because no orbit has
+    a smaller Λ. The period doubling is the root of 1 + tr + det nearest to the saddle-node on the
+    side of the short contacts.
 
     Parameters
     ----------
     contact : SpringDamper
-        A single one.
+        A single contact.
     n : int
     orbit_at : callable
-        The orbits of ε, the contact and n; their contacts last (θ₀ + ε)/ϖ_d.
+        The orbits as a function of ε, the contact and n; their contacts last (θ₀ + ε)/ϖ_d.
     monodromy : callable
-        Their monodromy, shape (..., 2, 2).
+        The monodromy of these orbits, shape (..., 2, 2).
     """
     from scipy.optimize import brentq, minimize_scalar
 
@@ -115,9 +114,10 @@ def altered_ends(
 def readings() -> dict[str, np.ndarray]:
     """Both ends of each range under the eight readings, shape (ϖ, n, 2).
 
-    "Equations as they stand" are Eqs. 11-26 and the linearised return map, of which digits
-    beyond the last printed one may be cut off; ζ to first order is -ln r/π; under "high-bounce
-    stability" the orbit is exact; "all rows from Eqs. 7-8" shows the influence of the stiffness.
+    "Equations as they stand" means Eqs. 11-26 and the linearised return map; in one reading the
+    digits beyond the last printed digit are cut off. ζ to first order is -ln r/π. Under
+    "high-bounce stability" the orbit is exact. "All rows from Eqs. 7-8" shows the influence of the
+    stiffness.
     """
     omega, n = np.meshgrid(AXES["frequency_ratio"], AXES["n"], indexing="ij")
     zeta = float(damping_ratio(RESTITUTION))
@@ -151,10 +151,10 @@ def forensics() -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        ``computed`` and ``difference`` (in last digits) over (reading, frequency_ratio,
-        n, bound); over (reading, rows) the largest and the rms difference and the number of
-        reproduced entries; ``unreachable`` over reading, the number of saddle-nodes that are
-        printed below the fold by more than rounding can explain, where no orbit exists.
+        ``computed`` and ``difference`` (in units of the last digit) over (reading,
+        frequency_ratio, n, bound); the largest and the rms difference and the number of reproduced
+        entries over (reading, rows); and ``unreachable`` over reading, the number of printed
+        saddle-nodes that lie below the fold by more than rounding, where no orbit exists.
     """
     found, printed = readings(), printed_table()
     axes = {"reading": list(found), **printed.coords}

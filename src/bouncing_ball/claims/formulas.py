@@ -1,10 +1,10 @@
-"""Every formula of the paper that can be wrong, against a second computation.
+"""The comparison of every formula of the paper that can be wrong with a second computation.
 
-Each row of the dataset gives the largest disagreement over a sample of parameters and
-the part that rounding accounts for. The formulas are those of
-:mod:`bouncing_ball.claims.as_printed`. They are compared with simulated cycles, the multipliers
-of orbits, and the equations of motion, differentiated in the complex plane, none of which uses
-these formulas except where the comparison says so.
+Each row of the dataset gives the largest disagreement over a sample of parameters, and the
+disagreement that rounding explains. The formulas are those of
+:mod:`bouncing_ball.claims.as_printed`. They are compared with simulated cycles, with the
+multipliers of orbits, and with the equations of motion, differentiated by complex steps. These
+computations use the formulas only where the text of the comparison tells so.
 """
 
 from typing import Annotated
@@ -24,16 +24,16 @@ from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.parameters import Parameters, Seed, number
 
-# Motions, roots and minima are exact up to rounding, 1e-16, amplified by the terms
-# that cancel in them; a factor of 10⁴ covers the samples.
+# Motions, roots and minima are exact up to rounding, 1e-16, which cancellation of their terms
+# amplifies; a factor of 10⁴ covers the samples.
 ROUNDING = 1e-12
-# The smallest normal double, as the smallest r.
+# The smallest r, which is the smallest normal double.
 _FAINT = float(np.finfo(float).tiny)
-# An impact so fast that the weight, 1/(ϖv) of its force, is less than rounding.
+# An impact speed at which the weight, 1/(ϖv) of the impact force, is less than rounding.
 WEIGHTLESS = 1e16
-# A ϖ so small that Λ_SD ϖ² differs from 1 by the order of ϖ² only.
+# A small ϖ, at which Λ_SD ϖ² differs from 1 by the order of ϖ².
 _SOFT = 1e-4
-# Eq. 16 on a table at rest: r and ϖ, with the impact velocity of the 1-T orbit.
+# The r and ϖ for Eq. 16 on a table at rest; the impact velocity is that of the 1-T orbit.
 STATIC = {"restitution": [0.85, 0.65], "frequency_ratio": [10.0, 100.0]}
 
 # For each formula: the comparison, the disagreement, and the disagreement that rounding explains.
@@ -41,9 +41,9 @@ Checks = dict[str, tuple[str, float, float]]
 
 
 def check(comparison: str, *defects, budget: float = ROUNDING) -> tuple[str, float, float]:
-    """The comparison with the largest absolute entry of all defects, and its budget.
+    """The comparison, the largest absolute entry of all defects, and the budget.
 
-    The entry is NaN if one of the defects is NaN.
+    The largest entry is NaN if one of the defects is NaN.
 
     Examples
     --------
@@ -54,7 +54,7 @@ def check(comparison: str, *defects, budget: float = ROUNDING) -> tuple[str, flo
 
 
 def slopes(motion, time):
-    """Derivatives of a motion's height and velocity by a complex step, exact up to rounding.
+    """Derivatives of height and velocity of a motion by a complex step, exact up to rounding.
 
     Examples
     --------
@@ -68,7 +68,7 @@ def slopes(motion, time):
 def impact_cycle(phase, velocity, r, lam):
     """One simulated cycle of the restitution model, between states (φ, v) just after an impact.
 
-    Returns φ and v after the next impact, and the time until then; arrays broadcast.
+    The result is φ and v after the next impact, and the time between the impacts; arrays broadcast.
     """
     cycle = next_impact(r, lam, phase, (lam * np.cos(phase) - velocity) / r)
     bounced = lam * np.cos(cycle.phase) - r * cycle.relative_velocity
@@ -78,7 +78,8 @@ def impact_cycle(phase, velocity, r, lam):
 def restitution_model(rng, samples) -> Checks:
     """Checks of Eqs. 1 to 9: impacts from random states, and orbits with their stability.
 
-    ``rng`` is the random generator and ``samples`` the number of parameter sets; likewise below.
+    ``rng`` is the random generator and ``samples`` the number of parameter sets, also in the other
+    functions of this module.
     """
     r, lam = rng.uniform(0.1, 0.95, samples), rng.uniform(0.1, 3, samples)
     phase = rng.uniform(-np.pi, np.pi, samples)
@@ -97,7 +98,7 @@ def restitution_model(rng, samples) -> Checks:
     phi, launch = printed.fixed_point(n, r, above)
     back_phase, back_velocity, _ = impact_cycle(phi, launch, r, above)
     fixed = reduce_angle(back_phase - phi), back_velocity - launch
-    # The orbit with φ = 0, at which both sides of the fold meet, exists at this Λ only.
+    # The orbit with φ = 0, where both sides of the fold meet, exists at this Λ only.
     fold = printed.saddle_node(n, r)
     met_phase, met_velocity, _ = impact_cycle(0.0 * r, n * np.pi, r, fold)
     at_fold = model.orbit_of(n, fold, 0.0 * r).trace_and_determinant()
@@ -105,10 +106,10 @@ def restitution_model(rng, samples) -> Checks:
     doubling = printed.period_doubling(n, r)
     corrected = np.hypot(2 * (1 + r * r) / (1 + r) ** 2, along)
     flips = model.orbit_of(n, corrected, np.arccos(along / corrected)).trace_and_determinant()
-    # Holmes' map, which takes φ + 2v for the next phase, has 1 + r - 2p and r.
+    # Holmes' map, whose next phase is φ + 2v, has the trace 1 + r - 2p and the determinant r.
     push = (1 + r) * np.sqrt(doubling**2 - along**2)
     holmes = Bifurcation.PERIOD_DOUBLING.test(1 + r - 2 * push, r)
-    # A ball at rest on tables a little below and above the threshold of Eq. 9.
+    # A ball at rest on two tables, with Λ slightly below and above the threshold of Eq. 9.
     stays = np.isnan(lift_off_phase(1 + np.array([-1, 1]) * ROUNDING)).tolist() == [True, False]
 
     simulated, flip = "simulated flight and impact", "multiplier at -1 of "
@@ -127,9 +128,9 @@ def restitution_model(rng, samples) -> Checks:
 
 
 def printed_contact(time, omega, zeta, lam, phase, impact):
-    """Eqs. 12-13 for a contact that starts with an impact, of shape (2, ...).
+    """Eqs. 12-13 for a contact that starts with an impact: height and velocity, shape (2, ...).
 
-    The constants A and B are linear in its height and velocity (Eqs. 21-22).
+    The constants A and B are linear in the height and velocity of the impact (Eqs. 21-22).
     """
     zero, rate = printed.contact(0.0, omega, zeta, lam, phase, 0.0, 0.0)
     a = lam * np.sin(phase) - zero
@@ -140,15 +141,15 @@ def printed_contact(time, omega, zeta, lam, phase, impact):
 def acceleration(rise, rate, frequency, damping, gravity=1.0):
     """The absolute acceleration by Eq. 11, δ″ + w″ = -1 - 2ζϖ δ′ - ϖ² δ.
 
-    With the contact's frequency in rad/s and g in m/s² it is Eq. 10.
+    With the frequency of the contact in rad/s and g in m/s² this is Eq. 10.
     """
     return -gravity - 2 * damping * frequency * rate - frequency**2 * rise
 
 
 def measured_restitution(r, frequency_ratio, velocity):
-    """Velocity after a simulated impact over the one before it, on a table at rest.
+    """Speed after a simulated impact on a table at rest, divided by the speed before this impact.
 
-    NaN where the ball stays on the table.
+    The result is NaN where the ball stays on the table.
     """
     contact = SpringDamper(frequency_ratio, printed.damping_ratio(r))
     return next_impact(contact, 0.0, 0.0, -velocity).relative_velocity / -velocity
@@ -157,7 +158,7 @@ def measured_restitution(r, frequency_ratio, velocity):
 def damping(rng, samples) -> Checks:
     """Checks of Eq. 16 and its limits r = 1 and r → 0."""
     r, omega = rng.uniform(0.1, 0.99, samples), np.exp(rng.uniform(0, 5, samples))
-    # For r → 0, 1 - ζ tends to π²/(2 ln² r), but slowly; the budget is twice as much.
+    # For r → 0, 1 - ζ tends to π²/(2 ln² r), but slowly; the budget is twice this value.
     slow, faint = np.pi**2 / np.log(_FAINT) ** 2, 1 - printed.damping_ratio(_FAINT)
     impact = measured_restitution(r, omega, WEIGHTLESS) - r
     return {
@@ -170,7 +171,7 @@ def damping(rng, samples) -> Checks:
 def static_error() -> xr.DataArray:
     """|r_static - r|/r of a heavy ball on a table at rest, over r and ϖ.
 
-    NaN where the ball does not rebound.
+    The result is NaN where the ball does not rebound.
     """
     r, ratio = np.meshgrid(*STATIC.values(), indexing="ij")
     return xr.DataArray(np.abs(measured_restitution(r, ratio, np.pi) / r - 1), STATIC)
@@ -190,14 +191,14 @@ def contact_orbits(rng, samples) -> Checks:
     repeated = reduce_angle(again.phase - phase), again.relative_velocity - u
 
     def simulated(time):
-        """δ and δ′, and height and velocity, at a time since the impact."""
+        """δ, δ′, height and velocity at a time after the impact."""
         rise, rate, *_ = contact.flow(time, 0.0, u, phase, lam)
         return rise, rate, rise + lam * np.sin(phase + time), rate + lam * np.cos(phase + time)
 
     time = end * rng.uniform(0.1, 1, samples)
     rise, rate, *held = simulated(time)
     off = printed_contact(time, omega, zeta, lam, phase, impact) - held
-    # Eq. 10 in metres and seconds, of a contact with ϖ times the table's frequency.
+    # Eq. 10 in metres and seconds, for a contact whose frequency is ϖ times that of the table.
     gravity, table = 9.81, rng.uniform(20, 60, samples)
     length, speed = gravity / table**2, gravity / table
     physical = acceleration(rise * length, rate * speed, omega * table, zeta, gravity) / gravity
@@ -226,7 +227,7 @@ def contact_orbits(rng, samples) -> Checks:
 def steady_amplitude(omega, zeta):
     """Amplitude of δ by Eq. 31 about its mean -1/ϖ², over Λ.
 
-    It follows from two times that are a quarter cycle apart.
+    The amplitude follows from δ at two times that are a quarter of a cycle apart.
     """
     lam = omega**-2.0
     swing = (printed.steady_displacement(time, omega, zeta, lam) for time in (0.0, np.pi / 2))
@@ -252,7 +253,7 @@ def permanent_contact(rng, samples) -> Checks:
     # Λ_SD grows as 1/ϖ², with a next term of relative order ϖ².
     soft = 1 / steady_amplitude(_SOFT, zeta) - 1
 
-    # Λ_SD² is quadratic in 1/ϖ², and so its minimum is where it is stationary.
+    # Λ_SD² is quadratic in 1/ϖ², so that its only stationary point is the minimum.
     place = (1 - 2 * zeta**2) ** -0.5
     bottom = permanent_contact_threshold(place, zeta)
     flat = slopes(lambda ratio: printed.permanent_contact_threshold(ratio, zeta), place)
@@ -260,7 +261,7 @@ def permanent_contact(rng, samples) -> Checks:
     level = bottom + (1 - bottom) * rng.uniform(0.1, 0.9, samples)
 
     def inverse(sign):
-        """The printed ϖ has this threshold, and lies on its side of the minimum."""
+        """Defects of a printed ϖ: in its threshold, and in its place beside the minimum."""
         ratio = printed.permanent_contact_frequency_ratio(level, zeta, sign)
         off = permanent_contact_threshold(ratio, zeta) / level - 1
         return check("roots of Λ_SD", off, np.sign(ratio - place) - sign)
@@ -288,7 +289,7 @@ class Formulas(Parameters):
 def formulas(parameters: Formulas) -> xr.Dataset:
     """Disagreement of every printed formula with a second computation.
 
-    The dataset has ``disagreement``, ``budget`` and ``compared_with``, a text, of shape (formula,);
+    The dataset has ``disagreement``, ``budget`` and the text ``compared_with`` over ``formula``,
     and ``static_error`` over (restitution, frequency_ratio).
     """
     rng = np.random.default_rng(parameters.seed)

@@ -50,7 +50,8 @@ def _row(claim: Claim, data: Mapping[str, xr.Dataset], holding: set[str]) -> dic
 
 
 def assess(claims: Sequence[Claim], data: Mapping[str, xr.Dataset]) -> xr.Dataset:
-    """The verdict on each claim over ``claim``; over ``explanation`` whether its checks hold.
+    """The verdict on each claim, over ``claim``, and the explanations whose checks hold, over
+    ``explanation``.
 
     Raises
     ------
@@ -83,9 +84,9 @@ def ledger(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        The dataset of :func:`assess`, with results of functions of
-        :mod:`bouncing_ball.claims.evidence` by their names. The attributes are the paper's limits
-        and the bound of a close number.
+        The dataset of :func:`assess`, and results of :mod:`bouncing_ball.claims.evidence` under
+        the names of the functions. The attributes are the paper's limits and the bound within which
+        a number is close.
 
     Raises
     ------

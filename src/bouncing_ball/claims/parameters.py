@@ -1,4 +1,4 @@
-"""The paper's parameters of each dataset; computed with others, a dataset decides no claim."""
+"""The paper's parameters of each dataset; with other parameters a dataset decides no claim."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,13 +12,13 @@ from bouncing_ball.datasets.netcdf import parameter_attributes
 
 PARAMETERS: dict[str, dict[str, Any]] = read_yaml(Path(__file__).with_suffix(".yaml"))
 """The paper's parameters of every dataset that decides claims, and the ranges that the conditions
-need as well; the release is always the displacement's."""
+also need. The release is always the displacement release."""
 TOLERANCE: float = PARAMETERS["fig14"]["tolerance"]
 """The paper's limit for the error of the restitution model, 1 % (Eqs. 37 and 38)."""
 STIFF = 100.0
-"""ϖ above which the paper takes both models for equal."""
+"""ϖ above which the paper treats both models as equal."""
 PERMANENT_CONTACT = 6.0
-"""ϖ at which, by the paper, the thresholds of permanent contact differ by its limit."""
+"""ϖ at which, according to the paper, the thresholds of permanent contact differ by its limit."""
 
 
 class NotAsked(Exception):
@@ -26,9 +26,10 @@ class NotAsked(Exception):
 
 
 class PaperData(dict[str, xr.Dataset]):
-    """Datasets by name, of which only those with the paper's parameters can be read.
+    """Datasets by name; only a dataset with the paper's parameters can be read.
 
-    Reading another one raises :class:`NotAsked`. ``used`` names those that were read, in order.
+    Reading any other dataset raises :class:`NotAsked`. ``used`` has the names of the datasets read,
+    in order.
     """
 
     def __init__(self, data: Mapping[str, xr.Dataset]) -> None:
@@ -39,7 +40,7 @@ class PaperData(dict[str, xr.Dataset]):
         data, release = super().__getitem__(name), {"release": "displacement"}
         given: dict[str, Any] = release | data.attrs
         for key, paper in (release | parameter_attributes(PARAMETERS[name])).items():
-            # A list of one number is that number among the attributes.
+            # netCDF stores an attribute that is a list of one number as this number.
             if not np.array_equal(np.ravel(given.get(key, "none")), np.ravel(paper)):
                 raise NotAsked(
                     f"{name} was computed with {key} = {given.get(key)}; the claim requires {paper}"

@@ -5,15 +5,15 @@ import xarray as xr
 
 from bouncing_ball.claims.verdict import Verdict
 
-# Restatements, which are counted apart, come last.
+# Restatements come last, because they are counted separately.
 _GROUPS = ("restored formula", "number", "statement", "restatement")
 
 
 def tally(claims: xr.Dataset, figures: int) -> str:
-    """Number of figures, of claims and of verdicts in one line, group by group.
+    """The numbers of figures, of claims and of verdicts in one line, group by group.
 
-    Restatements are counted apart from the claims that they repeat, and formulas that had to be
-    restored apart from numbers.
+    Restatements are counted separately from the claims that they repeat, and restored formulas
+    separately from numbers.
 
     Parameters
     ----------

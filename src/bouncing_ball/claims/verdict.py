@@ -1,4 +1,4 @@
-"""The verdict on a claim: a number against a printed one, or a condition that holds or not."""
+"""The verdict on a claim, from the comparison with a printed number or from a condition."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -11,21 +11,21 @@ from bouncing_ball.datasets.rounding import compared_text
 from bouncing_ball.errors import ModelError
 
 CLOSE_UNITS = 2
-"""A number is close, and not contradicted, if it differs by no more than so many units of its
-last printed digit, because a rounded intermediate result, or a point read off a curve, may
-cause as much. The bound is our choice."""
+"""The largest difference, in units of the last printed digit, at which a number is close and not
+contradicted, because a rounded intermediate result, or a point read off a curve, may cause such a
+difference. The bound is our choice."""
 
-# Relative tolerance, so that rounding does not decide about a number exactly on a bound.
+# Relative tolerance, because rounding must not decide about a number that is equal to a bound.
 _ROUNDING = 1e-9
 
 
 class Verdict(StrEnum):
-    """The verdicts, from the best to the worst, and the absence of a verdict."""
+    """The verdicts from the best to the worst, and last the absence of a verdict."""
 
     REPRODUCED = "reproduced"
     """Within half a unit of the last printed digit; a condition that holds."""
     QUALIFIED = "qualified"
-    """Reproduced for what the paper means it for, but not in other readings."""
+    """Reproduced in the reading that the paper means, but not in the others."""
     CLOSE = "close"
     """A number farther away, by no more than :data:`CLOSE_UNITS`."""
     CONTRADICTED = "contradicted"
@@ -39,9 +39,9 @@ class Verdict(StrEnum):
 class Finding:
     """The number that decides a claim in one reading, with its verdict.
 
-    ``required`` is the printed number, or the condition in signs with its ``limit``,
-    which is NaN for a printed number. ``deviation_units`` and ``deviation`` are the difference from
-    a printed number, in units of its last digit and as a share of it; NaN for a condition.
+    ``required`` is the printed number, or the condition as a formula; ``limit`` is the bound of the
+    condition, NaN for a printed number. ``deviation_units`` and ``deviation`` are the difference
+    from a printed number in units of its last digit and relative to it, NaN for a condition.
     """
 
     found: float
@@ -52,12 +52,14 @@ class Finding:
     deviation: float = np.nan
 
     def __str__(self) -> str:
-        """The number found, or its bound if that is of the size of rounding."""
+        """The number found, or its bound if the bound is of the size of rounding."""
         return compared_text(self.found, self.limit)
 
 
 def _finite(values: ArrayLike | xr.DataArray) -> np.ndarray:
-    """The numbers as an array; a missing one is an error, because it would decide nothing."""
+    """The numbers as an array; it is an error if there are none or one is NaN, because then
+    nothing could be decided.
+    """
     numbers = np.asarray(values, dtype=float)
     missing = int(np.isnan(numbers).sum())
     if missing or not numbers.size:
@@ -72,7 +74,7 @@ def largest(values: ArrayLike | xr.DataArray) -> float:
     Raises
     ------
     ModelError
-        If there is none, or one of them is NaN.
+        If there are no numbers, or one of them is NaN.
 
     Examples
     --------
@@ -88,7 +90,7 @@ def smallest(values: ArrayLike | xr.DataArray) -> float:
     Raises
     ------
     ModelError
-        If there is none, or one of them is NaN.
+        If there are no numbers, or one of them is NaN.
 
     Examples
     --------
@@ -106,12 +108,12 @@ def _condition(value: float, sign: str, bound: float, holds: bool) -> Finding:
 def at_most(values, bound) -> Finding:
     """The finding that all values are at most a bound; a tie counts in favour of the condition.
 
-    Of several bounds the smallest decides.
+    If there are several bounds, the smallest decides.
 
     Raises
     ------
     ModelError
-        If there is no value, or one of them is NaN; likewise in the other conditions.
+        If there are no values, or one of them is NaN. The other conditions raise the same error.
 
     Examples
     --------
@@ -125,7 +127,7 @@ def at_most(values, bound) -> Finding:
 def at_least(values, bound) -> Finding:
     """The finding that all values are at least a bound; a tie counts in favour of the condition.
 
-    Of several bounds the largest decides.
+    If there are several bounds, the largest decides.
 
     Examples
     --------
@@ -137,7 +139,7 @@ def at_least(values, bound) -> Finding:
 
 
 def below(values, bound) -> Finding:
-    """The finding that all values are below a bound, the smallest of several.
+    """The finding that all values are below a bound, or below the smallest of several bounds.
 
     Examples
     --------
@@ -149,7 +151,7 @@ def below(values, bound) -> Finding:
 
 
 def above(values, bound) -> Finding:
-    """The finding that all values are above a bound, the largest of several.
+    """The finding that all values are above a bound, or above the largest of several bounds.
 
     Examples
     --------
@@ -161,7 +163,7 @@ def above(values, bound) -> Finding:
 
 
 def against_print(value: float, printed: str) -> Finding:
-    """A computed number judged by its distance from a printed one, in units of the last digit.
+    """The finding on a computed number, by its distance from a printed number in last digits.
 
     Raises
     ------

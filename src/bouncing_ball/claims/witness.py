@@ -1,9 +1,9 @@
 """Three routes to every orbit that a figure or Table 1 shows.
 
-*Continuation* solves the model's equations, the *formula* is the closed form of its
-branch, the *simulation* runs from event to event. Every published orbit and bifurcation
-is taken from its dataset and computed by each of them. The routes share the equations of
-impact and flight: their agreement checks the numerical methods.
+*Continuation* solves the equations of the model, the *formula* is the closed form of the branch,
+and the *simulation* runs from event to event. Every published orbit and bifurcation is taken from
+its dataset and computed by each route. Because the routes share the equations of impact and flight,
+their agreement checks the numerical methods and not these equations.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -26,32 +26,31 @@ from bouncing_ball.orbits.stability import Bifurcation
 
 # Periods over which the simulation must remain on a stable orbit.
 HELD_PERIODS = 50
-# Kinds of comparison and their budgets, relative to the larger of Λ and n.
-# Continuation and formula are both right to rounding, amplified where the branch
-# merges with permanent contact: the impact velocity is 1e-4 at the end of the
-# branches there, and rounding of the orbit's equations enters divided by it. One
-# cycle of the simulation adds as much again; fifty add up. The departure is a
-# difference quotient over 1e-8 of the impact velocity, so that rounding, 1e-15,
-# leaves seven digits, and one or two fewer in the same corner.
+# Kinds of comparison and their budgets, relative to the larger of Λ and n. Continuation and formula
+# are both exact up to rounding, which is amplified where the branch merges with permanent contact:
+# the impact velocity is 1e-4 at the end of the branches there, and the rounding errors of the
+# orbit's equations are divided by it. One cycle of the simulation adds an error of the same size,
+# and fifty cycles accumulate. The departure is a difference quotient over 1e-8 of the impact
+# velocity, so that rounding, 1e-15, leaves seven digits, and one or two fewer near that merger.
 FORMULA, CLOSES = "continuation and formula", "simulation over one cycle"
 HOLDS = f"simulation over {HELD_PERIODS} cycles, stable orbits"
 LEAVES = "rate of departure, unstable orbits"
 BUDGETS = {FORMULA: 1e-11, CLOSES: 1e-10, HOLDS: 1e-9, LEAVES: 1e-5}
 
-# Perturbation of an unstable orbit as a share of the impact velocity, which may be small.
+# Perturbation of an unstable orbit, relative to the impact velocity because that may be small.
 _NUDGE = 1e-8
-# Test function below which the departure from an orbit is measured. Nearer to the bifurcations
-# the multiplier is close to ±1, and a departure shows nothing.
+# The departure from an orbit is measured if the test function is below this value. Nearer to a
+# bifurcation the multiplier is close to ±1, and the ball hardly departs.
 _UNSTABLE = -0.05
 _NEWTON = NewtonSettings(max_iterations=20)
-# Orbits of a dataset without such a variable are admissible.
+# If a dataset has no such variable, all its orbits are admissible.
 _UNSAID = {"admissible": True, "restitution_admissible": True}
 
 
 class Shown(NamedTuple):
-    """Orbits of one model in a row, or bifurcations, as a dataset shows them.
+    """Orbits or bifurcations of one model along one axis, with the values of a dataset.
 
-    ``admissible`` is the dataset's statement on each orbit.
+    ``admissible`` tells for each orbit whether it is admissible according to the dataset.
     """
 
     model: ImpactModel
@@ -64,14 +63,14 @@ class Shown(NamedTuple):
 
 
 def _row(data: xr.Dataset, *names: str) -> Iterator[np.ndarray]:
-    """Variables or parameters of a dataset as rows, without the places where the first is NaN."""
+    """Variables or parameters as flat arrays, without the places where the first one is NaN."""
     known = {**_UNSAID, **data.attrs, **data.coords, **data}
     flat = [x.values.ravel() for x in xr.broadcast(*(xr.DataArray(known[x]) for x in names))]
     return (column[np.isfinite(flat[0])] for column in flat)
 
 
 def _contacts(data: xr.Dataset, *names: str) -> tuple[Any, ...]:
-    """The models of spring-damper orbits, their n, and variables of them, each as a row."""
+    """The models of spring-damper orbits, n, and further variables, each as a flat array."""
     *values, r, omega, n = _row(data, *names, "restitution", "frequency_ratio", "n")
     contact = SpringDamper.from_restitution(r, omega, data.attrs["release"])
     return SpringDamperModel(contact), n, *values
@@ -130,9 +129,9 @@ SHOWN: dict[str, tuple[Callable[[xr.Dataset], Iterator[Shown]], ...]] = {
 def _by_equations(shown: Shown, near: Orbit) -> Orbit:
     """Solutions of the model's equations next to orbits, by Newton's method; NaN where it fails.
 
-    A bifurcation is found with its test function. An orbit is found in the plane that is
-    normal to its branch, which is well conditioned at a fold too, where Λ determines half of the
-    digits only.
+    A bifurcation is solved for together with its test function. An orbit is solved for in the plane
+    normal to its branch. This is well conditioned at a fold, too, where Λ determines only half of
+    the digits.
     """
     system, kind = shown.model.system(near.n), shown.bifurcation
     y = system.point(near)
@@ -144,16 +143,16 @@ def _by_equations(shown: Shown, near: Orbit) -> Orbit:
         condition = plane(np.linalg.svd(jacobian)[2][..., -1, :], y)
     with np.errstate(all="ignore"):
         found = newton(system, y, condition, _NEWTON)
-    # At the limit of rounding the last step may remain longer than the tolerance.
+    # Because of rounding, the last Newton step may remain longer than the tolerance.
     good = found.converged | (found.residual < BUDGETS[FORMULA])
     return system.orbit(np.where(good[:, np.newaxis], found.point, np.nan))
 
 
 def formula_and_equations(shown: Shown) -> np.ndarray:
-    """Distance of every orbit from the closed form, and from the equations' solution there.
+    """Distance of every orbit from the closed form and from the solution of the equations.
 
-    For a bifurcation, which a dataset has with Λ and φ, it is the distance in both. Shape
-    (orbits,), relative to the larger of Λ and n.
+    For a bifurcation it is the distance in Λ and φ, which the dataset has. The result has shape
+    (orbits,) and is relative to the larger of Λ and n.
     """
     orbit, near = shown.orbit, shown.model.nearest(shown.orbit)
     found = _by_equations(shown, near)
@@ -171,7 +170,8 @@ def _size(orbit: Orbit) -> np.ndarray:
 def simulation_returns(orbit: Orbit, cycles: int) -> np.ndarray:
     """Distance of the simulation from orbits after some cycles, shape (orbits,).
 
-    It is the largest difference in φ, δ′ and the last period, relative to the larger of Λ and n.
+    The distance is the largest difference in φ, δ′ and the last period, relative to the larger of
+    Λ and n.
     """
     phase, speed = start = orbit.phase, orbit.relative_impact_velocity
     for _ in range(cycles):
@@ -182,11 +182,10 @@ def simulation_returns(orbit: Orbit, cycles: int) -> np.ndarray:
 
 
 def simulation_leaves(orbit: Orbit) -> np.ndarray:
-    """Relative error of the rate at which the simulation leaves unstable orbits, against the
-    multiplier.
+    """Relative difference between the rate at which the simulation leaves unstable orbits and the
+    multiplier, shape (orbits,).
 
-    The simulation starts near the orbit on both sides, along the unstable direction. Shape
-    (orbits,).
+    The simulation starts on both sides of the orbit along the unstable direction.
     """
     values, vectors = np.linalg.eig(orbit.monodromy())
     every, which = np.arange(orbit.size), np.argmax(np.abs(values), axis=-1)
@@ -200,9 +199,9 @@ def simulation_leaves(orbit: Orbit) -> np.ndarray:
 
 
 def comparisons(shown: Shown) -> Iterator[tuple[str, np.ndarray]]:
-    """Each kind of comparison, with the disagreements of the orbits compared.
+    """Each kind of comparison, with the disagreement for each orbit compared.
 
-    Only orbits that are admissible by the dataset are simulated.
+    Only orbits that are admissible according to the dataset are simulated.
     """
     yield FORMULA, formula_and_equations(shown)
     if shown.bifurcation:
@@ -215,7 +214,10 @@ def comparisons(shown: Shown) -> Iterator[tuple[str, np.ndarray]]:
 
 
 def _compared(name: str, data: xr.Dataset) -> tuple[list[float], list[int]]:
-    """Largest disagreement of each kind in a dataset, NaN where there is none, and the counts."""
+    """Largest disagreement of each kind in a dataset, and the number of orbits compared.
+
+    The disagreement is NaN for a kind without orbits.
+    """
     off: dict[str, list[float]] = {kind: [] for kind in BUDGETS}
     for find in SHOWN[name]:
         compared = [pair for shown in find(data) for pair in comparisons(shown)]
@@ -235,7 +237,7 @@ def witness(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
     Parameters
     ----------
     data : mapping of str to xarray.Dataset
-        The datasets of :data:`SHOWN`, or some of them.
+        All or some of the datasets in :data:`SHOWN`.
 
     Returns
     -------

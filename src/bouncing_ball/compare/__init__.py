@@ -1,1 +1,1 @@
-"""The comparison of two folders of artifacts, and copying one over the accepted record."""
+"""The comparison of two folders of artifacts, and copying results over the accepted record."""

@@ -1,6 +1,6 @@
-"""Copying results over the accepted record, ``figures/`` and the texts, which git holds.
+"""Copying results over the accepted record: ``figures/`` and the texts, which are in git.
 
-The log of the record is that of git, ``git log figures/``.
+The history of the record is ``git log figures/``.
 """
 
 import re
@@ -22,7 +22,7 @@ from bouncing_ball.provenance.revision import revision
 
 
 def jobs_left(repository: Path, files: Collection[str]) -> int:
-    """Number of jobs that Snakemake would still run for these files, by its rerun triggers.
+    """Number of jobs that Snakemake would still run for these files, according to its triggers.
 
     Raises
     ------
@@ -41,7 +41,7 @@ def jobs_left(repository: Path, files: Collection[str]) -> int:
 def _copied(artifact: Whole, record: Path, results: Path) -> list[str]:
     """Copy the files of an artifact to the record, and remove those that it no longer has.
 
-    Returns a line for each file copied or removed.
+    The result has one line for each file copied or removed.
     """
     said = []
     for file in artifact.parts:
@@ -63,7 +63,7 @@ def accept(
     config: Mapping[str, Any],
     only: Collection[str],
 ) -> list[str]:
-    """Copy artifacts over the record: those named, or all that have moved beyond their budgets.
+    """Copy the named artifacts over the record, or else all that have moved beyond their budgets.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def accept(
     config : mapping
         The configuration of this run.
     only : collection of str
-        Names of artifacts.
+        Names of the artifacts to copy; if empty, all that have moved beyond their budgets.
 
     Returns
     -------
@@ -84,9 +84,9 @@ def accept(
     Raises
     ------
     ModelError
-        If the tree is not committed, the configuration is not the committed one, Snakemake would
-        still run something, one of the results is made by no rule, or there is no artifact of one
-        of these names. Nothing is changed then.
+        If there are uncommitted changes, if the configuration differs from the committed one, if
+        Snakemake would still run a job, if no rule makes one of the results, or if there is no
+        artifact with one of the names. The record is then unchanged.
     """
     if revision(record).dirty != "no":
         raise ModelError("some changes are not committed: commit them, run again, then accept")

@@ -1,10 +1,10 @@
 """The change of a variable from the accepted record that the comparison allows: its budget.
 
-A drift is |new - record| over the range of the record's values, or over ``scale``. Texts,
+A drift is |new - record| divided by the range of the record's values, or by ``scale``. Texts,
 counts and truth values are compared exactly. The budget of a variable is in its row of
-:mod:`bouncing_ball.datasets.variables`; those of single artifacts are in ``budgets.csv``, each
-with its source. Where that says nothing else they come from the convergence study, a test that
-varies tolerances, grids and rounding: each is the power of ten next above ten times the largest
+:mod:`bouncing_ball.datasets.variables`; budgets of single artifacts are in ``budgets.csv``, each
+with its source. A budget without another source comes from the convergence study, a test that
+varies tolerances, grids and rounding: it is the next power of ten above ten times the largest
 change.
 """
 
@@ -16,13 +16,12 @@ from bouncing_ball.datasets.variables import BUDGETS
 
 
 class Budget(NamedTuple):
-    """The largest change allowed of a variable, as a share of its scale: "1", or another variable.
+    """The largest change allowed of a variable, relative to a scale: "1", or another variable.
 
-    Without a scale it is a share of the range of the record's values.
-    With ``over`` two curves are compared, through the samples along the dimension
-    ``point`` and over that variable, because the samples may slide along the curve.
-    So large a ``share`` of the entries, of texts and counts too, may be beyond the budget, because
-    rounding decides there.
+    Without a scale the change is relative to the range of the record's values. With ``over`` two
+    curves over that variable are compared, through the samples along the dimension ``point``,
+    because the samples may slide along the curve. The share ``share`` of the entries, of texts and
+    counts as well, may exceed the budget, because rounding decides about some entries.
     """
 
     size: float
@@ -34,18 +33,18 @@ class Budget(NamedTuple):
 ROUNDING = 1e-13
 """The smallest budget, for variables without another one."""
 IGNORED = math.inf
-"""The budget of variables that another dataset has as well, or that rounding decides about;
-``inf`` in the tables."""
+"""The budget, ``inf`` in the tables, of variables that another dataset also has, or about which
+rounding decides."""
 PICTURE = 1.0
-"""Root mean square difference of two pictures allowed, in grey levels of 255.
+"""The largest root mean square difference of two pictures, in grey levels of 255.
 
-Parameters that differ by two units in the last place, which change every rounding as another
-processor does, move the pixels of a figure by 0.092 at most (Fig. 15). The budget is the power of
-ten next above ten times that."""
+Changing parameters by two units in the last place changes all rounding errors, as another processor
+does, and moves the pixels of a figure by at most 0.092 (Fig. 15). The budget is the next power of
+ten above ten times this value."""
 
 PICTURES = {"ext_diagram": 60.0, "ext_locking": 40.0, "ext_means": 60.0, "ext_locked": 40.0}
-"""Pictures of motions about which rounding decides: three times the 19 and 12 grey levels by which
-a change of 1e-15 in the start moves them."""
+"""Budgets of pictures of motions about which rounding decides: three times the 19 and 12 grey
+levels by which a change of 1e-15 in the start moves these pictures."""
 
 ARTIFACTS: dict[str, dict[str, Budget]] = {}
 """Budgets of single artifacts, by variable; ``*`` stands for all variables that are not named."""

@@ -12,14 +12,14 @@ from bouncing_ball.compare.outcome import Outcome, Row
 from bouncing_ball.compare.texts import compare_texts
 from bouncing_ball.errors import printable
 
-# Attributes on the origin of a file, and texts about it.
+# Attributes with the origin of a file, or with texts about it, are not compared.
 _NOT_COMPARED = ("provenance_", "title", "references", "history")
-# Entries of a variable that a report names.
+# Largest number of entries of a variable in a report.
 _LARGEST = 5
 
 
 def _form(variable: xr.DataArray) -> str:
-    """Type and sizes, with one type for texts of any length.
+    """Type and sizes of a variable; texts of all lengths have the same type.
 
     Examples
     --------
@@ -31,7 +31,7 @@ def _form(variable: xr.DataArray) -> str:
 
 
 def header(data: xr.Dataset) -> str:
-    """A dataset without its numbers, in lines: variables with their form, and attributes.
+    """The structure of a dataset as lines: variables with their types and sizes, and attributes.
 
     Examples
     --------
@@ -55,7 +55,7 @@ def _beside(data: xr.Dataset, name: str, other: str) -> np.ndarray:
 
 
 def _allowed(drift: np.ndarray, share: float) -> np.ndarray:
-    """Drift over the budget, where a share of the entries may be beyond it.
+    """Drifts over the budget, after capping those of the share of entries that may exceed it.
 
     Examples
     --------
@@ -70,7 +70,7 @@ def _allowed(drift: np.ndarray, share: float) -> np.ndarray:
 
 
 def shares(name: str, record: xr.Dataset, new: xr.Dataset, budget: Budget) -> np.ndarray:
-    """Drift of a variable over its budget, entry by entry; ∞ where nothing may change.
+    """Drift of each entry of a variable over the budget; ∞ for a change where none is allowed.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def shares(name: str, record: xr.Dataset, new: xr.Dataset, budget: Budget) -> np
         A variable of both datasets, of the same shape and type.
     record, new : Dataset
     budget : Budget
-        For texts, counts and truth values only a curve or a share of the entries has an effect.
+        For texts, counts and truth values only ``over`` and ``share`` have an effect.
 
     Raises
     ------

@@ -1,22 +1,22 @@
 """Drifts of numbers: pure functions of arrays.
 
-A drift is dimensionless: a difference over a scale. Between two values that are both
-NaN, or infinite with the same sign, it is zero; between a value that is
-not finite and one that is it is infinite.
+A drift is dimensionless: a difference divided by a scale. The drift between two NaN, or between
+two infinities of the same sign, is zero; the drift between a finite value and one that is not
+finite is infinite.
 """
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-# Along a curve a point may slide by so many samples.
+# Number of samples by which a point may slide along a curve.
 _REACH = 2
 
 
 def span(values: ArrayLike) -> float:
     """The scale of a variable: max - min over its finite values.
 
-    A constant has no range, and its magnitude is taken instead; for 0 it is 1. The scale is never
-    a single value, because next to a zero of the variable that would be tiny.
+    The scale of a constant is its magnitude, or 1 if the constant is 0. The scale is not the value
+    of a single entry, because that would be tiny next to a zero of the variable.
 
     Examples
     --------
@@ -59,9 +59,9 @@ def pointwise(record: ArrayLike, new: ArrayLike, scale: ArrayLike) -> np.ndarray
 
 
 def _to_polyline(x, y, line_x, line_y) -> np.ndarray:
-    """Distance of point k to the segments k - 1 - reach … k + reach of a polyline."""
+    """Distance of point k from the segments k - 1 - reach … k + reach of a polyline."""
     count = x.shape[-1]
-    # A vertex between two gaps has no segment.
+    # The distance from the vertex itself, because a vertex between two gaps has no segment.
     best = np.hypot(x - line_x, y - line_y)
     for offset in range(-_REACH - 1, _REACH + 1) if count > 1 else ():
         left = np.clip(np.arange(count) + offset, 0, count - 2)
@@ -70,7 +70,7 @@ def _to_polyline(x, y, line_x, line_y) -> np.ndarray:
         square = dx * dx + dy * dy
         along = ((x - ax) * dx + (y - ay) * dy) / np.where(square > 0, square, 1.0)
         along = np.clip(along, 0.0, 1.0)
-        # fmin, as a segment with an end that is not finite is not a segment.
+        # fmin, because a segment with an end that is not finite does not count.
         best = np.fmin(best, np.hypot(x - ax - along * dx, y - ay - along * dy))
     return best
 
@@ -78,10 +78,10 @@ def _to_polyline(x, y, line_x, line_y) -> np.ndarray:
 def curve(x: ArrayLike, y: ArrayLike, new_x: ArrayLike, new_y: ArrayLike) -> np.ndarray:
     """Distance between two sampled curves, at each sample, along the last axis.
 
-    All coordinates are shares of their scales. The result is the larger of the distances of
-    the new sample to the record's polyline and of the record's sample to the
-    new one. Samples that slide along the curve therefore cost no more than the sagitta of
-    a chord, and a tube of radius ε around both curves is a drift of at most ε.
+    All coordinates are divided by their scales. The result is the larger of two distances: of the
+    new sample from the record's polyline, and of the record's sample from the new polyline. Samples
+    that slide along the curve therefore cause at most the sagitta of a chord, and two curves within
+    a distance ε of each other have a drift of at most ε.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def curve(x: ArrayLike, y: ArrayLike, new_x: ArrayLike, new_y: ArrayLike) -> np.
 
     Examples
     --------
-    A straight line, its inner sample moved along it, and then off it:
+    A straight line whose inner sample is moved along the line, and then off the line:
 
     >>> curve([0, 1, 2], [0, 0, 0], [0.0, 1.5, 2.0], [0, 0, 0]).tolist()
     [0.0, 0.0, 0.0]
@@ -105,5 +105,5 @@ def curve(x: ArrayLike, y: ArrayLike, new_x: ArrayLike, new_y: ArrayLike) -> np.
 
 
 def _alike(record, new):
-    """Whether both are finite, or not finite in the same way."""
+    """Whether both values are finite, both NaN, or both infinite with the same sign."""
     return (np.isfinite(record) & np.isfinite(new)) | same(record, new)

@@ -1,8 +1,8 @@
 """The comparison of two folders of artifacts, with the result for each artifact.
 
 A folder holds ``figures/`` with datasets, pictures and tables, and the texts ``paper.md`` and
-``supplement.md``; other files in it are ignored, except ``config/engines.nc``, what physics engines
-gave. Files of one name and different suffixes are one artifact.
+``supplement.md``, and may hold ``config/engines.nc``, the results of physics engines. Other files
+are ignored. Files with the same name and different suffixes are one artifact.
 """
 
 from collections.abc import Collection
@@ -13,9 +13,9 @@ from bouncing_ball.compare.parts import judge
 from bouncing_ball.errors import ModelError, printable
 
 _TEXTS = ("paper.md", "supplement.md")
-# Compared where both folders have it, because not every machine has the engines.
+# This file is compared if both folders have it, because not every machine has the engines.
 _MEASURED = Path("config/engines.nc")
-# In the order of comparison: the data first, because the judgement of the others depends on them.
+# In the order of comparison: data come first, because the judgement of other files depends on them.
 _SUFFIXES = (".nc", ".csv", ".png", ".svg", ".md", ".html")
 
 
@@ -25,13 +25,13 @@ def artifacts_in(*folders: Path) -> dict[str, set[str]]:
     Raises
     ------
     ModelError
-        If there is no artifact in one of the folders, or its figures/ is a link.
+        If one of the folders has no artifact, or its figures/ is a link.
     """
     found: dict[str, set[str]] = {}
     for folder in folders:
         if (folder / "figures").is_symlink():
             raise ModelError(f"{printable(folder / 'figures')}: a link; links are not followed")
-        # Files whose name begins with a point are not written completely.
+        # Files whose names begin with a point were not written completely.
         paths = [*folder.glob("figures/[!.]*"), *(folder / text for text in _TEXTS)]
         files = [
             path.relative_to(folder) for path in paths if path.suffix in _SUFFIXES and path.exists()
@@ -47,12 +47,12 @@ def artifacts_in(*folders: Path) -> dict[str, set[str]]:
 
 
 def compare_folders(record: Path, new: Path, only: Collection[str] = ()) -> Whole:
-    """The comparison of all artifacts of two folders, or of those named, worst first.
+    """The comparison of all artifacts of two folders, or of the named artifacts, worst first.
 
     Raises
     ------
     ModelError
-        If one of the folders holds no artifact, or neither has one of those named.
+        If one of the folders holds no artifact, or neither folder has a named artifact.
     """
     files = artifacts_in(record, new)
     # The texts come last, because they are made from all datasets.

@@ -1,4 +1,4 @@
-"""The outcomes of a comparison from the best to the worst, and of what it consists."""
+"""The outcomes of a comparison from the best to the worst, and the parts of a comparison."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -7,9 +7,9 @@ from typing import Any
 
 
 class Outcome(StrEnum):
-    """The result for an artifact, a file or a part of it, and its counterpart in the record.
+    """The result of comparing an artifact, a file or a part of a file with the record.
 
-    In order: the outcome of a whole is that of its worst part.
+    The outcomes are in order from the best to the worst; a whole has the outcome of its worst part.
     """
 
     IDENTICAL = "identical"
@@ -55,17 +55,17 @@ def worst(outcomes: Iterable[Outcome]) -> Outcome:
 
 @dataclass(frozen=True)
 class Row:
-    """A place where a file was compared: a line of a text, an entry of a variable, or the pixels.
+    """One item of the comparison of a file: a line of a text, an entry of a variable, or pixels.
 
     Parameters
     ----------
     name : str
-        A line's number, or a variable's name.
+        The number of a line, or the name of a variable.
     outcome : Outcome
     record, new : str, optional
-        The content on both sides; None where a side has none.
+        The content in the record and in the new file; None if there is none.
     share : float
-        Drift over its budget; 0 for a text.
+        Drift over the budget; 0 for a text.
     at : str
         Coordinates of an entry of a variable.
     note : str
@@ -89,10 +89,10 @@ class Whole:
     name : str
         For a file its path relative to either folder.
     parts : sequence
-        The parts compared, worst first except for files. A file has none if its bytes are
-        identical.
+        The parts compared, worst first; those of a file are in their order. A file has none if its
+        bytes are identical.
     pictures : tuple
-        For a PNG file the bytes of the record and the new ones.
+        For a PNG file the bytes in the record and the new bytes.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""The HTML page with record and new side by side, which needs neither a network nor a script."""
+"""The HTML page with record and results side by side; it needs neither a network nor a script."""
 
 import base64
 import re
@@ -12,7 +12,7 @@ from bouncing_ball.errors import printable
 
 
 def _plain(value: Any) -> Any:
-    """The value of an expression of the page; a text that is not markup is put on one line."""
+    """The value of an expression on the page; text other than markup is put on one line."""
     is_text = isinstance(value, str) and not hasattr(value, "__html__")
     return printable(value, None) if is_text else value
 
@@ -21,7 +21,7 @@ _Words = list[tuple[bool, str]]
 
 
 def marked(record: str | None, new: str | None) -> tuple[_Words, _Words]:
-    """Two texts as words, each with whether it is the same on both sides.
+    """The words of two texts, each with a flag whether it is the same on both sides.
 
     Examples
     --------
@@ -41,8 +41,8 @@ def marked(record: str | None, new: str | None) -> tuple[_Words, _Words]:
 def to_html(comparison: Whole) -> str:
     """The page: artifacts worst first, with the record's and the new version of each picture.
 
-    All pictures are embedded; one that is identical on both sides is embedded
-    once. The buttons work by style sheets, without a script.
+    All pictures are embedded; a picture that is identical on both sides is embedded once. The
+    buttons work by style sheets, without a script.
 
     Examples
     --------
@@ -66,7 +66,7 @@ def to_html(comparison: Whole) -> str:
         sentence=sentence(comparison),
         marked=marked,
         note=note,
-        # Half of a surrogate pair has no code to be quoted.
+        # A lone surrogate has no UTF-8 code that could be quoted.
         anchor=lambda name: quote(printable(name, None)),
         share=share_text,
         base64=lambda content: base64.b64encode(content).decode("ascii"),

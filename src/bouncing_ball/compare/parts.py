@@ -1,12 +1,11 @@
-"""One file of an artifact against its counterpart in the record, each kind by a measure of its
-kind.
+"""The comparison of one file of an artifact with the same file of the record.
 
-Data are judged by their budgets, texts, tables and the words of SVG files line by line, PNG files
-by their pixels. Every file is judged alone: if one is damaged, its outcome is that it could
-not be compared, with the reason, and the others are compared nevertheless.
+Data are judged by their budgets; texts, tables and the words of SVG files line by line; PNG files
+by their pixels. Every file is judged alone: if a file is damaged, its outcome is that it could not
+be compared, with the reason, and the other files are compared nevertheless.
 
-A folder of artifacts may come from anywhere. Nothing in it is run, no link is
-followed, and text from it passes through :func:`bouncing_ball.errors.printable` before printing.
+Because a folder of artifacts may come from anywhere, none of its files is run, no link is followed,
+and text from it passes through :func:`bouncing_ball.errors.printable` before printing.
 """
 
 import re
@@ -24,7 +23,7 @@ from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.errors import ModelError, printable
 
 MAX_BYTES = 16 * 2**20
-"""The size above which a file is not read; the largest of the record has half a megabyte."""
+"""Files above this size are not read; the largest file of the record has half a megabyte."""
 
 
 def redrawn(record: bytes, new: bytes) -> str:
@@ -77,7 +76,7 @@ def compare_pictures(record: np.ndarray, new: np.ndarray, budget: float = PICTUR
 
 
 def _content(path: Path) -> bytes | None:
-    """The bytes of a regular file of a bounded size; None if there is none."""
+    """The bytes of a regular file of bounded size; None if the file does not exist."""
     if path.is_symlink() or (path.exists() and not path.is_file()):
         raise ModelError("a link, or not a regular file")
     if path.exists() and path.stat().st_size > MAX_BYTES:
@@ -104,16 +103,18 @@ def _rows(old: Path, now: Path, data: Outcome | None) -> list[Row]:
 
 
 def judge(file: str, folders: tuple[Path, Path], data: Outcome | None) -> Whole:
-    """The comparison of a file of the record's or the new folder, or of both; it raises no error.
+    """The comparison of a file that is in the record, in the new folder, or in both.
+
+    This function raises no error; an error of the comparison becomes the outcome.
 
     Parameters
     ----------
     file : str
-        Relative to either folder.
+        Path of the file relative to either folder.
     folders : tuple
-        The record's and the new one.
+        The folder of the record and the new folder.
     data : Outcome, optional
-        The worst outcome of the datasets that a text is made from.
+        The worst outcome of the datasets from which a text is made.
     """
     old, now = (folder / file for folder in folders)
     # Warnings of the libraries about a damaged file become one line.

@@ -11,7 +11,7 @@ _SENTENCES = (
 
 
 def sentence(comparison: Whole) -> str:
-    """Number of artifacts with each outcome, worst first, and the result in a sentence.
+    """The number of artifacts with each outcome, worst first, and the result as a sentence.
 
     Examples
     --------
@@ -36,7 +36,7 @@ def share_text(share: float) -> str:
 
 
 def note(file: Whole) -> str:
-    """The place where a file differs most, and the difference.
+    """The place where a file differs most, with the difference there.
 
     Examples
     --------
@@ -55,8 +55,7 @@ def note(file: Whole) -> str:
 
 
 def to_terminal(comparison: Whole) -> str:
-    """A line for each file that is not identical, beginning with the worst artifact, and the
-    result.
+    """A line for each file that is not identical, worst artifact first, and the result.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The comparison of texts line by line: words exactly, numbers as their data allow."""
+"""The comparison of texts line by line: words exactly, numbers as far as their data allow."""
 
 import re
 from decimal import Decimal
@@ -8,8 +8,8 @@ from pathlib import Path
 
 from bouncing_ball.compare.outcome import Outcome, Row
 
-# A printed number, with its sign and exponent. No number of the artifacts has an exponent of
-# more digits, and Decimal would refuse it.
+# A printed number with its sign and exponent. An exponent has at most four digits, because the
+# artifacts have no longer ones, and Decimal would refuse them.
 _NUMBER = re.compile(r"[-+]?[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]{1,4}(?![0-9]))?")
 
 
@@ -28,9 +28,10 @@ def _same_to_the_last_digit(old: str, new: str) -> bool:
     if old == new:
         return True
     if old.lstrip("+-").isdigit() and new.lstrip("+-").isdigit():
-        # A count, or a part of a name.
+        # A number without decimals is a count, or a part of a name.
         return False
-    # Across a power of ten, and where zeros are left out, the smaller unit is the step.
+    # If the numbers of decimals differ, at a power of ten or with zeros left out, the step is the
+    # smaller unit.
     last = min(int(Decimal(number).as_tuple().exponent) for number in (old, new))
     return abs(Decimal(old) - Decimal(new)) <= Decimal(1).scaleb(last)
 
@@ -51,17 +52,17 @@ def may_be_rounding(old: str, new: str) -> bool:
 
 
 def compare_texts(record: str, new: str, data: Outcome | None) -> list[Row]:
-    """All lines that are not the same, each with its outcome.
+    """All lines that differ, each with its outcome.
 
-    Where the data have drifted within their budget, the last digit of a printed
-    number may move with them by one. Nothing else may: not a word, not a count,
-    and no digit where the data are the same or there are none.
+    If the data have drifted within their budget, the last digit of a printed number may change by
+    one. No other change is allowed: no word, no count, and no digit if the data are identical or
+    there are none.
 
     Parameters
     ----------
     record, new : str
     data : Outcome or None
-        The worst of the datasets that the text is made from.
+        The worst outcome of the datasets from which the text is made.
 
     Examples
     --------
@@ -74,7 +75,7 @@ def compare_texts(record: str, new: str, data: Outcome | None) -> list[Row]:
     ('line 1', 'drifted', 'are right', 'are wrong')
     """
     before, after = record.split("\n"), new.split("\n")
-    # Lines belong together by their words, so that a number that moves keeps its line.
+    # Lines are matched by their words, so that a line whose number changes is still matched.
     old_words, new_words = ([_NUMBER.sub("#", line) for line in side] for side in (before, after))
     blocks = SequenceMatcher(None, old_words, new_words, autojunk=False).get_opcodes()
     found = []
@@ -92,9 +93,10 @@ def compare_texts(record: str, new: str, data: Outcome | None) -> list[Row]:
 def words_of(path: Path) -> str:
     """The words and numbers of a file, as lines.
 
-    From a vector graphic they are its labels, and the letters that draw them: matplotlib draws a
-    text as outlines, one for each letter, with the text in a comment. From an HTML page they are
-    all but data in JSON, which have a dataset of their own. Any other text is returned unchanged.
+    For a vector graphic these are the labels, and the letters that draw them, because matplotlib
+    draws a text as outlines, one for each letter, with the text in a comment. For an HTML page it
+    is all text except data in JSON, which are compared as a dataset. Any other text is returned
+    unchanged.
 
     Raises
     ------

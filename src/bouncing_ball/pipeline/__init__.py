@@ -1,3 +1,1 @@
-"""The Python side of the Snakefile: sources of a stage, and the adapter around a job. No
-science.
-"""
+"""The Python side of the Snakefile, without science: source files of a stage, jobs, progress."""

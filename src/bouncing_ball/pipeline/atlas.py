@@ -1,19 +1,19 @@
-"""Names of shards, and times of the atlas's, for the rules.
+"""The names of shards, and the time limits of the atlas's shards, for the rules.
 
-Every job reads the rules, so that the plan is imported only when one of these functions is called.
+Every job reads the rules. The plan of the atlas is therefore imported only when it is needed.
 """
 
 import math
 from collections.abc import Mapping
 from typing import Any
 
-# Processor time of an orbit on a slow machine, with a margin.
+# Processor time for one orbit on a slow machine, with a margin.
 _SECONDS_PER_ORBIT = 3e-6
 _LEAST_MINUTES = 10
 
 
 def numbered(count: int) -> list[str]:
-    """Shards by number and count, so that a division into another number has other names.
+    """Names of shards with their number and count, so that another division has other names.
 
     Examples
     --------

@@ -1,7 +1,7 @@
-"""The adapter around a job: log, one-line errors, files.
+"""The adapter between Snakemake and the package: the log of a job, one-line errors, files.
 
-Scripts of the workflow consist of three lines that call it; ``snakemake`` is the
-object that Snakemake provides for them.
+The scripts of the workflow are a few lines that call this module; ``snakemake`` is the object that
+Snakemake provides for them.
 """
 
 import gc
@@ -38,15 +38,15 @@ HISTORY = "computed from the equations; the attributes provenance_* say by what 
 
 @contextmanager
 def logged(snakemake: Any) -> Iterator[list[str]]:
-    """Collect lines for the job's log; on failure write one line that says what failed.
+    """Collect lines for the log of the job; on failure print one line about the failure.
 
-    The log then holds the traceback, and the terminal the line; the process exits with status 1.
+    The traceback is then in the log, and the process exits with status 1.
     """
-    # Ctrl-C ends the job at once. As an exception it could arrive while a netCDF
-    # file is locked, and closing the file would then wait forever. Files are written completely
-    # or not at all, so that nothing is lost.
+    # Ctrl-C ends the job at once. An exception could be raised while a netCDF file is locked, and
+    # closing the file would then wait forever. Because files are written completely or not at all,
+    # no file is damaged.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    # Imported modules stay in use, and are excluded from garbage collection to save time.
+    # Imported modules remain in use; excluding them from garbage collection saves time.
     gc.freeze()
     # For every dataset xarray checks whether its values are quantities of pint. The values of a
     # job are plain numbers, and importing pint takes longer than reading them.
@@ -63,7 +63,7 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
             print("made", *outputs, *([f"({done})"] if done else []), flush=True)
     except Exception as error:
         kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
-        # Writing the log fails if the disk is full.
+        # For example, writing the log fails if the disk is full.
         with suppress(OSError):
             write_text(log, traceback.format_exc())
         sys.exit(f"{name}: {kind}{' '.join(str(error).split())} (details in {log})")
@@ -73,12 +73,12 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
 
 
 def read_input(path: str) -> xr.Dataset:
-    """A dataset that another job has made for this one.
+    """A dataset that another job has made for this job.
 
     Raises
     ------
     ModelError
-        If it is damaged; the message has the command that makes it again.
+        If the file is damaged; the message has the command that makes it again.
     """
     try:
         return read_dataset(path)
@@ -90,8 +90,8 @@ def read_input(path: str) -> xr.Dataset:
 def provenance(snakemake: Any) -> dict[str, str]:
     """The provenance of the files that the job writes.
 
-    It is gathered when a file is written. As a parameter of the job, a new commit would make
-    Snakemake run every job again.
+    It is gathered when a file is written and is not a parameter of the job, because Snakemake
+    would then run every job again after each commit.
     """
     # The scripts are in workflow/scripts of the repository; the run may be in another folder.
     repository = Path(snakemake.scriptdir).resolve().parents[1]
@@ -103,8 +103,8 @@ def provenance(snakemake: Any) -> dict[str, str]:
 def make_dataset(snakemake: Any) -> None:
     """Run the study of the job and write its dataset.
 
-    The parameters and the settings of the run become global attributes, unless
-    the study sets attributes itself; so does the provenance.
+    The provenance becomes global attributes, and so do the parameters and the settings of the run,
+    unless the study itself sets attributes.
     """
     with logged(snakemake) as lines:
         job = snakemake.params

@@ -1,11 +1,11 @@
 """The progress of a run, an estimate of the time that remains, and its last sentence.
 
-A run notes when it began and the number of its jobs, and each job that ends adds a line. Snakemake
-counts its steps too, in three lines for each, but does not estimate the time.
+A run notes its start and the number of its jobs, and each job that ends adds a line. Snakemake
+also counts its steps, with three lines for each, but does not estimate the time.
 
-A run may end with exit status 1 although no job fails: a difference from the record, or results
-that are not accepted, are results. For a job that fails Snakemake prints ten lines, with a command
-that the user did not type; such a run ends with one sentence instead.
+A run may end with exit status 1 although no job failed, for example because of a difference from
+the record, or because results were not accepted. For a failed job Snakemake prints ten lines, with
+a command that the user did not type; such a run ends with one sentence instead.
 """
 
 import time
@@ -17,18 +17,16 @@ _NOTES, _CONCLUSION = Path(".snakemake/progress"), Path("results/logs/conclusion
 
 
 def begin(jobs: int) -> None:
-    """Note that a run of so many jobs begins."""
+    """Note that a run with this number of jobs begins."""
     _NOTES.parent.mkdir(exist_ok=True)
     _NOTES.write_text(f"{jobs} {time.time()!r}\n", encoding="ascii")
 
 
 def advance() -> str:
-    """Note that a job has ended; the result is the share done, or an empty text outside of a
-    run.
-    """
+    """Note that a job has ended, and return the share done, an empty text outside of a run."""
     if not _NOTES.is_file():
         return ""
-    # A line is appended completely, whatever other jobs do.
+    # A short line is appended completely, even if other jobs append lines at the same time.
     with _NOTES.open("a", encoding="ascii") as notes:
         notes.write("done\n")
     head, *ended = _NOTES.read_text(encoding="ascii").splitlines()
@@ -37,7 +35,7 @@ def advance() -> str:
 
 
 def share(done: int, jobs: int, seconds: float) -> str:
-    """The share done, and the time left if the remaining jobs take as long as those before.
+    """The share done, and the time left if the remaining jobs take as long as those done.
 
     Examples
     --------

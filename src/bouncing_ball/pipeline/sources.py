@@ -1,9 +1,8 @@
 """The source files that a stage uses.
 
-Snakemake reruns a job when its script changes, but does not see the modules
-that the script imports. They are therefore listed among the job's inputs. They are found by
-following the import statements, so that an edit reruns the stages that use
-the module and no others.
+Snakemake reruns a job when its script changes, but does not see the modules that the script
+imports. These modules are therefore inputs of the job. They are found by following the import
+statements, so that an edit reruns only the stages that use the module.
 """
 
 import re
@@ -16,7 +15,7 @@ _ROOT = Path(__file__).resolve().parent.parent
 
 @cache
 def module_file(module: str) -> Path | None:
-    """The file of a module or package of this package; None if there is none."""
+    """The file of a module or subpackage of this package; None if it does not exist."""
     base = _ROOT.joinpath(*module.split(".")[1:])
     for candidate in (base.with_suffix(".py"), base / "__init__.py"):
         if candidate.is_file():
@@ -32,9 +31,7 @@ _IMPORT = re.compile(rf"^[ \t]*import ({_PACKAGE}[\w.]*)", re.MULTILINE)
 
 @cache
 def imports(path: Path) -> frozenset[str]:
-    """Modules of this package named in the import statements of a file, and objects imported from
-    them.
-    """
+    """Names of modules of this package, and of objects in them, that a file imports."""
     text = path.read_text(encoding="utf-8")
     found = set(_IMPORT.findall(text))
     for module, names in _FROM.findall(text):
@@ -49,7 +46,7 @@ def _with_parents(module: str) -> list[str]:
 
 
 def sources(*modules: str) -> list[str]:
-    """Files that importing the modules executes, and their tables and texts, sorted.
+    """The files that run when the modules are imported, with their tables and texts, sorted.
 
     Raises
     ------

@@ -1,1 +1,1 @@
-"""The origin of an artifact: what the artifact records of it, and the answer of ``explain``."""
+"""The origin of an artifact: its record in the artifact, and the answer of ``explain``."""

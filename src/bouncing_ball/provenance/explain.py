@@ -28,7 +28,7 @@ _CHANGED = "results/configuration.json"
 def _carrier(path: Path) -> Path:
     """The file that carries the provenance of an artifact: the artifact itself, or its dataset.
 
-    For the texts it is the dataset of the claims, which is the last one made.
+    For the article and the supplement it is the dataset of the claims, the last dataset of a run.
     """
     if not path.is_file():
         raise ModelError(f"{path} cannot be read: no such file")
@@ -42,7 +42,7 @@ def _carrier(path: Path) -> Path:
 
 
 def _parameters(path: Path, commit: str) -> dict[str, Any]:
-    """The parameters, from the artifact's dataset if it is beside it and has the same commit."""
+    """The parameters, from the dataset beside the artifact if it has the same commit."""
     beside = path.with_suffix(".nc")
     attributes = read_attributes(beside) if beside.is_file() else {}
     if attributes.get(PREFIX + "commit") != commit:
@@ -55,8 +55,8 @@ def _parameters(path: Path, commit: str) -> dict[str, Any]:
 
 
 def _commands(made: Mapping[str, Any], target: str, checked_out: bool | None) -> list[str]:
-    """The commands that make a file again, to be pasted into a shell."""
-    # Without --force Snakemake would not make a file again that is up to date.
+    """The commands that make a file again, ready to paste into a shell."""
+    # --force, because Snakemake does not make a file again that is up to date.
     commands = [f"snakemake --cores 2 --force {shlex.quote(target)}"]
     if changed := made["configuration"]:
         text = shlex.quote(json.dumps(changed))

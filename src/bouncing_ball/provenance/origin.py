@@ -1,8 +1,8 @@
 """The origin of an artifact, as the artifact itself records it.
 
-A dataset has its provenance in netCDF attributes, a PNG file in its text, an
-SVG file in its description; a table or a page has that of its dataset. It contains
-neither a time nor a machine, so that two runs of one commit give the same bytes.
+A dataset holds its provenance in netCDF attributes, a PNG file in its text, an SVG file in its
+description; a table or a page has the provenance of its dataset. The provenance contains neither a
+time nor the name of a machine, so that two runs of one commit give the same bytes.
 """
 
 import json
@@ -23,13 +23,13 @@ PREFIX = "provenance_"
 LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib")
 CONFIGURATION = "config/config.yaml"
 CARRIERS = (".nc", ".png", ".svg")
-"""Suffixes of the files that carry their provenance."""
+"""Suffixes of the files that carry their provenance themselves."""
 
 _DESCRIPTION = "{http://purl.org/dc/elements/1.1/}description"
 
 
 def changes(config: Mapping[str, Any], written: Mapping[str, Any]) -> dict[str, Any]:
-    """The values of a configuration that differ from the written one, nested in the same way.
+    """The values of a configuration that differ from the written configuration, nested as there.
 
     Examples
     --------
@@ -79,7 +79,7 @@ def gather(
     """
     now = revision(repository)
     written = read_yaml(repository / CONFIGURATION)
-    # A run may be in any folder; files of the checkout are named from its top.
+    # A run may be in any folder; files outside it are named relative to the top of the checkout.
     named = {os.path.relpath(path, repository) if ".." in path else path for path in inputs}
     made = {
         "commit": now.commit,

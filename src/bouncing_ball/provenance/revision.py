@@ -1,4 +1,4 @@
-"""The state of the repository: its commit, and whether anything was changed since."""
+"""The state of the repository: its commit, and whether it has uncommitted changes."""
 
 import os
 import subprocess
@@ -10,7 +10,7 @@ RECORD = ("figures", "paper.md", "supplement.md")
 
 
 class Revision(NamedTuple):
-    """A commit (full hash) and whether the tree was dirty (yes or no), or unknown."""
+    """The full hash of a commit, and whether the tree was dirty (yes or no), or unknown."""
 
     commit: str
     dirty: str
@@ -20,9 +20,9 @@ UNKNOWN = Revision("unknown", "unknown")
 
 
 def _git(folder: Path, *arguments: str) -> str | None:
-    """The output of git, or None if it fails or is not there."""
-    # In a hook the variables GIT_… name a repository, which need not be this one. Without
-    # optional locks jobs that run in parallel do not wait for each other's lock of the index.
+    """The output of git; None if git fails or is not installed."""
+    # In a hook the variables GIT_… name a repository that may not be this one. Without optional
+    # locks, parallel jobs do not wait for each other's lock of the index.
     environment = {key: value for key, value in os.environ.items() if key[:4] != "GIT_"}
     try:
         done = subprocess.run(
@@ -46,16 +46,14 @@ def revision(folder: Path) -> Revision:
     head = _git(folder, "rev-parse", "--show-cdup", "HEAD")
     excluded = [f":(exclude){name}" for name in RECORD]
     status = _git(folder, "status", "--porcelain", "--untracked-files=normal", "--", ".", *excluded)
-    # The first line is the path up to the top of the repository, which is empty there.
+    # The first line is the path of the folder below the top of the repository: empty at the top.
     if head is None or status is None or not head.startswith("\n"):
         return UNKNOWN
     return Revision(head.strip(), "yes" if status else "no")
 
 
 def checkout(*starts: Path) -> Path | None:
-    """The first folder, at or above the starts in turn, that holds this workflow; None if there is
-    none.
-    """
+    """The first folder, at or above each start in turn, that holds this workflow, or None."""
     for start in starts:
         for folder in (start, *start.parents):
             if (folder / "Snakefile").is_file() and (folder / "src" / "bouncing_ball").is_dir():

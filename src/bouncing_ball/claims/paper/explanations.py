@@ -1,6 +1,6 @@
 """Why claims are close or contradicted. An explanation counts only if every check holds.
 
-An undecidable claim says itself what its verdict depends on, and its remark why.
+An undecidable claim has no explanation here, because its verdict and its remark give the reason.
 """
 
 from bouncing_ball.claims import evidence

@@ -1,4 +1,4 @@
-"""Chattering and rest: infinitely many impacts in a finite time bring the ball to rest."""
+"""Chattering and rest: infinitely many impacts bring the ball to rest in a finite time."""
 
 import matplotlib.pyplot as plt
 import numpy as np

@@ -104,10 +104,10 @@ def design(
     table_amplitude
         Amplitude A of the table's motion, in m; or give the acceleration.
     acceleration
-        Largest acceleration AΩ² of the table, in m/s²; "2 g" is twice standard gravity.
+        Greatest acceleration AΩ² of the table, in m/s²; "2 g" is twice standard gravity.
     gravity
-        Acceleration of gravity, by default 9.80665 m/s². For a gear pair, the deceleration by the
-        drag torque.
+        Acceleration of gravity, by default 9.80665 m/s². For a gear pair, the deceleration that the
+        drag torque causes.
     stiffness
         Stiffness k of the contact. If no parameter gives a stiffness, a contact is chosen.
     contact_time
@@ -131,7 +131,7 @@ def design(
         Damping ratio ζ = c/(2√(km)) of the contact.
     restitution
         Restitution coefficient of a free impact that ends at the table's level,
-        r = exp(-πζ/√(1 - ζ²)), Eq. 16 of the paper. With an engine, r under its release.
+        r = exp(-πζ/√(1 - ζ²)), Eq. 16 of the paper. With an engine or a law, r under its release.
     measured_restitution
         Restitution coefficient of a free impact under the given release, as a drop test measures
         it.
@@ -145,7 +145,7 @@ def design(
         Where a contact ends: "displacement" at the table's level, the default without an engine,
         or "force" where the contact force vanishes.
     law
-        Name of a contact law, such as hunt-crossley, in place of the linear one. It gets the given
+        Name of a contact law, such as hunt-crossley, in place of the linear one. It has the given
         restitution coefficient and contact time at the impact speed of the orbit.
     quantity
         The quantity that must be accurate: max_height, bounce_velocity, phase,

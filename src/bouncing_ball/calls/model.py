@@ -57,15 +57,15 @@ def model(
         Restitution coefficient r in (0, 1]. A spring-damper contact then has the damping ratio
         ζ with r = exp(-πζ/√(1 - ζ²)), Eq. 16 of the paper.
     frequency_ratio : array_like, optional
-        Frequency ratio ϖ of a spring-damper contact. Without it, impacts are instants.
+        Frequency ratio ϖ of a spring-damper contact; the restitution model has none.
     release : str, optional
-        Where a contact ends: "displacement" at the table's level, as in the paper and by
-        default, or "force" where the contact force vanishes.
+        Where a contact ends: "displacement" at the table's level, as in the paper (default), or
+        "force" where the contact force vanishes.
     damping_ratio : array_like, optional
         Damping ratio ζ in [0, 1) of the contact, in place of the restitution coefficient.
     measured_restitution : array_like, optional
-        Restitution coefficient of a free impact under the given release, in place of
-        restitution, which always refers to the displacement release.
+        Restitution coefficient of a free impact under the given release, in place of the
+        parameter restitution, which always refers to the displacement release.
     model : str, optional
         "restitution", "spring-damper" or "corrected". By default "spring-damper" if ϖ is
         given, and otherwise "restitution".
@@ -77,8 +77,8 @@ def model(
         Duration D of a free impact. With the restitution coefficient it replaces the
         parameters of the contact law.
     speed : float, optional
-        Speed of that free impact. The default is the impact speed of the orbit; for limits,
-        that of the restitution model, 2πn/(1 + r); for a simulation, that of the first impact.
+        Speed of this free impact. The default is the impact speed of the orbit; for limits, the
+        impact speed of the restitution model, 2πn/(1 + r); for a simulation, the first one.
 
     Raises
     ------

@@ -28,7 +28,7 @@ def simulate(
     Parameters
     ----------
     amplitude : array_like
-        Excitation amplitude Λ; arrays follow many balls at once.
+        Excitation amplitude Λ.
     phase : array_like
         Phase of the table at the first impact.
     velocity : array_like

@@ -49,7 +49,7 @@ def orbit(
         Side of the branch: "stable" or "unstable" next to the saddle-node, or "all" for every
         orbit at this amplitude, in order of contact duration.
     index : int, optional
-        Number of one of the orbits that side "all" lists, from 1.
+        Number, from 1, of one orbit in the list of side "all".
     impact
         The parameters of :func:`model`.
 

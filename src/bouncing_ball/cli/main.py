@@ -36,8 +36,8 @@ def parser(arguments: list[str]) -> Parser:
     """The parser of all subcommands, with the options of those that are named in the arguments."""
     top = Parser(
         prog="bouncing-ball",
-        description="Periodic orbits of a ball on a vibrating table. All quantities are "
-        "dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g; only design has units.",
+        description="Orbits and other motions of a ball on a vibrating table. Quantities are "
+        "dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g. Only design has units.",
         epilog="bouncing-ball COMMAND --help explains a command and gives examples",
     )
     top.add_argument("--version", action="version", version=f"{top.prog} {__version__}")

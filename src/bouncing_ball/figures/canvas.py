@@ -1,11 +1,15 @@
 """Figures without overlaps, and the parts that all of their panels share."""
 
+from collections.abc import Iterator
+from itertools import cycle
 from typing import Any
 
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from bouncing_ball.datasets.selection import each
+from bouncing_ball.figures.style import COLOURS
 
 WIDTH = 3.4
 """Width of a one-column figure in inches."""
@@ -46,3 +50,8 @@ def logarithmic(axes: Axes, ratio: xr.DataArray | None = None, **settings: Any) 
     axes.set(xscale="log", **settings)
     axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
     axes.xaxis.set_minor_formatter(lambda value, _: "")
+
+
+def coloured(data: xr.Dataset, dim: str) -> Iterator[tuple[xr.Dataset, str]]:
+    """The dataset at each place along a dimension, with the colours in turn."""
+    return zip(each(data, dim), cycle(COLOURS))

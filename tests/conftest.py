@@ -1,14 +1,16 @@
-"""Shared by all tests: the hypothesis profile and reference implementations.
+"""Shared by all tests: the hypothesis profile, reference implementations, the command line.
 
 The references use nothing of the package: they are a matrix exponential, the paper's
 solution of the contact, Brent's method, and free flight.
 """
 
+import contextlib
+import io
+import json
 import math
 import os
 import shutil
 import subprocess
-from contextlib import contextmanager
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -18,6 +20,7 @@ from hypothesis import HealthCheck, settings
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
+from bouncing_ball.cli.main import main
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.datasets.variables import VARIABLES
@@ -174,13 +177,68 @@ def one_line():
 def refusal(one_line):
     """As ``pytest.raises``, with such a message: ``with refusal(ModelError, "part", …):``."""
 
-    @contextmanager
+    @contextlib.contextmanager
     def check(kind, *parts):
         with pytest.raises(kind) as error:
             yield
         one_line(error, *parts)
 
     return check
+
+
+@pytest.fixture(scope="session")
+def outcome():
+    """Exit status, output and errors of a call."""
+
+    def outcome(*arguments):
+        status = 0
+        with (
+            contextlib.redirect_stdout(io.StringIO()) as out,
+            contextlib.redirect_stderr(io.StringIO()) as err,
+        ):
+            try:
+                main(list(arguments))
+            except SystemExit as exit_:
+                status = exit_.code
+        return status, out.getvalue(), err.getvalue()
+
+    return outcome
+
+
+@pytest.fixture(scope="session")
+def said(outcome):
+    """The output of a call that succeeds."""
+
+    def said(*arguments):
+        status, out, err = outcome(*arguments)
+        assert (status, err) == (0, "")
+        return out
+
+    return said
+
+
+@pytest.fixture(scope="session")
+def ask(said):
+    """The JSON answer of a call that succeeds, which must be one line."""
+
+    def ask(*arguments):
+        out = said(*arguments, "--json")
+        assert out.count("\n") == 1
+        return json.loads(out)
+
+    return ask
+
+
+@pytest.fixture(scope="session")
+def refused(outcome):
+    """Exit status and the one line on standard error of a call that fails."""
+
+    def refused(*arguments):
+        status, out, err = outcome(*arguments)
+        assert status != 0 and out == "" and err.count("\n") == 1
+        return status, err.rstrip("\n")
+
+    return refused
 
 
 @pytest.fixture(scope="session")

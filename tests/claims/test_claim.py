@@ -90,22 +90,16 @@ def test_a_printed_number(data):
     assert found["deviation"] == pytest.approx(0.18 / 82)
     assert np.isnan(found["limit"])
     del found["deviation_units"], found["deviation"], found["limit"]
-    assert found == {
+    assert {name: value for name, value in found.items() if value != ""} == {
         "item": "Fig. 14",
         "group": "number",
-        "restates": "",
         "statement": "the threshold",
         "printed_text": "82",
         "remark": "read off a curve",
-        "answer": "",
-        "condition": "",
         "decided_by": "fig",
         "required": "82",
         "found": 82.18,
         "verdict": "reproduced",
-        "reason": "",
-        "printed_table": "",
-        "explained_by": "",
         "explained": True,
     }
     assert height_threshold.id == "height threshold"

@@ -22,7 +22,6 @@ from bouncing_ball.errors import ModelError
 from bouncing_ball.figures.tables.rows import witness as rows
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
-from bouncing_ball.studies.continuation import Continuation
 from bouncing_ball.studies.orbit_branches import Domains, orbit_branches
 
 
@@ -174,8 +173,7 @@ def test_both_rules_of_release(release, continuation_settings):
         "amplitude_max": 1.5,
         "points": 41,
     }
-    settings = Continuation(**dict(continuation_settings))
-    data = orbit_branches(Domains(**parameters), release, settings)
+    data = orbit_branches(Domains(**parameters), release, continuation_settings)
     data.attrs = parameters | {"release": release}
     result = witness({"fig08": describe(data)})
     assert (result.disagreement <= result.budget).all()

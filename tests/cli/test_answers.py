@@ -9,7 +9,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import bouncing_ball
-from bouncing_ball.cli.main import main
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.laws import LAWS
@@ -174,17 +173,15 @@ def test_a_law_that_is_known_by_its_parameters_only(refused, monkeypatch):
     assert line.endswith("rubber is given by its parameters, not by restitution and duration")
 
 
-def test_a_missing_orbit_exits_1_with_the_reason(refused, capsys):
+def test_a_missing_orbit_exits_1_with_the_reason(refused, outcome):
     call = ("orbit", "--restitution", "0.85", "--amplitude", "0.1")
     assert refused(*call) == (
         1,
         "bouncing-ball: no 1-T orbit at Λ = 0.1 for r = 0.85: below the saddle-node "
         "at Λ = 0.254724",
     )
-    with pytest.raises(SystemExit) as exit_:
-        main([*call, "--json"])
-    assert exit_.value.code == 1
-    assert "below the saddle-node" in json.loads(capsys.readouterr().out)["error"]
+    status, out, _ = outcome(*call, "--json")
+    assert status == 1 and "below the saddle-node" in json.loads(out)["error"]
 
 
 @pytest.mark.parametrize(

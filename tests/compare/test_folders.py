@@ -9,7 +9,6 @@ import pytest
 from PIL import Image, ImageDraw
 from PIL.PngImagePlugin import PngInfo
 
-from bouncing_ball.cli.main import main
 from bouncing_ball.compare import parts
 from bouncing_ball.compare.budgets import PICTURE
 from bouncing_ball.compare.folders import compare_folders
@@ -199,15 +198,13 @@ def test_a_folder_that_is_a_link(pair, refusal):
         pair.compare()
 
 
-def test_nothing_is_printed_raw(pair, capsys):
+def test_nothing_is_printed_raw(pair, outcome):
     name = "fig\x1b[2J\n.md"
     (pair.new / "figures" / name).write_text("\x1b]0;\x07", encoding="utf-8")
     (pair.new / "paper.md").write_text("\x1b[2J\u202e<script>\n", encoding="utf-8")
     page = pair.new / "page.html"
-    with pytest.raises(SystemExit) as exit_:
-        main(["diff", str(pair.record), str(pair.new), "--html", str(page)])
-    out, err = capsys.readouterr()
-    assert exit_.value.code == 1 and err == ""
+    status, out, err = outcome("diff", str(pair.record), str(pair.new), "--html", str(page))
+    assert status == 1 and err == ""
     for text in (out, page.read_text(encoding="utf-8")):
         assert text.replace("\n", "").isprintable() and "\\x1b[2J" in text
     assert "<script" not in page.read_text(encoding="utf-8")
@@ -221,12 +218,10 @@ def test_nothing_is_printed_raw(pair, capsys):
         (("record", "new", "fig99"), "unknown artifact fig99; known: fig01, fig05"),
     ],
 )
-def test_folders_that_cannot_be_compared(pair, monkeypatch, capsys, arguments, said):
+def test_folders_that_cannot_be_compared(pair, monkeypatch, refused, arguments, said):
     monkeypatch.chdir(pair.new.parent)
-    with pytest.raises(SystemExit) as exit_:
-        main(["diff", *arguments])
-    out, err = capsys.readouterr()
-    assert (exit_.value.code, out, err.count("\n")) == (2, "", 1) and said in err
+    status, line = refused("diff", *arguments)
+    assert status == 2 and said in line
 
 
 def test_the_table_and_the_page(pair):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.special import beta
 
-from bouncing_ball.contacts.collocation import Start, _falls, _left, _Motion, contacts, path
+from bouncing_ball.contacts.collocation import Start, _falls, _left, _Motion, contacts, march, path
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.laws.elasto_backlash import ElastoBacklash
@@ -15,6 +15,7 @@ from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji, tsuji_damping
 from bouncing_ball.contacts.signature import free_impact
+from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError
 
 
@@ -27,9 +28,8 @@ def test_the_elastic_hertz_impact(law):
     assert float(end.duration) == pytest.approx(0.8 * beta(0.4, 0.5) * deepest / v, rel=1e-13)
     assert float(end.rate) == pytest.approx(-v, rel=1e-13)
     # Inside, the path is as exact as its coefficients have fallen.
-    assert float(path(law, end, end.duration / 2, v, weight=0.0)[0]) == pytest.approx(
-        deepest, rel=1e-9
-    )
+    depth, _ = path(law, end, end.duration / 2, v, weight=0.0)
+    assert float(depth) == pytest.approx(deepest, rel=1e-9)
 
 
 def test_next_to_its_end_a_path_is_a_straight_line():
@@ -55,8 +55,27 @@ def test_a_load_holds_an_undamped_impedance_up_to_the_level():
     end = contacts(Impedance(3.0, 0.0, 0.5), 2.0)
     np.testing.assert_allclose(end.rate, -2.0, rtol=1e-13)
     assert abs(end.penetration) < 1e-14
-    expected = 2 * (np.pi - np.arctan2(2 / 3, 0.5 / 9)) / 3
-    np.testing.assert_allclose(end.duration, expected, rtol=1e-13)
+    b, c = 2 / 3, 0.5 / 9
+    np.testing.assert_allclose(end.duration, 2 * (np.pi - np.arctan2(b, c)) / 3, rtol=1e-13)
+    # With c the derivatives by v and by the weight, in proportion to which c is.
+    by = 2 / 3 * c / (b * b + c * c) * np.array([-1 / 3, b])
+    np.testing.assert_allclose(end.jacobian[0, [1, 3]], by, rtol=1e-13)
+
+
+def test_a_release_at_the_surface_is_there_exactly():
+    end = contacts(SpringDamper(10.0, 0.1), np.linspace(1, 5, 999), 0.3, 1.2)
+    assert np.isfinite(end.duration).all() and not end.penetration.any()
+
+
+def test_a_contact_is_divided_alike_in_all_units():
+    # Another stiffness is another unit of time and length, at one speed without a load.
+    start = Start(*np.array([0.0, 2.0, 0.0, 0.0, 0.0])[:, np.newaxis])
+
+    def panels(law):
+        return next(k for k in range(99) if march(law, start, k).duration > 0)
+
+    for law in (HuntCrossley, Tsuji):
+        assert len({panels(law(10.0**k, 0.3)) for k in (-8, 0, 8)}) == 1
 
 
 def test_a_contact_is_found_whatever_its_neighbours():
@@ -75,10 +94,8 @@ def test_a_contact_is_found_whatever_its_neighbours():
 def test_the_end_of_a_panel_is_sought_with_the_derivatives_of_what_vanishes_there(law, until):
     start = Start(*np.array([0.0, 2.0, 0.4, 1.2, 1.0])[:, np.newaxis])
     now, m = _Motion(*np.ones((8, 1))), law.root
-    state, slope = (
-        np.array([[0.3], [-0.7], [0.2]]),
-        np.array([[-0.7], [-1.7], [m * 0.3 ** (m - 1)]]),
-    )
+    state = np.array([[0.3], [-0.7], [0.2]])
+    slope = np.array([[-0.7], [-1.7], [m * 0.3 ** (m - 1)]])
     # dq/ds is p′ and dt/ds is λ, and p″λ is any number. Central differences, 10⁻¹² + ε/10⁻⁶.
     ahead, back = (_left(law, m, start, now, until, *(state + h * slope)) for h in (1e-6, -1e-6))
     found = _falls(law, m, start, now, until, *state, slope[1])

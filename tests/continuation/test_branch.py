@@ -40,10 +40,13 @@ CUBIC = Scalar(lambda x, p: x**3 - x + p, lambda x, p: 3 * x**2 - 1, lambda x, p
 LINE = Scalar(lambda x, p: x - 2 * p, lambda x, p: 1.0, lambda x, p: -2.0)
 
 
+def along(problem, *start, **given):
+    """A branch towards larger parameters."""
+    return continue_branch(problem, np.array(start), increasing=True, **given)
+
+
 def test_circle_goes_round_and_stops_at_the_limit():
-    branch = continue_branch(
-        CIRCLE, np.array([1.0, 0.0]), increasing=True, events=[fold(CIRCLE)], max_points=120
-    )
+    branch = along(CIRCLE, 1.0, 0.0, events=[fold(CIRCLE)], max_points=120)
     assert str(branch.start) == "starting point"
     assert str(branch.end) == "reached the limit of 120 points"
     assert len(branch.points) == 120
@@ -61,9 +64,7 @@ def test_circle_goes_round_and_stops_at_the_limit():
 
 def test_steps_obey_the_control():
     control = StepControl(initial=0.01, largest=0.15, max_angle=0.1)
-    branch = continue_branch(
-        CIRCLE, np.array([1.0, 0.0]), increasing=True, control=control, max_points=80
-    )
+    branch = along(CIRCLE, 1.0, 0.0, control=control, max_points=80)
     assert np.hypot(*(branch.points[1] - branch.points[0])) == pytest.approx(0.01, rel=1e-3)
     # On the unit circle the tangent turns by the angle run through.
     angle = np.diff(np.unwrap(np.arctan2(branch.points[:, 1], branch.points[:, 0])))
@@ -111,7 +112,7 @@ def test_both_folds_of_a_cubic():
 
 def test_straight_line_leaves_its_window():
     events = [parameter_bound(1.0, True, "window")]
-    branch = continue_branch(LINE, np.array([0.0, 0.0]), increasing=True, events=events)
+    branch = along(LINE, 0.0, 0.0, events=events)
     assert str(branch.end) == "window"
     assert branch.points[-1] == pytest.approx(np.array([2.0, 1.0]), abs=EXACT)
     assert branch.arclength[-1] == pytest.approx(np.sqrt(5), abs=EXACT)
@@ -131,9 +132,7 @@ def test_events_of_one_step_come_in_order_and_none_after_the_end():
 
     control = StepControl(initial=0.2)
     events = [at(0.06, "c"), at(0.05, "end", True), at(0.01, "a"), at(0.02, "b")]
-    branch = continue_branch(
-        LINE, np.array([0.0, 0.0]), increasing=True, events=events, control=control
-    )
+    branch = along(LINE, 0.0, 0.0, events=events, control=control)
     assert [s.name for s in branch.special] == ["a", "b", "end"]
     assert [s.point[1] for s in branch.special] == pytest.approx([0.01, 0.02, 0.05], abs=EXACT)
     assert len(branch.points) == 2
@@ -146,9 +145,7 @@ def test_event_on_a_point_of_the_branch_is_found_once():
     for sign in (1.0, -1.0):
         event = Event("half", lambda y, sign=sign: sign * (y[..., 1] - 0.5))
         end = parameter_bound(0.9, True, "end")
-        branch = continue_branch(
-            LINE, np.array([0.0, 0.0]), increasing=True, events=[event, end], control=control
-        )
+        branch = along(LINE, 0.0, 0.0, events=[event, end], control=control)
         assert np.array(branch.named("half")) == pytest.approx(np.array([[1.0, 0.5]]), abs=EXACT)
 
 
@@ -158,7 +155,7 @@ def test_corrector_failure_ends_the_branch():
         lambda x, p: np.where(p > 1, np.nan, x - p), lambda x, p: 1.0, lambda x, p: -1.0
     )
     control = StepControl(smallest=1e-6)
-    branch = continue_branch(problem, np.array([0.0, 0.0]), increasing=True, control=control)
+    branch = along(problem, 0.0, 0.0, control=control)
     assert str(branch.end).startswith("step too small (")
     assert str(branch.end).endswith("the corrector fails with residual nan")
     # The last step tried was below twice the smallest.
@@ -170,7 +167,7 @@ def test_a_corner_ends_the_branch():
     problem = Scalar(
         lambda x, p: x - np.maximum(p, 0), lambda x, p: 1.0, lambda x, p: np.where(p < 0, 0.0, -1.0)
     )
-    branch = continue_branch(problem, np.array([0.0, -0.5]), increasing=True)
+    branch = along(problem, 0.0, -0.5)
     assert str(branch.end).startswith("step too small (")
     assert str(branch.end).endswith("the tangent turns by more than 0.2 rad")
     assert branch.points[-1] == pytest.approx(np.zeros(2), abs=1e-7)
@@ -192,9 +189,7 @@ def jump(terminal, reason=""):
 )
 def test_an_event_without_a_zero_ends_the_branch_close_to_it(event, reason):
     control = StepControl(smallest=1e-6)
-    branch = continue_branch(
-        LINE, np.array([0.0, 0.0]), increasing=True, events=[event], control=control
-    )
+    branch = along(LINE, 0.0, 0.0, events=[event], control=control)
     assert str(branch.end).startswith("step too small (") and reason in str(branch.end)
     assert branch.end.finished == event.terminal
     # The last step tried was below twice the smallest.
@@ -209,7 +204,7 @@ def test_the_step_gets_shorter_where_newton_leaves_it(root):
         Event("steep", lambda y: np.arctan(200 * (y[..., 1] - root))),
         parameter_bound(2.0, True, "end"),
     ]
-    branch = continue_branch(LINE, np.array([0.0, 0.0]), increasing=True, events=events)
+    branch = along(LINE, 0.0, 0.0, events=events)
     assert np.array(branch.named("steep")) == pytest.approx(np.array([[2 * root, root]]), abs=EXACT)
 
 
@@ -217,9 +212,7 @@ def test_an_event_that_cannot_be_located_gives_way_to_the_end():
     # The end, at p = 0.29, is met in the same step as the jump at 0.3.
     end = parameter_bound(0.29, True, "window")
     control = StepControl(initial=1.0, largest=1.0)
-    branch = continue_branch(
-        LINE, np.array([0.0, 0.0]), increasing=True, events=[jump(False), end], control=control
-    )
+    branch = along(LINE, 0.0, 0.0, events=[jump(False), end], control=control)
     assert str(branch.end) == "window"
     assert branch.points[-1] == pytest.approx(np.array([0.58, 0.29]), abs=EXACT)
 
@@ -233,7 +226,7 @@ def test_no_start(refusal):
     ):
         solve_at(CIRCLE, np.array([1.0, 2.0]))
     with pytest.raises(ContinuationError):
-        continue_branch(CIRCLE, np.array([1.0, 2.0]), increasing=True)
+        along(CIRCLE, 1.0, 2.0)
 
 
 def test_a_start_beyond_a_terminal_event(refusal):
@@ -242,20 +235,18 @@ def test_a_start_beyond_a_terminal_event(refusal):
         with refusal(
             ContinuationError, "the start [0.8 0.6] lies beyond the end of the branch: the window"
         ):
-            continue_branch(CIRCLE, np.array([0.8, 0.6]), increasing=True, events=events)
+            along(CIRCLE, 0.8, 0.6, events=events)
 
 
 def test_start_is_corrected_at_its_own_parameter():
     assert solve_at(CIRCLE, np.array([0.9, 0.6])) == pytest.approx([0.8, 0.6], abs=EXACT)
-    branch = continue_branch(CIRCLE, np.array([0.9, 0.6]), increasing=True, max_points=3)
+    branch = along(CIRCLE, 0.9, 0.6, max_points=3)
     assert branch.points[0] == pytest.approx(np.array([0.8, 0.6]), abs=EXACT)
 
 
 def circle_arc(control):
     event = Event("end", lambda y: y[..., 0] + 0.5, terminal=True)
-    return continue_branch(
-        CIRCLE, np.array([1.0, 0.0]), increasing=True, events=[event], control=control
-    )
+    return along(CIRCLE, 1.0, 0.0, events=[event], control=control)
 
 
 COARSE, FINE = StepControl(), StepControl(initial=0.003, largest=0.03, max_angle=0.05)

@@ -165,7 +165,7 @@ def test_the_force_does_the_work_and_the_release_is_the_first(law):
     turns = np.flatnonzero(np.diff(np.sign(law.kink(*path(law, end, grid, *START)))))
     pairs = ((grid[k], grid[k + 1]) for k in turns)
     ends[1:1] = [
-        brentq(lambda t: law.kink(*path(law, end, t, *START)), *two, 1e-8) for two in pairs
+        brentq(lambda t: law.kink(*path(law, end, t, *START)), *two, xtol=1e-8) for two in pairs
     ]
     # t = D x²(3 - 2x) undoes the roots at the ends, for the most part. A slope that steps 1e-8
     # beside the end of a part errs by 1e-16.

@@ -14,6 +14,8 @@ LAWS = [
     0.7,
     SpringDamper.from_restitution(0.7, 30.0),
     SpringDamper.from_restitution(0.7, 30.0, "force"),
+    # Here one contact in ten resumes below the table's level.
+    SpringDamper(2.0, 0.9, "force"),
     Signature(SpringDamper.from_restitution(0.7, 30.0)),
     Tsuji(2000.0, tsuji_damping(0.7)),
     Signature(Tsuji(2000.0, tsuji_damping(0.7))),
@@ -43,9 +45,8 @@ def test_the_jacobian_is_that_of_the_simulated_map(law):
     around = [(step(law, phase + a, velocity + b)[0], step(law, phase - a, velocity - b)[0])
               for a, b in ((STEP, 0), (0, STEP))]  # fmt: skip
     # Of both ends in the start (φ, δ′): the section of the corrected model is the instant.
-    first, last = np.moveaxis([(f - b) / (2 * STEP) for f, b in around], (1, 0), (0, 3)).swapaxes(
-        1, 2
-    )
+    slopes = [(f - b) / (2 * STEP) for f, b in around]
+    first, last = np.moveaxis(slopes, (1, 0), (0, 3)).swapaxes(1, 2)
     expected = (last @ np.linalg.inv(first)).reshape(-1, 4).T
     size = np.abs(expected).max(axis=0)
     # Central differences: the rounding of the states over the step, and the step squared times

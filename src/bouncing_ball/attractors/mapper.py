@@ -100,13 +100,15 @@ class _Ball(NamedTuple):
         of = seen, time, doubt + 1, lift - 1, lift_time, lap, mark, Stretching.of(index.size)
         return cls(index, amplitude + time, *of)
 
-    def doubted(self, which: np.ndarray, reason: Reason) -> None:
-        """Write down why some of the balls may stay undecided."""
-        self.doubt[which] = _REASONS.index(reason)
-
 
 def label(
-    law: Law, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, *, impacts: int = IMPACTS
+    law: Law,
+    amplitude: ArrayLike,
+    phase: ArrayLike,
+    velocity: ArrayLike,
+    *,
+    impacts: int = IMPACTS,
+    path: np.ndarray | None = None,
 ) -> Motions:
     """The motions on which balls end that start with an impact.
 
@@ -118,6 +120,9 @@ def label(
     impacts : int
         Number of impacts after which the search for a repetition ends. A motion is found if it
         repeats within about a third of them.
+    path : array, optional
+        Contiguous, with the shape (3, impacts) in front of that of the result. It is filled with
+        time, φ and z′ of each impact before the one at which the motion is found.
 
     Returns
     -------
@@ -136,20 +141,30 @@ def label(
     >>> found = label(0.5, [1.2, 1.6, 2.5], 1.0, -3.0)
     >>> found.kind.tolist(), found.periods.tolist(), found.impacts.tolist()[:2]
     (['orbit', 'subharmonic', 'locked'], [1, 2, 6], [1, 2])
+
+    The path to a motion is the one that a simulation has, up to a rounding of the velocity:
+
+    >>> from bouncing_ball.motion.simulation import simulate
+    >>> path, start = np.empty((3, 20, 2)), (0.5, [1.2, 1.6], 1.0, -3.0)
+    >>> found, way = label(*start, impacts=20, path=path), simulate(*start, 20)
+    >>> apart = np.abs(path - [way.time, way.phase, way.impact_velocity])
+    >>> found.followed.tolist(), apart[:2].max().tolist(), bool(apart[2].max() < 1e-15)
+    ([20, 20], 0.0, True)
     """
     dynamics, start, relative, shape = first_impacts(law, amplitude, phase, velocity)
     # Freed once, so much memory stays with the process, and is not asked for again at each step.
     np.empty(_KEPT, dtype=np.int8)
     # Derivatives of long turns may overflow, and those of a ball that sticks are zero.
     with np.errstate(all="ignore"):
-        found = _follow(dynamics, start, relative, impacts)
+        found = _follow(dynamics, start, relative, impacts, path)
     return Motions(*(x.reshape(shape) for x in vars(found).values()))
 
 
-def _follow(dynamics: Dynamics, start: np.ndarray, relative: np.ndarray, impacts: int) -> Motions:
+def _follow(
+    dynamics: Dynamics, start: np.ndarray, relative: np.ndarray, impacts: int, path: Any
+) -> Motions:
     """Follow all balls, in a block that is refilled when some of its balls are done."""
     found, size = Motions.unknown(start.size), start.size
-    now: Any = None
     ball: Any = None
     impact: Any = None
     alive = ahead = 0
@@ -161,6 +176,9 @@ def _follow(dynamics: Dynamics, start: np.ndarray, relative: np.ndarray, impacts
             born = _Ball.new(more, pick(dynamics.amplitude, more), fresh), fresh
             ball, impact = _joined((ball, impact), born) if alive else born
             now = dynamics.take(ball.lane)
+        if path is not None:
+            thrown = impact.velocity + table(impact.phase, ball.amplitude)[0]
+            path.reshape(3, impacts, -1)[:, ball.seen, ball.lane] = ball.time, impact.phase, thrown
         departure = now.depart(impact)
         going = _resting(now, impact, departure, ball, found)
         now, impact, departure, ball = _kept(going, found, now, impact, departure, ball)
@@ -180,10 +198,9 @@ def _kept(going: np.ndarray, found: Motions, now: Dynamics, impact: Impact, *row
     if going.size < ball.lane.size:
         last = np.delete(np.arange(ball.lane.size), going)
         index, phase = ball.lane[last], impact.phase[last]
-        rests = found.kind[index] == Kind.PERMANENT_CONTACT
+        phase[found.kind[index] == Kind.PERMANENT_CONTACT] = np.nan
         thrown = impact.velocity[last] + table(phase, ball.amplitude[last])[0]
-        place = (np.where(rests, np.nan, x) for x in (phase, thrown))
-        found.fill(index, **dict(zip(("end_phase", "end_velocity"), place, strict=True)))
+        found.fill(index, end_phase=phase, end_velocity=thrown)
         now, impact, *rows = now.take(going), *(pick(x, going) for x in (impact, *rows))
     return now, impact, *rows
 
@@ -247,7 +264,7 @@ def _move(ball: _Ball, change: Jacobian, passed: np.ndarray, sticks: np.ndarray)
     grown = stretch.grow(change)
     forgot = np.flatnonzero(sticks & (stretch.growth + grown < stretch.least - DIGITS))
     if forgot.size:
-        ball.doubted(forgot[stretch.lost()[forgot]], Reason.ROUNDING)
+        ball.doubt[forgot[stretch.lost()[forgot]]] = _REASONS.index(Reason.ROUNDING)
         stretch.forget(forgot, grown, ball.time)
     stretch.add(grown, ball.time, ball.seen)
 
@@ -271,7 +288,8 @@ def _returning(
         back = (away <= np.where(second, _AGAIN, NEAR)) & (radius <= 1 - _MARGIN)
         back &= (periods > 0) & (ball.stretch.worst[near] <= FORGOTTEN)
         close = np.maximum(np.abs(turned[near]), np.abs(faster[near])) < _AGAIN
-        ball.doubted(near[close & (np.abs(radius - 1) < _MARGIN)], Reason.MARGINAL)
+        close &= np.abs(radius - 1) < _MARGIN
+        ball.doubt[near[close]] = _REASONS.index(Reason.MARGINAL)
         length, sure, first = ball.seen[near] - mark.impact[near], back & second, back & ~second
         own, whole = near[sure], np.gcd(periods, length)[sure] == 1
         repeats = np.where(whole, Kind.ORBIT, Kind.SUBHARMONIC)
@@ -294,12 +312,9 @@ def _mark(ball: _Ball, here: np.ndarray, phase: np.ndarray, velocity: np.ndarray
     # A second turn that did not come is forgotten.
     turn = np.where(mark.until[here] > count, mark.turn[here], 0)
     later = np.where(turn, turn + 1, np.maximum(_LEAST, (_SHARE * count).astype(int)))
-    new = _Mark(
-        *(count, ball.time[here], phase[here], velocity[here], Jacobian.identity(here.size)),
-        *(np.zeros_like(count), count + later, turn),
-    )
-    for values, value in zip((*mark[:4], *mark.since, *mark[5:]),
-                             (*new[:4], *new.since, *new[5:]), strict=True):  # fmt: skip
+    state = count, ball.time[here], phase[here], velocity[here]
+    new = *state, *Jacobian.identity(here.size), 0, count + later, turn
+    for values, value in zip((*mark[:4], *mark.since, *mark[5:]), new, strict=True):
         values[here] = value
     ball.stretch.mark(here)
 

@@ -237,7 +237,7 @@ def case_of(
         omega = math.sqrt(given["stiffness"] / mass)
         if _one_of(given, LOSSY, "the loss of the contact") == "damping":
             zeta = given["damping"] / (2 * mass * omega)
-            zeta = _oscillating(zeta, release, "damping ratio ζ of this {damping}")
+            zeta = _oscillating(zeta, release, "damping ratio ζ of the contact")
         else:
             zeta = loss(given, release)
         return Case(mass, table, SpringDamper(omega / table.angular_frequency, zeta, release))

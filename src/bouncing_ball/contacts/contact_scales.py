@@ -61,6 +61,12 @@ def rest(law: ContactLaw) -> float:
     >>> from bouncing_ball.contacts.spring_damper import SpringDamper
     >>> round(rest(SpringDamper(2.0, 0.1)), 6)
     0.25
+
+    Of an impedance only the share 1 - d of the weight is left, at (1 - d)/ϖ²:
+
+    >>> from bouncing_ball.contacts.laws.impedance import Impedance
+    >>> round(rest(Impedance(0.5, 0.1, 0.75)), 12)
+    1.0
     """
     weight = np.ones(1)
     deepest = float(depth(law, 0 * weight, 0.0, weight)[0])

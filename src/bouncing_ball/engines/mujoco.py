@@ -89,6 +89,11 @@ class MuJoCo(Engine):
 
     >>> MuJoCo().read({"solref": "0.02 0.5"}, 1.0)
     Physical(mass=1.0, stiffness=10000.0, damping=100.0)
+
+    Its 100/s are ϖ = 50, if the unit of time 1/Ω is half a second:
+
+    >>> MuJoCo().law({"solref": "0.02 0.5"}, time=0.5).frequency_ratio
+    50.0
     """
 
     name = "mujoco"

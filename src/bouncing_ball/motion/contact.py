@@ -21,8 +21,9 @@ from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.motion.angles import reduce_angle, sine_and_versine, table
 from bouncing_ball.motion.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.motion.ensembles import BLOCK
+from bouncing_ball.motion.first_zero import first_zero
 from bouncing_ball.motion.landing import Flight, land
-from bouncing_ball.motion.linear_contact import ContactMotion, release
+from bouncing_ball.motion.linear_contact import ContactMotion
 from bouncing_ball.motion.resumption import resumption
 from bouncing_ball.motion.sequence import Status
 from bouncing_ball.motion.tangent import Deviation, Jacobian
@@ -112,7 +113,8 @@ class LinearContactDynamics(ContactDynamics):
         x, y = table(impact.phase, self.amplitude)
         state = impact.displacement, impact.velocity
         motion = ContactMotion(self.law, self.amplitude, *state, x, y)
-        end = release(motion)
+        # Where the search ended without a release, the contact is permanent.
+        end = first_zero(motion, motion.sure())
         phase = impact.phase + end.time
         x, y = table(phase, self.amplitude)
         # Where the ball just touches the table's level, rounding may give it a downward velocity.
@@ -120,11 +122,8 @@ class LinearContactDynamics(ContactDynamics):
         status = np.where(end.ended, Status.PERMANENT_CONTACT, Status.BOUNCING)
         status[end.undecided] = Status.UNDECIDED
         forever = status != Status.BOUNCING
-        if forever.any():
-            displacement, velocity = (
-                np.where(forever, np.nan, z) for z in (displacement, velocity)
-            )
-            end.time[forever] = np.inf
+        displacement[forever] = velocity[forever] = np.nan
+        end.time[forever] = np.inf
         flight = Flight(displacement, velocity, x, y, self.amplitude)
         return Departure(phase, end.time, flight, status)
 

@@ -175,8 +175,7 @@ def first_zero(motion: Motion, start: np.ndarray) -> Zero:
         active = left if isinstance(active, slice) else active[left]
         part, now = part.take(left), later[left]
     undecided = np.zeros(time.shape, dtype=bool)
-    if left.size:
-        undecided[active] = True
+    undecided[active] = left.size > 0
     time, rate = _to_the_last_digit(motion, time)
     return Zero(np.maximum(time, start), rate, ended, undecided)
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from bouncing_ball.contacts.elementary import arctangent, exponential, sine_and_cosine
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.motion.first_zero import Motion, State, Zero, first_zero
+from bouncing_ball.motion.first_zero import Motion, State
 
 # √γ below which the steady part loses too many digits: its relative error is ε/√γ.
 _RESONANCE = 1e-4
@@ -161,8 +161,3 @@ class ContactMotion(Motion):
         angle = arctangent(-b * depth - a * rest, b * rest - a * depth)
         angle = np.where((depth < 1) & (angle > 0), angle, 0.0)
         return angle / self.damped
-
-
-def release(motion: ContactMotion) -> Zero:
-    """The end of the contact, a :class:`Zero`; ``ended`` marks permanent contact."""
-    return first_zero(motion, motion.sure())

@@ -20,7 +20,7 @@ from bouncing_ball.parameters import (
     Seed,
     number,
 )
-from bouncing_ball.studies.attractors import LIMITS, Confidence, group, models
+from bouncing_ball.studies.attractors import LIMITS, Confidence, models
 
 # Distance from an impact of the final motion at which a ball has arrived there.
 _NEAR = 1e-3
@@ -79,19 +79,19 @@ def transients(parameters: Transients, release: Release) -> xr.Dataset:
     ratios = np.array(parameters.frequency_ratio)
     table = lam[:, np.newaxis, np.newaxis]
     start = table, phase, table * np.cos(phase) - speed
-    times, ends, elsewhere = [], [], []
+    times, kinds = [], []
     simple, _, contact = models(r[:, np.newaxis, np.newaxis], ratios[:, np.newaxis], release)
     for model in (contact, simple):
-        found = label(model.impact_law, *start, impacts=parameters.impacts)
-        path = model.simulate(*start, parameters.impacts)
-        apart = np.abs(reduce_angle(path.phase - found.end_phase))
-        apart = np.maximum(apart, np.abs(path.impact_velocity - found.end_velocity))
-        there = (apart < _NEAR) & (found.kind == Kind.LOCKED)
-        ends.append(there.any(axis=0))
-        elsewhere.append(group(found, "orbit") | group(found, "subharmonic"))
-        first = np.where(ends[-1], there.argmax(axis=0), len(there) - 1)[np.newaxis]
-        times.append(np.take_along_axis(path.time, first, axis=0)[0] / (2 * np.pi))
-    time, end, other = (np.concatenate(x, axis=1) for x in (times, ends, elsewhere))
+        shape = np.broadcast_shapes(model.shape, table.shape, phase.shape)
+        passed, at, velocity = path = np.full((3, parameters.impacts, *shape), np.nan)
+        found = label(model.impact_law, *start, impacts=parameters.impacts, path=path)
+        apart = np.abs(reduce_angle(at - found.end_phase))
+        apart = np.maximum(apart, np.abs(velocity - found.end_velocity))
+        kinds.append(found.kind)
+        last = np.where(found.kind == Kind.LOCKED, (apart < _NEAR).argmax(axis=0), len(at) - 1)
+        times.append(np.take_along_axis(passed, last[np.newaxis], axis=0)[0] / (2 * np.pi))
+    time, kind = (np.concatenate(x, axis=1) for x in (times, kinds))
+    end, other = kind == Kind.LOCKED, (kind == Kind.ORBIT) | (kind == Kind.SUBHARMONIC)
     grid, level = np.linspace(0, parameters.impacts, _TIMES), parameters.confidence
     shape = time.shape[:-1]
     survival, life = np.empty((*shape, _TIMES)), np.empty((3, *shape))

@@ -1,13 +1,10 @@
 """The accepted summary, the charts that are drawn from it, and the orbits that it names."""
 
-import json
-import shlex
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from bouncing_ball.cli.main import main
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.netcdf import parameter_attributes, read_dataset
 from bouncing_ball.figures.atlas.charts import charts
@@ -30,19 +27,14 @@ def test_the_summary_is_that_of_the_configuration(data):
     assert int(data.orbits) >= 10**8
 
 
-def printed(capsys, command: str) -> dict:
-    main(shlex.split(command)[1:])
-    return json.loads(capsys.readouterr().out)
-
-
-def test_a_supremum_is_reproduced_by_the_command_line_and_exceeded_by_no_node(data, capsys):
+def test_a_supremum_is_reproduced_by_the_command_line_and_exceeded_by_no_node(data, ask):
     simple = data.sel(release="displacement", model="restitution", n=1)
     low, rule = float(data.restitution_edge[0]), float(data.rule_of_thumb)
     # The corner in which the height's error is largest.
     fold = float(restitution_orbit.saddle_node(1, low)) * (1 + 1e-12)
-    orbit = f"bouncing-ball orbit --json --amplitude {fold!r}"
+    orbit = f"orbit --amplitude {fold!r}"
     contact = f"--measured-restitution {low} --frequency-ratio {rule:g}"
-    exact, rigid = (printed(capsys, f"{orbit} {x}") for x in (contact, f"--restitution {low}"))
+    exact, rigid = (ask(*f"{orbit} {x}".split()) for x in (contact, f"--restitution {low}"))
     error = abs(exact["max_height"] / rigid["max_height"] - 1)
     assert float(simple.supremum.sel(supremum_quantity="max_height")) == pytest.approx(error, 1e-5)
     for one in ("restitution", "corrected"):

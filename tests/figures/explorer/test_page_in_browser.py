@@ -16,7 +16,6 @@ import numpy as np
 import pytest
 
 from bouncing_ball.attractors.motions import Kind
-from bouncing_ball.cli.main import main
 from bouncing_ball.configuration.study import typed
 from bouncing_ball.contacts.laws import LAWS
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
@@ -96,18 +95,18 @@ def seen(browse, tmp_path_factory):
     folder = tmp_path_factory.mktemp("explorer")
     data = typed(reference_orbits)(REFERENCES).assign_attrs(provenance_commit="c0ffee" * 6 + "c0ff")
     right = to_html(data, as_json())
-    # Reference orbits that are not the model's.
-    wrong = to_html(data.assign(max_height=data.max_height * 1.00000001), as_json())
-    lost = to_html(data.assign(end_phase=data.end_phase + 1e-10), as_json())
-    # A text of an engine that is not the package's.
-    pasted = to_html(data, as_json().replace("hooke 100000.0", "hooke 100000.1", 1))
-    (folder / "right.html").write_text(right, encoding="utf-8")
-    (folder / "wrong.html").write_text(wrong, encoding="utf-8")
-    (folder / "lost.html").write_text(lost, encoding="utf-8")
-    (folder / "pasted.html").write_text(pasted, encoding="utf-8")
-    # A script that was changed in the file, without its checksum.
-    tampered = right.replace("const GRAVITY = 9.80665", "const GRAVITY = 9.81")
-    (folder / "tampered.html").write_text(tampered, encoding="utf-8")
+    pages = {
+        "right": right,
+        # Reference orbits that are not the model's.
+        "wrong": to_html(data.assign(max_height=data.max_height * 1.00000001), as_json()),
+        "lost": to_html(data.assign(end_phase=data.end_phase + 1e-10), as_json()),
+        # A text of an engine that is not the package's.
+        "pasted": to_html(data, as_json().replace("hooke 100000.0", "hooke 100000.1", 1)),
+        # A script that was changed in the file, without its checksum.
+        "tampered": right.replace("const GRAVITY = 9.80665", "const GRAVITY = 9.81"),
+    }
+    for name, page in pages.items():
+        (folder / f"{name}.html").write_text(page, encoding="utf-8")
     observer = folder / "observer.html"
     script = OBSERVER.replace("STATES", json.dumps(list(states())))
     script = script.replace("GIVEN", json.dumps(list(physical_states())))
@@ -119,25 +118,26 @@ def seen(browse, tmp_path_factory):
     return json.loads(html.unescape(found[1])) | {"folder": folder}
 
 
-def answered(capsys, command):
+@pytest.fixture
+def answered(outcome):
     """The command's own JSON, None where it says that there is no orbit."""
-    try:
-        main([*shlex.split(command)[1:], "--json"])
-    except SystemExit as exit_:
-        assert exit_.code == 1
-        capsys.readouterr()
-        return None
-    return json.loads(capsys.readouterr().out)
+
+    def answered(command):
+        status, out, _ = outcome(*shlex.split(command)[1:], "--json")
+        assert status in (0, 1)
+        return json.loads(out) if status == 0 else None
+
+    return answered
 
 
 def close(shown, expected):
     return abs(float(shown) - expected) <= BOUND * max(1.0, abs(expected))
 
 
-def test_eighty_states_say_what_their_commands_print(seen, capsys):
+def test_eighty_states_say_what_their_commands_print(seen, answered):
     absent = 0
     for state in [seen["first"], *seen["states"]]:
-        said, values = answered(capsys, state["command"]), state["values"]
+        said, values = answered(state["command"]), state["values"]
         exists = values["spring-damper exists"]
         if said is None:
             absent += 1
@@ -202,7 +202,7 @@ KINDS = {
 }  # fmt: skip
 
 
-def test_scenes_end_as_their_commands_say(seen, capsys):
+def test_scenes_end_as_their_commands_say(seen, answered):
     assert set().union(
         *(KINDS[end["kind"]] for one in seen["scenes"] for end in one["ends"])
     ) == set(Kind) - {Kind.UNDECIDED}
@@ -210,7 +210,7 @@ def test_scenes_end_as_their_commands_say(seen, capsys):
         commands = scene["command"].splitlines()
         assert len(commands) == len(scene["ends"]) and scene["look"] != "Balls on one table."
         for command, end in zip(commands, scene["ends"], strict=True):
-            said = answered(capsys, f"{command} --impacts 500")
+            said = answered(f"{command} --impacts 500")
             assert said["kind"] in KINDS[end["kind"]], command
             assert (said["periods"], said["impacts"]) == (end["periods"], end["impacts"]), command
 
@@ -262,9 +262,9 @@ CASES = [pytest.param(k, id="-".join(GIVEN[k]), marks=marks) for k, marks in enu
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_the_physical_tab_says_what_the_command_prints(case, seen, capsys, short_runs):
+def test_the_physical_tab_says_what_the_command_prints(case, seen, answered, short_runs):
     state, (_, engine, release) = seen["given"][case], GIVEN[case]
-    said, page = answered(capsys, state["command"]), state["rows"] | state["values"]
+    said, page = answered(state["command"]), state["rows"] | state["values"]
     (orbit, *_), law = said["orbits"], said["law"] or {}
     assert (state["refused"], state["chosen"]) == ("", str(release))
     # What is interpolated in the speed across a kink at a depth is known to 1e-6.
@@ -293,13 +293,14 @@ def test_the_physical_tab_says_what_the_command_prints(case, seen, capsys, short
         assert state["snippet"] == settings["snippet"]
 
 
-def test_bad_input_is_refused_in_the_words_of_the_command(seen, capsys):
+def test_bad_input_is_refused_in_the_words_of_the_command(seen, refused):
     for state, options in zip(seen["faulty"], FAULTY.values(), strict=True):
         call = f"design --mass 20g --frequency 50Hz --acceleration 0.8g {options}"
-        with pytest.raises(SystemExit):
-            main(shlex.split(call))
-        line = capsys.readouterr().err.removeprefix("bouncing-ball: ").rstrip()
-        assert state["refused"] == line and state["verdict"] == state["command"] == ""
+        _, line = refused(*shlex.split(call))
+        assert (
+            f"bouncing-ball: {state['refused']}" == line
+            and state["verdict"] == state["command"] == ""
+        )
 
 
 def test_the_physical_tab_by_key(seen):

@@ -124,7 +124,7 @@ def safe_step(state: State) -> tuple[np.ndarray, np.ndarray]:
 
 def _prolonged(first, start, state: State):
     """Steps at least as long as the certified ``first`` ones."""
-    step = now = first
+    step, now = first.copy(), first
     which: Any = slice(None)
     own = *start, state.second, state.third, state.second_bound, state.fourth_bound
     while True:
@@ -136,14 +136,12 @@ def _prolonged(first, start, state: State):
         # Where the reach limited the step, a longer reach is tried.
         further = ((longer == reach) & (longer > now)).nonzero()[0]
         now = np.maximum(now, longer)
-        if step is first:
-            step = now
-        else:
-            step[which] = now
+        step[which] = now
         if not further.size:
             return step
-        which = further if isinstance(which, slice) else which[further]
-        now, own = now[further], tuple(pick(x, further) for x in own)
+        if further.size < now.size:
+            which = further if isinstance(which, slice) else which[further]
+            now, own = now[further], tuple(pick(x, further) for x in own)
 
 
 def first_zero(motion: Motion, start: np.ndarray) -> Zero:
@@ -172,8 +170,10 @@ def first_zero(motion: Motion, start: np.ndarray) -> Zero:
         left = (~done).nonzero()[0]
         if left.size == 0:
             break
-        active = left if isinstance(active, slice) else active[left]
-        part, now = part.take(left), later[left]
+        if left.size < now.size:
+            active = left if isinstance(active, slice) else active[left]
+            part, later = part.take(left), later[left]
+        now = later
     undecided = np.zeros(time.shape, dtype=bool)
     undecided[active] = left.size > 0
     time, rate = _to_the_last_digit(motion, time)

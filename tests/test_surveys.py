@@ -115,46 +115,42 @@ def test_a_plot_shows_the_data_and_is_a_picture(data, tmp_path):
     assert isinstance(found.isel({found.ball.dims[0]: 0}) if "ball" in found else found, Labelled)
 
 
+MANY = {"restitution": 0.5, "periods": 10_000, "samples": 10_000}
+
+
+@pytest.mark.parametrize(
+    ("amplitude", "given", "text"),
+    [
+        (-1.0, {}, "amplitude = -1.0 is not a number in [0, 1e+08]"),
+        ([1.0, "a"], {}, "amplitude = 'a' is not a number in [0"),
+        (np.ones((1, 1)), {}, "amplitude has 2 axes without names"),
+        (None, {}, "amplitude is missing"),
+        ([], {}, "amplitude has no entries"),
+        (1.0, {"periods": 0}, "periods = 0 is not a number in (0, 10"),
+        (1.0, MANY, "100000001 states exceed the limit of 10000000"),
+        (1.0, {"foo": 3}, "unknown parameter 'foo': choose from"),
+        (1.0, {"restitution": None}, "one of the arguments restitution damping_ratio"),
+        (1.0, {"release": ["force", "displacement"]}, "release must be one value or an array of n"),
+    ],
+)
+def test_a_mistake_about_a_ball_is_one_line(amplitude, given, text, refusal):
+    with refusal(ValueError, text):
+        bb.history(amplitude, **CONTACT | given)
+
+
+LAW = {"law": "tsuji", "duration": 0.1}
+ARRAYS = {"law": "tsuji", "parameters": {"stiffness": [9.0, 8.0], "damping": 1.0}}
+
+
 @pytest.mark.parametrize(
     ("call", "text"),
     [
-        (
-            lambda: bb.history(-1.0, restitution=0.5),
-            "amplitude = -1.0 is not a number in [0, 1e+08]",
-        ),
-        (lambda: bb.history([1.0, "a"], restitution=0.5), "amplitude = 'a' is not a number in [0"),
-        (
-            lambda: bb.history(1.0, restitution=0.5, periods=0),
-            "periods = 0 is not a number in (0, 10",
-        ),
-        (
-            lambda: bb.history(np.ones((1, 1)), restitution=0.5),
-            "amplitude has 2 axes without names",
-        ),
         (lambda: bb.drop(0.5, 1.0, phase=1.0, restitution=0.5), "height = 0.5 is not at or above"),
-        (lambda: bb.history(None, restitution=0.5), "amplitude is missing"),
-        (lambda: bb.history([], restitution=0.5), "amplitude has no entries"),
-        (
-            lambda: bb.history(1.0, restitution=0.5, periods=10_000, samples=10_000),
-            "100000001 states exceed the limit of 10000000",
-        ),
-        (
-            lambda: bb.drop(9.0, law="tsuji", restitution=[0.5, 0.6], duration=0.1),
-            "restitution must be a single number with law tsuji",
-        ),
-        (
-            lambda: bb.drop(9.0, law="tsuji", parameters={"stiffness": [9.0, 8.0], "damping": 1.0}),
-            "parameters must be single numbers",
-        ),
-        (lambda: bb.history(1.0, restitution=0.5, foo=3), "unknown parameter 'foo': choose from"),
-        (
-            lambda: bb.history(1.0, **CONTACT, release=["force", "displacement"]),
-            "release must be one value or an array of numbers",
-        ),
+        (lambda: bb.drop(9.0, **LAW, restitution=[0.5, 0.6]), "restitution must be a single numb"),
+        (lambda: bb.drop(9.0, **ARRAYS), "parameters must be single numbers"),
         (lambda: bb.branch(0, restitution=0.5), "n = 0 is not a whole number from 1 to 1000"),
         (lambda: bb.branch(1, restitution=0.5, amplitude_max=0.1), "no 1-T orbit up to Λ = 0.1"),
         (lambda: bb.model([0.5, 0.6]).branch(1), "several models have no labels"),
-        (lambda: bb.history(1.0), "one of the arguments restitution damping_ratio"),
         (lambda: bb.drop(9.0, restitution=0.5).plot("x.txt"), "'x.txt' does not end in .pdf or"),
         (lambda: Labelled().plot(), "a dataset of the kind None has no figure: history, branch"),
     ],

@@ -110,11 +110,8 @@ class Case:
     def has_its_restitution(self, n: int) -> bool:
         """Whether the r of the contact is that of the law at the impact speed of the n-T orbit."""
         r = float(self.contact.restitution)
-        return (
-            self.law is None
-            or abs(float(self.models["corrected"].signature(rigid_speed(n, r)).restitution) - r)
-            < _SAME
-        )
+        own = self.models["corrected"].signature(rigid_speed(n, r)).restitution
+        return abs(float(own) - r) < _SAME
 
     def in_si(self) -> dict[str, float]:
         """Stiffness k = mω² and damping c = 2ζmω with ω = ϖΩ, contact time, and static deflection

@@ -187,20 +187,20 @@ def design(
     given = _read(said)
     question = given | {"n": n, "release": release, "quantity": quantity, "engine": engine}
     question["law"], kind = law, _of_law(law, engine, said["release"], given)
-    rule, remarks = _under(engine, said["release"], given), source.remarks() if source else ()
+    rule = _under(engine, said["release"], given)
     if quantity not in QUANTITIES:
         raise ModelError(f"unknown quantity {quantity!r}: one of {', '.join(QUANTITIES)}")
     if n is not None and (n != int(n) or n < 1):
         raise ModelError(f"index of the family n = {n} is not a positive integer")
-    known = given.keys()
+    known, remarks = given.keys(), source.remarks() if source else ()
     if n is None and not known & _TABLE and (engine or known & {"stiffness", "contact_time"}):
         return _contact(given, rule, kind, question, remarks)
     table = table_of(given)
     lam, asked = table.amplitude, _FAMILIES if n is None else [n]
     require(lam < _LARGEST, lam, "Λ", f"below {_LARGEST:g}")
-    case, remarks = None, source.remarks() if source else ()
+    case = need = None
     try:
-        case, need = case_of(given, table, rule, asked, kind), None
+        case = case_of(given, table, rule, asked, kind)
         if case is None:
             case, need = _chosen(given, table, rule, asked, question)
         elif source and not engine:
@@ -314,12 +314,9 @@ def _read(parameters: Mapping[str, Any]) -> dict[str, float]:
         if parameters.get(name) is not None:
             given[name] = value = number(name, parameters[name], kind)
             if value not in kind.allowed:
-                said, given_as = (
-                    f"{{{name}}} = {value:g} {kind.name}".rstrip(),
-                    str(parameters[name]),
-                )
+                said = f"{{{name}}} = {value:g} {kind.name}".rstrip()
                 # A share that is above one was meant in percent.
-                share = kind.allowed.high == 1 <= value < 100 and "%" not in given_as
+                share = kind.allowed.high == 1 <= value < 100 and "%" not in str(parameters[name])
                 meant = f": did you mean {value:g} %?" if share else ""
                 raise ParameterError(f"{said} is not {kind.allowed}{meant}")
     return given

@@ -12,7 +12,6 @@ from bouncing_ball.attractors.motions import Kind
 from bouncing_ball.calculator.case import Case
 from bouncing_ball.calculator.results import QUANTITIES, Family, Motion, Needed
 from bouncing_ball.calculator.units import percent, shown
-from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.laws.tsuji import Tsuji
 from bouncing_ball.contacts.release import Release
@@ -71,11 +70,8 @@ def judged_by_motion(motion: Motion, tolerance: float, n: int) -> Verdict:
     about = f"no ball stays on the {n}-T orbit, so that its errors are not judged"
     kinds = motion.kind, motion.restitution_kind
     if kinds == (Kind.PERMANENT_CONTACT,) * 2:
-        return Verdict(
-            True,
-            "The restitution model is good enough: the ball rests in both models.",
-            about,
-        )
+        sentence = "The restitution model is good enough: the ball rests in both models."
+        return Verdict(True, sentence, about)
     # Locked and chaotic motions of long periods are alike in the mean, but no others are.
     if len({*kinds}) > 1 and {*kinds} & {Kind.PERMANENT_CONTACT, Kind.ORBIT, Kind.SUBHARMONIC}:
         sentence = f"its motion is {_named(kinds[1])}, and the contact's is {_named(kinds[0])}"
@@ -152,11 +148,6 @@ def chosen(si: Mapping[str, float], needed: Needed, n: int) -> Verdict:
     return Verdict(True, sentence, f"the error crosses {tolerance} for the last time {where}")
 
 
-def _contact(law: ContactLaw) -> str:
-    hertz = isinstance(law, Tsuji)
-    return "Hertz contact with Tsuji's damping" if hertz else f"{law.name} contact"
-
-
 def _cost_of(law: Impedance, case: Case, family: Family) -> str:
     """What an impedance changes at the depth of the orbit."""
     about = "stiffness, damping, ϖ and ζ are those of the spring and damper of this solref"
@@ -178,9 +169,11 @@ def notes(case: Case, family: Family) -> tuple[str, ...]:
     if isinstance(case.law, Impedance):
         found.append(_cost_of(case.law, case, family))
     elif case.law is not None:
+        hertz = isinstance(case.law, Tsuji)
+        name = "Hertz contact with Tsuji's damping" if hertz else f"{case.law.name} contact"
         found.append(
             "stiffness, damping, ϖ and ζ, and the ϖ that is needed, are those of a linear contact: "
-            f"it has the r of the {_contact(case.law)}, and its duration at the impact"
+            f"it has the r of the {name}, and its duration at the impact"
         )
         if not all(case.has_its_restitution(n) for n in (family.n, family.n + 1)):
             found.append(

@@ -11,7 +11,7 @@ import numpy as np
 from bouncing_ball.accuracy import error_law as error_laws
 from bouncing_ball.calls import model as models
 from bouncing_ball.calls import motion, orbits
-from bouncing_ball.cli.readable import lines
+from bouncing_ball.cli.readable import lines as lines
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.signature import Signature, free_impact
 from bouncing_ball.contacts.spring_damper import SpringDamper
@@ -22,7 +22,6 @@ from bouncing_ball.orbits.orbit import OBSERVABLES, Orbit
 from bouncing_ball.signatures import takes
 
 Answer = dict[str, Any]
-__all__ = ["error_law", "limits", "lines", "orbit", "permanent_contact", "simulate"]
 
 
 def _described(of: Any, speed: float = math.nan) -> Answer:

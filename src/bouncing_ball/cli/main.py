@@ -81,7 +81,3 @@ def main(arguments: list[str] | None = None) -> None:
             say(json.dumps({"error": text}))
         fail(text, status=1 if isinstance(error, NoOrbitError) else 2)
     say(text)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,4 +1,4 @@
-"""The quantities that datasets and answers contain of orbits, and of a branch with its ends."""
+"""The quantities of orbits, and of a branch with its ends, that datasets and answers contain."""
 
 from typing import Any
 
@@ -25,14 +25,14 @@ OBSERVED = (
     *("impact_velocity", "bounce_velocity", "apparent_restitution"),
 )
 PLACE = ("amplitude", "phase", "contact_duration")
-"""The quantities that the datasets contain of special orbits."""
+"""The quantities of special orbits that the datasets contain."""
 GRAZING = "grazing"
 
 
 def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
-    """The named quantities of orbits, with their stability and their admissibility.
+    """The named quantities of orbits, with the stability and the admissibility of the orbits.
 
-    The arrays have the orbits' shape.
+    Every array has the shape of the orbits.
 
     Examples
     --------
@@ -48,12 +48,12 @@ def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
 def followed(
     system: OrbitSystem, start: np.ndarray, low: float, high: float, largest_step: float
 ) -> Branch:
-    """The branch through a point to both sides, as long as Λ is between ``low`` and ``high``.
+    """The branch through a point, followed to both sides while Λ is between ``low`` and ``high``.
 
     Raises
     ------
     ContinuationError
-        If it is not followed to its ends.
+        If the continuation stops before an end of the branch or a bound of Λ.
     """
     bounds = [
         parameter_bound(x, upper, f"left the window at amplitude {x:g}")
@@ -76,7 +76,7 @@ def branch_columns(system: OrbitSystem, branch: Branch, count: int) -> xr.Datase
     Raises
     ------
     ContinuationError
-        If the branch was followed with too long steps.
+        If the steps along the branch were too long for it to be resampled.
     """
     y = resample(system, branch, count)
     chosen = [s for s in branch.special if s.name in list(Bifurcation)]
@@ -90,11 +90,12 @@ def branch_columns(system: OrbitSystem, branch: Branch, count: int) -> xr.Datase
 def orbits_in_columns(
     orbit: Orbit, special: Orbit, kinds: list[str], ends: list[str]
 ) -> xr.Dataset:
-    """Orbits along a branch, its special orbits with their kinds, and the reasons of its two ends.
+    """Orbits along a branch, its special orbits with their kinds, and the reasons for its two ends.
 
-    The dataset has the observables of the orbits, with phases in rad, ``amplitude``, ``stable``,
-    ``admissible`` and ``residual`` over ``point``; their multipliers over (point, multiplier);
-    ``special_…`` over ``special``; and ``end_reason`` over ``end``, the unstable side first.
+    Over ``point``, the dataset has the observables of the orbits, with phases in rad, and
+    ``amplitude``, ``stable``, ``admissible`` and ``residual``. The multipliers are over (point,
+    multiplier), ``special_…`` over ``special``, and ``end_reason`` over ``end``, where the end of
+    the unstable side comes first.
     """
     floquet = orbit.multipliers()
     along = columns(orbit, "amplitude", *OBSERVED) | {"residual": orbit.defect()}
@@ -110,12 +111,12 @@ def orbits_in_columns(
 
 
 def no_branch(count: int, error: Exception) -> xr.Dataset:
-    """The dataset of :func:`branch_columns` where there is no branch: NaN, and the reason."""
+    """A dataset like that of :func:`branch_columns`, of NaN, with the error as its end reasons."""
     none = SpringDamperModel(SpringDamper(1.0, 0.0)).system(1).orbit(np.full((count, 4), np.nan))
     return orbits_in_columns(none, none[:0], [], [str(error)] * 2)
 
 
 def joined(branches: list[xr.Dataset], dim: str) -> xr.Dataset:
-    """Branches along a new dimension, with as many special orbits as the one that has most."""
+    """Branches along a new dimension; those with fewer special orbits are filled with NaN."""
     whole = xr.concat(branches, dim, join="outer")
     return whole.assign(special_kind=whole.special_kind.fillna("").astype(str))

@@ -1,10 +1,10 @@
 """Orbits and bifurcations of any model, by continuation of its equations.
 
-A search starts from the orbit of the corrected restitution model, with the signature of the
+A search starts from the orbit of the corrected restitution model whose signature is that of an
 impact at the speed of the restitution model's orbit. Newton's method on the equations of the
 model then finds the orbit, for many orbits at once. Bifurcations are solutions of these
-equations extended by the test function of stability. Where this fails, the branch of each
-single model is followed instead.
+equations together with a test function of stability. Where Newton's method fails, the branch is
+followed instead, for one model at a time.
 """
 
 from collections.abc import Sequence
@@ -23,25 +23,28 @@ from bouncing_ball.orbits import corrected_branch as corrected
 from bouncing_ball.orbits.orbit import check_index
 from bouncing_ball.orbits.stability import Bifurcation, Side
 
-# At most so many Newton steps for the impact speed, which end with one below a thousandth of
-# the speed: the error left is of the order of its square, and a start needs three digits.
+# The largest number of Newton steps for the impact speed. They end after a step below a
+# thousandth of the speed: the remaining error is of the order of the square of this step, and
+# the start of a search needs three digits.
 _ROUNDS, _ENOUGH = 6, 1e-3
-# Newton steps of each of several rounds; orbits that have converged leave after each round.
-# The length of a step is limited because the first one may be long next to the fold.
+# Newton steps in each of several rounds; orbits that have converged are left out of the next
+# round. The length of a step is limited because the first step may be long next to the fold.
 _SETTINGS = NewtonSettings(max_iterations=5, longest=0.5)
 _TRIES = 5
 _EXTENDED = NewtonSettings(max_iterations=25)
-# A branch is followed from Λ times this factor, in steps of this size and at most so many.
+# A branch is followed from Λ times this factor, with this step control, for at most this many
+# points.
 _ABOVE = 1.3
 _STEPS = StepControl(initial=0.05, smallest=1e-3, largest=0.4, max_angle=0.25)
 _POINTS = 300
 _FARTHER = 4.0
-# A fold below this Λ belongs to a nearly elastic contact; no step of a branch resolves it.
+# A fold below this Λ belongs to a nearly elastic contact; the steps along a branch are too long
+# to resolve it.
 _LOWEST = 1e-4
-# Longest step as a part of Λ, where Λ is large.
+# The longest step as a fraction of Λ, where Λ is large.
 _STRIDE = 0.05
-# Length along the branch by which a fold's parabola is measured, and how far in Λ it is trusted,
-# in parts of its rise there.
+# The parabola of a fold is measured at the first length along the branch. It is used up to the
+# second number times the rise of Λ at that length.
 _BESIDE, _PARABOLA = 1e-2, 4.0
 _HERE = "this amplitude"
 
@@ -53,9 +56,9 @@ def restitution_speed(n: ArrayLike, model: Any) -> tuple[np.ndarray, Instant]:
     Returns
     -------
     speed : ndarray
-        Of the shape of n and the model; its relative error is of order 10⁻⁶.
+        Has the broadcast shape of n and the model; its relative error is of order 10⁻⁶.
     instant : Instant
-        The signature of the model's impact at the last but one iterate of the speed.
+        The signature of the model's impact at the iterate of the speed before the last.
 
     Examples
     --------
@@ -78,9 +81,9 @@ def restitution_speed(n: ArrayLike, model: Any) -> tuple[np.ndarray, Instant]:
 
 
 class _Search(NamedTuple):
-    """Orbits to be found, in a row: their models, n, and the signatures to start from.
+    """The orbits of a search along one axis: their models, n, and the signatures of the start.
 
-    A single model serves all orbits. Points y are rows as well, with Λ as their last entry.
+    A single model serves all orbits. Points y are rows of an array, with Λ as their last entry.
     """
 
     model: Any
@@ -89,7 +92,7 @@ class _Search(NamedTuple):
 
     @classmethod
     def of(cls, model: Any, n: ArrayLike, *more: ArrayLike) -> tuple["_Search", Any, Any]:
-        """The search, the further arguments flattened like n, and the shape of the orbits."""
+        """The search, the other arguments flattened like n, and the shape of the orbits."""
         check_index(n)
         instant = restitution_speed(n, model)[1]
         arrays = (n, *instant, *more, np.zeros(model.shape))
@@ -100,7 +103,7 @@ class _Search(NamedTuple):
         return cls(model.flat(shape), index, Instant(*rows[:size])), rows[size:], shape
 
     def start(self, amplitude: np.ndarray, psi: np.ndarray) -> np.ndarray:
-        """Points y of the corrected model's orbits with their instants at the phases ψ."""
+        """Points y of the corrected model's orbits whose instants are at the phases ψ."""
         t_c = self.instant.delay
         orbit = self.model.orbit_of(
             self.n, amplitude, psi - t_c, self.instant.duration, t_c - self.n * np.pi
@@ -129,7 +132,7 @@ def _shaped(model: Any, n: ArrayLike, y: np.ndarray, shape: tuple[int, ...]) -> 
 
 
 def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Any:
-    """The n-T orbits at Λ on a side of the saddle-node; NaN where none is found.
+    """The n-T orbits at Λ on one side of the saddle-node; NaN where no orbit is found.
 
     Parameters
     ----------
@@ -141,8 +144,8 @@ def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Any:
     Returns
     -------
     Orbit
-        Of the common shape. An orbit that Newton's method does not find on this side is looked
-        for along its branch, one at a time.
+        Has the common shape. If Newton's method finds no orbit on this side, the branch of this
+        model is searched, for one orbit at a time.
 
     Raises
     ------
@@ -161,7 +164,7 @@ def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Any:
     """
     search, (lam,), shape = _Search.of(model, n, amplitude)
     psi = corrected.instant_phase(search.n, search.instant, lam, side is Side.STABLE)
-    # Next to the fold the start may lie below it.
+    # Next to the fold, the given Λ may lie below the fold of the corrected model.
     psi = np.where(np.isnan(psi), corrected.saddle_node_phase(search.instant), psi)
     y = search.solved(search.start(lam, psi))
     found = _shaped(model, n, y, shape)
@@ -175,7 +178,7 @@ def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Any:
 
 
 def _on_branch(model: Any, n: int, amplitude: float, side: Side) -> np.ndarray | float:
-    """The point at Λ on the part of the branch next to the fold, on one side of it, or NaN."""
+    """The point at Λ on one side of the fold, on the part of the branch next to it, or NaN."""
     fold = model.saddle_node(n)
     if not amplitude >= float(fold.amplitude):
         return np.nan
@@ -186,16 +189,17 @@ def _on_branch(model: Any, n: int, amplitude: float, side: Side) -> np.ndarray |
     names = [special.name for special in found]
     if Bifurcation.SADDLE_NODE not in names:
         return np.nan
-    # The branch runs from the stable side over the fold.
+    # The branch runs from the stable side across the fold.
     at = names.index(Bifurcation.SADDLE_NODE)
     beside = found[:at][::-1] if side is Side.STABLE else found[at:]
     return next((special.point for special in beside if special.name == _HERE), np.nan)
 
 
 def _beside_fold(system: Any, fold: np.ndarray, amplitude: float, side: Side) -> np.ndarray:
-    """The point at Λ on a side of a fold, by its parabola Λ - Λ_SN ~ s²; NaN where it ends.
+    """The point at Λ on one side of a fold, by the parabola Λ - Λ_SN ~ s²; NaN far from the fold.
 
-    A step of the continuation passes over both orbits where they are close to each other.
+    The parabola is needed because one step of the continuation may pass both orbits at Λ where
+    they are close to each other.
     """
     along = tangent(system.jacobian(fold), np.ones_like(fold))
     beside = fold + _BESIDE * along
@@ -222,18 +226,18 @@ def continued(
     Parameters
     ----------
     model : ImpactModel
-        A single one.
+        A single model.
     n : int
     amplitude : float
-        Λ; its crossings have the name ``"this amplitude"``.
+        Λ; the points at which the branch crosses it have the name ``"this amplitude"``.
     farther : float
-        The branch is followed up to this multiple of the larger of Λ and 1, at least.
+        The branch is followed at least up to this multiple of the larger of Λ and 1.
 
     Returns
     -------
     sequence of SpecialPoint
-        In order from the stable side at large Λ down to the fold and beyond. Empty where the
-        branch cannot be started, or breaks off before an end that is known.
+        In order from the stable side at large Λ down to the fold and beyond. Empty if no orbit
+        is found to start from, or if the continuation fails before an end of the branch.
     """
     system, (search, _, _) = model.system(n), _Search.of(model, [n])
     fold = float(np.nan_to_num(corrected.saddle_node(n, search.instant)[0]))
@@ -248,7 +252,7 @@ def continued(
     )
     if np.any(np.isnan(y)):
         return ()
-    # Far above the fold Λ is most of the arclength.
+    # Far above the fold, Λ makes up most of the arclength.
     control = replace(_STEPS, largest=max(_STEPS.largest, _STRIDE * amplitude))
     try:
         branch = continue_branch(
@@ -256,16 +260,16 @@ def continued(
         )
     except ContinuationError:
         return ()
-    # Beyond an event at which the branch broke off there may be others, so that the list would
-    # be incomplete.
+    # If the continuation failed, there may be further events beyond, and the list would be
+    # incomplete.
     return branch.special if branch.end.finished or len(branch.points) == _POINTS else ()
 
 
 def orbits_at(model: Any, n: int, amplitude: float) -> Any:
     """The n-T orbits of a single model at one Λ, in order of contact duration, shape (count,).
 
-    They are those on the branch that comes from large Λ on its stable side or, where it cannot be
-    followed, those on both sides of the fold.
+    These are the orbits on the branch that comes from large Λ on its stable side. If this branch
+    cannot be followed, they are the orbits on both sides of the fold.
 
     Raises
     ------
@@ -285,21 +289,22 @@ def orbits_at(model: Any, n: int, amplitude: float) -> Any:
 def both_sides(model: Any, n: int, amplitude: float) -> Any:
     """The orbits on both sides of the fold at one Λ, in order of contact duration.
 
-    Two orbits, one at the fold itself, or none: shape (count,).
+    The shape is (count,): two orbits above the fold, one orbit at the fold itself, or none.
     """
     system = model.system(n)
     y = np.array([system.point(model.orbit(n, amplitude, side)) for side in Side])
-    # The larger phase, which is that of the stable side, comes first.
+    # The orbit with the larger phase, which is on the stable side, comes first.
     y = np.unique(y[np.all(np.isfinite(y), axis=-1)], axis=0)[::-1]
     found = system.orbit(y)
     return found[np.argsort(found.contact_duration, kind="stable")]
 
 
 def bifurcation(model: Any, n: ArrayLike, kind: Bifurcation) -> Any:
-    """The orbits at a bifurcation, of the shape of n and the model; NaN where none is found.
+    """The orbits at a bifurcation, with the broadcast shape of n and the model; NaN where none is
+    found.
 
     Newton's method starts from the bifurcation of the corrected model. Where it fails, the branch
-    is followed: its first saddle-node, or its last period doubling, is taken.
+    is followed from large Λ, and the result is its first saddle-node or its last period doubling.
 
     Examples
     --------
@@ -319,7 +324,8 @@ def bifurcation(model: Any, n: ArrayLike, kind: Bifurcation) -> Any:
     test = vanishing(lambda y: kind.test(*system.orbit(y).trace_and_determinant()))
     found = newton(system, search.start(lam, psi), test, _EXTENDED)
     low = (lam < _LOWEST) & (kind is Bifurcation.SADDLE_NODE)
-    # Λ = 0 has no phase: rounding decides where near it the fold of an elastic contact is found.
+    # The phase is not defined at Λ = 0: rounding decides where near it the fold of an elastic
+    # contact is found.
     reached = found.point[:, -1]
     good = found.converged & (reached > _EXTENDED.tolerance) & (~low | (reached < 2 * lam))
     y = np.where(good[:, np.newaxis], found.point, np.nan)

@@ -1,21 +1,21 @@
 r"""n-T orbits of the corrected restitution model, in closed form.
 
-Impacts are instants at the phase ψ, the time 2πn apart and at equal heights, so
-that the ball has the velocities ∓nπ there, as in the restitution model. With
+Impacts are instants at the phase ψ. They are the time 2πn apart and at equal heights,
+so that the ball has the velocities ∓nπ there, as in the restitution model. With
 X = Λ cos ψ, Y = Λ sin ψ, the speed v = nπ + X and the load a = 1 - Y, the
 impact ``nπ - X = r v + σ a`` is a straight line in the plane of (X, Y)::
 
     (1 + r) X - σ Y = nπ (1 - r) - σ
     R Λ cos(ψ + χ) = nπ (1 - r) - σ,      R = √((1 + r)² + σ²),  tan χ = σ/(1 + r)
 
-which is Eq. 6 for σ = 0. Λ is smallest at ψ = -χ, the saddle-node. The contact
-starts at φ = ψ - t_c and lasts D, and ::
+which is Eq. 6 for σ = 0. Λ is smallest at the saddle-node, ψ = -χ. The contact
+starts at φ = ψ - t_c and lasts for the time D, and ::
 
     z′_i = -(nπ - t_c),   z′_b = nπ - (D - t_c),   max z = Y - v t_c + (nπ)²/2
 
-Linearising one cycle at the instants, with ``W = -(1 + r) Y - σX`` the change
-of the velocity after the impact with its phase, and ``u = v - a t_c``, the speed
-at the start of contact, gives ::
+Let ``W = -(1 + r) Y - σX`` be the derivative of the velocity after the impact with
+respect to the phase ψ, and ``u = v - a t_c`` the speed at the start of contact.
+Linearising one cycle at the instants gives ::
 
     tr  = 1 - r + [(2πn - t_c)(W + r) - t_c]/u
     det = -r + [(2πn - t_c) r - t_c - t_c W]/u
@@ -26,12 +26,12 @@ period doubling::
 
     (nπ - t_c) [(1 + r) Y + σX] - (1 - r)(X + t_c Y) = nπ (1 + r) - 2t_c
 
-A law whose signature depends on the speed has the curve ``nπ - X = r(v) v + σ(v) a`` in
-place of the line, and at each of its points a tangent of the same form
+If the signature depends on the speed, the curve ``nπ - X = r(v) v + σ(v) a`` takes the place
+of the line, and its tangent at each point has the same form
 (:meth:`~bouncing_ball.contacts.signature.Instant.tangent`) with b in place of r and e
 in place of t_c. The linearised cycle is that of the tangent, and trace and
-determinant are as above. Points of the curve have no closed form; searches, of this model
-and of any other, start from the line for the signature at the restitution model's speed.
+determinant are as above. Points of the curve have no closed form. Searches for orbits, of this
+model and of any other, start from the line for the signature at the restitution model's speed.
 
 All quantities are dimensionless; all functions broadcast.
 """
@@ -77,7 +77,7 @@ def saddle_node_phase(instant: Instant) -> np.ndarray:
 def instant_phase(
     n: ArrayLike, instant: Instant, amplitude: ArrayLike, stable_side: bool = True
 ) -> np.ndarray:
-    """Phase ψ of the instants on a side of the saddle-node; NaN below it.
+    """Phase ψ of the instants on one side of the saddle-node; NaN if Λ is below the saddle-node.
 
     Examples
     --------
@@ -94,13 +94,13 @@ def instant_phase(
 def trace_and_determinant(
     n: ArrayLike, instant: Instant, amplitude: ArrayLike, phase: ArrayLike
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Trace and determinant of the linearised cycle with its instants at the phase ψ.
+    """Trace and determinant of the linearised cycle whose instants are at the phase ψ.
 
     ``amplitude`` and ``phase`` are Λ and ψ; both results have the broadcast shape of all arguments.
 
     Examples
     --------
-    Without delay and load sensitivity they are those of the restitution model:
+    Without delay and load sensitivity, the results are those of the restitution model:
 
     >>> amplitude = 2 * np.pi / 3
     >>> trace, det = trace_and_determinant(2, Instant(0.0, 0.5, 0.0, 0.0), amplitude, 0.0)
@@ -120,7 +120,7 @@ def trace_and_determinant(
 
 
 def period_doubling(n: ArrayLike, instant: Instant) -> tuple[np.ndarray, np.ndarray]:
-    """Λ and ψ of the period doubling; NaN where there is none on the stable side.
+    """Λ and ψ of the period doubling; NaN where the stable side has no period doubling.
 
     Examples
     --------

@@ -25,7 +25,7 @@ class CorrectedModel(ImpactModel):
     Parameters
     ----------
     law : Signature
-        Delay, restitution, load sensitivity and duration of the impact, at each speed.
+        Delay, restitution, load sensitivity and duration of the impact as functions of its speed.
 
     Examples
     --------
@@ -41,7 +41,7 @@ class CorrectedModel(ImpactModel):
 
     @classmethod
     def of_contact(cls, contact: SpringDamper) -> "ConstantCorrectedModel":
-        """The model of a spring-damper contact, which has a closed form.
+        """The corrected model of a spring-damper contact, whose orbits have a closed form.
 
         Raises
         ------
@@ -65,24 +65,24 @@ class ConstantCorrectedModel(CorrectedModel):
         return self.law(np.ones(self.shape))
 
     def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> CorrectedOrbit:
-        """The n-T orbits at Λ on a side of the saddle-node; NaN where there is none."""
+        """The n-T orbits at Λ on one side of the saddle-node; NaN where there is no orbit."""
         check_index(n)
         lam = np.asarray(amplitude, dtype=float)
         psi = formulas.instant_phase(n, self._instant, lam, side == Side.STABLE)
         return CorrectedOrbit.at(n, self.law, lam, psi)
 
     def saddle_node(self, n: ArrayLike) -> CorrectedOrbit:
-        """The orbits at the saddle-node, ψ = -χ; NaN where the branch has none."""
+        """The orbits at the saddle-node, ψ = -χ; NaN where the branch has no saddle-node."""
         check_index(n)
         lam, psi = formulas.saddle_node(n, self._instant), formulas.saddle_node_phase(self._instant)
         return CorrectedOrbit.at(n, self.law, lam, np.where(np.isnan(lam), np.nan, psi))
 
     def period_doubling(self, n: ArrayLike) -> CorrectedOrbit:
-        """The orbits at the period doubling; NaN where there is none."""
+        """The orbits at the period doubling; NaN where there is no period doubling."""
         check_index(n)
         return CorrectedOrbit.at(n, self.law, *formulas.period_doubling(n, self._instant))
 
     def nearest(self, orbit: CorrectedOrbit) -> CorrectedOrbit:
-        """The nearest points of the branch, which is a straight line in (Λ cos ψ, Λ sin ψ)."""
+        """The nearest points of the branch, a straight line in the plane (Λ cos ψ, Λ sin ψ)."""
         found = formulas.nearest(orbit.n, orbit.instant, orbit.amplitude, orbit.hit.phase)
         return CorrectedOrbit.at(orbit.n, orbit.law, *found)

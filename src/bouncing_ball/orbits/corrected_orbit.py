@@ -1,8 +1,9 @@
 """n-T orbits of the corrected restitution model: path, equation and stability.
 
-The only unknown is the phase ψ of the instant, because the velocity before it is -nπ. The
-velocity after it gives the one equation, that of :mod:`bouncing_ball.orbits.corrected_branch`.
-Its solutions by continuation check both the continuation and the closed form.
+The only unknown is the phase ψ of the instant, because the velocity before the instant is -nπ.
+The only equation is that for the velocity after the instant, derived in
+:mod:`bouncing_ball.orbits.corrected_branch`. The tests compare its solutions by continuation with
+the closed form, which checks both.
 """
 
 from functools import cached_property
@@ -35,7 +36,7 @@ class CorrectedOrbit(Orbit):
 
     @classmethod
     def at(cls, n: ArrayLike, law: Signature, amplitude: ArrayLike, phase: ArrayLike) -> Self:
-        """The orbits with instants at the phase ψ, before which the velocity is -nπ."""
+        """The orbits with instants at the phase ψ; the velocity before an instant is -nπ."""
         launch = np.asarray(n) * np.pi
         hit = impact(law, amplitude, phase, -launch)
         delay, duration = hit.instant.delay, hit.instant.duration
@@ -62,25 +63,25 @@ class CorrectedOrbit(Orbit):
 
     @property
     def bounce_height(self) -> np.ndarray:
-        """Absolute height z_b of the ball at release, on the flight that starts at the instant."""
+        """Absolute height z_b at release, on the parabola of the flight after the instant."""
         return self.hit.height + (self.bounce_velocity + self.after / 2) * self.after
 
     def contact_path(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Height and velocity of the two continued flights, before and after the instant."""
+        """Height and velocity on the parabolas of the flights before and after the instant."""
         since = np.asarray(time) - self.instant.delay
         start = np.where(since < 0, self.hit.arrival, self.bounce_velocity + self.after)
         return self.hit.height + (start - since / 2) * since, start - since
 
     @property
     def unknowns(self) -> tuple[np.ndarray, ...]:
-        """The one unknown, ψ."""
+        """The only unknown, the phase ψ of the instant."""
         return (self.hit.phase,)
 
     def residual(self) -> np.ndarray:
         """Two velocity defects, shape (..., 2).
 
-        With w₀ = z′_b + D - t_c the velocity with which the flight starts at the instant, they are
-        w₀ - nπ, and the velocity after the impact less w₀.
+        Let w₀ = z′_b + D - t_c be the velocity with which the flight starts at the instant. The
+        defects are w₀ - nπ, and the velocity after the impact minus w₀.
         """
         start = self.bounce_velocity + self.after
         level = start - np.asarray(self.n) * np.pi
@@ -95,16 +96,17 @@ class CorrectedOrbit(Orbit):
 
     @property
     def _tangent(self) -> Instant:
-        """The constant signature that agrees to first order near the speed of the instant."""
+        """The constant signature that agrees to first order at the speed of the instant."""
         load = 1 - self.amplitude * np.sin(self.hit.phase)
         return self.instant.tangent(self.hit.speed, load)[0]
 
     def monodromy(self) -> np.ndarray:
         """Jacobian of the return map (φ, δ′) → (φ₁, δ′₁), shape (..., 2, 2).
 
-        An instant moved by (dψ, dp) changes the velocity after it by W dψ - b dp, and its depth by
-        e dv. With ``u = v - e a`` the next instant is later by s, where ``u s = (2πn - e)(W dψ - b
-        dp) + e dp``. Each contact starts the time t_c(v) before its instant.
+        If the instant is moved by (dψ, dp), the velocity after it changes by W dψ - b dp, and its
+        depth by e dv. With ``u = v - e a``, the next instant is later by s, where
+        ``u s = (2πn - e)(W dψ - b dp) + e dp``. Each contact starts the time t_c(v) before its
+        instant.
         """
         y, d_delay = self.amplitude * np.sin(self.hit.phase), self.instant.d_delay
         here, velocity = self._tangent, np.zeros((*self.shape, 2))
@@ -126,8 +128,8 @@ class CorrectedOrbit(Orbit):
     def trace_and_determinant(self) -> tuple[np.ndarray, np.ndarray]:
         """The closed forms of :mod:`bouncing_ball.orbits.corrected_branch`.
 
-        Without dissipation the determinant is 1, and rounding would decide about stability. A
-        determinant that equals 1 within the error of a tabulated signature is therefore set to 1.
+        Without dissipation the determinant is 1, and rounding errors would decide about stability.
+        A determinant that equals 1 within the error of a tabulated signature is therefore set to 1.
         """
         place = self.amplitude, self.hit.phase
         trace, det = formulas.trace_and_determinant(self.n, self.instant, *place)

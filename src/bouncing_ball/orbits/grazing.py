@@ -1,8 +1,8 @@
 """Grazing points, at which a branch becomes inadmissible.
 
-Between an admissible and an inadmissible point lies a grazing orbit. It is found by bisection
-of the chord between both, with each midpoint corrected onto the branch, until the two are
-neighbouring floating-point numbers.
+A grazing orbit lies between an admissible and an inadmissible point of a branch. It is found by
+bisection of the chord between the two points, where each midpoint is corrected onto the branch,
+until the two points agree to rounding.
 """
 
 from collections.abc import Callable
@@ -26,7 +26,7 @@ def grazing_points(
     problem : Problem
         Its solutions are the branch.
     admissible_at : callable
-        Whether solutions of shape (..., N + 1) are admissible.
+        Tells for solutions of shape (..., N + 1) whether they are admissible.
     points : ndarray, shape (m, N + 1)
         Solutions in order along the branch.
 

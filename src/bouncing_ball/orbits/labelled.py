@@ -1,7 +1,7 @@
 """Results of a model as labelled datasets: balls over time, and a branch over Λ.
 
-All quantities are dimensionless, and times are in units of 1/Ω. Dimensions of the arguments come
-first in every result.
+All quantities are dimensionless, and times are in units of 1/Ω. The dimensions of the arguments
+come first in every result.
 """
 
 import math
@@ -25,9 +25,10 @@ from bouncing_ball.orbits.orbit import OBSERVABLES, Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.stability import Side
 
-# Number of impacts of a ball that are simulated at first, and the largest number.
+# Number of impacts of a ball that are simulated at first, and the largest number allowed.
 _FIRST, _MOST = 64, 65_536
-# States of all balls, of some fifty bytes each, with as much again while they are computed.
+# Largest number of states of all balls. A state takes about fifty bytes, and as much again while
+# it is computed.
 _STATES = 10_000_000
 # By default a branch ends at this multiple of the Λ of its period doubling. A fold below the
 # second number belongs to an elastic contact. The third is the number of orbits that are tried as
@@ -38,12 +39,12 @@ _SHOWN = {"ball": "height", "ball_velocity": "velocity", "table": "table", "cont
 
 
 def instants(periods: float, samples: int, balls: int) -> np.ndarray:
-    """Times over some periods of the table, with ``samples`` of them in each period.
+    """Times over several periods of the table, with ``samples`` times in each period.
 
     Raises
     ------
     ModelError
-        If the states of so many balls at all of them would fill the memory.
+        If the states of this many balls at all these times would fill the memory.
 
     Examples
     --------
@@ -59,10 +60,10 @@ def instants(periods: float, samples: int, balls: int) -> np.ndarray:
 
 
 def history(grid: Grid, models: Callable[..., Any], periods: float, samples: int) -> Labelled:
-    """Balls and table over time from a first impact, with the (Λ, φ, z′_i) of a grid.
+    """Balls and table over time, from the first impacts (Λ, φ, z′_i) of a grid.
 
-    ``ball``, ``ball_velocity``, ``table`` and ``contact`` are over (…, time). ``models`` gives the
-    model of these and the other arguments.
+    ``ball``, ``ball_velocity``, ``table`` and ``contact`` are over (…, time). ``models`` returns
+    the model for the first impact and the other arguments of the grid.
 
     Raises
     ------
@@ -76,10 +77,10 @@ def history(grid: Grid, models: Callable[..., Any], periods: float, samples: int
 
 
 def drop(grid: Grid, models: Callable[..., Any], periods: float, samples: int) -> Labelled:
-    """Balls and table over time since the balls were released at rest, with the (h, Λ, φ) of a
-    grid.
+    """Balls and table over time since the balls were released at rest at the height h, with the
+    (h, Λ, φ) of a grid.
 
-    The variables are those of :func:`history`, and ``models`` gives the model of the first impact.
+    The variables are those of :func:`history`. ``models`` returns the model for the first impact.
 
     Raises
     ------
@@ -106,7 +107,9 @@ def drop(grid: Grid, models: Callable[..., Any], periods: float, samples: int) -
 
 
 def _followed(model: Any, start: Sequence[np.ndarray], time: np.ndarray) -> dict[str, np.ndarray]:
-    """Balls from their first impacts (Λ, φ, z′_i), at times (ball, sample) since then."""
+    """The variables of :func:`history` for balls at times (ball, sample) since their first
+    impacts (Λ, φ, z′_i).
+    """
     impacts = _FIRST
     while True:
         found = model.simulate(*start, impacts)
@@ -132,15 +135,15 @@ def _unfolded(grid: Grid, rows: xr.Dataset, kind: str) -> Labelled:
 def branches(
     grid: Grid, models: Callable[..., Any], amplitude_max: float | None, points: int
 ) -> Labelled:
-    """The branch at each place of a grid; NaN, with the reason, where there is none.
+    """The branch at each point of a grid; NaN, with the reason, where there is no branch.
 
-    The variables are those of :func:`~bouncing_ball.orbits.columns.orbits_in_columns`, behind the
-    axes of the grid. ``models`` gives the model of n and the other arguments.
+    The variables are those of :func:`~bouncing_ball.orbits.columns.orbits_in_columns`; the axes of
+    the grid come first. ``models`` returns the model for n and the other arguments.
 
     Raises
     ------
     NoOrbitError
-        If a grid of one place has no branch.
+        If the grid is a single point, and there is no branch.
     """
 
     def found(n: int, **impact: Any) -> xr.Dataset:
@@ -153,7 +156,7 @@ def branches(
 
 
 def orbits(grid: Grid, models: Callable[..., Any], side: Side) -> Labelled:
-    """The orbit on a side of the saddle-node at each place of a grid; NaN where there is none.
+    """The orbit on one side of the saddle-node at each point of a grid; NaN where there is none.
 
     The variables are the observables, ``stable`` and ``admissible``, over the axes of the grid.
     """
@@ -168,9 +171,9 @@ def orbits(grid: Grid, models: Callable[..., Any], side: Side) -> Labelled:
 
 
 def limits(grid: Grid, models: Callable[..., Any]) -> Labelled:
-    """Amplitude and phase of saddle-node and period doubling at each place of a grid.
+    """Amplitude and phase of the saddle-node and the period doubling at each point of a grid.
 
-    NaN where a family has no such bifurcation.
+    The values are NaN where a family has no such bifurcation.
     """
 
     def found(n: Any, **impact: Any) -> dict[str, np.ndarray]:
@@ -185,9 +188,9 @@ def limits(grid: Grid, models: Callable[..., Any]) -> Labelled:
 def _each_case(
     grid: Grid, found: Callable[..., dict[str, Any]], kind: str, missing: dict[str, Any]
 ) -> Labelled:
-    """The results at each place of a grid, in one computation unless a law is given by its name.
+    """The results at each point of a grid, in one computation unless a law is given by its name.
 
-    The parameters of a law follow from a search, for one r at a time.
+    The parameters of such a law follow from a search, which treats one r at a time.
     """
     if "law" in grid.flat:
         rows = _by_place(grid, lambda **at: xr.Dataset(found(**at)), lambda _: xr.Dataset(missing))
@@ -203,7 +206,7 @@ def _by_place(
     missing: Callable[[NoOrbitError], xr.Dataset],
     joined: Callable[..., xr.Dataset] = xr.concat,
 ) -> xr.Dataset:
-    """The results at each place of a grid, one after another."""
+    """The results at each point of a grid, computed one after another."""
     rows = []
     for place in grid.cells():
         try:
@@ -221,7 +224,7 @@ def branch(model: Any, n: int, amplitude_max: float | None, points: int) -> xr.D
     Raises
     ------
     NoOrbitError
-        If there is none up to there, or if it cannot be followed.
+        If the branch begins above this Λ, or if it cannot be followed.
     """
     fold, doubling = (float(f(n).amplitude) for f in (model.saddle_node, model.period_doubling))
     low = fold if fold > 0 else 0.0
@@ -242,7 +245,8 @@ def branch(model: Any, n: int, amplitude_max: float | None, points: int) -> xr.D
 
 def _along(model: Any, n: int, low: float, stable: float, top: float) -> Branch:
     system = model.system(n)
-    # From the middle of the stable range, or the next orbit beside it.
+    # The branch is followed from the middle of the stable range, or from the nearest Λ that has an
+    # orbit.
     tried = np.linspace(low, top, _STARTS + 1)[1:]
     middle = (low + (stable if stable > low else top)) / 2
     tried = np.append(middle, tried[np.argsort(np.abs(tried - middle))])

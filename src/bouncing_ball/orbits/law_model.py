@@ -1,6 +1,6 @@
 """A ball on a contact of any law, and its n-T orbits without a closed form.
 
-The contact of an orbit and its derivatives come from :mod:`bouncing_ball.contacts.collocation`.
+:mod:`bouncing_ball.contacts.collocation` computes the contact of an orbit and its derivatives.
 """
 
 from __future__ import annotations
@@ -24,8 +24,9 @@ from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
 from bouncing_ball.orbits.stability import Side
 
-# Rounds that compute law and orbit in turn. The speed hardly depends on the law at given r and
-# D, and a secant through two rounds leaves less than a hundredth of the last step.
+# The largest number of rounds that compute the law and the orbit in turn. At given r and D the
+# speed hardly depends on the law, and after a secant step less than a hundredth of the last step
+# is left.
 _ROUNDS = 20
 _SETTLED = 1e-10
 
@@ -43,9 +44,7 @@ class LawOrbit(Orbit):
 
     @classmethod
     def at(cls, n: ArrayLike, law: ContactLaw, amplitude: ArrayLike, *start: ArrayLike) -> Self:
-        """The orbits whose contacts start with (φ, z′_i); the contact duration follows from the
-        law.
-        """
+        """The orbits whose contacts start with (φ, z′_i); their duration follows from the law."""
         columns = (np.asarray(x, dtype=float) for x in (amplitude, *start))
         lam, phi, velocity = np.broadcast_arrays(*columns, np.zeros(law.shape))[:3]
         found = contacts(law, lam * np.cos(phi) - velocity, phi, lam)
@@ -73,7 +72,7 @@ class LawOrbit(Orbit):
     def residual(self) -> np.ndarray:
         """Duration, velocity and landing defects, shape (..., 3).
 
-        The first is π times the relative error of the duration; the others are Eqs. 24-25.
+        The first defect is π times the relative error of the duration; the others are Eqs. 24-25.
         """
         found = self.contact
         late = (found.duration - self.contact_duration) * self.clock
@@ -85,7 +84,7 @@ class LawOrbit(Orbit):
         return self.contact.jacobian[..., :3] * sign
 
     def determinant(self) -> np.ndarray:
-        """exp(-∫ ∂f/∂p′ dτ) over the contact, because the flight preserves areas."""
+        """exp(-∫ ∂f/∂p′ dτ) over the contact, because only the contact contracts areas."""
         return self.contact.contraction
 
 
@@ -120,7 +119,7 @@ class LawModel(ImpactModel):
         ModelError
             If the law does not release the ball.
         """
-        # Every search for an orbit or a bifurcation begins with the same impacts.
+        # The impacts are stored because every search for orbits or bifurcations starts from them.
         v, known = np.asarray(speed, dtype=float), self.__dict__.setdefault("_impacts", {})
         key = v.shape, v.tobytes()
         if key not in known:
@@ -128,9 +127,10 @@ class LawModel(ImpactModel):
         return known[key]
 
     def orbits(self, n: int, amplitude: float) -> LawOrbit:
-        """All n-T orbits of one law at one Λ that lie on the branch from large Λ, shape (count,).
+        """The n-T orbits of one law at one Λ, in order of contact duration, shape (count,).
 
-        They are in order of contact duration.
+        These are the orbits on the branch that comes from large Λ. Where this branch cannot be
+        followed, they are the orbits on both sides of the saddle-node.
         """
         return orbits_at(self, n, amplitude)
 
@@ -149,11 +149,11 @@ def law_at_orbit(
     amplitude: float,
     side: Side = Side.STABLE,
 ) -> ContactLaw:
-    """The contact laws with r and D at the impact speeds of the n-T orbits that they have at Λ.
+    """The contact laws whose free impacts have r and D at the impact speed of their n-T orbit at Λ.
 
-    A law whose restitution depends on the speed has *one* r and *one* D only at one speed. To
-    compare models, r and D are therefore prescribed at the impact speed of the orbit in question,
-    by a secant iteration for that speed.
+    The restitution and the duration of a law may depend on the speed. To compare models, r and D
+    are therefore prescribed at the impact speed of the orbit in question. A secant iteration finds
+    this speed.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ def law_at_orbit(
     restitution : float
         r in (0, 1].
     duration : array_like
-        D; one law for each.
+        D; there is one law for each D.
     n : int
         Index of the family.
     amplitude : float
@@ -171,7 +171,7 @@ def law_at_orbit(
     Returns
     -------
     ContactLaw
-        Of the shape of ``duration``.
+        Has the shape of ``duration``.
 
     Raises
     ------

@@ -1,6 +1,6 @@
 """The interface of every model of the impact.
 
-Code that uses a model calls these methods and never tests which model it has::
+Code that uses a model calls only the methods of this interface and never asks for its class::
 
     model = SpringDamperModel(SpringDamper.from_restitution(0.85, 10.0))  # or RestitutionModel(…)
     orbit = model.require_orbit(1, 0.9)                # the 1-T orbit at Λ = 0.9
@@ -8,9 +8,9 @@ Code that uses a model calls these methods and never tests which model it has::
     model.saddle_node(1).amplitude, model.period_doubling(1).amplitude
     model.simulate(0.9, phase=0.0, velocity=-3.0, impacts=100).phase
 
-A new model is a subclass of :class:`ImpactModel`, with its orbits as a subclass of
-:class:`Orbit`; everything that follows from the flight alone, or by continuation, is inherited.
-Models and orbits are arrays: all fields broadcast, and both can be indexed, ``orbit[3]``.
+A new model is a subclass of :class:`ImpactModel`, and its orbits are a subclass of
+:class:`Orbit`. Both inherit everything that follows from the flight alone or by continuation.
+Models and orbits are arrays: their fields broadcast, and they can be indexed, ``orbit[3]``.
 """
 
 from __future__ import annotations
@@ -37,18 +37,18 @@ from bouncing_ball.orbits.system import ContactSystem, OrbitSystem
 
 
 def labelled() -> Any:
-    """The labelled results of models, which need xarray and are made of models themselves.
+    """The module of labelled results, :mod:`bouncing_ball.orbits.labelled`.
 
-    The module is imported on first use: a single orbit needs no labels, and xarray takes longer
-    than the orbit.
+    The module is imported on first use, because a single orbit needs no labels, importing xarray
+    takes longer than computing the orbit, and the module itself imports models.
     """
     return import_module("bouncing_ball.orbits.labelled")
 
 
 def _call(name: str) -> Any:
-    """The call of this name as a method of a single model, which is its ``model``.
+    """A function of :mod:`bouncing_ball.calls` as a method, which passes the model as ``model``.
 
-    Calls are made of models, and their module is imported on first use.
+    The module is imported on first use, because it imports models itself.
     """
     module, name = name.split(".")
 
@@ -89,7 +89,7 @@ class Absence(StrEnum):
     NOT_FOUND = "none was found, but one may exist"
 
 
-# The methods whose results for single numbers are Python numbers.
+# The methods that return Python numbers for arguments that are single numbers.
 _ANSWERS = ("orbit", "absence", "saddle_node", "period_doubling", "nearest", "simulate", "cycle",
             "permanent_contact_threshold")  # fmt: skip
 
@@ -97,11 +97,12 @@ _ANSWERS = ("orbit", "absence", "saddle_node", "period_doubling", "nearest", "si
 class ImpactModel(Batch, ABC):
     """A law of the impact together with its n-T orbits.
 
-    A subclass is a frozen dataclass with one field, which holds the law. ``name`` stands for the
-    model in messages, ``routes`` are the routes to its orbits and ``orbit_type`` is their class. A
-    subclass defines :meth:`signature`, and its orbits either by a type with the constructor ``at``
-    or by a :meth:`system` of equations. Orbits at Λ, the reason for their absence and their
-    bifurcations then follow by continuation; a model with a closed form overrides these methods.
+    A subclass is a frozen dataclass with one field, which holds the law. ``name`` is the name of
+    the model in messages, ``routes`` are the routes to its orbits, and ``orbit_type`` is the class
+    of its orbits. A subclass defines :meth:`signature`. It defines its orbits either by a type with
+    the constructor ``at`` or by a :meth:`system` of equations. Orbits at Λ, the reasons for their
+    absence and their bifurcations then follow by continuation; a model with a closed form overrides
+    these methods.
     """
 
     name: ClassVar[str]
@@ -109,7 +110,7 @@ class ImpactModel(Batch, ABC):
     orbit_type: ClassVar[type[Orbit]]
 
     def __init_subclass__(cls) -> None:
-        """Single numbers in, single numbers out, whichever class defines a method."""
+        """Let methods of all classes return single numbers if the arguments are single numbers."""
         for name in _ANSWERS:
             method = getattr(cls, name)
             if not hasattr(method, "__wrapped__"):
@@ -122,16 +123,16 @@ class ImpactModel(Batch, ABC):
 
     @abstractmethod
     def signature(self, speed: ArrayLike) -> Instant:
-        """The impact as an instant, at impact speeds v > 0: searches for orbits start from it."""
+        """The impact as an instant, at impact speeds v > 0; it gives the start of a search."""
 
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ up to which the ball stays on the table, of the model's shape.
 
-        It is 1 where impacts are instants (Eq. 9).
+        By default the threshold is 1, its value for instantaneous impacts (Eq. 9).
         """
         return np.full(self.shape, RESTITUTION_THRESHOLD)
 
-    # Everything below has a default, by continuation.
+    # Everything below has a default, mostly by continuation.
 
     def system(self, n: int | np.ndarray) -> OrbitSystem:
         """The equations of the orbits as a continuation problem in Λ (route CONTINUATION)."""
@@ -148,13 +149,13 @@ class ImpactModel(Batch, ABC):
         amplitude : array_like
             Λ = aΩ²/g.
         side : Side
-            The side of the branch that is stable next to the saddle-node, or the other.
+            The side of the branch that is stable next to the saddle-node, or the other side.
 
         Returns
         -------
         Orbit
-            Of the shape to which n, Λ and the model broadcast; NaN where there is no orbit. The
-            numbers of a single orbit are Python's floats.
+            Has the shape to which n, Λ and the model broadcast; NaN where there is no orbit. The
+            numbers of a single orbit are Python floats.
 
         Raises
         ------
@@ -166,8 +167,8 @@ class ImpactModel(Batch, ABC):
     def orbits(self, n: int, amplitude: float) -> Any:
         """All n-T orbits of a single model at one Λ, in order of contact duration, shape (count,).
 
-        By default these are the orbits on both sides of the saddle-node, which are one at the
-        saddle-node itself: an impact without duration has no others.
+        By default these are the orbits on both sides of the saddle-node, because there are no other
+        orbits if the impact has no duration. At the saddle-node itself both are the same orbit.
 
         Raises
         ------
@@ -177,21 +178,21 @@ class ImpactModel(Batch, ABC):
         return continued.both_sides(self, n, amplitude)
 
     def absence(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> np.ndarray:
-        """Why :meth:`orbit` finds none: the text of an :class:`Absence` for each orbit.
+        """Why :meth:`orbit` finds no orbit: the text of an :class:`Absence` for each entry.
 
         Arguments and shape are those of :meth:`orbit`.
         """
         missing, fold = ~self.orbit(n, amplitude, side).exists, self.saddle_node(n).amplitude
         other = Absence.NOT_FOUND
         if Route.FORMULA in self.routes:
-            # The search is complete.
+            # The search along the closed form is complete.
             no_fold = np.isnan(fold) & (side == Side.UNSTABLE)
             other = np.where(no_fold, Absence.NO_OTHER_SIDE, Absence.NOT_REACHED)
         why = np.where(np.asarray(amplitude) < fold, Absence.BELOW_SADDLE_NODE, other)
         return np.where(missing, why, Absence.NONE)
 
     def saddle_node(self, n: ArrayLike) -> Any:
-        """The orbits at the saddle-node, of the shape of n and the model; NaN where there is none.
+        """The orbits at the saddle-node, with the shape of n and the model; NaN where none exists.
 
         Raises
         ------
@@ -225,7 +226,7 @@ class ImpactModel(Batch, ABC):
     def simulate(
         self, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
     ) -> ImpactSequence:
-        """Impacts that follow a first one at phase φ with the absolute velocity z′_i before it.
+        """Impacts that follow a first impact at the phase φ, before which the ball has z′_i.
 
         The arguments are those of :func:`bouncing_ball.motion.simulation.simulate`.
         """
@@ -246,22 +247,22 @@ class ImpactModel(Batch, ABC):
 
     @property
     def impact_law(self) -> Any:
-        """What the model is made of, as :func:`bouncing_ball.motion.simulation.simulate` takes
-        it."""
+        """The law of the impact, which is the only field of the model and the first argument of
+        :func:`bouncing_ball.motion.simulation.simulate`."""
         (law,) = (getattr(self, field.name) for field in fields(self))
         return law
 
     def orbit_of(self, n: ArrayLike, amplitude: ArrayLike, *numbers: ArrayLike) -> Any:
-        """Orbits from their numbers Λ, φ, D and z′_i, as datasets store them: :meth:`Orbit.of`."""
+        """Orbits from Λ, φ, D and z′_i, as datasets store them; see :meth:`Orbit.of`."""
         return self.orbit_type.of(n, self.impact_law, amplitude, *numbers)
 
     def require_admissible(self, n: int, amplitude: float, side: Side = Side.STABLE) -> Orbit:
-        """The orbit of :meth:`require_orbit`, if the simulated ball follows it.
+        """The orbit of :meth:`require_orbit`, provided that it is admissible.
 
         Raises
         ------
         NoOrbitError
-            If there is no orbit, or if it is inadmissible.
+            If there is no orbit, or if the orbit is inadmissible.
         """
         orbit = self.require_orbit(n, amplitude, side)
         if not orbit.is_admissible():
@@ -272,7 +273,7 @@ class ImpactModel(Batch, ABC):
         return orbit
 
     def require_orbit(self, n: int, amplitude: float, side: Side = Side.STABLE) -> Orbit:
-        """The one orbit at Λ on a side of the saddle-node, of a single model.
+        """The orbit of a single model at Λ on one side of the saddle-node.
 
         Raises
         ------

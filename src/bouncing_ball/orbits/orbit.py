@@ -1,6 +1,6 @@
-"""One n-T orbit of any model, or an array of orbits: what follows from the flight alone.
+"""One n-T orbit of any model, or an array of orbits: the results that follow from the flight alone.
 
-Time runs from the start of contact, τ_i = 0; the contact ends at τ_b = D, and the next one
+Time runs from the start of contact, τ_i = 0. The contact ends at τ_b = D, and the next contact
 starts at τ_2 = 2πn. Heights and velocities are absolute unless they are called relative, which
 means relative to the table: δ = z - w.
 """
@@ -27,16 +27,17 @@ OBSERVABLES = (
     *("amplitude", "phase", "contact_duration", "impact_velocity", "bounce_velocity"),
     *("apparent_restitution", "max_height"),
 )
-"""The seven observables of an orbit, by the names that datasets and the command line use."""
+"""The seven observables of an orbit, with their names in datasets and on the command line."""
 
 # An earlier impact or release that the equations do not model shifts the next impact by a
-# considerable part of a period; rounding, amplified by one unstable cycle, by far less.
+# considerable part of a period. Rounding errors, amplified by one unstable cycle, shift it by far
+# less.
 _SAME = 1e-6
-# The highest point of a contact is looked for among this many samples, which are then taken
-# again between the neighbours of the highest one: the last steps are 16⁻⁵ of the first, and
-# the error of the height is of the order of the square of that in time.
+# The highest point of a contact is searched among this many samples. New samples are then taken
+# between the neighbours of the highest sample. The last steps are 16⁻⁵ of the first, and the error
+# of the height is of the order of the square of the last step.
 _SAMPLES, _REFINEMENTS = 33, 6
-# Orbits whose samples are in memory at the same time.
+# Number of orbits whose samples are in memory at the same time.
 _BLOCK = 1024
 
 
@@ -69,11 +70,11 @@ class Orbit(Batch, ABC):
     n : int or array of int
         Index of the family.
     law : Batch
-        The law of the impact, the model's only field.
+        The law of the impact, which is the only field of the model.
     amplitude, phase : array
         Λ, and the table's phase φ at the start of contact.
     contact_duration : array
-        D = τ_b, 0 for an instantaneous impact. NaN where there is no orbit.
+        D = τ_b, which is 0 for an instantaneous impact and NaN where there is no orbit.
     impact_velocity : array
         Absolute velocity z′_i of the ball at the start of contact.
     """
@@ -100,9 +101,9 @@ class Orbit(Batch, ABC):
         contact_duration: ArrayLike = 0.0,
         impact_velocity: ArrayLike | None = None,
     ) -> Self:
-        """Orbits from their numbers; there is none where the phase is NaN.
+        """Orbits from the values of their fields; there is no orbit where the phase is NaN.
 
-        Λ and φ suffice for an impact without duration, because z′_i = -nπ then.
+        Λ and φ suffice for an impact without duration, because z′_i is then -nπ.
         """
         velocity = -np.asarray(n) * np.pi if impact_velocity is None else impact_velocity
         missing = np.where(np.isnan(phase), np.nan, 0.0)
@@ -113,14 +114,15 @@ class Orbit(Batch, ABC):
 
     @property
     def unknowns(self) -> tuple[np.ndarray, ...]:
-        """The unknowns from which the contact follows: (φ, z′_i), unless a model has fewer."""
+        """The unknowns that determine the contact: (φ, z′_i), unless a model has fewer unknowns."""
         return self.phase, self.impact_velocity
 
     @property
     def clock(self) -> ArrayLike:
-        """Rate of the contact's oscillation time against the table's; 1 for an instant.
+        """Frequency of the contact over that of the table; 1 for an instantaneous impact.
 
-        Durations are compared in this time, in which those of a stiff contact are of order one.
+        Durations are compared after multiplication by this factor, because the durations of stiff
+        contacts are then of order one.
         """
         return 1.0
 
@@ -141,23 +143,23 @@ class Orbit(Batch, ABC):
     def contact_jacobian(self) -> np.ndarray:
         """Jacobian of (τ_b, δ_b, δ′_b) in (τ, δ′, Λ) at the impact, shape (..., 3, 3).
 
-        The column of Λ, taken at a fixed δ′, serves the equations of the orbits. A model that has
-        both its equations and its monodromy in another form does not need it.
+        The column of Λ is taken at a fixed δ′; the equations of the orbits need it. A model that
+        defines both the Jacobian of its equations and its monodromy does not need this method.
         """
         raise NotImplementedError(f"{type(self).__name__} has a monodromy of its own")
 
     @abstractmethod
     def determinant(self) -> np.ndarray:
-        """Determinant of the monodromy, from the contraction of the contact and not from its
-        entries.
+        """Determinant of the monodromy, computed from the contraction of areas in the contact.
 
-        Without dissipation it is 1, and the rounding of the entries would decide about stability.
+        Without dissipation it is 1. If it were computed from the entries of the monodromy, their
+        rounding errors would decide about stability.
         """
 
     # Everything below follows from the law and the flight.
 
     def cycle(self, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
-        """The simulated map from impacts (φ, δ′) to the next ones, with the parameters of these
+        """The simulated map from impacts (φ, δ′) to the next impacts, at the parameters of these
         orbits.
         """
         return next_impact(self.law, self.amplitude, phase, relative_velocity)
@@ -177,7 +179,7 @@ class Orbit(Batch, ABC):
 
     @property
     def exists(self) -> np.ndarray:
-        """Whether there is an orbit: its contact duration is finite."""
+        """Whether there is an orbit, which is the case where the contact duration is finite."""
         return np.isfinite(self.contact_duration)
 
     @property
@@ -214,7 +216,7 @@ class Orbit(Batch, ABC):
     def bounce_height(self) -> np.ndarray:
         """Absolute height z_b of the ball at release.
 
-        It follows from the flight, which ends at the table's level Λ sin φ.
+        It follows from the flight, which ends at the level Λ sin φ of the table.
         """
         landing = self.amplitude * np.sin(self.phase)
         mean_velocity = (self.bounce_velocity + self.impact_velocity) / 2
@@ -224,8 +226,9 @@ class Orbit(Batch, ABC):
     def max_height(self) -> np.ndarray:
         """Greatest absolute height z over the cycle, in flight or in contact.
 
-        It is the apex of the flight if that reaches Λ, because a ball in contact is below the table
-        and thus below Λ. Otherwise a long contact may lift the ball higher with the table.
+        If the apex of the flight reaches Λ, it is the greatest height, because a ball in contact is
+        below the table and thus below Λ. Otherwise the table may lift the ball higher during a long
+        contact.
         """
         rising = np.maximum(self.bounce_velocity, 0.0)
         top = np.array(np.broadcast_to(self.bounce_height + rising * rising / 2, self.shape))
@@ -237,13 +240,13 @@ class Orbit(Batch, ABC):
         return top
 
     def _contact_top(self) -> np.ndarray:
-        """Greatest height in contact: the highest of samples that are refined around it."""
+        """Greatest height in contact, from samples that are refined around the highest sample."""
         steps = np.arange(_SAMPLES).reshape(-1, *(1,) * len(self.shape))
         low, step = 0.0 * self.contact_duration, self.contact_duration / (_SAMPLES - 1)
         for _ in range(_REFINEMENTS):
             height = self.contact_path(low + step * steps)[0]
             highest = np.argmax(np.where(np.isnan(height), -np.inf, height), axis=0)
-            # Continue from one step before the highest sample to one after it, in the contact.
+            # Refine from one step before the highest sample to one step after it, in the contact.
             low = low + step * np.clip(highest - 1, 0, _SAMPLES - 3)
             step = 2 * step / (_SAMPLES - 1)
         return np.max(height, axis=0)
@@ -257,8 +260,8 @@ class Orbit(Batch, ABC):
     def path(self, time: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
         """Absolute height and velocity at any time τ since an impact, with period 2πn.
 
-        The shape is that to which the times and the orbits broadcast. At an impact without duration
-        the velocity is the one after it.
+        The shape is that to which the times and the orbits broadcast. At the time of an impact
+        without duration, the velocity is that after the impact.
         """
         s = np.mod(np.asarray(time, dtype=float), 2 * np.pi * np.asarray(self.n))
         touching = s < self.contact_duration
@@ -287,7 +290,8 @@ class Orbit(Batch, ABC):
     def jacobian(self) -> np.ndarray:
         """Jacobian of the flight's two defects in (φ, z′_i, Λ), shape (..., 2, 3).
 
-        The contact is the one that starts at (φ, z′_i), not the one of ``contact_duration``.
+        The contact is determined by its start (φ, z′_i): its duration depends on (φ, z′_i, Λ), and
+        the field ``contact_duration`` is not held fixed.
         """
         inner = np.tile(np.eye(3), (*self.shape, 1, 1))
         inner[..., 1, 0] = self.amplitude * np.sin(self.phase)
@@ -298,10 +302,10 @@ class Orbit(Batch, ABC):
     def monodromy(self) -> np.ndarray:
         """Jacobian of the return map (τ, δ′) → (τ₁, δ′₁), shape (..., 2, 2).
 
-        Its eigenvalues are the Floquet multipliers; the Poincaré section is the start of contact. A
-        start moved by (dφ, dz′_i) leaves the defects (dV, dH) of velocity and height, and changes
-        the flight time to the table by s, where ``u s = -(dH + T dV)`` with u the relative impact
-        velocity. The next start is therefore moved by (dφ + s, dz′_i + dV - s).
+        Its eigenvalues are the Floquet multipliers; the Poincaré section is the start of contact.
+        If the start is moved by (dφ, dz′_i), the defects of velocity and height are (dV, dH), and
+        the flight time to the table changes by s. Here ``u s = -(dH + T dV)``, where u is the
+        relative impact velocity. The next start is therefore moved by (dφ + s, dz′_i + dV - s).
         """
         d_velocity, d_height = np.moveaxis(self.jacobian()[..., :2], -2, 0)
         flight, speed = _columns(self.flight_time, self.relative_impact_velocity)
@@ -313,11 +317,11 @@ class Orbit(Batch, ABC):
         return (np.eye(2) + turn) @ moved @ (np.eye(2) - turn)
 
     def trace_and_determinant(self) -> tuple[np.ndarray, np.ndarray]:
-        """Trace and determinant of the monodromy, each of the orbits' shape."""
+        """Trace and determinant of the monodromy, each with the shape of the orbits."""
         return np.trace(self.monodromy(), axis1=-2, axis2=-1), self.determinant()
 
     def multipliers(self) -> np.ndarray:
-        """Floquet multipliers, complex, shape (..., 2), the larger modulus first."""
+        """Floquet multipliers, complex, shape (..., 2); that of larger modulus comes first."""
         return stability.multipliers(*self.trace_and_determinant())
 
     def is_stable(self) -> np.ndarray:
@@ -327,8 +331,9 @@ class Orbit(Batch, ABC):
     def is_admissible(self) -> np.ndarray:
         """Whether the simulated ball follows the orbit for a cycle.
 
-        It does if there is no earlier release and no earlier landing: the next impact of the
-        simulation, whose events are certified, is that of the orbit. False where there is no orbit.
+        The ball follows the orbit if there is no earlier release and no earlier landing, so that
+        the next impact of the simulation, whose events are certified, is that of the orbit. The
+        result is False where there is no orbit.
         """
         falls, lasts = self.relative_impact_velocity < 0, self.contact_duration >= 0
         possible = falls & lasts & (self.flight_time > 0)
@@ -339,13 +344,13 @@ class Orbit(Batch, ABC):
             cycle = part.cycle(part.phase, speed)
             returned = np.abs(cycle.relative_velocity / speed - 1) < _SAME
             same = np.abs(cycle.time - 2 * np.pi * np.asarray(part.n)) < _SAME
-            # A contact that resumes below the table's level starts with a rising ball, and
-            # such a next impact differs in its velocity.
+            # The next impact may be a contact that resumes below the level of the table. It starts
+            # with a rising ball, so that its velocity differs from that of the orbit.
             admissible[possible] = same & returned
         return admissible
 
     def defect(self) -> np.ndarray:
-        """Largest absolute defect of the model's equations."""
+        """Largest absolute value of the defects of the model's equations."""
         return np.max(np.abs(self.residual()), axis=-1)
 
     def distance(self, other: Orbit) -> np.ndarray:

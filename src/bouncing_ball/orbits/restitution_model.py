@@ -37,7 +37,7 @@ class RestitutionLawModel(_Instants):
     Parameters
     ----------
     law : RestitutionLaw
-        Its orbits have no closed form; they are found by continuation.
+        The law r(v). The orbits have no closed form and are found by continuation.
 
     Examples
     --------
@@ -74,7 +74,7 @@ class RestitutionModel(_Instants):
     Raises
     ------
     ModelError
-        If an r lies outside (0, 1].
+        If a value of r lies outside (0, 1].
 
     Examples
     --------
@@ -98,7 +98,7 @@ class RestitutionModel(_Instants):
     def orbit(
         self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE
     ) -> RestitutionOrbit:
-        """The n-T orbits at Λ on a side of the saddle-node (Eq. 6); NaN below it."""
+        """The n-T orbits at Λ on one side of the saddle-node (Eq. 6); NaN below the saddle-node."""
         fold, lam = formulas.saddle_node(n, self.restitution), np.asarray(amplitude, dtype=float)
         there = lam >= fold
         phase = formulas.phase(
@@ -111,7 +111,7 @@ class RestitutionModel(_Instants):
         return self.orbit_of(n, formulas.saddle_node(n, self.restitution), 0.0)
 
     def period_doubling(self, n: ArrayLike) -> RestitutionOrbit:
-        """The orbits at the period doubling of the exact map, not that of Eq. 8."""
+        """The orbits at the period doubling of the exact map; Eq. 8 is that of Holmes' map."""
         lam = formulas.period_doubling(n, self.restitution)
         return self.orbit_of(n, lam, formulas.phase(n, self.restitution, lam))
 

@@ -1,7 +1,8 @@
 """n-T orbits of the restitution-coefficient model, in closed form (Eqs. 6-8).
 
-There is one impact every n table periods, with v = nπ and Λ cos φ = nπ (1 - r)/(1 + r).
-Both maps have the same fixed points; they differ in stability:
+There is one impact every n table periods. The absolute velocities are ∓nπ before and after it,
+and Λ cos φ = nπ (1 - r)/(1 + r). Two maps of the impact are in use. They have the same fixed
+points and differ in stability:
 
 ===============  =============================  ========
 map              trace                          det
@@ -10,8 +11,9 @@ exact (Eq. 5)    1 + r² - (1 + r)² Λ sin φ      r²
 Holmes'          1 + r - 2 (1 + r) Λ sin φ      r
 ===============  =============================  ========
 
-Their period doublings are therefore at Λ sin φ = 2(1 + r²)/(1 + r)² and at Λ sin φ = 1. The
-paper's Eq. 8 is the second one, although its Eq. 5 is the exact map.
+The period doublings are therefore at Λ sin φ = 2(1 + r²)/(1 + r)² for the exact map and at
+Λ sin φ = 1 for Holmes' map. Eq. 8 of the paper is that of Holmes' map, although its Eq. 5 is the
+exact map.
 """
 
 from enum import StrEnum
@@ -26,7 +28,7 @@ from bouncing_ball.orbits.orbit import Orbit, check_index
 
 
 class ImpactMap(StrEnum):
-    """Which map of the impact the stability refers to."""
+    """The map of the impact whose stability is meant."""
 
     EXACT = "exact"
     """Eq. 5, in which the time of flight depends on the table's displacement."""
@@ -103,10 +105,10 @@ def period_doubling_lift(
 def period_doubling(
     n: ArrayLike, restitution: ArrayLike, impact_map: ImpactMap = ImpactMap.EXACT
 ) -> np.ndarray:
-    """Λ of the period doubling (Eq. 8 as printed is that of Holmes' map).
+    """Λ of the period doubling; Eq. 8 as printed is that of Holmes' map.
 
-    ``Λ² = [2(1 + r²)/(1 + r)²]² + [nπ(1 - r)/(1 + r)]²`` for the exact map,
-    with 1 in place of the first bracket for Holmes'.
+    For the exact map ``Λ² = [2(1 + r²)/(1 + r)²]² + [nπ(1 - r)/(1 + r)]²``. For Holmes' map the
+    first bracket is replaced by 1.
 
     Raises
     ------
@@ -128,13 +130,13 @@ def phase(
 ) -> np.ndarray:
     """Phase φ of the impact (Eq. 6), in [-π/2, π/2].
 
-    It is positive on the side of the saddle-node that is stable next to it, and negative on the
-    other one.
+    It is positive on the side that is stable next to the saddle-node, and negative on the other
+    side.
 
     Raises
     ------
     NoOrbitError
-        If a Λ lies below the saddle-node.
+        If a value of Λ lies below the saddle-node.
 
     Examples
     --------
@@ -157,8 +159,8 @@ def branch(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Λ and φ along the branch up to ``amplitude_max``, each of shape (..., points).
 
-    The points run from the unstable side to the stable one at equal steps of Λ sin φ, a parameter
-    that remains valid for r = 1, where the saddle-node is at Λ = 0.
+    The points run from the unstable side to the stable side at equal steps of Λ sin φ. This
+    parameter remains valid for r = 1, where the saddle-node is at Λ = 0.
 
     Raises
     ------
@@ -199,7 +201,7 @@ class RestitutionOrbit(Orbit):
 
     @property
     def restitution(self) -> np.ndarray:
-        """r at the impact speed."""
+        """The restitution coefficient r at the impact speed."""
         return self._rebound()[0]
 
     def residual(self) -> np.ndarray:
@@ -210,7 +212,7 @@ class RestitutionOrbit(Orbit):
     def contact_jacobian(self) -> np.ndarray:
         """Jacobian of (τ_b, δ_b, δ′_b) in (τ, δ′, Λ), shape (..., 3, 3).
 
-        An instant at the table's level has a single entry: ∂δ′_b/∂δ′ = -d(r v)/dv.
+        For an instant at the level of the table, only ∂δ′_b/∂δ′ = -d(r v)/dv is not zero.
         """
         jacobian = np.zeros((*self.shape, 3, 3))
         jacobian[..., 2, 1] = -self._rebound()[1]

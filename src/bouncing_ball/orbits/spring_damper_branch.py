@@ -5,8 +5,8 @@ At a fixed contact duration D they are *linear* in ::
 
     X = Λ cos φ,    Y = Λ sin φ,    u = δ′ at impact
 
-With T = 2πn - D the flight time, and g, G, h the responses of the contact at
-time D (see :mod:`bouncing_ball.contacts.spring_damper`), they read
+Let T = 2πn - D be the flight time, and g, G, h the responses of the contact at
+time D (see :mod:`bouncing_ball.contacts.spring_damper`). The equations are then
 
 * release (Eq. 23): ``δ_b + κ δ′_b = 0``, that is ``u g + X Im h + Y Re h = G``
   for the displacement release, κ = 0;
@@ -15,11 +15,11 @@ time D (see :mod:`bouncing_ball.contacts.spring_damper`), they read
 * landing (Eqs. 25, 19): ``δ_b + Λ sin(φ + D) + (u + X + T) T - T²/2 = Y``
   with ``δ_b = -κ δ′_b``.
 
-One 3×3 solve gives the orbit. D is therefore a parameter of the entire branch, saddle-node
-and period doubling included, with ``Λ = √(X² + Y²)`` and ``φ = atan2(Y, X)``.
+The solution of this 3×3 system is the orbit. D is therefore a parameter of the entire branch,
+saddle-node and period doubling included, with ``Λ = √(X² + Y²)`` and ``φ = atan2(Y, X)``.
 
-For a stiff contact the branch occupies a range of D of order 1/ϖ² around the
-free half period, in which D has too few digits to tell its points apart. The curve is
+For a stiff contact the branch occupies a range of D of order 1/ϖ² around the free half
+period, and a double has too few digits of D to distinguish its points. The curve is
 therefore parametrised by the *excess angle* ε, ``ϖ_d D = θ₀ + ε``, where θ₀ is the
 angle at which the free contact would be released, π - 2α with sin α = κϖ/2
 (:mod:`bouncing_ball.contacts.release`). The one sensitive coefficient,
@@ -49,7 +49,7 @@ from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import require
 from bouncing_ball.motion.ensembles import blocks, pick
 
-# Points computed at the same time: so many that the intermediate arrays stay in the cache.
+# Number of points computed at the same time, so that the intermediate arrays stay in the cache.
 _BLOCK = 8192
 # Bound of |p(ν)| s² below which the oscillator's integrals replace the quotients. It is lower
 # than there, because only the values of the responses are needed here and not their
@@ -98,8 +98,8 @@ class BranchPoint(NamedTuple):
 def _responses(duration, sin_angle, cos_angle, sin_d, cos_d, decay, omega, zeta, root):
     """g, g′, G, Q = Re h and P = Im h at time D, from the sine and cosine of ϖ_d D and of D.
 
-    These are the quotients of :mod:`bouncing_ball.contacts.oscillator` in real arithmetic. Where
-    they lose digits, in short or resonant contacts, the values come from that module.
+    These are the quotients of :mod:`bouncing_ball.contacts.oscillator` in real arithmetic. In short
+    or resonant contacts the quotients lose digits, and the values come from that module instead.
     """
     stiffness, loss = omega * omega, 2 * zeta * omega
     g = decay * sin_angle / (omega * root)
@@ -146,7 +146,7 @@ def _solve(rows, right):
 
 
 def branch_point(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> BranchPoint:
-    """The n-T orbit whose contact lasts ``D = (θ₀ + ε)/ϖ_d``.
+    """The n-T orbit whose contact lasts for the time ``D = (θ₀ + ε)/ϖ_d``.
 
     Parameters
     ----------
@@ -246,7 +246,7 @@ def _branch_point(eps, omega, zeta, sine, n) -> BranchPoint:
     return BranchPoint(duration, x, y, u, d_x * per_angle, d_y * per_angle, saddle, determinant)
 
 
-# Gauss-Newton steps. The start is exact up to the rounding of D, and convergence immediate.
+# Number of Gauss-Newton steps. The start is exact up to the rounding of D, so that few suffice.
 _ITERATIONS = 4
 
 
@@ -255,9 +255,10 @@ def nearest_excess(
 ) -> np.ndarray:
     """ε of the point of the branch that is nearest to a given one in (X, Y, ε).
 
-    Comparing orbits at equal Λ would divide by zero at a fold. For a stiff contact D has too
-    few digits to compare at equal D, because X and Y change ϖ times as fast; elsewhere X and Y
-    may nearly stand still. The nearest point is well conditioned everywhere.
+    Comparing orbits at equal Λ would divide by zero at a fold. For a stiff contact D has too few
+    digits for a comparison at equal D, because X and Y change rapidly with D. Elsewhere X and Y
+    may hardly change along the branch. The nearest point in all three variables is well
+    conditioned everywhere.
 
     Parameters
     ----------

@@ -1,12 +1,12 @@
 """Saddle-node, period doubling and orbits at a given Λ, on the explicit branch.
 
 These are roots of functions of one variable along the branch of
-:mod:`bouncing_ball.orbits.spring_damper_branch`, for arrays of contacts at the same time. A
-scan brackets the first root next to the fold, and Chandrupatla's method
+:mod:`bouncing_ball.orbits.spring_damper_branch`, computed for arrays of contacts at the same time.
+A scan brackets the first root next to the fold, and Chandrupatla's method
 (:func:`scipy.optimize.elementwise.find_root`) reduces the bracket to the last digit.
 
-The branch comes from Λ → ∞ at short contacts, where Λ falls with the contact
-duration until the saddle-node: this is the side that is stable next to the
+The branch comes from Λ → ∞ at short contacts. From there Λ falls as the contact
+duration grows, until the saddle-node: this is the side that is stable next to the
 fold. Entries for which the quantity does not exist are NaN.
 """
 
@@ -29,11 +29,11 @@ from bouncing_ball.orbits.stability import Bifurcation, Side
 # part of 1/ϖ, the scale of the fold, to the ends of the possible range.
 _SCAN = 60
 _SCAN_START = 1e-3
-# The scan's ends: contacts of a thousandth of the free duration, at which Λ exceeds
-# 10⁶, and contacts that fill the cycle but for a millionth of it.
+# The scan starts at contacts of a thousandth of the free duration, at which Λ exceeds
+# 10⁶, and ends at contacts that fill the cycle except for a millionth of it.
 _SHORTEST = 1e-3
 _FULL = 1e-6
-# Contacts searched at the same time: so many that a scan takes some ten megabytes.
+# Number of contacts searched at the same time, so that a scan takes some ten megabytes.
 _BLOCK = 1024
 # Steps of the search for all orbits, in radians of the contact's oscillation and of the
 # table's, because Λ(ε) oscillates with both; and the largest number of steps.
@@ -53,7 +53,7 @@ def _surplus(point: BranchPoint, amplitude: np.ndarray) -> np.ndarray:
 
 
 class _Curves(NamedTuple):
-    """Branches along ε, of contacts and families in a row."""
+    """The branches of several contacts and families, as functions of ε; one-dimensional arrays."""
 
     contact: SpringDamper
     n: np.ndarray
@@ -65,7 +65,7 @@ class _Curves(NamedTuple):
         return branch_point(excess, self.contact, self.n)
 
     def ends(self) -> tuple[np.ndarray, np.ndarray]:
-        """ε of the shortest contact, where Λ is larger than any of interest, and of D → 2πn."""
+        """ε of the shortest contact, at which Λ is larger than needed, and ε for D → 2πn."""
         start = self.contact.free_angle
         high = self.contact.damped_frequency * 2 * np.pi * self.n * (1 - _FULL) - start
         return np.minimum(-start * (1 - _SHORTEST), high), high
@@ -83,9 +83,9 @@ class _Curves(NamedTuple):
     def root(
         self, of: Callable, grid: np.ndarray, at: np.ndarray, found: Any, *more: np.ndarray
     ) -> np.ndarray:
-        """Roots of a function of the branch's points in the intervals ``at`` of the grid.
+        """Roots of a function of points of the branch, in the intervals ``at`` of the grid.
 
-        NaN where no interval was found.
+        The root is NaN where ``found`` is False.
         """
         # Imported here because it takes a third of a second, and not every run needs limits.
         from scipy.optimize.elementwise import find_root
@@ -106,9 +106,9 @@ class _Curves(NamedTuple):
     ) -> np.ndarray:
         """First, or last, zero of a test function with known values along a grid, or NaN.
 
-        A test function also changes sign at a pole. As the bracket shrinks onto a pole the value
-        grows beyond those at both ends, whereas at a zero it becomes smaller; this distinguishes
-        the two without a tolerance.
+        A test function also changes sign at a pole. As the bracket shrinks onto a pole, the value
+        in it grows beyond the values at both ends, whereas it becomes smaller at a zero. The two
+        are therefore distinguished without a tolerance.
         """
         row = np.arange(self.n.size)
         at, found = _bracket(values, last=last)
@@ -122,9 +122,10 @@ class _Curves(NamedTuple):
         return self.zero(_saddle, grid, _saddle(self.point(grid)))
 
     def stable_side(self, of: Callable, *more: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The scan's grid up to the fold, where what is beyond collapses, and a function there.
+        """The grid of the scan up to the fold, and the values of a function on it.
 
-        Without a fold Λ falls all the way, and the whole branch is this side.
+        Grid points beyond the fold are replaced by the fold. Without a fold Λ falls along the whole
+        branch, and the whole branch is the stable side.
         """
         grid = self.scan()
         points = self.point(grid)
@@ -137,7 +138,7 @@ class _Curves(NamedTuple):
 def _bracket(values, *, last=False):
     """Index of the first, or last, sign change along the first axis, and whether there is one.
 
-    NaN has no sign.
+    A change next to NaN does not count.
     """
     left, right = values[:-1], values[1:]
     change = ((left < 0) & (right >= 0)) | ((left >= 0) & (right < 0))
@@ -147,7 +148,7 @@ def _bracket(values, *, last=False):
 
 
 def _searched(search: Callable, contact: SpringDamper, n: ArrayLike, *more: ArrayLike):
-    """A search for many contacts, in blocks, because the scan of each contact has 121 points."""
+    """The results of a search for many contacts, in blocks, because each scan has 121 points."""
     check_index(n)
     arrays = (contact.frequency_ratio, contact.damping_ratio, n, *more)
     columns = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in arrays))
@@ -161,8 +162,9 @@ def _searched(search: Callable, contact: SpringDamper, n: ArrayLike, *more: Arra
 def saddle_node(contact: SpringDamper, n: ArrayLike) -> np.ndarray:
     """Excess angle ε of the saddle-node, the first zero of 1 - tr + det.
 
-    dΛ/dε vanishes there too, but also where the ball grazes, and changes sign at
-    the poles of the branch, where Λ is infinite; neither is a bifurcation.
+    dΛ/dε also vanishes at the saddle-node. It is not the test function because it vanishes where
+    the ball grazes as well, and changes sign at the poles of the branch, where Λ is infinite;
+    neither is a bifurcation.
 
     Parameters
     ----------
@@ -194,12 +196,12 @@ def saddle_node(contact: SpringDamper, n: ArrayLike) -> np.ndarray:
 def period_doubling(contact: SpringDamper, n: ArrayLike) -> np.ndarray:
     """Excess angle ε of the period doubling nearest to the saddle-node, on the stable side.
 
-    NaN where the stable side has none. Arguments, shape and errors are those of
-    :func:`saddle_node`.
+    ε is NaN where the stable side has no period doubling. Arguments, shape and errors are those
+    of :func:`saddle_node`.
 
     Examples
     --------
-    For a stiff elastic contact it is at Λ = 1, as in the restitution model:
+    For a stiff elastic contact, the period doubling is at Λ = 1, as in the restitution model:
 
     >>> contact = SpringDamper(1e6, 0.0)
     >>> bool(abs(branch_point(period_doubling(contact, 1), contact, 1).amplitude - 1) < 1e-5)
@@ -219,13 +221,13 @@ def _stable_side(curves: _Curves, lam: np.ndarray) -> np.ndarray:
 
 
 def _unstable_side(curves: _Curves, lam: np.ndarray) -> np.ndarray:
-    """ε of the orbit at Λ beyond the saddle-node that is nearest to it."""
+    """ε of the orbit at Λ that is nearest to the saddle-node on its unstable side."""
     fold, (_, high) = curves.fold(), curves.ends()
     scale = _SCAN_START / curves.contact.frequency_ratio
     steps = np.linspace(0, 1, _SCAN).reshape(-1, 1)
     outward = fold + scale * np.maximum((high - fold) / scale, 1.0) ** steps
     grid = np.minimum(np.concatenate([fold[np.newaxis], outward]), high)
-    # The next turn of Λ is made a point of the grid, so that an orbit next to it
+    # The next turning point of Λ is added to the grid, so that an orbit next to it
     # is not missed between two points.
     turn, turns = _bracket(curves.point(grid[1:]).fold)
     summit = curves.root(_fold, grid[1:], turn, turns)
@@ -236,7 +238,7 @@ def _unstable_side(curves: _Curves, lam: np.ndarray) -> np.ndarray:
 def orbit_at(
     contact: SpringDamper, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE
 ) -> SpringDamperOrbit:
-    """The n-T orbits at given Λ; NaN entries where there is none.
+    """The n-T orbits at given Λ; NaN entries where there is no orbit.
 
     Parameters
     ----------
@@ -272,10 +274,11 @@ def orbit_at(
 def orbits_at(contact: SpringDamper, n: int, amplitude: float) -> SpringDamperOrbit:
     """All n-T orbits of one contact at one Λ, in order of contact duration, shape (count,).
 
-    These are the roots of Λ(ε) = Λ at which the ball approaches the table at impact and leaves it
-    at release; they need not be admissible. The turns of Λ between the points of a fine grid are
-    found first, so that two orbits next to a turn are not missed. For ϖ above some 10³ the search
-    does not reach contacts longer than 2·10⁵ steps of 0.02 radians.
+    These are the points of the branch with the given Λ at which the ball approaches the table at
+    impact and leaves it at release; they need not be admissible. The turning points of Λ are
+    added to a fine grid first, so that two orbits next to one of them are not missed. The grid ends
+    after 2·10⁵ steps of 0.02 radians of ϖ_d D, so that for nϖ above about 600 the longest contacts
+    are not searched.
 
     Raises
     ------

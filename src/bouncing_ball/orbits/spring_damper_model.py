@@ -1,4 +1,4 @@
-"""The spring-damper model: a contact together with its n-T orbits."""
+"""The spring-damper model: a linear contact together with its n-T orbits."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.spring_damper_system import SpringDamperSystem
 from bouncing_ball.orbits.stability import Side
 
-# Rounding of a Λ that is exactly 0, in units in the last place of z′_i; at most 3.9 were
-# seen for ϖ = 0.6…10⁶ and n = 1…100, under both rules.
+# Bound of the rounding error of a Λ that is exactly 0, in units in the last place of z′_i; the
+# largest error found for ϖ = 0.6…10⁶ and n = 1…100, under both rules, was 3.9 units.
 _UNITS = 8
 
 
@@ -28,7 +28,7 @@ _UNITS = 8
 class SpringDamperModel(ImpactModel):
     """A ball on a table with a spring-damper contact (Eqs. 10-27).
 
-    Its orbits lie on an explicit curve, see :mod:`bouncing_ball.orbits.spring_damper_branch`.
+    Its orbits lie on an explicit curve; see :mod:`bouncing_ball.orbits.spring_damper_branch`.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class SpringDamperModel(ImpactModel):
     def orbit(
         self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE
     ) -> SpringDamperOrbit:
-        """The n-T orbits at Λ on a side of the saddle-node; NaN where there is none."""
+        """The n-T orbits at Λ on one side of the saddle-node; NaN where there is no orbit."""
         return limits.orbit_at(self.contact, n, amplitude, Side(side))
 
     def orbits(self, n: int, amplitude: float) -> SpringDamperOrbit:
@@ -71,10 +71,10 @@ class SpringDamperModel(ImpactModel):
         return limits.orbits_at(self.contact, n, amplitude)
 
     def saddle_node(self, n: ArrayLike) -> SpringDamperOrbit:
-        """The orbits at the saddle-node; NaN where the branch has none.
+        """The orbits at the saddle-node; NaN where the branch has no saddle-node.
 
-        Without dissipation it is at Λ = 0. There Λ is the difference of terms as large as z′_i, so
-        that a Λ of the order of their rounding is set to 0.
+        Without dissipation the saddle-node is at Λ = 0. There Λ is the difference of terms as large
+        as z′_i, and a Λ of the order of their rounding error is set to 0.
 
         Examples
         --------

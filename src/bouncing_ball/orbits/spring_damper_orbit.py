@@ -1,4 +1,4 @@
-"""n-T orbits of the spring-damper model: their contact, equations and stability."""
+"""n-T orbits of the spring-damper model: their contacts, equations and stability."""
 
 from typing import Any, Self
 
@@ -45,9 +45,7 @@ class SpringDamperOrbit(Orbit):
         return self.law.frequency_ratio
 
     def contact_flow(self, time: np.ndarray) -> Any:
-        """The contact's :class:`~bouncing_ball.contacts.spring_damper.ContactFlow` at times 0 ≤ τ ≤
-        τ_b.
-        """
+        """The :class:`~bouncing_ball.contacts.spring_damper.ContactFlow` at times 0 ≤ τ ≤ τ_b."""
         u = self.relative_impact_velocity
         return self.law.flow(time, 0.0, u, self.phase, self.amplitude)
 
@@ -59,7 +57,8 @@ class SpringDamperOrbit(Orbit):
     def residual(self) -> np.ndarray:
         """Release, velocity and landing defects (Eqs. 23-25), shape (..., 3).
 
-        The first is ϖ (δ_b + κ δ′_b), which is of the order of a velocity like the second.
+        The release defect is ϖ (δ_b + κ δ′_b). Like the second defect, it is of the order of a
+        velocity.
         """
         flow, contact = self.contact_flow(self.contact_duration), self.law
         release = contact.frequency_ratio * flow.displacement
@@ -82,6 +81,6 @@ class SpringDamperOrbit(Orbit):
         return np.concatenate([duration[..., np.newaxis, :], state], axis=-2)
 
     def determinant(self) -> np.ndarray:
-        """exp(-2ζϖ τ_b), exactly, because the flow contracts in contact only, at the rate 2ζϖ."""
+        """exp(-2ζϖ τ_b), exactly, because areas contract only in contact, at the rate 2ζϖ."""
         loss = np.asarray(self.law.damping_ratio) * self.law.frequency_ratio
         return np.exp(-2 * loss * self.contact_duration)

@@ -1,10 +1,10 @@
-r"""The paper's equations of the n-T orbits (Eqs. 21-27) for a continuation.
+r"""The paper's equations of the n-T orbits (Eqs. 21-27) as a continuation problem.
 
 Of the paper's six unknowns, A and B follow from the start of contact
-(Eqs. 21-22) and z′_b from the periodicity (Eq. 27), all linearly. The rest,
-``(φ, z′_i, ϖ τ_b)``, solves the three equations left: release (Eq. 23), the
+(Eqs. 21-22) and z′_b from the periodicity (Eq. 27), all linearly. The other
+unknowns, ``(φ, z′_i, ϖ τ_b)``, solve the three remaining equations: release (Eq. 23), the
 velocity at release (Eq. 24) and landing (Eq. 25). The duration is measured in units of
-1/ϖ, in which it is of order one.
+1/ϖ, because it is then of order one.
 
 The continuation parameter is Λ, or ln ϖ at a fixed Λ.
 """
@@ -26,8 +26,8 @@ class SpringDamperSystem(OrbitSystem):
     Parameters
     ----------
     n : int
-        Index of the family. It, the contact and Λ may be arrays along the leading axis of y,
-        to solve for many systems at the same time.
+        Index of the family. The index, the contact and Λ may be arrays along the leading axis
+        of y, to solve many systems at the same time.
     contact : SpringDamper
         ϖ, ζ and the release rule.
     amplitude : float, optional
@@ -61,7 +61,7 @@ class SpringDamperSystem(OrbitSystem):
         o = self.orbit(y)
         omega, flow = o.law.frequency_ratio, o.contact_flow(o.contact_duration)
         # Derivatives of (τ, δ, δ′, φ, Λ, ϖ) of the flow with respect to
-        # (φ, z′_i, ϖ τ_b, Λ, ln ϖ), of which the last or the last but one is a constant.
+        # (φ, z′_i, ϖ τ_b, Λ, ln ϖ), where either Λ or ln ϖ is held fixed.
         inner = np.zeros((*y.shape[:-1], 6, 5))
         inner[..., 0, 2], inner[..., 0, 4] = 1 / omega, -o.contact_duration
         inner[..., 2, 0], inner[..., 2, 1] = o.amplitude * np.sin(o.phase), 1
@@ -79,8 +79,8 @@ class SpringDamperSystem(OrbitSystem):
         return np.stack([release, *o.flight_jacobian(start, [d_duration, *ends])], axis=-2)
 
     def guess(self, amplitude: float, frequency_ratio: float) -> np.ndarray:
-        """The stable orbit of the restitution model with a free contact: a start y for Newton's
-        method.
+        """The stable orbit of the restitution model, with the duration of a free contact, as a
+        start y for Newton's method.
 
         It is close to a solution for ϖ ≫ 1 only.
 

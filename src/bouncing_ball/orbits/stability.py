@@ -1,8 +1,8 @@
 """Linear stability of a fixed point of a planar map.
 
 An orbit is stable while its Floquet multipliers lie inside the unit circle.
-It loses stability at a saddle-node, where a multiplier is +1 and
-``1 - tr + det = 0``, or at a period doubling, -1 and ``1 + tr + det = 0``.
+It loses stability at a saddle-node, where a multiplier is +1 and ``1 - tr + det = 0``,
+or at a period doubling, where a multiplier is -1 and ``1 + tr + det = 0``.
 """
 
 from enum import StrEnum
@@ -14,10 +14,10 @@ from bouncing_ball.errors import ModelError
 
 
 def multipliers(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
-    """Floquet multipliers, complex, shape (..., 2), the one of larger modulus first.
+    """Floquet multipliers, complex, shape (..., 2); that of larger modulus comes first.
 
-    The second is the determinant divided by the first, and thus keeps its digits where
-    the two differ by orders of magnitude.
+    The second multiplier is the determinant divided by the first. It thus keeps its digits where
+    the two multipliers differ by orders of magnitude.
 
     Examples
     --------

@@ -1,10 +1,10 @@
 """The equations of n-T orbits as a continuation problem.
 
-Where a contact follows from its start the unknowns are (φ, z′_i), the phase and the velocity
-at the impact, and the parameter is Λ. The contact that starts there gives its duration and its
-end, which leaves two equations: velocity and height of the flight that follows (Eqs. 24-25).
-Both are of order one however short the contact is. In the corrected model the only unknown is
-the phase of the instant.
+If a contact is determined by its start, the unknowns are (φ, z′_i), the phase and the velocity
+at the impact, and the parameter is Λ. The contact then gives its duration and the state at its
+end, and two equations remain, for the velocity and the height of the flight that follows
+(Eqs. 24-25). Both are of order one however short the contact is. In the corrected model the only
+unknown is the phase of the instant.
 """
 
 from abc import ABC, abstractmethod
@@ -18,11 +18,11 @@ import numpy as np
 from bouncing_ball.continuation.events import Event
 from bouncing_ball.orbits.stability import Bifurcation
 
-# Impact velocity and flight time vanish together where an orbit merges with
-# permanent contact. The equations are singular there, and rounding enters
-# divided by both: stop where 1e-12 is left.
+# The relative impact velocity and the flight time vanish together where an orbit merges with
+# permanent contact. The equations are singular there, and rounding errors of 1e-16 are divided
+# by each of the two: the margin limits each of them to about 1e-12.
 _MARGIN = 1e-4
-# The ends of a branch: name, reason, and the function of an orbit that is positive before.
+# The ends of a branch: name, reason, and the function of an orbit that is positive before the end.
 _ENDS: tuple[tuple[str, str, Callable[[Any], np.ndarray]], ...] = (
     ("contact lost", "the ball no longer closes in on the table at impact",
      lambda orbit: -orbit.relative_impact_velocity - _MARGIN),
@@ -54,7 +54,7 @@ class OrbitSystem(ABC):
     def residual(self, y: np.ndarray) -> np.ndarray:
         """The last N defects of the orbits, shape (..., N).
 
-        These are velocity and landing where the contact follows from its start.
+        These are the velocity and landing defects if the contact is determined by its start.
         """
         return self.orbit(y).residual()[..., 1 - y.shape[-1] :]
 
@@ -62,8 +62,8 @@ class OrbitSystem(ABC):
         """Events along a branch: the bifurcations, and the ends of the domain in which orbits
         exist.
 
-        Terminal are the loss of contact (the ball no longer approaches the table at impact), of the
-        release (it no longer leaves at the end of contact) and of the flight.
+        Three events are terminal: the ball no longer approaches the table at impact, it no longer
+        leaves the table at the end of contact, or its flight time vanishes.
         """
 
         def bifurcation(kind: Bifurcation) -> Event:
@@ -78,12 +78,12 @@ class OrbitSystem(ABC):
 
 @dataclass(frozen=True)
 class ContactSystem(OrbitSystem):
-    """The system of orbits whose contact follows from its start; y = (φ, z′_i, Λ), or (ψ, Λ).
+    """The system of orbits whose contact is determined by its start; y = (φ, z′_i, Λ) or (ψ, Λ).
 
     Parameters
     ----------
     n : int
-        Index of the family. It and the law's parameters may be arrays along the
+        Index of the family. The index and the parameters of the law may be arrays along the
         leading axis of y.
     law : Batch
         The law of the impact.
@@ -105,7 +105,8 @@ class ContactSystem(OrbitSystem):
 
     @cached_property
     def _known(self) -> Callable:
-        # A step along a branch evaluates residual, Jacobian and events at the same points.
+        # Orbits are cached because a step along a branch evaluates the residual, the Jacobian and
+        # the events at the same points.
         def orbit(shape: tuple[int, ...], entries: bytes) -> Any:
             *unknowns, amplitude = np.moveaxis(np.frombuffer(entries).reshape(shape), -1, 0)
             return self.at(self.n, self.law, amplitude, *unknowns)
@@ -117,7 +118,7 @@ class ContactSystem(OrbitSystem):
         return self._known(y.shape, y.tobytes())
 
     def point(self, orbit: Any) -> np.ndarray:
-        """The orbits' unknowns with Λ behind them, shape (..., N + 1)."""
+        """The unknowns of the orbits, followed by Λ, shape (..., N + 1)."""
         return np.stack(np.broadcast_arrays(*orbit.unknowns, orbit.amplitude), axis=-1)
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:

@@ -92,6 +92,17 @@ class Stretching(NamedTuple):
         The computed motion of a ball that has stuck to the table again after so many impacts, a
         ``lap``, 0 for none, is the same in each lap, so that only the means of one lap count. Means
         that are equal up to rounding are copies of one mean, which has no error.
+
+        Examples
+        --------
+        Growth by 1 and by 3 in one unit of time each, and the same in four laps:
+
+        >>> stretch = Stretching.of(1)
+        >>> stretch.sums[0] = 2, 4, 2, 10, 4, 2
+        >>> with np.errstate(divide="ignore"):
+        ...     rate, error = stretch.exponent(np.array([0, 0]), np.array([0, 16]))
+        >>> rate.tolist(), error.tolist()
+        ([2.0, 2.0], [1.0, 2.0])
         """
         number, growth, time, square, product, times = self.sums[which].T
         rate = growth / time
